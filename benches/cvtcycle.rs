@@ -64,6 +64,7 @@ fn load_at(torque_nm: f64) -> BeltLoad {
         eta_pa_s: 0.02,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.125,
+        capacity_friction: 0.09,
         flank_friction: 0.13,
     }
 }

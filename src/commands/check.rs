@@ -1,4 +1,6 @@
-//! `check`: input files without a run.
+//! `check`: input files without a run; with `--physics` vehicles, by laws that do not share the code they check.
+
+mod physics;
 
 use clap::Args;
 use cvtcycle::config::setup::{self, Kind, NamedBy, Options};
@@ -11,20 +13,39 @@ use serde_json::{Value, json};
 use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{cite, in_options};
-use crate::args::{JsonArgs, relative_to};
+use crate::args::{JsonArgs, Names, cycles, relative_to};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
+use physics::PhysicsPlan;
 
 /// Arguments of `check`.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "\
-Example: cvtcycle check rover_216_cvt
+Examples:
+  cvtcycle check rover_216_cvt
+  cvtcycle check --physics rover_216_cvt --cycle ece15 --ambient -10
 
 Prints `ok` for every file without problems, and all problems of the others with place, value, allowed range and a hint; the exit \
-code is then 2.")]
+code is then 2. With --physics every vehicle is driven after a soak, and each law has a line: the step in which most of its bound is \
+used, by how much, and whether it holds; the exit code is 1 if one fails.")]
 pub struct CheckArgs {
     /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV); detected from the contents of the file
     #[arg(value_name = "FILE", required = true)]
     files: Vec<String>,
+    /// Drive each vehicle, and check torques, forces, power and heat of every step by statics and energy, apart from the model
+    #[arg(long)]
+    physics: bool,
+    /// Cycle of --physics: a name, constant_V (V in km/h, 600 s), or a CSV file
+    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", requires = "physics", value_parser = Names(cycles), hide_possible_values = true)]
+    cycle: String,
+    /// Ambient temperature of --physics, degC, -40 to 60
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        requires = "physics",
+        allow_hyphen_values = true
+    )]
+    ambient: String,
     #[command(flatten)]
     output: JsonArgs,
 }
@@ -32,14 +53,34 @@ pub struct CheckArgs {
 type Checked = Result<InputKind, Problems>;
 
 impl Execute for CheckArgs {
-    type Plan = Vec<(String, Checked)>;
+    type Plan = CheckPlan;
 
-    fn plan(&self, _: &mut Problems) -> Option<Self::Plan> {
-        let files = self.files.iter();
-        Some(files.map(|file| (file.clone(), check(file))).collect())
+    fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
+        if self.physics {
+            let drive = (&*self.cycle, &*self.ambient);
+            return physics::plan(&self.files, drive, problems)
+                .map(|plan| CheckPlan::Physics(Box::new(plan)));
+        }
+        let files = self.files.iter().map(|file| (file.clone(), check(file)));
+        Some(CheckPlan::Files(files.collect()))
     }
 
-    fn run(&self, checked: Self::Plan, terminal: Terminal) -> CommandResult {
+    fn run(&self, plan: Self::Plan, terminal: Terminal) -> CommandResult {
+        match plan {
+            CheckPlan::Files(checked) => self.files(&checked, terminal),
+            CheckPlan::Physics(plan) => physics::run(&plan, self.output, terminal),
+        }
+    }
+}
+
+/// What is checked.
+pub enum CheckPlan {
+    Files(Vec<(String, Checked)>),
+    Physics(Box<PhysicsPlan>),
+}
+
+impl CheckArgs {
+    fn files(&self, checked: &[(String, Checked)], terminal: Terminal) -> CommandResult {
         let ending = match checked.iter().all(|(_, result)| result.is_ok()) {
             true => Ending::Success,
             false => Ending::BadInput,

@@ -30,8 +30,8 @@ Examples:
   cvtcycle validate --format html > validation.html
 
 Verdicts: `agrees` (within the printed precision and the tolerance), `fit` (the same, but a parameter \
-was fitted to it), `differs` (with the reason), `not comparable`. Exit code 1: the verdict of a row \
-is not the recorded one. Rows are TOML files (docs/validation_format.md); --rows adds your own \
+was fitted to it), `differs` (with the reason), `not comparable`, and `not computed` for a number that \
+this car does not have. Exit code 1: the verdict of a row is not the recorded one. Rows are TOML files (docs/validation_format.md); --rows adds your own \
 measurements."
 )]
 pub struct ValidateArgs {

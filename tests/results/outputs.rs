@@ -46,7 +46,8 @@ fn a_trace_reads_back_to_the_same_numbers() {
                     Cell::Phase(_) => assert_eq!(field, "ECE 1"),
                     Cell::Flags(f) if f == Flags::default() => assert_eq!(field, ""),
                     Cell::Flags(_) => assert_eq!(field, "overrun|fuel_cut"),
-                    Cell::Text(_) | Cell::Names(_) => unreachable!(),
+                    Cell::Text(words) => assert_eq!(field, words),
+                    Cell::Names(_) => unreachable!(),
                 }
             }
         }
@@ -66,13 +67,13 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
         names(true, &CVT),
         "time_s, dt_s, phase, speed_kmh, accel_m_s2, wheel_torque_nm, wheel_power_w, \
          engine_speed_rpm, engine_torque_nm, throttle, belt_ratio, overall_ratio, \
-         primary_pressure_bar, secondary_pressure_bar, slip_percent, clamp_safety, \
+         primary_pressure_bar, secondary_pressure_bar, clamp_cause, slip_percent, clamp_safety, \
          launch_clutch_loss_w, pump_loss_w, input_shaft_loss_w, clutch_drag_loss_w, \
-         belt_band_loss_w, belt_film_loss_w, belt_slip_loss_w, belt_wedge_loss_w, \
+         seal_ring_loss_w, pulley_bearing_loss_w, belt_band_loss_w, belt_film_loss_w, belt_slip_loss_w, belt_wedge_loss_w, \
          belt_penetration_loss_w, final_drive_loss_w, accessories_w, brake_w, kinetic_w, \
          deficit_w, fuel_g_s, fuel_power_w, engine_heat_w, exhaust_w, coolant_degc, \
          engine_oil_degc, transmission_sump_degc, transmission_metal_degc, belt_spray_degc, \
-         cooler_in_degc, cooler_out_degc, stored_w, to_air_w, power_ledger_error, \
+         cooler_in_degc, cooler_out_degc, tyre_degc, stored_w, to_air_w, power_ledger_error, \
          heat_ledger_error, solve_residual, iterations, flags"
     );
     let manual = names(false, &MANUAL);
@@ -103,7 +104,7 @@ fn columns_are_those_of_the_car_in_the_agreed_order() {
             "{name}"
         );
     }
-    assert_eq!(COLUMNS.len(), 39 + Component::COUNT);
+    assert_eq!(COLUMNS.len(), 41 + Component::COUNT);
 }
 
 fn names_in(dir: &Path) -> Vec<String> {

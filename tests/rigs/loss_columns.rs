@@ -105,19 +105,23 @@ fn val_map_parts_take_their_own_torque() {
         MapPart::ClutchDrag.loss_nm(&bench, &p),
         whole.part_nm(Component::ClutchDrag),
     );
+    same(
+        MapPart::SealRing.loss_nm(&bench, &p),
+        bench.solve(&p).part_nm(Component::SealRing),
+    );
     let parts = Parts {
         final_drive: false,
+        seal_rings: false,
         ..Parts::ALL
     };
+    let alone = bench.solve(&BenchPoint {
+        output_nm: 40.0 * cvt.final_drive.ratio,
+        parts,
+        ..p
+    });
     same(
         MapPart::Belt.loss_nm(&bench, &p),
-        bench
-            .solve(&BenchPoint {
-                output_nm: 40.0 * cvt.final_drive.ratio,
-                parts,
-                ..p
-            })
-            .belt_nm(),
+        alone.belt_nm() + alone.part_nm(Component::PulleyBearing),
     );
     let manual = Bench::new(&car("rover_216_5mt", &[]));
     for input_nm in [-40.0, 5.0, 90.0] {

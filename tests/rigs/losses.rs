@@ -277,7 +277,7 @@ fn output_directory() {
         "--out",
         a_text,
     ]);
-    let maps = "losses.csv losses_belt.svg losses_clutch_drag.svg losses_final_drive.svg losses_input_shaft.svg losses_pump.svg losses_total.svg summary.json";
+    let maps = "losses.csv losses_belt.svg losses_clutch_drag.svg losses_final_drive.svg losses_input_shaft.svg losses_pulley_bearing.svg losses_pump.svg losses_seal_ring.svg losses_total.svg summary.json";
     assert_eq!(files(&a).join(" "), maps);
     for name in files(&a).iter().filter(|name| name.ends_with(".svg")) {
         let text = std::fs::read_to_string(a.join(name)).unwrap();

@@ -370,8 +370,8 @@ fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
             ("transmission.cvt.variator.stop_from_ratio", 2.3),
             ("transmission.cvt.variator.stop_to_ratio", 2.0),
         ],
-        &[("transmission.cvt.pressure.floor_bar", 41.0)],
-        &[("transmission.cvt.pressure.cap_bar", 5.0)],
+        &[("transmission.cvt.pressure.control_bar", 41.0)],
+        &[("transmission.cvt.pressure.cap_bar", 4.0)],
         &[
             ("transmission.cvt.ratio.low", 0.4),
             ("transmission.cvt.ratio.high", 2.4),

@@ -12,8 +12,8 @@ pub trait PrimeMover {
     fn max_rad_s(&self) -> f64;
     /// Rated power, W.
     fn rated_w(&self) -> f64;
-    /// Full-load torque over that at sea level.
-    fn full_load_factor(&self) -> f64;
+    /// Full-load torque at a speed over that of the warm machine in the reference air.
+    fn full_load_share(&self, speed_rad_s: f64) -> f64;
     /// Full-load torque at a speed.
     fn full_load_nm(&self, speed_rad_s: f64) -> f64;
     /// Torque of the accessories at a speed.
@@ -22,4 +22,6 @@ pub trait PrimeMover {
     fn drag_nm(&self, speed_rad_s: f64) -> f64;
     /// Largest acceleration of the free shaft, rad/s2.
     fn max_accel_rad_s2(&self) -> f64;
+    /// Speed to which the shaft falls from another in `dt_s` with a load on it and no fuel.
+    fn slowed_rad_s(&self, from_rad_s: f64, load_nm: f64, dt_s: f64) -> f64;
 }

@@ -6,13 +6,16 @@
 //! | RL-2 | road: f2 scales with air density, f0 with 1 + k (20 degC - T) | source: gas law; k 0.00864/K UN R83 coast-down correction |
 //! | RL-3 | body form: f0 = m g c_r, f2 = rho/2 c_d A | source: mechanics |
 //! | RL-4 | p/p_0 = (1 - 2.25577e-5 h)^5.25588 | source: ISO standard atmosphere |
+//! | RL-8 | f0, f1, f2 times a factor, the inertia as it is | source: US cold test (-6.7 degC, 10 % more road load) |
 //! | RL-5 | work of a step: integral of F v dt, speed linear, split where F changes sign | derived: polynomial |
 //!
 //! On a dynamometer the coefficients are fixed, whatever the ambient; air resistance and rolling belong to the rollers. SI throughout.
 
 mod keys;
+mod tyre;
 
 pub use keys::RoadLoadKeys;
+pub use tyre::Tyre;
 
 use crate::cycle::{Motion, Step};
 
@@ -20,6 +23,8 @@ use crate::cycle::{Motion, Step};
 pub const GRAVITY_M_S2: f64 = 9.80665;
 /// Ambient at which road-load coefficients hold, K (20 degC).
 pub const REFERENCE_K: f64 = 293.15;
+/// Ambient at which full-load lines hold, K (25 degC: SAE J1349, ISO 1585).
+const CHARGE_REFERENCE_K: f64 = 298.15;
 
 /// The checked road load, coefficients in force for one ambient.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,25 +108,29 @@ impl RoadLoad {
             + self.f2_n_per_m_s2 * motion.cube_m3_s3 // RL-5
     }
 
-    /// Speed at which the force is zero, m/s; NaN if there is none.
+    /// Speeds at which the force is zero, m/s, the lower first; NaN where there is none. Only a negative f1 has two.
     #[inline]
-    fn zero_force_speed(&self, c: f64) -> f64 {
+    fn zero_force_speeds(&self, c: f64) -> [f64; 2] {
         let (f1, f2) = (self.f1_n_per_m_s, self.f2_n_per_m_s2);
-        if f2 > 0.0 {
-            -2.0 * c / (f1 + (f1 * f1 - 4.0 * f2 * c).sqrt())
+        if f2 <= 0.0 {
+            return [f64::NAN, -c / f1];
+        }
+        let root = (f1 * f1 - 4.0 * f2 * c).sqrt();
+        if f1 < 0.0 {
+            [2.0 * c / (root - f1), (root - f1) / (2.0 * f2)]
         } else {
-            -c / f1
+            [f64::NAN, -2.0 * c / (f1 + root)]
         }
     }
 
-    /// What a step demands of the wheels (RL-1, RL-5).
+    /// What a step demands of the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
     #[inline(always)]
-    pub fn wheel(&self, step: &Step) -> WheelDemand {
+    pub fn wheel(&self, step: &Step, extra_n: f64) -> WheelDemand {
         let motion = &step.motion;
         if motion.speed_m_s <= 0.0 {
             return WheelDemand::default();
         }
-        let mut c = self.f0_n + self.inertia_kg * motion.accel_m_s2;
+        let mut c = self.f0_n + extra_n + self.inertia_kg * motion.accel_m_s2;
         if step.grade.abs() > 0.0 {
             c += self.mass_kg * GRAVITY_M_S2 * step.grade / (1.0 + step.grade * step.grade).sqrt(); // RL-1
         }
@@ -141,26 +150,37 @@ impl RoadLoad {
     #[inline]
     fn split_j(&self, c: f64, step: &Step, whole_j: f64) -> (f64, f64) {
         let (v0, v1) = (step.start_speed_m_s, step.end_speed_m_s);
+        let (mut drive_j, mut brake_j) = (0.0, 0.0);
+        let mut part = |work_j: f64| {
+            if work_j >= 0.0 {
+                drive_j += work_j;
+            } else {
+                brake_j += work_j;
+            }
+        };
+        let mut rest_j = whole_j;
         // With no part of the force negative there is nothing to split: most steps need no root.
         if c < 0.0 || self.f1_n_per_m_s < 0.0 {
-            let zero = self.zero_force_speed(c);
-            let (low, high) = if v0 < v1 { (v0, v1) } else { (v1, v0) };
-            if zero > low && zero < high {
-                let first_s = (zero - v0) / step.motion.accel_m_s2;
-                let first = self.power_w(c, &Motion::between(v0, zero, first_s)) * first_s;
-                let second = whole_j - first;
-                return if first > second {
-                    (first, second)
-                } else {
-                    (second, first)
-                };
+            let [lower, upper] = self.zero_force_speeds(c);
+            let rising = v0 < v1;
+            let (low, high) = if rising { (v0, v1) } else { (v1, v0) };
+            let mut from = v0;
+            for zero in if rising {
+                [lower, upper]
+            } else {
+                [upper, lower]
+            } {
+                if zero > low && zero < high {
+                    let time_s = (zero - from) / step.motion.accel_m_s2;
+                    let work_j = self.power_w(c, &Motion::between(from, zero, time_s)) * time_s;
+                    part(work_j);
+                    rest_j -= work_j;
+                    from = zero;
+                }
             }
         }
-        if whole_j >= 0.0 {
-            (whole_j, 0.0)
-        } else {
-            (0.0, whole_j)
-        }
+        part(rest_j);
+        (drive_j, brake_j)
     }
 }
 
@@ -175,6 +195,10 @@ pub struct RoadLoadInput {
     pub rolling_per_k: f64,
     /// Altitude, m.
     pub altitude_m: f64,
+    /// Factor on the coefficients.
+    pub load_factor: f64,
+    /// Tyres.
+    pub tyre: Tyre,
 }
 
 impl RoadLoadInput {
@@ -184,17 +208,27 @@ impl RoadLoadInput {
             temp_k: ambient_k,
             altitude_m: self.altitude_m,
         };
-        self.base
-            .for_ambient(self.surface, &ambient, self.rolling_per_k)
+        // Tyres that warm up have the ambient in their own temperature.
+        let rolling_per_k = if self.tyre.warm_n > 0.0 {
+            0.0
+        } else {
+            self.rolling_per_k
+        };
+        let load = self.base.for_ambient(self.surface, &ambient, rolling_per_k);
+        RoadLoad {
+            f0_n: load.f0_n * self.load_factor,
+            f1_n_per_m_s: load.f1_n_per_m_s * self.load_factor,
+            f2_n_per_m_s2: load.f2_n_per_m_s2 * self.load_factor,
+            ..load
+        } // RL-8
     }
 
-    /// Full-load factor of altitude, (p/p_0)^1.2.
-    pub fn full_load_factor(&self) -> f64 {
-        Ambient {
-            temp_k: REFERENCE_K,
+    /// Charge of a naturally aspirated engine over that at 25 degC and sea level (EN-5). The root: cold air is warmed on its way in.
+    pub fn charge(&self, ambient_k: f64) -> f64 {
+        let ambient = Ambient {
+            temp_k: ambient_k,
             altitude_m: self.altitude_m,
-        }
-        .pressure_ratio()
-        .powf(1.2)
+        };
+        ambient.pressure_ratio() * (CHARGE_REFERENCE_K / ambient_k).sqrt() // EN-5
     }
 }

@@ -22,6 +22,8 @@ pub enum MapPart {
     InputShaft,
     /// Reverse clutch drag.
     ClutchDrag,
+    /// Seal rings of both pulleys.
+    SealRing,
     /// Final drive of the CVT.
     FinalDrive,
     /// Whole manual box.
@@ -30,11 +32,12 @@ pub enum MapPart {
 
 impl MapPart {
     /// Names as in the vehicle file.
-    pub const NAMES: [(&'static str, MapPart); 6] = [
+    pub const NAMES: [(&'static str, MapPart); 7] = [
         ("belt", MapPart::Belt),
         ("pump", MapPart::Pump),
         ("input_shaft", MapPart::InputShaft),
         ("clutch_drag", MapPart::ClutchDrag),
+        ("seal_ring", MapPart::SealRing),
         ("final_drive", MapPart::FinalDrive),
         ("box", MapPart::Box),
     ];
@@ -49,7 +52,7 @@ impl MapPart {
         match self {
             MapPart::Belt | MapPart::FinalDrive => Some("output_torque_nm"),
             MapPart::Box => Some("input_torque_nm"),
-            MapPart::Pump | MapPart::InputShaft | MapPart::ClutchDrag => None,
+            MapPart::Pump | MapPart::InputShaft | MapPart::ClutchDrag | MapPart::SealRing => None,
         }
     }
 
@@ -64,15 +67,18 @@ impl MapPart {
             MapPart::Pump => part(Component::Pump, point),
             MapPart::InputShaft => part(Component::InputShaft, point),
             MapPart::ClutchDrag => part(Component::ClutchDrag, point),
+            MapPart::SealRing => part(Component::SealRing, point),
             MapPart::FinalDrive => part(Component::FinalDrive, &at_output),
             MapPart::Belt => {
-                // Without the final drive the pulley's torque is what was asked for.
+                // Without the final drive and rings the torque of the belt with its bearings is what was asked for.
                 let parts = Parts {
                     final_drive: false,
+                    seal_rings: false,
                     ..point.parts
                 };
                 let at_pulley = BenchPoint { parts, ..at_output };
-                bench.solve(&at_pulley).belt_nm()
+                let answer = bench.solve(&at_pulley);
+                answer.belt_nm() + answer.part_nm(Component::PulleyBearing)
             }
             MapPart::Box => bench.solve(&at_input_torque(bench, point)).total_nm(),
         }

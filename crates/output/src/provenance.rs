@@ -290,7 +290,7 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
     cvt.ratio.target_rad_s(&RatioDemand {
         secondary_rad_s: 0.0,
         power_w: share * rated_w,
-        rated_w,
+        share,
         full_load_rad_s: cvt
             .full_load_route
             .at(share * rated_w / cvt.ratio.route_efficiency),
@@ -298,6 +298,8 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 1.0,
     })
 }

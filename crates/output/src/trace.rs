@@ -42,6 +42,7 @@ pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
         number "overall_ratio", "-", "engine speed over wheel speed; empty at standstill", r => r.overall_ratio;
         number "primary_pressure_bar", "bar", "primary pulley pressure", r => bar(r.primary_pressure_pa), Scope::Cvt;
         number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => bar(r.secondary_pressure_pa), Scope::Cvt;
+        words "clamp_cause", "", "what decided the secondary pressure: law, control, clutch, belt, shift_down, shift_up or cap", r => Cell::Text(r.clamp_cause.name().into()), Scope::Cvt;
         number "slip_percent", "%", "belt slip", r => 100.0 * r.slip, Scope::Cvt;
         number "clamp_safety", "-", "torque capacity of the belt over its torque; empty at zero torque", r => r.clamp_safety, Scope::Cvt;
     };
@@ -62,6 +63,7 @@ pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
         number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them at the end of the step", r => degc(r.belt_spray_k), Scope::Cvt;
         number "cooler_in_degc", "degC", "oil to the cooler; empty without one", r => degc(r.cooler_in_k);
         number "cooler_out_degc", "degC", "oil from the cooler; empty without one", r => degc(r.cooler_out_k);
+        number "tyre_degc", "degC", "tyres at the end of the step", r => degc(r.tyre_k);
         number "stored_w", "W", "heat stored in the thermal nodes", r => r.stored_w;
         number "to_air_w", "W", "heat given to the air", r => r.to_air_w;
         number "power_ledger_error", "-", "power ledger: |in - out| over the sum of absolute terms", r => r.power_ledger_error;

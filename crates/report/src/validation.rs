@@ -10,22 +10,44 @@ use cvtcycle_output::table::distinct;
 use cvtcycle_study::check::expr::short;
 use cvtcycle_study::check::judge::{Judged, Report};
 use cvtcycle_study::check::report::{Counts, computed_text, notes, unit_text};
-use cvtcycle_study::check::rule::Verdict;
+use cvtcycle_study::check::rule::{Group, Verdict};
 
 /// Counts of the verdicts in words.
-fn counts_in_words(value: &Value) -> String {
-    let counts = ["agrees", "fit", "differs", "not_comparable"];
-    let [agree, fit, differ, not] =
-        counts.map(|verdict| value["counts"][verdict].as_u64().unwrap_or(0));
-    let total = agree + fit + differ + not;
+fn counts_in_words(counts: &Value) -> String {
+    let verdicts = [
+        "agrees",
+        "fit",
+        "identity",
+        "differs",
+        "not_comparable",
+        "not_computed",
+    ];
+    let counts = verdicts.map(|verdict| counts[verdict].as_u64().unwrap_or(0));
+    let [agree, fit, identity, differ, not, failed] = counts;
+    let total: u64 = counts.iter().sum();
+    let failed = match failed {
+        0 => String::new(),
+        n => format!("; {n} cannot be computed for this car"),
+    };
     format!(
-        "of {total} printed numbers {agree} agree, {fit} were fitted to, {differ} differ, and {not} are not comparable"
+        "of {total} printed numbers {agree} agree, {fit} were fitted to, {identity} cannot fail, {differ} differ, and {not} are not comparable{failed}"
     )
+}
+
+/// Groups of rows with their counts in words: "thesis: of 300 printed numbers ...".
+fn groups_in_words(value: &Value) -> String {
+    let groups = value["groups"].as_object().into_iter().flatten();
+    let groups =
+        groups.map(|(name, found)| format!("{name}: {}", counts_in_words(&found["counts"])));
+    groups.collect::<Vec<_>>().join("; ")
 }
 
 /// The verdicts in one line.
 pub fn doubt(value: &Value) -> String {
-    format!("Held against the thesis, {}.", counts_in_words(value))
+    format!(
+        "Held against published numbers, {}.",
+        groups_in_words(value)
+    )
 }
 
 /// The rows of a validation: those that differ first, all others folded away.
@@ -38,7 +60,7 @@ pub fn section(value: &Value) -> Section {
         [] => String::new(),
         set => format!(" with {}", set.join(", ")),
     };
-    section.text(format!("Vehicle {}{with}, {}: {}. A number agrees when it lies within what is printed and the tolerance of the measurement; a row to which a parameter was fitted is called a fit, never an agreement.", text("vehicle"), text("program"), counts_in_words(value)));
+    section.text(format!("Vehicle {}{with}, {}: {}. A number agrees when it lies within what is printed and the tolerance of the measurement; a row to which a parameter was fitted is called a fit, never an agreement.", text("vehicle"), text("program"), groups_in_words(value)));
     let rows = value["rows"].as_array().into_iter().flatten();
     let differs = |row: &&Value| row["verdict"].as_str() == Some("differs");
     let (differing, others): (Vec<&Value>, Vec<&Value>) = rows.partition(differs);
@@ -69,10 +91,15 @@ struct Page {
     program: &'static str,
     vehicle: String,
     set: Vec<Override>,
-    counts: Counts,
-    total: usize,
+    groups: Vec<GroupLine>,
     moved: Vec<String>,
     chapters: Vec<Chapter>,
+}
+
+struct GroupLine {
+    name: &'static str,
+    total: usize,
+    counts: Counts,
 }
 
 struct Chapter {
@@ -100,12 +127,16 @@ struct Line {
 /// # Errors
 /// Never for the templates of this program.
 pub fn page(report: &Report) -> Result<String, String> {
+    let group = |group: Group| GroupLine {
+        name: group.word(),
+        total: report.of_group(group).count(),
+        counts: Counts::of(report.of_group(group)),
+    };
     let page = Page {
         program: cvtcycle_output::PROGRAM,
         vehicle: report.candidate.vehicle.clone(),
         set: report.candidate.set.clone(),
-        counts: Counts::of(report.rows.iter()),
-        total: report.rows.len(),
+        groups: report.groups().into_iter().map(group).collect(),
         moved: report.moved().map(|judged| judged.row.id.clone()).collect(),
         chapters: chapters(report),
     };
@@ -152,11 +183,11 @@ fn tolerance(judged: &Judged) -> String {
 
 fn line(judged: &Judged) -> Line {
     let row = &judged.row;
-    let (verdict, class) = match judged.verdict {
-        Verdict::Agrees => ("agrees", "agrees"),
-        Verdict::Fit => ("fit", "fit"),
-        Verdict::Differs => ("differs", "differs"),
-        Verdict::NotComparable => ("not comparable", "none"),
+    let class = match judged.verdict {
+        Verdict::Agrees => "agrees",
+        Verdict::Fit => "fit",
+        Verdict::Differs | Verdict::NotComputed => "differs",
+        Verdict::Identity | Verdict::NotComparable => "none",
     };
     Line {
         id: row.id.clone(),
@@ -166,7 +197,7 @@ fn line(judged: &Judged) -> Line {
         tolerance: tolerance(judged),
         computed: computed_text(judged),
         unit: unit_text(&row.unit).to_owned(),
-        verdict,
+        verdict: judged.verdict.word(),
         class,
         notes: notes(judged),
     }

@@ -169,7 +169,7 @@ fn check_map(
     let word = args.as_map.as_deref().unwrap_or_default();
     if part.of_cvt() != cvt {
         let hint = match cvt {
-            true => "choose belt, pump, input_shaft, clutch_drag or final_drive",
+            true => "choose belt, pump, input_shaft, clutch_drag, seal_ring or final_drive",
             false => "a manual gearbox has one map: --as-map box",
         };
         let message = format!("{} has no component `{word}`", args.car.vehicle);

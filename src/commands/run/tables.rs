@@ -229,6 +229,7 @@ fn notes(summary: &Summary) -> String {
         if let Some(schedule) = &run.gear_schedule {
             text += &format!("{name}: {schedule}\n");
         }
+        text.extend(run.notes.iter().map(|note| format!("{name}: {note}\n")));
         if let Some(safety) = run.min_clamp_safety {
             let safety = fixed(safety, 2);
             text += &format!("{name}: smallest clamp safety factor {safety}\n");

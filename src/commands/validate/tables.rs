@@ -2,7 +2,9 @@
 
 use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct};
 use cvtcycle::report::validation::chapter_title;
-use cvtcycle::study::check::{Judged, Report, Verdict, computed_text, notes_line, unit_text};
+use cvtcycle::study::check::{
+    Group, Judged, Report, Verdict, computed_text, notes_line, unit_text,
+};
 
 use crate::print::colour::Paint;
 use crate::print::sections;
@@ -21,11 +23,16 @@ pub fn tables(report: &Report, paint: Paint) -> String {
         let rows = report.rows.iter().filter(|j| j.row.chapter == name);
         (chapter_title(name), chapter(&rows.collect::<Vec<_>>()))
     };
-    let held_out_title = "Held out: rows that no calibration uses, without constants";
-    let counts = [
-        ("Rows by verdict".to_owned(), counts(report)),
-        (held_out_title.to_owned(), held_out(report)),
-    ];
+    let counts = report.groups().into_iter().flat_map(|group| {
+        let name = group.word();
+        let held_out_title = format!(
+            "Held out, {name}: rows that no calibration uses, without constants and identities"
+        );
+        [
+            (format!("Rows by verdict, {name}"), counts(report, group)),
+            (held_out_title, held_out(report, group)),
+        ]
+    });
     text + &sections(chapters.into_iter().map(of_chapter).chain(counts), paint)
 }
 
@@ -39,7 +46,10 @@ fn chapter(rows: &[&Judged]) -> String {
         .left("unit", |j| unit_text(&j.row.unit))
         .left("what", |j| j.row.what.clone());
     let noted = |judged: &&&Judged| {
-        judged.verdict == Verdict::Differs || judged.moved || judged.left_out + judged.outside > 0
+        judged.verdict == Verdict::Differs
+            || judged.moved
+            || judged.fleet().is_some()
+            || judged.left_out + judged.outside > 0
     };
     let mut notes = TextTable::new("ll").indented();
     for judged in rows.iter().filter(noted) {
@@ -61,14 +71,17 @@ fn list(lines: impl IntoIterator<Item = (&'static str, String)>) -> String {
     table.text()
 }
 
-fn counts(report: &Report) -> String {
-    let of = |verdict: Verdict| (verdict.word(), report.count(verdict).to_string());
-    let total = ("total", report.rows.len().to_string());
+fn counts(report: &Report, group: Group) -> String {
+    let of = |verdict: Verdict| {
+        let rows = report.of_group(group).filter(|j| j.verdict == verdict);
+        (verdict.word(), rows.count().to_string())
+    };
+    let total = ("total", report.of_group(group).count().to_string());
     list(Verdict::ALL.into_iter().map(of).chain([total]))
 }
 
-fn held_out(report: &Report) -> String {
-    let found = report.held_out();
+fn held_out(report: &Report, group: Group) -> String {
+    let found = report.held_out(group);
     let lines = [
         ("rows", found.rows),
         ("agree", found.agree),
@@ -92,7 +105,11 @@ pub fn changed_verdicts(report: &Report) -> Vec<String> {
             row.recorded.map_or("", Verdict::word),
             judged.verdict.word(),
         );
-        let (computed, file, line) = (computed_text(judged), &place.input, place.line);
+        let (file, line) = (&place.input, place.line);
+        if let Some(why) = &judged.failure {
+            return format!("row {id}: `{now}`: {why} ({file} line {line})");
+        }
+        let computed = computed_text(judged);
         format!(
             "row {id}: `{recorded}` recorded, now `{now}`: computed {computed} {unit}, printed {printed} ({file} line {line})"
         )

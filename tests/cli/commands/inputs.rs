@@ -198,6 +198,34 @@ fn check_reports_every_file() {
 }
 
 #[test]
+fn check_holds_a_car_against_physics() {
+    let words = ["check", "--physics", "--cycle", "ece15", "--ambient", "-10"];
+    let cars = ["rover_216_cvt", "rover_216_5mt"];
+    let good = run(&[&words[..], &cars[..]].concat());
+    assert_eq!(good.status.code(), Some(0), "{}", stderr(&good));
+    let text = stdout(&good);
+    for part in [
+        "PX-1",
+        "holds",
+        "Nm",
+        "no row",
+        "rover_216_5mt on ece15, -10 degC",
+    ] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    let listed = run(&[&words[..], &["--json", cars[0]]].concat());
+    let listed: Value = serde_json::from_slice(&listed.stdout).unwrap();
+    let checks = listed["vehicles"][0]["checks"].as_array().unwrap();
+    assert!(checks.len() == 7 && checks.iter().all(|check| check["verdict"] == "holds"));
+    assert!(checks[0]["residual"].as_f64().unwrap() <= checks[0]["bound"].as_f64().unwrap());
+    let bad = run(&["check", "--physics", "nocar", "--cycle", "nocycle"]);
+    assert_eq!(bad.status.code(), Some(2));
+    assert!(stderr(&bad).contains("nocar") && stderr(&bad).contains("nocycle"));
+    let alone = run(&["check", "rover_216_cvt", "--cycle", "ece15"]);
+    assert_eq!(alone.status.code(), Some(2));
+}
+
+#[test]
 fn check_knows_the_plan_of_a_calibration() {
     let good = run(&["check", "rover_216_warm_up", "rover_216_cvt"]);
     assert_eq!(

@@ -30,7 +30,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
     assert_eq!(summary["start"], "soak");
     assert_eq!(summary["ambient_degc"], -10.0);
     let run_keys = "vehicle role transmission distance_km duration_s fuel_l_per_100km co2_g_per_km phases wheel_work_positive_kj \
-        wheel_work_negative_kj fuel_energy_kj loss_kj kinetic_kj standstill_fuel_g min_clamp_safety at_ratio_limit_s end_degc \
+        wheel_work_negative_kj fuel_energy_kj loss_kj kinetic_kj standstill_fuel_g min_clamp_safety clamp_cause_s at_ratio_limit_s end_degc \
         ledger_error trace_missed_s outside_validity_s transmission_efficiency_percent";
     let runs = summary["runs"].as_array().unwrap();
     assert_eq!(runs.len(), 3);
@@ -49,7 +49,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
                 && run["run_ledger_error"].as_f64().unwrap() < 1e-9
         );
     }
-    let cvt = "launch_clutch pump input_shaft clutch_drag belt_band belt_film belt_slip belt_wedge belt_penetration final_drive \
+    let cvt = "launch_clutch pump input_shaft clutch_drag seal_ring pulley_bearing belt_band belt_film belt_slip belt_wedge belt_penetration final_drive \
         accessories brake";
     let manual = "launch_clutch gear_mesh bearing churning seal accessories brake";
     assert_eq!(
@@ -335,7 +335,7 @@ fn a_car_may_be_compared_with_itself() {
         "run",
         "--json",
         "--set",
-        "transmission.cvt.pump.displacement_cc_rev=8",
+        "transmission.cvt.pump.displacement_cc_rev=6",
         "--baseline",
         "rover_216_cvt",
     ];
@@ -366,6 +366,45 @@ fn a_missed_trace_is_exit_code_1() {
             && run["worst_deficit"]["at_s"].is_number()
     );
     assert!(stderr(&output).contains("misses the trace"));
+}
+
+/// An oil in place of the vehicle's that has its friction is said to; one with a friction of its own, and the vehicle's own oil, are not.
+#[test]
+fn a_comparison_of_oils_says_what_it_moves() {
+    let dir = tempfile::tempdir().unwrap();
+    let sheet = "kv40_mm2_s = 35\nkv100_mm2_s = 7.2\ndensity15_kg_m3 = 865\n";
+    fs::write(dir.path().join("sheet.toml"), sheet).unwrap();
+    let own = format!("{sheet}[friction]\nband = 0.12\n");
+    fs::write(dir.path().join("own.toml"), own).unwrap();
+    let note = "this oil has the friction of the vehicle's own one";
+    for (oil, says) in [
+        ("dexron_ii", true),
+        ("sheet.toml", true),
+        ("own.toml", false),
+    ] {
+        let words = [
+            "run",
+            "--vehicle",
+            "rover_216_cvt",
+            "--baseline",
+            "none",
+            "--cycle",
+            "ece15",
+        ];
+        let words = [&words[..], &["--lubricant", oil]].concat();
+        let output = run_in(dir.path(), &words);
+        assert_eq!(
+            stdout(&output).contains(note),
+            says,
+            "{oil}: {}",
+            stdout(&output)
+        );
+        let output = run_in(dir.path(), &[&words[..], &["--json"]].concat());
+        let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(summary["runs"][0]["notes"].is_array(), says);
+    }
+    let output = run(&["run", "--vehicle", "rover_216_cvt", "--cycle", "ece15"]);
+    assert!(!stdout(&output).contains(note));
 }
 
 /// Cars and cycles that cannot be end with code 1, the place and the time, without `--strict`.

@@ -437,7 +437,7 @@ fn least_deficit(
     row: &Row,
     heat: &Heat,
 ) -> (f64, f64) {
-    let wheel = bench.car.road_load.wheel(step);
+    let wheel = bench.car.road_load.wheel(step, 0.0);
     let steps: Vec<f64> = match &bench.car.transmission {
         Transmission::Cvt(_) => (0..=300)
             .map(|i| low * (high / low).powf(f64::from(i) / 300.0))

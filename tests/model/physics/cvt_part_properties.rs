@@ -256,8 +256,8 @@ proptest! {
         (a, b) in pair(1e-6, 5e-3),
         w in 0.0..1500.0f64,
     ) {
-        let clutch = ClutchDrag { drag_nm: clutch_nm, exponent, cap_nm: 0.5 };
-        let drags = |nu: f64| [shaft_nm(&shaft, nu, w), clutch.torque_nm(viscosity_power(nu, exponent)), drive_nm(&drive, nu, w)];
+        let clutch = ClutchDrag { drag_nm: clutch_nm, exponent, cap_nm: 0.5, peak_rad_s: None, clearance_m: 0.3e-3, oil_share: 1.0 };
+        let drags = |nu: f64| [shaft_nm(&shaft, nu, w), clutch.torque_nm(viscosity_power(nu, exponent), w), drive_nm(&drive, nu, w)];
         for (x, y) in drags(a).iter().zip(drags(b)) {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
         }
@@ -271,6 +271,26 @@ proptest! {
         prop_assert!(shaft_nm(&shaft, b, w) <= shaft_nm(&plain_shaft, b, w));
         prop_assert!(drive_nm(&drive, b, w) <= drive_nm(&plain_drive, b, w));
         prop_assert!(shaft_nm(&shaft, b, w) >= shaft.constant_nm);
+    }
+
+    /// CD-2: no drag at rest, the feed's share of the film's largest drag at that share of the peak's speed and less at any other speed; half the drag
+    /// of twice the clearance, less drag of less oil (signs of thesis 7.6).
+    #[test]
+    fn val_the_film_of_the_reverse_clutch_ruptures(
+        (drag_nm, power) in (0.05..1.0f64, 0.3..3.0f64),
+        (peak, oil_share) in (50.0..800.0f64, 0.05..2.0f64),
+        w in 0.0..1500.0f64,
+    ) {
+        let clutch = ClutchDrag { drag_nm, exponent: 0.5, cap_nm: 20.0, peak_rad_s: Some(peak), clearance_m: 0.3e-3, oil_share };
+        let largest = clutch.torque_nm(power, oil_share * peak);
+        prop_assert_eq!(clutch.torque_nm(power, 0.0), 0.0);
+        prop_assert!((largest - oil_share * drag_nm * power).abs() <= 1e-12 * largest);
+        let here = clutch.torque_nm(power, w);
+        prop_assert!(here <= largest * (1.0 + 1e-12));
+        let wide = ClutchDrag { clearance_m: 0.6e-3, ..clutch };
+        prop_assert!((2.0 * wide.torque_nm(power, w) - here).abs() <= 1e-12 * here);
+        let dry = ClutchDrag { oil_share: 0.9 * oil_share, ..clutch };
+        prop_assert!(dry.torque_nm(power, w) <= here && (w < 1.0 || dry.torque_nm(power, w) < here));
     }
 
     /// The shaft's drag does not fall with speed, the final drive's does not rise with it (thesis 5.5.5, 5.5.1).

@@ -130,7 +130,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 20] = [
+const NEEDS: [(&str, &[&str], &str); 24] = [
     (
         "variator.piston_outer_mm",
         &["transmission.cvt.variator.compensated=false"],
@@ -143,7 +143,10 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
     ),
     (
         "road_load.rolling_per_k",
-        &["road_load.surface=road"],
+        &[
+            "road_load.surface=road",
+            "road_load.tyre.rolling_coefficient=0",
+        ],
         "a dynamometer's coefficients are fixed",
     ),
     (
@@ -157,14 +160,22 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
         "bounds the torque of inertia; never reached at steps of 1 s",
     ),
     (
-        "engine.friction.viscous_share",
-        &["engine_oil.kv40_mm2_s=60", "engine_oil.kv100_mm2_s=10"],
-        "with the reference oil it cancels, by design (EN-2)",
+        "engine.fuel.start_s",
+        &["engine.fuel.start_s=250"],
+        "the same grams in another time: seen where a phase ends within it",
     ),
     (
-        "engine.friction.viscous_exponent",
-        &["engine_oil.kv40_mm2_s=60", "engine_oil.kv100_mm2_s=10"],
-        "with the reference oil it cancels, by design (EN-2)",
+        "engine.fuel.cut_above_rpm",
+        &["engine.fuel.cut_above_rpm=1800"],
+        "a belt's overrun is faster than the shipped speeds",
+    ),
+    (
+        "engine.fuel.fuel_back_rpm",
+        &[
+            "engine.fuel.cut_above_rpm=1560",
+            "engine.fuel.fuel_back_rpm=1530",
+        ],
+        "a belt's overrun is faster than the shipped speeds",
     ),
     (
         "ratio.down_per_s",
@@ -181,14 +192,46 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
         &[
             "transmission.cvt.clamp.map.base_bar=5",
             "transmission.cvt.clamp.map.throttle_bar=0",
-            "transmission.cvt.pressure.floor_bar=4",
+            "transmission.cvt.pressure.control_bar=4",
         ],
         "bounds gross slip, which needs a clamp that is too weak",
     ),
     (
-        "pressure.floor_bar",
+        "pressure.control_bar",
         &["transmission.cvt.clamp.map.base_bar=12"],
         "the Rover's map stays above its floor",
+    ),
+    (
+        "pressure.clutch_return_bar",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.clutch_bar_per_nm=0.3",
+        ],
+        "a map was measured with its causes in it",
+    ),
+    (
+        "pressure.clutch_bar_per_nm",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.clutch_bar_per_nm=0.3",
+        ],
+        "as the clutch's spring",
+    ),
+    (
+        "pressure.strand_n",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.strand_n=2000",
+        ],
+        "as the clutch's spring",
+    ),
+    (
+        "pressure.creep_per_rad",
+        &[
+            "transmission.cvt.clamp=torque_following",
+            "transmission.cvt.pressure.control_bar=1",
+        ],
+        "as the clutch's spring",
     ),
     (
         "pump.lubrication_l_min",
@@ -209,11 +252,6 @@ const NEEDS: [(&str, &[&str], &str); 20] = [
         "pump.leakage_l_min_per_bar",
         &["transmission.cvt.pump.kind=variable"],
         "as the lubrication flow",
-    ),
-    (
-        "friction.band_floor",
-        &["lubricant.friction.band_rise_per_k=0.01"],
-        "bounds the fall of friction with cold, reached below 10 degC",
     ),
     (
         "engine.highest_rpm",

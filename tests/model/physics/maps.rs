@@ -81,6 +81,7 @@ fn a_belt_map_replaces_every_belt_part() {
         .components();
     assert!(listed.contains(&Component::BeltMap));
     for part in [
+        Component::PulleyBearing,
         Component::BeltBand,
         Component::BeltFilm,
         Component::BeltSlip,

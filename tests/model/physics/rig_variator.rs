@@ -159,7 +159,12 @@ fn flags() {
     assert!(flags(&held(LOW, 30.0), 100.0).is_fine());
     let s = rig.summary(&held(LOW, 15.0));
     assert!(flags(&held(LOW, 15.0), s.capacity_nm + 1.0).contains(RigFlags::GROSS_SLIP));
-    assert_eq!(flags(&held(LOW, 38.0), 401.0).text(), "rig_output_torque");
+    // So much torque is above the capacity of any pressure of the rig, too.
+    assert_eq!(flags(&held(LOW, 38.0), 399.0).text(), "gross_slip");
+    assert_eq!(
+        flags(&held(LOW, 38.0), 401.0).text(),
+        "gross_slip|rig_output_torque"
+    );
     assert_eq!(flags(&held(LOW, 41.0), 10.0).text(), "rig_pressure");
     assert!(
         flags(&held(HIGH, 40.0), 160.0)

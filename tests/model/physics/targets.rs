@@ -12,7 +12,8 @@ use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::drive::{Start, drive};
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::thermal::{ENGINE_OIL, SUMP};
+use cvtcycle_model::thermal::{BELT, ENGINE_OIL, SUMP};
+use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
 fn kmh(row: &Row) -> f64 {
@@ -30,7 +31,8 @@ fn range(values: impl Iterator<Item = f64>) -> (f64, f64, usize) {
 #[test]
 fn val_wheel_work() {
     for (name, positive) in [("rover_216_cvt", 3403.32e3), ("rover_216_5mt", 3413.28e3)] {
-        let setup = car(name, &["road_load.form.coefficients.f0_n=6.3"]);
+        let no_tyres = "road_load.tyre.rolling_coefficient=0";
+        let setup = car(name, &["road_load.form.coefficients.f0_n=6.3", no_tyres]);
         let t = drive(&setup, &cycle("ece15_eudc"), &at(25.0, Start::Soak))
             .totals
             .total();
@@ -211,14 +213,14 @@ fn val_ratio_use() {
     let high = share(&|r| r.time_s > 780.0, &|r| r.belt_ratio <= 0.42);
     let falls = o
         .rows
-        .windows(2)
+        .windows(3)
         .filter(|w| {
             w[0].accel_m_s2 > 0.2
-                && w[1].accel_m_s2.abs() < 1e-9
+                && w[1..].iter().all(|r| r.accel_m_s2.abs() < 1e-9)
                 && kmh(&w[1]) > 30.0
                 && w[1].belt_ratio > 0.42
         })
-        .map(|w| w[1].engine_speed_rad_s - w[0].engine_speed_rad_s)
+        .map(|w| w[2].engine_speed_rad_s - w[0].engine_speed_rad_s) // RC-9 spreads the fall over more than a second
         .collect::<Vec<f64>>();
     println!(
         "ECE15 between the ends {:.0} %, EUDC high {:.0} % of moving time; speed after acceleration {falls:.1?} rad/s",
@@ -227,7 +229,7 @@ fn val_ratio_use() {
     );
     assert!(between > 0.5 && high > 0.4);
     assert!(
-        !falls.is_empty() && falls.iter().all(|d| *d <= 0.0) && falls.iter().any(|d| *d < -3.0),
+        !falls.is_empty() && falls.iter().all(|d| *d < -3.0),
         "{falls:?}"
     );
 }
@@ -553,4 +555,57 @@ fn val_no_load_input_is_the_sum_of_the_losses() {
             p.input_nm
         );
     }
+}
+
+/// The belt's node holds the belt and the skin of the sheaves, not the sheaves. Truth: the belt's mass of the file times 0.46 kJ/kgK for steel, and at most
+/// 1 kJ/K of skin (depth of a wave of 10 s under 0.02 m2 of track).
+#[test]
+fn val_belt_node_holds_the_belt() {
+    let setup = car("rover_216_cvt", &[]);
+    let car = setup.car(298.15);
+    let Transmission::Cvt(cvt) = &car.transmission else {
+        panic!("a CVT")
+    };
+    let steel_j_k = 460.0 * cvt.belt.mass_kg_m * cvt.belt.length_m;
+    let node_j_k = car.network.capacity_j_k[BELT];
+    assert!(
+        steel_j_k < node_j_k && node_j_k <= 1.5 * steel_j_k + 1000.0,
+        "{node_j_k}"
+    );
+}
+
+/// Reversals of the ratio by more than 0.5 % in a minute of driving, after a soak at 25 degC.
+fn reversals_a_minute(name: &str, sets: &[&str]) -> f64 {
+    let rows = soak_rows(&car("rover_216_cvt", sets), &cycle(name), 25.0).rows;
+    let (mut count, mut turn, mut direction) = (0, rows[0].belt_ratio, 0.0);
+    for row in &rows {
+        let change = (row.belt_ratio / turn).ln();
+        if change * direction >= 0.0 {
+            turn = row.belt_ratio; // goes on, or stays
+            direction = if change == 0.0 { direction } else { change };
+        } else if change.abs() > 0.005 {
+            (count, turn, direction) = (count + 1, row.belt_ratio, change);
+        }
+    }
+    let moving = rows.iter().filter(|row| row.speed_m_s > 0.0).count();
+    f64::from(count) / moving as f64 * 60.0
+}
+
+/// The ratio does not hunt (RC-2, RC-10). Truth: reversals counted from the column of the ratio; the limits are a judgement, and a second line in overrun
+/// without hysteresis exceeds the one of FTP75 twice.
+#[test]
+fn the_ratio_does_not_hunt() {
+    for (name, most) in [("ftp75", 3.5), ("us06", 6.0), ("ece15_eudc", 2.0)] {
+        let found = reversals_a_minute(name, &[]);
+        println!("{name}: {found:.2} reversals a minute");
+        assert!(found <= most, "{name}: {found}");
+    }
+    let before = reversals_a_minute(
+        "ftp75",
+        &[
+            "transmission.cvt.ratio.overrun_rpm=1500",
+            "transmission.cvt.ratio.hysteresis=0",
+        ],
+    );
+    assert!(before > 7.0, "{before}");
 }

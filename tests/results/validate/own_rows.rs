@@ -179,7 +179,7 @@ like = "no_such_form"
 }
 
 #[test]
-fn what_cannot_be_computed_is_a_problem_and_no_verdict() {
+fn what_cannot_be_computed_is_a_verdict_of_its_row() {
     let wide = "low = 0\ntolerance = \"wide\"\ncompute = ";
     for (compute, why) in [
         ("one(box: total_nm)", "6 rows where one was expected"),
@@ -187,17 +187,39 @@ fn what_cannot_be_computed_is_a_problem_and_no_verdict() {
             "max(grip: slip_percent where torque_nm == 2000)",
             "gross slip",
         ),
-        ("key(transmission.manual.seal_nm)", "not known"),
+        (
+            "key(transmission.manual.neutral_share)",
+            "has no `transmission.manual.neutral_share`",
+        ),
     ] {
-        let own = Own::new(&(SOURCES.to_owned() + &row("a", &format!("{wide}\"{compute}\""))));
-        let output = own.run(&[]);
+        let rows = row("a", &format!("{wide}\"{compute}\"")) + &row("b", &format!("{wide}\"3\""));
+        let own = Own::new(&(SOURCES.to_owned() + &rows));
+        let output = own.run(&["--json"]);
         let said = text(&output.stderr);
-        assert_eq!(output.status.code(), Some(2), "{compute}: {said}");
+        assert_eq!(output.status.code(), Some(1), "{compute}: {said}");
         assert!(
-            said.contains("row a") && said.contains(why),
+            said.contains("row a: `not computed`") && said.contains(why),
             "{compute}: {said}"
         );
+        let all: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let verdicts = [0, 1].map(|k| all["rows"][k]["verdict"].as_str());
+        assert_eq!(verdicts, [Some("not computed"), Some("agrees")]);
+        assert!(all["rows"][0]["failure"].as_str().unwrap().contains(why));
+        assert!(all["rows"][0]["computed_low"].is_null());
+        assert_eq!(all["counts"]["not_computed"], 1);
+        let page = text(&own.run(&["--format", "html"]).stdout);
+        assert!(page.contains("1 cannot be computed for this") && page.contains(why));
     }
+    // A number behind a reason that does not exist leaves the verdict.
+    let cause = "verdict = \"differs\"\nreason = \"so.\"\ncause = { what = \"none\", compute = \"one(box: total_nm)\" }";
+    let three = "value = 4\ntolerance = \"exact\"\ncompute = \"3\"\n";
+    let own = Own::new(&(SOURCES.to_owned() + &row("a", &format!("{three}{cause}"))));
+    let output = own.run(&["--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let all: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(all["rows"][0]["verdict"], "differs");
+    assert!(all["rows"][0]["cause_failure"].is_string());
+    assert!(text(&own.run(&[]).stdout).contains("none cannot be computed: 6 rows"));
     let own = Own::new(&format!(
         "{SOURCES}\n[sources.worse]\nlike = \"box\"\nset = [\"transmission.cvt.belt.band_ofset_mm=3\"]\n"
     ));

@@ -283,7 +283,7 @@ fn flags_name_what_a_point_departs_from_and_clamp_nothing() {
     let floor = one(
         "0.5,2000,12,10",
         &[],
-        &["--set", "transmission.cvt.pressure.floor_bar=20"],
+        &["--set", "transmission.cvt.pressure.control_bar=20"],
     );
     assert_eq!(floor.cell(0, "flags"), "below_pressure_floor");
 }
@@ -326,7 +326,7 @@ fn friction_that_no_column_gives_is_complained_of_at_its_row() {
         "--set",
         "lubricant.friction.band=0.4",
         "--set",
-        "lubricant.friction.band_ceiling=1.25",
+        "lubricant.friction.band_rise_per_k=0.002",
     ];
     let rows = "0.5,500,20,30,200\n0.05,500,20,30,200\n";
     let said = refused(format!("{NAMES},belt_temp_degc\n{rows}").as_bytes(), &sets);

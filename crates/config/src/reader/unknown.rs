@@ -10,6 +10,24 @@ use cvtcycle_model::keys::{Quantity, stem};
 /// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
 const ELSEWHERE: f64 = 0.75;
 
+/// Ends of keys of earlier versions, and what to do instead.
+const REPLACED: [(&str, &str); 4] = [
+    (
+        "engine.friction.temperature_exponent",
+        "remove it: friction in the cold follows the oil's viscosity, with `viscous_share` and `viscous_exponent` (EN-2)",
+    ),
+    (
+        "transmission.cvt.pressure.floor_bar",
+        "write `control_bar`, the pressure that the valves need; clutch, belt and shifts have keys of their own (PC-5)",
+    ),
+    ("friction.band_floor", WITHOUT_BOUNDS),
+    ("friction.band_ceiling", WITHOUT_BOUNDS),
+];
+
+/// What became of the bounds of band friction.
+const WITHOUT_BOUNDS: &str =
+    "remove it: band friction follows `band_rise_per_k` at any temperature, without bounds (LU-4)";
+
 impl Log {
     /// The problem of an entry that was not read, and the known key it most likely means.
     pub fn unknown(
@@ -46,6 +64,10 @@ impl Log {
                     (document.place(&word.span), document.shown(&word.span));
             }
             problem.message = format!("`{path}` is a table, not a value");
+            return (problem, None);
+        }
+        if let Some((_, instead)) = REPLACED.iter().find(|(key, _)| path.ends_with(key)) {
+            problem.hint = (*instead).to_string();
             return (problem, None);
         }
         if let Some(known) = self.other_unit(path, span) {

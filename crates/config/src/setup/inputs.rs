@@ -1,12 +1,14 @@
 //! The documents of a car, and one reading of them.
 
-use super::{Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, stem, text_of};
+use super::{
+    Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, read_lubricant, stem, text_of,
+};
 use crate::files::TableCache;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::files::{HEAD, VEHICLE_FILE};
-use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::fluid::{Friction, Lubricant};
 use cvtcycle_model::keys::Values;
 use cvtcycle_model::road::RoadLoadInput;
 use cvtcycle_model::thermal::Network;
@@ -42,6 +44,8 @@ pub(super) struct Frame {
     fluids: [String; 2],
     pub files: TableCache,
     formulation: Formulation,
+    /// Friction of the vehicle's own transmission oil where another oil is in its place.
+    own_friction: Option<Friction>,
 }
 
 impl Inputs {
@@ -71,6 +75,10 @@ impl Inputs {
         let of_vehicle = |target| [Target::Vehicle, Target::Rig].contains(&target);
         let problems = apply(&mut document, &options.set, of_vehicle);
         let own = head(&Reader::check_only(&document).root(), "");
+        let own_friction = options
+            .lubricant
+            .as_ref()
+            .and_then(|_| friction(file, &own.fluid));
         let fluid = |own: String, asked: &Option<String>, target| match asked {
             Some(word) => {
                 let argument = match target {
@@ -85,12 +93,15 @@ impl Inputs {
                     target,
                 )
             }
-            // A path in the vehicle file is relative to that file, one of the caller to the current folder.
             None => {
-                let folder = Path::new(file).parent().filter(|_| is_path(&own));
-                let word = folder.map(|folder| folder.join(&own).to_string_lossy().into_owned());
                 let place = Place::file(file);
-                fluid_file(word.unwrap_or(own), NamedBy::File, place, options, target)
+                fluid_file(
+                    fluid_of_file(file, own),
+                    NamedBy::File,
+                    place,
+                    options,
+                    target,
+                )
             }
         };
         let (oil, oil_name) = fluid(own.fluid, &options.lubricant, Target::Lubricant);
@@ -105,6 +116,7 @@ impl Inputs {
             fluids: [oil_name, engine_oil_name],
             files: TableCache::new(files),
             formulation: options.formulation,
+            own_friction,
         };
         Ok(Inputs {
             frame: Arc::new(frame),
@@ -176,7 +188,12 @@ impl Frame {
             None => load_lubricant("cvtf_ezl799_class").map(|found| found.0),
         };
         let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
+        let same = self.own_friction == Some(fluids[0].friction);
         let (road_load, car) = parts(&root, fluids, self.formulation, self.name.clone());
+        let notes = match car.transmission.is_cvt() && same {
+            true => vec![SAME_FRICTION.to_owned()],
+            false => Vec::new(),
+        };
         let baselines = baselines
             .split(',')
             .map(|b| b.trim().to_owned())
@@ -188,8 +205,29 @@ impl Frame {
             baselines,
             vehicle: Vehicle::new(car, road_load),
             keys: Vec::new(),
+            notes,
         })
     }
+}
+
+/// What a comparison of fluids does not tell.
+const SAME_FRICTION: &str = "this oil has the friction of the vehicle's own one: the comparison moves viscosity, density and heat capacity only";
+
+/// Name or path of a fluid as a vehicle's file has it: a path is relative to that file.
+fn fluid_of_file(file: &str, fluid: String) -> String {
+    let folder = Path::new(file).parent().filter(|_| is_path(&fluid));
+    folder.map_or_else(
+        || fluid.clone(),
+        |folder| folder.join(&fluid).to_string_lossy().into_owned(),
+    )
+}
+
+/// Friction of the fluid that a vehicle's file names; none where it cannot be read.
+fn friction(file: &str, fluid: &str) -> Option<Friction> {
+    let word = fluid_of_file(file, fluid.to_owned());
+    let (name, text, _) = text_of(&word, Kind::Lubricant, NamedBy::File).ok()?;
+    let (own, _) = read_lubricant(&name, &text).ok()?;
+    Some(own.friction)
 }
 
 /// The file of a fluid with its overrides, and its name. Problems of the word are at `place`.
@@ -281,13 +319,14 @@ pub(super) fn parts<V: Values>(
     let car = Car {
         name,
         road_load: road_load.base,
+        tyre: road_load.tyre,
         transmission,
         engine,
         network,
         oil,
         engine_oil,
         ambient_k: cvtcycle_model::road::REFERENCE_K,
-        full_load_factor: 1.0,
+        charge: 1.0,
         belt_heat_share,
     };
     (road_load, car)

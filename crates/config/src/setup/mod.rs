@@ -62,6 +62,8 @@ pub struct Setup {
     pub vehicle: Vehicle,
     /// Every key that was read, vehicle first, then `lubricant.` and `engine_oil.`.
     pub keys: Vec<KeyInfo>,
+    /// What a reader of its results should know, a sentence each.
+    pub notes: Vec<String>,
 }
 
 impl std::ops::Deref for Setup {

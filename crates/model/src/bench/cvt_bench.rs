@@ -6,7 +6,7 @@ use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::driveline::{Driveline, PartTorques, Shaft};
+use crate::transmission::cvt::driveline::{Clamp, Driveline, Shaft};
 use crate::transmission::cvt::variator::point::{LIMIT_SLACK, PointStatus};
 use crate::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltLosses, BeltState, Slip, belt_point, belt_state,
@@ -70,6 +70,8 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
             active_segments: p.active_segments,
             held: false,
         },
+        band_nm: sum(p.band_loss_nm),
+        film_nm: sum(p.film_loss_nm),
         losses: BeltLosses {
             slip_total: p.slip_total,
             band_nm: sum(p.band_loss_nm),
@@ -97,6 +99,7 @@ struct Pass {
     loss_nm: ByComponent<f64>,
     secondary_rad_s: f64,
     secondary_nm: f64,
+    primary_ring_nm: f64,
     oil_flow_m3_s: f64,
     belt: Option<BeltState>,
     flow_limited: bool,
@@ -115,7 +118,7 @@ pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> 
     let mut unknown = Unknown {
         slip: 0.0,
         belt_k: point.belt_k.unwrap_or(point.sump_k),
-        pressure_pa: point.pressure_pa.unwrap_or(cvt.floor_pa),
+        pressure_pa: point.pressure_pa.unwrap_or(cvt.floors.control_pa),
     };
     let mut count = 0;
     let pass = loop {
@@ -140,24 +143,28 @@ impl OnBench<'_> {
         let mut inside_maps = true;
         let secondary_rad_s = w * (1.0 - u.slip) / p.ratio; // CV-1
         let output = p.output_nm / cvt.final_drive.ratio;
-        let secondary = line.secondary_nm(
+        let pressure_pa = if p.parts.pump { pa } else { 0.0 };
+        let clamp = Clamp {
+            pressure_pa: pa,
+            secondary_n: cvt.secondary_clamp_n(pressure_pa, secondary_rad_s),
+        };
+        let mut torques = line.secondary(
             output,
             || line.final_drive_nm(secondary_rad_s),
             (w, secondary_rad_s),
-            pa,
+            &clamp,
             &mut inside_maps,
         );
-        let load = self.load(u, secondary, secondary_rad_s);
+        let secondary = torques.secondary;
+        let load = self.load(u, secondary, clamp.secondary_n);
         let mut next = Unknown {
             slip: 0.0,
             belt_k: p.belt_k.unwrap_or(p.sump_k),
             pressure_pa: self.pressure_pa(&load, secondary_rad_s),
         };
-        let mut torques = PartTorques {
-            output: if p.parts.belt { output } else { secondary },
-            secondary,
-            ..PartTorques::default()
-        };
+        if !p.parts.belt {
+            torques.final_drive = 0.0; // nothing behind the primary turns
+        }
         let mut belt = None;
         if p.parts.belt {
             torques.belt_map = line.belt_map_nm(secondary, w, pa, &mut inside_maps);
@@ -167,11 +174,11 @@ impl OnBench<'_> {
                 belt = Some(state);
             }
         }
-        line.turn_primary(&mut torques, w, pa, &mut inside_maps);
+        line.turn_primary(&mut torques, w, &clamp, &mut inside_maps);
         let pump = line.turn_engine(&mut torques, w, pa, 0.0, &mut inside_maps);
         let mut loss_nm = ByComponent::default();
         torques.for_each_loss(|component, shaft, torque_nm| {
-            loss_nm[component] = match shaft {
+            loss_nm[component] += match shaft {
                 Shaft::Engine | Shaft::Primary => torque_nm,
                 Shaft::Secondary => torque_nm * secondary_rad_s / w,
             };
@@ -184,6 +191,7 @@ impl OnBench<'_> {
             loss_nm,
             secondary_rad_s,
             secondary_nm: secondary,
+            primary_ring_nm: torques.ring[0],
             oil_flow_m3_s: pump.working_m3_s,
             belt,
             flow_limited: pump.flow_limited,
@@ -221,12 +229,11 @@ impl OnBench<'_> {
         }
     }
 
-    fn load(&self, u: &Unknown, output_torque_nm: f64, secondary_rad_s: f64) -> BeltLoad {
+    fn load(&self, u: &Unknown, output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         let (cvt, p) = (self.line.cvt, self.point);
-        let pressure_pa = if p.parts.pump { u.pressure_pa } else { 0.0 };
         BeltLoad {
             output_torque_nm,
-            secondary_clamp_n: cvt.secondary_clamp_n(pressure_pa, secondary_rad_s),
+            secondary_clamp_n,
             ..BeltLoad::turning(&cvt.belt, &self.car.oil, u.belt_k, p.ratio, p.input_rad_s)
         }
     }
@@ -236,10 +243,10 @@ impl OnBench<'_> {
         let (line, p) = (&self.line, self.point);
         p.pressure_pa.unwrap_or_else(|| {
             let signals = line.signals(p.throttle, p.input_rad_s);
-            p.pressure_factor
-                * line
-                    .cvt
-                    .pressure_pa(&signals, line.at, || *load, secondary_rad_s)
+            let demand = line
+                .cvt
+                .pressure_pa(&signals, line.at, || *load, secondary_rad_s);
+            p.pressure_factor * demand.0
         })
     }
 
@@ -272,6 +279,7 @@ impl OnBench<'_> {
         let with = |part: bool, value: f64, without: f64| if part { value } else { without };
         BenchAnswer {
             loss_nm,
+            primary_ring_nm: pass.primary_ring_nm,
             input_nm,
             output_rad_s: with(
                 p.parts.belt,

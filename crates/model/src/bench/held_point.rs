@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | RB-1 | T_in = T_p + T_pump + T_shaft, T_p = T_sec w_s/w_in + belt + drag, T_sec from T_out by FD-1, FD-2; clutch locked, w_p = w_in | derived: CV-1, CV-2 read from the motor's side |
+//! | RB-1 | T_in = T_p + T_pump + T_shaft, T_p = T_sec w_s/w_in + belt + drag + bearing + rings, T_sec from T_out by FD-1, FD-2 and the secondary's bearing and rings; clutch locked, w_p = w_in | derived: CV-1, CV-2 read from the motor's side |
 //! | RB-2 | belt and spray in steady state: T_belt = T_sump + share P_belt / G_spray | derived: heat balance of the belt node (TH-1) |
 //! | RB-3 | manual box: T_in = T_out/i + mesh + seal + bearing + churning | derived: MB-1 |
 //!
@@ -97,6 +97,7 @@ impl Bench {
         flags.set(Flags::OVERRUN, input_nm < 0.0);
         BenchAnswer {
             loss_nm,
+            primary_ring_nm: 0.0,
             input_nm,
             output_rad_s: p.input_rad_s / overall,
             secondary_pa: f64::NAN,

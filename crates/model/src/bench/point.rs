@@ -49,6 +49,8 @@ impl Default for BenchPoint {
 pub struct BenchAnswer {
     /// Loss of each component, Nm at the input shaft; NaN where slip leaves no point at which the box turns.
     pub loss_nm: ByComponent<f64>,
+    /// Part of the seal rings' loss at the primary, Nm: it stays in the box as long as the pump does.
+    pub primary_ring_nm: f64,
     /// Torque at the input shaft, Nm (RB-1, RB-3).
     pub input_nm: f64,
     /// Speed of the output shaft, rad/s.

@@ -2,7 +2,7 @@
 
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
-use crate::road::RoadLoad;
+use crate::road::{RoadLoad, Tyre};
 use crate::thermal::Network;
 use crate::transmission::Transmission;
 
@@ -13,6 +13,8 @@ pub struct Car {
     pub name: String,
     /// Road load for the ambient.
     pub road_load: RoadLoad,
+    /// Tyres.
+    pub tyre: Tyre,
     /// Transmission.
     pub transmission: Transmission,
     /// Engine.
@@ -25,8 +27,8 @@ pub struct Car {
     pub engine_oil: Lubricant,
     /// Ambient temperature, K.
     pub ambient_k: f64,
-    /// Full-load factor of altitude.
-    pub full_load_factor: f64,
+    /// Charge of the engine's cylinders over that at 25 degC and sea level (EN-5).
+    pub charge: f64,
     /// Share of belt loss that heats the belt node.
     pub belt_heat_share: f64,
 }

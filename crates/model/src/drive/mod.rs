@@ -2,6 +2,7 @@
 
 mod balance;
 mod car;
+mod physics;
 mod row;
 mod run;
 mod simulate;
@@ -11,6 +12,7 @@ mod vehicle;
 
 pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;
+pub use physics::{Finding, Law, PhysicsCheck, check_physics};
 pub use row::{HIGHEST_K, Row};
 pub use run::{
     Conditions, FuelMap, Outcome, RowSink, Start, co2_g_per_km, drive, drive_into, fuel_map,

@@ -6,6 +6,7 @@ use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
+use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
 use crate::transmission::{StepInput, StepOutput};
 
@@ -57,8 +58,14 @@ pub struct Row {
     pub primary_pressure_pa: f64,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pressure_pa: f64,
+    /// What decided the secondary pressure (PC-5); of no meaning for a manual box.
+    pub clamp_cause: ClampCause,
     /// Belt slip as a fraction; NaN for a manual box.
     pub slip: f64,
+    /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
+    pub primary_nm: f64,
+    /// Torque that the secondary pulley gives to its shaft, Nm; NaN without a belt that turns.
+    pub secondary_nm: f64,
     /// Torque capacity over torque of the belt; infinite at zero torque; NaN for a manual box.
     pub clamp_safety: f64,
     /// Loss power of each component, W, never negative.
@@ -91,6 +98,8 @@ pub struct Row {
     pub cooler_in_k: f64,
     /// Oil from the cooler, K; NaN without one.
     pub cooler_out_k: f64,
+    /// Tyres, K.
+    pub tyre_k: f64,
     /// Heat stored in the nodes, W.
     pub stored_w: f64,
     /// Heat given to the air, W.
@@ -114,8 +123,8 @@ pub(super) struct Inertia {
     pub crank_nm: f64,
     pub accessories_nm: f64,
     pub kinetic_w: f64,
-    /// Rotating energy that the brakes take up with the car's (SI-4).
-    pub to_brake_w: f64,
+    /// Power of a slower engine that neither its drag nor its load takes up (SI-4).
+    pub surplus_w: f64,
 }
 
 /// Everything that a step computed.
@@ -126,6 +135,7 @@ pub(super) struct Solved<'a> {
     /// Heat into each node, as the network received it.
     pub power_w: [f64; NODES],
     pub heat: &'a HeatStep,
+    pub tyre_k: f64,
 }
 
 /// Energy terms of a step, each from the model that owns it.
@@ -190,7 +200,10 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         },
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,
+        clamp_cause: d.clamp_cause,
         slip: d.slip,
+        primary_nm: d.primary_nm,
+        secondary_nm: d.secondary_nm,
         clamp_safety: d.clamp_safety,
         loss_w: d.loss_w,
         accessories_w: terms.accessories,
@@ -211,6 +224,7 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         },
         cooler_in_k: a.heat.cooler_in_k,
         cooler_out_k: a.heat.cooler_out_k,
+        tyre_k: a.tyre_k,
         stored_w: a.heat.stored_w,
         to_air_w: a.heat.to_air_w,
         power_ledger_error: terms.power_error(),

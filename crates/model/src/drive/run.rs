@@ -126,7 +126,7 @@ pub fn drive_into(
             &mut NullRecorder,
         ),
     };
-    // A car at rest begins a new cycle in its own start state; only heat and rotating energy carry over.
+    // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
     let start = State {
         transmission: None,
         ..start

@@ -3,6 +3,7 @@
 use super::step::Drive;
 use super::{Car, EnergyTerms, Row};
 use crate::cycle::Trace;
+use crate::engine::Running;
 use crate::thermal::Heat;
 use crate::transmission::TransmissionState;
 
@@ -15,15 +16,21 @@ pub struct State {
     pub transmission: Option<TransmissionState>,
     /// Rotating energy of engine and primary side, J; NaN before the first step.
     pub kinetic_j: f64,
+    /// What the engine did.
+    pub running: Running,
+    /// Temperature of the tyres, K.
+    pub tyre_k: f64,
 }
 
 impl State {
-    /// Everything at one temperature, engine at idle.
+    /// Everything at one temperature, engine about to start.
     pub fn at(temp_k: f64) -> Self {
         State {
             heat: Heat::uniform(temp_k),
             transmission: None,
             kinetic_j: f64::NAN,
+            running: Running::STOPPED,
+            tyre_k: temp_k,
         }
     }
 }

@@ -3,16 +3,16 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | SI-1 | crank torque = flywheel torque + accessories + T_k, T_k w = change of rotating energy / dt | derived |
-//! | SI-2 | T_k within the engine's room (drag below, full load above) and its largest value; rotating energy follows later otherwise | ASSUMED: a clutch slips in a shift; keeps the inertia bounded for any step |
-//! | SI-4 | braking with the clutch locked, rotating energy that the engine cannot take up goes to the brakes | derived |
+//! | SI-2 | rotating energy = J w2/2 after every step; T_k within the engine's room, drag below and full load above; only what full load cannot give follows later | derived: power is what the shafts pass on |
+//! | SI-4 | rotating energy of a slower engine that its drag and load do not take up makes up for a deficit or goes to the brakes, or into a coupling that slips | derived: it comes through the locked clutch to the wheels |
 //! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
 
 use super::row::{Inertia, Input, Solved, row};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
-use crate::engine::Burn;
-use crate::fluid::Lubricant;
-use crate::math::{clamp, larger, smaller};
+use crate::engine::{Burn, Running};
+use crate::flags::Flags;
+use crate::math::{clamp, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
@@ -38,8 +38,6 @@ pub struct Drive<'a> {
     car: &'a Car,
     /// Gears of the cycle, one an interval.
     gears: Option<&'a [GearCommand]>,
-    /// Engine oil, where its viscosity is not that of the reference oil.
-    engine_oil: Option<&'a Lubricant>,
     state: State,
 }
 
@@ -49,7 +47,6 @@ impl<'a> Drive<'a> {
         Drive {
             car,
             gears: None,
-            engine_oil: car.engine.non_reference_oil(&car.engine_oil),
             state,
         }
     }
@@ -79,13 +76,24 @@ impl<'a> Drive<'a> {
             heat,
             transmission,
             kinetic_j,
+            running,
+            tyre_k,
         } = &mut self.state;
-        let wheel = car.road_load.wheel(step);
-        let engine = car.engine.at_temperatures(
+        let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
+        *tyre_k = car
+            .tyre
+            .advance_k(*tyre_k, car.ambient_k, &step.motion, step.dt_s);
+        *running = running.started(heat.node_k[COOLANT]);
+        if !car.transmission.is_cvt() {
+            *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
+        }
+        let engine = car.engine.in_step(
             heat.node_k[COOLANT],
             heat.node_k[ENGINE_OIL],
-            self.engine_oil,
-            car.full_load_factor,
+            &car.engine_oil,
+            car.charge,
+            running,
+            step.dt_s,
         );
         let input = StepInput {
             wheel: &wheel,
@@ -107,14 +115,14 @@ impl<'a> Drive<'a> {
             *kinetic_j = if step.engine_off { 0.0 } else { idling };
         }
         let mut output = car.transmission.solve(&input, transmission);
-        let inertia = inertia(
-            car,
-            &input,
-            &output,
-            *kinetic_j,
-            transmission.driveline.coupled,
-        );
-        output.brake_w += inertia.to_brake_w;
+        let inertia = inertia(car, &input, &output, *kinetic_j);
+        if output.flags.contains(Flags::CLUTCH_SLIPPING) {
+            output.loss_w[Component::LaunchClutch] += inertia.surplus_w; // SI-4
+        } else {
+            let helps_w = smaller(inertia.surplus_w, output.deficit_w);
+            output.deficit_w -= helps_w;
+            output.brake_w += inertia.surplus_w - helps_w; // SI-4
+        }
         let mut burn = engine.burn(output.engine_rad_s, inertia.crank_nm);
         if step.engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
@@ -131,9 +139,20 @@ impl<'a> Drive<'a> {
                 burn: &burn,
                 power_w,
                 heat: &heat_step,
+                tyre_k: *tyre_k,
             },
         );
         *heat = heat_step.heat;
+        *running = if step.engine_off {
+            Running::STOPPED
+        } else {
+            Running {
+                since_s: running.since_s + step.dt_s,
+                speed_rad_s: output.engine_rad_s,
+                wheel_rad_s: wheel.wheel_rad_s,
+                ..*running
+            }
+        };
         // An engine at rest has no rotating energy, not even a rest of rounding.
         *kinetic_j = if output.engine_rad_s <= 0.0 {
             0.0
@@ -145,44 +164,33 @@ impl<'a> Drive<'a> {
 }
 
 #[inline(always)]
-fn inertia(
-    car: &Car,
-    input: &Input,
-    output: &StepOutput,
-    kinetic_j: f64,
-    coupled: bool,
-) -> Inertia {
+fn inertia(car: &Car, input: &Input, output: &StepOutput, kinetic_j: f64) -> Inertia {
     let w = output.engine_rad_s;
     if w <= 0.0 {
         return Inertia {
             crank_nm: 0.0,
             accessories_nm: 0.0,
             kinetic_w: -kinetic_j / input.dt_s,
-            to_brake_w: 0.0,
+            surplus_w: 0.0,
         };
     }
     let engine = input.engine;
     let accessories_nm = engine.accessories_nm(w);
     let steady = output.shaft_nm + accessories_nm;
     let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / input.dt_s / w;
-    let bound = car.engine.inertia_torque_nm;
-    // Faster takes what is left below full load, slower what drag is left; never less than nothing, never more than the bound.
+    // Faster takes what is left below full load, slower what drag is left; never less than nothing.
     let torque = if wanted > 0.0 {
-        clamp(engine.full_load_nm(w) - steady, 0.0, smaller(wanted, bound)) // SI-2
+        clamp(engine.full_load_nm(w) - steady, 0.0, wanted) // SI-2
     } else {
-        clamp(-(steady + engine.drag_nm(w)), larger(wanted, -bound), 0.0) // SI-2
+        clamp(-(steady + engine.own_drag_nm(w)), wanted, 0.0) // SI-2
     };
-    let over = if coupled && output.brake_w > 0.0 && wanted < torque {
-        torque - wanted
-    } else {
-        0.0
-    };
+    let over = if wanted < 0.0 { torque - wanted } else { 0.0 };
     Inertia {
         crank_nm: steady + torque,
         accessories_nm,
-        kinetic_w: (torque - over) * w,
-        to_brake_w: over * w,
-    } // SI-1, SI-4
+        kinetic_w: smaller(torque, wanted) * w,
+        surplus_w: over * w,
+    } // SI-1
 }
 
 #[inline(always)]

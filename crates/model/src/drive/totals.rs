@@ -3,6 +3,7 @@
 use super::{EnergyTerms, HIGHEST_K, Recorder, Row};
 use crate::flags::Flags;
 use crate::math::larger;
+use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
 
 /// Sums over one phase.
@@ -65,6 +66,8 @@ pub struct Totals {
     pub min_clamp_at_s: f64,
     /// Time with each flag, s, in the order of [`Flags::NAMES`].
     pub flag_s: [f64; Flags::NAMES.len()],
+    /// Moving time in which each cause decided the secondary pressure, s, in the order of [`ClampCause::NAMES`].
+    pub clamp_cause_s: [f64; ClampCause::NAMES.len()],
     /// Worst missing power, W.
     pub worst_deficit_w: f64,
     /// Torque at the wheels missing there, Nm.
@@ -224,6 +227,9 @@ impl Recorder for Totals {
             *s += w * row.dt_s;
         }
         p.terms.add(terms, row.dt_s);
+        if row.speed_m_s > 0.0 {
+            self.clamp_cause_s[row.clamp_cause as usize] += row.dt_s;
+        }
         let mut left = row.flags.0;
         while left != 0 {
             let bit = left.trailing_zeros() as usize; // flags are in the order of their bits

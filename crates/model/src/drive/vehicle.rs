@@ -29,7 +29,7 @@ impl Vehicle {
     pub fn into_car(self, ambient_k: f64) -> Car {
         Car {
             road_load: self.road_load.at(ambient_k),
-            full_load_factor: self.road_load.full_load_factor(),
+            charge: self.road_load.charge(ambient_k),
             ambient_k,
             ..self.car
         }

@@ -27,23 +27,32 @@ keys! {
     /// Keys of `[engine.idle]`.
     IDLE: IdleKeys = "idle" [] {
         hot_rpm: number(400.0, 2000.0), "idle speed, warm", ["EN-1"];
-        cold_rpm: number(400.0, 3000.0), "idle speed at -10 degC coolant and below", ["EN-1"];
+        cold_rpm: number(400.0, 3000.0), "idle speed at cold_degc and below", ["EN-1"];
+        cold_degc: or(37.0, number(-40.0, 60.0)), "coolant up to which idle is cold_rpm", ["EN-1"];
+        warm_degc: or(71.0, number(0.0, 110.0)), "coolant from which idle is hot_rpm", ["EN-1"];
+        after_start_rpm: or(0.0, number(0.0, 2000.0)), "idle speed above that at a cold start", ["EN-1"];
+        after_start_s: or(30.0, above(0.0, 300.0)), "time in which that falls to nothing", ["EN-1"];
     }
 
     /// Keys of `[engine.friction]`.
     FRICTION: FrictionKeys = "friction" [] {
-        temperature_exponent: number(0.0, 8.0), "exponent t of friction with temperature", ["EN-2"];
         hot_degc: number(60.0, 130.0), "temperature of the warm engine", ["EN-2"];
-        viscous_share: number(0.0, 1.0), "share of friction that follows the oil's viscosity", ["EN-2"];
+        viscous_share: number(0.0, 1.0), "share of hot friction that rubs in oil and follows its viscosity", ["EN-2"];
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["EN-2"];
-        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the temperature exponent holds", ["EN-2"];
+        film_coolant_share: or(0.0, number(0.0, 1.0)), "temperature of the oil films, from that of the oil (0) to that of the coolant (1)", ["EN-2"];
+        reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the hot friction holds", ["EN-2"];
         reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC", ["EN-2"];
         overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction", ["EN-7"];
     }
 
     /// Keys of `[engine.fuel]`.
     FUEL: FuelKeys = "fuel" [] {
-        cold_enrichment: number(0.0, 2.0), "extra fuel at 0 degC coolant, none from 60 degC", ["EN-3"];
+        cold_enrichment: number(0.0, 2.0), "extra fuel at 0 degC coolant and below, none from 60 degC", ["EN-3"];
+        start_g: or(0.0, number(0.0, 100.0)), "fuel of a start at 0 degC and below, none from 60 degC", ["EN-9"];
+        start_s: or(30.0, above(0.0, 300.0)), "time in which it is given", ["EN-9"];
+        cut_from_degc: or(45.0, number(-40.0, 110.0)), "coolant from which fuel is cut in overrun", ["EN-11"];
+        cut_above_rpm: or(1400.0, number(500.0, 6000.0)), "engine speed above which all of it is cut", ["EN-11"];
+        fuel_back_rpm: or(1300.0, number(400.0, 6000.0)), "engine speed below which none is cut", ["EN-11"];
         heating_value_mj_kg: number(20.0, 60.0), "lower heating value";
         density_kg_m3: number(500.0, 1000.0), "density of the fuel";
         co2_per_fuel: number(0.0, 4.0), "CO2 per mass of fuel";
@@ -90,6 +99,7 @@ impl Engine {
         let (friction, idle) = (s.table("friction"), s.table("idle"));
         let (fuel, heat) = (s.table("fuel"), s.table("heat"));
         let displacement_m3 = s.number(&ENGINE.displacement_cc);
+        let hot_k = friction.number(&FRICTION.hot_degc);
         let line;
         let engine = Engine {
             displacement_m3,
@@ -101,13 +111,22 @@ impl Engine {
             inertia_torque_nm: s.number(&ENGINE.inertia_torque_nm),
             idle_hot_rad_s: idle.number(&IDLE.hot_rpm),
             idle_cold_rad_s: idle.number(&IDLE.cold_rpm),
-            friction_exponent: friction.number(&FRICTION.temperature_exponent),
-            hot_k: friction.number(&FRICTION.hot_degc),
+            idle_cold_k: idle.number(&IDLE.cold_degc),
+            idle_warm_k: idle.number(&IDLE.warm_degc),
+            idle_after_start_rad_s: idle.number(&IDLE.after_start_rpm),
+            idle_after_start_s: idle.number(&IDLE.after_start_s),
+            hot_k,
             viscous_share: friction.number(&FRICTION.viscous_share),
             viscous_exponent: friction.number(&FRICTION.viscous_exponent),
-            reference_oil: reference_oil(&friction),
+            reference_m2_s: reference_oil(&friction).kinematic_m2_s(hot_k),
+            film_coolant_share: friction.number(&FRICTION.film_coolant_share),
             overrun_drag: friction.number(&FRICTION.overrun_factor),
             enrichment: fuel.number(&FUEL.cold_enrichment),
+            start_kg: fuel.number(&FUEL.start_g),
+            start_s: fuel.number(&FUEL.start_s),
+            cut_from_k: fuel.number(&FUEL.cut_from_degc),
+            cut_above_rad_s: fuel.number(&FUEL.cut_above_rpm),
+            fuel_back_rad_s: fuel.number(&FUEL.fuel_back_rpm),
             electrical_w: s.number(&ENGINE.electrical_w),
             accessory_nm: s.number(&ENGINE.accessory_nm),
             exhaust_idle: heat.number(&HEAT.exhaust_share_idle),
@@ -123,7 +142,28 @@ impl Engine {
             },
         };
         check_efficiency(&line, &engine);
+        check_pairs(&idle, &fuel, &engine);
         engine
+    }
+}
+
+/// Pairs of values of which one is below the other.
+fn check_pairs<V: Values>(idle: &V, fuel: &V, engine: &Engine) {
+    if engine.idle_warm_k <= engine.idle_cold_k {
+        idle.complain(
+            IDLE.warm_degc.name,
+            "above cold_degc",
+            "idle would be hot before it ceases to be cold",
+            "raise it or lower `cold_degc`",
+        );
+    }
+    if engine.fuel_back_rad_s >= engine.cut_above_rad_s {
+        fuel.complain(
+            FUEL.fuel_back_rpm.name,
+            "below cut_above_rpm",
+            "fuel would be back at the speed at which it is cut",
+            "lower it or raise `cut_above_rpm`",
+        );
     }
 }
 

@@ -2,27 +2,33 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | EN-1 | idle = hot + (cold - hot) clip((60 degC - T_c)/70 K, 0, 1) | ASSUMED |
-//! | EN-2 | friction factor = theta^-t (1 + s ((nu/nu_r)^m - 1)), theta = T/T_hot at most 1, T mean of coolant and oil | source: CO2MPAS (theta^-t); share s and m ASSUMED, so that the oil counts |
-//! | EN-3 | enrichment = 1 + e max(0, (60 degC - T_c)/60 K) | ASSUMED |
+//! | EN-1 | idle = hot + (cold - hot) clip((T_w - T_c)/(T_w - T_k), 0, 1) + n_a clip((60 degC - T_start)/30 K, 0, 1) (1 - t/t_a) while t < t_a | T_w, T_k and the line fitted to idle after start of another car (validation/outside); n_a ASSUMED |
+//! | EN-2 | friction factor = 1 + s ((nu(T_f)/nu_r(T_hot))^m - 1), T_f = T_o + x (T_c - T_o), at most T_hot | source: Shayler, Leong, Murphy, SAE 2005-01-1654 (rubbing friction follows the oil's viscosity); s and m ASSUMED within its class of engines |
+//! | EN-3 | enrichment = 1 + e clip((60 degC - T_c)/60 K, 0, 1) | ASSUMED |
 //! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
-//! | EN-5 | full load falls with altitude as (p/p_0)^1.2 | source: ISO 1585 naturally aspirated, pressure term only |
-//! | EN-6 | waste = fuel - indicated; exhaust takes its share, falling linearly with speed; friction goes to the engine | source: ADVISOR (0.40 to 0.30); unburnt enrichment goes to the exhaust |
-//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3) | source: CO2MPAS rule; drag factor ASSUMED |
-//! | EN-8 | the full-load line is not lowered by cold friction: denser charge and friction act against each other | ASSUMED |
+//! | EN-5 | charge g = (p/p_0) (298.15 K/T_amb)^0.5 | source: form of SAE J1349 (charge with pressure and root of temperature, friction constant) |
+//! | EN-6 | waste = fuel - crank power; exhaust takes its share, falling linearly with speed, at most fuel - indicated; oil takes its share of friction, the coolant the rest | source: ADVISOR (0.40 to 0.30 of fuel less shaft power); bound derived; unburnt enrichment goes to the exhaust |
+//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3); without fuel cut (EN-11) the engine turns itself | source: CO2MPAS rule; drag factor ASSUMED |
+//! | EN-12 | free engine without fuel: w = sqrt(k2 + w0_2) - k, k = (T + drag at idle) dt/J | derived: its rotating energy turns against its own drag and the torque T that it passes on |
+//! | EN-8 | full load = g (T_hot + T_f) - Theta T_f, at least 2 % of T_hot; T_hot the line of the file, T_f hot friction | derived: the air limits indicated torque, friction takes its part |
 //!
-//! nu_r is the viscosity of the reference oil at the same temperature, so that with the reference oil EN-2 is the published law.
+//! nu is the viscosity of the oil in use, nu_r that of the reference oil, for which the hot friction of the fuel model holds. The share 1 - s of
+//! that friction is throttling, gas exchange and accessories, which do not thicken in the cold.
 
 mod fuel;
 mod keys;
+mod start;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::EngineKeys;
+pub use start::Running;
 
-use crate::fluid::{Lubricant, Viscosity, ZERO_DEGC_K};
-use crate::math::{Curve, clamp, exp, larger, ln};
+use crate::fluid::{Lubricant, ZERO_DEGC_K};
+use crate::math::{Curve, clamp, exp, larger, ln, smaller};
 use crate::prime_mover::PrimeMover;
 
+/// Part of the full-load line that is left to an engine whose air does not carry its friction: keeps the throttle finite.
+const LEAST_FULL_LOAD: f64 = 0.02;
 /// Highest temperature of the coolant, K: a half-and-half mix of water and glycol boils at 129 degC with 1 bar over ambient.
 pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
 
@@ -45,22 +51,40 @@ pub struct Engine {
     pub inertia_torque_nm: f64,
     /// Idle speed hot, rad/s.
     pub idle_hot_rad_s: f64,
-    /// Idle speed at -10 degC and below, rad/s.
+    /// Idle speed cold, rad/s.
     pub idle_cold_rad_s: f64,
-    /// Friction exponent t.
-    pub friction_exponent: f64,
+    /// Coolant up to which idle is cold, K.
+    pub idle_cold_k: f64,
+    /// Coolant from which idle is hot, K.
+    pub idle_warm_k: f64,
+    /// Idle speed above that at a cold start, rad/s.
+    pub idle_after_start_rad_s: f64,
+    /// Time in which that falls to nothing, s.
+    pub idle_after_start_s: f64,
     /// Temperature at which friction is that of the warm engine, K.
     pub hot_k: f64,
-    /// Viscous share s of friction.
+    /// Share s of hot friction that rubs in oil.
     pub viscous_share: f64,
     /// Exponent m of viscosity.
     pub viscous_exponent: f64,
-    /// Viscosity of the reference oil.
-    pub reference_oil: Viscosity,
+    /// Viscosity of the reference oil in the warm engine, m2/s.
+    pub reference_m2_s: f64,
+    /// Temperature of the oil films between that of the oil (0) and the coolant (1).
+    pub film_coolant_share: f64,
     /// Overrun drag over friction.
     pub overrun_drag: f64,
     /// Enrichment e.
     pub enrichment: f64,
+    /// Fuel of a start at 0 degC and below, kg.
+    pub start_kg: f64,
+    /// Time in which it is given, s.
+    pub start_s: f64,
+    /// Coolant from which fuel is cut in overrun, K.
+    pub cut_from_k: f64,
+    /// Speed above which all of it is cut, rad/s.
+    pub cut_above_rad_s: f64,
+    /// Speed below which none is cut, rad/s.
+    pub fuel_back_rad_s: f64,
     /// Electrical load at the shaft, W.
     pub electrical_w: f64,
     /// Torque of pumps and belts, Nm.
@@ -81,7 +105,7 @@ pub struct Engine {
     pub fuel: FuelModel,
 }
 
-/// The engine at one temperature state and altitude.
+/// The engine at one temperature state, in one air.
 #[derive(Clone, Copy, Debug)]
 pub struct EngineAtTemperature<'a> {
     /// The engine.
@@ -92,8 +116,12 @@ pub struct EngineAtTemperature<'a> {
     pub idle_rad_s: f64,
     /// Fuel factor of enrichment (EN-3).
     pub enrichment: f64,
-    /// Full-load factor of altitude (EN-5).
-    pub full_load_factor: f64,
+    /// Fuel of the start, kg/s (EN-9).
+    pub start_kg_s: f64,
+    /// Share of its own drag that the engine takes up in overrun, with fuel cut (EN-11).
+    pub cut_share: f64,
+    /// Charge of the cylinders over that at 25 degC and sea level (EN-5).
+    pub charge: f64,
 }
 
 /// What the engine burns and rejects at one operating point, W unless said.
@@ -116,60 +144,64 @@ pub struct Burn {
 }
 
 impl Engine {
-    /// The oil in use, where its viscosity is not that of the reference oil: then EN-2 has its second factor.
-    pub fn non_reference_oil<'a>(&self, oil: &'a Lubricant) -> Option<&'a Lubricant> {
-        (oil.viscosity != self.reference_oil).then_some(oil)
-    }
-
-    /// Prepares the engine for coolant and oil temperature, oil and ambient pressure ratio.
+    /// The engine long after its start, with fuel cut in overrun, at coolant and oil temperature, oil and charge.
     pub fn at(
         &self,
         coolant_k: f64,
         oil_k: f64,
         oil: &Lubricant,
-        pressure_factor: f64,
+        charge: f64,
     ) -> EngineAtTemperature<'_> {
-        self.at_temperatures(
-            coolant_k,
-            oil_k,
-            self.non_reference_oil(oil),
-            pressure_factor,
-        )
+        EngineAtTemperature {
+            cut_share: 1.0,
+            ..self.in_step(coolant_k, oil_k, oil, charge, &Running::LONG, 1.0)
+        }
     }
 
-    /// The same, with what [`Engine::non_reference_oil`] says of the oil: it holds for a whole drive.
+    /// The engine in a step of `dt_s`, after what it did before.
     #[inline(always)]
-    pub fn at_temperatures(
+    pub fn in_step(
         &self,
         coolant_k: f64,
         oil_k: f64,
-        other_oil: Option<&Lubricant>,
-        pressure_factor: f64,
+        oil: &Lubricant,
+        charge: f64,
+        running: &Running,
+        dt_s: f64,
     ) -> EngineAtTemperature<'_> {
-        let theta = 0.5 * (coolant_k + oil_k) / self.hot_k;
-        let viscous = other_oil.map_or(1.0, |oil| {
-            let relative = oil.kinematic_m2_s(oil_k) / self.reference_oil.kinematic_m2_s(oil_k);
-            1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(relative)) - 1.0)
-        });
-        let thick = if theta < 1.0 {
-            exp(-self.friction_exponent * ln(theta))
-        } else {
-            1.0
-        };
-        let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 70.0, 0.0, 1.0);
-        let enrich = (60.0 + ZERO_DEGC_K - coolant_k) / 60.0;
+        let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 60.0, 0.0, 1.0);
         EngineAtTemperature {
             engine: self,
-            friction_factor: thick * viscous, // EN-2
-            idle_rad_s: self.idle_hot_rad_s + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold, // EN-1
-            enrichment: 1.0
-                + if enrich > 0.0 {
-                    self.enrichment * enrich
-                } else {
-                    0.0
-                }, // EN-3
-            full_load_factor: pressure_factor,
+            friction_factor: self.friction_factor(coolant_k, oil_k, oil),
+            idle_rad_s: self.idle_rad_s(coolant_k, running, dt_s),
+            enrichment: 1.0 + self.enrichment * cold, // EN-3
+            start_kg_s: self.start_kg_s(running, dt_s),
+            cut_share: self.cut_share(coolant_k, running),
+            charge,
         }
+    }
+
+    /// Idle speed, its mean over a step, rad/s.
+    #[inline(always)]
+    fn idle_rad_s(&self, coolant_k: f64, running: &Running, dt_s: f64) -> f64 {
+        let width = self.idle_warm_k - self.idle_cold_k;
+        let cold = clamp((self.idle_warm_k - coolant_k) / width, 0.0, 1.0);
+        let started = clamp((60.0 + ZERO_DEGC_K - running.start_k) / 30.0, 0.0, 1.0);
+        // Integral of 1 - t/t_a: half of what is spent, times t_a.
+        let fading = running.spending_per_s(self.idle_after_start_s, dt_s);
+        let raised = 0.5 * self.idle_after_start_s * fading * started;
+        self.idle_hot_rad_s
+            + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold
+            + self.idle_after_start_rad_s * raised // EN-1
+    }
+
+    /// Friction over that of the warm engine with the reference oil.
+    #[inline(always)]
+    fn friction_factor(&self, coolant_k: f64, oil_k: f64, oil: &Lubricant) -> f64 {
+        let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
+        let film_k = smaller(film_k, self.hot_k);
+        let thicker = oil.kinematic_m2_s(film_k) / self.reference_m2_s;
+        1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(thicker)) - 1.0) // EN-2
     }
 
     /// Torque of a mean effective pressure (four-stroke), Nm.
@@ -232,8 +264,8 @@ impl PrimeMover for EngineAtTemperature<'_> {
     }
 
     #[inline]
-    fn full_load_factor(&self) -> f64 {
-        self.full_load_factor
+    fn full_load_share(&self, speed_rad_s: f64) -> f64 {
+        self.full_load_nm(speed_rad_s) / self.engine.full_load.at(speed_rad_s)
     }
 
     #[inline]
@@ -241,9 +273,25 @@ impl PrimeMover for EngineAtTemperature<'_> {
         self.engine.inertia_torque_nm / self.engine.inertia_kg_m2
     }
 
+    /// EN-12: the drag at idle is that of the slowest engine, so that none of it is missing on the way.
+    #[inline]
+    fn slowed_rad_s(&self, from_rad_s: f64, load_nm: f64, dt_s: f64) -> f64 {
+        let slowing_nm = load_nm + self.own_drag_nm(self.idle_rad_s);
+        let k = slowing_nm * dt_s / self.engine.inertia_kg_m2;
+        (k * k + from_rad_s * from_rad_s).sqrt() - k // EN-12
+    }
+
     #[inline]
     fn full_load_nm(&self, speed_rad_s: f64) -> f64 {
-        self.engine.full_load.at(speed_rad_s) * self.full_load_factor // EN-5
+        let hot = self.engine.full_load.at(speed_rad_s);
+        let piston_m_s = self.engine.piston_m_s(speed_rad_s);
+        let friction = self
+            .engine
+            .torque_nm(self.engine.fuel.hot_friction_pa(piston_m_s));
+        // Written so that a warm engine in the reference air has its line to the bit.
+        let now =
+            hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
+        larger(now, LEAST_FULL_LOAD * hot) // EN-8
     }
 
     /// EN-4: none at standstill.
@@ -258,14 +306,20 @@ impl PrimeMover for EngineAtTemperature<'_> {
         } // EN-4
     }
 
-    /// EN-7: in overrun with fuel cut off.
+    /// EN-7: in overrun with fuel cut off; where it is not cut, the engine burns what turns it and drags nothing (EN-11).
     #[inline]
     fn drag_nm(&self, speed_rad_s: f64) -> f64 {
-        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+        self.cut_share * self.own_drag_nm(speed_rad_s) // EN-11
     }
 }
 
 impl EngineAtTemperature<'_> {
+    /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
+    #[inline]
+    pub fn own_drag_nm(&self, speed_rad_s: f64) -> f64 {
+        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+    }
+
     /// Friction mean effective pressure at the present temperature, Pa.
     #[inline]
     pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
@@ -302,19 +356,23 @@ impl EngineAtTemperature<'_> {
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
         let exhaust_share =
             e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * clamp(fast, 0.0, 1.0);
-        let waste = burnt - indicated;
-        let fuel_w = burnt * self.enrichment;
+        let waste = burnt - brake_pa * watts;
+        // The exhaust has no more than the gas kept: nothing once fuel is cut.
+        let hot_gas = smaller(exhaust_share * waste, burnt - indicated);
+        let to_oil = e.friction_to_oil * friction;
+        let start_w = self.start_kg_s * e.heating_value_j_kg;
+        let fuel_w = burnt * self.enrichment + start_w;
         Burn {
             fuel_kg_s: fuel_w / e.heating_value_j_kg,
             fuel_w,
-            to_coolant_w: (1.0 - exhaust_share) * waste + (1.0 - e.friction_to_oil) * friction, // EN-6
-            to_oil_w: e.friction_to_oil * friction,
-            exhaust_w: exhaust_share * waste + (self.enrichment - 1.0) * burnt,
-            cut: point.fuel_pa <= 0.0,
+            to_coolant_w: waste - hot_gas - to_oil, // EN-6
+            to_oil_w: to_oil,
+            exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt + start_w, // EN-9
+            cut: fuel_w <= 0.0,
             // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
             outside: point.outside
                 || (point.fuel_pa <= 0.0
-                    && -torque_nm > self.drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
+                    && -torque_nm > self.own_drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
         }
     }
 }

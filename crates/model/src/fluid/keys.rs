@@ -1,6 +1,6 @@
 //! Keys of a lubricant file, and a lubricant from their values.
 
-use super::{Friction, Lubricant, Viscosity, ZERO_DEGC_K};
+use super::{Friction, Lubricant, MAX_BAND_FRICTION, VALID_K, Viscosity, ZERO_DEGC_K};
 use crate::keys::{Bound, Key, Values, keys};
 
 keys! {
@@ -16,19 +16,18 @@ keys! {
     /// Keys of `[friction]`.
     FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
         band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC", ["LU-4"];
-        band_rise_per_k: or(0.002, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
-        band_floor: or(0.7, number(0.1, 1.0)), "lower bound of the temperature factor", ["LU-4"];
-        band_ceiling: or(1.04, number(1.0, 2.0)), "upper bound of the temperature factor", ["LU-4"];
-        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley", ["SL-4", "VA-2"];
+        band_rise_per_k: or(0.001_932, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
+        segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley in micro slip", ["SL-4"];
+        capacity: or(0.09, number(0.02, 0.4)), "friction segment on pulley in macro slip: torque capacity", ["VA-4"];
         flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration", ["WE-3", "PE-1"];
     }
 
     /// Keys of `[friction.lift_off]`.
     LIFT: LiftKeys = "lift_off" [] {
         enabled: flag(true), "whether the bands can ride on oil", ["LU-5"];
-        reduction: or(0.2, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes", ["LU-4"];
-        load_n_per_m: or(0.0075, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
-        exponent: or(5.0, number(0.5, 8.0)), "sharpness of lift-off", ["LU-5"];
+        reduction: or(0.1608, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes", ["LU-4"];
+        load_n_per_m: or(0.0067, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
+        exponent: or(3.93, number(0.5, 8.0)), "sharpness of lift-off", ["LU-5"];
         film_thickness_um: or(1.5, number(0.01, 100.0)), "thickness of the carrying film", ["FI-1"];
     }
 }
@@ -81,30 +80,24 @@ fn of_fluid<V: Values>(s: &V) -> Viscosity {
     viscosity(s, key, &points, words)
 }
 
-/// Largest friction of the bands, rise with temperature included: at 0.53 they would block themselves in the larger wrap (TE-5).
-const MAX_BAND_FRICTION: f64 = 0.5;
-
 impl Friction {
     fn from_values<V: Values>(s: &V) -> Self {
         let lift = s.table("lift_off");
         let band = s.number(&FRICTION.band);
         let band_rise_per_k = s.number(&FRICTION.band_rise_per_k);
-        let band_floor = s.number(&FRICTION.band_floor);
-        let band_ceiling = s.number(&FRICTION.band_ceiling);
-        if band * band_ceiling > MAX_BAND_FRICTION {
-            let allowed = format!("band times band_ceiling up to {MAX_BAND_FRICTION}");
+        let hot = band * (band_rise_per_k * (VALID_K.end() - ZERO_DEGC_K - 85.0)).exp(); // LU-4
+        if hot > MAX_BAND_FRICTION {
+            let allowed = format!("band friction up to {MAX_BAND_FRICTION} at 160 degC");
             let message = format!(
-                "when hot, band friction could be {:.3}: the bands would block themselves (TE-5)",
-                band * band_ceiling
+                "at 160 degC, band friction is {hot:.3}: the bands would block themselves (TE-5)"
             );
-            s.complain("band_ceiling", &allowed, &message, "lower it or `band`");
+            s.complain("band_rise_per_k", &allowed, &message, "lower it or `band`");
         }
         Friction {
             band,
             band_rise_per_k,
-            band_floor,
-            band_ceiling,
             segment: s.number(&FRICTION.segment),
+            capacity: s.number(&FRICTION.capacity),
             flank: s.number(&FRICTION.flank),
             lift_off: lift.flag(&LIFT.enabled),
             lift_reduction: lift.number(&LIFT.reduction),

@@ -5,13 +5,14 @@
 //! | LU-1 | ln ln(nu + 0.7) = a - b ln T, nu in mm2/s, T in K | source: ASTM D341 (Walther) |
 //! | LU-2 | rho = rho15 (1 - 0.00068 (T - 15 degC)) | source: physics of petroleum oils, ASSUMED coefficient |
 //! | LU-3 | cp = (1.685 + 0.0034 T_C) / sqrt(rho15 / 1000), kJ/kgK | source: petroleum oils, ASSUMED for all fluids |
-//! | LU-4 | mu_b = mu_85 clamp(1 + k (T - 85 degC), floor, ceiling) (1 - r s) | k fitted to thesis 5.5.2, 8.9; bounds: Ichihashi in thesis 2.3 |
+//! | LU-4 | mu_b = mu_85 exp(k (T - 85 degC)) (1 - r s) | k fitted to thesis 5.5.2, 8.9; form ASSUMED |
 //! | LU-5 | film share s = z/(1+z), z = (eta dv / N_lift)^p; 0 with the film switched off | r, N_lift, p fitted to thesis 5.5.2, 8.9 (form ASSUMED: mixed lubrication) |
 //!
 //! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed of the innermost band m/s.
 //! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
 //!
-//! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9; Ichihashi in Akehurst 2.3 (band 0.09 to 0.135, up to 30 % with temperature).
+//! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9. Ichihashi in Akehurst 2.3 (0.09 to 0.135, up to 30 % with temperature) measured segment on pulley at
+//! 100 MPa, not band on segment: it is no bound of LU-4.
 
 mod keys;
 mod viscosity;
@@ -20,9 +21,13 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{clamp, exp, larger, ln};
+use crate::math::{exp, larger, ln, smaller};
 
 pub use crate::keys::ZERO_DEGC_K;
+
+/// Largest friction of the bands: at 0.53 they would block themselves in the larger wrap (TE-5). The reader refuses fluids that reach it at a valid
+/// temperature; beyond, friction is held there.
+const MAX_BAND_FRICTION: f64 = 0.5;
 
 /// Least share of the density at 15 degC; reached at some 1000 degC.
 const MIN_DENSITY: f64 = 0.3;
@@ -34,12 +39,10 @@ pub struct Friction {
     pub band: f64,
     /// Rise of the band friction with belt temperature, 1/K.
     pub band_rise_per_k: f64,
-    /// Lower bound of the temperature factor (Ichihashi: at most 30 % change).
-    pub band_floor: f64,
-    /// Upper bound of the temperature factor.
-    pub band_ceiling: f64,
-    /// Friction segment on pulley.
+    /// Friction segment on pulley in micro slip.
     pub segment: f64,
+    /// Friction segment on pulley in macro slip, which bounds the torque.
+    pub capacity: f64,
     /// Friction in wedging and penetration.
     pub flank: f64,
     /// Whether the bands can ride on oil at all (LU-5).
@@ -91,11 +94,11 @@ impl Friction {
     /// Band friction at belt temperature with the power z of the film's load known (LU-4, LU-5).
     #[inline]
     pub fn band_on_film(&self, belt_k: f64, z: f64) -> BandFriction {
-        let warm = 1.0 + self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0);
-        let warm = clamp(warm, self.band_floor, self.band_ceiling);
+        let warm = exp(self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0));
         let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
         BandFriction {
-            mu: self.band * warm * (1.0 - self.lift_reduction * film_share),
+            mu: smaller(self.band * warm, MAX_BAND_FRICTION)
+                * (1.0 - self.lift_reduction * film_share),
             film_share,
         } // LU-4
     }

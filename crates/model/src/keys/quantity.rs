@@ -104,7 +104,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity
     }
 }
 
-const UNITS: [Quantity; 58] = [
+const UNITS: [Quantity; 60] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -126,6 +126,7 @@ const UNITS: [Quantity; 58] = [
     unit("_g_s", "g/s", 1e-3),
     unit("_pa", "Pa", 1.0),
     unit("_bar", "bar", 1e5),
+    unit("_bar_per_nm", "bar per N m", 1e5),
     unit("_gpa", "GPa", 1e9),
     unit("_mpa_s", "mPa s", 1e-3),
     unit("_mm2_s", "mm²/s", 1e-6),
@@ -140,6 +141,7 @@ const UNITS: [Quantity; 58] = [
     unit("_s", "s", 1.0),
     unit("_min", "min", 60.0),
     unit("_per_s", "1/s", 1.0),
+    unit("_per_rad", "1/rad", 1.0),
     unit("_rpm", "rpm", RPM),
     unit("_rad_s", "rad/s", 1.0),
     unit("_deg", "°", PI / 180.0),

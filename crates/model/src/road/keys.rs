@@ -1,7 +1,9 @@
 //! Keys of `[road_load]`, and a road load from their values.
 
+use super::tyre::{Tyre, TyreKeys};
 use super::{GRAVITY_M_S2, RoadLoad, RoadLoadInput, Surface};
 use crate::keys::{Choice, Values, keys};
+use crate::math::{clamp, larger, smaller};
 
 /// Rows of the UN R83 table: reference mass up to, inertia class kg, a N, b N/(km/h)2.
 const R83: [(f64, f64, f64, f64); 22] = [
@@ -31,7 +33,7 @@ const R83: [(f64, f64, f64, f64); 22] = [
 
 keys! {
     /// Keys of `[road_load]`.
-    ROAD_LOAD: RoadLoadKeys = "road_load" [] {
+    ROAD_LOAD: RoadLoadKeys = "road_load" [TyreKeys::TABLE] {
         surface: words(&[
             Choice::word("dynamometer", "fixed coefficients"),
             Choice::word("road", "air and rolling follow ambient (RL-2)"),
@@ -46,13 +48,14 @@ keys! {
         ]), "coefficients f0 f1 f2; body (c_d, area, rolling); or r83 (class from reference mass)";
         mass_kg: required_if("with form coefficients or body", number(200.0, 5000.0)), "inertia mass without payload", ["RL-1"];
         wheel_radius_m: number(0.15, 0.6), "dynamic tyre radius";
-        rolling_per_k: or(0.00864, number(0.0, 0.03)), "rise of rolling resistance per kelvin below 20 degC", ["RL-2"];
+        rolling_per_k: or(0.00864, number(0.0, 0.03)), "rise of rolling resistance per kelvin below 20 degC, without tyres that warm up", ["RL-2"];
+        load_factor: or(1.0, number(0.2, 3.0)), "factor on the road load, not on the inertia: 1.1 in the US cold test", ["RL-8"];
     }
 
     /// Keys of `[road_load.form.coefficients]`.
     COEFFICIENTS: CoefficientKeys = "coefficients" [] {
         f0_n: number(0.0, 2000.0), "constant part", ["RL-1"];
-        f1_n_per_kmh: or(0.0, number(0.0, 50.0)), "part linear in speed", ["RL-1"];
+        f1_n_per_kmh: or(0.0, number(-20.0, 50.0)), "part linear in speed; US targets have some below zero", ["RL-1"];
         f2_n_per_kmh2: number(0.0, 1.0), "part quadratic in speed, per (km/h)2", ["RL-1"];
     }
 
@@ -68,6 +71,9 @@ keys! {
         reference_mass_kg: number(200.0, 5000.0), "unladen mass + 100 kg; picks the class of UN R83";
     }
 }
+
+/// Speed up to which a road load must resist, m/s (200 km/h).
+const FASTEST_M_S: f64 = 200.0 / 3.6;
 
 /// Mass in kg and coefficients f0, f1, f2 in SI units.
 type Forces = (f64, f64, f64, f64);
@@ -103,17 +109,32 @@ impl RoadLoadInput {
             },
             rolling_per_k: s.number(&ROAD_LOAD.rolling_per_k),
             altitude_m,
+            load_factor: s.number(&ROAD_LOAD.load_factor),
+            tyre: Tyre::from_values(&s.table("tyre"), mass_kg),
         }
     }
 }
 
 fn coefficients<V: Values>(s: &V, form: &V) -> Forces {
-    (
-        s.number(&ROAD_LOAD.mass_kg),
+    let (f0, f1, f2) = (
         form.number(&COEFFICIENTS.f0_n),
         form.number(&COEFFICIENTS.f1_n_per_kmh),
         form.number(&COEFFICIENTS.f2_n_per_kmh2),
-    )
+    );
+    let force = |v: f64| f0 + (f1 + f2 * v) * v;
+    let bend = clamp(-0.5 * f1 / larger(f2, f64::MIN_POSITIVE), 0.0, FASTEST_M_S);
+    let least = smaller(force(bend), force(FASTEST_M_S));
+    if least < 0.0 {
+        form.complain(
+            COEFFICIENTS.f1_n_per_kmh.name,
+            "a road load above zero up to 200 km/h",
+            &format!(
+                "the road load is {least:.1} N where it is least: the road would push the car"
+            ),
+            "the three belong together: check the sign and the unit of each",
+        );
+    }
+    (s.number(&ROAD_LOAD.mass_kg), f0, f1, f2)
 }
 
 fn body<V: Values>(s: &V, form: &V) -> Forces {

@@ -32,8 +32,8 @@ keys! {
     /// Keys of `[thermal.transmission]`.
     GEARBOX: GearboxKeys = "transmission" [] {
         oil_l: number(0.2, 30.0), "oil in the sump";
-        metal_kj_k: number(0.1, 1000.0), "heat capacity of case, gears and shafts", ["TH-1"];
-        belt_kj_k: required_if("with a CVT", number(0.1, 1000.0)), "heat capacity of belt and pulleys", ["TH-1"];
+        metal_kj_k: number(0.1, 1000.0), "heat capacity of case, gears, shafts and sheaves", ["TH-1"];
+        belt_kj_k: required_if("with a CVT", number(0.1, 1000.0)), "heat capacity of belt and the skin of the sheaves", ["TH-1"];
         oil_metal_w_k: number(0.0, 5000.0), "oil to metal", ["TH-1"];
         case_air_w_k: number(0.0, 5000.0), "case to air at standstill", ["TH-1"];
         case_air_v07_w_k: number(0.0, 5000.0), "case to air, times v^0.7 in m/s", ["TH-1"];

@@ -14,7 +14,7 @@
 //!
 //! The linear system of TH-5 is solved by elimination (links.rs).
 //!
-//! Nodes: coolant and block; engine oil; transmission oil; transmission metal; belt and pulleys with the oil they spray (unused in a
+//! Nodes: coolant and block; engine oil; transmission oil; transmission metal with the sheaves; belt with the skin of the sheaves and the oil they spray (unused in a
 //! manual box). Soak is the same network with the engine off. Speeds m/s, heat flows W.
 
 mod keys;

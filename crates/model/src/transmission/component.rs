@@ -119,13 +119,15 @@ components! {
     Pump: "pump", "Pump", Cvt, Sump, Fill::Cvt(1), Some("pump"), "loss of the oil pump";
     InputShaft: "input_shaft", "Input shaft", Cvt, Metal, Fill::Cvt(2), Some("input_shaft"), "loss of the input shaft's bearings and seals";
     ClutchDrag: "clutch_drag", "Clutch drag", Cvt, Sump, Fill::Cvt(3), Some("clutch_drag"), "drag of the open reverse clutch";
-    BeltBand: "belt_band", "Belt band", Belt, Belt, Fill::Cvt(4), None, "boundary friction between bands and between band and segments";
-    BeltFilm: "belt_film", "Belt film", Belt, Belt, Fill::Cvt(5), None, "viscous shear between the bands";
-    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Fill::Cvt(6), None, "sliding of the segments along the pulleys";
-    BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Fill::Cvt(7), None, "wedging at pulley entry and exit";
-    BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Fill::Cvt(8), None, "penetration into the deflected pulleys";
-    BeltMap: "belt_map", "Belt map", BeltMap, Belt, Fill::Cvt(4), Some("belt"), "loss of the whole belt, from its measured map";
-    FinalDrive: "final_drive", "Final drive", Cvt, Sump, Fill::Cvt(9), Some("final_drive"), "loss of the final drive of the CVT";
+    SealRing: "seal_ring", "Seal ring", Cvt, Sump, Fill::Cvt(4), Some("seal_ring"), "friction of the rings that seal the oil feed of the rotating cylinders";
+    PulleyBearing: "pulley_bearing", "Pulley bearing", Belt, Metal, Fill::Cvt(5), None, "load friction of the pulley shafts' bearings under the belt's pull";
+    BeltBand: "belt_band", "Belt band", Belt, Belt, Fill::Cvt(6), None, "boundary friction between bands and between band and segments";
+    BeltFilm: "belt_film", "Belt film", Belt, Belt, Fill::Cvt(7), None, "viscous shear between the bands";
+    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Fill::Cvt(8), None, "sliding of the segments along the pulleys";
+    BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Fill::Cvt(9), None, "wedging at pulley entry and exit";
+    BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Fill::Cvt(10), None, "penetration into the deflected pulleys";
+    BeltMap: "belt_map", "Belt map", BeltMap, Belt, Fill::Cvt(6), Some("belt"), "loss of the whole belt, from its measured map";
+    FinalDrive: "final_drive", "Final drive", Cvt, Sump, Fill::Cvt(11), Some("final_drive"), "loss of the final drive of the CVT";
     GearMesh: "gear_mesh", "Gear mesh", Manual, Sump, Fill::Manual(1), None, "gear mesh loss of the manual box, with its final drive";
     Bearing: "bearing", "Bearing", Manual, Metal, Fill::Manual(2), None, "bearing loss of the manual box";
     Churning: "churning", "Churning", Manual, Sump, Fill::Manual(3), None, "churning loss of the manual box";
@@ -178,9 +180,9 @@ impl Component {
         self.entry().map_key
     }
 
-    /// True for the parts of the belt's loss and for its map.
+    /// True for the parts of the belt's own loss and for its map; not for the bearings that its pull loads.
     pub const fn is_belt(self) -> bool {
-        matches!(self.part(), Part::Belt | Part::BeltMap)
+        matches!(self.heat(), HeatTo::Belt)
     }
 }
 

@@ -1,5 +1,6 @@
 //! From the wheels to the engine's flywheel: transmissions as the loop over a cycle sees them.
 
+pub mod clamp_cause;
 pub mod component;
 pub mod coupling;
 pub mod cvt;

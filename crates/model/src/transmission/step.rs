@@ -1,5 +1,6 @@
 //! What a driveline receives and gives in a time step.
 
+use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
 use super::coupling::Reach;
 use crate::cycle::GearCommand;
@@ -29,12 +30,13 @@ pub struct StepInput<'a, P> {
 }
 
 impl<P: PrimeMover> StepInput<'_, P> {
-    /// Engine speeds within reach of the one before the step.
+    /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
     #[inline]
-    pub(super) fn reach(&self, from_rad_s: f64) -> Reach {
+    pub(super) fn reach(&self, from_rad_s: f64, load_nm: f64) -> Reach {
         Reach {
             from_rad_s,
-            change_rad_s: self.engine.max_accel_rad_s2() * self.dt_s,
+            slowest_rad_s: self.engine.slowed_rad_s(from_rad_s, load_nm, self.dt_s),
+            fastest_rad_s: from_rad_s + self.engine.max_accel_rad_s2() * self.dt_s,
         }
     }
 }
@@ -73,8 +75,14 @@ pub struct StepOutput {
     pub primary_pa: f64,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pa: f64,
+    /// What decided the secondary pressure; of no meaning for a manual box.
+    pub clamp_cause: ClampCause,
     /// Belt slip; NaN for a manual box.
     pub slip: f64,
+    /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
+    pub primary_nm: f64,
+    /// Torque that the secondary pulley gives to its shaft, Nm; NaN without a belt that turns.
+    pub secondary_nm: f64,
     /// Capacity over torque; NaN for a manual box.
     pub clamp_safety: f64,
     /// Loss power of each component, W.
@@ -106,7 +114,10 @@ impl StepOutput {
             belt_ratio: f64::NAN,
             primary_pa: f64::NAN,
             secondary_pa: f64::NAN,
+            clamp_cause: ClampCause::Law,
             slip: f64::NAN,
+            primary_nm: f64::NAN,
+            secondary_nm: f64::NAN,
             clamp_safety: f64::NAN,
             loss_w: ByComponent([0.0; Component::COUNT]),
             output_w: 0.0,

@@ -11,6 +11,7 @@ use cvtcycle_model::drive::{Outcome, co2_g_per_km, litres_per_100km};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+use cvtcycle_model::transmission::clamp_cause::ClampCause;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Miles per imperial gallon at 1 L/100 km.
@@ -75,6 +76,8 @@ pub struct RunSummary {
     pub standstill_fuel_g: f64,
     /// Smallest clamp safety factor; null for a manual box.
     pub min_clamp_safety: Option<f64>,
+    /// Moving time in which each cause decided the secondary pressure; null for a manual box.
+    pub clamp_cause_s: Option<Named>,
     /// Time at a ratio limit; null for a manual box.
     pub at_ratio_limit_s: Option<f64>,
     /// Temperatures at the end.
@@ -93,6 +96,9 @@ pub struct RunSummary {
     pub worst_deficit: Option<Deficit>,
     /// How the implicit solve went.
     pub solve: Solve,
+    /// What a reader of these numbers should know.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Names of the checks that failed, as in `failures`.
     pub failed_checks: Vec<String>,
     /// The checks that failed, each with its time and its worst or first row; empty in files of an earlier version.
@@ -233,6 +239,10 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
             .collect(),
         standstill_fuel_g: all.standstill_fuel_kg * 1e3,
         min_clamp_safety: finite(totals.min_clamp_safety).filter(|_| cvt),
+        clamp_cause_s: cvt.then(|| {
+            let causes = ClampCause::NAMES.iter().zip(totals.clamp_cause_s);
+            causes.map(|((_, name), s)| (*name, finite(s))).collect()
+        }),
         at_ratio_limit_s: cvt.then(|| seconds(Flags::RATIO_LIMIT)),
         end_degc: end_temperatures(outcome, cvt),
         ledger_error: finite(totals.ledger_error),
@@ -245,6 +255,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
         },
+        notes: setup.notes.clone(),
         failed_checks: Vec::new(),
         failures: Vec::new(),
         transmission_efficiency_percent: finite(

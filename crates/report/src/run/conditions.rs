@@ -35,6 +35,9 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let controllers = cars.iter().filter_map(|car| controller(car.record?));
     section.facts(controllers.collect());
     for car in cars {
+        for note in &car.run.notes {
+            section.text(format!("{}: {note}.", car.run.vehicle));
+        }
         if let Some(record) = car.record {
             changes(&mut section, car, record);
         }

@@ -3,7 +3,7 @@
 use super::expr::{Expr, Fault, Gives, Names, parse};
 use super::keys::ROW;
 use super::rows::ValidationRow;
-use super::rule::{Printed, Verdict};
+use super::rule::{Fleet, Printed, Verdict};
 use super::source::{Kind, Source};
 use super::tables;
 use cvtcycle_config::ProblemKind;
@@ -49,6 +49,19 @@ pub fn number_or_range(s: &Section, keys: [&Key; 3]) -> Option<(f64, f64)> {
 pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Printed> {
     let numbers = number_or_range(s, [&ROW.value, &ROW.low, &ROW.high]);
     let numbers = numbers.map(|(low, high)| Printed::Range(low, high));
+    let numbers = match fleet(s) {
+        Some(_) if numbers.is_some() => {
+            let message = "a fleet with `value`, `low` or `high`";
+            s.conflict(
+                "mean",
+                "mean, sd and n alone",
+                message,
+                "keep one of the forms",
+            );
+            numbers
+        }
+        found => found.map(Printed::Fleet).or(numbers),
+    };
     let expect = s.has("expect").then(|| s.flag(&ROW.expect));
     match (compute.map(Expr::gives), numbers) {
         (Some(Gives::Truth), Some(_)) => {
@@ -84,6 +97,27 @@ pub fn printed(s: &Section, compute: Option<&Expr>, broken: bool) -> Option<Prin
     }
 }
 
+/// The fleet of a row of kind F; no other row has one.
+fn fleet(s: &Section) -> Option<Fleet> {
+    let [mean, sd, n] = [&ROW.mean, &ROW.sd, &ROW.n].map(|key| s.optional(key));
+    let (any, is_fleet) = (mean.or(sd).or(n).is_some(), s.word(&ROW.kind) == "F");
+    let z = s.number(&ROW.z);
+    if any && !is_fleet {
+        let message = "`mean`, `sd` and `n` belong to a fleet";
+        s.conflict("kind", "F", message, "write kind = \"F\"");
+    }
+    if is_fleet && (mean.is_none() || sd.is_none() || n.is_none()) {
+        let message = "a fleet needs `mean`, `sd` and `n`";
+        s.missing("mean", "mean, sd and n", message, "take them from the data");
+    }
+    Some(Fleet {
+        mean: mean?,
+        sd: sd?,
+        n: n?,
+        z,
+    })
+}
+
 /// What a row needs besides its keys.
 pub fn complete(s: &Section, row: &ValidationRow) {
     let is = |verdict| row.recorded == Some(verdict);
@@ -101,7 +135,10 @@ pub fn complete(s: &Section, row: &ValidationRow) {
     complain(Missing, found, "compute", "an expression", message, hint);
     let found = is_computed && !is_compared;
     let message = "a computed row cannot be `not comparable`";
-    let (allowed, hint) = ("agrees, fit, differs", "remove `compute` or the verdict");
+    let (allowed, hint) = (
+        "agrees, fit, identity, differs",
+        "remove `compute` or the verdict",
+    );
     complain(Conflict, found, "verdict", allowed, message, hint);
     let found = (is(Verdict::Differs) || !is_compared) && row.reason.trim().is_empty();
     let (message, hint) = ("the verdict needs a reason", "say in a sentence why");

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use super::expr::{Computed, Expr, MAX_EVALUATIONS, compute};
 use super::rows::{RowFile, ValidationRow};
-use super::rule::{Verdict, off, verdict};
+use super::rule::{Fleet, Group, Printed, Verdict, off, verdict};
 use super::source::Source;
 use super::store::{Cars, Store, View, once};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, load};
@@ -20,14 +20,20 @@ pub struct Judged {
     pub row: ValidationRow,
     /// Its file.
     pub file: String,
-    /// Computed; none for what cannot be compared.
+    /// Whose number it has.
+    pub group: Group,
+    /// Computed; none for what cannot be compared, or not for this car.
     pub computed: Option<Computed>,
+    /// Why the row cannot be computed.
+    pub failure: Option<String>,
     /// Verdict of the rule.
     pub verdict: Verdict,
-    /// Whether it is another one than recorded.
+    /// Whether it is another one than recorded, or the row cannot be computed.
     pub moved: bool,
     /// Number behind the reason.
     pub cause: Option<Computed>,
+    /// Why that number cannot be computed.
+    pub cause_failure: Option<String>,
     /// Points of its sources left out because the belt slips grossly there.
     pub left_out: usize,
     /// Points that count although they lie outside the validity of a model.
@@ -35,6 +41,24 @@ pub struct Judged {
 }
 
 impl Judged {
+    /// Distance from the mean of its fleet, with its sign, in standard deviations of one more car.
+    #[must_use]
+    pub fn z(&self) -> Option<f64> {
+        match (self.row.printed?, self.computed.as_ref()?) {
+            (Printed::Fleet(fleet), Computed::Number(x)) => Some(fleet.distance(*x)),
+            _ => None,
+        }
+    }
+
+    /// The fleet it is held against.
+    #[must_use]
+    pub fn fleet(&self) -> Option<Fleet> {
+        match self.row.printed? {
+            Printed::Fleet(fleet) => Some(fleet),
+            _ => None,
+        }
+    }
+
     /// Distance from the printed range, in widths of its tolerance.
     #[must_use]
     pub fn off(&self) -> Option<f64> {
@@ -79,12 +103,23 @@ impl Report {
             .count()
     }
 
-    /// Result of the rows to which no parameter was fitted.
+    /// Groups that have rows, in order.
     #[must_use]
-    pub fn held_out(&self) -> HeldOut {
+    pub fn groups(&self) -> Vec<Group> {
+        let has = |group: &Group| self.rows.iter().any(|row| row.group == *group);
+        Group::ALL.into_iter().filter(has).collect()
+    }
+
+    /// Rows of a group.
+    pub fn of_group(&self, group: Group) -> impl Iterator<Item = &Judged> + Clone {
+        self.rows.iter().filter(move |row| row.group == group)
+    }
+
+    /// Result of the rows of a group to which no parameter was fitted.
+    #[must_use]
+    pub fn held_out(&self, group: Group) -> HeldOut {
         let rows: Vec<&Judged> = self
-            .rows
-            .iter()
+            .of_group(group)
             .filter(|row| row.row.is_held_out())
             .collect();
         let agrees = |row: &&&Judged| row.verdict == Verdict::Agrees;
@@ -113,7 +148,7 @@ impl Report {
 /// Judges the rows of some files for which `wanted` is true.
 ///
 /// # Errors
-/// Sources whose vehicle cannot be loaded, rows that cannot be computed.
+/// Sources whose vehicle cannot be loaded; more than [`MAX_EVALUATIONS`] evaluations.
 pub fn judge(
     files: &[RowFile],
     candidate: &CandidateVehicle,
@@ -147,27 +182,39 @@ pub fn judge(
         .iter()
         .flat_map(|(file, view)| file.rows.iter().map(move |row| (file, view, row)));
     for (file, view, row) in all.filter(|(.., row)| wanted(row)) {
-        match judged(view, file, row) {
-            Ok(judged) => rows.push(judged),
-            Err(problem) if store.evaluations().is_some() => problems.push(problem),
-            Err(problem) => {
-                // The rows after it have none left either.
-                let allowed = format!("up to {MAX_EVALUATIONS} evaluations of all rows together");
-                problems.push(problem.kind(ProblemKind::TooLarge).allowed(allowed));
-                break;
-            }
+        let judged = judged(view, file, row);
+        if store.evaluations().is_none() {
+            // The rows after it have none left either.
+            return Err(exhausted(&judged).into());
         }
+        rows.push(judged);
     }
     let evaluations = store.evaluations().unwrap_or(MAX_EVALUATIONS);
-    if !problems.is_empty() {
-        return Err(problems);
-    }
     let candidate = candidate.clone();
     Ok(Report {
         candidate,
         rows,
         evaluations,
     })
+}
+
+/// The problem of the row in which the evaluations ran out.
+fn exhausted(judged: &Judged) -> Problem {
+    let (what, why) = match (&judged.failure, &judged.cause_failure) {
+        (Some(why), _) => ("compute", why.as_str()),
+        (None, why) => ("cause.compute", why.as_deref().unwrap_or_default()),
+    };
+    let row = &judged.row;
+    let id = &row.id;
+    Problem::failed(format!("row {id}: `{what}` cannot be computed: {why}"))
+        .kind(ProblemKind::TooLarge)
+        .allowed(format!(
+            "up to {MAX_EVALUATIONS} evaluations of all rows together"
+        ))
+        .at(row.place.clone())
+        .key(what)
+        .names_key()
+        .value(row.compute_text.clone())
 }
 
 /// A car, or the problems of its files.
@@ -210,38 +257,44 @@ impl Cars for FromFiles<'_> {
     }
 }
 
-fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Result<Judged, Problem> {
-    let computed = |what: &str, expr: Option<&Expr>| {
-        let result = expr.map(|expr| compute(expr, view)).transpose();
-        result.map_err(|why| {
-            let id = &row.id;
-            Problem::failed(format!("row {id}: `{what}` cannot be computed: {why}"))
-                .at(row.place.clone())
-                .key(what)
-                .names_key()
-                .value(row.compute_text.clone())
-        })
-    };
+/// A number, or why it cannot be computed.
+fn computed(expr: Option<&Expr>, view: &View) -> (Option<Computed>, Option<String>) {
+    match expr.map(|expr| compute(expr, view)) {
+        Some(Ok(number)) => (Some(number), None),
+        Some(Err(why)) => (None, Some(why)),
+        None => (None, None),
+    }
+}
+
+fn judged(view: &View, file: &RowFile, row: &ValidationRow) -> Judged {
     view.begin();
-    let number = computed("compute", row.compute.as_ref())?;
+    let (number, failure) = computed(row.compute.as_ref(), view);
     let (left_out, outside) = view.noted();
-    let cause = row.cause.as_ref().map(|cause| &cause.compute);
-    let cause = computed("cause.compute", cause)?;
+    let (cause, cause_failure) = computed(row.cause.as_ref().map(|cause| &cause.compute), view);
     let fitted = !row.fitted_to.is_empty();
     let verdict = match (&number, row.printed) {
+        _ if failure.is_some() => Verdict::NotComputed,
         (Some(number), Some(printed)) => verdict(number, printed, row.tolerance_widths, fitted),
         _ => Verdict::NotComparable,
     };
-    Ok(Judged {
+    let verdict = match (verdict, row.recorded) {
+        (Verdict::Agrees, Some(Verdict::Identity)) => Verdict::Identity,
+        (other, _) => other,
+    };
+    let expected = row.recorded.unwrap_or(verdict);
+    Judged {
         row: row.clone(),
         file: file.name.clone(),
+        group: file.group,
         computed: number,
+        moved: expected != verdict || failure.is_some(),
+        failure,
         verdict,
-        moved: row.recorded.is_some_and(|recorded| recorded != verdict),
         cause,
+        cause_failure,
         left_out,
         outside,
-    })
+    }
 }
 
 /// Vehicle of all sources that name none, with its fluids and overrides.

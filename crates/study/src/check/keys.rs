@@ -8,11 +8,25 @@ use cvtcycle_model::keys::{Bound, Choice, Column, Repeat, Table, keys};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// A validation file.
-pub const VALIDATION: Table = Table::of(&[
-    ToleranceKeys::TABLE.repeated(Repeat::Named),
-    SOURCES,
-    RowKeys::TABLE.repeated(Repeat::List),
-]);
+pub const VALIDATION: Table = FileKeys::TABLE;
+
+keys! {
+    /// Keys at the head of a file.
+    FILE: FileKeys = "" [
+        ToleranceKeys::TABLE.repeated(Repeat::Named),
+        SOURCES,
+        RowKeys::TABLE.repeated(Repeat::List),
+    ] {
+        group: words(&GROUPS, "own"), "whose numbers the rows have; each group is counted apart";
+    }
+}
+
+/// Groups in the order of [`super::Group`].
+pub(super) static GROUPS: [Choice; 3] = [
+    Choice::word("thesis", "the thesis after which the model was made"),
+    Choice::word("outside", "public data of other cars"),
+    Choice::word("own", "the user's"),
+];
 
 keys! {
     /// Keys of `[tolerances.NAME]`.
@@ -40,6 +54,11 @@ keys! {
         high: optional(within(Bound::any())), "largest printed number";
         expect: flag(true), "whether the order or sign is printed as holding";
         tolerance: required_if("with numbers", text()), "name of a tolerance at the head of the file";
+        mean: optional(within(Bound::any())), "mean of a fleet";
+        sd: optional(above(0.0, 1e9)), "standard deviation of one car of the fleet";
+        n: optional(number(2.0, 1e9)), "number of cars of the fleet";
+        z: or(1.0, number(0.1, 10.0)), "distance from the mean up to which a car agrees, in standard deviations of one more car";
+        data: optional(text()), "file and lines that mean, sd and n come from";
         fitted_to: texts(), "parameters that were fitted to this number";
         compute: optional(text()), "how it is computed";
         verdict: optional(words(&VERDICTS, "")), "recorded verdict";
@@ -99,20 +118,25 @@ static MECHANISM_CHOICES: [Choice; MECHANISMS.len()] = {
     choices
 };
 
-static STATEMENTS: [Choice; 5] = [
+static STATEMENTS: [Choice; 6] = [
     Choice::word("N", "number"),
     Choice::word("O", "order or sign"),
     Choice::word("C", "constant that the program was given"),
     Choice::word("L", "quoted from others"),
     Choice::word("X", "record only"),
+    Choice::word("F", "fleet: mean, standard deviation and number of cars"),
 ];
 
 /// Verdicts in the order of [`super::Verdict`].
-pub(super) static VERDICTS: [Choice; 4] = [
+pub(super) static VERDICTS: [Choice; 5] = [
     Choice::word("agrees", "computed as printed, within the tolerance"),
     Choice::word("fit", "the same, but a parameter was fitted to it"),
+    Choice::word(
+        "identity",
+        "the same, but no value of the vehicle could make it differ",
+    ),
     Choice::word("differs", "computed otherwise"),
-    Choice::word("not comparable", "not computed"),
+    Choice::word("not comparable", "the program has no such quantity"),
 ];
 
 /// `[sources.NAME]`: the keys of all kinds.

@@ -37,4 +37,4 @@ pub use keys::MECHANISMS;
 pub use read::read;
 pub use report::{computed_text, csv, json, markdown, notes_line, unit_text};
 pub use rows::{Cause, RowFile, Tolerance, ValidationRow};
-pub use rule::{Printed, Verdict};
+pub use rule::{Fleet, Group, Printed, Verdict};

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 
 use super::checks::{FileNames, complete, expression, printed};
-use super::keys::{CAUSE, ROW, TOLERANCE};
+use super::keys::{CAUSE, FILE, ROW, TOLERANCE};
 use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
-use super::rule::{Printed, Verdict};
+use super::rule::{Group, Printed, Verdict};
 use super::source::{self, Source};
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
@@ -63,6 +63,7 @@ fn file(
 ) -> RowFile {
     let mut read = RowFile {
         name: name.to_owned(),
+        group: Group::Own,
         tolerances: Vec::new(),
         sources: Vec::new(),
         rows: Vec::new(),
@@ -77,6 +78,7 @@ fn file(
     let rows = document.take_tables("row");
     let reader = Reader::new(&document);
     let root = reader.root();
+    read.group = Group::from_word(root.word(&FILE.group));
     let all = root.table("tolerances");
     let tolerances = all.names().into_iter();
     read.tolerances = tolerances
@@ -179,6 +181,7 @@ impl Head<'_> {
             tolerance: tolerance
                 .map(|found| found.name.clone())
                 .unwrap_or_default(),
+            data: text(&ROW.data),
             fitted_to: self.fitted(s),
             remark: text(&ROW.remark),
             cause: self.cause(s),
@@ -211,7 +214,7 @@ impl Head<'_> {
                 s.conflict(
                     "tolerance",
                     "",
-                    "an order or sign has no tolerance",
+                    "only printed numbers have a tolerance",
                     "remove it",
                 );
             }

@@ -9,10 +9,10 @@ use serde_json::{Value, json as object};
 
 use super::expr::{Computed, short};
 use super::judge::{Judged, Report};
-use super::rule::{Printed, Verdict};
+use super::rule::{Group, Printed, Verdict};
 
 /// Version of the JSON object; a new number when a name goes or changes its meaning.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 /// Rows by verdict.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -21,10 +21,14 @@ pub struct Counts {
     pub agrees: usize,
     /// As printed because a parameter was fitted to it.
     pub fit: usize,
+    /// As printed, and unable to come out otherwise.
+    pub identity: usize,
     /// Otherwise.
     pub differs: usize,
-    /// Not computed.
+    /// Nothing to compare.
     pub not_comparable: usize,
+    /// Cannot be computed for this car.
+    pub not_computed: usize,
 }
 
 impl Counts {
@@ -34,7 +38,9 @@ impl Counts {
         Counts {
             agrees: count(Verdict::Agrees),
             fit: count(Verdict::Fit),
+            identity: count(Verdict::Identity),
             differs: count(Verdict::Differs),
+            not_computed: count(Verdict::NotComputed),
             not_comparable: count(Verdict::NotComparable),
         }
     }
@@ -43,11 +49,18 @@ impl Counts {
 /// A report as one JSON object.
 #[must_use]
 pub fn json(report: &Report) -> Value {
+    let group = |group: Group| {
+        let found = object!({
+            "counts": Counts::of(report.of_group(group)),
+            "held_out": report.held_out(group),
+        });
+        (group.word().to_owned(), found)
+    };
     Manifest::new(SCHEMA).with(&object!({
         "vehicle": report.candidate.vehicle,
         "set": report.candidate.set,
         "counts": Counts::of(report.rows.iter()),
-        "held_out": report.held_out(),
+        "groups": report.groups().into_iter().map(group).collect::<serde_json::Map<_, _>>(),
         "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
         "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),
     }))
@@ -71,6 +84,7 @@ fn row_of(judged: &Judged) -> Value {
     object!({
         "id": row.id,
         "file": judged.file,
+        "group": judged.group.word(),
         "chapter": row.chapter,
         "mechanism": row.mechanism,
         "kind": row.kind,
@@ -83,6 +97,11 @@ fn row_of(judged: &Judged) -> Value {
         "tolerance": toleranced.map(|row| &row.tolerance),
         "tolerance_below": toleranced.map(|row| row.tolerance_widths[0]),
         "tolerance_above": toleranced.map(|row| row.tolerance_widths[1]),
+        "mean": judged.fleet().map(|fleet| fleet.mean),
+        "sd": judged.fleet().map(|fleet| fleet.sd),
+        "n": judged.fleet().map(|fleet| fleet.n),
+        "z": judged.z(),
+        "data": (!row.data.is_empty()).then_some(&row.data),
         "computed_low": low,
         "computed_high": high,
         "holds": holds,
@@ -98,6 +117,8 @@ fn row_of(judged: &Judged) -> Value {
         "cause_low": cause_low,
         "cause_high": cause_high,
         "cause_unit": row.cause.as_ref().map(|cause| &cause.unit),
+        "failure": judged.failure,
+        "cause_failure": judged.cause_failure,
         "remark": row.remark,
         "compute": row.compute_text,
         "gross_slip_left_out": judged.left_out,
@@ -117,7 +138,7 @@ fn ends(computed: &Computed) -> [f64; 2] {
 /// Entries of a row in the CSV file, by their names in the JSON object.
 const CSV_COLUMNS: &str = "id chapter mechanism kind what condition printed unit printed_low printed_high \
     tolerance tolerance_below tolerance_above computed_low computed_high computed verdict recorded \
-    fitted_to reason cause remark";
+    fitted_to reason cause remark group mean sd n z";
 
 /// A report as CSV, a line a row; the cause in words with its number.
 #[must_use]
@@ -202,6 +223,9 @@ pub fn computed_text(judged: &Judged) -> String {
 
 /// Number, unit and name of the cause; empty where there is none.
 fn cause_text(judged: &Judged) -> String {
+    if let Some((cause, why)) = judged.row.cause.as_ref().zip(judged.cause_failure.as_ref()) {
+        return format!("Cause: {} cannot be computed: {why}", cause.what);
+    }
     let Some((cause, computed)) = judged.row.cause.as_ref().zip(judged.cause.as_ref()) else {
         return String::new();
     };
@@ -214,8 +238,13 @@ fn cause_text(judged: &Judged) -> String {
 pub fn notes(judged: &Judged) -> Vec<String> {
     let row = &judged.row;
     let mut notes = Vec::new();
+    notes.extend(judged.failure.clone());
     if matches!(judged.verdict, Verdict::Differs | Verdict::NotComparable) {
         notes.extend([row.reason.clone(), cause_text(judged)]);
+    }
+    if let Some((z, fleet)) = judged.z().zip(judged.fleet()) {
+        let (sd, n) = (short(fleet.sd), fleet.n);
+        notes.push(format!("z = {z:.1} (sd {sd}, {n} cars: {})", row.data));
     }
     if !row.fitted_to.is_empty() {
         notes.push(format!("fitted to it: {}", row.fitted_to.join(", ")));

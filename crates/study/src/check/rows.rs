@@ -1,7 +1,7 @@
 //! Validation files as read: tolerances, sources and rows.
 
 use super::expr::Expr;
-use super::rule::{Printed, Verdict};
+use super::rule::{Group, Printed, Verdict};
 use super::source::Source;
 use cvtcycle_config::Place;
 
@@ -52,7 +52,7 @@ pub struct ValidationRow {
     pub printed_text: String,
     /// Unit of printed and computed numbers.
     pub unit: String,
-    /// Kind of the statement: N number, O order or sign, C constant, L quoted from others, X record only.
+    /// Kind of the statement: N number, O order or sign, C constant, L quoted from others, X record only, F fleet.
     pub kind: &'static str,
     /// Printed in numbers; none for what cannot be compared.
     pub printed: Option<Printed>,
@@ -60,6 +60,8 @@ pub struct ValidationRow {
     pub tolerance: String,
     /// Its widths below the lower and above the upper printed number, in the unit of the row.
     pub tolerance_widths: [f64; 2],
+    /// File and lines that the numbers of a fleet come from.
+    pub data: String,
     /// Parameters that were fitted to this number.
     pub fitted_to: Vec<String>,
     /// Recorded verdict.
@@ -77,10 +79,13 @@ pub struct ValidationRow {
 }
 
 impl ValidationRow {
-    /// Whether the row tests the program: computed, no parameter was fitted to it, and no constant that the program was given.
+    /// Whether the row tests the program: computed, no parameter was fitted to it, no constant that the program was given, and able to fail.
     #[must_use]
     pub fn is_held_out(&self) -> bool {
-        self.compute.is_some() && self.fitted_to.is_empty() && self.kind != "C"
+        self.compute.is_some()
+            && self.fitted_to.is_empty()
+            && self.kind != "C"
+            && self.recorded != Some(Verdict::Identity)
     }
 }
 
@@ -89,6 +94,8 @@ impl ValidationRow {
 pub struct RowFile {
     /// Name.
     pub name: String,
+    /// Whose numbers its rows have.
+    pub group: Group,
     /// Own tolerances, then those of the common file.
     pub tolerances: Vec<Tolerance>,
     /// Own sources, then those of the common file.

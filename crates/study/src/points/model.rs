@@ -63,7 +63,7 @@ impl Model {
             oil: setup.oils().0.clone(),
             limits: PointLimits {
                 ratio: [cvt.ratio.high, cvt.ratio.low],
-                pressure_pa: [cvt.floor_pa, cvt.cap_pa],
+                pressure_pa: [cvt.floors.control_pa, cvt.cap_pa],
                 highest_rad_s: car.engine.highest_rad_s,
             },
             // The belt keeps the tangent; what is shown is rid of the rounding of the way back.
@@ -235,6 +235,7 @@ pub(crate) fn belt_load(
         eta_pa_s,
         film_thickness_m: fluid.film_thickness_m,
         segment_friction: or(given.segment, segment),
+        capacity_friction: fluid.capacity,
         flank_friction: fluid.flank,
     }
 }

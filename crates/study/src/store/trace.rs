@@ -142,6 +142,7 @@ pub fn read_trace_parquet(path: &Path) -> Result<History, Problems> {
         match (&*column.name, values) {
             ("phase", Values::Text(words)) => phases = words,
             ("flags", Values::Text(words)) => flags = words,
+            (_, Values::Text(_)) if !is_number(column) => {}
             (name, Values::Number(numbers)) if is_number(column) => history.put(name, numbers),
             (name, Values::Count(counts)) if is_number(column) => {
                 history.put(name, counts.iter().map(|n| *n as f64).collect())

@@ -240,7 +240,7 @@ fn loop_notes(c: &Conditions, l: &Loop) -> String {
         .map_or_else(|| "nowhere".to_owned(), degc);
     let mut text = format!(
         "{name}: warming {warming} min, cooling {cooling} min\n  \
-         cooling above warming by {widest} at most; below that they meet {meeting} (within {MEETING_NM} Nm)\n"
+         cooling above warming by {widest} at most; below it they meet {meeting} (within {MEETING_NM} Nm)\n"
     );
     let value = |(_, degc, nm): &(&str, Option<f64>, f64)| match degc {
         Some(t) => format!("{} at {} degC", plain(*nm), plain(*t)),

@@ -98,10 +98,20 @@ impl Sweep<'_> {
     /// the branch weighs that SL-8 leaves out beyond 9 C0, 2e-8, is no jump.
     fn shrinks(&self, f: &dyn Fn(f64) -> [f64; COUNT], coarse: [f64; COUNT], n: u32) {
         let (mut last, mut smooth) = (coarse, [false; COUNT]);
+        // The loss of slip is slip times torque (SL-11), and so is what SL-8 leaves out of it.
+        let p = (self.point)(self.range.1);
+        let per_slip_nm = (p.torque_nm / p.ratio).abs();
+        let size = |k: usize| {
+            coarse[k].max(if NAMES[k] == "slip loss" {
+                per_slip_nm
+            } else {
+                0.0
+            })
+        };
         for k in 1..=9 {
             let now = largest(f, self.range.0, self.range.1, n << k);
             for k in 0..COUNT {
-                smooth[k] |= now[k] <= 0.6 * last[k] + 1e-8 * coarse[k].max(1.0);
+                smooth[k] |= now[k] <= 0.6 * last[k] + 1e-8 * size(k).max(1.0);
             }
             if smooth.iter().all(|s| *s) {
                 return;

@@ -14,6 +14,7 @@ mod continuity;
 mod limits;
 mod monotone;
 mod scaling;
+mod statics;
 
 use cvtcycle_model::fluid::BandFriction;
 use cvtcycle_model::transmission::cvt::variator::{
@@ -54,6 +55,7 @@ pub fn thesis_belt(formulation: Formulation) -> Belt {
         band_width_m: 20e-3,
         band_offset_m: 3e-3,
         mass_kg_m: 1.039 / 0.6486,
+        band_mass_kg_m: 0.263 / 0.6486,
         youngs_pa: 206e9,
         strut_area_m2: 10e-6,
         initial_gap_m: 0.0,
@@ -109,6 +111,7 @@ impl Point {
             eta_pa_s: 0.02,
             film_thickness_m: 1.5e-6,
             segment_friction: self.mu_segment,
+            capacity_friction: self.mu_segment,
             flank_friction: self.mu_flank,
         }
     }
@@ -117,13 +120,19 @@ impl Point {
         belt_state(belt, &BeltAtRatio::new(belt, self.ratio), &self.load())
     }
 
-    /// Output torque at which C_x is zero (TE-5 with Z = 0), written out here from TE-1, TE-2 and TE-6.
+    /// Output torque at which C_x is zero (TE-5 or TE-7 with Z = 0), written out here from TE-1, TE-2 and TE-6.
     pub fn breakpoint_nm(&self, belt: &Belt) -> f64 {
         let at = BeltAtRatio::new(belt, self.ratio);
         let g = at.geometry;
         let v = self.rpm * RPM * g.primary_radius_m;
-        let pull = 2.0 * self.clamp_n * at.thrust_ratio * belt.tan_wedge
-            + g.primary_wrap_rad * belt.mass_kg_m * v * v;
+        let wrap = if belt.formulation == Formulation::Smooth {
+            g.primary_wrap_rad.min(g.secondary_wrap_rad) // TE-7
+        } else {
+            g.primary_wrap_rad
+        };
+        let clamp_n = self.clamp_n * at.thrust_ratio;
+        let pull = wrap
+            * (2.0 * clamp_n * belt.tan_wedge / g.primary_wrap_rad + belt.masses_kg_m()[0] * v * v);
         (self.ratio.ln() / belt.unity_width).tanh() * self.mu_band * pull * g.secondary_radius_m
     }
 }
@@ -158,6 +167,12 @@ pub fn values(s: &BeltState) -> [f64; NAMES.len()] {
         t.compression_n,
         t.step_n,
     ]
+}
+
+/// True where the second law bounds slip (SL-12): bands and film then lose nothing.
+pub fn second_law_binds(s: &BeltState) -> bool {
+    let share_nm = s.slip.primary_loss_nm + s.slip.secondary_loss_nm;
+    share_nm <= 0.0 && s.losses.band_nm + s.losses.film_nm <= 1e-12 * (s.band_nm + s.film_nm)
 }
 
 /// Zero, the ends and everything between.

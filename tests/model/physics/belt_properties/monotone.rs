@@ -22,14 +22,14 @@ proptest! {
     /// 1/2, although |C_x| itself falls with clamping on one side of the breakpoint.
     #[test]
     fn band_loss_rises_with_clamp(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 50e3)) {
-        let band = |clamp_n: f64| Point { clamp_n, ..p }.state(&thesis_belt(f)).losses.band_nm;
+        let band = |clamp_n: f64| Point { clamp_n, ..p }.state(&thesis_belt(f)).band_nm;
         rises("band loss", band(a), band(b), b > a + 1.0 && p.mu_band > 1e-3 && p.ratio.ln().abs() > 1e-3)?;
     }
 
     /// Band loss is proportional to d + t (n - 1)/2 (BT-3): it rises with the offset, on a line that does not go through zero.
     #[test]
     fn band_loss_rises_with_offset(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 0.02)) {
-        let band = |d: f64| p.state(&Belt { band_offset_m: d, ..thesis_belt(f) }).losses.band_nm;
+        let band = |d: f64| p.state(&Belt { band_offset_m: d, ..thesis_belt(f) }).band_nm;
         rises("band loss", band(a), band(b), b > a + 1e-6 && band(b) > 0.0)?;
         let rest = 0.217e-3 * 11.0 / 2.0;
         prop_assert!((band(a) * (b + rest) - band(b) * (a + rest)).abs() <= 1e-12 * band(b));
@@ -39,7 +39,7 @@ proptest! {
     /// rises in mu as long as Q_p > 0.
     #[test]
     fn band_loss_rises_with_band_friction(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 0.2)) {
-        let band = |mu_band: f64| Point { mu_band, ..p }.state(&thesis_belt(f)).losses.band_nm;
+        let band = |mu_band: f64| Point { mu_band, ..p }.state(&thesis_belt(f)).band_nm;
         rises("band loss", band(a), band(b), b > a + 1e-4 && p.clamp_n > 1.0 && p.ratio.ln().abs() > 1e-3)?;
     }
 
@@ -180,10 +180,10 @@ proptest! {
         let p = Point { mu_band: 0.01 + 0.9 * p.mu_band, clamp_n: 1000.0 + p.clamp_n, ..p };
         prop_assume!(p.ratio.ln().abs() > 0.07 && b > a + 0.1);
         let middle = p.breakpoint_nm(&belt);
-        let band = |t: f64| Point { torque_nm: middle + t, ..p }.state(&belt).losses.band_nm;
+        let band = |t: f64| Point { torque_nm: middle + t, ..p }.state(&belt).band_nm;
         rises("band loss above the breakpoint", band(a), band(b), true)?;
         rises("band loss below the breakpoint", band(-a), band(-b), true)?;
-        let even = |t: f64| Point { torque_nm: t, ..p }.state(&belt).losses.band_nm;
+        let even = |t: f64| Point { torque_nm: t, ..p }.state(&belt).band_nm;
         prop_assert!((even(b) - even(-b)).abs() > 1e-6 * even(b), "even in torque");
     }
 }

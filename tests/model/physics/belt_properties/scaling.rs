@@ -54,6 +54,7 @@ fn belt(b: &Belt, u: &Units, width: f64) -> Belt {
         band_width_m: b.band_width_m * width,
         initial_gap_m: b.initial_gap_m * u.length,
         mass_kg_m: b.mass_kg_m * u.force * u.time * u.time / (u.length * u.length),
+        band_mass_kg_m: b.band_mass_kg_m * u.force * u.time * u.time / (u.length * u.length),
         primary_compliance_per_n: b.primary_compliance_per_n / u.force,
         secondary_compliance_per_n: b.secondary_compliance_per_n / u.force,
         blend_n: b.blend_n * u.force,
@@ -90,10 +91,14 @@ fn check_forces(now: &BeltState, was: &BeltState, u: &Units) -> Result<(), TestC
         u.force,
         scale,
     )?;
-    for (k, (a, b)) in values(now).iter().zip(values(was)).enumerate() {
-        if ["band", "film", "wedge", "penetration"].contains(&NAMES[k]) {
-            same(NAMES[k], *a, b, torque, b)?;
-        }
+    let (l, m) = (&now.losses, &was.losses);
+    for (name, a, b) in [
+        ("band", now.band_nm, was.band_nm),
+        ("film", now.film_nm, was.film_nm),
+        ("wedge", l.wedge_nm, m.wedge_nm),
+        ("penetration", l.penetration_nm, m.penetration_nm),
+    ] {
+        same(name, a, b, torque, b)?;
     }
     same(
         "capacity",

@@ -1,4 +1,4 @@
-//! Belt and pulleys in driving: GE-2, TE-1 to TE-6, BT-1 to BT-5, FI-1, SL-1 to SL-10, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
+//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-6, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
 //! one branch at a time, in each formulation (the golden tables hold the printed forms).
 
 use super::{near, same};
@@ -24,6 +24,7 @@ pub fn belt(formulation: Formulation) -> Belt {
         band_width_m: 20e-3,
         band_offset_m: 3e-3,
         mass_kg_m: 1.6,
+        band_mass_kg_m: 0.4,
         youngs_pa: 206e9,
         strut_area_m2: 10e-6,
         initial_gap_m: 1e-5,
@@ -41,7 +42,7 @@ pub fn belt(formulation: Formulation) -> Belt {
 
 /// Losses and slip of one pulley each, written down from the tables.
 struct Sheet {
-    band: [f64; 2],
+    band: f64,
     film: f64,
     slip: [f64; 2],
     slip_loss: [f64; 2],
@@ -135,19 +136,25 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     let fs = l.secondary_clamp_n;
     let fp = fs * bp / bs; // TE-1
     let v = l.primary_speed_rad_s * rp;
-    let a = 2.0 * fp * b.tan_wedge + b.mass_kg_m * bp * v * v;
+    let smooth = f == Formulation::Smooth;
+    // The wrap that limits the force between bands and segments: the primary's, or the smaller one (TE-7).
+    let grips = if smooth { bp.min(bs) } else { bp };
+    let bands = if smooth { b.band_mass_kg_m } else { 0.0 };
+    let pressing = (b.mass_kg_m - bands) * v * v; // TE-8
+    let a = (2.0 * fp * b.tan_wedge / bp + pressing) * grips;
     let z = l.output_torque_nm / rs + s * l.band.mu * a;
-    let c = l.band.mu * bp / 2.0;
+    let c = l.band.mu * grips / 2.0;
     let cx = if z >= 0.0 {
         z / (1.0 - s * c)
     } else {
         z / (1.0 + s * c)
     }; // TE-5
-    let qp = a + cx.abs() * bp / 2.0; // TE-2
-    let qs = 2.0 * fs * b.tan_wedge + b.mass_kg_m * bs * v * v + cx.abs() * bs / 2.0;
-    let dt = -s * l.band.mu * qp; // TE-3
+    let qp = 2.0 * fp * b.tan_wedge + bp * pressing + cx.abs() * bp / 2.0; // TE-2
+    let qs = 2.0 * fs * b.tan_wedge + bs * pressing + cx.abs() * bs / 2.0;
+    let dt = -s * l.band.mu * qp * grips / bp; // TE-3, TE-7
     same(cx, l.output_torque_nm / rs - dt); // TE-4
-    let slide = (1.0 / ratio - 1.0).abs() / 2.0 * (d + b.band_thickness_m * (n - 1.0) / 2.0);
+    let part = if smooth { s.abs() } else { 1.0 }; // BT-6
+    let slide = part * (1.0 / ratio - 1.0).abs() / 2.0 * (d + b.band_thickness_m * (n - 1.0) / 2.0);
     let scale = |own: f64| if chapter { 1.0 } else { bp.min(bs) / own }; // BT-4
     let band = [
         l.band.mu * qp * slide * scale(bp),
@@ -168,7 +175,8 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
         2.0 * t * fs / (b.cos_wedge * arc[1]),
     ];
     let step = [dt * t / (rp * bp.min(bs)), dt * t / (rs * bp.min(bs))];
-    let slack = qp / bp * b.length_m / (b.youngs_pa * n * b.band_width_m * b.band_thickness_m)
+    let slack = (qp / bp + bands * v * v) * b.length_m
+        / (b.youngs_pa * n * b.band_width_m * b.band_thickness_m)
         + b.initial_gap_m; // SL-1
     let grip = [mu * normal[0], mu * normal[1]];
     let load = match f {
@@ -254,25 +262,50 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
         flank[0] * 2.0 * depth(delta[0]) * rp / t,
         flank[1] * 2.0 * depth(delta[1]) * rp / t,
     ]; // PE-1
+    let mut slip = [
+        mix(conventional.own, sign * inverted.other),
+        mix(conventional.other.abs(), -inverted.own),
+    ];
+    let mut slip_loss = [
+        mix(conventional.loss[0], inverted.loss[1]),
+        mix(conventional.loss[1], inverted.loss[0]),
+    ];
+    let (mut kept, mut left) = (1.0, 1.0f64);
+    if smooth {
+        let net = l.output_torque_nm / ratio;
+        kept = (-(band[0] + band[1] + film) / (slip[0] + slip[1]) / net).clamp(0.0, 1.0); // SL-12
+        if (slip[0] + slip[1]) * net >= 0.0 {
+            kept = 1.0;
+        }
+        slip = slip.map(|s| s * kept);
+        slip_loss = slip.map(|s| s * net); // SL-11
+        let relief = (slip_loss[0] + slip_loss[1]).min(0.0);
+        if relief < 0.0 {
+            left = (1.0 + relief / (band[0] + band[1] + film)).max(0.0);
+        }
+    }
     Sheet {
-        band,
-        film,
-        slip: [
-            mix(conventional.own, sign * inverted.other),
-            mix(conventional.other.abs(), -inverted.own),
-        ],
-        slip_loss: [
-            mix(conventional.loss[0], inverted.loss[1]),
-            mix(conventional.loss[1], inverted.loss[0]),
-        ],
-        gap: mix(conventional.gap, inverted.gap),
-        idle: mix(
-            conventional.own - conventional.gap,
-            inverted.own - inverted.gap,
-        ),
+        band: (band[0] + band[1]) * left,
+        film: film * left,
+        slip,
+        slip_loss,
+        gap: kept * mix(conventional.gap, inverted.gap),
+        idle: kept
+            * mix(
+                conventional.own - conventional.gap,
+                inverted.own - inverted.gap,
+            ),
         wedge,
         penetration,
-        capacity: 2.0 * mu * rs * fp.min(fs) / b.cos_wedge, // VA-2
+        capacity: 2.0
+            * if f == Formulation::Smooth {
+                l.capacity_friction
+            } else {
+                mu
+            }
+            * rs
+            * fp.min(fs)
+            / b.cos_wedge, // VA-2, VA-4
         held: if load < 0.0 {
             inverted.held
         } else {
@@ -299,6 +332,7 @@ fn load(output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         eta_pa_s: 0.02,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.14,
+        capacity_friction: 0.095,
         flank_friction: 0.11,
     }
 }
@@ -391,7 +425,7 @@ fn close(got: f64, want: f64, what: &str) {
 fn compare(got: &BeltState, want: &Sheet, place: &str) {
     let pairs = [
         ("C_x", got.tension.compression_n, want.compression),
-        ("band", got.losses.band_nm, want.band[0] + want.band[1]),
+        ("band", got.losses.band_nm, want.band),
         ("film", got.losses.film_nm, want.film),
         ("slip of the primary", got.slip.primary, want.slip[0]),
         ("slip of the secondary", got.slip.secondary, want.slip[1]),

@@ -47,6 +47,7 @@ fn val_bench_torques_add_up() {
                 belt: true,
                 reverse_clutch,
                 pump,
+                seal_rings: true,
             };
             let pressure_pa = Some(15e5);
             let p = BenchPoint {
@@ -89,7 +90,8 @@ fn val_bench_torques_add_up() {
         bare.input_nm,
         bare.part_nm(Component::Pump)
             + bare.part_nm(Component::InputShaft)
-            + bare.part_nm(Component::ClutchDrag),
+            + bare.part_nm(Component::ClutchDrag)
+            + bare.primary_ring_nm,
     );
 }
 
@@ -258,6 +260,7 @@ fn val_printed_slip_on_the_bench() {
             eta_pa_s: oil.dynamic_pa_s(90.0 + ZERO),
             film_thickness_m: oil.friction.film_thickness_m,
             segment_friction: cvt.belt.formulation.segment_friction(oil.friction.segment),
+            capacity_friction: oil.friction.capacity,
             flank_friction: oil.friction.flank,
         };
         let printed = belt_point(&cvt.belt, &BeltAtRatio::new(&cvt.belt, 2.0), &l);

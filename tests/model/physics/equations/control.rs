@@ -1,4 +1,4 @@
-//! Ratio control RC-1 to RC-8, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
+//! Ratio control RC-1 to RC-8, RC-10, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
 
 use super::same;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
@@ -19,6 +19,8 @@ fn control() -> RatioControl {
         up_per_s: 0.35,
         down_per_s: 0.9,
         rate_speed_rad_s: 100.0,
+        hysteresis: 0.05,
+        filter_s: 0.0,
     }
 }
 
@@ -26,12 +28,14 @@ fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s,
         power_w: power_share * 80e3,
-        rated_w: 80e3,
+        share: power_share,
         full_load_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 0.5,
     }
 }
@@ -43,13 +47,20 @@ fn val_target_by_hand() {
     for (share, want) in [
         (-0.1, 150.0),
         (0.0, 150.0),
-        (0.004, 162.0),
-        (0.01, 180.0),
+        (0.02, 154.0),
+        (0.075, 165.0),
         (0.15, 180.0),
         (0.45, 180.0 + 420.0 * 0.3),
         (1.4, 600.0),
     ] {
         same(c.target_rad_s(&demand(share, 100.0, 1.0)), want);
+    }
+    let steep = RatioControl {
+        gentle_share: 0.0,
+        ..c
+    };
+    for (share, want) in [(0.0, 150.0), (0.004, 162.0 + 420.0 * 0.004), (0.01, 184.2)] {
+        same(steep.target_rad_s(&demand(share, 100.0, 1.0)), want);
     }
     let route = |share: f64, full_load_rad_s: f64| {
         c.target_rad_s(&RatioDemand {
@@ -64,6 +75,37 @@ fn val_target_by_hand() {
     same(route(0.0, 350.0), 150.0);
 }
 
+/// RC-9: a first-order filter of any step, none at 0 s; RC-3 sees the demand itself, RC-1 and RC-2 what is left of it.
+#[test]
+fn val_filtered_demand_by_hand() {
+    let filter = |filter_s: f64| RatioControl {
+        filter_s,
+        ..control()
+    };
+    // One second in steps of 1, 1/2 and 1/10 s with 2 s of time constant: 1 - exp(-1/2) of the way.
+    for steps in [1, 2, 10] {
+        let dt_s = 1.0 / f64::from(steps);
+        let share = (0..steps).fold(0.1, |u, _| filter(2.0).filtered_share(u, 0.5, dt_s));
+        assert!(
+            (share - (0.1 + 0.4 * 0.393_469_340_287)).abs() < 1e-10,
+            "{share}"
+        );
+    }
+    same(filter(0.0).filtered_share(0.1, 0.5, 1e-3), 0.5);
+    let sudden = RatioDemand {
+        share: 0.02,
+        full_load_rad_s: 420.0,
+        ..demand(0.6, 100.0, 1.0)
+    };
+    same(control().target_rad_s(&sudden), 420.0);
+    let faded = RatioDemand {
+        share: 0.35,
+        full_load_rad_s: 420.0,
+        ..demand(-0.1, 100.0, 1.0)
+    };
+    same(control().target_rad_s(&faded), 180.0 + 420.0 * 0.2);
+}
+
 /// RC-4, RC-5, RC-6: rate towards both ends, by pace, by flow and free, with the flag where flow holds.
 #[test]
 fn val_shift_by_hand() {
@@ -76,12 +118,12 @@ fn val_shift_by_hand() {
         assert_eq!(got.2, held, "{d:?}");
     };
     // Towards high: target 180/300 = 0.6.
-    check(demand(0.1, 300.0, 1.0), -0.175, false);
-    check(demand(0.1, 300.0, 0.65), (0.6f64 / 0.65).ln(), false);
+    check(demand(0.15, 300.0, 1.0), -0.175, false);
+    check(demand(0.15, 300.0, 0.65), (0.6f64 / 0.65).ln(), false);
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         },
         -0.1,
         true,
@@ -89,7 +131,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
-            ..demand(0.1, 300.0, 0.61)
+            ..demand(0.15, 300.0, 0.61)
         },
         (0.6f64 / 0.61).ln(),
         false,
@@ -97,18 +139,18 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.0,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         },
         -0.175,
         false,
     );
     // Towards low: target 180/100 = 1.8.
-    check(demand(0.1, 100.0, 1.0), 0.45, false);
-    check(demand(0.1, 100.0, 1.7), (1.8f64 / 1.7).ln(), false);
+    check(demand(0.15, 100.0, 1.0), 0.45, false);
+    check(demand(0.15, 100.0, 1.7), (1.8f64 / 1.7).ln(), false);
     check(
         RatioDemand {
             flow_down_per_s: 0.3,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.15,
         true,
@@ -116,7 +158,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.3,
-            ..demand(0.1, 100.0, 1.75)
+            ..demand(0.15, 100.0, 1.75)
         },
         (1.8f64 / 1.75).ln(),
         false,
@@ -124,7 +166,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_up_per_s: 0.0,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.45,
         false,
@@ -133,7 +175,7 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.95,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.45,
         false,
@@ -141,23 +183,23 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_up_per_s: 0.36,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         },
         -0.175,
         false,
     );
     // Slow primary: 0.8 of 50 rad/s are 40 % of the speed of the full rates.
-    check(demand(0.1, 50.0, 0.8), 0.9 * 0.4 * 0.5, false);
+    check(demand(0.15, 50.0, 0.8), 0.9 * 0.4 * 0.5, false);
     // Towards high with a slow primary: 300 of 400 rad/s; and flow that holds a change between what it gives in a step and in a second.
     let slow = RatioControl {
         rate_speed_rad_s: 400.0,
         ..c
     };
-    same(slow.step(&demand(0.1, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
+    same(slow.step(&demand(0.15, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
     check(
         RatioDemand {
             flow_up_per_s: 0.2,
-            ..demand(0.1, 300.0, 0.75)
+            ..demand(0.15, 300.0, 0.75)
         },
         -0.1,
         true,
@@ -165,37 +207,37 @@ fn val_shift_by_hand() {
     check(
         RatioDemand {
             flow_down_per_s: 0.2,
-            ..demand(0.1, 100.0, 1.44)
+            ..demand(0.15, 100.0, 1.44)
         },
         0.1,
         true,
     );
     // The ends of the ratio.
-    let (low, _, _) = step(demand(0.1, 20.0, 2.39));
+    let (low, _, _) = step(demand(0.15, 20.0, 2.39));
     same(low, 2.4);
-    let (high, _, _) = step(demand(0.1, 900.0, 0.42));
+    let (high, _, _) = step(demand(0.15, 900.0, 0.42));
     same(high, 0.41);
     // Not coupled: no up-shift, down-shift allowed.
     assert_eq!(
         step(RatioDemand {
             coupled: false,
-            ..demand(0.1, 300.0, 1.0)
+            ..demand(0.15, 300.0, 1.0)
         }),
         (1.0, 0.0, false)
     );
     check(
         RatioDemand {
             coupled: false,
-            ..demand(0.1, 100.0, 1.0)
+            ..demand(0.15, 100.0, 1.0)
         },
         0.45,
         false,
     );
     // At rest, and where nothing is wanted.
-    assert_eq!(step(demand(0.1, 0.0, 1.3)), (1.3, 0.0, false));
-    assert_eq!(step(demand(0.1, 100.0, 1.8)), (1.8, 0.0, false));
+    assert_eq!(step(demand(0.15, 0.0, 1.3)), (1.3, 0.0, false));
+    assert_eq!(step(demand(0.15, 100.0, 1.8)), (1.8, 0.0, false));
     // An unchanged ratio outside the limits comes back within them.
-    same(step(demand(0.1, 300.0, 3.0)).0, 2.4);
+    same(step(demand(0.15, 300.0, 3.0)).0, 2.4);
 }
 
 /// PC-1 and PC-2 in each piece of f(n).
@@ -227,6 +269,7 @@ fn val_clamp_map_by_hand() {
                 engine_rad_s: speed,
                 oil_k: degc + 273.15,
                 radius_factor: radius,
+                force_log: 0.0,
             };
             same(
                 law.pressure_pa(&s),
@@ -244,6 +287,7 @@ fn val_clamp_map_by_hand() {
         engine_rad_s: 160.0,
         oil_k: 353.15,
         radius_factor: 1.0,
+        force_log: 0.0,
     };
     same(odd.pressure_pa(&s), 1.25 * 20e5);
 }
@@ -308,4 +352,42 @@ fn val_launch_clutch_by_hand() {
         ..c
     };
     same(early.overrun_share(108.0, idle), 0.5);
+}
+
+/// RC-10: a small reversal is not made, a large one in full, the ends of the ratio are reached, and near idle speed nothing is held.
+#[test]
+fn val_hysteresis_by_hand() {
+    let c = control();
+    let step = |last_direction: i8, before: f64| {
+        c.step(&RatioDemand {
+            last_direction,
+            free_up_to_rad_s: 90.0,
+            ..demand(0.15, 100.0, before) // towards 1.8
+        })
+    };
+    for (last, before, moves) in [
+        (-1, 1.8 / 1.04, false),
+        (-1, 1.8 / 1.06, true),
+        (1, 1.8 / 1.04, true),
+        (0, 1.8 / 1.04, true),
+        (1, 1.8 * 1.04, false),
+        (1, 1.8 * 1.06, true),
+        (-1, 1.8 * 1.04, true),
+    ] {
+        let (ratio, change, _) = step(last, before);
+        same(ratio, if moves { 1.8 } else { before });
+        same(change, if moves { (1.8 / before).ln() } else { 0.0 });
+    }
+    let slow = RatioDemand {
+        last_direction: -1,
+        free_up_to_rad_s: 190.0,
+        ..demand(0.15, 100.0, 1.8 / 1.04)
+    };
+    same(c.step(&slow).0, 1.8);
+    let low = RatioDemand {
+        last_direction: -1,
+        free_up_to_rad_s: 90.0,
+        ..demand(0.15, 70.0, 2.35) // towards 2.57, held at the end
+    };
+    same(c.step(&low).0, 2.4);
 }

@@ -8,9 +8,8 @@ fn friction() -> Friction {
     Friction {
         band: 0.12,
         band_rise_per_k: 0.004,
-        band_floor: 0.8,
-        band_ceiling: 1.25,
         segment: 0.125,
+        capacity: 0.09,
         flank: 0.13,
         lift_off: true,
         lift_reduction: 0.6,
@@ -96,18 +95,12 @@ fn val_density_and_heat_by_hand() {
     same(oil.density_kg_m3(3000.0 + ZERO), 860.0 * 0.3);
 }
 
-/// LU-4 and LU-5: floor, slope and ceiling; no film, some, all.
+/// LU-4 and LU-5: an exponential in temperature without bounds; no film, some, all.
 #[test]
 fn val_band_friction_by_hand() {
     let f = friction();
-    for (degc, warm) in [
-        (20.0, 0.8),
-        (35.0, 0.8),
-        (60.0, 0.9),
-        (85.0, 1.0),
-        (135.0, 1.2),
-        (150.0, 1.25),
-    ] {
+    for degc in [-40.0f64, -10.0, 25.0, 85.0, 160.0] {
+        let warm = (0.004 * (degc - 85.0)).exp();
         for (eta, sliding) in [(0.01, 0.0), (0.01, 0.7), (0.02, 1.0), (0.5, 2.0)] {
             let z = (eta * sliding / 0.02f64).powf(1.4);
             let share = z / (1.0 + z);

@@ -9,7 +9,10 @@
     reason = "tests; some equalities hold to the last bit"
 )]
 
+use cvtcycle_model::engine::EngineAtTemperature;
 use cvtcycle_model::equations::EQUATIONS;
+use cvtcycle_model::prime_mover::PrimeMover;
+use cvtcycle_model::transmission::cvt::Cvt;
 
 mod belt;
 mod bench;
@@ -27,6 +30,16 @@ mod road;
 mod rows;
 mod spin;
 mod transition;
+
+/// RC-3 with EN-8: three passes from the speed of greatest power, each with the part of the hot line that is left at the speed before.
+pub fn route_rad_s(cvt: &Cvt, engine: &EngineAtTemperature, power_w: f64) -> f64 {
+    let mut speed = engine.engine.peak_power_rad_s();
+    for _ in 0..3 {
+        let left = engine.full_load_nm(speed) / engine.engine.full_load.at(speed);
+        speed = cvt.full_load_route.at(power_w / left);
+    }
+    speed
+}
 
 /// Equal to rounding: two ways of one sum.
 #[track_caller]

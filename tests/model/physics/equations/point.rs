@@ -37,6 +37,7 @@ fn load(torque: f64, speed: f64) -> BeltLoad {
         eta_pa_s: 0.01,
         film_thickness_m: 5e-7,
         segment_friction: 0.125,
+        capacity_friction: 0.125,
         flank_friction: 0.13,
     }
 }

@@ -59,7 +59,8 @@ fn val_transient_from_its_seconds() {
             m.time_s
         );
         let belt = car.belt_heat_share * m.answer.belt_nm();
-        let shaft = m.answer.part_nm(Component::InputShaft);
+        let shaft =
+            m.answer.part_nm(Component::InputShaft) + m.answer.part_nm(Component::PulleyBearing);
         let mut power_w = [0.0; NODES];
         (power_w[BELT], power_w[METAL], power_w[SUMP]) = (
             belt * w,
@@ -186,6 +187,7 @@ fn val_variator_rig_from_its_parts() {
             eta_pa_s: eta,
             film_thickness_m: oil.friction.film_thickness_m,
             segment_friction: oil.friction.segment,
+            capacity_friction: oil.friction.capacity,
             flank_friction: oil.friction.flank,
         };
         let want = belt_state(&cvt.belt, &at, &l);

@@ -1,9 +1,10 @@
-//! Road load: RL-1 to RL-5, and wheel work over a whole cycle.
+//! Road load: RL-1 to RL-8, and wheel work over a whole cycle.
 
 use super::{near, same};
 use cvtcycle_config::cycle::{Motion, Step, embedded};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::road::{Ambient, RoadLoad, Surface};
+use cvtcycle_model::prime_mover::PrimeMover;
+use cvtcycle_model::road::{Ambient, RoadLoad, Surface, Tyre};
 
 fn car() -> RoadLoad {
     RoadLoad {
@@ -33,6 +34,11 @@ fn step(from: f64, to: f64, grade: f64) -> Step {
 
 /// Work in drive and in braking by a fine sum over the step (RL-1, RL-5).
 fn summed(car: &RoadLoad, s: &Step) -> (f64, f64) {
+    summed_with(car, s, 0.0)
+}
+
+/// The same with a force that is no part of the coefficients.
+fn summed_with(car: &RoadLoad, s: &Step, extra_n: f64) -> (f64, f64) {
     let n = 40_000;
     let a = (s.end_speed_m_s - s.start_speed_m_s) / s.dt_s;
     let slope = 9.80665 * s.grade.atan().sin();
@@ -41,6 +47,7 @@ fn summed(car: &RoadLoad, s: &Step) -> (f64, f64) {
         let t = (f64::from(i) + 0.5) / f64::from(n) * s.dt_s;
         let v = s.start_speed_m_s + a * t;
         let force = car.f0_n
+            + extra_n
             + car.f1_n_per_m_s * v
             + car.f2_n_per_m_s2 * v * v
             + car.inertia_kg * a
@@ -91,7 +98,7 @@ fn val_work_against_a_fine_sum() {
             (20.0, 30.0, -1.0178),
         ] {
             let s = step(from, to, grade);
-            let (got, want) = (car.wheel(&s), summed(&car, &s));
+            let (got, want) = (car.wheel(&s, 0.0), summed(&car, &s));
             let scale = 1e-5 * (want.0 - want.1) + 1e-3;
             assert!(
                 (got.positive_j - want.0).abs() <= scale,
@@ -113,7 +120,7 @@ fn val_work_against_a_fine_sum() {
         }
     }
     assert!(split[0] > 2 && split[1] > 0 && split[2] == 0, "{split:?}");
-    let rest = car().wheel(&step(0.0, 0.0, 0.1));
+    let rest = car().wheel(&step(0.0, 0.0, 0.1), 0.0);
     assert!(rest.power_w == 0.0 && rest.wheel_rad_s == 0.0);
 }
 
@@ -155,12 +162,13 @@ fn val_road_load_of_a_file() {
     let at = |sets: &[&str]| {
         let setup = crate::common::car("rover_216_cvt", sets);
         let car = setup.car(293.15);
-        (car.road_load, car.full_load_factor)
+        (car.road_load, car.charge)
     };
     let (plain, factor) = at(&[]);
-    same(factor, 1.0);
+    let warmer = (298.15f64 / 293.15).sqrt();
+    same(factor, warmer);
     let high = at(&["road_load.altitude_m=1500"]).1;
-    same(high, (1.0 - 2.25577e-5 * 1500.0f64).powf(5.25588 * 1.2));
+    same(high, warmer * (1.0 - 2.25577e-5 * 1500.0f64).powf(5.25588));
     let (loaded, _) = at(&["road_load.payload_kg=100"]);
     same(loaded.mass_kg, plain.mass_kg + 100.0);
     same(
@@ -218,6 +226,121 @@ fn val_road_load_of_a_file() {
     }
 }
 
+/// EN-5 and EN-8 against the exponent of 1.2 that ISO 1585 has for pressure: full load of a warm engine at altitude.
+#[test]
+fn val_full_load_at_altitude() {
+    let setup = crate::common::car("rover_216_cvt", &[]);
+    let e = setup.engine();
+    for pressure in [0.9f64, 0.8, 0.7] {
+        let now = e.at(e.hot_k, e.hot_k, setup.oils().1, pressure);
+        near(now.full_load_share(300.0), pressure.powf(1.2), 0.03);
+    }
+}
+
+fn tyre() -> Tyre {
+    crate::common::car("rover_216_5mt", &[]).car(293.15).tyre
+}
+
+/// Temperature of the tyres after so long at a speed and an ambient.
+fn rolled_k(tyre: &Tyre, kmh: f64, ambient_k: f64, seconds: f64, dt_s: f64) -> f64 {
+    let v = kmh / 3.6;
+    let motion = Motion::between(v, v, dt_s);
+    (0..(seconds / dt_s) as u32).fold(ambient_k, |k, _| {
+        tyre.advance_k(k, ambient_k, &motion, dt_s)
+    })
+}
+
+/// RL-6 and RL-7 by hand, one step, with the bound of half the resistance.
+#[test]
+fn val_tyre_by_hand() {
+    let t = tyre();
+    same(t.warm_n, 1130.0 * 9.80665 * 0.011);
+    for degc in [-40.0f64, 10.0, 40.0, 80.0, 99.0] {
+        let ratio = (1.0 + 0.0095 * (40.0 - degc)).max(0.5);
+        let k = degc + 273.15;
+        same(t.extra_n(k), 0.6 * t.warm_n * (ratio - 1.0));
+        let (heat, air) = (t.warm_n * ratio * 20.0, 20.0 + 13.7 * 20f64.powf(0.7));
+        let slope = if ratio > 0.5 {
+            0.0095 * t.warm_n * 20.0
+        } else {
+            0.0
+        };
+        let want = k + (heat - air * (k - 280.0)) / (45e3 / 1.5 + air + slope);
+        same(
+            t.advance_k(k, 280.0, &Motion::between(15.0, 25.0, 1.5), 1.5),
+            want,
+        );
+    }
+}
+
+/// RL-6 with RL-7 against UN R117: rolling resistance at a steady 80 km/h falls by 0.008 of that at 25 degC per kelvin of ambient, from 20 to 30 degC.
+#[test]
+fn val_r117_ambient_slope() {
+    let t = tyre();
+    let force = |ambient: f64| {
+        let k = rolled_k(&t, 80.0, ambient + 273.15, 1e4, 1.0);
+        t.warm_n + t.extra_n(k) / t.share
+    };
+    let slope = (force(20.0) - force(30.0)) / force(25.0);
+    assert!((slope - 0.08).abs() < 0.004, "{slope}");
+}
+
+/// RL-7: steps of 10 s end where steps of 0.01 s do.
+#[test]
+fn tyre_step_is_stable() {
+    let t = tyre();
+    for (kmh, seconds) in [(30.0, 60.0), (80.0, 300.0), (130.0, 1000.0), (0.0, 500.0)] {
+        let [coarse, fine] = [10.0, 0.01].map(|dt| rolled_k(&t, kmh, 263.15, seconds, dt));
+        assert!((coarse - fine).abs() < 0.3, "{kmh}: {coarse} {fine}");
+    }
+}
+
+/// RL-8: the factor scales the coefficients and leaves masses and the tyres alone; on the road tyres that warm up replace RL-2's factor on f0.
+#[test]
+fn load_factor_scales_force_not_inertia() {
+    let of = |sets: &[&str]| crate::common::car("rover_216_5mt", sets).car(263.15);
+    let (plain, more) = (of(&[]), of(&["road_load.load_factor=1.1"]));
+    same(more.road_load.f0_n, 1.1 * plain.road_load.f0_n);
+    same(
+        more.road_load.f2_n_per_m_s2,
+        1.1 * plain.road_load.f2_n_per_m_s2,
+    );
+    assert!(more.road_load.inertia_kg == plain.road_load.inertia_kg && more.tyre == plain.tyre);
+    let road = "road_load.surface=road";
+    let cold = of(&[road, "road_load.tyre.rolling_coefficient=0"]);
+    same(
+        cold.road_load.f0_n,
+        plain.road_load.f0_n * (1.0 + 0.00864 * 30.0),
+    );
+    same(of(&[road]).road_load.f0_n, plain.road_load.f0_n);
+}
+
+/// RL-5 with a negative f1, which makes the force zero at two speeds: the work is split at both.
+#[test]
+fn val_two_zeros_of_the_force() {
+    let us = RoadLoad {
+        f1_n_per_m_s: -20.0,
+        ..car()
+    };
+    for (from, to) in [(0.0, 60.0), (55.0, 5.0), (10.0, 45.0), (24.0, 50.0)] {
+        let accel = (to - from) / 1.5;
+        let level = us.inertia_kg * accel + us.f0_n - 200.0;
+        let s = step(from, to, 0.0);
+        let got = us.wheel(&s, -level);
+        let want = summed_with(&us, &s, -level);
+        let scale = 1e-5 * (want.0 - want.1) + 1e-3;
+        assert!(
+            (got.positive_j - want.0).abs() <= scale,
+            "{from} {to}: {got:?} {want:?}"
+        );
+        assert!(
+            (got.negative_j - want.1).abs() <= scale,
+            "{from} {to}: {got:?} {want:?}"
+        );
+        assert!(got.positive_j > 1.0 && got.negative_j < -1.0);
+    }
+}
+
 fn rover() -> RoadLoad {
     RoadLoad {
         f0_n: 6.3,
@@ -263,7 +386,7 @@ fn work(automatic: bool, dt: f64) -> (f64, f64) {
         .trace_for(automatic)
         .steps(dt)
         .fold((0.0, 0.0), |(p, n), s| {
-            let w = car.wheel(&s);
+            let w = car.wheel(&s, 0.0);
             (p + w.positive_j, n + w.negative_j)
         })
 }

@@ -1,4 +1,4 @@
-//! Pump PU-1, PU-2, PU-4, PU-5 (PU-3: `belt`); shaft, reverse clutch and final drive: IS-1, CD-1, FD-1, FD-2, FH-1.
+//! Pump PU-1, PU-2, PU-4, PU-5 (PU-3: `belt`); shaft, reverse clutch and final drive: IS-1, CD-1, CD-2, FD-1, FD-2, FH-1.
 
 use super::same;
 use cvtcycle_model::transmission::cvt::clutch_drag::ClutchDrag;
@@ -80,12 +80,30 @@ fn val_pump_by_hand() {
 fn val_need_by_hand() {
     let p = pump(PumpKind::Fixed);
     same(ETA_REFERENCE_PA_S, 0.010);
-    same(p.leakage_now_m3_s_pa(0.04), 1.7e-11 / 4.0);
+    same(p.at(0.04).leakage_m3_s_pa, 1.7e-11 / 4.0);
     same(p.steady_need_m3_s(20e5, 0.04), 5e-5 + 20e5 * 1.7e-11 / 4.0);
-    same(p.need_m3_s(20e5, 3e-12), 5e-5 + 6e-6);
+    same(p.steady_need_m3_s(0.0, 0.9), 5e-5);
+    same(p.steady_need_m3_s(0.0, 4.0), 5e-5 / 4.0);
 }
 
-/// IS-1, CD-1, FD-1 at the reference viscosity, warmer and colder; FD-2 in both directions.
+/// PU-6: what lubrication and shift leave of the flow, over the leakage; a tenth of a bar where they leave nothing.
+#[test]
+fn val_pressure_that_a_flow_keeps_up_by_hand() {
+    let p = pump(PumpKind::Fixed);
+    let now = p.at(0.04);
+    let w = 300.0;
+    let spare = now.drawn_m3_s(p.displacement_m3_rad * w) - 5e-5 - 2e-5;
+    same(p.deliverable_pa(&now, w, 2e-5), spare * 4.0 / 1.7e-11);
+    same(p.deliverable_pa(&now, 1.0, 2e-5), 1e4);
+    // Where the flow just covers the need, it keeps up the pressure of that need.
+    let pa = p.deliverable_pa(&now, w, 0.0);
+    same(
+        p.steady_need_m3_s(pa, 0.04),
+        now.drawn_m3_s(p.displacement_m3_rad * w),
+    );
+}
+
+/// IS-1, CD-1, CD-2, FD-1 at the reference viscosity, warmer and colder; FD-2 in both directions.
 #[test]
 fn val_shafts_by_hand() {
     let shaft = ShaftDrag {
@@ -98,6 +116,9 @@ fn val_shafts_by_hand() {
         drag_nm: 0.25,
         exponent: 0.55,
         cap_nm: 0.5,
+        peak_rad_s: None,
+        clearance_m: 0.3e-3,
+        oil_share: 1.0,
     };
     let drive = FinalDrive {
         ratio: 6.0,
@@ -122,10 +143,18 @@ fn val_shafts_by_hand() {
                 1.2 * (-w / 210.0).exp() + heated(0.29 * ratio.powf(0.72), w, 300.0),
             );
         }
-        same(
-            clutch.torque_nm(power(0.55)),
-            (0.25 * ratio.powf(0.55)).min(0.5),
-        );
+        let film_nm = |clearance_mm: f64| (0.25 * ratio.powf(0.55) * 0.3 / clearance_mm).min(0.5);
+        for w in [0.0, 90.0, 700.0] {
+            same(clutch.torque_nm(power(0.55), w), film_nm(0.3));
+            let wide = ClutchDrag {
+                peak_rad_s: Some(420.0),
+                clearance_m: 0.5e-3,
+                oil_share: 0.4,
+                ..clutch
+            };
+            let rise = 2.0 * w / 420.0 / (1.0 + (w / 168.0) * (w / 168.0));
+            same(wide.torque_nm(power(0.55), w), film_nm(0.5) * rise);
+        }
     }
     for (out, want) in [
         (30.0, 31.0 / 0.98),

@@ -59,14 +59,19 @@ fn shifted(
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
         power_w: wheel.power_w,
-        rated_w: car.engine.rated_w,
-        full_load_rad_s: cvt
-            .full_load_route
-            .at(wheel.power_w / (cvt.ratio.route_efficiency * 0.8)),
+        // From nothing before, half a second of the filter (RC-9).
+        share: wheel.power_w / car.engine.rated_w * (1.0 - (-0.5 / cvt.ratio.filter_s).exp()),
+        full_load_rad_s: super::route_rad_s(
+            cvt,
+            &engine,
+            wheel.power_w / cvt.ratio.route_efficiency,
+        ),
         ratio_before: from,
         flow_down_per_s: free / down,
         flow_up_per_s: free / up,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 0.5,
     };
     (car.transmission.solve(&around, &mut state), demand)
@@ -98,7 +103,7 @@ fn val_shift_of_the_shipped_box() {
     if let Transmission::Cvt(cvt) = &mut b.car.transmission {
         cvt.pump.kind = PumpKind::Variable { least: 0.1 }; // its torque follows the need
     }
-    let (mut held, mut free, mut route, mut kicked) = (0, 0, 0, 0);
+    let (mut held, mut free, mut routed, mut kicked) = (0, 0, 0, 0);
     for (from, speed, power) in [
         (2.0, 40.0, 4e3),
         (0.5, 20.0, 9e3),
@@ -109,6 +114,7 @@ fn val_shift_of_the_shipped_box() {
         (1.5, 50.0, 45e3),
         (1.3, 50.0, 40e3),
         (1.2, 50.0, 35e3),
+        (1.9, 30.0, 27e3),
         (2.4, 2.0, 2e3),
     ] {
         for pa in [8e5, 45e5, 90e5] {
@@ -120,23 +126,35 @@ fn val_shift_of_the_shipped_box() {
                     ..WheelDemand::default()
                 };
                 let (d, demand) = shifted(&b, from, &wheel, pa, degc);
-                // Kick-down tries again with 10 % less efficiency each time (RC-7).
-                let asked = (0..9).map(|k| {
-                    let share = b.cvt().ratio.route_efficiency * 0.9f64.powi(k) * 0.8;
+                let k = degc + ZERO;
+                let engine = b.car.engine.at(k, k, &b.car.engine_oil, 0.8);
+                let route = |efficiency: f64| {
                     b.cvt().ratio.step(&RatioDemand {
-                        full_load_rad_s: b.cvt().full_load_route.at(power / share),
+                        full_load_rad_s: super::route_rad_s(b.cvt(), &engine, power / efficiency),
                         ..demand
                     })
-                });
-                let found = asked
-                    .enumerate()
-                    .find(|(_, (ratio, ..))| (d.belt_ratio / ratio - 1.0).abs() < 1e-6);
-                let Some((again, (ratio, change, short))) = found else {
-                    panic!(
-                        "{from} {speed} {pa} {degc}: {} from {demand:?}",
-                        d.belt_ratio
-                    )
                 };
+                // RC-7: the ratio of RC-3 where it suffices, else as much more as full load needs, else all that the rates allow.
+                let place = format!("{from} {speed} {pa} {degc}: {d:?} from {demand:?}");
+                let plain = route(b.cvt().ratio.route_efficiency);
+                let again = (d.belt_ratio / plain.0 - 1.0).abs() > 1e-9;
+                let missed = d.flags.contains(Flags::MISSED_TRACE);
+                let (ratio, change, short) = if missed {
+                    route(0.4)
+                } else if again {
+                    // An oil flow that bounds it bounds it still.
+                    let change = (d.belt_ratio / from).ln();
+                    let bound = change >= 0.5 * demand.flow_down_per_s * (1.0 - 1e-9);
+                    (d.belt_ratio, change, bound)
+                } else {
+                    plain
+                };
+                assert!((d.belt_ratio / ratio - 1.0).abs() < 1e-9, "{place}");
+                if again && !missed {
+                    // No more speed than full load needs, but for losses that fall as torque does.
+                    let needed = (0.95..=1.0).contains(&d.throttle);
+                    assert!(d.belt_ratio > plain.0 && needed, "{place}");
+                }
                 let without = b
                     .cvt()
                     .ratio
@@ -145,8 +163,8 @@ fn val_shift_of_the_shipped_box() {
                         ..demand
                     })
                     .0;
-                kicked += i32::from(again > 0 && !d.flags.contains(Flags::MISSED_TRACE));
-                route += i32::from(again == 0 && (ratio / without - 1.0).abs() > 1e-3);
+                kicked += i32::from(again && !missed);
+                routed += i32::from(!again && (ratio / without - 1.0).abs() > 1e-3);
                 let (down, up) = volumes(b.cvt(), from);
                 let flow = if change > 0.0 {
                     down * change
@@ -178,8 +196,8 @@ fn val_shift_of_the_shipped_box() {
         }
     }
     assert!(
-        held > 3 && free > 3 && route > 1 && kicked > 1,
-        "{held} {free} {route} {kicked}"
+        held > 3 && free > 3 && routed > 1 && kicked > 1,
+        "{held} {free} {routed} {kicked}"
     );
 }
 
@@ -368,14 +386,16 @@ fn effort(name: &str, cycle_name: &str, degc: f64) -> (u32, u16, f64) {
 
 #[test]
 fn evaluations_of_the_solve() {
-    for (name, cycle, degc, sum, most) in [
-        (CARS[0], "ece15_eudc", -10.0, 2580, 8),
-        (CARS[0], "ftp75", 25.0, 5749, 10),
-        (CARS[0], "hill", 60.0, 354, 7),
-        (CARS[1], "hill", 20.0, 274, 7),
-    ] {
-        let got = effort(name, cycle, degc);
-        assert!(got.2 <= 1e-7, "{got:?}");
-        assert_eq!((got.0, got.1), (sum, most), "{name} {cycle}");
-    }
+    let frozen = [
+        (CARS[0], "ece15_eudc", -10.0, 2787, 9),
+        (CARS[0], "ftp75", 25.0, 5759, 10),
+        (CARS[0], "hill", 60.0, 380, 7),
+        (CARS[1], "hill", 20.0, 278, 7),
+    ];
+    let got = frozen.map(|(name, cycle, degc, ..)| {
+        let (sum, most, left) = effort(name, cycle, degc);
+        assert!(left <= 1e-7, "{name} {cycle}: {left}");
+        (name, cycle, degc, sum, most)
+    });
+    assert_eq!(got, frozen);
 }

@@ -70,6 +70,7 @@ fn load(speed_rpm: f64, torque: f64, bar: f64, mu: f64) -> BeltLoad {
         eta_pa_s: 0.009,
         film_thickness_m: 0.5e-6,
         segment_friction: 0.125,
+        capacity_friction: 0.125,
         flank_friction: 0.13,
     }
 }
@@ -206,6 +207,7 @@ fn printed_forms_rescale() {
             band_width_m: 2.0 * small.band_width_m,
             band_offset_m: 2.0 * small.band_offset_m,
             mass_kg_m: 4.0 * small.mass_kg_m,
+            band_mass_kg_m: 4.0 * small.band_mass_kg_m,
             strut_area_m2: 4.0 * small.strut_area_m2,
             primary_compliance_per_n: small.primary_compliance_per_n / 4.0,
             secondary_compliance_per_n: small.secondary_compliance_per_n / 4.0,

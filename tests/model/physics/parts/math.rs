@@ -194,7 +194,7 @@ fn ranges_in_words() {
 }
 
 /// Key, value, SI value worked out by hand, unit as shown.
-const EXPECTED: [(&str, f64, f64, &str); 62] = [
+const EXPECTED: [(&str, f64, f64, &str); 64] = [
     (
         "fall_per_1000_rpm",
         0.2,
@@ -206,6 +206,8 @@ const EXPECTED: [(&str, f64, f64, &str); 62] = [
     ("ram_w_k_per_m_s", 40.0, 40.0, "W/K per m/s"),
     ("leakage_l_min_per_bar", 6.0, 1e-9, "l/min per bar"),
     ("inlet_bar_per_l_min", 0.01, 6e7, "bar per l/min"),
+    ("clutch_bar_per_nm", 0.06, 6000.0, "bar per N m"),
+    ("creep_per_rad", 0.02, 0.02, "1/rad"),
     ("ratio", 2.4, 2.4, "-"),
     ("gears", 5.0, 5.0, "-"),
     ("diameter_m", 0.6, 0.6, "m"),

@@ -3,4 +3,5 @@
 mod belt;
 mod cycle;
 mod math;
+mod pulley_shafts;
 mod transmission;

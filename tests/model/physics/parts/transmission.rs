@@ -315,6 +315,7 @@ fn val_signs_of_the_map() {
         engine_rad_s: 150.0,
         oil_k: 300.0,
         radius_factor: 0.5,
+        force_log: 0.0,
     };
     let p = law().pressure_pa(&s);
     assert!(law().pressure_pa(&ClampSignals { throttle: 0.3, ..s }) > p);
@@ -355,6 +356,8 @@ fn control() -> RatioControl {
         up_per_s: 0.35,
         down_per_s: 1.0,
         rate_speed_rad_s: 1000.0 * RPM,
+        hysteresis: 0.05,
+        filter_s: 0.0,
     }
 }
 
@@ -362,12 +365,14 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s: secondary,
         power_w: power,
-        rated_w: 82e3,
+        share: power / 82e3,
         full_load_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 1.0,
     }
 }
@@ -376,7 +381,8 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
 #[test]
 fn val_variogram() {
     let c = control();
-    assert!((c.target_rad_s(&demand(100.0, 5e3, 1.0)) / RPM - 1700.0).abs() < 1e-9);
+    assert!((c.target_rad_s(&demand(100.0, 12.3e3, 1.0)) / RPM - 1700.0).abs() < 1e-9);
+    assert!((c.target_rad_s(&demand(100.0, 6.15e3, 1.0)) / RPM - 1600.0).abs() < 1e-9);
     assert!((c.target_rad_s(&demand(100.0, 41e3, 1.0)) / RPM - 3100.0).abs() < 1e-9);
     assert!((c.target_rad_s(&demand(100.0, -5e3, 1.0)) / RPM - 1500.0).abs() < 1e-9);
     assert!((c.step(&demand(0.0, 0.0, 1.3)).0 - 1.3).abs() < 1e-15);

@@ -14,6 +14,7 @@
 mod cars;
 mod invariance;
 mod network;
+mod physics;
 mod rows;
 mod traces;
 

@@ -20,12 +20,14 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s: 0.0,
         power_w,
-        rated_w,
+        share,
         full_load_rad_s: cvt.full_load_route.at(power_w / cvt.ratio.route_efficiency),
         ratio_before: cvt.ratio.low,
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,
         coupled: true,
+        last_direction: 0,
+        free_up_to_rad_s: 0.0,
         dt_s: 1.0,
     }
 }
@@ -85,8 +87,9 @@ fn clamp_map(r: &Reference) -> String {
             engine_rad_s: rpm * RPM,
             oil_k: degc + 273.15,
             radius_factor,
+            force_log: 0.0,
         });
-        pa.clamp(cvt.floor_pa, cvt.cap_pa) / 1e5
+        pa.clamp(cvt.floors.control_pa, cvt.cap_pa) / 1e5
     };
     let (high, low) = (cvt.ratio.high, cvt.ratio.low);
     let throttles = [0.0, 0.25, 0.5, 1.0];

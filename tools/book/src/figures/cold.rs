@@ -58,7 +58,7 @@ const CVT: [Line; 8] = [
         "bands",
         &[Component::BeltBand],
         "friction that rises with belt temperature (LU-4)",
-        "`band_floor`, and the lift-off of LU-5",
+        "nothing but its fall with temperature, and the lift-off of LU-5",
         FEW,
     ),
     line(
@@ -106,7 +106,7 @@ const CVT: [Line; 8] = [
     line(
         "reverse clutch",
         &[Component::ClutchDrag],
-        "nothing: at its cap (CD-1)",
+        "its speed: at its cap (CD-1, CD-2)",
         "`cap_nm`: the film between plates ruptures",
         "about 0.5 Nm below 25 degC",
     ),

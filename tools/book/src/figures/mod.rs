@@ -33,7 +33,7 @@ const fn page(stem: &'static str, keys: &'static [&'static str]) -> Page {
 }
 
 /// Pages of mechanisms in the order of the book.
-pub const PAGES: [Page; 23] = [
+pub const PAGES: [Page; 26] = [
     page(
         "belt",
         &[
@@ -65,6 +65,8 @@ pub const PAGES: [Page; 23] = [
     page("pump", &["transmission.cvt.pump."]),
     page("input_shaft", &[]),
     page("reverse_clutch", &[]),
+    page("seal_ring", &[]),
+    page("pulley_bearing", &[]),
     page("final_drive", &["transmission.cvt.final_drive_ratio"]),
     page("launch", &["transmission.cvt.launch"]),
     page("ratio_control", &["transmission.cvt.ratio."]),
@@ -84,6 +86,7 @@ pub const PAGES: [Page; 23] = [
     page("thermal", &["thermal."]),
     page("maps", &["transmission.cvt.maps."]),
     page("ledgers", &["vehicle."]),
+    page("physics_checks", &[]),
 ];
 
 /// Every generated file, its name below the book's `src`, and its text.

@@ -133,19 +133,21 @@ fn input_shaft(r: &Reference) -> String {
 
 fn reverse_clutch(r: &Reference) -> String {
     let clutch = r.cvt().clutch_drag;
-    let drag = sweep("drag", -20.0, 100.0, 240, |t| {
-        clutch.torque_nm(viscosity_power(nu(r, t), clutch.exponent))
-    });
+    let line = |rpm: f64| {
+        sweep(&format!("{rpm:.0} rpm"), -20.0, 100.0, 240, |t| {
+            clutch.torque_nm(viscosity_power(nu(r, t), clutch.exponent), rpm * RPM)
+        })
+    };
     plot(
         "Reverse clutch drag",
-        "fluid of the Rover (CD-1)",
-        "Drag of the open reverse clutch against oil temperature.",
+        "fluid of the Rover (CD-1, CD-2)",
+        "Drag of the open reverse clutch against oil temperature at four speeds.",
         "",
         vec![axes(
             "",
             "Oil temperature [degC]",
             "Torque [Nm]",
-            vec![drag],
+            [1000.0, 2000.0, 3000.0, 4000.0].map(line).to_vec(),
         )],
     )
 }

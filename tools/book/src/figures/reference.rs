@@ -107,6 +107,7 @@ impl Reference {
                 eta_pa_s: self.oil().dynamic_pa_s(belt_degc + ZERO_DEGC_K),
                 film_thickness_m: friction.film_thickness_m,
                 segment_friction: friction.segment,
+                capacity_friction: friction.capacity,
                 flank_friction: friction.flank,
             },
         )

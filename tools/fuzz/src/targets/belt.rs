@@ -48,6 +48,7 @@ fn shipped() -> (Belt, BeltLoad) {
         eta_pa_s: oil.dynamic_pa_s(belt_k),
         film_thickness_m: oil.friction.film_thickness_m,
         segment_friction: oil.friction.segment,
+        capacity_friction: oil.friction.capacity,
         flank_friction: oil.friction.flank,
     };
     (cvt.belt.clone(), load)
@@ -83,6 +84,7 @@ fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
         &mut load.eta_pa_s,
         &mut load.film_thickness_m,
         &mut load.segment_friction,
+        &mut load.capacity_friction,
         &mut load.flank_friction,
         &mut belt.centre_distance_m,
         &mut belt.length_m,

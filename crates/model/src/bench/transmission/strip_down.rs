@@ -3,13 +3,13 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | RT-3 | part = T_before - T_after - D (p_before - p_after), final drive, belt and clutch | source: thesis 5.4; D displacement of the pump per radian |
-//! | RT-4 | clutch plates tested in low only, their loss taken for every ratio; shaft = the box without its pump; pump = T_belt_removed - clutch - shaft + D (p_complete - p_belt_removed) | source: thesis 5.3.5.3 to 5.3.5.5; the pump's correction derived like RT-3 |
+//! | RT-4 | clutch plates tested in low only, their loss taken for every ratio; shaft = the box without its pump; pump, with the rings of the primary, = T_belt_removed - clutch - shaft + D (p_complete - p_belt_removed) | source: thesis 5.3.5.3 to 5.3.5.5; the pump's correction derived like RT-3 |
 //! | RT-5 | interaction = belt (complete) - belt (final drive removed): with the pressure at full torque, then with the torque at that pressure; the final drive seems larger by it, the belt smaller | derived: the belt's loss depends on pressure and on the torque it carries |
 //! | RT-6 | pressure of a test or of the second box = factor x clamp law | source: thesis 5.3.4 and 5.4 in words; the tests' factors ASSUMED |
 //!
 //! The sum of the parts is the loss of the complete box exactly, whatever the pressures. What is left of a part after its true loss and
-//! the interaction is the remainder: pump torque that does not go as D p, such as its friction C_f, a dual-cavity or variable pump
-//! or a measured map. It is 0 for a pump of fixed displacement with C_f = 0.
+//! the interaction is the remainder: torque that goes with the pressure but not as D p, such as the primary's seal rings, the pump's friction C_f,
+//! a dual-cavity or variable pump or a measured map. It is 0 without rings for a pump of fixed displacement with C_f = 0.
 
 use super::conditions::Conditions;
 use super::steady::Plan;
@@ -60,6 +60,7 @@ impl Stage {
             belt: stage < 2,
             reverse_clutch: stage < 3,
             pump: stage < 4,
+            seal_rings: true,
         }
     }
 
@@ -77,13 +78,13 @@ impl Stage {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum Piece {
-    /// Oil pump.
+    /// Oil pump, with the rings of the primary, which its oil presses.
     Pump,
     /// Input shaft.
     InputShaft,
     /// Drag of the reverse clutch.
     Clutch,
-    /// Belt with pulleys.
+    /// Belt with pulleys: bearings of both shafts and rings of the secondary go with it.
     Belt,
     /// Final drive.
     FinalDrive,
@@ -113,10 +114,13 @@ impl Piece {
     /// Loss of the piece in a bench's answer, Nm at the input shaft.
     pub fn loss_nm(self, answer: &BenchAnswer) -> f64 {
         match self {
-            Piece::Pump => answer.part_nm(Component::Pump),
+            Piece::Pump => answer.part_nm(Component::Pump) + answer.primary_ring_nm,
             Piece::InputShaft => answer.part_nm(Component::InputShaft),
             Piece::Clutch => answer.part_nm(Component::ClutchDrag),
-            Piece::Belt => answer.belt_nm(),
+            Piece::Belt => {
+                let ring_nm = answer.part_nm(Component::SealRing) - answer.primary_ring_nm;
+                answer.belt_nm() + answer.part_nm(Component::PulleyBearing) + ring_nm
+            }
             Piece::FinalDrive => answer.part_nm(Component::FinalDrive),
         }
     }
@@ -208,8 +212,9 @@ fn sequence(bench: &Bench, c: &Conditions, set: BenchPoint, displacement_m3_rad:
         pressure_pa: Some(no_drive.secondary_pa),
         ..set
     });
-    let by_pressure_nm = complete.belt_nm() - between.belt_nm(); // RT-5
-    let by_torque_nm = between.belt_nm() - no_drive.belt_nm(); // RT-5
+    let belt_nm = |answer: &BenchAnswer| Piece::Belt.loss_nm(answer);
+    let by_pressure_nm = belt_nm(complete) - belt_nm(&between); // RT-5
+    let by_torque_nm = belt_nm(&between) - belt_nm(no_drive); // RT-5
     let difference = |before: &BenchAnswer, after: &BenchAnswer| {
         let raw = before.total_nm() - after.total_nm();
         (

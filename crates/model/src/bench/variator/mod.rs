@@ -21,7 +21,9 @@ use crate::flags::flags;
 use crate::fluid::{Lubricant, VALID_K};
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::variator::{BeltAtRatio, BeltLoad, BeltState, Geometry, belt_state};
+use crate::transmission::cvt::variator::{
+    BeltAtRatio, BeltLoad, BeltState, Geometry, Tension, belt_state,
+};
 
 /// Largest torque at the secondary pulley, Nm (Table 6-1).
 pub const MAX_OUTPUT_NM: f64 = 400.0;
@@ -265,12 +267,8 @@ impl VariatorRig {
                 torque,
                 self.state(held, &at, torque).losses.slip_total,
             );
-            let g = &at.geometry;
-            let v = held.input_rad_s * g.primary_radius_m;
-            let primary_n = load.secondary_clamp_n * at.thrust_ratio;
-            let pull =
-                2.0 * primary_n * belt.tan_wedge + g.primary_wrap_rad * belt.mass_kg_m * v * v;
-            torque = -at.direction * g.secondary_radius_m * load.band.mu * pull; // RV-5
+            let step_n = Tension::bare_step_n(belt, &at, &load);
+            torque = at.geometry.secondary_radius_m * step_n; // RV-5
         }
         torque
     }

@@ -119,23 +119,21 @@ pub trait Coupling: Debug + Send + Sync {
     }
 }
 
-/// Engine speeds that its inertia allows within a step.
+/// Speeds that the inertia of a free engine allows within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// Speed before the step, rad/s.
     pub from_rad_s: f64,
-    /// Largest change of speed, rad/s.
-    pub change_rad_s: f64,
+    /// Speed to which it falls without fuel, rad/s.
+    pub slowest_rad_s: f64,
+    /// Speed to which it can rise, rad/s.
+    pub fastest_rad_s: f64,
 }
 
 impl Reach {
     /// The nearest speed within reach, rad/s.
     #[inline]
     pub fn nearest(&self, wanted_rad_s: f64) -> f64 {
-        clamp(
-            wanted_rad_s,
-            self.from_rad_s - self.change_rad_s,
-            self.from_rad_s + self.change_rad_s,
-        )
+        clamp(wanted_rad_s, self.slowest_rad_s, self.fastest_rad_s)
     }
 }

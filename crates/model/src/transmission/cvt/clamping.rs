@@ -1,9 +1,11 @@
-//! Pressure of the clamp laws that look at the belt (PC-3, PC-4).
+//! Pressure of the clamp laws that look at the belt (PC-3, PC-4), with the causes of a smallest one (PC-5).
 
 use super::Cvt;
 use super::controller::ClampLaw;
+use super::floors::Held;
 use super::variator::{BeltAtRatio, BeltLoad, belt_state};
 use crate::math::{larger, smaller};
+use crate::transmission::clamp_cause::ClampCause;
 
 /// Steps of the slip-limited law's walk from its lowest pressure to the cap.
 const SLIP_STEPS: u32 = 32;
@@ -14,14 +16,16 @@ pub(super) struct Clamping<'a> {
     pub at: &'a BeltAtRatio,
     pub load: &'a BeltLoad,
     pub secondary_rad_s: f64,
+    /// Logarithm of the force ratio that the shift needs (PC-5).
+    pub force_log: f64,
 }
 
 impl Clamping<'_> {
-    /// Secondary pressure that a law demands, Pa, not yet within floor and cap.
+    /// Secondary pressure that a law and PC-5 demand, Pa, not yet below the cap, and which of them.
     #[inline(never)]
-    pub fn pressure_pa(&self, law: &ClampLaw) -> f64 {
+    pub fn pressure_pa(&self, law: &ClampLaw) -> (f64, ClampCause) {
         match *law {
-            ClampLaw::Map(_) => f64::NAN, // looks at the engine only
+            ClampLaw::Map(_) => (f64::NAN, ClampCause::Law), // looks at the engine only
             ClampLaw::TorqueFollowing {
                 safety,
                 least_torque_nm,
@@ -30,19 +34,38 @@ impl Clamping<'_> {
                 slip,
                 safety,
                 least_torque_nm,
-            } => self.for_slip_pa(slip, self.for_torque_pa(safety, least_torque_nm)),
+            } => {
+                let (least_pa, cause) = self.for_torque_pa(safety, least_torque_nm);
+                let pressure_pa = self.for_slip_pa(slip, least_pa);
+                if pressure_pa > least_pa {
+                    (pressure_pa, ClampCause::Law)
+                } else {
+                    (least_pa, cause)
+                }
+            }
         }
     }
 
-    fn for_torque_pa(&self, safety: f64, least_nm: f64) -> f64 {
+    /// Pressure for the torque with a safety factor, or that of the cause that needs more (PC-3, PC-5).
+    fn for_torque_pa(&self, safety: f64, least_nm: f64) -> (f64, ClampCause) {
         let (cvt, at, load) = (self.cvt, self.at, self.load);
         let torque = larger(load.output_torque_nm.abs(), least_nm);
         let formulation = cvt.belt.formulation;
-        let mu = formulation.segment_friction(load.segment_friction);
+        let segment = formulation.segment_friction(load.segment_friction);
+        let mu = formulation.capacity_friction(segment, load.capacity_friction);
         let weaker = smaller(at.thrust_ratio, 1.0);
         let force = safety * torque * cvt.belt.cos_wedge
             / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
-        (force - cvt.secondary_clamp_n(0.0, self.secondary_rad_s)) / cvt.secondary_piston_m2
+        let own_n = cvt.secondary_clamp_n(0.0, self.secondary_rad_s);
+        let held = Held {
+            cvt,
+            at,
+            load,
+            own_n,
+            need_n: force,
+            force_log: self.force_log,
+        };
+        held.above((force - own_n) / cvt.secondary_piston_m2)
     }
 
     /// Slip at a pressure, Pa.
@@ -60,7 +83,7 @@ impl Clamping<'_> {
     }
 
     fn for_slip_pa(&self, limit: f64, least_pa: f64) -> f64 {
-        let floor = larger(least_pa, self.cvt.floor_pa);
+        let floor = least_pa;
         if floor >= self.cvt.cap_pa || self.slip(floor) <= limit {
             return floor;
         }

@@ -2,38 +2,61 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | CD-1 | reverse clutch: T = min(c (nu/nu_80)^m, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
+//! | CD-1 | film between the plates: T_f = min(c (nu/nu_80)^m s_0/s, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
+//! | CD-2 | speed: T = T_f 2x/(1 + (x/q)^2), x = n/n_p | assumed form: rise, rupture of the film, fall (Yuan et al.; Pointner-Gabriel et al., Lubricants 13 (2025) 27); n_p 2000 to 6000 rpm assumed |
 //!
-//! nu_80 = 11 mm2/s is the viscosity at which c holds.
+//! nu_80 = 11 mm2/s is the viscosity and s_0 = 0.3 mm the clearance at which c holds; s clearance of a pair of plates, n speed of the
+//! primary, n_p speed of the largest drag with the normal oil feed, q feed over the normal one. Below n_p the film shears as Couette's
+//! (slope 2 T_f/n_p, whatever the feed); above it centrifugal force takes more oil out than the feed brings. The largest drag is q T_f at
+//! q n_p. Without n_p the drag is T_f at every speed.
 
 use crate::keys::{Values, keys};
 use crate::math::smaller;
 
+/// Clearance at which `drag_nm` holds, m.
+pub const CLEARANCE_M: f64 = 0.3e-3;
+
 /// The checked reverse clutch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClutchDrag {
-    /// Torque at reference viscosity, Nm.
+    /// Torque at reference viscosity and clearance, Nm.
     pub drag_nm: f64,
     /// Exponent of viscosity.
     pub exponent: f64,
-    /// Largest torque, Nm.
+    /// Largest torque of the film, Nm.
     pub cap_nm: f64,
+    /// Speed of the largest drag with the normal oil feed, rad/s; `None`: no dependence on speed.
+    pub peak_rad_s: Option<f64>,
+    /// Clearance of a pair of plates, m.
+    pub clearance_m: f64,
+    /// Oil feed over the normal one.
+    pub oil_share: f64,
 }
 
 impl ClutchDrag {
-    /// Torque, Nm, with the power (nu/nu_80)^m known (CD-1).
+    /// Torque, Nm, with the power (nu/nu_80)^m known, at a speed of the primary, rad/s (CD-1, CD-2).
     #[inline]
-    pub fn torque_nm(&self, power: f64) -> f64 {
-        smaller(self.drag_nm * power, self.cap_nm) // CD-1
+    pub fn torque_nm(&self, power: f64, primary_rad_s: f64) -> f64 {
+        let film_nm = self.drag_nm * power * (CLEARANCE_M / self.clearance_m);
+        let film_nm = smaller(film_nm, self.cap_nm); // CD-1
+        let Some(peak_rad_s) = self.peak_rad_s else {
+            return film_nm;
+        };
+        let x = primary_rad_s / peak_rad_s;
+        let fed = x / self.oil_share;
+        film_nm * 2.0 * x / (1.0 + fed * fed) // CD-2
     }
 }
 
 keys! {
     /// Keys of `[transmission.cvt.reverse_clutch]`.
     CLUTCH: ClutchKeys = "reverse_clutch" [] {
-        drag_nm: number(0.0, 20.0), "drag at 11 mm2/s", ["CD-1"];
+        drag_nm: number(0.0, 20.0), "largest drag at 11 mm2/s and a clearance of 0.3 mm", ["CD-1"];
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["CD-1"];
         cap_nm: number(0.0, 20.0), "largest drag", ["CD-1"];
+        peak_rpm: optional(number(200.0, 20_000.0)), "primary speed of the largest drag; absent: the same drag at every speed", ["CD-2"];
+        clearance_mm: or(0.3, number(0.05, 3.0)), "clearance of a pair of plates", ["CD-1"];
+        oil_share: or(1.0, number(0.05, 2.0)), "oil feed over the normal one", ["CD-2"];
     }
 }
 
@@ -44,6 +67,9 @@ impl ClutchDrag {
             drag_nm: s.number(&CLUTCH.drag_nm),
             exponent: s.number(&CLUTCH.viscous_exponent),
             cap_nm: s.number(&CLUTCH.cap_nm),
+            peak_rad_s: s.optional(&CLUTCH.peak_rpm),
+            clearance_m: s.number(&CLUTCH.clearance_mm),
+            oil_share: s.number(&CLUTCH.oil_share),
         }
     }
 }

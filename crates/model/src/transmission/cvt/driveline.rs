@@ -1,6 +1,7 @@
 //! The assembly of the CVT: which part turns with which shaft, what torque it takes, and what it loses. Driving and bench share it.
 
 use super::controller::ClampSignals;
+use super::pulley_bearing::PulleyBearing;
 use super::pump::{PumpAtTemperature, PumpState};
 use super::variator::{BeltAtRatio, BeltLosses};
 use super::{Cvt, CvtMaps, viscosity_power};
@@ -20,6 +21,8 @@ pub struct Parts {
     pub reverse_clutch: bool,
     /// Pump; without it the circuit has no pressure.
     pub pump: bool,
+    /// Friction of the rings that seal the oil feed of the pulleys; no test takes them out, but a map of the belt is without them.
+    pub seal_rings: bool,
 }
 
 impl Parts {
@@ -29,6 +32,7 @@ impl Parts {
         belt: true,
         reverse_clutch: true,
         pump: true,
+        seal_rings: true,
     };
 }
 
@@ -70,6 +74,36 @@ impl ViscosityPowers {
     }
 }
 
+/// Bearings and seal rings of the pulleys at one ratio.
+#[derive(Clone, Copy)]
+pub(crate) struct PulleyShafts {
+    /// Radial force on each shaft per clamping force of the secondary; 0 without a belt that pulls (PB-1).
+    pull_per_clamp: f64,
+    /// Torque of the rings over the pressure of their cylinder, Nm/Pa; 0 without pressure (SR-1).
+    ring_per_pa: f64,
+}
+
+impl PulleyShafts {
+    /// What the parts in the box leave of them. The printed forms know neither, and a measured map of the belt holds the bearings.
+    #[inline]
+    pub fn new(cvt: &Cvt, at: &BeltAtRatio, parts: Parts) -> Self {
+        let counted = cvt.belt.formulation.by_statics();
+        let pulled = counted && parts.belt && !cvt.has_map(Component::BeltMap);
+        PulleyShafts {
+            pull_per_clamp: if pulled {
+                PulleyBearing::pull_per_clamp(&cvt.belt, at)
+            } else {
+                0.0
+            },
+            ring_per_pa: if counted && parts.pump && parts.seal_rings {
+                cvt.seal_ring.torque_per_pa()
+            } else {
+                0.0
+            },
+        }
+    }
+}
+
 /// The CVT at one ratio and oil temperature: what depends on neither torque, pressure nor speed.
 #[derive(Clone, Copy)]
 pub(crate) struct Driveline<'a> {
@@ -78,23 +112,37 @@ pub(crate) struct Driveline<'a> {
     pub parts: Parts,
     pub viscosity: ViscosityPowers,
     pub pump: PumpAtTemperature,
-    /// Leakage of the oil circuit, m3/(s Pa).
-    pub leakage_m3_s_pa: f64,
+    pub shafts: PulleyShafts,
     /// Factor of the clamp map at the ratio (PC-1).
     pub radius_factor: f64,
+    /// Logarithm of the force ratio that the shift needs (PC-5).
+    pub force_log: f64,
     /// Transmission oil, K.
     pub oil_k: f64,
     /// Measured maps, if there are any.
     pub maps: Option<&'a CvtMaps>,
 }
 
+/// How the secondary is clamped.
+#[derive(Clone, Copy)]
+pub(crate) struct Clamp {
+    /// Pressure of the secondary, Pa.
+    pub pressure_pa: f64,
+    /// Force of the secondary, N.
+    pub secondary_n: f64,
+}
+
 /// Torques of all parts at one operating point, Nm, each at its own shaft.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PartTorques {
-    /// Behind the final drive, referred to the secondary.
-    pub output: f64,
-    /// At the secondary pulley.
+    /// Loss of the final drive, at the secondary.
+    pub final_drive: f64,
+    /// At the secondary pulley, bearing and rings of its shaft with it: what the belt carries.
     pub secondary: f64,
+    /// Bearings of the pulley shafts, primary and secondary.
+    pub bearing: [f64; 2],
+    /// Seal rings of the pulleys, primary and secondary.
+    pub ring: [f64; 2],
     /// Belt, by part.
     pub belt: BeltLosses,
     /// Belt, where a map replaces its parts.
@@ -108,7 +156,7 @@ impl PartTorques {
     /// Parts that turn with the primary, the belt apart, Nm at the primary.
     #[inline]
     pub fn primary_nm(&self) -> f64 {
-        self.clutch
+        self.clutch + self.bearing[0] + self.ring[0]
     }
 
     /// Parts that turn with the engine, Nm at the flywheel.
@@ -129,6 +177,8 @@ impl PartTorques {
             Some(loss) => give(Component::BeltMap, Shaft::Primary, loss),
             None => {
                 let belt = &self.belt;
+                give(Component::PulleyBearing, Shaft::Primary, self.bearing[0]);
+                give(Component::PulleyBearing, Shaft::Secondary, self.bearing[1]);
                 give(Component::BeltBand, Shaft::Primary, belt.band_nm);
                 give(Component::BeltFilm, Shaft::Primary, belt.film_nm);
                 give(Component::BeltSlip, Shaft::Primary, belt.slip_nm);
@@ -140,11 +190,9 @@ impl PartTorques {
                 );
             }
         }
-        give(
-            Component::FinalDrive,
-            Shaft::Secondary,
-            self.secondary - self.output,
-        );
+        give(Component::FinalDrive, Shaft::Secondary, self.final_drive);
+        give(Component::SealRing, Shaft::Primary, self.ring[0]);
+        give(Component::SealRing, Shaft::Secondary, self.ring[1]);
         give(Component::ClutchDrag, Shaft::Primary, self.clutch);
         give(Component::Pump, Shaft::Engine, self.pump);
         give(Component::InputShaft, Shaft::Engine, self.shaft);
@@ -167,8 +215,9 @@ impl<'a> Driveline<'a> {
             parts,
             viscosity: ViscosityPowers::new(cvt, oil.kinematic_m2_s(oil_k)),
             pump: cvt.pump.at(eta_pa_s),
-            leakage_m3_s_pa: cvt.pump.leakage_now_m3_s_pa(eta_pa_s),
+            shafts: PulleyShafts::new(cvt, at, parts),
             radius_factor: cvt.radius_factor(at),
+            force_log: 0.0,
             oil_k,
             maps: cvt.maps.as_deref(),
         }
@@ -200,27 +249,62 @@ impl<'a> Driveline<'a> {
         drive.drag_nm(self.viscosity.final_drive, fall, secondary_rad_s)
     }
 
-    /// Torque at the secondary pulley for a torque behind the final drive, `drive_nm` its load-independent loss, Nm.
-    #[inline]
-    pub fn secondary_nm(
+    /// Torques of what turns with the secondary for a torque behind the final drive, Nm: the final drive's, `drive_nm` its load-independent
+    /// loss, then bearing and rings of the shaft.
+    #[inline(always)]
+    pub fn secondary(
         &self,
         output_nm: f64,
         drive_nm: impl FnOnce() -> f64,
         (primary_rad_s, secondary_rad_s): (f64, f64),
-        pressure_pa: f64,
+        clamp: &Clamp,
         inside: &mut bool,
-    ) -> f64 {
-        if !self.parts.final_drive {
-            return output_nm;
+    ) -> PartTorques {
+        let through_nm = if self.parts.final_drive {
+            let at = (primary_rad_s, output_nm, clamp.pressure_pa);
+            match self.mapped(Component::FinalDrive, at, inside) {
+                Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
+                None => self
+                    .cvt
+                    .final_drive
+                    .secondary_torque_nm(drive_nm(), output_nm),
+            }
+        } else {
+            output_nm
+        };
+        let mut torques = PartTorques {
+            final_drive: through_nm - output_nm,
+            secondary: through_nm,
+            ..PartTorques::default()
+        };
+        if self.parts.belt {
+            torques.bearing[1] = self.bearing_nm(1, clamp);
+            if !self.cvt.has_map(Component::SealRing) {
+                torques.ring[1] = self.shafts.ring_per_pa * clamp.pressure_pa;
+            }
+            torques.secondary += torques.bearing[1] + torques.ring[1];
         }
-        let at = (primary_rad_s, output_nm, pressure_pa);
-        match self.mapped(Component::FinalDrive, at, inside) {
-            Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
-            None => self
-                .cvt
-                .final_drive
-                .secondary_torque_nm(drive_nm(), output_nm),
+        torques
+    }
+
+    /// Torque of the bearing on a pulley's shaft, Nm (PB-2).
+    #[inline]
+    fn bearing_nm(&self, pulley: usize, clamp: &Clamp) -> f64 {
+        let pull_n = self.shafts.pull_per_clamp * clamp.secondary_n;
+        self.cvt.pulley_bearing.torque_nm(pulley, pull_n)
+    }
+
+    /// Torque of the primary's rings, Nm, or of those of both pulleys where a map has them (SR-1).
+    #[inline]
+    fn primary_ring_nm(&self, primary_rad_s: f64, clamp: &Clamp, inside: &mut bool) -> f64 {
+        if !self.parts.pump {
+            return 0.0;
         }
+        let at = (primary_rad_s, 0.0, clamp.pressure_pa);
+        self.mapped(Component::SealRing, at, inside)
+            .unwrap_or_else(|| {
+                self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
+            })
     }
 
     /// Loss of a belt that is replaced by a map, Nm at the primary.
@@ -236,20 +320,23 @@ impl<'a> Driveline<'a> {
         self.mapped(Component::BeltMap, at, inside)
     }
 
-    /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed and a pressure.
+    /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed and a clamping force.
     #[inline]
     pub fn turn_primary(
         &self,
         torques: &mut PartTorques,
         primary_rad_s: f64,
-        pressure_pa: f64,
+        clamp: &Clamp,
         inside: &mut bool,
     ) {
+        torques.bearing[0] = self.bearing_nm(0, clamp);
+        torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
-            let at = (primary_rad_s, 0.0, pressure_pa);
+            let at = (primary_rad_s, 0.0, clamp.pressure_pa);
             let mapped = self.mapped(Component::ClutchDrag, at, inside);
+            let clutch = &self.cvt.clutch_drag;
             torques.clutch =
-                mapped.unwrap_or_else(|| self.cvt.clutch_drag.torque_nm(self.viscosity.clutch));
+                mapped.unwrap_or_else(|| clutch.torque_nm(self.viscosity.clutch, primary_rad_s));
         }
     }
 
@@ -267,7 +354,7 @@ impl<'a> Driveline<'a> {
         let mut state = PumpState::default();
         if self.parts.pump {
             let pump = &self.cvt.pump;
-            let need = pump.need_m3_s(pressure_pa, self.leakage_m3_s_pa) + shift_flow_m3_s;
+            let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = pump.state(&self.pump, engine_rad_s, pressure_pa, need);
             if let Some(loss) = self.mapped(Component::Pump, at, inside) {
                 state.torque_nm = loss;
@@ -284,6 +371,17 @@ impl<'a> Driveline<'a> {
         state
     }
 
+    /// The pressure that the circuit holds of the one that the clamp law sets, Pa, and whether the pump's flow is what limits it (PU-6). A pump
+    /// that is a measured map says nothing of its flow: it holds any pressure.
+    #[inline]
+    pub fn held_pa(&self, set_pa: f64, engine_rad_s: f64, shift_flow_m3_s: f64) -> (f64, bool) {
+        let pump = &self.cvt.pump;
+        let most_pa = pump.deliverable_pa(&self.pump, engine_rad_s, shift_flow_m3_s);
+        let short = set_pa > most_pa;
+        let limits = short && !self.cvt.has_map(Component::Pump);
+        (if limits { most_pa } else { set_pa }, short)
+    }
+
     /// Signals of the clamp law.
     #[inline]
     pub fn signals(&self, throttle: f64, engine_rad_s: f64) -> ClampSignals {
@@ -292,6 +390,7 @@ impl<'a> Driveline<'a> {
             engine_rad_s,
             oil_k: self.oil_k,
             radius_factor: self.radius_factor,
+            force_log: self.force_log,
         }
     }
 }

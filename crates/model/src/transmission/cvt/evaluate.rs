@@ -4,10 +4,12 @@
 //! force only, and everything behind it at the speed of the slip that comes out. At the wheels' demand it takes in the engine's speed
 //! at once too.
 
-use super::driveline::{Driveline, PartTorques};
+use super::Shifting;
+use super::driveline::{Clamp, Driveline, PartTorques};
 use super::variator::{BeltLoad, belt_losses};
 use crate::math::{clamp, larger};
 use crate::prime_mover::PrimeMover;
+use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::coupling::{CouplingLoad, EngineSide, Reach};
 use crate::transmission::step::StepInput;
 
@@ -26,6 +28,8 @@ pub(super) struct Step<'a, P> {
     pub shift_flow_m3_s: f64,
     /// True where pump flow held the shift back.
     pub shift_held: bool,
+    /// What the ratio control keeps.
+    pub shifting: Shifting,
     /// Engine speeds within reach.
     pub reach: Reach,
     /// Secondary pressure before the step, Pa.
@@ -66,6 +70,7 @@ pub(super) struct Point {
     pub slip_guessed: f64,
     pub next_engine_rad_s: f64,
     pub next_pressure_pa: f64,
+    pub clamp_cause: ClampCause,
     pub throttle: f64,
     /// Full load at the next engine speed, Nm.
     pub full_load_nm: f64,
@@ -129,31 +134,28 @@ impl<P: PrimeMover> Step<'_, P> {
         self.line.at.geometry.ratio * self.secondary_rad_s / (1.0 - slip) // CV-1
     }
 
-    /// Torques of final drive, belt and reverse clutch at a guess.
+    /// Torques of final drive, belt, pulley shafts and reverse clutch at a guess.
     #[inline(always)]
     fn torques(
         &self,
         g: &Guess,
         primary_rad_s: f64,
+        clamp: &Clamp,
         load: impl FnOnce(f64) -> BeltLoad,
         inside: &mut bool,
     ) -> PartTorques {
-        let (line, pa) = (&self.line, g.pressure_pa);
-        let secondary = line.secondary_nm(
+        let line = &self.line;
+        let mut torques = line.secondary(
             g.output_nm,
             || self.drive_nm,
             (primary_rad_s, self.secondary_rad_s),
-            pa,
+            clamp,
             inside,
         );
-        let mut torques = PartTorques {
-            output: g.output_nm,
-            secondary,
-            belt: belt_losses(&line.cvt.belt, line.at, &load(secondary)),
-            belt_map: line.belt_map_nm(secondary, primary_rad_s, pa, inside),
-            ..PartTorques::default()
-        };
-        line.turn_primary(&mut torques, primary_rad_s, pa, inside);
+        let secondary_nm = torques.secondary;
+        torques.belt = belt_losses(&line.cvt.belt, line.at, &load(secondary_nm));
+        torques.belt_map = line.belt_map_nm(secondary_nm, primary_rad_s, clamp.pressure_pa, inside);
+        line.turn_primary(&mut torques, primary_rad_s, clamp, inside);
         torques
     }
 
@@ -165,13 +167,17 @@ impl<P: PrimeMover> Step<'_, P> {
         let (line, cvt, engine) = (&self.line, self.line.cvt, self.input.engine);
         let mut inside_maps = true;
         let belt_rad_s = self.primary_rad_s(g.slip);
+        let clamped = Clamp {
+            pressure_pa: g.pressure_pa,
+            secondary_n: cvt.secondary_clamp_n(g.pressure_pa, self.secondary_rad_s),
+        };
         let load = |output_torque_nm: f64| BeltLoad {
             primary_speed_rad_s: belt_rad_s,
             output_torque_nm,
-            secondary_clamp_n: cvt.secondary_clamp_n(g.pressure_pa, self.secondary_rad_s),
+            secondary_clamp_n: clamped.secondary_n,
             ..self.load
         };
-        let mut torques = self.torques(g, belt_rad_s, load, &mut inside_maps);
+        let mut torques = self.torques(g, belt_rad_s, &clamped, load, &mut inside_maps);
         let (slip, belt_nm) = torques
             .belt_map
             .map_or((torques.belt.slip_total, torques.belt.sum_nm()), |loss| {
@@ -217,6 +223,14 @@ impl<P: PrimeMover> Step<'_, P> {
         let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
         let secondary_nm = torques.secondary;
+        let (set_pa, clamp_cause) = cvt.pressure_pa(
+            &signals,
+            line.at,
+            || load(secondary_nm),
+            self.secondary_rad_s,
+        );
+        let (next_pressure_pa, flow_limited) =
+            line.held_pa(set_pa, next_engine_rad_s, self.shift_flow_m3_s);
         *point = Point {
             guess: Guess {
                 engine_rad_s,
@@ -225,12 +239,8 @@ impl<P: PrimeMover> Step<'_, P> {
             },
             slip_guessed: g.slip,
             next_engine_rad_s,
-            next_pressure_pa: cvt.pressure_pa(
-                &signals,
-                line.at,
-                || load(secondary_nm),
-                self.secondary_rad_s,
-            ),
+            next_pressure_pa,
+            clamp_cause,
             throttle,
             full_load_nm,
             torques,
@@ -239,7 +249,7 @@ impl<P: PrimeMover> Step<'_, P> {
             miss_nm: primary_nm - wanted_nm,
             flywheel_nm,
             coupling_w: own.loss_w,
-            flow_limited: pump.flow_limited,
+            flow_limited,
             oil_flow_m3_s: pump.working_m3_s,
             inside_maps,
             locked,

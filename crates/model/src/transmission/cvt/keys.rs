@@ -3,7 +3,10 @@
 use super::clutch_drag::{ClutchDrag, ClutchKeys};
 use super::controller::{ClampKeys, RatioControl, RatioKeys, clamp};
 use super::final_drive::{DriveKeys, FinalDrive};
+use super::floors::{Floors, PRESSURE, PressureKeys};
+use super::pulley_bearing::{PulleyBearing, PulleyBearingKeys};
 use super::pump::{Pump, PumpKeys};
+use super::seal_ring::{SealRing, SealRingKeys};
 use super::shaft_drag::{ShaftDrag, ShaftKeys};
 use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorKeys};
 use super::{Cvt, CvtMaps};
@@ -16,19 +19,12 @@ keys! {
     /// Keys of `[transmission.cvt]` and its tables.
     CVT: CvtKeys = "cvt" [
         RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
-        ShaftKeys::TABLE, ClutchKeys::TABLE, DriveKeys::TABLE, MapKeys::TABLE
+        PulleyBearingKeys::TABLE, SealRingKeys::TABLE, ShaftKeys::TABLE, ClutchKeys::TABLE, DriveKeys::TABLE, MapKeys::TABLE
     ] {
         final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
         belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys", ["SI-3"];
-    }
-
-    /// Keys of `[transmission.cvt.pressure]`.
-    PRESSURE: PressureKeys = "pressure" [] {
-        radius_exponent: or(1.43, number(0.0, 4.0)), "exponent of primary radius in the clamp map", ["PC-1"];
-        cap_bar: number(1.0, 200.0), "largest secondary pressure";
-        floor_bar: number(0.0, 200.0), "smallest secondary pressure";
     }
 
     /// Keys of `[transmission.cvt.maps]`: measured losses in place of a model.
@@ -37,6 +33,7 @@ keys! {
         pump: optional(text()), "CSV of measured torque loss at the primary that replaces the pump model";
         input_shaft: optional(text()), "CSV of measured torque loss at the primary that replaces the input shaft model";
         clutch_drag: optional(text()), "CSV of measured torque loss at the primary that replaces the reverse-clutch drag";
+        seal_ring: optional(text()), "CSV of measured torque loss at the primary that replaces the rings of both pulleys";
         final_drive: optional(text()), "CSV of measured torque loss at the primary that replaces the final drive model";
     }
 }
@@ -60,10 +57,11 @@ impl Cvt {
         let belt = Belt::from_values(&s.table("belt"), &v, formulation);
         let low = Geometry::new(ratio.low, belt.centre_distance_m, belt.length_m);
         check_reach(s, &ratio, &belt, &low);
+        check_wedge(&v, &belt, oil);
         let pressure = s.table("pressure");
         let clamp = clamp(s, &CVT.clamp);
         let radius_exponent = pressure.number(&PRESSURE.radius_exponent);
-        let (floor_pa, cap_pa) = pressures(&pressure);
+        let (floors, cap_pa) = Floors::from_values(&pressure);
         Cvt {
             final_drive: FinalDrive::from_values(
                 &s.table("final_drive"),
@@ -76,10 +74,12 @@ impl Cvt {
             pump: Pump::from_values(&s.table("pump")),
             shaft_drag: ShaftDrag::from_values(&s.table("input_shaft")),
             clutch_drag: ClutchDrag::from_values(&s.table("reverse_clutch")),
+            pulley_bearing: PulleyBearing::from_values(&s.table("pulley_bearing")),
+            seal_ring: SealRing::from_values(&s.table("seal_ring")),
             ratio,
             clamp,
             radius_exponent,
-            floor_pa,
+            floors,
             cap_pa,
             low_radius_m: low.primary_radius_m,
             coupling: coupling::from_values(s, &CVT.launch, 5.0),
@@ -89,21 +89,6 @@ impl Cvt {
             belt,
         }
     }
-}
-
-/// Smallest and largest secondary pressure, Pa.
-fn pressures<V: Values>(s: &V) -> (f64, f64) {
-    let cap_pa = s.number(&PRESSURE.cap_bar);
-    let floor_pa = s.number(&PRESSURE.floor_bar);
-    if floor_pa > cap_pa {
-        s.complain(
-            "floor_bar",
-            "at most cap_bar",
-            "the smallest pressure is above the largest",
-            "lower floor_bar or raise cap_bar",
-        );
-    }
-    (floor_pa, cap_pa)
 }
 
 /// The belt runs at both ends of the ratio, and the pulleys do not run into each other.
@@ -126,6 +111,23 @@ fn check_reach<V: Values>(s: &V, ratio: &RatioControl, belt: &Belt, low: &Geomet
             "",
             "the belt cannot reach this ratio",
             "check belt length and centre distance against the ratio limits",
+        );
+    }
+}
+
+/// A segment leaves the wedge by itself: at an angle of friction above that of the wedge it would hold itself there, and the balance of forces
+/// between sheave and belt (GE, VA-2) would no longer be theirs. The printed forms run as printed.
+fn check_wedge<V: Values>(v: &V, belt: &Belt, oil: &Lubricant) {
+    let mu = oil.friction.segment;
+    if belt.formulation.by_statics() && belt.tan_wedge <= mu {
+        v.complain(
+            "half_wedge_deg",
+            &format!(
+                "above {:.2}, the angle of friction of segments on pulleys",
+                mu.atan().to_degrees()
+            ),
+            "segments would hold themselves in this wedge",
+            "open the angle, or take a fluid with less segment friction",
         );
     }
 }

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | CV-1 | w_s = i_fd w_wheel, w_p = I w_s / (1 - slip) | derived |
-//! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
+//! | CV-2 | T_flywheel = T_p + T_pump(w_e) + T_shaft(w_e), T_p = T_belt + T_drag + T_bearing + T_ring; the belt carries T_s = T_FD + bearing and rings of the secondary | source: thesis 1.1 (layout: pump and shaft turn with the engine) |
 //! | CV-3 | T_p >= creep torque below idle speed, >= -share (drag + accessories + pump + shaft) above it; the brakes take the rest | derived: engine can absorb no more; share LC-3 |
 //! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
 //! | CV-6 | launch clutch: T_engine = T_p, loss T_p (w_e - w_p) for T_p >= 0; in overrun T_engine w_e = T_p w_p, no loss | derived |
@@ -15,11 +15,14 @@ mod clamping;
 pub mod clutch_drag;
 pub mod controller;
 pub mod final_drive;
+pub mod pulley_bearing;
 pub mod pump;
+pub mod seal_ring;
 pub mod shaft_drag;
 pub mod variator;
 pub(crate) mod driveline;
 mod evaluate;
+pub mod floors;
 mod keys;
 mod prepare;
 mod secant;
@@ -34,9 +37,13 @@ use self::clamping::Clamping;
 use self::clutch_drag::ClutchDrag;
 use self::controller::{ClampLaw, ClampSignals, RatioControl};
 use self::final_drive::FinalDrive;
+use self::floors::Floors;
+use self::pulley_bearing::PulleyBearing;
 use self::pump::Pump;
+use self::seal_ring::SealRing;
 use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
+use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
 use super::coupling::Coupling;
 use super::step::{DrivelineState, StepInput, StepOutput};
@@ -77,14 +84,18 @@ pub struct Cvt {
     pub shaft_drag: ShaftDrag,
     /// Reverse clutch.
     pub clutch_drag: ClutchDrag,
+    /// Bearings of the pulley shafts under the belt's pull.
+    pub pulley_bearing: PulleyBearing,
+    /// Rings that seal the oil feed of a pulley.
+    pub seal_ring: SealRing,
     /// Ratio control.
     pub ratio: RatioControl,
     /// Clamp law.
     pub clamp: ClampLaw,
     /// Exponent of the primary radius in the clamp map.
     pub radius_exponent: f64,
-    /// Smallest secondary pressure, Pa.
-    pub floor_pa: f64,
+    /// Causes of a smallest secondary pressure.
+    pub floors: Floors,
     /// Largest secondary pressure, Pa.
     pub cap_pa: f64,
     /// Primary radius in low, m.
@@ -106,6 +117,17 @@ pub struct CvtState {
     pub belt: BeltAtRatio,
     /// Start of the solve.
     pub warm_start: WarmStart,
+    /// What the ratio control keeps of the step before.
+    pub shifting: Shifting,
+}
+
+/// What the ratio control keeps of the step before.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Shifting {
+    /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
+    pub direction: i8,
+    /// Share of rated power that gentle driving looks at (RC-9).
+    pub share: f64,
 }
 
 impl CvtState {
@@ -114,6 +136,7 @@ impl CvtState {
         CvtState {
             belt,
             warm_start: WarmStart::default(),
+            shifting: Shifting::default(),
         }
     }
 }
@@ -125,6 +148,22 @@ impl Cvt {
         pressure_pa * self.secondary_piston_m2
             + self.spring_n
             + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
+    }
+
+    /// Pressure of the primary for a clamping force of the secondary, Pa (TE-1).
+    #[inline]
+    pub fn primary_pa(&self, secondary_clamp_n: f64, at: &BeltAtRatio) -> f64 {
+        secondary_clamp_n * at.thrust_ratio / self.primary_piston_m2
+    }
+
+    /// Lowest engine speed at which full load gives a power, rad/s (RC-3). The hot line knows it at once; what air and cold friction leave of
+    /// that line falls with speed, so three passes from the speed of greatest power settle it.
+    #[inline]
+    pub fn full_load_rad_s<P: PrimeMover>(&self, engine: &P, power_w: f64) -> f64 {
+        (0..3).fold(self.ratio.highest_rad_s, |speed, _| {
+            self.full_load_route
+                .at(power_w / engine.full_load_share(speed)) // RC-3
+        })
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
@@ -142,17 +181,21 @@ impl Cvt {
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
     pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> (CvtState, DrivelineState) {
         let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
+        let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
             power_w: input.wheel.power_w,
-            rated_w: input.engine.rated_w(),
-            full_load_rad_s: self
-                .full_load_route
-                .at(input.wheel.power_w / self.ratio.route_efficiency),
+            share,
+            full_load_rad_s: self.full_load_rad_s(
+                input.engine,
+                input.wheel.power_w / self.ratio.route_efficiency,
+            ),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,
             coupled: true,
+            last_direction: 0,
+            free_up_to_rad_s: 0.0,
             dt_s: input.dt_s,
         };
         let ratio = if secondary > 0.0 {
@@ -162,19 +205,20 @@ impl Cvt {
         };
         let idle = input.engine.idle_rad_s();
         let primary = ratio * secondary;
-        let own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
+        let mut own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
+        own.shifting.share = share;
         let driveline = DrivelineState {
             gear: 0,
             engine_rad_s: larger(primary, idle),
             throttle: 0.1,
-            secondary_pa: self.floor_pa,
+            secondary_pa: self.floors.control_pa,
             coupled: primary > idle,
             stood: secondary <= 0.0,
         };
         (own, driveline)
     }
 
-    /// Pressure demand of the clamp law, Pa (PC-1 to PC-4), within floor and cap; `load` is called by the laws that use the belt.
+    /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and what decided it; `load` is called by the laws that use the belt.
     #[inline(always)]
     pub fn pressure_pa(
         &self,
@@ -182,23 +226,24 @@ impl Cvt {
         at: &BeltAtRatio,
         load: impl FnOnce() -> BeltLoad,
         secondary_rad_s: f64,
-    ) -> f64 {
-        let wanted = match &self.clamp {
-            ClampLaw::Map(map) => map.pressure_pa(signals),
+    ) -> (f64, ClampCause) {
+        let (wanted, cause) = match &self.clamp {
+            ClampLaw::Map(map) => (map.pressure_pa(signals), ClampCause::Law),
             law => Clamping {
                 cvt: self,
                 at,
                 load: &load(),
                 secondary_rad_s,
+                force_log: signals.force_log,
             }
             .pressure_pa(law),
         };
         if wanted > self.cap_pa {
-            self.cap_pa
-        } else if wanted > self.floor_pa {
-            wanted
+            (self.cap_pa, ClampCause::Cap)
+        } else if wanted > self.floors.control_pa {
+            (wanted, cause)
         } else {
-            self.floor_pa
+            (self.floors.control_pa, ClampCause::Control)
         }
     }
 

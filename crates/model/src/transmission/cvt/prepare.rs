@@ -1,11 +1,11 @@
 //! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
 
-use super::controller::RatioDemand;
-use super::driveline::{Driveline, Parts, ViscosityPowers};
+use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
+use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers};
 use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
-use super::{Cvt, NU_REFERENCE_M2_S};
+use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
 use crate::math::{exp_each, larger, ln_each};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
@@ -22,52 +22,64 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
     )
 }
 
-/// What the shift reckons with: leakage and inlet for the pump's free flow, efficiency for the full-load route.
+/// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
 struct Route {
-    leakage_m3_s_pa: f64,
     pump: PumpAtTemperature,
     efficiency: f64,
+    /// Direction that a small change must not turn round; 0 in a kick-down (RC-7).
+    last_direction: i8,
 }
 
 /// Outcome of the shift.
 struct Shift {
     ratio: f64,
+    /// Rate of ln I, 1/s.
+    rate_per_s: f64,
     flow_m3_s: f64,
     /// True where pump flow held it back.
     held: bool,
+    /// What the control keeps.
+    kept: Shifting,
 }
 
 fn shift<P: PrimeMover>(
     cvt: &Cvt,
     input: &StepInput<P>,
     past: &DrivelineState,
-    before: &Geometry,
+    (before, kept): (&Geometry, Shifting),
     route: Route,
 ) -> Shift {
+    let share = cvt.ratio.filtered_share(
+        kept.share,
+        input.wheel.power_w / input.engine.rated_w(),
+        input.dt_s,
+    );
     if input.wheel.wheel_rad_s <= 0.0 {
         return Shift {
             ratio: before.ratio,
+            rate_per_s: 0.0,
             flow_m3_s: 0.0,
             held: false,
+            kept: Shifting { share, ..kept },
         }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let drawn = route
         .pump
         .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
-    let free = drawn - cvt.pump.need_m3_s(past.secondary_pa, route.leakage_m3_s_pa);
+    let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * input.wheel.wheel_rad_s,
         power_w: input.wheel.power_w,
-        rated_w: input.engine.rated_w(),
-        full_load_rad_s: cvt
-            .full_load_route
-            .at(input.wheel.power_w / (route.efficiency * input.engine.full_load_factor())),
+        share,
+        full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
         coupled: past.coupled,
+        last_direction: route.last_direction,
+        free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
     let (ratio, change, held) = cvt.ratio.step(&demand);
@@ -78,8 +90,13 @@ fn shift<P: PrimeMover>(
     };
     Shift {
         ratio,
+        rate_per_s: change / input.dt_s,
         flow_m3_s: volume / input.dt_s,
         held,
+        kept: Shifting {
+            direction: direction_after(change, kept.direction),
+            share,
+        },
     }
 }
 
@@ -146,13 +163,13 @@ impl Powers {
     }
 }
 
-/// Prepares a step: shifts from the geometry `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
+/// Prepares a step: shifts from the geometry and what the control kept `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
 #[inline(never)]
 pub(super) fn prepare<'a, P: PrimeMover>(
     cvt: &'a Cvt,
     input: &'a StepInput<'a, P>,
     past: &DrivelineState,
-    before: &Geometry,
+    before: (&Geometry, Shifting),
     belt: &'a mut BeltAtRatio,
     efficiency: f64,
 ) -> Step<'a, P> {
@@ -166,12 +183,15 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
     let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
-    let leakage_m3_s_pa = cvt.pump.leakage_now_m3_s_pa(eta_sump);
     let inlet = cvt.pump.with_factor(eta_sump, 1.0);
     let route = Route {
-        leakage_m3_s_pa,
         pump: inlet,
         efficiency,
+        last_direction: if efficiency < cvt.ratio.route_efficiency {
+            0
+        } else {
+            before.1.direction
+        },
     };
     let shift = shift(cvt, input, past, before, route);
     if shift.ratio.to_bits() != belt.geometry.ratio.to_bits() {
@@ -199,8 +219,11 @@ pub(super) fn prepare<'a, P: PrimeMover>(
                 viscous_factor: powers.viscous_factor,
                 ..inlet
             },
-            leakage_m3_s_pa,
+            shafts: PulleyShafts::new(cvt, at, Parts::ALL),
             radius_factor: powers.radius_factor,
+            force_log: cvt
+                .floors
+                .force_log(shift.rate_per_s, shift.ratio * secondary_rad_s),
             oil_k: sump_k,
             maps: cvt.maps.as_deref(),
         },
@@ -210,7 +233,8 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         load: BeltLoad::unloaded(oil, eta_belt, friction.band_on_film(belt_k, powers.film)),
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,
-        reach: input.reach(past.engine_rad_s),
+        shifting: shift.kept,
+        reach: input.reach(past.engine_rad_s, 0.0),
         pressure_before_pa: past.secondary_pa,
         coupled: past.coupled,
         locked_from_rad_s,

@@ -3,9 +3,10 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | PU-1 | T = D (1 + C_f) p + C_v eta_r (eta/eta_r)^m w D + T_c, eta_r = 10 mPa s, the second term by FH-1 | source: thesis 7.4 (Schlosser, Wilson); C_v and m fitted, C_f and T_c not identifiable with D |
-//! | PU-2 | flow need = lubrication + leakage p (eta_80/eta) + shift flow | ASSUMED values |
+//! | PU-2 | flow need = V_lub min(1, 1 Pa s/eta) + leakage p (eta_r/eta) + shift flow | ASSUMED values; thick oil runs through what lubricates as through leaks |
 //! | PU-3 | shift flow = A \|dx/dt\|, x = 2 tan th R | derived: thesis 9.1 requires it |
 //! | PU-4 | dual cavity and variable: only the share of D that the need requires works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
+//! | PU-6 | p <= (drawn flow - lubrication - shift flow)/(leakage eta_r/eta), at least 0.1 bar | derived: a circuit holds the pressure that its flow keeps up; 0.1 bar keeps the solve finite |
 //! | PU-5 | drawn flow = V/(1 + (V/V_max)^4)^(1/4), V_max = p_i/(k eta/eta_r) | derived: laminar drop k eta V in strainer and suction line, bounded by the air's pressure; k and p_i = 0.7 bar ASSUMED |
 //!
 //! D displacement per radian m3/rad, p pump outlet pressure Pa, w rad/s, V flow of the displacement that draws. Valid for p >= 0, w >= 0.
@@ -16,7 +17,7 @@
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{clamp, exp, ln, smooth_ramp};
+use crate::math::{clamp, exp, ln, smaller, smooth_ramp};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
@@ -68,6 +69,12 @@ pub struct Pump {
     pub leakage_m3_s_pa: f64,
 }
 
+/// Pressure that is left of a flow that does not cover lubrication and shift, Pa (PU-6).
+const LEAST_PA: f64 = 1e4;
+
+/// Viscosity above which oil runs into lubrication as through leaks, Pa s (PU-2).
+const ETA_THICK_PA_S: f64 = 1.0;
+
 /// Viscosity at which C_v is defined, Pa s.
 pub const ETA_REFERENCE_PA_S: f64 = 0.010;
 
@@ -78,9 +85,19 @@ pub struct PumpAtTemperature {
     pub viscous_factor: f64,
     /// One over the largest flow that the inlet passes, s/m3; 0 without a bound (PU-5).
     pub inv_inlet_flow: f64,
+    /// Flow into lubrication, m3/s (PU-2).
+    pub lubrication_m3_s: f64,
+    /// Leakage per pressure, m3/(s Pa) (PU-2).
+    pub leakage_m3_s_pa: f64,
 }
 
 impl PumpAtTemperature {
+    /// Flow that is needed without shifting, m3/s (PU-2).
+    #[inline]
+    pub fn need_m3_s(&self, secondary_pa: f64) -> f64 {
+        self.lubrication_m3_s + secondary_pa * self.leakage_m3_s_pa // PU-2
+    }
+
     /// Flow that is drawn of the flow of a displacement, m3/s (PU-5).
     #[inline]
     pub fn drawn_m3_s(&self, flow_m3_s: f64) -> f64 {
@@ -104,25 +121,29 @@ pub struct PumpState {
 }
 
 impl Pump {
-    /// Flow that is needed without shifting, m3/s (PU-2).
-    #[inline]
+    /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
     pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
-        self.need_m3_s(secondary_pa, self.leakage_now_m3_s_pa(eta_pa_s))
+        self.with_factor(eta_pa_s, 1.0).need_m3_s(secondary_pa)
     }
 
-    /// Leakage per pressure at a viscosity, m3/(s Pa) (PU-2).
+    /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
     #[inline]
-    pub fn leakage_now_m3_s_pa(&self, eta_pa_s: f64) -> f64 {
-        self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s
+    pub fn deliverable_pa(
+        &self,
+        now: &PumpAtTemperature,
+        speed_rad_s: f64,
+        shift_flow_m3_s: f64,
+    ) -> f64 {
+        let drawn = now.drawn_m3_s(self.displacement_m3_rad * speed_rad_s);
+        let spare = drawn - now.lubrication_m3_s - shift_flow_m3_s;
+        if spare > LEAST_PA * now.leakage_m3_s_pa {
+            spare / now.leakage_m3_s_pa
+        } else {
+            LEAST_PA
+        } // PU-6
     }
 
-    /// Flow that is needed without shifting with the leakage known, m3/s (PU-2).
-    #[inline]
-    pub fn need_m3_s(&self, secondary_pa: f64, leakage_m3_s_pa: f64) -> f64 {
-        self.lubrication_m3_s + secondary_pa * leakage_m3_s_pa // PU-2
-    }
-
-    /// What the oil does at a viscosity (PU-1, PU-5).
+    /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
     #[inline]
     pub fn at(&self, eta_pa_s: f64) -> PumpAtTemperature {
         self.with_factor(
@@ -137,8 +158,10 @@ impl Pump {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
         PumpAtTemperature {
             viscous_factor,
-            inv_inlet_flow: drop_pa_s_m3 / self.inlet_depression_pa,
-        } // PU-5
+            inv_inlet_flow: drop_pa_s_m3 / self.inlet_depression_pa, // PU-5
+            lubrication_m3_s: self.lubrication_m3_s * smaller(ETA_THICK_PA_S / eta_pa_s, 1.0), // PU-2
+            leakage_m3_s_pa: self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s, // PU-2
+        }
     }
 
     /// Share of the displacement that works against pressure (PU-4), from the flow that all of it draws.

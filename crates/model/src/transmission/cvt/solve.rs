@@ -11,7 +11,7 @@ use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
 use crate::flags::Flags;
-use crate::math::{clamp, larger};
+use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
@@ -19,6 +19,8 @@ use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 const DAMPED_FROM: u16 = 10;
 /// Kick-down ends where the route would reckon with a lower efficiency than this (RC-7).
 const MIN_ROUTE_EFFICIENCY: f64 = 0.4;
+/// Factor on the efficiency of a failed try for another one: smaller than the route is wrong by, so that the ratio changes (RC-7).
+const KICK_DOWN: f64 = 0.995;
 /// Share of full load by which a demand must miss what the engine can do before a run leaves it unconverged, ...
 const CLEARLY: f64 = 0.02;
 /// ... and how far it may still be from its fixed point: so near, no torque moves by as much.
@@ -39,6 +41,14 @@ impl<P: PrimeMover> Step<'_, P> {
         } else {
             Limit::None
         }
+    }
+
+    /// The route's efficiency for another try, after one with `efficiency` that full load does not give (RC-7).
+    fn kick_down(&self, efficiency: f64, p: &Point) -> f64 {
+        let w = p.guess.engine_rad_s;
+        let asked_w = (p.flywheel_nm + self.input.engine.accessories_nm(w)) * w;
+        let had = self.input.wheel.power_w / asked_w;
+        larger(KICK_DOWN * smaller(had, efficiency), MIN_ROUTE_EFFICIENCY) // RC-7
     }
 
     /// Slip and loss torque in Nm that go on as in the steps before.
@@ -72,10 +82,11 @@ impl<P: PrimeMover> Step<'_, P> {
         };
         let pressure_pa = match &self.line.cvt.clamp {
             ClampLaw::SlipLimited { .. } => self.pressure_before_pa,
-            _ => self
-                .line
-                .cvt
-                .pressure_pa(&signals, self.line.at, load, self.secondary_rad_s),
+            _ => {
+                let cvt = self.line.cvt;
+                cvt.pressure_pa(&signals, self.line.at, load, self.secondary_rad_s)
+                    .0
+            }
         };
         Guess {
             output_nm,
@@ -143,11 +154,9 @@ impl<P: PrimeMover> Step<'_, P> {
                 return;
             }
             last = Some((point.guess, point.next_pressure_pa));
-            let pressure_pa = clamp(
-                work.slopes.pressure_pa(point),
-                self.line.cvt.floor_pa,
-                self.line.cvt.cap_pa,
-            ); // CV-5
+            let cvt = self.line.cvt;
+            let least_pa = smaller(cvt.floors.control_pa, point.next_pressure_pa);
+            let pressure_pa = clamp(work.slopes.pressure_pa(point), least_pa, cvt.cap_pa); // CV-5
             let slip = point.guess.slip
                 + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
             guess = Guess {
@@ -194,6 +203,9 @@ impl<P: PrimeMover> Step<'_, P> {
                 return Some(limit);
             }
             if limit == Limit::FullLoad && !full_load_wanted {
+                if may_leave {
+                    self.run(&work.point.next(), Limit::None, false, work); // for what was asked of the engine
+                }
                 return None;
             }
             let from = work.point.next();
@@ -248,7 +260,11 @@ pub(super) fn solve<P: PrimeMover>(
     own: &mut CvtState,
     past: &mut DrivelineState,
 ) -> StepOutput {
-    let CvtState { belt, warm_start } = own;
+    let CvtState {
+        belt,
+        warm_start,
+        shifting,
+    } = own;
     let before = belt.geometry;
     if input.engine_off {
         return engine_off(input, before.ratio, past);
@@ -256,17 +272,23 @@ pub(super) fn solve<P: PrimeMover>(
     let mut work = Work::default();
     let mut efficiency = cvt.ratio.route_efficiency;
     work.slopes = warm_start.slopes;
+    let mut tried_ratio = f64::NAN;
     loop {
-        let step = prepare(cvt, input, past, &before, belt, efficiency);
+        let step = prepare(cvt, input, past, (&before, *shifting), belt, efficiency);
         if step.secondary_rad_s <= 0.0 {
+            *shifting = step.shifting;
             return standstill(&step, past, warm_start);
         }
-        efficiency *= 0.9;
-        let full_load_wanted = efficiency <= MIN_ROUTE_EFFICIENCY;
+        let ratio = step.line.at.geometry.ratio;
+        let again = ratio.to_bits() == tried_ratio.to_bits();
+        let full_load_wanted = again || efficiency <= MIN_ROUTE_EFFICIENCY;
         let Some(limit) = step.limited(warm_start, full_load_wanted, &mut work) else {
+            tried_ratio = ratio;
+            efficiency = step.kick_down(efficiency, &work.point);
             continue; // kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7)
         };
         warm_start.slopes = work.slopes;
+        *shifting = step.shifting;
         warm_start.overrun = limit == Limit::EngineDrag;
         let outcome = Outcome {
             limit,

@@ -9,12 +9,14 @@ use crate::fluid::VALID_K;
 use crate::math::clamp;
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::{BELT, SUMP};
+use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::Component;
 use crate::transmission::step::{DrivelineState, StepOutput};
 
 /// What pump and clamp law settle on with the car at rest in gear.
 struct Idling {
     pressure_pa: f64,
+    clamp_cause: ClampCause,
     torques: PartTorques,
     throttle: f64,
     /// Engine torque over full load.
@@ -36,6 +38,7 @@ fn idling<P: PrimeMover>(
     let (line, engine) = (&step.line, step.input.engine);
     let mut at = Idling {
         pressure_pa: 0.0,
+        clamp_cause: ClampCause::Law,
         torques: PartTorques::default(),
         throttle,
         load_share: 0.0,
@@ -51,7 +54,9 @@ fn idling<P: PrimeMover>(
     };
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
-        at.pressure_pa = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        let (set_pa, cause) = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        at.clamp_cause = cause;
+        (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, w, step.shift_flow_m3_s);
         let pump = line.turn_engine(
             &mut at.torques,
             w,
@@ -59,7 +64,7 @@ fn idling<P: PrimeMover>(
             step.shift_flow_m3_s,
             &mut at.inside_maps,
         );
-        (at.flow_limited, at.oil_flow_m3_s) = (pump.flow_limited, pump.working_m3_s);
+        at.oil_flow_m3_s = pump.working_m3_s;
         at.load_share = (at.torques.flywheel_nm(coupling_nm) + engine.accessories_nm(w))
             / engine.full_load_nm(w);
         let next = clamp(at.load_share, 0.0, 1.0);
@@ -95,6 +100,7 @@ pub(super) fn standstill<P: PrimeMover>(
         belt_ratio: ratio,
         primary_pa: primary_pa(step, at.pressure_pa),
         secondary_pa: at.pressure_pa,
+        clamp_cause: at.clamp_cause,
         slip: 0.0,
         clamp_safety: if creep > 0.0 {
             capacity / (creep * ratio)
@@ -139,8 +145,10 @@ fn add_part_losses(
 
 fn primary_pa<P>(step: &Step<P>, pa: f64) -> f64 {
     let cvt = step.line.cvt;
-    cvt.secondary_clamp_n(pa, step.secondary_rad_s) * step.line.at.thrust_ratio
-        / cvt.primary_piston_m2
+    cvt.primary_pa(
+        cvt.secondary_clamp_n(pa, step.secondary_rad_s),
+        step.line.at,
+    )
 }
 
 /// True for a residual within tolerance, false for NaN.
@@ -172,7 +180,10 @@ pub(super) fn finish<P: PrimeMover>(
         belt_ratio: ratio,
         primary_pa: primary_pa(step, g.pressure_pa),
         secondary_pa: g.pressure_pa,
+        clamp_cause: p.clamp_cause,
         slip: g.slip,
+        primary_nm: p.primary_nm - p.torques.primary_nm(),
+        secondary_nm: p.torques.secondary,
         clamp_safety: p.torques.belt.capacity_nm / p.torques.secondary.abs(),
         oil_flow_m3_s: p.oil_flow_m3_s,
         residual: outcome.residual,
@@ -246,6 +257,11 @@ fn common_flags<P: PrimeMover>(step: &Step<P>, output: &mut StepOutput, valid: b
     output.flags.set(
         Flags::RATIO_LIMIT,
         ratio <= limits.high * (1.0 + 1e-9) || ratio >= limits.low * (1.0 - 1e-9),
+    );
+    let line_pa = output.secondary_pa + step.line.cvt.pump.line_drop_pa;
+    output.flags.set(
+        Flags::PRIMARY_PRESSURE_SHORT,
+        output.primary_pa > line_pa * (1.0 + 1e-9),
     );
     output.flags.set(
         Flags::OVERSPEED,

@@ -10,7 +10,7 @@
 //!
 //! nu_r is the gear oil's viscosity at 80 degC. At that temperature the sum follows the published 0.925 Nm + 0.000407 Nm/rpm within 5 %
 //! from 1000 to 4000 rpm; cold it rises about as viscosity^0.3. In neutral the engine turns the input shaft and a share of the losses; declutched, the wheels turn the box.
-//! A gear change is driven in the gear that follows it: the plateau's load is small and the engine's loss of speed is not resolved.
+//! A gear change is driven in the gear that follows it. After a change up the clutch slips until the engine has come down to the box (EN-12).
 
 mod gears;
 mod keys;
@@ -175,7 +175,14 @@ impl Manual {
         };
         state.engine_rad_s = output.engine_rad_s;
         let turning = output.gear > 0 && !output.flags.contains(Flags::CLUTCH_OPEN);
-        state.coupled = turning && !output.flags.contains(Flags::CLUTCH_SLIPPING);
+        // A clutch that was locked and slips after a change up only has the engine come down: it is no launch (LC-5).
+        let input_rad_s = match output.gear {
+            0 => 0.0,
+            gear => self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s,
+        };
+        let locks = input_rad_s >= self.coupling.locked_from_rad_s(step.engine.idle_rad_s());
+        let slips = output.flags.contains(Flags::CLUTCH_SLIPPING);
+        state.coupled = turning && (!slips || (state.coupled && locks));
         state.stood = step.wheel.wheel_rad_s <= 0.0;
         output
     }

@@ -3,11 +3,11 @@
 use super::Manual;
 use super::losses::Spin;
 use crate::flags::Flags;
-use crate::math::clamp;
+use crate::math::{clamp, larger};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
-use crate::transmission::coupling::{CouplingLoad, EngineSide};
+use crate::transmission::coupling::CouplingLoad;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
 /// The box in a step, at the viscosity of its oil.
@@ -26,7 +26,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     /// Speed of the free engine at the end of the step, rad/s.
     fn free_engine_rad_s(&self) -> f64 {
         self.step
-            .reach(self.state.engine_rad_s)
+            .reach(self.state.engine_rad_s, 0.0)
             .nearest(self.step.engine.idle_rad_s())
     }
 
@@ -84,8 +84,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     pub fn engaged(&self, gear: u8) -> StepOutput {
         let mut gear = gear;
         loop {
-            let output = self.in_gear(gear);
-            if !output.flags.contains(Flags::MISSED_TRACE) || !self.may_shift_down(gear) {
+            let (output, lacks_torque) = self.in_gear(gear);
+            if !lacks_torque || !self.may_shift_down(gear) {
                 return output;
             }
             gear -= 1;
@@ -111,13 +111,14 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             .set(Flags::OUTSIDE_VALIDITY, share > FULL_LOAD_LIMIT);
     }
 
-    /// The box in a gear: the torque demanded, or the one at the engine's limit.
-    fn in_gear(&self, gear: u8) -> StepOutput {
+    /// The box in a gear: the torque demanded, or the one at the engine's limit; and whether the gear lacks torque. It does too where only an
+    /// engine that still comes down from a lower gear has enough.
+    fn in_gear(&self, gear: u8) -> (StepOutput, bool) {
         let (engine, wheel) = (self.step.engine, self.step.wheel);
         let input = self.manual.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
         let turning = self.manual.turning(gear, input, self.nu_m2_s, self.oil_k());
         let mut at = turning.at(wheel.power_w / input); // MB-1
-        let mut w = self.engine_rad_s(at.input_nm, input);
+        let (mut w, settled_rad_s) = self.engine_rad_s(at.input_nm, input);
         let accessories_nm = engine.accessories_nm(w);
         let absorbed_nm = engine.drag_nm(w) + accessories_nm;
         let least = self
@@ -125,10 +126,13 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             .coupling
             .min_output_nm(input, w, engine.idle_rad_s(), absorbed_nm);
         let mut full_load_nm = engine.full_load_nm(w);
-        let most = self
-            .manual
-            .coupling
-            .output_nm(full_load_nm - accessories_nm, input, w);
+        let most_at = |w: f64| {
+            // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
+            let engine_nm = larger(engine.full_load_nm(w) - engine.accessories_nm(w), 0.0);
+            self.manual.coupling.output_nm(engine_nm, input, w)
+        };
+        let most = most_at(w);
+        let lacks_torque = at.input_nm > most || at.input_nm > most_at(settled_rad_s);
         let limit = if at.input_nm < least {
             Some(least)
         } else if at.input_nm > most {
@@ -148,21 +152,12 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             at = turning.at(output_nm);
             output.residual = (at.input_nm - torque).abs() / full_load_nm;
             if torque <= least {
-                w = self.engine_rad_s(torque, input);
+                (w, _) = self.engine_rad_s(torque, input);
                 full_load_nm = engine.full_load_nm(w);
             }
         }
         output.engine_rad_s = w;
-        // A box that drives the engine has it at one torque with its input; below a limit's zero there is only rounding.
-        let side = if at.input_nm < 0.0 {
-            EngineSide {
-                engine_nm: at.input_nm,
-                engine_rad_s: w,
-                loss_w: at.input_nm * (w - input), // LC-4
-            }
-        } else {
-            self.manual.coupling.engine_side(at.input_nm, input, w)
-        };
+        let side = self.manual.coupling.engine_side(at.input_nm, input, w);
         output.shaft_nm = side.engine_nm;
         output.add_loss(Component::LaunchClutch, side.loss_w);
         lose_spin(&mut output, &at.spin, input);
@@ -181,11 +176,12 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
         flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
         self.set_throttle(&mut output, full_load_nm);
-        output
+        (output, lacks_torque)
     }
 
-    /// Engine speed over the coupling, rad/s; a coupling that locks takes the engine along at once.
-    fn engine_rad_s(&self, input_nm: f64, input_rad_s: f64) -> f64 {
+    /// Engine speed over the coupling in this step, and the one on which it settles, rad/s: at once that of a faster box; over a slower one, as
+    /// after a change up, the coupling slips until the engine's rotating energy is spent.
+    fn engine_rad_s(&self, input_nm: f64, input_rad_s: f64) -> (f64, f64) {
         let wanted = self.manual.coupling.engine_rad_s(&CouplingLoad {
             output_nm: input_nm,
             output_rad_s: input_rad_s,
@@ -193,12 +189,11 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             coupled: self.state.coupled,
         });
         let least = self.manual.coupling.min_engine_rad_s(input_rad_s);
-        let reached = self.step.reach(self.state.engine_rad_s).nearest(wanted);
-        if reached > least && wanted > least {
-            reached
-        } else {
-            least
-        }
+        let before_rad_s = self.state.engine_rad_s;
+        // What passes on at full load is no more than that; the rest of a demand is missing.
+        let passed_nm = clamp(input_nm, 0.0, self.step.engine.full_load_nm(before_rad_s));
+        let reach = self.step.reach(before_rad_s, passed_nm);
+        (larger(reach.nearest(wanted), least), larger(wanted, least))
     }
 }
 

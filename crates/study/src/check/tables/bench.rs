@@ -120,6 +120,7 @@ pub fn parts(source: &Source) -> Parts {
         belt: has("belt"),
         reverse_clutch: has("reverse_clutch"),
         pump: has("pump"),
+        seal_rings: true,
     }
 }
 

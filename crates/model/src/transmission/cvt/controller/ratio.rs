@@ -2,19 +2,21 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | RC-1 | target speed: 1700 rpm in gentle driving, + g (P/P_max - 15 %) above 15 % power | 1700 rpm source: thesis 1.1.2, Fig 1-6; rise ASSUMED |
-//! | RC-2 | overrun target, reached linearly over 1 % of rated power | ASSUMED |
+//! | RC-1 | target speed: 1700 rpm at 15 % power, + g (P/P_max - 15 %) above it | 1700 rpm source: thesis 1.1.2, Fig 1-6; 15 % and rise ASSUMED |
+//! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
-//! | RC-7 | where full load does not suffice, RC-3 is asked again with 10 % less efficiency each time, down to 40 % | derived: kick-down, within RC-4 and RC-5 |
+//! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
 //! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
+//! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
+//! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
 use crate::keys::{Values, keys};
-use crate::math::{clamp, exp, ln, smaller};
+use crate::math::{clamp, exp, larger, ln, smaller};
 
 /// The checked controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,13 +25,13 @@ pub struct RatioControl {
     pub low: f64,
     /// Highest gear: smallest belt ratio.
     pub high: f64,
-    /// Speed in gentle driving, rad/s.
+    /// Speed in gentle acceleration, rad/s.
     pub gentle_rad_s: f64,
-    /// Share of rated power up to which driving is gentle.
+    /// Share of rated power in gentle acceleration.
     pub gentle_share: f64,
     /// Rise of speed over the share of rated power above it, rad/s.
     pub rise_rad_s: f64,
-    /// Speed in overrun, rad/s.
+    /// Speed without power and in overrun, rad/s.
     pub overrun_rad_s: f64,
     /// Highest target speed: that of the engine's greatest power, rad/s.
     pub highest_rad_s: f64,
@@ -41,6 +43,10 @@ pub struct RatioControl {
     pub down_per_s: f64,
     /// Primary speed from which the full rates hold, rad/s.
     pub rate_speed_rad_s: f64,
+    /// Change of ln I from which the ratio turns round.
+    pub hysteresis: f64,
+    /// Time constant of the demand that gentle driving looks at, s; 0 without a filter.
+    pub filter_s: f64,
 }
 
 /// What the controller looks at.
@@ -50,8 +56,8 @@ pub struct RatioDemand {
     pub secondary_rad_s: f64,
     /// Wheel power asked for, W.
     pub power_w: f64,
-    /// Rated engine power, W.
-    pub rated_w: f64,
+    /// Share of rated power that RC-1 and RC-2 look at (RC-9).
+    pub share: f64,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: f64,
     /// Ratio before the step.
@@ -62,6 +68,10 @@ pub struct RatioDemand {
     pub flow_up_per_s: f64,
     /// Whether the launch clutch has locked.
     pub coupled: bool,
+    /// Direction of the last change: 1 towards low, -1 towards high, 0 before the first.
+    pub last_direction: i8,
+    /// Primary speed up to which the ratio turns round at once, rad/s.
+    pub free_up_to_rad_s: f64,
     /// Step, s.
     pub dt_s: f64,
 }
@@ -69,16 +79,30 @@ pub struct RatioDemand {
 impl RatioControl {
     /// Target primary speed, rad/s (RC-1 to RC-3).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
-        let share = d.power_w / d.rated_w;
-        let drive = clamp(share / 0.01, 0.0, 1.0);
+        let share = d.share;
+        let drive = clamp(
+            share / larger(self.gentle_share, LEAST_GENTLE_SHARE),
+            0.0,
+            1.0,
+        );
         let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
         }
-        if share > 0.0 && d.full_load_rad_s > speed {
+        if d.power_w > 0.0 && d.full_load_rad_s > speed {
             speed = d.full_load_rad_s; // RC-3
         }
         smaller(speed, self.highest_rad_s)
+    }
+
+    /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
+    #[inline]
+    pub fn filtered_share(&self, before: f64, asked: f64, dt_s: f64) -> f64 {
+        if self.filter_s > 0.0 {
+            before + (asked - before) * (1.0 - exp(-dt_s / self.filter_s)) // RC-9
+        } else {
+            asked
+        }
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
@@ -101,6 +125,9 @@ impl RatioControl {
             return (before, 0.0, false);
         }
         let change = ln(wanted / before);
+        if self.stays(d, wanted, change) {
+            return (before, 0.0, false); // RC-10
+        }
         let pace = clamp(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
         let short_of_flow =
@@ -121,37 +148,74 @@ impl RatioControl {
     }
 }
 
+impl RatioControl {
+    /// True where a change of ln I is a reversal too small to be made (RC-10).
+    fn stays(&self, d: &RatioDemand, wanted: f64, change: f64) -> bool {
+        let reversal = f64::from(d.last_direction) * change < 0.0;
+        reversal
+            && change.abs() <= self.hysteresis
+            && self.high < wanted
+            && wanted < self.low
+            && d.ratio_before * d.secondary_rad_s > d.free_up_to_rad_s
+    }
+}
+
+/// Primary speed over idle speed up to which the ratio turns round at once: the car pulls away and stops in low (RC-10).
+pub const FREE_OVER_IDLE: f64 = 1.2;
+
+/// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2).
+const LEAST_GENTLE_SHARE: f64 = 0.01;
+
+/// Change of ln I that counts as one (RC-10).
+const LEAST_CHANGE: f64 = 1e-4;
+
+/// Direction of the last change, after a change of ln I (RC-10).
+pub fn direction_after(change: f64, last_direction: i8) -> i8 {
+    if change > LEAST_CHANGE {
+        1
+    } else if change < -LEAST_CHANGE {
+        -1
+    } else {
+        last_direction
+    }
+}
+
 keys! {
     /// Keys of `[transmission.cvt.ratio]`.
     RATIO: RatioKeys = "ratio" [] {
         low: number(0.3, 3.3), "belt ratio of the lowest gear";
         high: number(0.3, 3.3), "belt ratio of the highest gear";
-        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle driving", ["RC-1"];
-        gentle_power_share: number(0.0, 1.0), "share of rated power up to which driving is gentle", ["RC-1"];
+        gentle_rpm: number(500.0, 10_000.0), "engine speed in gentle acceleration", ["RC-1"];
+        gentle_power_share: number(0.0, 1.0), "share of rated power in gentle acceleration", ["RC-1", "RC-2"];
         rise_rpm: number(0.0, 20_000.0), "rise of engine speed over the share of rated power above it", ["RC-1"];
-        overrun_rpm: number(500.0, 10_000.0), "engine speed in overrun", ["RC-2"];
+        overrun_rpm: optional(number(500.0, 10_000.0)), "engine speed without power and in overrun; absent: that of gentle acceleration", ["RC-2"];
         route_efficiency: or(0.85, number(0.3, 1.0)), "wheel power over engine power on the full-load route", ["RC-3"];
         up_per_s: above(0.0, 20.0), "rate of ln I towards high", ["RC-4"];
         down_per_s: above(0.0, 20.0), "rate of ln I towards low", ["RC-4"];
         rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold", ["RC-4"];
+        hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round", ["RC-10"];
+        filter_s: or(1.0, number(0.0, 10.0)), "time constant of the demand in gentle driving", ["RC-9"];
     }
 }
 
 impl RatioControl {
     /// The ratio control from the values of its table; `highest_rad_s` ends the full-load route.
     pub fn from_values<V: Values>(s: &V, highest_rad_s: f64) -> Self {
+        let gentle_rad_s = s.number(&RATIO.gentle_rpm);
         let control = RatioControl {
             low: s.number(&RATIO.low),
             high: s.number(&RATIO.high),
-            gentle_rad_s: s.number(&RATIO.gentle_rpm),
+            gentle_rad_s,
             gentle_share: s.number(&RATIO.gentle_power_share),
             rise_rad_s: s.number(&RATIO.rise_rpm),
-            overrun_rad_s: s.number(&RATIO.overrun_rpm),
+            overrun_rad_s: s.optional(&RATIO.overrun_rpm).unwrap_or(gentle_rad_s),
             highest_rad_s,
             route_efficiency: s.number(&RATIO.route_efficiency),
             up_per_s: s.number(&RATIO.up_per_s),
             down_per_s: s.number(&RATIO.down_per_s),
             rate_speed_rad_s: s.number(&RATIO.rate_speed_rpm),
+            hysteresis: s.number(&RATIO.hysteresis),
+            filter_s: s.number(&RATIO.filter_s),
         };
         if control.low <= control.high {
             s.complain(

@@ -49,14 +49,16 @@ pub struct Prepared {
     pub inv_ratio: f64,
     /// One over the secondary radius, 1/m.
     pub inv_secondary_radius: f64,
-    /// Torque capacity per clamping force and segment friction, m (VA-2).
+    /// Sum of both clamping forces over their wraps per clamping force of the secondary, 1/rad (TE-7).
+    pub clamps_per_wrap: f64,
+    /// Torque capacity per clamping force and friction, m (VA-2, VA-4).
     pub capacity_m: f64,
     /// One over the width of the blend between the loading branches, 1/N.
     pub per_blend_n: f64,
 }
 
 impl Prepared {
-    fn new(belt: &Belt, g: &Geometry) -> Self {
+    fn new(belt: &Belt, g: &Geometry, (direction, thrust_ratio): (f64, f64)) -> Self {
         let pitch = belt.segment_thickness_m;
         let arc_m = [
             g.primary_radius_m * g.primary_wrap_rad,
@@ -72,7 +74,7 @@ impl Prepared {
             band_gap_m_n: belt.length_m
                 / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
             strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
-            slide_m: bands::slide_m(belt, g),
+            slide_m: bands::slide_m(belt, g, direction),
             film_m4: bands::film_m4(belt, g),
             stop: belt
                 .formulation
@@ -83,6 +85,7 @@ impl Prepared {
             inv_segments: arc_m.map(|a| pitch / a),
             inv_ratio: 1.0 / g.ratio,
             inv_secondary_radius: 1.0 / g.secondary_radius_m,
+            clamps_per_wrap: thrust_ratio / g.primary_wrap_rad + 1.0 / g.secondary_wrap_rad,
             capacity_m: 2.0 * g.secondary_radius_m / belt.cos_wedge,
             per_blend_n: 1.0 / belt.blend_n,
         }
@@ -98,18 +101,20 @@ impl BeltAtRatio {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
         let log = ln(ratio);
         let steep = log / belt.unity_width;
+        let direction = if steep.abs() < FULL_STEP {
+            -steep.tanh()
+        } else {
+            -steep.signum()
+        }; // TE-6
+        let thrust_ratio = match &belt.thrust_ratio {
+            Some(curve) => curve.at(log),
+            None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
+        };
         BeltAtRatio {
             geometry,
-            prepared: Prepared::new(belt, &geometry),
-            direction: if steep.abs() < FULL_STEP {
-                -steep.tanh()
-            } else {
-                -steep.signum()
-            }, // TE-6
-            thrust_ratio: match &belt.thrust_ratio {
-                Some(curve) => curve.at(log),
-                None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
-            },
+            prepared: Prepared::new(belt, &geometry, (direction, thrust_ratio)),
+            direction,
+            thrust_ratio,
         }
     }
 }

@@ -6,6 +6,7 @@
 //! | BT-2 | normal force of interface i: Q (1 - (i-1)/n) | source: thesis 8.4.2 |
 //! | BT-3 | torque loss of a pulley, at the primary: f mu_b Q \|1/I - 1\|/2 (d + t (n-1)/2) | derived: closed sum of thesis eq. 48, 49 |
 //! | BT-4 | f = min wrap / own wrap (App. C) or 1 (eq. 49) | source: the two disagree, see Formulation |
+//! | BT-6 | torque loss by the one force of TE-7, at the primary: \|s\| mu_b Tm beta \|1/I - 1\| (d + t (n-1)/2), beta the smaller wrap, half of it on each pulley | derived: moments about both pulleys, T_p - T_s/I = \|1/I - 1\| (d F_1 + t sum F_i) |
 //! | BT-5 | travel on its neighbour in a belt revolution: d (L/2 (1/R_p + 1/R_s) - 2 pi) + x d L \|1/R_p - 1/R_s\|, t for d above band 1 | derived from thesis 8.3, App. C; x = 0 is the mean speed |
 //! | FI-1 | film shear, at the primary: share eta B (L_p + L_s) sum dv_i2 / (h w_in) | source: thesis eq. 52; share and h ASSUMED |
 //!
@@ -15,13 +16,19 @@
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
 use crate::math::{pair, smaller};
 
-/// Friction-weighted sliding of the band pack per turn of the primary, times the wrap factor of each pulley, m (BT-2 to BT-4).
-pub fn slide_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
+/// Friction-weighted sliding of the band pack per turn of the primary, times the wrap factor of each pulley, m (BT-2 to BT-4); with one
+/// force on both pulleys also times the part of that force that a `direction` of the tension step leaves (BT-6).
+pub fn slide_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
     let n = belt.band_count;
     let slide = (1.0 / g.ratio - 1.0).abs() / 2.0
         * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
     let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
     let least = smaller(wraps[0], wraps[1]);
+    let slide = if belt.formulation.by_statics() {
+        direction.abs() * slide // BT-6
+    } else {
+        slide
+    };
     wraps.map(|w| {
         if belt.formulation.scales_band_force() {
             slide * least / w

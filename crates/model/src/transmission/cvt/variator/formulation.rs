@@ -57,9 +57,25 @@ impl Formulation {
         }
     }
 
+    /// Friction that bounds the torque: of macro slip (VA-4), in the printed forms that of micro slip (VA-2).
+    #[inline]
+    pub fn capacity_friction(self, segment: f64, macro_slip: f64) -> f64 {
+        match self {
+            Formulation::Smooth => macro_slip,
+            Formulation::AppendixC | Formulation::Chapter8 => segment,
+        }
+    }
+
     /// Whether the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
     #[inline]
     pub fn has_film(self) -> bool {
+        self == Formulation::Smooth
+    }
+
+    /// One force between bands and segments on both pulleys (TE-7, BT-6), and the share of slip in the loss by statics (SL-11, SL-12). The
+    /// printed forms take the tension step from the primary alone, and count slip by the forces on the segments (SL-7).
+    #[inline]
+    pub fn by_statics(self) -> bool {
         self == Formulation::Smooth
     }
 

@@ -14,6 +14,7 @@ keys! {
         band_width_mm: number(1.0, 100.0), "width of both band packs", ["SL-1", "FI-1"];
         band_offset_mm: number(0.0, 20.0), "offset of band 1 above the rocking edge", ["BT-1"];
         mass_kg: number(0.1, 10.0), "mass of the belt", ["TE-2"];
+        bands_carry_themselves: flag(true), "whether the bands carry their own mass, so that the segments alone press on them", ["TE-8"];
         youngs_gpa: number(50.0, 500.0), "Young's modulus of bands and segments", ["SL-1"];
         strut_area_mm2: number(0.5, 200.0), "contact area of segments in the free strut", ["SL-2"];
         initial_gap_mm: or(0.0, number(0.0, 100.0)), "sum of the gaps at no load", ["SL-5"];
@@ -40,6 +41,9 @@ keys! {
     }
 }
 
+/// Density of steel.
+const STEEL_KG_M3: f64 = 7800.0;
+
 impl Belt {
     /// A belt from the values of `[belt]` and `[variator]`.
     pub fn from_values<V: Values>(belt: &V, variator: &V, formulation: Formulation) -> Self {
@@ -47,6 +51,7 @@ impl Belt {
         let length_m = belt.number(&BELT.length_m);
         let thrust = belt.rows(&BELT.thrust_ratio).unwrap_or_default();
         let logs: Vec<Vec<f64>> = thrust.iter().map(|r| vec![r[0].ln(), r[1]]).collect();
+        let mass_kg = belt.number(&BELT.mass_kg);
         let made = Belt {
             centre_distance_m: variator.number(&VARIATOR.centre_distance_mm),
             length_m,
@@ -57,7 +62,8 @@ impl Belt {
             band_thickness_m: belt.number(&BELT.band_thickness_mm),
             band_width_m: belt.number(&BELT.band_width_mm),
             band_offset_m: belt.number(&BELT.band_offset_mm),
-            mass_kg_m: belt.number(&BELT.mass_kg) / length_m,
+            mass_kg_m: mass_kg / length_m,
+            band_mass_kg_m: 0.0,
             youngs_pa: belt.number(&BELT.youngs_gpa),
             strut_area_m2: belt.number(&BELT.strut_area_mm2),
             initial_gap_m: belt.number(&BELT.initial_gap_mm),
@@ -79,6 +85,26 @@ impl Belt {
                 "low lies above ratio 1; equal ratios make the stop a step",
             );
         }
-        made
+        made.with_band_mass(belt, mass_kg)
+    }
+
+    /// The belt with the mass of its bands, which are of steel, where they carry themselves.
+    fn with_band_mass<V: Values>(self, belt: &V, mass_kg: f64) -> Self {
+        if !belt.flag(&BELT.bands_carry_themselves) {
+            return self;
+        }
+        let steel_kg = STEEL_KG_M3 * self.band_area_m2() * self.length_m;
+        if steel_kg >= mass_kg {
+            belt.complain(
+                "mass_kg",
+                &format!("above {steel_kg:.3}, the mass of the bands"),
+                "the bands alone are heavier than the belt",
+                "check number, width and thickness of the bands",
+            );
+        }
+        Belt {
+            band_mass_kg_m: steel_kg / self.length_m,
+            ..self
+        }
     }
 }

@@ -3,10 +3,11 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
-//! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only |
+//! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only; the printed forms' |
+//! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
 //! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
 //!
-//! Valid for clamping forces from zero on; torque above VA-2 is flagged `gross_slip` and slip is bounded (SL-9).
+//! Valid for clamping forces from zero on; torque above VA-4 is flagged `gross_slip` and slip is bounded (SL-9).
 
 mod at_ratio;
 mod bands;
@@ -30,7 +31,7 @@ pub use slip::Slip;
 pub use tension::Tension;
 
 use crate::fluid::{BandFriction, Lubricant};
-use crate::math::{Curve, smaller};
+use crate::math::{Curve, larger, smaller};
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +56,8 @@ pub struct Belt {
     pub band_offset_m: f64,
     /// Mass per length, kg/m.
     pub mass_kg_m: f64,
+    /// Part of it in the bands, kg/m.
+    pub band_mass_kg_m: f64,
     /// Young's modulus of bands and segments, Pa.
     pub youngs_pa: f64,
     /// Contact area between segments in the free strut, m2.
@@ -88,6 +91,17 @@ impl Belt {
         self.band_count * self.band_width_m * self.band_thickness_m
     }
 
+    /// Mass per length that presses on the bands, and that of the bands where they carry themselves, kg/m (TE-8).
+    #[inline]
+    pub fn masses_kg_m(&self) -> [f64; 2] {
+        let bands = if self.formulation.by_statics() {
+            self.band_mass_kg_m
+        } else {
+            0.0
+        };
+        [self.mass_kg_m - bands, bands] // TE-8
+    }
+
     /// Sliding speed of the innermost band that can carry a film, m/s; 0 for formulations without a film.
     #[inline]
     pub fn sliding_m_s(&self, ratio: f64, primary_rad_s: f64) -> f64 {
@@ -116,6 +130,8 @@ pub struct BeltLoad {
     pub film_thickness_m: f64,
     /// Segment friction of the fluid.
     pub segment_friction: f64,
+    /// Friction of macro slip of the fluid.
+    pub capacity_friction: f64,
     /// Flank friction of the fluid.
     pub flank_friction: f64,
 }
@@ -132,6 +148,7 @@ impl BeltLoad {
             eta_pa_s,
             film_thickness_m: oil.friction.film_thickness_m,
             segment_friction: oil.friction.segment,
+            capacity_friction: oil.friction.capacity,
             flank_friction: oil.friction.flank,
         }
     }
@@ -162,6 +179,10 @@ pub struct BeltState {
     pub tension: Tension,
     /// Slip in detail.
     pub slip: Slip,
+    /// Boundary friction of the bands before slip relieves them, Nm at the primary shaft (BT-3, BT-6).
+    pub band_nm: f64,
+    /// Shear of the film before slip relieves it, Nm at the primary shaft (FI-1).
+    pub film_nm: f64,
     /// Losses, total slip and capacity.
     pub losses: BeltLosses,
 }
@@ -195,11 +216,11 @@ impl BeltLosses {
     }
 }
 
-/// Torque capacity at the secondary, Nm (VA-2).
+/// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
 #[inline]
-fn capacity_nm(at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> f64 {
+fn capacity_nm(at: &BeltAtRatio, t: &Tension, friction: f64) -> f64 {
     let weaker = smaller(t.primary_clamp_n, t.secondary_clamp_n);
-    weaker * mu_segment * at.prepared.capacity_m // VA-2
+    weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
 /// Everything that the equations give at one operating point, pulley by pulley.
@@ -214,26 +235,50 @@ struct Parts {
 
 #[inline(always)]
 fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
-    let tension = Tension::new(belt, at, load, at.direction);
+    let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
+    let band_nm = bands::band_loss_nm(at, &tension, load.band.mu);
+    let film_nm = bands::film_loss_nm(at, load);
+    let slip = slip::slip(belt, at, &tension, mu_segment);
     Parts {
-        slip: slip::slip(belt, at, &tension, mu_segment),
-        band_nm: bands::band_loss_nm(at, &tension, load.band.mu),
-        film_nm: bands::film_loss_nm(at, load),
+        slip: if belt.formulation.by_statics() {
+            let net_nm = load.output_torque_nm * at.prepared.inv_ratio;
+            slip.by_statics(net_nm, sum(band_nm) + film_nm)
+        } else {
+            slip
+        },
+        band_nm,
+        film_nm,
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
-        capacity_nm: capacity_nm(at, &tension, mu_segment),
+        capacity_nm: capacity_nm(
+            at,
+            &tension,
+            belt.formulation
+                .capacity_friction(mu_segment, load.capacity_friction),
+        ),
         tension,
     }
 }
 
+fn sum(pair: [f64; 2]) -> f64 {
+    pair[0] + pair[1]
+}
+
 #[inline(always)]
 fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
-    let sum = |pair: [f64; 2]| pair[0] + pair[1];
     let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
+    let share_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
+    // Slip against the torque relieves bands and film, both by the same share (SL-11).
+    let sliding_nm = sum(parts.band_nm) + parts.film_nm;
+    let left = if share_nm < 0.0 {
+        larger(1.0 + share_nm / sliding_nm, 0.0)
+    } else {
+        1.0
+    };
     BeltLosses {
-        band_nm: sum(parts.band_nm),
-        film_nm: parts.film_nm,
-        slip_nm: slip.primary_loss_nm + slip.secondary_loss_nm,
+        band_nm: left * sum(parts.band_nm),
+        film_nm: left * parts.film_nm,
+        slip_nm: larger(share_nm, 0.0),
         wedge_nm: sum(parts.deflection.wedge_nm),
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
@@ -249,6 +294,8 @@ fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
             + losses.sum_nm(), // VA-1
         tension: parts.tension,
         slip: parts.slip,
+        band_nm: sum(parts.band_nm),
+        film_nm: parts.film_nm,
         losses,
     }
 }
@@ -259,7 +306,7 @@ pub fn belt_losses(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltLosses
     losses(load, &parts(belt, at, load))
 }
 
-/// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2).
+/// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
 pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
     belt_losses(belt, at, load).capacity_nm
 }

@@ -211,10 +211,13 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
     let state = state(at, load, &parts);
     let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
     let arcs = at.prepared.arc_m;
-    let slip = state.slip;
+    let (slip, losses) = (state.slip, &state.losses);
     BeltPoint {
-        film_loss_nm: arcs.map(|arc| parts.film_nm * arc / (arcs[0] + arcs[1])), // FI-1
-        slip_loss_nm: [slip.primary_loss_nm, slip.secondary_loss_nm],
+        film_loss_nm: arcs.map(|arc| losses.film_nm * arc / (arcs[0] + arcs[1])), // FI-1
+        slip_loss_nm: split_nm(
+            losses.slip_nm,
+            [slip.primary_loss_nm, slip.secondary_loss_nm],
+        ),
         loss_nm: state.losses.sum_nm(),
         input_torque_nm: state.input_torque_nm,
         active_segments: slip.active_segments,
@@ -233,9 +236,19 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
             at,
             load,
             &parts.tension,
-            parts.band_nm,
+            split_nm(losses.band_nm, parts.band_nm),
             &parts.deflection,
         )
+    }
+}
+
+/// A loss of the belt on each pulley, in the proportion of the pair that came before SL-11.
+fn split_nm(loss_nm: f64, pair: [f64; 2]) -> [f64; 2] {
+    let [a, b] = pair.map(f64::abs);
+    if a + b > 0.0 {
+        [loss_nm * a / (a + b), loss_nm * b / (a + b)]
+    } else {
+        pair
     }
 }
 

@@ -9,6 +9,8 @@
 //! | SL-5 | gap slip = v e_belt / (own arc - k t) | source: thesis eq. 61 to 64 |
 //! | SL-6 | idle slip = gap slip lambda_idle/lambda_act, other pulley by lambda_other/lambda_act | source: thesis eq. 65 to 70; signs per Formulation |
 //! | SL-7 | loss = sum \|v_slip F_T\| / w_in | source: thesis eq. 74 to 76 |
+//! | SL-11 | `smooth`: the share of slip in the loss is s T_out/I, with its sign: above zero a loss, below zero it relieves bands and film, T_band + T_film <- T_band + T_film + s T_out/I | derived: statics of both pulleys, T_in = T_out/I + torque of bands, film, wedge and penetration, with w_s = w_p (1 - s)/I |
+//! | SL-12 | `smooth`: where s T_out < 0, \|s\| <= (T_band + T_film) I/\|T_out\| | derived: second law, the belt gives no energy back |
 //! | SL-8 | conventional at max(C_x, 0) and inverted at max(-C_x, 0) blended by (1 + tanh(C_x/C0))/2 | ASSUMED smoothing of the change of pulley at C_x = 0 |
 //! | SL-9 | each pulley's slip is held at +-`slip_bound`, gap and idle slip in proportion | ASSUMED: beyond it gross slip, flagged |
 //! | SL-10 | lambda_idle is held above -0.95 | ASSUMED: an idle segment takes no more than its grip; else overload slips the wrong way |
@@ -30,9 +32,9 @@ pub struct Slip {
     pub gap: f64,
     /// Part of the loading pulley's slip that the band friction on its idle arc adds, over belt speed.
     pub idle: f64,
-    /// Torque loss at the primary, referred to the primary shaft, Nm.
+    /// Torque loss at the primary, referred to the primary shaft, Nm; by statics with the sign of slip times torque (SL-11).
     pub primary_loss_nm: f64,
-    /// Torque loss at the secondary, referred to the primary shaft, Nm.
+    /// Torque loss at the secondary, referred to the primary shaft, Nm; by statics with the sign of slip times torque (SL-11).
     pub secondary_loss_nm: f64,
     /// Segments in the active arc of the branch in force.
     pub active_segments: f64,
@@ -92,7 +94,9 @@ impl<'a> Contact<'a> {
         Contact {
             belt,
             at,
-            slack_m: t.primary_shoulder_n * prepared.band_gap_m_n + belt.initial_gap_m, // SL-1
+            slack_m: (t.primary_shoulder_n + t.ring_n * at.geometry.primary_wrap_rad)
+                * prepared.band_gap_m_n
+                + belt.initial_gap_m, // SL-1
             grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
             shoulder_n: [
                 t.step_n * prepared.shoulder_per_step[0],
@@ -161,6 +165,18 @@ fn branches(c: &Contact) -> Branches {
             belt.slip_bound,
         )
     }); // SL-9
+    let mut branches = Branches {
+        loaded,
+        other,
+        free,
+        gap,
+        loss_loaded_nm: [0.0; 2],
+        loss_other_nm: [0.0; 2],
+        active_segments: k,
+    };
+    if f.by_statics() {
+        return branches; // SL-11
+    }
     let r = c.at.geometry.primary_radius_m;
     let mut loaded_n = pair(|i| loaded[i] * c.grip_n[i] * segments[i]);
     if f.counts_idle_arc() {
@@ -175,14 +191,32 @@ fn branches(c: &Contact) -> Branches {
             loaded_n[i] + (idle[i] * share[i] * shoulder[i]).abs() * (idle_arc[i] / pitch)
         });
     }
-    Branches {
-        loaded,
-        other,
-        free,
-        gap,
-        loss_loaded_nm: pair(|i| r * loaded_n[i]), // SL-7
-        loss_other_nm: pair(|i| r * (other[i] * total_other[i]).abs()), // SL-7
-        active_segments: k,
+    branches.loss_loaded_nm = pair(|i| r * loaded_n[i]); // SL-7
+    branches.loss_other_nm = pair(|i| r * (other[i] * total_other[i]).abs()); // SL-7
+    branches
+}
+
+impl Slip {
+    /// The slip with its share of the loss by statics: `net_nm` is the output torque at the primary shaft, `sliding_nm` what bands and film
+    /// lose before it (SL-11, SL-12).
+    #[inline(always)]
+    pub(super) fn by_statics(self, net_nm: f64, sliding_nm: f64) -> Self {
+        let share_nm = (self.primary + self.secondary) * net_nm;
+        let kept = if share_nm < -sliding_nm {
+            -sliding_nm / share_nm
+        } else {
+            1.0
+        }; // SL-12
+        let (primary, secondary) = (kept * self.primary, kept * self.secondary);
+        Slip {
+            primary,
+            secondary,
+            gap: kept * self.gap,
+            idle: kept * self.idle,
+            primary_loss_nm: primary * net_nm,     // SL-11
+            secondary_loss_nm: secondary * net_nm, // SL-11
+            ..self
+        }
     }
 }
 

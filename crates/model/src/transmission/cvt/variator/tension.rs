@@ -7,12 +7,16 @@
 //! | TE-3 | dT = -s mu_b Q_p, s = -1 in low, +1 in high | source: thesis eq. 46, App. C |
 //! | TE-4 | C_x = T/R_s - dT | source: thesis eq. 42 |
 //! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
+//! | TE-7 | one force on both pulleys: dT = -s mu_b beta Tm, beta the smaller wrap, Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_b beta A and c = mu_b beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
+//! | TE-8 | `smooth`: m is that of the segments, and the mean tension of the bands is Q/beta + m_b v2, m_b theirs | derived: free body of a segment, 2 F tan th + m_s beta v2 + \|C_x\| beta/2 = Q, and of a band element, T = Q/beta + m_b v2; the thesis and the printed forms have the whole belt press |
 //! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
 //!
 //! Symbols: F clamping force N, th half wedge angle, m belt mass per length kg/m, v belt speed m/s, mu_b band friction.
-//! C_x is continuous in T with a bend at C_x = 0. Needs mu_b beta_p / 2 < 1, true for mu_b < 0.53.
+//! C_x is continuous in T with a bend at C_x = 0. TE-3 and TE-5 are those of the printed forms, TE-7 that of `smooth`. TE-5 needs mu_b beta_p / 2 < 1,
+//! true for mu_b < 0.53; TE-7 mu_b beta / 2 < 1, true for mu_b < 0.64.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
+use crate::math::smaller;
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,28 +33,93 @@ pub struct Tension {
     pub compression_n: f64,
     /// Step of band tension dT, N.
     pub step_n: f64,
+    /// Tension that the bands' own mass takes up, N (TE-8).
+    pub ring_n: f64,
+}
+
+/// Compression C_x for the step that it has without one, Z, and the rise of the step with it, s c (TE-5, TE-7).
+#[inline(always)]
+fn compression_n(z: f64, sc: f64) -> f64 {
+    // The divisors are known before the torque is: nothing waits for a division.
+    z * if z >= 0.0 {
+        1.0 / (1.0 - sc)
+    } else {
+        1.0 / (1.0 + sc)
+    }
+}
+
+/// Clamping forces of primary and secondary (TE-1), and the flows of momentum m v2 of what presses and of bands that carry themselves (TE-8), N.
+#[inline(always)]
+fn forces_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> ([f64; 2], [f64; 2]) {
+    let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
+    let clamp_n = [
+        load.secondary_clamp_n * at.thrust_ratio,
+        load.secondary_clamp_n,
+    ]; // TE-1
+    (clamp_n, belt.masses_kg_m().map(|mass| mass * v * v))
+}
+
+/// Shoulder force per angle of wrap without compression, A, N (TE-7).
+#[inline(always)]
+fn bare_mean_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, centrifugal_n: f64) -> f64 {
+    belt.tan_wedge * load.secondary_clamp_n * at.prepared.clamps_per_wrap + centrifugal_n
 }
 
 impl Tension {
+    /// The belt's tension by its formulation, with the smoothed direction of the step (TE-6).
+    #[inline(always)]
+    pub fn driving(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Self {
+        if belt.formulation.by_statics() {
+            Tension::one_force(belt, at, load)
+        } else {
+            Tension::new(belt, at, load, at.direction)
+        }
+    }
+
+    /// Solves tension and compression with one force between bands and segments on both pulleys (TE-7).
+    #[inline(always)]
+    pub fn one_force(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Self {
+        let (g, s) = (&at.geometry, at.direction);
+        let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
+        let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
+        let mean = bare_mean_n(belt, at, load, centrifugal_n);
+        let grip = load.band.mu * smaller(wraps[0], wraps[1]);
+        let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * grip * mean;
+        let cx = compression_n(z, s * (0.5 * grip)); // TE-7
+        let tension = mean + 0.5 * cx.abs();
+        Tension {
+            primary_clamp_n: clamp_n[0],
+            secondary_clamp_n: clamp_n[1],
+            primary_shoulder_n: tension * wraps[0],
+            secondary_shoulder_n: tension * wraps[1],
+            compression_n: cx,
+            step_n: -s * (grip * tension), // TE-7
+            ring_n,
+        }
+    }
+
+    /// Step of tension without compression, N: the torque at which compression changes sign gives it (TE-5, TE-7 with Z = 0).
+    pub fn bare_step_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+        let (clamp_n, [centrifugal_n, _]) = forces_n(belt, at, load);
+        let (g, mu) = (&at.geometry, load.band.mu);
+        let pressed_n = if belt.formulation.by_statics() {
+            mu * smaller(g.primary_wrap_rad, g.secondary_wrap_rad)
+                * bare_mean_n(belt, at, load, centrifugal_n)
+        } else {
+            mu * (2.0 * clamp_n[0] * belt.tan_wedge + g.primary_wrap_rad * centrifugal_n)
+        };
+        -at.direction * pressed_n
+    }
+
     /// Solves tension and compression for a direction s of the tension step, -1 in low, +1 in high (TE-2 to TE-5).
     #[inline(always)]
     pub fn new(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, s: f64) -> Self {
         let (g, mu, bp) = (&at.geometry, load.band.mu, at.geometry.primary_wrap_rad);
-        let v = load.primary_speed_rad_s * g.primary_radius_m;
-        let centrifugal_n = belt.mass_kg_m * v * v;
-        let clamp_n = [
-            load.secondary_clamp_n * at.thrust_ratio,
-            load.secondary_clamp_n,
-        ];
+        let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
         let a = 2.0 * clamp_n[0] * belt.tan_wedge + bp * centrifugal_n;
         let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * mu * a;
         let c = mu * bp / 2.0;
-        // The divisors are known before the torque is: nothing waits for a division.
-        let cx = z * if z >= 0.0 {
-            1.0 / (1.0 - s * c)
-        } else {
-            1.0 / (1.0 + s * c)
-        }; // TE-5
+        let cx = compression_n(z, s * c); // TE-5
         let q_p = a + cx.abs() * bp / 2.0; // TE-2
         let bs = g.secondary_wrap_rad;
         Tension {
@@ -62,12 +131,13 @@ impl Tension {
                 + cx.abs() * bs / 2.0, // TE-2
             compression_n: cx,
             step_n: -s * mu * q_p, // TE-3
+            ring_n,
         }
     }
 
     /// Mean band tension (T1 + T2)/2, N (thesis eq. 39).
     #[inline]
     pub fn mean_tension_n(&self, g: &Geometry) -> f64 {
-        self.primary_shoulder_n / g.primary_wrap_rad
+        self.primary_shoulder_n / g.primary_wrap_rad + self.ring_n // TE-8
     }
 }

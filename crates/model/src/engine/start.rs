@@ -1,0 +1,93 @@
+//! What the engine did before a step: the laws that follow a start and the fuel cut look back at it.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | EN-9 | fuel of a start: m(t) = m_0 clip((60 degC - T_start)/60 K, 0, 1) F(t/tau), F(u) = 2u - u2 up to u = 1, then 1 | form: enrichment that fades in some 30 s (manuals of the 1990s), by coolant at the start; size ASSUMED |
+//! | EN-11 | share of overrun in which fuel is cut: from none to all over 1 K of coolant above T_cut, times from none to all between n_back and n_cut | source: Saab 900 workshop manual 1987 (45 degC, 1400 to 1750 rpm, back 1300 to 1450 rpm); ramps ASSUMED in place of hysteresis |
+//!
+//! With ramps in place of a hysteresis the fuel of a step is a continuous function of what went before, and no state is carried.
+
+use super::Engine;
+use crate::fluid::ZERO_DEGC_K;
+use crate::math::{clamp, ramp, smaller};
+
+/// What the engine did before a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Running {
+    /// Time since the start, s: 0 at the start, infinite where it is long ago.
+    pub since_s: f64,
+    /// Coolant at the start, K.
+    pub start_k: f64,
+    /// Speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Speed of the wheels, rad/s.
+    pub wheel_rad_s: f64,
+}
+
+impl Running {
+    /// At rest, before a start.
+    pub const STOPPED: Running = Running {
+        since_s: 0.0,
+        start_k: 0.0,
+        speed_rad_s: 0.0,
+        wheel_rad_s: 0.0,
+    };
+
+    /// Started long ago.
+    pub const LONG: Running = Running {
+        since_s: f64::INFINITY,
+        start_k: f64::INFINITY,
+        ..Running::STOPPED
+    };
+
+    /// The same with the coolant of the start, K, where it starts now.
+    #[must_use]
+    pub fn started(self, coolant_k: f64) -> Running {
+        if self.since_s > 0.0 {
+            return self;
+        }
+        Running {
+            start_k: coolant_k,
+            ..self
+        }
+    }
+
+    /// The same with an engine in gear slowed down as the wheels are in a step, so that EN-11 has no lag of a step.
+    #[must_use]
+    pub fn rolled(self, wheel_rad_s: f64) -> Running {
+        if wheel_rad_s >= self.wheel_rad_s {
+            return self;
+        }
+        Running {
+            speed_rad_s: self.speed_rad_s * wheel_rad_s / self.wheel_rad_s,
+            wheel_rad_s,
+            ..self
+        }
+    }
+
+    /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
+    pub(super) fn spending_per_s(&self, within_s: f64, dt_s: f64) -> f64 {
+        let spent = |since_s: f64| {
+            let u = smaller(since_s / within_s, 1.0);
+            u * (2.0 - u)
+        };
+        (spent(self.since_s + dt_s) - spent(self.since_s)) / dt_s
+    }
+}
+
+impl Engine {
+    /// Fuel of the start in a step, kg/s.
+    #[inline]
+    pub(super) fn start_kg_s(&self, running: &Running, dt_s: f64) -> f64 {
+        let cold = clamp((60.0 + ZERO_DEGC_K - running.start_k) / 60.0, 0.0, 1.0);
+        self.start_kg * cold * running.spending_per_s(self.start_s, dt_s) // EN-9
+    }
+
+    /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
+    #[inline]
+    pub(super) fn cut_share(&self, coolant_k: f64, running: &Running) -> f64 {
+        let warm = ramp(coolant_k, self.cut_from_k, self.cut_from_k + 1.0);
+        let speed = running.speed_rad_s;
+        warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
+    }
+}
