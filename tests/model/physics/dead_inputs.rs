@@ -130,7 +130,12 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 24] = [
+const NEEDS: [(&str, &[&str], &str); 25] = [
+    (
+        "reverse_clutch.oil_share",
+        &["transmission.cvt.reverse_clutch.peak_rpm=4000"],
+        "rupture of the film, only with a speed of largest drag",
+    ),
     (
         "variator.piston_outer_mm",
         &["transmission.cvt.variator.compensated=false"],

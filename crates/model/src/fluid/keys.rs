@@ -16,7 +16,7 @@ keys! {
     /// Keys of `[friction]`.
     FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
         band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC", ["LU-4"];
-        band_rise_per_k: or(0.001_932, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
+        band_rise_per_k: or(0.002_97, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
         segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley in micro slip", ["SL-4"];
         capacity: or(0.09, number(0.02, 0.4)), "friction segment on pulley in macro slip: torque capacity", ["VA-4"];
         flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration", ["WE-3", "PE-1"];
@@ -25,9 +25,9 @@ keys! {
     /// Keys of `[friction.lift_off]`.
     LIFT: LiftKeys = "lift_off" [] {
         enabled: flag(true), "whether the bands can ride on oil", ["LU-5"];
-        reduction: or(0.1608, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes", ["LU-4"];
-        load_n_per_m: or(0.0067, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
-        exponent: or(3.93, number(0.5, 8.0)), "sharpness of lift-off", ["LU-5"];
+        reduction: or(0.146, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes", ["LU-4"];
+        load_n_per_m: or(0.00599, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
+        exponent: or(4.32, number(0.5, 8.0)), "sharpness of lift-off", ["LU-5"];
         film_thickness_um: or(1.5, number(0.01, 100.0)), "thickness of the carrying film", ["FI-1"];
     }
 }

@@ -106,7 +106,7 @@ const CVT: [Line; 8] = [
     line(
         "reverse clutch",
         &[Component::ClutchDrag],
-        "its speed: at its cap (CD-1, CD-2)",
+        "nothing: at its cap (CD-1)",
         "`cap_nm`: the film between plates ruptures",
         "about 0.5 Nm below 25 degC",
     ),

@@ -133,21 +133,19 @@ fn input_shaft(r: &Reference) -> String {
 
 fn reverse_clutch(r: &Reference) -> String {
     let clutch = r.cvt().clutch_drag;
-    let line = |rpm: f64| {
-        sweep(&format!("{rpm:.0} rpm"), -20.0, 100.0, 240, |t| {
-            clutch.torque_nm(viscosity_power(nu(r, t), clutch.exponent), rpm * RPM)
-        })
-    };
+    let drag = sweep("drag", -20.0, 100.0, 240, |t| {
+        clutch.torque_nm(viscosity_power(nu(r, t), clutch.exponent), 2000.0 * RPM)
+    });
     plot(
         "Reverse clutch drag",
-        "fluid of the Rover (CD-1, CD-2)",
-        "Drag of the open reverse clutch against oil temperature at four speeds.",
+        "fluid of the Rover at 2000 rpm (CD-1)",
+        "Drag of the open reverse clutch against oil temperature.",
         "",
         vec![axes(
             "",
             "Oil temperature [degC]",
             "Torque [Nm]",
-            [1000.0, 2000.0, 3000.0, 4000.0].map(line).to_vec(),
+            vec![drag],
         )],
     )
 }

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | CD-1 | film between the plates: T_f = min(c (nu/nu_80)^m s_0/s, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
-//! | CD-2 | speed: T = T_f 2x/(1 + (x/q)^2), x = n/n_p | assumed form: rise, rupture of the film, fall (Yuan et al.; Pointner-Gabriel et al., Lubricants 13 (2025) 27); n_p 2000 to 6000 rpm assumed |
+//! | CD-2 | speed: T = T_f 2x/(1 + (x/q)^2), x = n/n_p | ASSUMED: rise, rupture of the film, fall (Yuan et al.; Pointner-Gabriel et al., Lubricants 13 (2025) 27); n_p 2000 to 6000 rpm |
 //!
 //! nu_80 = 11 mm2/s is the viscosity and s_0 = 0.3 mm the clearance at which c holds; s clearance of a pair of plates, n speed of the
 //! primary, n_p speed of the largest drag with the normal oil feed, q feed over the normal one. Below n_p the film shears as Couette's
