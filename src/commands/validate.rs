@@ -8,19 +8,23 @@ use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation::page;
 use cvtcycle::study::check::{
-    COMMON, CandidateVehicle, MECHANISMS, Report, RowFile, ValidationRow, csv, embedded_rows, json,
-    judge, markdown, read,
+    COMMON, CandidateVehicle, MECHANISMS, Perturbations, PowerReport, Report, RowFile,
+    ValidationRow, csv, embedded_rows, json, judge, markdown, read,
 };
 
-use super::Execute;
+use super::{Execute, threads};
 use crate::args::problems::{bad_value, did_you_mean, overrides, problem};
-use crate::args::{Names, OutArgs, OutputArgs, VehicleArgs, bytes, names_of, one_of};
-use crate::print::{CommandOutput, CommandResult, Results, Terminal, WrittenFiles, json_text};
+use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs, bytes, names_of, one_of};
+use crate::print::progress::{Progress, handle_interrupts};
+use crate::print::{
+    CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
+};
 
 /// Arguments of `validate`.
 #[derive(Args, Clone, Debug)]
 #[command(
-    mut_arg("out", |out| out.help("Write summary.json, validation.csv, validation.html and validation.md into this directory")),
+    mut_arg("out", |out| out.help("Write summary.json, validation.csv, validation.html and validation.md into this directory; with --power also power.csv")),
+    mut_arg("threads", |threads| threads.requires("power")),
     after_help = "\
 Examples:
   cvtcycle validate
@@ -28,10 +32,12 @@ Examples:
   cvtcycle validate --held-out
   cvtcycle validate --set transmission.cvt.pump.displacement_cc_rev=12
   cvtcycle validate --format html > validation.html
+  cvtcycle validate --power --chapter 5
 
 Verdicts: `agrees` (within the printed precision and the tolerance), `fit` (the same, but a parameter \
 was fitted to it), `differs` (with the reason), `not comparable`, and `not computed` for a number that \
-this car does not have. Exit code 1: the verdict of a row is not the recorded one. Rows are TOML files (docs/validation_format.md); --rows adds your own \
+this car does not have. Exit code 1: the verdict of a row is not the recorded one. --power changes every number of the cars by itself, to 0.6 and 1.5 times, \
+where nothing flips to 0.1 and 8 times, and says by row which changes flip its verdict; table, CSV and JSON object have it. Rows are TOML files (docs/validation_format.md); --rows adds your own \
 measurements."
 )]
 pub struct ValidateArgs {
@@ -50,6 +56,11 @@ pub struct ValidateArgs {
     /// Only rows that test the model: neither fitted to nor constants
     #[arg(long)]
     held_out: bool,
+    /// Change every number of the cars by itself and say which changes flip the verdict of each row
+    #[arg(long)]
+    power: bool,
+    #[command(flatten)]
+    threads: ThreadArgs,
     #[command(flatten)]
     car: VehicleArgs,
     /// Format of the output: table, csv, html, or md (a fragment for the book)
@@ -100,6 +111,11 @@ impl Execute for ValidateArgs {
     type Plan = ValidatePlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<ValidatePlan> {
+        if self.power {
+            handle_interrupts();
+            let threads = self.threads.given(problems);
+            problems.take(threads::begin(threads));
+        }
         let form = problems.take(one_of("--format", &self.format, &FORMS));
         let texts = self.texts(problems);
         let common = (embedded_name(COMMON.0), COMMON.1);
@@ -129,23 +145,45 @@ impl Execute for ValidateArgs {
 
     fn run(&self, plan: ValidatePlan, terminal: Terminal) -> CommandResult {
         let report = judge(&plan.files, &plan.candidate, |row| self.is_wanted(row))?;
-        let json = json_text(&json(&report))?;
+        let mut object = json(&report);
+        let power = match self.power {
+            false => None,
+            true => match self.power_of(&plan.files, &report) {
+                None => return Ok(stopped()),
+                found => found,
+            },
+        };
+        if let Some(power) = &power {
+            object["power"] = power.json();
+        }
+        let json = json_text(&object)?;
         let files = WrittenFiles::write(plan.out, |dir| {
             dir.put("summary.json", &json)?;
             dir.put("validation.csv", csv(&report))?;
             dir.put("validation.html", html(&report)?)?;
             dir.put("validation.md", markdown(&report))?;
+            if let Some(power) = &power {
+                dir.put("power.csv", power.csv())?;
+            }
             Ok("")
         })?;
-        let results = Results::new(json, tables::changed_verdicts(&report), files);
-        let stdout = match plan.form {
-            ValidationForm::Table => {
-                let tables = || tables::tables(&report, terminal.stdout);
+        let faults = power.as_ref().map(PowerReport::faults).unwrap_or_default();
+        let failures = tables::changed_verdicts(&report).into_iter().chain(faults);
+        let results = Results::new(json, failures.collect(), files);
+        let stdout = match (plan.form, &power) {
+            (ValidationForm::Table, power) => {
+                let tables = || match power {
+                    Some(power) => tables::power(&report, power, terminal.stdout),
+                    None => tables::tables(&report, terminal.stdout),
+                };
                 return Ok(results.output(&self.output, tables));
             }
-            ValidationForm::Csv => csv(&report),
-            ValidationForm::Html => html(&report)?,
-            ValidationForm::Markdown => markdown(&report),
+            (ValidationForm::Csv, Some(power)) => {
+                String::from_utf8_lossy(&power.csv()).into_owned()
+            }
+            (ValidationForm::Csv, None) => csv(&report),
+            (ValidationForm::Html, _) => html(&report)?,
+            (ValidationForm::Markdown, _) => markdown(&report),
         };
         Ok(CommandOutput {
             stdout,
@@ -154,7 +192,24 @@ impl Execute for ValidateArgs {
     }
 }
 
+fn stopped() -> CommandOutput {
+    CommandOutput {
+        stderr: "cvtcycle: stopped before every change was tried; no results\n".to_owned(),
+        ending: Ending::CheckFailed,
+        ..CommandOutput::default()
+    }
+}
+
 impl ValidateArgs {
+    /// What changes of the cars do to the rows; none if it was stopped.
+    fn power_of(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
+        let changes = Perturbations::of(files, &report.candidate);
+        let progress = Progress::counted("changes", changes.count() as u64, self.output.quiet);
+        let power = changes.power(files, report, &progress);
+        progress.finish();
+        power
+    }
+
     /// The built-in rows are about a CVT; with a manual gearbox each of them would be a problem.
     fn check_vehicle(&self, problems: &mut Problems) {
         // Problems of the vehicle itself are reported together with those of its overrides.

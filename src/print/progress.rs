@@ -35,10 +35,12 @@ enum Display {
 }
 
 impl Progress {
-    /// Counts so many runs of a study.
-    pub fn runs(total: u64, quiet: bool) -> Self {
-        let bar = "{bar:30} {percent}%  {human_pos} of {human_len} runs  {rate}  {eta} left";
-        Progress::new("runs", Some(total), bar, quiet)
+    /// Counts so many units of work, such as runs of a study.
+    pub fn counted(unit: &'static str, total: u64, quiet: bool) -> Self {
+        let bar = format!(
+            "{{bar:30}} {{percent}}%  {{human_pos}} of {{human_len}} {unit}  {{rate}} {unit}/s  {{eta}} left"
+        );
+        Progress::new(unit, Some(total), &bar, quiet)
     }
 
     /// Counts evaluations of a search of unknown length.
@@ -113,7 +115,7 @@ fn style(template: &str) -> ProgressStyle {
         "rate",
         |state: &ProgressState, out: &mut dyn std::fmt::Write| {
             // Writing into the text of a bar cannot fail.
-            let _ = write!(out, "{:.0} runs/s", state.per_sec());
+            let _ = write!(out, "{:.0}", state.per_sec());
         },
     )
 }

@@ -132,7 +132,8 @@ impl StudyRunArgs {
             .collect();
         let points = missing.iter().map(|part| study.part_points(*part));
         let points: u64 = points.map(|points| points.end - points.start).sum();
-        let progress = Progress::runs(points * study.cars.len() as u64, self.output.quiet);
+        let runs = points * study.cars.len() as u64;
+        let progress = Progress::counted("runs", runs, self.output.quiet);
         let sink = DirWriter::new(study, dir);
         let end = study.execute(&done, &sink, &progress);
         progress.finish();

@@ -3,7 +3,8 @@
 use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct};
 use cvtcycle::report::validation::chapter_title;
 use cvtcycle::study::check::{
-    Group, Judged, Report, Verdict, computed_text, notes_line, unit_text,
+    Group, Judged, PowerReport, Report, RowPower, Strength, Verdict, computed_text, notes_line,
+    unit_text,
 };
 
 use crate::print::colour::Paint;
@@ -93,6 +94,45 @@ fn held_out(report: &Report, group: Group) -> String {
     let median = found.median_off;
     let median = median.map(|median| (name, format!("{median:.2}")));
     list(lines.chain(median))
+}
+
+/// Changes shown of those that flip a row.
+const MAX_FLIPS: usize = 3;
+
+/// A table of the rows with what flips them, counts, and the rows that nothing flips.
+pub fn power(report: &Report, power: &PowerReport, paint: Paint) -> String {
+    let candidate = &report.candidate;
+    let heading = paint.heading("Changes of the cars that flip a verdict");
+    let (tried, refused) = (power.tried, power.refused.len());
+    let mut text = format!("{heading}  {}\n", candidate.vehicle);
+    text.extend(candidate.set.iter().map(|set| format!("--set {set}\n")));
+    text += &format!("{tried} changes tried, {refused} of them refused\n");
+    let rows = TextColumns::new()
+        .left("row", |row: &RowPower| row.id.clone())
+        .left("verdict", |row| row.verdict.word())
+        .left("power", |row| row.strength().word())
+        .right("flips", |row| row.flips.len().to_string())
+        .right("moves", |row| row.moved.to_string())
+        .left("flipped by", |row| row.flips_text(MAX_FLIPS))
+        .text(&power.rows);
+    let count = |strength: Strength| (strength.word(), power.of(strength).count().to_string());
+    let counts = list(Strength::ALL.into_iter().map(count));
+    let never = |verdict: Verdict| {
+        let rows = power.of(Strength::Never);
+        let ids = rows.filter(|row| row.verdict == verdict);
+        let ids: Vec<&str> = ids.map(|row| row.id.as_str()).collect();
+        (!ids.is_empty()).then(|| [verdict.word().to_owned(), ids.join(" ")])
+    };
+    let mut nothing = TextTable::new("ll").indented();
+    for line in Verdict::ALL.into_iter().filter_map(never) {
+        nothing.row(line);
+    }
+    let parts = [
+        ("Rows", rows),
+        ("Rows by power", counts),
+        ("Rows that nothing flips, by verdict", nothing.text()),
+    ];
+    text + &sections(parts, paint)
 }
 
 /// One line for each row whose verdict is not the recorded one.

@@ -3,6 +3,7 @@
 
 mod fleet;
 mod own_rows;
+mod power;
 
 use std::collections::BTreeSet;
 use std::path::Path;

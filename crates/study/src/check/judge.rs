@@ -172,7 +172,25 @@ pub fn judge(
     if !problems.is_empty() {
         return Err(problems);
     }
-    let store = Store::new(&cars);
+    let (rows, evaluations) = judge_rows(files, &cars, wanted)?;
+    let candidate = candidate.clone();
+    Ok(Report {
+        candidate,
+        rows,
+        evaluations,
+    })
+}
+
+/// The rows for which `wanted` is true, and the evaluations that they took.
+///
+/// # Errors
+/// More than [`MAX_EVALUATIONS`] evaluations.
+pub(super) fn judge_rows(
+    files: &[RowFile],
+    cars: &dyn Cars,
+    wanted: impl Fn(&ValidationRow) -> bool,
+) -> Result<(Vec<Judged>, u64), Problem> {
+    let store = Store::new(cars);
     let mut rows = Vec::new();
     let views = files
         .iter()
@@ -185,17 +203,11 @@ pub fn judge(
         let judged = judged(view, file, row);
         if store.evaluations().is_none() {
             // The rows after it have none left either.
-            return Err(exhausted(&judged).into());
+            return Err(exhausted(&judged));
         }
         rows.push(judged);
     }
-    let evaluations = store.evaluations().unwrap_or(MAX_EVALUATIONS);
-    let candidate = candidate.clone();
-    Ok(Report {
-        candidate,
-        rows,
-        evaluations,
-    })
+    Ok((rows, store.evaluations().unwrap_or(MAX_EVALUATIONS)))
 }
 
 /// The problem of the row in which the evaluations ran out.

@@ -14,11 +14,13 @@
 //! | `judge` | the vehicle that is validated, and verdicts of the rows |
 //! | `rule` | the rule from computed and printed to a verdict |
 //! | `report` | JSON, CSV, Markdown |
+//! | `power` | which change of the cars flips the verdict of a row |
 
 pub(crate) mod checks;
 pub mod expr;
 pub mod judge;
 pub mod keys;
+pub mod power;
 pub mod report;
 mod read;
 pub(crate) mod rows;
@@ -34,6 +36,7 @@ pub const COMMON: (&str, &str) = cvtcycle_config::embedded::common_rows()[0];
 pub use expr::Computed;
 pub use judge::{CandidateVehicle, HeldOut, Judged, Report, judge};
 pub use keys::MECHANISMS;
+pub use power::{Perturbations, PowerReport, RowPower, Strength};
 pub use read::read;
 pub use report::{computed_text, csv, json, markdown, notes_line, unit_text};
 pub use rows::{Cause, RowFile, Tolerance, ValidationRow};
