@@ -406,7 +406,7 @@ fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
     }
     for numbers in [
         [("thermal.radiator.thermostat_to_degc", 79.0)],
-        [("transmission.manual.mesh.efficiency", 0.5)],
+        [("transmission.manual.gears.oil_factor", 2.5)],
     ] {
         assert!(!same(
             CARS[1],
@@ -446,7 +446,7 @@ fn keys_without_a_slot() {
         (CARS[0], "zebra", "remove it"),
         (
             CARS[0],
-            "transmission.manual.mesh.efficiency",
+            "transmission.manual.gears.oil_factor",
             "or take another vehicle",
         ),
         (

@@ -116,18 +116,10 @@ fn val_files_without_the_keys_keep_the_power_laws() {
         );
         let power = |m: f64, x: f64| cvtcycle_model::math::exp(m * cvtcycle_model::math::ln(x));
         for w in [0.0, 100.0, 400.0] {
-            let (s, d) = (&cvt.shaft_drag, &cvt.final_drive);
+            let s = &cvt.shaft_drag;
             let shaft = s.constant_nm + s.viscous_nm_s * power(s.exponent, nu / 11e-6) * w;
             let now = s.torque_nm(viscosity_power(nu, s.exponent), w);
             assert_eq!(now.to_bits(), shaft.to_bits(), "{degc} degC");
-            let fall = cvtcycle_model::math::exp(-w / d.scale_rad_s);
-            let final_drive = d.boundary_nm * fall + d.viscous_nm * power(d.exponent, nu / 11e-6);
-            assert_eq!(
-                d.drag_nm(viscosity_power(nu, d.exponent), fall, w)
-                    .to_bits(),
-                final_drive.to_bits(),
-                "{degc} degC"
-            );
             let p = &cvt.pump;
             let state = p.state(&p.at(eta), w, 20e5, 1e-4);
             let viscous = p.viscous
@@ -146,43 +138,23 @@ fn val_files_without_the_keys_keep_the_power_laws() {
             assert_eq!(state.flow_limited, p.displacement_m3_rad * w < 1e-4);
         }
     }
-    // Heating that never comes is no heating, in a whole run and in both boxes.
-    let never = [
-        "transmission.cvt.final_drive",
-        "transmission.cvt.input_shaft",
-        "transmission.cvt.pump",
-    ];
+    // Heating that never comes is no heating, in a whole run.
+    let never = ["transmission.cvt.input_shaft", "transmission.cvt.pump"];
     let mut never: Vec<String> = never
         .iter()
         .map(|table| format!("{table}.film_heating_w=1e9"))
         .collect();
     never.push("transmission.cvt.pump.inlet_bar_per_l_min=0".into());
     let c = cycle("ece15");
-    for (name, sets) in [
-        (CVT, never),
-        (
-            MANUAL,
-            vec!["transmission.manual.bearing.film_heating_w=1e9".into()],
-        ),
-    ] {
-        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
-        let fuel = |setup: &Setup| {
-            drive(setup, &c, &at(-30.0, Start::Soak))
-                .totals
-                .total()
-                .fuel_kg
-        };
-        let (old, never, shipped) = (
-            fuel(&old_file(name)),
-            fuel(&car(name, &sets)),
-            fuel(&car(name, &[])),
-        );
-        assert!((never / old - 1.0).abs() < 1e-5, "{name}: {old} {never}");
-        assert!(
-            shipped < old,
-            "{name}: heating does nothing, {old} {shipped}"
-        );
-    }
+    let sets: Vec<&str> = never.iter().map(String::as_str).collect();
+    let fuel = |setup: &Setup| {
+        let start = at(-30.0, Start::Soak);
+        drive(setup, &c, &start).totals.total().fuel_kg
+    };
+    let old = fuel(&old_file(CVT));
+    let (never, shipped) = (fuel(&car(CVT, &sets)), fuel(&car(CVT, &[])));
+    assert!((never / old - 1.0).abs() < 1e-5, "{old} {never}");
+    assert!(shipped < old, "heating does nothing, {old} {shipped}");
 }
 
 fn solve(setup: &Setup, point: BenchPoint) -> BenchAnswer {
@@ -200,7 +172,8 @@ const IN_THE_SUMP: [Component; 7] = [
     Component::Seal,
 ];
 
-/// Colder oil never costs less, in drive and in overrun, and nothing is negative: every part that turns in the sump's oil.
+/// Colder oil never costs less, in drive and in overrun, and nothing is negative: every part that turns in the sump's oil, but for preloaded bearings,
+/// whose rollers thicker oil lifts (BR-2).
 #[test]
 fn colder_oil_never_lowers_a_loss() {
     for (name, ratios) in [
@@ -208,7 +181,12 @@ fn colder_oil_never_lowers_a_loss() {
         (MANUAL, [1.0, 5.0]),
         ("mondeo_20_5mt", [2.0, 4.0]),
     ] {
-        let setup = car(name, &[]);
+        let table = if name == CVT {
+            "cvt.final_drive"
+        } else {
+            "manual.gears"
+        };
+        let setup = car(name, &[&format!("transmission.{table}.preload_factor=0")]);
         for ratio in ratios {
             for (rpm, output_nm) in [(800.0, 0.0), (2000.0, 150.0), (3500.0, -40.0)] {
                 let mut last = [0.0; IN_THE_SUMP.len()];
@@ -260,11 +238,15 @@ fn what_is_extrapolated_grows_between_root_and_power() {
         belt_k: Some(293.15),
         ..BenchPoint::default()
     };
-    for part in [Component::FinalDrive, Component::InputShaft] {
+    let unbound = car(CVT, &["transmission.cvt.final_drive.bearing_heating_w=1e9"]);
+    for (part, old) in [
+        (Component::FinalDrive, &unbound),
+        (Component::InputShaft, &old),
+    ] {
         let growth = |setup: &Setup| {
             solve(setup, point(-40.0)).part_nm(part) / solve(setup, point(25.0)).part_nm(part)
         };
-        let (bounded, power) = (growth(&shipped), growth(&old));
+        let (bounded, power) = (growth(&shipped), growth(old));
         println!("{part:?}: {bounded:.1} instead of {power:.1} times from 25 to -40 degC");
         assert!(
             bounded < 0.5 * power && bounded > 0.5 * power.sqrt(),
@@ -273,7 +255,8 @@ fn what_is_extrapolated_grows_between_root_and_power() {
     }
 }
 
-/// The bench over temperature and speed without a jump: the largest difference between neighbours halves with the step.
+/// The bench over temperature and speed without a jump: the largest difference between neighbours halves with the step, in temperature
+/// and in the logarithm of speed from 1 to 4000 rpm.
 #[test]
 fn losses_in_the_cold_are_continuous() {
     for (name, ratio) in [(CVT, 0.45), (CVT, 2.4), (MANUAL, 5.0)] {
@@ -285,7 +268,7 @@ fn losses_in_the_cold_are_continuous() {
             let at = |i: u32| f64::from(i) / f64::from(n);
             let total = |i: u32| {
                 let (degc, rpm) = if over_speed {
-                    (-25.0, 1.0 + 3999.0 * at(i))
+                    (-25.0, 4000.0_f64.powf(at(i)))
                 } else {
                     (-40.0 + 65.0 * at(i), 2000.0)
                 };

@@ -1,4 +1,4 @@
-//! Properties of the CVT's other parts, each by itself: pump, shaft, clutch drag, final drive, launch clutch.
+//! Properties of the CVT's other parts, each by itself: pump, shaft, clutch drag, launch clutch.
 //!
 //! Truth comes from conservation (hydraulic and shaft power), from algebra on the labelled equations and from limits.
 #![allow(
@@ -11,7 +11,6 @@ use crate::common::{at, car, cycle, try_car};
 use cvtcycle_model::drive::{Start, drive};
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle_model::transmission::cvt::clutch_drag::ClutchDrag;
-use cvtcycle_model::transmission::cvt::final_drive::FinalDrive;
 use cvtcycle_model::transmission::cvt::pump::{Pump, PumpAtTemperature, PumpKind};
 use cvtcycle_model::transmission::cvt::shaft_drag::ShaftDrag;
 use cvtcycle_model::transmission::cvt::{NU_REFERENCE_M2_S, viscosity_power};
@@ -207,7 +206,7 @@ fn pump_is_continuous_in_speed_and_need() {
     }
 }
 
-// ---------------------------------------------------------------- shaft, reverse clutch, final drive
+// ---------------------------------------------------------------- shaft, reverse clutch
 
 fn any_shaft() -> impl Strategy<Value = ShaftDrag> {
     (0.0..3.0f64, 0.0..1e-3f64, 0.0..1.5f64, any_heating()).prop_map(
@@ -220,44 +219,24 @@ fn any_shaft() -> impl Strategy<Value = ShaftDrag> {
     )
 }
 
-fn any_final_drive() -> impl Strategy<Value = FinalDrive> {
-    (0.0..3.0f64, 0.0..1.5f64, 0.8..=1.0f64, any_heating()).prop_map(
-        |(boundary_nm, exponent, mesh_efficiency, heating)| FinalDrive {
-            ratio: 6.0,
-            boundary_nm,
-            scale_rad_s: 2000.0 * RPM,
-            viscous_nm: 0.29,
-            exponent,
-            heating,
-            mesh_efficiency,
-        },
-    )
-}
-
 /// Torque of the input shaft at a viscosity and a speed.
 fn shaft_nm(shaft: &ShaftDrag, nu: f64, w: f64) -> f64 {
     shaft.torque_nm(viscosity_power(nu, shaft.exponent), w)
 }
 
-/// Drag of the final drive at a viscosity and a speed.
-fn drive_nm(drive: &FinalDrive, nu: f64, w: f64) -> f64 {
-    let fall = drive.fall_exponent(w).exp();
-    drive.drag_nm(viscosity_power(nu, drive.exponent), fall, w)
-}
-
 proptest! {
     #![proptest_config(config(3000))]
 
-    /// Drags are finite, never negative, do not fall with viscosity, and the clutch's never exceeds its cap (IS-1, CD-1, FD-1).
+    /// Drags are finite, never negative, do not fall with viscosity, and the clutch's never exceeds its cap (IS-1, CD-1).
     #[test]
     fn drags_rise_with_viscosity(
-        (shaft, drive) in (any_shaft(), any_final_drive()),
+        shaft in any_shaft(),
         (clutch_nm, exponent) in (0.0..1.0f64, 0.0..1.5f64),
         (a, b) in pair(1e-6, 5e-3),
         w in 0.0..1500.0f64,
     ) {
         let clutch = ClutchDrag { drag_nm: clutch_nm, exponent, cap_nm: 0.5, peak_rad_s: None, clearance_m: 0.3e-3, oil_share: 1.0 };
-        let drags = |nu: f64| [shaft_nm(&shaft, nu, w), clutch.torque_nm(viscosity_power(nu, exponent), w), drive_nm(&drive, nu, w)];
+        let drags = |nu: f64| [shaft_nm(&shaft, nu, w), clutch.torque_nm(viscosity_power(nu, exponent), w)];
         for (x, y) in drags(a).iter().zip(drags(b)) {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
         }
@@ -265,11 +244,8 @@ proptest! {
         // At the reference viscosity and without heating the constants hold as they are, whatever the exponents; heating takes away
         // from the viscous part only.
         let plain_shaft = ShaftDrag { heating: ViscousSelfHeating::NONE, ..shaft };
-        let plain_drive = FinalDrive { heating: ViscousSelfHeating::NONE, ..drive };
         prop_assert!((shaft_nm(&plain_shaft, NU_REFERENCE_M2_S, w) - shaft.constant_nm - shaft.viscous_nm_s * w).abs() < 1e-12);
-        prop_assert!((drive_nm(&plain_drive, NU_REFERENCE_M2_S, 0.0) - drive.boundary_nm - drive.viscous_nm).abs() < 1e-12);
         prop_assert!(shaft_nm(&shaft, b, w) <= shaft_nm(&plain_shaft, b, w));
-        prop_assert!(drive_nm(&drive, b, w) <= drive_nm(&plain_drive, b, w));
         prop_assert!(shaft_nm(&shaft, b, w) >= shaft.constant_nm);
     }
 
@@ -293,25 +269,10 @@ proptest! {
         prop_assert!(dry.torque_nm(power, w) <= here && (w < 1.0 || dry.torque_nm(power, w) < here));
     }
 
-    /// The shaft's drag does not fall with speed, the final drive's does not rise with it (thesis 5.5.5, 5.5.1).
+    /// The shaft's drag does not fall with speed (thesis 5.5.5).
     #[test]
-    fn val_drags_against_speed(shaft in any_shaft(), drive in any_final_drive(), (a, b) in pair(0.0, 1500.0), nu in 1e-6..5e-3f64) {
+    fn val_drags_against_speed(shaft in any_shaft(), (a, b) in pair(0.0, 1500.0), nu in 1e-6..5e-3f64) {
         prop_assert!(shaft_nm(&shaft, nu, a) <= shaft_nm(&shaft, nu, b));
-        prop_assert!(drive_nm(&drive, nu, a) >= drive_nm(&drive, nu, b));
-    }
-
-    /// Final drive: in drive the secondary gives eta of its torque above drag, in overrun it gets eta of it; so the loss is never
-    /// negative, is the drag alone at eta = 1, and output torque carries over without a jump and in order (FD-2).
-    #[test]
-    fn final_drive_loses_both_ways(drive in any_final_drive(), drag in 0.0..5.0f64, (a, b) in pair(-500.0, 500.0)) {
-        let (secondary, eta) = (|output: f64| drive.secondary_torque_nm(drag, output), drive.mesh_efficiency);
-        prop_assert!(secondary(a) - a >= drag * eta - 1e-12, "{} for {a}", secondary(a));
-        prop_assert!(secondary(a) < secondary(b) && secondary(b) - secondary(a) <= (b - a) / eta * (1.0 + 1e-12) + 1e-12);
-        let through = a + drag;
-        let (more, less) = if through >= 0.0 { (secondary(a), through) } else { (-through, -secondary(a)) };
-        prop_assert!((less - eta * more).abs() <= 1e-12 * more);
-        let perfect = FinalDrive { mesh_efficiency: 1.0, ..drive };
-        prop_assert_eq!(perfect.secondary_torque_nm(drag, a), through);
     }
 }
 

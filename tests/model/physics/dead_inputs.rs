@@ -100,7 +100,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
             .collect();
     }
     if v.starts_with("[[") {
-        // Rows of pairs: move the second column.
+        // Rows: move the last column.
         let rows: Vec<Vec<f64>> = serde_json::from_str(v).unwrap_or_default();
         return [1.03, 0.97]
             .iter()
@@ -108,7 +108,10 @@ fn moves(info: &KeyInfo) -> Vec<String> {
                 set(format!(
                     "{:?}",
                     rows.iter()
-                        .map(|r| vec![r[0], r[1] * f])
+                        .map(|r| {
+                            let (last, before) = r.split_last().unwrap();
+                            [before, &[last * f]].concat()
+                        })
                         .collect::<Vec<_>>()
                 ))
             })

@@ -143,9 +143,12 @@ const ZERO_LOSS: [(&str, &str, &[&str]); 13] = [
         "final_drive",
         "rover_216_cvt",
         &[
-            "transmission.cvt.final_drive.boundary_nm=0",
-            "transmission.cvt.final_drive.viscous_nm=0",
-            "transmission.cvt.final_drive.mesh_efficiency=1",
+            "transmission.cvt.final_drive.bearing_factor=0",
+            "transmission.cvt.final_drive.preload_factor=0",
+            "transmission.cvt.final_drive.bearing_friction=0",
+            "transmission.cvt.final_drive.churning_factor=0",
+            "transmission.cvt.final_drive.oil_factor=0",
+            "transmission.cvt.final_drive.seals=[]",
         ],
     ),
     ("belt_band", "rover_216_cvt", &["lubricant.friction.band=0"]),
@@ -167,22 +170,26 @@ const ZERO_LOSS: [(&str, &str, &[&str]); 13] = [
     (
         "gear_mesh",
         "rover_216_5mt",
-        &["transmission.manual.mesh.efficiency=1"],
+        &["transmission.manual.gears.oil_factor=0"],
     ),
     (
         "bearing",
         "rover_216_5mt",
-        &["transmission.manual.bearing.torque_nm=0"],
+        &[
+            "transmission.manual.gears.bearing_factor=0",
+            "transmission.manual.gears.preload_factor=0",
+            "transmission.manual.gears.bearing_friction=0",
+        ],
     ),
     (
         "churning",
         "rover_216_5mt",
-        &["transmission.manual.churning.torque_nm=0"],
+        &["transmission.manual.gears.churning_factor=0"],
     ),
     (
         "seal",
         "rover_216_5mt",
-        &["transmission.manual.seal.torque_nm=0"],
+        &["transmission.manual.gears.seals=[]"],
     ),
 ];
 
@@ -297,10 +304,9 @@ fn twice_the_car_burns_twice_the_fuel() {
         "engine.inertia_torque_nm",
         "engine.electrical_w",
         "engine.accessory_nm",
-        "transmission.manual.seal.torque_nm",
-        "transmission.manual.bearing.torque_nm",
-        "transmission.manual.bearing.film_heating_w",
-        "transmission.manual.churning.torque_nm",
+        "transmission.manual.gears.bearing_factor",
+        "transmission.manual.gears.bearing_heating_w",
+        "transmission.manual.gears.preload_factor",
         "transmission.manual.launch.friction_clutch.gain_nm_per_rpm2",
         "thermal.engine.block_kj_k",
         "thermal.engine.oil_kj_k",
@@ -345,6 +351,15 @@ fn twice_the_car_burns_twice_the_fuel() {
             .map(|r| vec![r[0], 2.0 * r[1]])
             .collect::<Vec<_>>()
     ));
+    // Seals by their number, teeth by their width; churning without the root of the oil's volume, which is doubled for its heat (CH-1).
+    sets.extend([
+        "transmission.manual.gears.seals=[[0, 2, 25], [2, 4, 38]]".into(),
+        "transmission.manual.gears.stages=[[75, 2.25, 40, 28], [115, 2.6, 60, 28]]".into(),
+        format!(
+            "transmission.manual.gears.churning_factor={:?}",
+            10.0 / 2f64.powf(0.1)
+        ),
+    ]);
     let twice = try_car("rover_216_5mt", &sets).unwrap();
     for cycle_name in ["ece15_eudc", "us06"] {
         let c = cycle(cycle_name);
@@ -393,7 +408,7 @@ fn improvements_save_fuel() {
     for set in [
         "transmission.cvt.pump.displacement_cc_rev=7",
         "lubricant.friction.band=0.11",
-        "transmission.cvt.final_drive.mesh_efficiency=0.99",
+        "transmission.cvt.final_drive.roughness_um=0.3",
         "road_load.mass_kg=1020",
         "engine.electrical_w=200",
         "thermal.cooler.bypassed=true",

@@ -10,8 +10,8 @@ use cvtcycle_model::keys::{Quantity, stem};
 /// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
 const ELSEWHERE: f64 = 0.75;
 
-/// Ends of keys of earlier versions, and what to do instead.
-const REPLACED: [(&str, &str); 4] = [
+/// Ends of keys and tables of earlier versions, and what to do instead.
+const REPLACED: [(&str, &str); 15] = [
     (
         "engine.friction.temperature_exponent",
         "remove it: friction in the cold follows the oil's viscosity, with `viscous_share` and `viscous_exponent` (EN-2)",
@@ -22,7 +22,38 @@ const REPLACED: [(&str, &str); 4] = [
     ),
     ("friction.band_floor", WITHOUT_BOUNDS),
     ("friction.band_ceiling", WITHOUT_BOUNDS),
+    ("final_drive.boundary_nm", BY_PRELOAD),
+    ("final_drive.boundary_rpm", BY_PRELOAD),
+    ("final_drive.viscous_nm", BY_BEARINGS),
+    ("final_drive.viscous_exponent", BY_BEARINGS),
+    (
+        "final_drive.film_heating_w",
+        "write `bearing_heating_w`, the dissipation of one bearing that halves its torque (BR-1, FH-1)",
+    ),
+    ("final_drive.mesh_efficiency", BY_TEETH),
+    (
+        "transmission.manual.reference_mm2_s",
+        "remove it: losses follow the viscosity of the oil itself (MB-1 to MB-4)",
+    ),
+    ("transmission.manual.mesh", BY_TEETH),
+    ("transmission.manual.seal", BY_GEARS),
+    ("transmission.manual.bearing", BY_GEARS),
+    ("transmission.manual.churning", BY_GEARS),
 ];
+
+/// What became of the part of the final drive's loss that fell with speed.
+const BY_PRELOAD: &str =
+    "give the preload in the rows of `bearings`, with `preload_factor` on all of them (BR-2)";
+
+/// What became of its viscous part.
+const BY_BEARINGS: &str =
+    "give the rows of `bearings`, with `bearing_factor` on their torque without load (BR-1)";
+
+/// What became of efficiencies.
+const BY_TEETH: &str = "give the wheels as the rows of `stages`; `oil_factor` acts on the friction of their teeth (GM-1, GM-2)";
+
+/// What became of the torques of a manual box.
+const BY_GEARS: &str = "give `[transmission.manual.gears]` with `stages`, `bearings`, `churners` and `seals` (MB-1 to MB-4)";
 
 /// What became of the bounds of band friction.
 const WITHOUT_BOUNDS: &str =
@@ -66,7 +97,8 @@ impl Log {
             problem.message = format!("`{path}` is a table, not a value");
             return (problem, None);
         }
-        if let Some((_, instead)) = REPLACED.iter().find(|(key, _)| path.ends_with(key)) {
+        let replaced = |key: &str| path.ends_with(key) || parent(path).ends_with(key);
+        if let Some((_, instead)) = REPLACED.iter().find(|(key, _)| replaced(key)) {
             problem.hint = (*instead).to_string();
             return (problem, None);
         }

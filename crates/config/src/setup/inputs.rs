@@ -307,15 +307,17 @@ pub(super) fn parts<V: Values>(
     let road_load = RoadLoadInput::from_values(&root.table("road_load"));
     let engine = Engine::from_values(&root.table("engine"));
     let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
+    // The gears of the transmission turn in the oil of the network's sump.
+    let network = Network::from_values(&root.table("thermal"), kind == "cvt", &oil);
     let (transmission, belt_heat_share) = if kind == "cvt" {
-        let cvt = Cvt::from_values(&section, &engine, &oil, formulation);
+        let filled = (&oil, network.sump_oil_m3);
+        let cvt = Cvt::from_values(&section, &engine, filled, formulation);
         let share = cvt.belt_heat_share;
         (Transmission::Cvt(Box::new(cvt)), share)
     } else {
-        let manual = Manual::from_values(&section);
+        let manual = Manual::from_values(&section, network.sump_oil_m3);
         (Transmission::Manual(Box::new(manual)), 0.0)
     };
-    let network = Network::from_values(&root.table("thermal"), kind == "cvt", &oil);
     let car = Car {
         name,
         road_load: road_load.base,

@@ -150,7 +150,7 @@ impl OnBench<'_> {
         };
         let mut torques = line.secondary(
             output,
-            || line.final_drive_nm(secondary_rad_s),
+            || line.final_drive(secondary_rad_s, output),
             (w, secondary_rad_s),
             &clamp,
             &mut inside_maps,

@@ -81,9 +81,11 @@ impl Bench {
     fn solve_manual(&self, manual: &Manual, p: &BenchPoint) -> BenchAnswer {
         let gear = p.ratio as u8;
         let overall = manual.overall[usize::from(gear) - 1];
-        let nu = self.car.oil.kinematic_m2_s(p.sump_k);
         let output_nm = p.output_nm / overall;
-        let (parts, inside) = manual.part_losses_nm(gear, p.input_rad_s, output_nm, nu, p.sump_k);
+        let oil = (self.car.oil.state(p.sump_k), p.sump_k);
+        let (parts, inside) = manual
+            .engaged(gear, p.input_rad_s, output_nm, oil)
+            .losses_nm(output_nm);
         let mut loss_nm = ByComponent::default();
         for (component, loss) in parts {
             loss_nm[component] = loss;

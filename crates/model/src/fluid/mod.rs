@@ -119,6 +119,15 @@ pub struct Lubricant {
     pub friction: Friction,
 }
 
+/// Viscosity and density of an oil at one temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OilState {
+    /// Kinematic viscosity, m2/s.
+    pub kinematic_m2_s: f64,
+    /// Density, kg/m3.
+    pub density_kg_m3: f64,
+}
+
 /// Validity range of the fluid models, K.
 pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
 
@@ -135,6 +144,14 @@ impl Lubricant {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
         self.density15_kg_m3 * larger(MIN_DENSITY, share) // LU-2
+    }
+
+    /// Viscosity and density.
+    pub fn state(&self, temp_k: f64) -> OilState {
+        OilState {
+            kinematic_m2_s: self.kinematic_m2_s(temp_k),
+            density_kg_m3: self.density_kg_m3(temp_k),
+        }
     }
 
     /// Dynamic viscosity, Pa s.

@@ -31,7 +31,7 @@ keys! {
 
     /// Keys of `[thermal.transmission]`.
     GEARBOX: GearboxKeys = "transmission" [] {
-        oil_l: number(0.2, 30.0), "oil in the sump";
+        oil_l: number(0.2, 30.0), "oil in the sump", ["CH-1", "TH-1"];
         metal_kj_k: number(0.1, 1000.0), "heat capacity of case, gears, shafts and sheaves", ["TH-1"];
         belt_kj_k: required_if("with a CVT", number(0.1, 1000.0)), "heat capacity of belt and the skin of the sheaves", ["TH-1"];
         oil_metal_w_k: number(0.0, 5000.0), "oil to metal", ["TH-1"];
@@ -73,6 +73,7 @@ impl Network {
         let belt = of_belt(&GEARBOX.belt_kj_k);
         Network {
             capacity_j_k: [block, engine_oil, oil_j_k, metal, belt],
+            sump_oil_m3: volume,
             coolant_oil_w_k: engine.number(&ENGINE.coolant_oil_w_k),
             block_air_w_k: engine.number(&ENGINE.block_air_w_k),
             block_air_per_speed: engine.number(&ENGINE.block_air_w_k_per_m_s),

@@ -58,6 +58,8 @@ pub struct Cooler {
 pub struct Network {
     /// Heat capacities, J/K; 0 for an unused node.
     pub capacity_j_k: [f64; NODES],
+    /// Oil in the sump of the transmission, m3.
+    pub sump_oil_m3: f64,
     /// Coolant to engine oil, W/K.
     pub coolant_oil_w_k: f64,
     /// Block to air at standstill and per speed.

@@ -4,6 +4,7 @@ pub mod clamp_cause;
 pub mod component;
 pub mod coupling;
 pub mod cvt;
+pub mod gear_train;
 pub mod viscous_self_heating;
 pub mod manual;
 mod step;

@@ -291,6 +291,7 @@ fn a_cooler_is_open_where_nothing_is_said() {
 pub fn small_network() -> Network {
     Network {
         capacity_j_k: [28e3, 22e3, 8.4e3, 24e3, 6e3],
+        sump_oil_m3: 4.5e-3,
         coolant_oil_w_k: 150.0,
         block_air_w_k: 8.0,
         block_air_per_speed: 1.0,

@@ -22,6 +22,7 @@ mod drive;
 mod engine;
 mod fluid;
 mod fuel;
+mod gear_train;
 mod heat;
 mod manual;
 mod point;

@@ -50,6 +50,7 @@ fn networks() -> impl Strategy<Value = Network> {
         .prop_map(
             |(c, g, (from, width), cooler, exchanger_opens, manual)| Network {
                 capacity_j_k: [c[0], c[1], c[2], c[3], if manual { 0.0 } else { c[4] }],
+                sump_oil_m3: 5e-3,
                 coolant_oil_w_k: g[0],
                 block_air_w_k: g[1],
                 block_air_per_speed: 0.1 * g[2],
@@ -350,6 +351,7 @@ fn half_the_step_leaves_half_the_error_across_the_thermostat() {
         |(power, block_j_k, fan_w_k, width, ambient)| {
             let network = Network {
                 capacity_j_k: [block_j_k, 22e3, 8e3, 24e3, 6e3],
+                sump_oil_m3: 5e-3,
                 coolant_oil_w_k: 200.0,
                 block_air_w_k: 8.0,
                 block_air_per_speed: 0.6,

@@ -15,12 +15,12 @@ const SPEED: f64 = 2000.0 * RPM;
 
 /// What takes the bounds away, as `--set` has it.
 const UNBOUND_CVT: [&str; 4] = [
-    "transmission.cvt.final_drive.film_heating_w=1e9",
+    "transmission.cvt.final_drive.bearing_heating_w=1e9",
     "transmission.cvt.input_shaft.film_heating_w=1e9",
     "transmission.cvt.pump.film_heating_w=1e9",
     "transmission.cvt.pump.inlet_bar_per_l_min=0",
 ];
-const UNBOUND_MANUAL: [&str; 1] = ["transmission.manual.bearing.film_heating_w=1e9"];
+const UNBOUND_MANUAL: [&str; 1] = ["transmission.manual.gears.bearing_heating_w=1e9"];
 
 /// A line of the table.
 struct Line {
@@ -113,8 +113,8 @@ const CVT: [Line; 8] = [
     line(
         "final drive",
         &[Component::FinalDrive],
-        "power of viscosity (FD-1)",
-        "heat of its films (FH-1)",
+        "power 2/3 of viscosity and speed in its bearings (BR-1)",
+        "heat of their films (FH-1)",
         FEW,
     ),
 ];
@@ -123,22 +123,22 @@ const MANUAL: [Line; 3] = [
     line(
         "manual: bearings",
         &[Component::Bearing],
-        "power 2/3 of viscosity (MB-3)",
+        "power 2/3 of viscosity and speed (BR-1)",
         "heat of their films (FH-1)",
         NEVER,
     ),
     line(
         "manual: churning",
         &[Component::Churning],
-        "power 0.2 of viscosity (MB-4)",
+        "power 0.21 of viscosity (CH-1)",
         "the small power: the sump itself is sheared",
         NEVER,
     ),
     line(
         "manual: seals",
         &[Component::Seal],
-        "power 0.15 of viscosity (MB-2)",
-        "the small power",
+        "nothing (LS-1)",
+        "lips rub, whatever the oil",
         NEVER,
     ),
 ];

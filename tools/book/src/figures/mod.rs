@@ -33,7 +33,7 @@ const fn page(stem: &'static str, keys: &'static [&'static str]) -> Page {
 }
 
 /// Pages of mechanisms in the order of the book.
-pub const PAGES: [Page; 26] = [
+pub const PAGES: [Page; 27] = [
     page(
         "belt",
         &[
@@ -67,7 +67,18 @@ pub const PAGES: [Page; 26] = [
     page("reverse_clutch", &[]),
     page("seal_ring", &[]),
     page("pulley_bearing", &[]),
-    page("final_drive", &["transmission.cvt.final_drive_ratio"]),
+    Page {
+        stem: "gear_train",
+        vehicle: "rover_216_cvt",
+        keys: &["transmission.cvt.final_drive."],
+    },
+    page(
+        "final_drive",
+        &[
+            "transmission.cvt.final_drive_ratio",
+            "transmission.cvt.final_drive_first_ratio",
+        ],
+    ),
     page("launch", &["transmission.cvt.launch"]),
     page("ratio_control", &["transmission.cvt.ratio."]),
     page(

@@ -3,7 +3,6 @@
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
-use cvtcycle::model::math::exp;
 use cvtcycle::model::transmission::coupling::CouplingLoad;
 use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};
 use cvtcycle::model::transmission::cvt::viscosity_power;
@@ -151,15 +150,15 @@ fn reverse_clutch(r: &Reference) -> String {
 }
 
 fn final_drive(r: &Reference) -> String {
-    let drive = r.cvt().final_drive;
+    let train = &r.cvt().final_drive.train;
+    let oil = r.cvt_car.oils().0;
     let lines = |ratio: f64, from: f64| -> Vec<Line> {
-        [0.0, 25.0, 50.0, 95.0]
+        [-30.0, 0.0, 25.0, 50.0, 95.0]
             .map(|degc| {
-                let power = viscosity_power(nu(r, degc), drive.exponent);
+                let state = oil.state(degc + ZERO_DEGC_K);
                 sweep(&format!("{degc:.0} degC"), from, 4000.0, 90, |n| {
-                    let w = n * RPM / ratio;
-                    let drag_nm = drive.drag_nm(power, exp(drive.fall_exponent(w)), w);
-                    drive.secondary_torque_nm(drag_nm, 0.0) / ratio
+                    let turning = train.turning(n * RPM / ratio, 0.0, state);
+                    turning.input_nm(0.0) / ratio
                 })
             })
             .to_vec()
@@ -168,8 +167,8 @@ fn final_drive(r: &Reference) -> String {
     let y = "Torque at the primary shaft [Nm]";
     plot(
         "Final drive at no load, referred to the input",
-        "FD-1 and FD-2, fluid of the Rover; 0 degC is extrapolated",
-        "No-load torque of the final drive, divided by the belt ratio, against input speed at four oil temperatures in low and high ratio.",
+        "FD-1 and FD-2, fluid of the Rover; below 25 degC unmeasured",
+        "No-load torque of the final drive, divided by the belt ratio, against input speed at five oil temperatures in low and high ratio.",
         "",
         vec![
             axes("I = 2.417", x, y, lines(2.4169, 1000.0)),
@@ -233,7 +232,8 @@ fn manual(r: &Reference) -> String {
     let oil = r.manual_car.oils().0;
     let loss = |n: f64, degc: f64, wanted: &[Component]| {
         let k = degc + ZERO_DEGC_K;
-        let (parts, _) = box_.part_losses_nm(3, n * RPM, 0.0, oil.kinematic_m2_s(k), k);
+        let engaged = box_.engaged(3, n * RPM, 0.0, (oil.state(k), k));
+        let (parts, _) = engaged.losses_nm(0.0);
         parts
             .iter()
             .filter(|(part, _)| wanted.contains(part))

@@ -5,10 +5,10 @@ use super::pulley_bearing::PulleyBearing;
 use super::pump::{PumpAtTemperature, PumpState};
 use super::variator::{BeltAtRatio, BeltLosses};
 use super::{Cvt, CvtMaps, viscosity_power};
-use crate::fluid::Lubricant;
+use crate::fluid::{Lubricant, OilState};
 use crate::maps::MapPoint;
-use crate::math::exp;
 use crate::transmission::component::Component;
+use crate::transmission::gear_train::TurningTrain;
 
 /// The parts of a CVT that are in the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,6 @@ pub(crate) enum Shaft {
 pub(crate) struct ViscosityPowers {
     pub shaft: f64,
     pub clutch: f64,
-    pub final_drive: f64,
 }
 
 impl ViscosityPowers {
@@ -58,19 +57,13 @@ impl ViscosityPowers {
         ViscosityPowers {
             shaft: viscosity_power(nu_m2_s, cvt.shaft_drag.exponent),
             clutch: viscosity_power(nu_m2_s, cvt.clutch_drag.exponent),
-            final_drive: viscosity_power(nu_m2_s, cvt.final_drive.exponent),
         }
     }
 
     /// Their logarithms, from ln(nu/nu_80).
     #[inline]
-    pub fn exponents(cvt: &Cvt, log_nu: f64) -> [f64; 3] {
-        [
-            cvt.shaft_drag.exponent,
-            cvt.clutch_drag.exponent,
-            cvt.final_drive.exponent,
-        ]
-        .map(|exponent| exponent * log_nu)
+    pub fn exponents(cvt: &Cvt, log_nu: f64) -> [f64; 2] {
+        [cvt.shaft_drag.exponent, cvt.clutch_drag.exponent].map(|exponent| exponent * log_nu)
     }
 }
 
@@ -119,6 +112,8 @@ pub(crate) struct Driveline<'a> {
     pub force_log: f64,
     /// Transmission oil, K.
     pub oil_k: f64,
+    /// The same oil.
+    pub oil: OilState,
     /// Measured maps, if there are any.
     pub maps: Option<&'a CvtMaps>,
 }
@@ -208,17 +203,19 @@ impl<'a> Driveline<'a> {
         oil_k: f64,
         parts: Parts,
     ) -> Self {
-        let eta_pa_s = oil.dynamic_pa_s(oil_k);
+        let state = oil.state(oil_k);
+        let eta_pa_s = state.kinematic_m2_s * state.density_kg_m3;
         Driveline {
             cvt,
             at,
             parts,
-            viscosity: ViscosityPowers::new(cvt, oil.kinematic_m2_s(oil_k)),
+            viscosity: ViscosityPowers::new(cvt, state.kinematic_m2_s),
             pump: cvt.pump.at(eta_pa_s),
             shafts: PulleyShafts::new(cvt, at, parts),
             radius_factor: cvt.radius_factor(at),
             force_log: 0.0,
             oil_k,
+            oil: state,
             maps: cvt.maps.as_deref(),
         }
     }
@@ -242,20 +239,19 @@ impl<'a> Driveline<'a> {
         Some(loss)
     }
 
-    /// Load-independent torque of the final drive at the secondary shaft, Nm (FD-1).
-    pub fn final_drive_nm(&self, secondary_rad_s: f64) -> f64 {
-        let drive = &self.cvt.final_drive;
-        let fall = exp(drive.fall_exponent(secondary_rad_s));
-        drive.drag_nm(self.viscosity.final_drive, fall, secondary_rad_s)
+    /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
+    pub fn final_drive(&self, secondary_rad_s: f64, demand_nm: f64) -> TurningTrain {
+        let train = &self.cvt.final_drive.train;
+        train.turning(secondary_rad_s, demand_nm, self.oil)
     }
 
-    /// Torques of what turns with the secondary for a torque behind the final drive, Nm: the final drive's, `drive_nm` its load-independent
-    /// loss, then bearing and rings of the shaft.
+    /// Torques of what turns with the secondary for a torque behind the final drive, Nm: those of the final drive, `drive`, then bearing and
+    /// rings of the shaft.
     #[inline(always)]
     pub fn secondary(
         &self,
         output_nm: f64,
-        drive_nm: impl FnOnce() -> f64,
+        drive: impl FnOnce() -> TurningTrain,
         (primary_rad_s, secondary_rad_s): (f64, f64),
         clamp: &Clamp,
         inside: &mut bool,
@@ -264,10 +260,7 @@ impl<'a> Driveline<'a> {
             let at = (primary_rad_s, output_nm, clamp.pressure_pa);
             match self.mapped(Component::FinalDrive, at, inside) {
                 Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
-                None => self
-                    .cvt
-                    .final_drive
-                    .secondary_torque_nm(drive_nm(), output_nm),
+                None => drive().input_nm(output_nm), // FD-2
             }
         } else {
             output_nm

@@ -11,6 +11,7 @@ use crate::math::{clamp, larger};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::coupling::{CouplingLoad, EngineSide, Reach};
+use crate::transmission::gear_train::TurningTrain;
 use crate::transmission::step::StepInput;
 
 /// The solve stops when slip and, relatively, pressure and engine speed move less than this.
@@ -23,7 +24,8 @@ pub(super) struct Step<'a, P> {
     pub line: Driveline<'a>,
     pub input: &'a StepInput<'a, P>,
     pub secondary_rad_s: f64,
-    pub drive_nm: f64,
+    /// The final drive at the speed and the demand of the wheels.
+    pub drive: TurningTrain,
     pub load: BeltLoad,
     pub shift_flow_m3_s: f64,
     /// True where pump flow held the shift back.
@@ -147,7 +149,7 @@ impl<P: PrimeMover> Step<'_, P> {
         let line = &self.line;
         let mut torques = line.secondary(
             g.output_nm,
-            || self.drive_nm,
+            || self.drive,
             (primary_rad_s, self.secondary_rad_s),
             clamp,
             inside,

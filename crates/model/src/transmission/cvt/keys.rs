@@ -2,7 +2,7 @@
 
 use super::clutch_drag::{ClutchDrag, ClutchKeys};
 use super::controller::{ClampKeys, RatioControl, RatioKeys, clamp};
-use super::final_drive::{DriveKeys, FinalDrive};
+use super::final_drive::FinalDrive;
 use super::floors::{Floors, PRESSURE, PressureKeys};
 use super::pulley_bearing::{PulleyBearing, PulleyBearingKeys};
 use super::pump::{Pump, PumpKeys};
@@ -12,16 +12,24 @@ use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorK
 use super::{Cvt, CvtMaps};
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
-use crate::keys::{Values, keys};
+use crate::keys::{Table, Values, keys};
 use crate::transmission::coupling::{self, LAUNCH};
+use crate::transmission::gear_train::GearKeys;
+
+/// Table of the final drive: that of a gear train.
+const FINAL_DRIVE: Table = Table {
+    name: "final_drive",
+    ..GearKeys::TABLE
+};
 
 keys! {
     /// Keys of `[transmission.cvt]` and its tables.
     CVT: CvtKeys = "cvt" [
         RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
-        PulleyBearingKeys::TABLE, SealRingKeys::TABLE, ShaftKeys::TABLE, ClutchKeys::TABLE, DriveKeys::TABLE, MapKeys::TABLE
+        PulleyBearingKeys::TABLE, SealRingKeys::TABLE, ShaftKeys::TABLE, ClutchKeys::TABLE, FINAL_DRIVE, MapKeys::TABLE
     ] {
         final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
+        final_drive_first_ratio: number(0.3, 6.0), "share of that ratio in the stage at the secondary", ["FD-1"];
         clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
         belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys", ["SI-3"];
@@ -39,11 +47,11 @@ keys! {
 }
 
 impl Cvt {
-    /// A checked CVT from the values of `[transmission.cvt]`.
+    /// A checked CVT from the values of `[transmission.cvt]`, and the oil in its sump.
     pub fn from_values<V: Values>(
         s: &V,
         engine: &Engine,
-        oil: &Lubricant,
+        (oil, oil_m3): (&Lubricant, f64),
         formulation: Formulation,
     ) -> Self {
         let v = s.table("variator");
@@ -66,6 +74,8 @@ impl Cvt {
             final_drive: FinalDrive::from_values(
                 &s.table("final_drive"),
                 s.number(&CVT.final_drive_ratio),
+                s.number(&CVT.final_drive_first_ratio),
+                oil_m3,
             ),
             secondary_piston_m2: v.number(&VARIATOR.secondary_piston_cm2),
             primary_piston_m2: v.number(&VARIATOR.primary_piston_cm2),

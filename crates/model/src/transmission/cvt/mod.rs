@@ -55,7 +55,7 @@ use std::sync::Arc;
 /// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 
-/// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1, FD-1).
+/// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1).
 pub fn viscosity_power(nu_m2_s: f64, exponent: f64) -> f64 {
     exp(exponent * ln(nu_m2_s / NU_REFERENCE_M2_S))
 }

@@ -6,6 +6,7 @@ use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
+use crate::fluid::OilState;
 use crate::math::{exp_each, larger, ln_each};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
@@ -103,7 +104,6 @@ fn shift<P: PrimeMover>(
 /// Powers and exponentials of a step.
 struct Powers {
     viscosity: ViscosityPowers,
-    drive_nm: f64,
     viscous_factor: f64,
     radius_factor: f64,
     /// The film's z (LU-5).
@@ -115,11 +115,10 @@ struct Bases {
     nu_m2_s: f64,
     eta_pa_s: f64,
     film_load: f64,
-    secondary_rad_s: f64,
 }
 
 impl Powers {
-    /// All of a step together: four logarithms, then seven exponentials.
+    /// All of a step together: four logarithms, then five exponentials.
     #[inline(always)]
     fn new(cvt: &Cvt, at: &BeltAtRatio, lift_exponent: f64, b: &Bases) -> Self {
         let films = b.film_load > 0.0;
@@ -129,33 +128,16 @@ impl Powers {
             if films { b.film_load } else { 1.0 },
             cvt.low_radius_m / at.geometry.primary_radius_m,
         ]);
-        let [shaft, clutch, final_drive] = ViscosityPowers::exponents(cvt, nu);
-        let [
+        let [shaft, clutch] = ViscosityPowers::exponents(cvt, nu);
+        let [shaft, clutch, viscous_factor, radius_factor, film] = exp_each([
             shaft,
             clutch,
-            final_drive,
-            fall,
-            viscous_factor,
-            radius_factor,
-            film,
-        ] = exp_each([
-            shaft,
-            clutch,
-            final_drive,
-            cvt.final_drive.fall_exponent(b.secondary_rad_s),
             cvt.pump.viscous_exponent * pump,
             cvt.radius_exponent * radius,
             lift_exponent * film,
         ]);
         Powers {
-            viscosity: ViscosityPowers {
-                shaft,
-                clutch,
-                final_drive,
-            },
-            drive_nm: cvt
-                .final_drive
-                .drag_nm(final_drive, fall, b.secondary_rad_s),
+            viscosity: ViscosityPowers { shaft, clutch },
             viscous_factor,
             radius_factor,
             film: if films { film } else { 0.0 },
@@ -181,7 +163,11 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         f64::INFINITY
     };
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
-    let eta_sump = nu_sump * oil.density_kg_m3(sump_k);
+    let sump = OilState {
+        kinematic_m2_s: nu_sump,
+        density_kg_m3: oil.density_kg_m3(sump_k),
+    };
+    let eta_sump = nu_sump * sump.density_kg_m3;
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
     let inlet = cvt.pump.with_factor(eta_sump, 1.0);
     let route = Route {
@@ -206,30 +192,32 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         nu_m2_s: nu_sump,
         eta_pa_s: eta_sump,
         film_load: friction.film_load(eta_belt, sliding),
-        secondary_rad_s,
     };
     let powers = Powers::new(cvt, at, friction.lift_exponent, &bases);
-    Step {
-        line: Driveline {
-            cvt,
-            at,
-            parts: Parts::ALL,
-            viscosity: powers.viscosity,
-            pump: PumpAtTemperature {
-                viscous_factor: powers.viscous_factor,
-                ..inlet
-            },
-            shafts: PulleyShafts::new(cvt, at, Parts::ALL),
-            radius_factor: powers.radius_factor,
-            force_log: cvt
-                .floors
-                .force_log(shift.rate_per_s, shift.ratio * secondary_rad_s),
-            oil_k: sump_k,
-            maps: cvt.maps.as_deref(),
+    let line = Driveline {
+        cvt,
+        at,
+        parts: Parts::ALL,
+        viscosity: powers.viscosity,
+        pump: PumpAtTemperature {
+            viscous_factor: powers.viscous_factor,
+            ..inlet
         },
+        shafts: PulleyShafts::new(cvt, at, Parts::ALL),
+        radius_factor: powers.radius_factor,
+        force_log: cvt
+            .floors
+            .force_log(shift.rate_per_s, shift.ratio * secondary_rad_s),
+        oil_k: sump_k,
+        oil: sump,
+        maps: cvt.maps.as_deref(),
+    };
+    Step {
+        // The demand of the wheels decides the friction of the teeth (GM-2).
+        drive: line.final_drive(secondary_rad_s, input.wheel.power_w / secondary_rad_s),
+        line,
         input,
         secondary_rad_s,
-        drive_nm: powers.drive_nm,
         load: BeltLoad::unloaded(oil, eta_belt, friction.band_on_film(belt_k, powers.film)),
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,

@@ -3,42 +3,19 @@
 use super::{Manual, ShiftSpeeds};
 use crate::keys::{Key, Kind, Values, keys};
 use crate::transmission::coupling::{self, LAUNCH};
-use crate::transmission::viscous_self_heating::{SELF_HEATING, ViscousSelfHeating};
+use crate::transmission::gear_train::{GearKeys, GearParts};
 
 keys! {
     /// Keys of `[transmission.manual]` and its tables.
     MANUAL: ManualKeys = "manual" [
-        MeshKeys::TABLE, SealKeys::TABLE, BearingKeys::TABLE, ChurningKeys::TABLE, MapKeys::TABLE
+        GearKeys::TABLE, MapKeys::TABLE
     ] {
         overall_ratios: list(0.5, 40.0, 2, 10), "engine speed over wheel speed in each gear, from first";
+        final_ratio: number(1.0, 10.0), "ratio of the final drive, which is part of them", ["MB-1"];
         upshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift up where a cycle has no gears", ["MB-5"];
         downshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift down", ["MB-5"];
-        reference_mm2_s: number(1.5, 1000.0), "viscosity at which the torques hold", ["MB-2"];
-        neutral_share: number(0.0, 1.0), "share of the losses that turns in neutral";
+        neutral_share: number(0.0, 1.0), "share of the losses in top gear that turns in neutral";
         launch: LAUNCH, "launch device: a wet or dry friction clutch";
-    }
-
-    /// Keys of `[transmission.manual.mesh]`.
-    MESH: MeshKeys = "mesh" [] {
-        efficiency: number(0.8, 1.0), "of gear and final drive together", ["MB-1"];
-    }
-
-    /// Keys of `[transmission.manual.seal]`.
-    SEAL: SealKeys = "seal" [] {
-        torque_nm: number(0.0, 20.0), "at reference viscosity", ["MB-2"];
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["MB-2"];
-    }
-
-    /// Keys of `[transmission.manual.bearing]`.
-    BEARING: BearingKeys = "bearing" [] {
-        torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity", ["MB-3"];
-        film_heating_w: SELF_HEATING, "dissipation at which the heat of the films halves the torque; absent: no heating", ["MB-3", "FH-1"];
-    }
-
-    /// Keys of `[transmission.manual.churning]`.
-    CHURNING: ChurningKeys = "churning" [] {
-        torque_nm: number(0.0, 20.0), "at 2000 rpm and reference viscosity", ["MB-4"];
-        viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["MB-4"];
     }
 
     /// Keys of `[transmission.manual.maps]`.
@@ -48,8 +25,8 @@ keys! {
 }
 
 impl Manual {
-    /// A checked manual gearbox from the values of `[transmission.manual]`.
-    pub fn from_values<V: Values>(s: &V) -> Self {
+    /// A checked manual gearbox from the values of `[transmission.manual]`, and the oil in it.
+    pub fn from_values<V: Values>(s: &V, oil_m3: f64) -> Self {
         let overall = s.numbers(&MANUAL.overall_ratios);
         if overall.windows(2).any(|r| r[0] <= r[1]) {
             s.complain(
@@ -59,23 +36,16 @@ impl Manual {
                 "order them from first gear; reverse does not belong here",
             );
         }
-        let (seal, bearing, churning, mesh) = (
-            s.table("seal"),
-            s.table("bearing"),
-            s.table("churning"),
-            s.table("mesh"),
-        );
+        let last = s.number(&MANUAL.final_ratio);
+        let ratios: Vec<[f64; 2]> = overall.iter().map(|all| [all / last, last]).collect();
+        let parts = GearParts::from_values(&s.table("gears"), oil_m3, &ratios);
         Manual {
             shifts: ShiftSpeeds::from_values(s, overall.len()),
             overall,
-            mesh_efficiency: mesh.number(&MESH.efficiency),
-            seal_nm: seal.number(&SEAL.torque_nm),
-            seal_exponent: seal.number(&SEAL.viscous_exponent),
-            bearing_nm: bearing.number(&BEARING.torque_nm),
-            bearing_heating: ViscousSelfHeating::from_values(&bearing, &BEARING.film_heating_w),
-            churning_nm: churning.number(&CHURNING.torque_nm),
-            churning_exponent: churning.number(&CHURNING.viscous_exponent),
-            reference_m2_s: s.number(&MANUAL.reference_mm2_s),
+            trains: ratios
+                .into_iter()
+                .map(|ratios| parts.train(ratios))
+                .collect(),
             neutral_share: s.number(&MANUAL.neutral_share),
             coupling: coupling::from_values(s, &MANUAL.launch, 0.0),
             map: s.table("maps").loss_map(&MAPS.r#box, "gear"),

@@ -1,8 +1,9 @@
 //! One step of the manual box: engaged, declutched or in neutral.
 
-use super::Manual;
-use super::losses::Spin;
+use super::engaged::sum_nm;
+use super::{Engaged, Manual, PartLosses};
 use crate::flags::Flags;
+use crate::fluid::OilState;
 use crate::math::{clamp, larger};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
@@ -10,17 +11,25 @@ use crate::transmission::component::Component;
 use crate::transmission::coupling::CouplingLoad;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
-/// The box in a step, at the viscosity of its oil.
+/// The box in a step, in its oil.
 pub(super) struct ManualStep<'a, P> {
     pub manual: &'a Manual,
     pub step: &'a StepInput<'a, P>,
     pub state: &'a DrivelineState,
-    pub nu_m2_s: f64,
+    pub oil: OilState,
 }
 
 impl<P: PrimeMover> ManualStep<'_, P> {
-    fn oil_k(&self) -> f64 {
-        self.step.heat.node_k[SUMP]
+    /// The box in a gear at an input speed and a demanded torque.
+    fn box_in(&self, gear: u8, input_rad_s: f64, demand_nm: f64) -> Engaged<'_> {
+        let oil_k = self.step.heat.node_k[SUMP];
+        self.manual
+            .engaged(gear, input_rad_s, demand_nm, (self.oil, oil_k))
+    }
+
+    /// The highest gear.
+    fn top(&self) -> u8 {
+        self.manual.overall.len() as u8
     }
 
     /// Speed of the free engine at the end of the step, rad/s.
@@ -42,29 +51,23 @@ impl<P: PrimeMover> ManualStep<'_, P> {
 
     pub fn neutral(&self) -> StepOutput {
         let w = self.free_engine_rad_s();
-        let spin = self.manual.unloaded(1, w, self.nu_m2_s, self.oil_k());
+        let losses = self.box_in(self.top(), w, 0.0).unloaded_nm();
         let share = self.manual.neutral_share;
         let mut output = StepOutput {
             engine_rad_s: w,
-            shaft_nm: share * spin.sum(),
+            shaft_nm: share * sum_nm(&losses),
             ..StepOutput::at_rest()
         };
-        lose_spin(&mut output, &spin, share * w);
+        lose(&mut output, &losses, share * w);
         self.set_throttle(&mut output, self.step.engine.full_load_nm(w));
         output
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
     fn declutched(&self, gear: u8) -> StepOutput {
-        let gear = if gear == 0 {
-            self.manual.overall.len() as u8
-        } else {
-            gear
-        };
+        let gear = if gear == 0 { self.top() } else { gear };
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
-        let spin = self
-            .manual
-            .unloaded(gear, input, self.nu_m2_s, self.oil_k());
+        let losses = self.box_in(gear, input, 0.0).unloaded_nm();
         let mut output = StepOutput {
             engine_rad_s: self.free_engine_rad_s(),
             gear,
@@ -72,8 +75,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         };
         output.flags.set(Flags::CLUTCH_OPEN, true);
         if input > 0.0 {
-            let output_nm = -spin.sum();
-            lose_spin(&mut output, &spin, input);
+            let output_nm = -sum_nm(&losses);
+            lose(&mut output, &losses, input);
             output.split_brake_and_shortfall(self.step.wheel, output_nm * input);
         }
         let full_load_nm = self.step.engine.full_load_nm(output.engine_rad_s);
@@ -116,8 +119,9 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     fn in_gear(&self, gear: u8) -> (StepOutput, bool) {
         let (engine, wheel) = (self.step.engine, self.step.wheel);
         let input = self.manual.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
-        let turning = self.manual.turning(gear, input, self.nu_m2_s, self.oil_k());
-        let mut at = turning.at(wheel.power_w / input); // MB-1
+        let demand_nm = wheel.power_w / input;
+        let engaged = self.box_in(gear, input, demand_nm);
+        let mut at = engaged.at(demand_nm); // MB-1
         let (mut w, settled_rad_s) = self.engine_rad_s(at.input_nm, input);
         let accessories_nm = engine.accessories_nm(w);
         let absorbed_nm = engine.drag_nm(w) + accessories_nm;
@@ -148,8 +152,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         if let Some(torque) = limit {
             output.flags.set(Flags::MISSED_TRACE, at.input_nm > most);
             let output_nm;
-            (output_nm, output.iterations) = turning.output_for(torque);
-            at = turning.at(output_nm);
+            (output_nm, output.iterations) = engaged.output_for(torque);
+            at = engaged.at(output_nm);
             output.residual = (at.input_nm - torque).abs() / full_load_nm;
             if torque <= least {
                 (w, _) = self.engine_rad_s(torque, input);
@@ -160,8 +164,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let side = self.manual.coupling.engine_side(at.input_nm, input, w);
         output.shaft_nm = side.engine_nm;
         output.add_loss(Component::LaunchClutch, side.loss_w);
-        lose_spin(&mut output, &at.spin, input);
-        output.add_loss(Component::GearMesh, at.mesh_nm * input);
+        lose(&mut output, &at.losses_nm, input);
         if limit.is_some() {
             output.split_brake_and_shortfall(wheel, at.output_nm * input);
         } else {
@@ -197,9 +200,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     }
 }
 
-fn lose_spin(output: &mut StepOutput, spin: &Spin, speed: f64) {
-    output.add_loss(Component::Seal, spin.seal * speed);
-    output.add_loss(Component::Bearing, spin.bearing * speed);
-    output.add_loss(Component::Churning, spin.churning * speed);
-    output.add_loss(Component::BoxMap, spin.map * speed);
+fn lose(output: &mut StepOutput, losses_nm: &PartLosses, speed: f64) {
+    for (component, nm) in losses_nm {
+        output.add_loss(*component, nm * speed);
+    }
 }

@@ -1,0 +1,79 @@
+//! Friction of the rolling bearings of a gear train.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | BR-1 | without load M_0 = c f_0 1e-7 max(nu n, 2000)^(2/3) d_m^3 Nmm, by FH-1; nu mm2/s, n rpm, d_m mm | source: Palmgren, from memory; f_0 ASSUMED, 1 to 8; c fitted to thesis 5.5.1 for the Rover, else 1 |
+//! | BR-2 | preload M_pre = M (0.04 + 0.08 psi)/0.12, psi = exp(-2.6e-8 (nu n)^1.4 d_m) | source: SKF's weighting of mixed and full film friction, in an open program of TU Munich; M ASSUMED, fitted to thesis 5.5.1 for the Rover |
+//! | BR-3 | lost share of the power through a stage: 1.1 mu_b (d_b1/d_1 + d_b2/(u d_1)) | derived: bearings carry 1.1 times the force of the teeth; mu_b ASSUMED, 0.0008 to 0.0020 |
+//!
+//! d_m mean and d_b bore diameter of the bearings of a shaft, d_1 pitch diameter of the pinion, u ratio of wheel to pinion. With BR-2 a
+//! preloaded bearing loses less torque the faster it turns and the thicker its oil is, down to a third: its rollers lift off. Its power
+//! still rises with speed.
+
+use crate::math::{exp, larger};
+use crate::transmission::viscous_self_heating::ViscousSelfHeating;
+
+/// Ends of the mixed friction of a bearing over its boundary friction (BR-2).
+const FULL_FILM: f64 = 0.04 / 0.12;
+const BOUNDARY: f64 = 0.08 / 0.12;
+/// Logarithm of the nu n below which M_0 falls no more, 2000 mm2/s rpm.
+const LEAST_LOG_NU_N: f64 = 7.600_902_459_542_082;
+/// Load of a shaft's bearings over the tangential force of its wheel.
+const LOAD_OF_TEETH: f64 = 1.1;
+
+/// The bearings of one kind on a shaft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bearing {
+    /// Shaft on which they are, from 0.
+    pub shaft: usize,
+    /// How many.
+    pub count: f64,
+    /// Mean diameter, m.
+    pub mean_m: f64,
+    /// Bore, m.
+    pub bore_m: f64,
+    /// f_0 of BR-1.
+    pub f0: f64,
+    /// Friction of all of them by their preload, in boundary friction, Nm.
+    pub preload_nm: f64,
+}
+
+/// What all bearings of a train share.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BearingFactors {
+    /// Friction under load (BR-3).
+    pub friction: f64,
+    /// Factor on M_0 (BR-1).
+    pub unloaded: f64,
+    /// Factor on the preload (BR-2).
+    pub preload: f64,
+    /// Dissipation of one bearing that halves M_0, W (FH-1).
+    pub heating_w: f64,
+}
+
+impl Bearing {
+    /// Torque at its own shaft without load from the teeth, Nm, at a speed of that shaft and with the logarithm of nu n in mm2/s rpm
+    /// (BR-1, BR-2).
+    pub fn torque_nm(&self, factors: &BearingFactors, shaft_rad_s: f64, log_nu_n: f64) -> f64 {
+        let nu_n = exp(2.0 / 3.0 * larger(log_nu_n, LEAST_LOG_NU_N));
+        let unheated_nm =
+            factors.unloaded * self.count * self.f0 * 1e-10 * nu_n * (1e3 * self.mean_m).powi(3);
+        let heating = ViscousSelfHeating::halving_at_w(Some(self.count * factors.heating_w));
+        let boundary = exp(-2.6e-8 * exp(1.4 * log_nu_n) * (1e3 * self.mean_m));
+        heating.torque_nm(unheated_nm, shaft_rad_s) // BR-1
+            + factors.preload * self.preload_nm * (FULL_FILM + BOUNDARY * boundary) // BR-2
+    }
+}
+
+/// Lost share of the power through a stage in the bearings of its two shafts, whose bores are known (BR-3).
+pub fn load_share(
+    friction: f64,
+    [pinion_bore_m, wheel_bore_m]: [f64; 2],
+    pinion_radius_m: f64,
+    wheel_over_pinion: f64,
+) -> f64 {
+    let diameter = 2.0 * pinion_radius_m;
+    LOAD_OF_TEETH
+        * friction
+        * (pinion_bore_m / diameter + wheel_bore_m / (wheel_over_pinion * diameter)) // BR-3
+}

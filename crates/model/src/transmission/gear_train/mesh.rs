@@ -1,0 +1,132 @@
+//! Loss of a gear mesh under load.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | GM-1 | tooth loss factor H_V = pi (u + 1)/(z_1 u cos beta_b) (1 - e_a + e_1^2 + e_2^2) | source: ISO/TR 14179-2 (Ohlendorf), in an open program of TU Munich |
+//! | GM-2 | mu_m = 0.048 ((F_bt/b)/(v_S rho_C))^0.2 eta^-0.05 Ra^0.25 X_L, at most 0.15 | source: ISO/TR 14179-2 (Schlenk), the same program; bounds ASSUMED |
+//! | GM-3 | lost share of the power through the mesh: mu_m H_V | source: ISO/TR 14179-2 |
+//!
+//! u >= 1 the ratio of wheel to pinion, z_1 teeth of the pinion, e the contact ratios from centre distance, module and helix without profile
+//! shift, normal angle 20 degrees, addendum one module. F_bt/b in N/mm, at least 150; v_S = 2 v sin alpha_wt in m/s with v at least 0.5;
+//! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
+//! before the torques are.
+
+use crate::math::{exp, larger, ln, smaller};
+use std::f64::consts::PI;
+
+/// Normal pressure angle, rad.
+const PRESSURE_ANGLE_RAD: f64 = PI / 9.0;
+/// Least load of the teeth for which GM-2 holds, N/mm.
+const LEAST_LINE_LOAD_N_MM: f64 = 150.0;
+/// Least speed of the pitch circles for which GM-2 holds, m/s.
+const LEAST_PITCH_M_S: f64 = 0.5;
+/// Largest friction of the teeth.
+const MAX_FRICTION: f64 = 0.15;
+
+/// A pair of helical wheels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stage {
+    /// Centre distance, m.
+    pub centre_m: f64,
+    /// Normal module, m.
+    pub module_m: f64,
+    /// Face width, m.
+    pub face_m: f64,
+    /// Helix angle, rad.
+    pub helix_rad: f64,
+}
+
+/// Surface and oil of the teeth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Teeth {
+    /// Roughness, m.
+    pub roughness_m: f64,
+    /// Factor of the kind of oil, X_L.
+    pub oil_factor: f64,
+}
+
+/// A mesh at its ratio, in a train.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mesh {
+    /// H_V (GM-1).
+    pub loss_factor: f64,
+    /// Speed of the pinion over that of the train's first shaft.
+    pinion_turns: f64,
+    /// Pitch radius of the pinion, m.
+    pitch_radius_m: f64,
+    /// Load of the teeth for a torque at the train's first shaft, N/mm per Nm.
+    line_load_per_nm: f64,
+    /// What of GM-2 follows from the wheels and the oil's kind.
+    friction_factor: f64,
+}
+
+impl Stage {
+    /// Ratio of wheel to pinion: an overdrive turned round.
+    fn wheel_over_pinion(ratio: f64) -> f64 {
+        larger(ratio, 1.0 / ratio)
+    }
+
+    /// Pitch radius of the smaller wheel, m.
+    pub fn pinion_radius_m(&self, ratio: f64) -> f64 {
+        self.centre_m / (1.0 + Self::wheel_over_pinion(ratio))
+    }
+
+    /// Teeth of the smaller wheel.
+    pub fn pinion_teeth(&self, ratio: f64) -> f64 {
+        2.0 * self.pinion_radius_m(ratio) * self.helix_rad.cos() / self.module_m
+    }
+
+    /// The mesh at a ratio of speeds, its first wheel turning `turns` times as fast as the train's first shaft.
+    pub fn mesh(&self, ratio: f64, turns: f64, teeth: Teeth) -> Mesh {
+        let u = Self::wheel_over_pinion(ratio);
+        let (helix_cos, module) = (self.helix_rad.cos(), self.module_m);
+        let transverse = (PRESSURE_ANGLE_RAD.tan() / helix_cos).atan();
+        let (sin, cos, tan) = (transverse.sin(), transverse.cos(), transverse.tan());
+        let base_helix_cos = (self.helix_rad.tan() * cos).atan().cos();
+        let pinion = 2.0 * self.pinion_radius_m(ratio);
+        let base = [pinion * cos, pinion * u * cos];
+        let tip = [pinion + 2.0 * module, pinion * u + 2.0 * module];
+        let reach = |k: usize| 0.5 * (tip[k] * tip[k] - base[k] * base[k]).sqrt();
+        let pitch = PI * module / helix_cos * cos; // on the base circle, transverse
+        // Contact ratios of the whole path and of its parts beyond the pitch point.
+        let whole = (reach(0) + reach(1) - self.centre_m * sin) / pitch;
+        let beyond = (reach(0) - 0.5 * base[0] * tan) / pitch;
+        let before = whole - beyond;
+        let teeth_1 = self.pinion_teeth(ratio);
+        let loss_factor = PI * (u + 1.0) / (teeth_1 * u * base_helix_cos)
+            * (1.0 - whole + beyond * beyond + before * before); // GM-1
+        let pinion_turns = turns * larger(1.0, 1.0 / ratio);
+        let rho_mm = 1e3 * 0.5 * pinion * sin * u / (base_helix_cos * (u + 1.0));
+        let power = |x: f64, exponent: f64| exp(exponent * ln(x));
+        Mesh {
+            loss_factor,
+            pinion_turns,
+            pitch_radius_m: 0.5 * pinion,
+            line_load_per_nm: 1.0 / (pinion_turns * 0.5 * base[0] * 1e3 * self.face_m),
+            friction_factor: 0.048
+                * power(2.0 * sin * rho_mm, -0.2)
+                * power(1e6 * teeth.roughness_m, 0.25)
+                * teeth.oil_factor,
+        }
+    }
+}
+
+impl Mesh {
+    /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
+    /// (GM-2).
+    pub fn friction(&self, first_rad_s: f64, torque_nm: f64, log_eta: f64) -> f64 {
+        let load = larger(
+            torque_nm.abs() * self.line_load_per_nm,
+            LEAST_LINE_LOAD_N_MM,
+        );
+        let pitch_m_s = first_rad_s * self.pinion_turns * self.pitch_radius_m;
+        let pitch_m_s = larger(pitch_m_s, LEAST_PITCH_M_S);
+        let power = exp(0.2 * ln(load / pitch_m_s) - 0.05 * log_eta);
+        smaller(self.friction_factor * power, MAX_FRICTION) // GM-2
+    }
+
+    /// Lost share of the power through the mesh (GM-3).
+    pub fn share(&self, first_rad_s: f64, torque_nm: f64, log_eta: f64) -> f64 {
+        self.friction(first_rad_s, torque_nm, log_eta) * self.loss_factor // GM-3
+    }
+}
