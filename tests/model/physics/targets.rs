@@ -461,7 +461,7 @@ fn val_rig_belt_rises_with_temperature() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
     let plain = Rig::new(&car(
         "rover_216_cvt",
-        &["lubricant.friction.lift_off.enabled=false"],
+        &["lubricant.friction.film.enabled=false"],
     ));
     let at50 = |rig: &Rig, ratio: f64, n: f64| {
         rig.solve(ratio, n, 50.0).belt_nm() / rig.solve(ratio, n, 75.0).belt_nm()

@@ -114,14 +114,14 @@ proptest! {
         }
     }
 
-    /// Neither oil nor flank friction takes part in tension or slip; no loss but the film's knows the film.
+    /// Flank friction takes no part in tension or slip; films take a share of the step, and their force knows neither torque nor clamping.
     #[test]
     fn causes_do_not_mix(f in any_formulation(), p in any_point()) {
         let (belt, p) = (thesis_belt(f), Point { film_share: 0.5, ..p });
-        let (plain, dry) = (p.state(&belt), Point { film_share: 0.0, mu_flank: 0.2, ..p }.state(&belt));
+        let (plain, dry) = (p.state(&belt), Point { mu_flank: 0.2, ..p }.state(&belt));
         prop_assert_eq!((plain.tension, plain.band_nm), (dry.tension, dry.band_nm));
         prop_assert!(plain.slip == dry.slip || second_law_binds(&dry));
-        prop_assert_eq!(dry.losses.film_nm, 0.0);
+        prop_assert_eq!(Point { film_share: 0.0, ..p }.state(&belt).losses.film_nm, 0.0);
         // Wedge, penetration and film know neither torque nor band and segment friction; the film does not know clamping either.
         let other = Point { torque_nm: -3.0 - p.torque_nm, mu_band: 0.05, mu_segment: 0.05, ..p }.state(&belt);
         prop_assert_eq!((plain.losses.wedge_nm, plain.losses.penetration_nm, plain.film_nm), (other.losses.wedge_nm, other.losses.penetration_nm, other.film_nm));
@@ -131,17 +131,49 @@ proptest! {
         prop_assert_eq!(sticky.losses.capacity_nm == plain.losses.capacity_nm, f != Formulation::Smooth || p.clamp_n * 0.05 < 1e-300);
     }
 
-    /// The film's shear is proportional to its share and to speed (FI-1).
+    /// A contact that the film carries whole has the friction of its shear and no other: the step is that force, the bands lose nothing (LU-5, TE-7).
     #[test]
-    fn film_is_linear_in_share_and_speed(p in any_point()) {
+    fn friction_of_a_lifted_contact_is_shear_alone(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
-        let p = Point { rpm: 1.0 + p.rpm, film_share: 0.2, ..p };
-        let plain = p.state(&belt).film_nm;
-        for twice in [Point { film_share: 0.4, ..p }, Point { rpm: 2.0 * p.rpm, ..p }] {
-            prop_assert!((twice.state(&belt).film_nm - 2.0 * plain).abs() <= 1e-13 * plain);
-        }
-        prop_assert_eq!(plain > 0.0, p.ratio != 1.0);
+        let lifted = BandFriction { film_share: [1.0; 2], ..BandFriction::dry(p.mu_band) };
+        let load = BeltLoad { band: lifted, film_n: [300.0, 7.0], ..p.load() };
+        let s = belt_state(&belt, &BeltAtRatio::new(&belt, p.ratio), &load);
+        let part = (p.ratio.ln() / belt.unity_width).tanh(); // TE-6
+        prop_assert!((s.tension.step_n - part * 300.0).abs() <= 1e-9);
+        prop_assert_eq!(s.band_nm, 0.0);
+        let levers = [300.0 * belt.band_offset_m, 7.0 * 11.0 * belt.band_thickness_m];
+        let want = part.abs() * (1.0 / p.ratio - 1.0).abs() * (levers[0] + levers[1]);
+        prop_assert!((s.film_nm - want).abs() <= 1e-12 * (1.0 + want), "{} {want}", s.film_nm);
     }
+}
+
+/// A film gives no torque at rest, little at -40 degC, and each interface has its own speed (FI-1, FI-2, FH-1): the shipped fluid at 4000 rpm.
+#[test]
+fn films_of_the_shipped_fluid() {
+    let setup = crate::common::car("rover_216_cvt", &[]);
+    let oil = setup.oils().0;
+    let belt = thesis_belt(Formulation::Smooth);
+    let film = |degc: f64, rpm: f64| {
+        let load = BeltLoad {
+            secondary_clamp_n: 12e3,
+            ..BeltLoad::turning(&belt, oil, degc + 273.15, 0.5, rpm * RPM)
+        };
+        (
+            load,
+            belt_state(&belt, &BeltAtRatio::new(&belt, 0.5), &load),
+        )
+    };
+    let (rest, at_rest) = film(-40.0, 0.0);
+    assert!(rest.film_n == [0.0; 2] && at_rest.film_nm == 0.0 && at_rest.band_nm > 1.0);
+    let (cold, at_cold) = film(-40.0, 4000.0);
+    assert!(
+        at_cold.film_nm > 0.5 && at_cold.film_nm < 3.0,
+        "{} Nm",
+        at_cold.film_nm
+    );
+    assert!(cold.band.film_share[0] > 0.99);
+    let [inner, outer] = film(25.0, 2500.0).0.band.film_share;
+    assert!(inner > 0.3 && outer < 0.05, "{inner} {outer}");
 }
 
 /// Belts as different as the input file allows in what the smooth rules look at.

@@ -142,8 +142,12 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     let bands = if smooth { b.band_mass_kg_m } else { 0.0 };
     let pressing = (b.mass_kg_m - bands) * v * v; // TE-8
     let a = (2.0 * fp * b.tan_wedge / bp + pressing) * grips;
-    let z = l.output_torque_nm / rs + s * l.band.mu * a;
-    let c = l.band.mu * grips / 2.0;
+    // The film carries a share of the innermost interface; the printed forms know none (LU-5, TE-7).
+    let [inner, outer] = if smooth { l.band.film_share } else { [0.0; 2] };
+    let shear_n = if smooth { l.film_n } else { [0.0; 2] };
+    let mu_step = l.band.mu * (1.0 - inner);
+    let z = l.output_torque_nm / rs + s * (mu_step * a + shear_n[0]);
+    let c = mu_step * grips / 2.0;
     let cx = if z >= 0.0 {
         z / (1.0 - s * c)
     } else {
@@ -151,25 +155,18 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     }; // TE-5
     let qp = 2.0 * fp * b.tan_wedge + bp * pressing + cx.abs() * bp / 2.0; // TE-2
     let qs = 2.0 * fs * b.tan_wedge + bs * pressing + cx.abs() * bs / 2.0;
-    let dt = -s * l.band.mu * qp * grips / bp; // TE-3, TE-7
+    let dt = -s * (mu_step * qp * grips / bp + shear_n[0]); // TE-3, TE-7
     same(cx, l.output_torque_nm / rs - dt); // TE-4
     let part = if smooth { s.abs() } else { 1.0 }; // BT-6
-    let slide = part * (1.0 / ratio - 1.0).abs() / 2.0 * (d + b.band_thickness_m * (n - 1.0) / 2.0);
+    let turns = part * (1.0 / ratio - 1.0).abs();
+    let slide =
+        turns / 2.0 * ((1.0 - inner) * d + (1.0 - outer) * b.band_thickness_m * (n - 1.0) / 2.0);
     let scale = |own: f64| if chapter { 1.0 } else { bp.min(bs) / own }; // BT-4
     let band = [
         l.band.mu * qp * slide * scale(bp),
         l.band.mu * qs * slide * scale(bs),
     ]; // BT-3
-    let spread = l.primary_speed_rad_s * (1.0 / ratio - 1.0) / 2.0;
-    let squares = d * d + (n - 1.0) * b.band_thickness_m * b.band_thickness_m;
-    let film = l.band.film_share
-        * l.eta_pa_s
-        * b.band_width_m
-        * (arc[0] + arc[1])
-        * spread
-        * spread
-        * squares
-        / (l.film_thickness_m * l.primary_speed_rad_s); // FI-1
+    let film = turns * (shear_n[0] * d + shear_n[1] * b.band_thickness_m * (n - 1.0)); // FI-1
     let normal = [
         2.0 * t * fp / (b.cos_wedge * arc[0]),
         2.0 * t * fs / (b.cos_wedge * arc[1]),
@@ -326,11 +323,10 @@ fn load(output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         output_torque_nm,
         secondary_clamp_n,
         band: BandFriction {
-            mu: 0.12,
-            film_share: 0.3,
+            film_share: [0.3, 0.04],
+            ..BandFriction::dry(0.12)
         },
-        eta_pa_s: 0.02,
-        film_thickness_m: 0.5e-6,
+        film_n: [220.0, 9.0],
         segment_friction: 0.14,
         capacity_friction: 0.095,
         flank_friction: 0.11,
@@ -494,9 +490,11 @@ fn val_input_torque_by_hand() {
         assert_eq!(of, [cx, appendix, chapter]);
     }
     same(b.band_area_m2(), 12.0 * 20e-3 * 0.217e-3);
-    same(sliding_speed_m_s(&b, 2.0, -260.0), 0.25 * 3e-3 * 260.0);
+    let fast = sliding_speed_m_s(&b, 2.0, -260.0);
+    same(fast[0], 0.25 * 3e-3 * 260.0);
+    same(fast[1], 0.25 * 0.217e-3 * 260.0);
     same(
-        sliding_speed_m_s(&b, 0.7, 260.0),
+        sliding_speed_m_s(&b, 0.7, 260.0)[0],
         (1.0 / 0.7 - 1.0) / 2.0 * 3e-3 * 260.0,
     ); // BT-1
 }

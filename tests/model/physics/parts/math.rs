@@ -202,7 +202,7 @@ const EXPECTED: [(&str, f64, f64, &str); 64] = [
         "1/1000 rpm",
     ),
     ("film_thickness_um", 0.5, 5e-7, "µm"),
-    ("lift_n_per_m", 0.028, 0.028, "N/m"),
+    ("half_n_per_m", 0.028, 0.028, "N/m"),
     ("ram_w_k_per_m_s", 40.0, 40.0, "W/K per m/s"),
     ("leakage_l_min_per_bar", 6.0, 1e-9, "l/min per bar"),
     ("inlet_bar_per_l_min", 0.01, 6e7, "bar per l/min"),

@@ -30,6 +30,8 @@ pub struct Solved {
     at: BeltAtRatio,
     load: BeltLoad,
     belt_k: f64,
+    /// Dynamic viscosity at the belt's temperature, Pa s.
+    eta_pa_s: f64,
     point: BeltPoint,
 }
 
@@ -81,9 +83,9 @@ pub fn columns() -> Vec<Column<Solved>> {
         "secondary_arc_mm" s => 1e3 * s.at.prepared.arc_m[1];
         "primary_deflection_mm" s => s.deflection_mm(0);
         "secondary_deflection_mm" s => s.deflection_mm(1);
-        "sliding_m_s" s => sliding_speed_m_s(&s.belt, s.point.geometry.ratio, s.load.primary_speed_rad_s);
-        "film_share" s => s.load.band.film_share;
-        "dynamic_viscosity_mpa_s" s => 1e3 * s.load.eta_pa_s;
+        "sliding_m_s" s => sliding_speed_m_s(&s.belt, s.point.geometry.ratio, s.load.primary_speed_rad_s)[0];
+        "film_share" s => s.load.band.film_share[0];
+        "dynamic_viscosity_mpa_s" s => 1e3 * s.eta_pa_s;
         "primary_segment_force_n" s => s.point.tension.primary_clamp_n * s.at.prepared.normal_per_clamp[0];
         "secondary_segment_force_n" s => s.point.tension.secondary_clamp_n * s.at.prepared.normal_per_clamp[1];
         "band_1_share" s => s.band_1_share();
@@ -184,6 +186,7 @@ fn solve(x: Vec<f64>, cvt: &Cvt, belt: &Belt, oil: &Lubricant) -> Solved {
     }
     Solved {
         belt_k: belt_k(x[BELT_TEMP]),
+        eta_pa_s: oil.dynamic_pa_s(belt_k(x[BELT_TEMP])),
         x,
         belt: belt.clone(),
         at,

@@ -6,15 +6,17 @@
 //! | BT-2 | normal force of interface i: Q (1 - (i-1)/n) | source: thesis 8.4.2 |
 //! | BT-3 | torque loss of a pulley, at the primary: f mu_b Q \|1/I - 1\|/2 (d + t (n-1)/2) | derived: closed sum of thesis eq. 48, 49 |
 //! | BT-4 | f = min wrap / own wrap (App. C) or 1 (eq. 49) | source: the two disagree, see Formulation |
-//! | BT-6 | torque loss by the one force of TE-7, at the primary: \|s\| mu_b Tm beta \|1/I - 1\| (d + t (n-1)/2), beta the smaller wrap, half of it on each pulley | derived: moments about both pulleys, T_p - T_s/I = \|1/I - 1\| (d F_1 + t sum F_i) |
+//! | BT-6 | torque loss by the one force of TE-7, at the primary: \|s\| mu_b Tm beta \|1/I - 1\| ((1-u_1) d + (1-u_t) t (n-1)/2), beta the smaller wrap, half of it on each pulley | derived: moments about both pulleys, T_p - T_s/I = \|1/I - 1\| (d F_1 + t sum F_i) |
 //! | BT-5 | travel on its neighbour in a belt revolution: d (L/2 (1/R_p + 1/R_s) - 2 pi) + x d L \|1/R_p - 1/R_s\|, t for d above band 1 | derived from thesis 8.3, App. C; x = 0 is the mean speed |
-//! | FI-1 | film shear, at the primary: share eta B (L_p + L_s) sum dv_i2 / (h w_in) | source: thesis eq. 52; share and h ASSUMED |
+//! | FI-1 | film shear: F_v,i = u_i eta dv_i A/h_i at each interface by FH-1 at 2 F_v,i dv_i, A = 2 A_p A_s/(A_p + A_s), A_p = B L_p; torque at the primary \|s\| \|1/I - 1\| (F_v,1 d + F_v,t t (n-1)) | derived: thesis eq. 52 with one force on both pulleys and LU-5, FI-2 |
 //!
-//! Symbols: d offset of band 1 above the rocking edge m, t band thickness m, n bands, B width of both packs m, L contact arcs m, h film m.
+//! Symbols: d offset of band 1 above the rocking edge m, t band thickness m, n bands, B width of both packs m, L contact arcs m; index 1 innermost interface, t each other one.
 //! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
+use crate::fluid::{BandFriction, Friction};
 use crate::math::{pair, smaller};
+use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Friction-weighted sliding of the band pack per turn of the primary, times the wrap factor of each pulley, m (BT-2 to BT-4); with one
 /// force on both pulleys also times the part of that force that a `direction` of the tension step leaves (BT-6).
@@ -38,14 +40,45 @@ pub fn slide_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
     }) // BT-4
 }
 
-/// Film shear torque per share, viscosity and speed over film thickness, m4 (FI-1).
-pub fn film_m4(belt: &Belt, g: &Geometry) -> f64 {
-    let arcs =
-        g.primary_radius_m * g.primary_wrap_rad + g.secondary_radius_m * g.secondary_wrap_rad;
-    let spread = (1.0 / g.ratio - 1.0) / 2.0;
-    let offsets = belt.band_offset_m * belt.band_offset_m
-        + (belt.band_count - 1.0) * belt.band_thickness_m * belt.band_thickness_m;
-    belt.band_width_m * arcs * spread * spread * offsets
+/// Part of the bands' sliding, weighted by friction, that is not at the innermost interface (BT-2).
+pub fn outer_part(belt: &Belt) -> f64 {
+    let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
+    if outer > 0.0 {
+        outer / (belt.band_offset_m + outer)
+    } else {
+        0.0
+    }
+}
+
+/// Contact area of a film with one force and the sliding shared on both pulleys, m2 (FI-1).
+pub fn film_area_m2(belt: &Belt, g: &Geometry) -> f64 {
+    let area = [
+        g.primary_radius_m * g.primary_wrap_rad,
+        g.secondary_radius_m * g.secondary_wrap_rad,
+    ]
+    .map(|arc| belt.band_width_m * arc);
+    2.0 * area[0] * area[1] / (area[0] + area[1])
+}
+
+/// Levers of the films' forces, at the primary shaft, m: innermost interface, all others together (FI-1).
+pub fn film_levers_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
+    let turns = direction.abs() * (1.0 / g.ratio - 1.0).abs();
+    [
+        turns * belt.band_offset_m,
+        turns * belt.band_thickness_m * (belt.band_count - 1.0),
+    ]
+}
+
+/// Forces of the films on the innermost interface and on each other one, N (FI-1, FH-1).
+#[inline]
+pub fn film_n(
+    friction: &Friction,
+    band: &BandFriction,
+    area_m2: f64,
+    sliding_m_s: [f64; 2],
+) -> [f64; 2] {
+    let heating = ViscousSelfHeating::halving_at_w(friction.film_heating_w);
+    pair(|i| heating.torque_nm(band.shear_pa[i] * area_m2, 2.0 * sliding_m_s[i])) // FI-1
 }
 
 /// Travel of the innermost band and of each other band on what lies below it, m per belt revolution (BT-5).
@@ -59,22 +92,26 @@ pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
     [belt.band_offset_m * turns, belt.band_thickness_m * turns] // BT-5
 }
 
-/// Sliding speed of the innermost band in each arc, m/s (BT-1).
+/// Sliding speed at the innermost interface and at each other one in each arc, m/s (BT-1).
 #[inline]
-pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> f64 {
-    (1.0 / ratio - 1.0).abs() / 2.0 * belt.band_offset_m * primary_speed_rad_s.abs() // BT-1
+pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> [f64; 2] {
+    let turns = (1.0 / ratio - 1.0).abs() / 2.0;
+    [belt.band_offset_m, belt.band_thickness_m].map(|step| turns * step * primary_speed_rad_s.abs()) // BT-1
 }
 
-/// Boundary friction loss of the bands on the arcs of primary and secondary, Nm at the primary shaft (BT-3).
+/// Boundary friction loss of the bands on the arcs of primary and secondary, Nm at the primary shaft (BT-3, BT-6).
 #[inline]
-pub fn band_loss_nm(at: &BeltAtRatio, t: &Tension, mu_band: f64) -> [f64; 2] {
+pub fn band_loss_nm(at: &BeltAtRatio, t: &Tension, band: &BandFriction) -> [f64; 2] {
     let shoulder_n = [t.primary_shoulder_n, t.secondary_shoulder_n];
-    pair(|i| mu_band * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3
+    let [inner, outer] = band.film_share;
+    let lifted = inner + (outer - inner) * at.prepared.outer_part;
+    let mu = band.mu * (1.0 - lifted);
+    pair(|i| mu * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3, BT-6
 }
 
-/// Viscous shear of the carrying film, torque at the primary shaft, Nm (FI-1).
+/// Viscous shear of the films, torque at the primary shaft, Nm (FI-1).
 #[inline]
 pub fn film_loss_nm(at: &BeltAtRatio, load: &BeltLoad) -> f64 {
-    let speed = load.primary_speed_rad_s.abs();
-    load.band.film_share * load.eta_pa_s * at.prepared.film_m4 / load.film_thickness_m * speed // FI-1
+    let [inner, outer] = at.prepared.film_levers_m;
+    load.film_n[0] * inner + load.film_n[1] * outer // FI-1
 }

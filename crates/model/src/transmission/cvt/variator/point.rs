@@ -255,7 +255,7 @@ fn split_nm(loss_nm: f64, pair: [f64; 2]) -> [f64; 2] {
 /// The point as printed (PR-1 to PR-5).
 fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     let tension = Tension::new(belt, at, load, printed::direction(at.geometry.ratio)); // PR-1
-    let band_nm = band_loss_nm(at, &tension, load.band.mu);
+    let band_nm = band_loss_nm(at, &tension, &load.band);
     let deflection = deflection(belt, at, &tension, printed::FLANK_FRICTION); // PR-5
     let bare = without_slip(belt, at, load, &tension, band_nm, &deflection);
     let bare = BeltPoint {

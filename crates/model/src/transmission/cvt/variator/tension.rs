@@ -7,7 +7,7 @@
 //! | TE-3 | dT = -s mu_b Q_p, s = -1 in low, +1 in high | source: thesis eq. 46, App. C |
 //! | TE-4 | C_x = T/R_s - dT | source: thesis eq. 42 |
 //! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
-//! | TE-7 | one force on both pulleys: dT = -s mu_b beta Tm, beta the smaller wrap, Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_b beta A and c = mu_b beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
+//! | TE-7 | one force on both pulleys: dT = -s (m beta Tm + F_v), m = mu_b (1 - u_1), beta the smaller wrap, F_v the film's force (FI-1), Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with m beta A + F_v and c = m beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
 //! | TE-8 | `smooth`: m is that of the segments, and the mean tension of the bands is Q/beta + m_b v2, m_b theirs | derived: free body of a segment, 2 F tan th + m_s beta v2 + \|C_x\| beta/2 = Q, and of a band element, T = Q/beta + m_b v2; the thesis and the printed forms have the whole belt press |
 //! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
 //!
@@ -83,8 +83,10 @@ impl Tension {
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
         let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
         let mean = bare_mean_n(belt, at, load, centrifugal_n);
-        let grip = load.band.mu * smaller(wraps[0], wraps[1]);
-        let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * grip * mean;
+        let grip = load.band.mu * (1.0 - load.band.film_share[0]) * smaller(wraps[0], wraps[1]);
+        let film_n = load.film_n[0];
+        let z =
+            load.output_torque_nm * at.prepared.inv_secondary_radius + s * (grip * mean + film_n);
         let cx = compression_n(z, s * (0.5 * grip)); // TE-7
         let tension = mean + 0.5 * cx.abs();
         Tension {
@@ -93,7 +95,7 @@ impl Tension {
             primary_shoulder_n: tension * wraps[0],
             secondary_shoulder_n: tension * wraps[1],
             compression_n: cx,
-            step_n: -s * (grip * tension), // TE-7
+            step_n: -s * (grip * tension + film_n), // TE-7
             ring_n,
         }
     }
