@@ -8,7 +8,7 @@ proptest! {
     /// Without band friction the bands lose nothing, tension makes no step and segments carry all of the torque (TE-3, TE-4, BT-3).
     #[test]
     fn no_band_friction_no_band_loss(f in any_formulation(), p in any_point()) {
-        let s = Point { mu_band: 0.0, ..p }.state(&thesis_belt(f));
+        let s = Point { mu_band: 0.0, film_share: 0.0, ..p }.state(&thesis_belt(f));
         prop_assert_eq!((s.band_nm, s.losses.band_nm, s.tension.step_n), (0.0, 0.0, 0.0));
         let radius = BeltAtRatio::new(&thesis_belt(f), p.ratio).geometry.secondary_radius_m;
         prop_assert!((s.tension.compression_n * radius - p.torque_nm).abs() <= 1e-12 * p.torque_nm.abs());
@@ -33,7 +33,9 @@ proptest! {
         prop_assert!((t.primary_shoulder_n - pressed(primary_n, g.primary_wrap_rad)).abs() <= small, "TE-2 {t:?}");
         prop_assert!((t.secondary_shoulder_n - pressed(p.clamp_n, g.secondary_wrap_rad)).abs() <= small, "TE-2 {t:?}");
         let gripped_n = if f == Formulation::Smooth { t.primary_shoulder_n.min(t.secondary_shoulder_n) } else { t.primary_shoulder_n };
-        prop_assert!((t.step_n + s * p.mu_band * gripped_n).abs() <= small, "TE-3, TE-7 {t:?}");
+        let load = p.load(f);
+        let force_n = p.mu_band * (1.0 - load.band.film_share[0]) * gripped_n + load.film_n[0];
+        prop_assert!((t.step_n + s * force_n).abs() <= small + 1e-12 * force_n, "TE-3, TE-7 {t:?}");
         prop_assert!((t.compression_n + t.step_n - p.torque_nm / g.secondary_radius_m).abs() <= small, "TE-4 {t:?}");
     }
 
@@ -46,13 +48,14 @@ proptest! {
         let sliding = |i: u8| (1.0 / p.ratio - 1.0).abs() / 2.0 * if i == 1 { belt.band_offset_m } else { belt.band_thickness_m };
         let pack = |shoulder_n: f64, wrap: f64, other: f64| {
             let factor = if f == Formulation::Chapter8 { 1.0 } else { (other / wrap).min(1.0) };
-            let over = (1..=n).map(|i| shoulder_n * (1.0 - f64::from(i - 1) / f64::from(n)) * sliding(i));
+            let dry = |i: u8| 1.0 - p.load(f).band.film_share[usize::from(i > 1)]; // LU-5
+            let over = (1..=n).map(|i| dry(i) * shoulder_n * (1.0 - f64::from(i - 1) / f64::from(n)) * sliding(i));
             factor * p.mu_band * over.sum::<f64>()
         };
         let want = pack(s.tension.primary_shoulder_n, g.primary_wrap_rad, g.secondary_wrap_rad)
             + pack(s.tension.secondary_shoulder_n, g.secondary_wrap_rad, g.primary_wrap_rad);
         let want = if f == Formulation::Smooth { (p.ratio.ln() / belt.unity_width).tanh().abs() * want } else { want }; // BT-6
-        prop_assert!((s.band_nm - want).abs() <= 1e-12 * want, "{} instead of {want}", s.band_nm);
+        prop_assert!((s.band_nm - want).abs() <= 1e-11 * want + 1e-15, "{} instead of {want}", s.band_nm);
     }
 
     /// Rigid pulleys, frictionless flanks or no clamping: neither wedging nor penetration (WE-1, WE-3, PE-1).
@@ -136,7 +139,7 @@ proptest! {
     fn friction_of_a_lifted_contact_is_shear_alone(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
         let lifted = BandFriction { film_share: [1.0; 2], ..BandFriction::dry(p.mu_band) };
-        let load = BeltLoad { band: lifted, film_n: [300.0, 7.0], ..p.load() };
+        let load = BeltLoad { band: lifted, film_n: [300.0, 7.0], ..p.load(Formulation::Smooth) };
         let s = belt_state(&belt, &BeltAtRatio::new(&belt, p.ratio), &load);
         let part = (p.ratio.ln() / belt.unity_width).tanh(); // TE-6
         prop_assert!((s.tension.step_n - part * 300.0).abs() <= 1e-9);

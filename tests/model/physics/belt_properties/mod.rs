@@ -99,16 +99,18 @@ impl Point {
         }
     }
 
-    pub fn load(&self) -> BeltLoad {
+    /// The load; the printed forms have no film.
+    pub fn load(&self, formulation: Formulation) -> BeltLoad {
+        let film = if formulation.has_film() { 1.0 } else { 0.0 };
         BeltLoad {
             primary_speed_rad_s: self.rpm * RPM,
             output_torque_nm: self.torque_nm,
             secondary_clamp_n: self.clamp_n,
             band: BandFriction {
-                film_share: [self.film_share, 0.1 * self.film_share],
+                film_share: [1.0, 0.1].map(|part| film * part * self.film_share),
                 ..BandFriction::dry(self.mu_band)
             },
-            film_n: self.film_n(),
+            film_n: self.film_n().map(|n| film * n),
             segment_friction: self.mu_segment,
             capacity_friction: self.mu_segment,
             flank_friction: self.mu_flank,
@@ -117,11 +119,15 @@ impl Point {
 
     /// Forces of the films, N: some hundred at speed, none at rest.
     pub fn film_n(&self) -> [f64; 2] {
-        [0.2, 0.01].map(|n_per_rpm| n_per_rpm * self.film_share * self.rpm)
+        [0.02, 0.001].map(|n_per_rpm| n_per_rpm * self.film_share * self.rpm.abs())
     }
 
     pub fn state(&self, belt: &Belt) -> BeltState {
-        belt_state(belt, &BeltAtRatio::new(belt, self.ratio), &self.load())
+        belt_state(
+            belt,
+            &BeltAtRatio::new(belt, self.ratio),
+            &self.load(belt.formulation),
+        )
     }
 
     /// Output torque at which C_x is zero (TE-5 or TE-7 with Z = 0), written out here from TE-1, TE-2 and TE-6.

@@ -16,7 +16,7 @@ proptest! {
     fn statics_of_the_primary(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
         let (g, s) = (BeltAtRatio::new(&belt, p.ratio).geometry, p.state(&belt));
-        let (t, load) = (s.tension, p.load());
+        let (t, load) = (s.tension, p.load(Formulation::Smooth));
         let compression_n = p.torque_nm / g.secondary_radius_m - t.step_n; // TE-4
         let (turns, film_n) = ((1.0 / p.ratio - 1.0).abs(), load.film_n);
         let part = (p.ratio.ln() / belt.unity_width).tanh().abs(); // TE-6

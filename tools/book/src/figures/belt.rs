@@ -221,7 +221,6 @@ fn film_loss(r: &Reference) -> String {
                     bar,
                 },
                 band,
-                t,
             );
             s.losses.band_nm + s.losses.film_nm
         })

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::fluid::{BandFriction, Lubricant};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::Cvt;
 use cvtcycle::model::transmission::cvt::variator::{
@@ -75,17 +75,11 @@ impl Reference {
 
     /// The belt with boundary friction on the bands (no film), at 85 degC.
     pub fn boundary(&self, belt: &Belt, at: At) -> BeltState {
-        self.with_friction(belt, at, BandFriction::dry(self.oil().friction.band), 85.0)
+        self.with_friction(belt, at, BandFriction::dry(self.oil().friction.band))
     }
 
-    /// The belt with a band friction and temperature.
-    pub fn with_friction(
-        &self,
-        belt: &Belt,
-        at: At,
-        band: BandFriction,
-        belt_degc: f64,
-    ) -> BeltState {
+    /// The belt with a band friction.
+    pub fn with_friction(&self, belt: &Belt, at: At, band: BandFriction) -> BeltState {
         let cvt = self.cvt();
         let prepared = BeltAtRatio::new(belt, at.ratio);
         belt_state(
