@@ -11,7 +11,7 @@ use cvtcycle_model::keys::{Quantity, stem};
 const ELSEWHERE: f64 = 0.75;
 
 /// Ends of keys of earlier versions, and what to do instead.
-const REPLACED: [(&str, &str); 4] = [
+const REPLACED: [(&str, &str); 5] = [
     (
         "engine.friction.temperature_exponent",
         "remove it: friction in the cold follows the oil's viscosity, with `viscous_share` and `viscous_exponent` (EN-2)",
@@ -22,6 +22,10 @@ const REPLACED: [(&str, &str); 4] = [
     ),
     ("friction.band_floor", WITHOUT_BOUNDS),
     ("friction.band_ceiling", WITHOUT_BOUNDS),
+    (
+        "friction.lift_off",
+        "write `[friction.film]`: `half_n_per_m`, `exponent`, `half_thickness_um` and `film_heating_w` in place of `reduction`, `load_n_per_m` and `film_thickness_um` (LU-5, FI-2)",
+    ),
 ];
 
 /// What became of the bounds of band friction.

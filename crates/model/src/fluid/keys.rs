@@ -25,10 +25,10 @@ keys! {
     /// Keys of `[friction.film]`.
     FILM: FilmKeys = "film" [] {
         enabled: flag(true), "whether the bands can ride on oil", ["LU-5"];
-        half_n_per_m: or(0.021, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
+        half_n_per_m: or(0.042, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
         exponent: or(1.47, number(0.3, 8.0)), "exponent of the film's share", ["LU-5"];
         half_thickness_um: or(1.05, number(0.01, 100.0)), "thickness of the film where it carries half", ["FI-2"];
-        film_heating_w: optional(number(1.0, 1e9)), "dissipation of an interface that halves the shear of its film; absent: no heating", ["FI-1", "FH-1"];
+        film_heating_w: or(4000.0, number(1.0, 1e9)), "dissipation of an interface that halves the shear of its film", ["FI-1", "FH-1"];
     }
 }
 
@@ -103,7 +103,7 @@ impl Friction {
             half_n_m: film.number(&FILM.half_n_per_m),
             film_exponent: film.number(&FILM.exponent),
             half_thickness_m: film.number(&FILM.half_thickness_um),
-            film_heating_w: film.optional(&FILM.film_heating_w),
+            film_heating_w: film.number(&FILM.film_heating_w),
         }
     }
 }

@@ -55,7 +55,7 @@ pub struct Friction {
     /// Thickness of the film where it carries half, m.
     pub half_thickness_m: f64,
     /// Dissipation of an interface that halves the shear of its film, W (FH-1).
-    pub film_heating_w: Option<f64>,
+    pub film_heating_w: f64,
 }
 
 /// Exponent of thickness in FI-2.

@@ -46,14 +46,14 @@ pub struct Model {
     oil: Lubricant,
     limits: PointLimits,
     pulley_angle_deg: f64,
-    band_speed_share: f64,
+    band_speed_share: Option<f64>,
     belts: [Belt; Formulation::NAMES.len()],
     ratios: [f64; 2],
 }
 
 impl Model {
-    /// None for a car without a belt.
-    pub fn new(setup: &Setup, band_speed_share: f64) -> Option<Self> {
+    /// None for a car without a belt. Travel is that of the given band speed, or of the one that the formulation has (BT-1, BT-7).
+    pub fn new(setup: &Setup, band_speed_share: Option<f64>) -> Option<Self> {
         let Transmission::Cvt(cvt) = setup.transmission() else {
             return None;
         };
@@ -164,8 +164,8 @@ impl Model {
         }
         let point = belt_point(belt, &at, &load);
         let point = match self.band_speed_share {
-            share if share.abs() > 0.0 => point.with_band_speed(belt, share),
-            _ => point,
+            Some(share) => point.with_band_speed(belt, share),
+            None => point,
         };
         let belt_k = belt_k(friction.belt_k);
         let flags = PointFlags::new(&point, &load, pressure_pa, belt_k, &self.limits);

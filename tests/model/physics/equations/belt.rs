@@ -1,4 +1,4 @@
-//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-6, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
+//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-7, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
 //! one branch at a time, in each formulation (the golden tables hold the printed forms).
 
 use super::{near, same};
@@ -6,8 +6,8 @@ use crate::common::car;
 use cvtcycle_model::fluid::BandFriction;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_losses, belt_state, driving_point,
-    sliding_speed_m_s,
+    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, Geometry, belt_losses, belt_state,
+    driving_point, pulley_sliding_m_s, sliding_speed_m_s,
 };
 use std::f64::consts::PI;
 
@@ -384,10 +384,8 @@ fn val_driving_belt_from_the_tables() {
                         blended += i32::from(want.compression.abs() < 200.0);
                         least += i32::from(got.slip.gap < 0.0);
                         let p = driving_point(&b, &at, &l);
-                        let share = p.geometry.primary_radius_m * p.geometry.primary_wrap_rad;
-                        let whole =
-                            share + p.geometry.secondary_radius_m * p.geometry.secondary_wrap_rad;
-                        close(p.film_loss_nm[0], want.film * share / whole, "film");
+                        let on_primary = if ratio > 1.0 { want.film } else { 0.0 };
+                        close(p.film_loss_nm[0], on_primary, "film"); // BT-7
                         close(
                             p.slip_m_s[1],
                             260.0 * p.geometry.primary_radius_m * want.slip[1],
@@ -402,10 +400,13 @@ fn val_driving_belt_from_the_tables() {
                             * (1.0 / p.geometry.primary_radius_m
                                 + 1.0 / p.geometry.secondary_radius_m)
                             - 2.0 * PI;
-                        close(p.band_travel_m[0], offset * turns, "travel"); // BT-5
                         let apart = (1.0 / p.geometry.primary_radius_m
                             - 1.0 / p.geometry.secondary_radius_m)
                             .abs();
+                        let smooth = b.formulation == Formulation::Smooth;
+                        let share = if smooth { -0.5 } else { 0.0 }; // BT-7, BT-1
+                        let own = turns + share * b.length_m * apart;
+                        close(p.band_travel_m[0], offset * own, "travel"); // BT-5
                         let fast = p.with_band_speed(&b, 0.5).band_travel_m;
                         close(
                             fast[1],
@@ -503,13 +504,62 @@ fn val_input_torque_by_hand() {
         assert_eq!(of, [cx, appendix, chapter]);
     }
     same(b.band_area_m2(), 12.0 * 20e-3 * 0.217e-3);
-    let fast = sliding_speed_m_s(&b, 2.0, -260.0);
-    same(fast[0], 0.25 * 3e-3 * 260.0);
-    same(fast[1], 0.25 * 0.217e-3 * 260.0);
-    same(
-        sliding_speed_m_s(&b, 0.7, 260.0)[0],
-        (1.0 / 0.7 - 1.0) / 2.0 * 3e-3 * 260.0,
-    ); // BT-1
+    for formulation in [
+        Formulation::Smooth,
+        Formulation::AppendixC,
+        Formulation::Chapter8,
+    ] {
+        let b = Belt {
+            formulation,
+            ..b.clone()
+        };
+        let smooth = formulation == Formulation::Smooth;
+        let part = if smooth { 1.0 } else { 0.5 }; // BT-7, BT-1
+        let fast = sliding_speed_m_s(&b, 2.0, -260.0);
+        same(fast[0], part * 0.5 * 3e-3 * 260.0);
+        same(fast[1], part * 0.5 * 0.217e-3 * 260.0);
+        let high = part * (1.0 / 0.7 - 1.0) * 3e-3 * 260.0;
+        same(sliding_speed_m_s(&b, 0.7, 260.0)[0], high);
+        let on = |ratio: f64| {
+            let g = Geometry::new(ratio, b.centre_distance_m, b.length_m);
+            pulley_sliding_m_s(&b, &g, 260.0)
+        };
+        let other = |mean: f64| if smooth { 0.0 } else { mean };
+        let low = part * 0.5 * 3e-3 * 260.0;
+        let (at_low, at_high) = (on(2.0), on(0.7));
+        same(at_low[0], low);
+        same(at_high[1], high);
+        assert_eq!(
+            [at_low[1], at_high[0]],
+            [other(at_low[0]), other(at_high[1])]
+        );
+    }
+}
+
+/// BT-6, BT-7: the bands slide on the pulley of smaller radius alone, in drive, overrun and inverted loading. With one band the power that
+/// bands and film lose is the one force of the tension step times the sliding speed there.
+#[test]
+fn val_bands_slide_on_the_smaller_pulley() {
+    let one_band = Belt {
+        band_count: 1.0,
+        ..belt(Formulation::Smooth)
+    };
+    for ratio in [0.45, 0.8, 1.3, 2.3] {
+        for torque_nm in [-40.0, 5.0, 120.0] {
+            let l = load(torque_nm, 20e3);
+            let at = BeltAtRatio::new(&one_band, ratio);
+            let p = driving_point(&one_band, &at, &l);
+            let slides = pulley_sliding_m_s(&one_band, &at.geometry, l.primary_speed_rad_s);
+            let still = usize::from(ratio > 1.0);
+            assert_eq!(
+                [slides[still], p.band_loss_nm[still], p.film_loss_nm[still]],
+                [0.0; 3]
+            );
+            let lost_nm = belt_state(&one_band, &at, &l);
+            let power_w = (lost_nm.band_nm + lost_nm.film_nm) * l.primary_speed_rad_s;
+            same(power_w, p.tension.step_n.abs() * slides[1 - still]);
+        }
+    }
 }
 
 /// VA-3 and PC-1's radius factor of the shipped box, with a centrifugal head.

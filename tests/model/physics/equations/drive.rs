@@ -76,20 +76,21 @@ fn belt_load(b: &Bench, s: &Setting, wp: f64, secondary_nm: f64, clamp_n: f64) -
 fn film_n(b: &Bench, s: &Setting, eta: f64, sliding: [f64; 2]) -> [f64; 2] {
     let (belt, f) = (&b.cvt().belt, &b.car.oil.friction);
     let g = Geometry::new(s.ratio, belt.centre_distance_m, belt.length_m);
-    let [a, o] = [
-        g.primary_radius_m * g.primary_wrap_rad,
-        g.secondary_radius_m * g.secondary_wrap_rad,
-    ]
-    .map(|arc| arc * belt.band_width_m);
+    let (radius_m, wrap_rad) = if s.ratio > 1.0 {
+        (g.primary_radius_m, g.primary_wrap_rad)
+    } else {
+        (g.secondary_radius_m, g.secondary_wrap_rad)
+    };
+    let area_m2 = radius_m * wrap_rad * belt.band_width_m; // BT-7
     sliding.map(|dv| {
         if dv == 0.0 {
             return 0.0;
         }
         let x = eta * dv / f.half_n_m;
         let share = 1.0 / (1.0 + x.powf(-f.film_exponent));
-        let cold_n = share * eta * dv * 2.0 * a * o / (a + o) / (f.half_thickness_m * x.powf(0.6));
-        let halving_w = f.film_heating_w.unwrap();
-        2.0 * cold_n / (1.0 + (1.0 + 4.0 * cold_n * 2.0 * dv / halving_w).sqrt())
+        let cold_n = share * eta * dv * area_m2 / (f.half_thickness_m * x.powf(0.6));
+        let halving_w = f.film_heating_w;
+        2.0 * cold_n / (1.0 + (1.0 + 4.0 * cold_n * dv / halving_w).sqrt())
     })
 }
 

@@ -15,7 +15,7 @@ fn friction() -> Friction {
         half_n_m: 0.02,
         film_exponent: 1.4,
         half_thickness_m: 8e-7,
-        film_heating_w: None,
+        film_heating_w: 4000.0,
     }
 }
 

@@ -31,9 +31,9 @@ pub struct Prepared {
     pub band_gap_m_n: f64,
     /// Compression of the free strut per force, m/N (SL-2).
     pub strut_gap_m_n: f64,
-    /// Friction-weighted sliding of the band pack per turn of the primary, times BT-4, m/rad (BT-3).
+    /// Friction-weighted sliding of the band pack per turn of the primary, m/rad (BT-3, BT-6).
     pub slide_m: [f64; 2],
-    /// Part of it that is not at the innermost interface.
+    /// Part of it that is not at the innermost interface, from 0 to 1.
     pub outer_part: f64,
     /// Contact area of a film, m2 (FI-1).
     pub film_area_m2: f64,

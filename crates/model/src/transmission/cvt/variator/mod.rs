@@ -21,7 +21,7 @@ mod printed;
 pub mod point;
 
 pub use at_ratio::{BeltAtRatio, Prepared};
-pub use bands::{film_area_m2, sliding_speed_m_s};
+pub use bands::{film_area_m2, pulley_sliding_m_s, sliding_speed_m_s, speed_share};
 pub use deflection::Deflection;
 pub use formulation::Formulation;
 pub use geometry::Geometry;

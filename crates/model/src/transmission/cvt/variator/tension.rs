@@ -113,8 +113,7 @@ impl Tension {
         let force_n = if belt.formulation.by_statics() {
             grip(g, load) * bare_mean_n(belt, at, load, centrifugal_n) + load.film_n[0]
         } else {
-            load.band.mu
-                * (2.0 * clamp_n[0] * belt.tan_wedge + g.primary_wrap_rad * centrifugal_n)
+            load.band.mu * (2.0 * clamp_n[0] * belt.tan_wedge + g.primary_wrap_rad * centrifugal_n)
         };
         -at.direction * force_n
     }
