@@ -24,7 +24,7 @@ proptest! {
         let innermost_nm = turns * belt.band_offset_m * t.step_n.abs();
         let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
         let between = (belt.band_count - 1.0) * belt.band_thickness_m;
-        let boundary_n = (1.0 - load.band.film_share[1]) * p.mu_band * t.mean_tension_n(&g) * least;
+        let boundary_n = (1.0 - load.band.film_share[1]) * p.mu_band * (t.mean_tension_n(&g) - t.ring_n) * least;
         let others_nm = part * turns * between * (0.5 * boundary_n + film_n[1]);
         let want = g.primary_radius_m * (compression_n + t.step_n)
             + innermost_nm
