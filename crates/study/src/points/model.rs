@@ -155,12 +155,7 @@ impl Model {
             secondary_clamp_n: clamp_n,
             ..belt_load(&self.oil, belt, ratio, speed_rad_s, &friction)
         };
-        let g = &at.geometry;
-        let wrap = if belt.formulation.by_statics() {
-            g.primary_wrap_rad.min(g.secondary_wrap_rad) // TE-7
-        } else {
-            g.primary_wrap_rad // TE-5
-        };
+        let wrap = at.geometry.primary_wrap_rad;
         if load.band.mu * wrap / 2.0 > LARGEST_GRIP {
             let most = 2.0 * LARGEST_GRIP / wrap;
             let allowed = format!("up to {most:.3} at this ratio and temperature");
