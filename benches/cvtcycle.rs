@@ -58,11 +58,10 @@ fn load_at(torque_nm: f64) -> BeltLoad {
         output_torque_nm: torque_nm,
         secondary_clamp_n: 20e5 * 0.009_719 + 750.0,
         band: BandFriction {
-            mu: 0.12,
-            film_share: 0.1,
+            film_share: [0.1, 0.01],
+            ..BandFriction::dry(0.12)
         },
-        eta_pa_s: 0.02,
-        film_thickness_m: 0.5e-6,
+        film_n: [20.0, 1.0],
         segment_friction: 0.125,
         capacity_friction: 0.09,
         flank_friction: 0.13,

@@ -55,14 +55,9 @@ pub struct BeltArgs {
     formulation: FormulationArgs,
     #[command(flatten)]
     car: VehicleArgs,
-    /// Band speed for the travel columns: 0 the mean of what the pulleys require, 0.5 that of the smaller pulley, -0.5 of the larger
-    #[arg(
-        long,
-        value_name = "SHARE",
-        default_value = "0",
-        allow_hyphen_values = true
-    )]
-    band_speed: String,
+    /// Band speed for the travel columns: 0 the mean of what the pulleys require, 0.5 that of the smaller pulley, -0.5 of the larger [default: -0.5 in smooth, else 0]
+    #[arg(long, value_name = "SHARE", allow_hyphen_values = true)]
+    band_speed: Option<String>,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
@@ -78,9 +73,11 @@ impl Execute for BeltArgs {
         let formulation = self.formulation.get(problems);
         let setup = self.car.load(Formulation::default(), problems);
         let range = Bound::closed(-1.0, 1.0);
-        let share = problems.take(number("--band-speed", &self.band_speed, range, ""));
-        let car = setup.as_ref().zip(share);
-        let model = car.and_then(|(setup, share)| Model::new(setup, share));
+        let share = self.band_speed.as_ref();
+        let share = share.map(|text| problems.take(number("--band-speed", text, range, "")));
+        let model = setup
+            .as_ref()
+            .and_then(|setup| Model::new(setup, share.flatten()));
         let hint = "`cvtcycle list vehicles` shows which have a CVT";
         self.car.need_cvt(setup.as_ref(), hint, problems);
         let file = self

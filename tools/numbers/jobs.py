@@ -84,7 +84,7 @@ CVT_OPTIONS = {
     "cooler_bypassed": ["thermal.cooler.bypassed=true"],
     "cooler_bypass_below": ["thermal.cooler.bypass_below_degc=5"],
     "cooler_none": ["thermal.cooler.fitted=false"],
-    "no_lift_off": ["lubricant.friction.lift_off.enabled=false"],
+    "no_lift_off": ["lubricant.friction.film.enabled=false"],
 }
 CAR_OPTIONS = {
     "road": ["road_load.surface=road"],

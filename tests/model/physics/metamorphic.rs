@@ -155,7 +155,7 @@ const ZERO_LOSS: [(&str, &str, &[&str]); 13] = [
     (
         "belt_film",
         "rover_216_cvt",
-        &["lubricant.friction.lift_off.load_n_per_m=10"],
+        &["lubricant.friction.film.enabled=false"],
     ),
     (
         "belt_wedge",

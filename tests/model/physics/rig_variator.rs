@@ -24,20 +24,18 @@ fn held(ratio: f64, bar: f64) -> Held {
 }
 
 /// Thesis 6.4: no primary slip below about 75 Nm; the independent transcription of Appendix C has 75 Nm at 28.4 bar and 78.9 Nm at 30 bar,
-/// 2000 rpm, low. The closed form is where the compression of the solved belt changes sign.
+/// 2000 rpm, low, without a film, which that program does not have; the film of warm oil takes 1 to 4 % of it. The closed form is where the
+/// compression of the solved belt changes sign.
 #[test]
 fn val_breakpoint() {
+    let dry = rig(&["lubricant.friction.film.enabled=false"]);
     let rig = rig(&[]);
-    assert!(
-        (rig.breakpoint_nm(&held(LOW, 28.4)) - 75.0).abs() < 0.3,
-        "{}",
-        rig.breakpoint_nm(&held(LOW, 28.4))
-    );
-    assert!(
-        (rig.breakpoint_nm(&held(LOW, 30.0)) - 78.9).abs() < 0.3,
-        "{}",
-        rig.breakpoint_nm(&held(LOW, 30.0))
-    );
+    for (bar, printed_nm) in [(28.4, 75.0), (30.0, 78.9)] {
+        let dry_nm = dry.breakpoint_nm(&held(LOW, bar));
+        let with_film = rig.breakpoint_nm(&held(LOW, bar)) / dry_nm;
+        assert!((dry_nm - printed_nm).abs() < 0.3, "{dry_nm}");
+        assert!((0.96..0.99).contains(&with_film), "{with_film}");
+    }
     let mut before = 0.0;
     for bar in [15.0, 20.0, 25.0, 30.0, 35.0] {
         let at = rig.breakpoint_nm(&held(LOW, bar));

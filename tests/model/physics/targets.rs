@@ -454,14 +454,15 @@ fn val_rig_split() {
 }
 
 /// 5.5.2, 8.9: the belt loses less at 25 degC than at 75 and 95 degC in both ratios, at every speed; at 50 degC it leaves the warmer
-/// tests at high speed in high ratio only. How far is in a figure that is lost: here by at least 7 points of the loss at 75 degC, where
-/// the other speeds and low ratio stay within 4. With the film switched off that shape is gone.
+/// tests at high speed in high ratio. How far is in a figure that is lost, which has Nm over speed: here 0.5 Nm and more at 4000 rpm, twice what the
+/// rig resolves, and no more than that in low and up to 2000 rpm in high. Over the loss at 75 degC it falls with speed in high by 4.5 points and more,
+/// by less in low, and with the film switched off not at all.
 #[test]
 fn val_rig_belt_rises_with_temperature() {
     let rig = Rig::new(&car("rover_216_cvt", &[]));
     let plain = Rig::new(&car(
         "rover_216_cvt",
-        &["lubricant.friction.lift_off.enabled=false"],
+        &["lubricant.friction.film.enabled=false"],
     ));
     let at50 = |rig: &Rig, ratio: f64, n: f64| {
         rig.solve(ratio, n, 50.0).belt_nm() / rig.solve(ratio, n, 75.0).belt_nm()
@@ -486,7 +487,20 @@ fn val_rig_belt_rises_with_temperature() {
         fall(&rig, 2.417),
         fall(&plain, 0.5)
     );
-    assert!(fall(&rig, 0.5) > 0.07 && fall(&rig, 2.417) < 0.04 && fall(&plain, 0.5).abs() < 0.02);
+    let apart_nm = |ratio: f64, n: f64| {
+        rig.solve(ratio, n, 75.0).belt_nm() - rig.solve(ratio, n, 50.0).belt_nm()
+    };
+    let far_nm = apart_nm(0.5, 4000.0);
+    println!("4000 rpm in high: 50 degC lies {far_nm:.2} Nm below 75 degC");
+    assert!(far_nm > 0.5, "{far_nm}");
+    for rpm in [1000.0, 1500.0, 2000.0] {
+        assert!(2.0 * apart_nm(0.5, rpm) < far_nm, "high, {rpm} rpm");
+    }
+    for rpm in [1000.0, 2000.0, 3000.0, 4000.0] {
+        assert!(apart_nm(2.417, rpm) < 0.5, "low, {rpm} rpm");
+    }
+    assert!(fall(&rig, 0.5) > 0.045 && fall(&rig, 2.417) < 0.8 * fall(&rig, 0.5));
+    assert!(fall(&plain, 0.5).abs() < 0.02);
     assert!(at50(&rig, 0.5, 1000.0) - at50(&rig, 0.5, 2000.0) < 0.04);
     let cold = |rig: &Rig| {
         rig.solve(0.5, 4000.0, 25.0)

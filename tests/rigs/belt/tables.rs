@@ -233,10 +233,10 @@ fn bad_tables_are_refused_with_their_place() {
 fn bad_options_and_bad_rows_are_reported_together() {
     let said = refused(
         format!("{NAMES}\n0.5,2000,12,10\n").as_bytes(),
-        &["--set", "lubricant.friction.lift_off.enable=false"],
+        &["--set", "lubricant.friction.film.enable=false"],
     );
     assert!(
-        said.contains("--set lubricant.friction.lift_off.enable=false: unknown key"),
+        said.contains("--set lubricant.friction.film.enable=false: unknown key"),
         "{said}"
     );
     let bad = format!("{NAMES}\n0.5,2000,12,x\n");

@@ -11,7 +11,7 @@ use cvtcycle_model::keys::{Quantity, stem};
 const ELSEWHERE: f64 = 0.75;
 
 /// Ends of keys and tables of earlier versions, and what to do instead.
-const REPLACED: [(&str, &str); 15] = [
+const REPLACED: [(&str, &str); 16] = [
     (
         "engine.friction.temperature_exponent",
         "remove it: friction in the cold follows the oil's viscosity, with `viscous_share` and `viscous_exponent` (EN-2)",
@@ -39,6 +39,10 @@ const REPLACED: [(&str, &str); 15] = [
     ("transmission.manual.seal", BY_GEARS),
     ("transmission.manual.bearing", BY_GEARS),
     ("transmission.manual.churning", BY_GEARS),
+    (
+        "friction.lift_off",
+        "write `[friction.film]`: `half_n_per_m`, `exponent`, `half_thickness_um` and `film_heating_w` in place of `reduction`, `load_n_per_m` and `film_thickness_um` (LU-5, FI-2)",
+    ),
 ];
 
 /// What became of the part of the final drive's loss that fell with speed.

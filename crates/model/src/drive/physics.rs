@@ -3,22 +3,23 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | PX-1 | T_p - T_s/I = (1 - 1/I)(d F_1 + t sum F_i) + film + wedge + penetration, F_i = F_1 (1 - (i-1)/n) | derived: moments about the centres of both pulleys; slip is not in them |
-//! | PX-2 | F_1 = -s mu_b beta Tm, Tm = A + \|C_x\|/2, C_x = T_s/R_s - F_1 on both pulleys: what the bands lose over its lever, step and mean tension | derived: a belt of two strands has one step of tension |
+//! | PX-1 | T_p - T_s/I = (1 - 1/I)(d F_1 + t sum F_i) + wedge + penetration, F_i = -s (mu_b (1-u_i)(1 - (i-1)/n) beta Tm + V_i), V_i the film's force | derived: moments about the centres of both pulleys; slip is not in them |
+//! | PX-2 | one F_1 and Tm = A + \|C_x\|/2, C_x = T_s/R_s - F_1, on both pulleys: what bands and film lose over their levers, step and mean tension | derived: a belt of two strands has one step of tension |
 //! | PX-3 | burnt fuel <= charge eta_v rho_0 V w/(4 pi) LHV/14.6, eta_v 1.05 or what the full-load line needs | derived: the air in the cylinders; 14.6 stoichiometric, 1.05 ASSUMED of an engine without charger |
 //! | PX-4 | rotating energy, the sum of its changes, = J w2/2 at the end of every step; less only where the engine gives full load and more is wanted | derived |
 //! | PX-5 | losses >= 0, T_p w_p >= T_s w_s, no belt loss at rest | derived: second law |
 //! | PX-7 | losses + heat of the engine = heat to the air + sum C_i (T_i - T_i,before)/dt | derived: first law, by the temperatures of two rows |
 //! | PX-8 | T_p w_p - T_s w_s = losses of the belt, w_s by the road speed, w_p by slip | derived: power is torque times speed |
 //!
-//! Radii come from a bisection of the belt's length, compression and tension from iteration. Taken over from the model: friction and viscosity
-//! of the fluid, the thrust ratio table, and the torques of wedging and penetration. PX-1 and PX-2 are those of the driving form; the printed
-//! forms break both by design. PX-6, the same data sheet gives the same fuel, is a test.
+//! Radii come from a bisection of the belt's length, compression, tension and the heating of the film from iteration. Taken over from the
+//! model: boundary friction, film share and shear stress of the fluid, the thrust ratio table, and the torques of wedging and penetration.
+//! PX-1 and PX-2 are those of the driving form; the printed forms break both by design. PX-6, the same data sheet gives the same fuel, is a test.
 
 use super::{Car, EnergyTerms, Recorder, Row, State, Vehicle, simulate};
 use crate::cycle::Cycle;
 use crate::flags::Flags;
-use crate::math::{larger, ln, smaller};
+use crate::fluid::BandFriction;
+use crate::math::{larger, ln, pair, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat};
 use crate::transmission::Transmission;
@@ -285,9 +286,21 @@ impl<'a> PhysicsCheck<'a> {
         let (ratio, w) = (row.belt_ratio, load.primary_speed_rad_s);
         let at = BeltAtRatio::new(belt, ratio);
         let radii = Radii::new(belt, ratio);
-        let forces = Forces::new(belt, &at, &radii, load);
-        let lever_m = (1.0 - 1.0 / ratio) * band_offsets_m(belt);
-        let (band_nm, film_nm) = (lever_m * forces.step_n, film_nm(belt, &radii, ratio, load));
+        let shear_n = film_n(
+            belt,
+            &radii,
+            &load.band,
+            self.car.oil.friction.film_heating_w,
+            (1.0 / ratio - 1.0).abs() * w * (1.0 - row.slip), // the film is that of the speed without slip
+        );
+        let forces = Forces::new(belt, &at, &radii, load, shear_n[0]);
+        let turns = (1.0 - 1.0 / ratio) * -forces.direction;
+        let [inner_m, outer_m] = [belt.band_offset_m, others_m(belt)];
+        let [inner, outer] = load.band.film_share.map(|share| 1.0 - share);
+        let boundary_n = load.band.mu * forces.least_rad * forces.mean_n;
+        let band_nm = turns * boundary_n * (inner * inner_m + outer * outer_m);
+        let others = belt.band_thickness_m * (belt.band_count - 1.0);
+        let film_nm = turns * (shear_n[0] * inner_m + shear_n[1] * others);
         let rest_nm =
             (row.loss_w[Component::BeltWedge] + row.loss_w[Component::BeltPenetration]) / w;
         let through_nm = load.output_torque_nm / ratio;
@@ -308,12 +321,15 @@ impl<'a> PhysicsCheck<'a> {
         .iter()
         .map(|n| n.abs())
         .sum();
-        // What the bands lose, before slip against the torque relieves them (SL-11), over its lever.
-        let left_nm = (row.loss_w[Component::BeltBand] + row.loss_w[Component::BeltFilm]) / w;
+        // What bands and film lose, before slip against the torque relieves them (SL-11), over the levers of their forces.
+        let lost_nm = [Component::BeltBand, Component::BeltFilm].map(|part| row.loss_w[part] / w);
+        let left_nm = lost_nm[0] + lost_nm[1];
         let before_nm = left_nm - smaller(row.slip * through_nm, 0.0);
+        let lever_m = turns * (inner_m + outer_m);
         if lever_m.abs() > 1e-6 && left_nm > 1e-2 * before_nm {
-            let own_nm = row.loss_w[Component::BeltBand] / w * (before_nm / left_nm);
-            apart_n += (own_nm / lever_m - forces.step_n).abs();
+            let own_nm = lost_nm.map(|nm| nm * (before_nm / left_nm));
+            apart_n += ((own_nm[0] - band_nm) / lever_m).abs();
+            apart_n += ((own_nm[1] - film_nm) / lever_m).abs();
         }
         let size_n = forces.mean_n + forces.compression_n.abs();
         self.see(Law::OneForce, row, apart_n, 10.0 * SOLVED * (size_n + 1.0));
@@ -484,10 +500,14 @@ struct Forces {
     compression_n: f64,
     /// Step of band tension, with its sign.
     step_n: f64,
+    /// Direction of the step, -1 in low, +1 in high.
+    direction: f64,
+    /// Smaller wrap, rad.
+    least_rad: f64,
 }
 
 impl Forces {
-    fn new(belt: &Belt, at: &BeltAtRatio, radii: &Radii, load: &BeltLoad) -> Self {
+    fn new(belt: &Belt, at: &BeltAtRatio, radii: &Radii, load: &BeltLoad, shear_n: f64) -> Self {
         let v = load.primary_speed_rad_s * radii.radius_m[0];
         let wraps = radii.wrap_rad;
         let thrust = match &belt.thrust_ratio {
@@ -497,36 +517,55 @@ impl Forces {
         let pressed = load.secondary_clamp_n * (thrust / wraps[0] + 1.0 / wraps[1]);
         let bare_n = belt.tan_wedge * pressed + (belt.mass_kg_m - belt.band_mass_kg_m) * v * v;
         let direction = -(ln(at.geometry.ratio) / belt.unity_width).tanh();
-        let grip = direction * load.band.mu * smaller(wraps[0], wraps[1]);
+        let least_rad = smaller(wraps[0], wraps[1]);
+        let grip = load.band.mu * (1.0 - load.band.film_share[0]) * least_rad;
         let net_n = load.output_torque_nm / radii.radius_m[1];
         let mut forces = Forces {
             mean_n: bare_n,
             compression_n: net_n,
             step_n: 0.0,
+            direction,
+            least_rad,
         };
         for _ in 0..PASSES {
             forces.mean_n = bare_n + 0.5 * forces.compression_n.abs();
-            forces.step_n = -grip * forces.mean_n;
+            forces.step_n = -direction * (grip * forces.mean_n + shear_n);
             forces.compression_n = net_n - forces.step_n;
         }
         forces
     }
 }
 
-/// Offsets of the bands' interfaces above the rocking edge, each times its share of the force of the first, m.
-fn band_offsets_m(belt: &Belt) -> f64 {
+/// Thicknesses from the innermost interface to each other one, each times its share of the force of the first, m.
+fn others_m(belt: &Belt) -> f64 {
     let count = belt.band_count;
     let shares = (1..count as u32).map(|below| 1.0 - f64::from(below) / count);
-    belt.band_offset_m + belt.band_thickness_m * shares.sum::<f64>()
+    belt.band_thickness_m * shares.sum::<f64>()
 }
 
-/// Shear of the oil between the bands on both arcs, torque at the primary, Nm.
-fn film_nm(belt: &Belt, radii: &Radii, ratio: f64, load: &BeltLoad) -> f64 {
-    let area_m2 = belt.band_width_m
-        * (radii.radius_m[0] * radii.wrap_rad[0] + radii.radius_m[1] * radii.wrap_rad[1]);
-    let sliding = |offset_m: f64| 0.5 * (1.0 / ratio - 1.0) * offset_m * load.primary_speed_rad_s;
-    let (first, other) = (sliding(belt.band_offset_m), sliding(belt.band_thickness_m));
-    let squares = first * first + (belt.band_count - 1.0) * other * other;
-    let per_speed = load.band.film_share * load.eta_pa_s * area_m2 / load.film_thickness_m;
-    per_speed * squares / load.primary_speed_rad_s
+/// Forces of the films at the innermost interface and at each other one, N, on the pulley of smaller radius, for the difference of the speeds of
+/// both shafts: what the heated film bears, F (1 + F dv/P) = F without heating, by bisection.
+fn film_n(
+    belt: &Belt,
+    radii: &Radii,
+    band: &BandFriction,
+    halving_w: f64,
+    apart_rad_s: f64,
+) -> [f64; 2] {
+    let pulley = usize::from(radii.radius_m[1] < radii.radius_m[0]);
+    let area_m2 = belt.band_width_m * radii.radius_m[pulley] * radii.wrap_rad[pulley];
+    pair(|i| {
+        let cold_n = band.shear_pa[i] * area_m2;
+        let dv = apart_rad_s * [belt.band_offset_m, belt.band_thickness_m][i];
+        let (mut low, mut high) = (0.0, cold_n);
+        for _ in 0..PASSES {
+            let middle = 0.5 * (low + high);
+            if middle * (1.0 + middle * dv / halving_w) < cold_n {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        0.5 * (low + high)
+    })
 }

@@ -14,21 +14,21 @@ keys! {
     }
 
     /// Keys of `[friction]`.
-    FRICTION: FrictionKeys = "friction" [LiftKeys::TABLE] {
+    FRICTION: FrictionKeys = "friction" [FilmKeys::TABLE] {
         band: or(0.13, number(0.0, 0.4)), "band boundary friction at 85 degC", ["LU-4"];
-        band_rise_per_k: or(0.002_97, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
+        band_rise_per_k: or(0.0024, number(0.0, 0.02)), "rise of band friction with belt temperature", ["LU-4"];
         segment: or(0.125, number(0.02, 0.4)), "friction segment on pulley in micro slip", ["SL-4"];
         capacity: or(0.09, number(0.02, 0.4)), "friction segment on pulley in macro slip: torque capacity", ["VA-4"];
         flank: or(0.13, number(0.0, 0.4)), "friction in wedging and penetration", ["WE-3", "PE-1"];
     }
 
-    /// Keys of `[friction.lift_off]`.
-    LIFT: LiftKeys = "lift_off" [] {
+    /// Keys of `[friction.film]`.
+    FILM: FilmKeys = "film" [] {
         enabled: flag(true), "whether the bands can ride on oil", ["LU-5"];
-        reduction: or(0.146, number(0.0, 0.95)), "part of the boundary friction that a carrying film removes", ["LU-4"];
-        load_n_per_m: or(0.00599, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
-        exponent: or(4.32, number(0.5, 8.0)), "sharpness of lift-off", ["LU-5"];
-        film_thickness_um: or(1.5, number(0.01, 100.0)), "thickness of the carrying film", ["FI-1"];
+        half_n_per_m: or(0.042, above(0.0, 10.0)), "eta dv at which the film carries half", ["LU-5"];
+        exponent: or(1.47, number(0.3, 8.0)), "exponent of the film's share", ["LU-5"];
+        half_thickness_um: or(1.05, number(0.01, 100.0)), "thickness of the film where it carries half", ["FI-2"];
+        film_heating_w: or(4000.0, number(1.0, 1e9)), "dissipation of an interface that halves the shear of its film", ["FI-1", "FH-1"];
     }
 }
 
@@ -82,7 +82,7 @@ fn of_fluid<V: Values>(s: &V) -> Viscosity {
 
 impl Friction {
     fn from_values<V: Values>(s: &V) -> Self {
-        let lift = s.table("lift_off");
+        let film = s.table("film");
         let band = s.number(&FRICTION.band);
         let band_rise_per_k = s.number(&FRICTION.band_rise_per_k);
         let hot = band * (band_rise_per_k * (VALID_K.end() - ZERO_DEGC_K - 85.0)).exp(); // LU-4
@@ -99,11 +99,11 @@ impl Friction {
             segment: s.number(&FRICTION.segment),
             capacity: s.number(&FRICTION.capacity),
             flank: s.number(&FRICTION.flank),
-            lift_off: lift.flag(&LIFT.enabled),
-            lift_reduction: lift.number(&LIFT.reduction),
-            lift_n_m: lift.number(&LIFT.load_n_per_m),
-            lift_exponent: lift.number(&LIFT.exponent),
-            film_thickness_m: lift.number(&LIFT.film_thickness_um),
+            film: film.flag(&FILM.enabled),
+            half_n_m: film.number(&FILM.half_n_per_m),
+            film_exponent: film.number(&FILM.exponent),
+            half_thickness_m: film.number(&FILM.half_thickness_um),
+            film_heating_w: film.number(&FILM.film_heating_w),
         }
     }
 }

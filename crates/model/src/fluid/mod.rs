@@ -5,10 +5,11 @@
 //! | LU-1 | ln ln(nu + 0.7) = a - b ln T, nu in mm2/s, T in K | source: ASTM D341 (Walther) |
 //! | LU-2 | rho = rho15 (1 - 0.00068 (T - 15 degC)) | source: physics of petroleum oils, ASSUMED coefficient |
 //! | LU-3 | cp = (1.685 + 0.0034 T_C) / sqrt(rho15 / 1000), kJ/kgK | source: petroleum oils, ASSUMED for all fluids |
-//! | LU-4 | mu_b = mu_85 exp(k (T - 85 degC)) (1 - r s) | k fitted to thesis 5.5.2, 8.9; form ASSUMED |
-//! | LU-5 | film share s = z/(1+z), z = (eta dv / N_lift)^p; 0 with the film switched off | r, N_lift, p fitted to thesis 5.5.2, 8.9 (form ASSUMED: mixed lubrication) |
+//! | LU-4 | mu_b = mu_85 exp(k (T - 85 degC)): friction of the part of a contact that is not on a film | k fitted to thesis 5.5.2, 8.9; form ASSUMED |
+//! | LU-5 | film share of interface i: u_i = z_i/(1 + z_i), z_i = x_i^q, x_i = eta dv_i/N_half; 0 with the film switched off | N_half, q fitted to thesis 5.5.2, 8.9; form ASSUMED: load shared by asperities and film (Echavarri et al. 2017) |
+//! | FI-2 | film thickness h_i = h_half x_i^0.6 | form: isoviscous film; h_half ASSUMED |
 //!
-//! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed of the innermost band m/s.
+//! Symbols: nu kinematic viscosity, eta dynamic viscosity Pa s, dv sliding speed m/s of the innermost interface, or of each other one.
 //! Valid from 1.5 mm2/s upwards and from -40 to 160 degC; outside, rows are flagged.
 //!
 //! Sources: ASTM D341; Akehurst 2001, 5.5.2, 8.4.5, 8.9. Ichihashi in Akehurst 2.3 (0.09 to 0.135, up to 30 % with temperature) measured segment on pulley at
@@ -21,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{exp, larger, ln, smaller};
+use crate::math::{exp, larger, ln, pair, smaller};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -46,61 +47,91 @@ pub struct Friction {
     /// Friction in wedging and penetration.
     pub flank: f64,
     /// Whether the bands can ride on oil at all (LU-5).
-    pub lift_off: bool,
-    /// Part of the boundary friction that the film takes away when it carries fully.
-    pub lift_reduction: f64,
+    pub film: bool,
     /// eta dv at which the film carries half, N/m.
-    pub lift_n_m: f64,
-    /// Sharpness of the lift-off.
-    pub lift_exponent: f64,
-    /// Thickness of the carrying film, m.
-    pub film_thickness_m: f64,
+    pub half_n_m: f64,
+    /// Exponent q of the film's share.
+    pub film_exponent: f64,
+    /// Thickness of the film where it carries half, m.
+    pub half_thickness_m: f64,
+    /// Dissipation of an interface that halves the shear of its film, W (FH-1).
+    pub film_heating_w: f64,
 }
 
-/// Band friction at one state: boundary part and the share of the contact that a film carries.
+/// Exponent of thickness in FI-2.
+const THICKNESS_EXPONENT: f64 = 0.6;
+
+/// Band friction at one state. Pairs are the innermost interface, band on segments, and each other one, band on band.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BandFriction {
-    /// Coefficient of friction, boundary and mixed.
+    /// Boundary friction (LU-4).
     pub mu: f64,
-    /// Share z / (1 + z) of the film, 0..1.
-    pub film_share: f64,
+    /// Share of the contact that the film carries, 0..1 (LU-5).
+    pub film_share: [f64; 2],
+    /// Shear of the film over the whole contact, its share counted and without heating, Pa (FI-1, FI-2).
+    pub shear_pa: [f64; 2],
+}
+
+impl BandFriction {
+    /// Boundary friction without a film.
+    pub const fn dry(mu: f64) -> Self {
+        BandFriction {
+            mu,
+            film_share: [0.0; 2],
+            shear_pa: [0.0; 2],
+        }
+    }
+}
+
+/// Logarithms of x = eta dv/N_half by interface as powers: x^q and x^0.4; zeros where nothing slides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilmPowers {
+    /// x^q (LU-5).
+    pub carried: [f64; 2],
+    /// x over x^0.6 (FI-2).
+    pub sheared: [f64; 2],
 }
 
 impl Friction {
-    /// Band friction at belt temperature, dynamic viscosity and sliding speed (LU-4).
+    /// Band friction at belt temperature, dynamic viscosity and sliding speeds (LU-4, LU-5, FI-2).
     #[inline]
-    pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: f64) -> BandFriction {
-        let load = self.film_load(eta_pa_s, sliding_m_s);
-        self.band_on_film(
-            belt_k,
-            if load > 0.0 {
-                exp(self.lift_exponent * ln(load))
-            } else {
-                0.0
-            },
-        )
+    pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: [f64; 2]) -> BandFriction {
+        let loads = self.film_loads(eta_pa_s, sliding_m_s);
+        let power =
+            |exponent: f64| loads.map(|x| if x > 0.0 { exp(exponent * ln(x)) } else { 0.0 });
+        let [carried, sheared] = self.film_exponents().map(power);
+        self.band_on_film(belt_k, FilmPowers { carried, sheared })
     }
 
-    /// eta dv / `N_lift` of LU-5; 0 where nothing slides or the film is switched off.
+    /// x = eta dv/N_half of LU-5 by interface; 0 where nothing slides or the film is switched off.
     #[inline]
-    pub fn film_load(&self, eta_pa_s: f64, sliding_m_s: f64) -> f64 {
-        if self.lift_off {
-            eta_pa_s * sliding_m_s / self.lift_n_m
+    pub fn film_loads(&self, eta_pa_s: f64, sliding_m_s: [f64; 2]) -> [f64; 2] {
+        if self.film {
+            sliding_m_s.map(|dv| eta_pa_s * dv / self.half_n_m)
         } else {
-            0.0
+            [0.0; 2]
         }
     }
 
-    /// Band friction at belt temperature with the power z of the film's load known (LU-4, LU-5).
+    /// Exponents of x in [`FilmPowers`].
     #[inline]
-    pub fn band_on_film(&self, belt_k: f64, z: f64) -> BandFriction {
+    pub fn film_exponents(&self) -> [f64; 2] {
+        [self.film_exponent, 1.0 - THICKNESS_EXPONENT]
+    }
+
+    /// Band friction at belt temperature with the powers of the films' loads known (LU-4, LU-5, FI-2).
+    #[inline]
+    pub fn band_on_film(&self, belt_k: f64, powers: FilmPowers) -> BandFriction {
         let warm = exp(self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0));
-        let film_share = if z.is_finite() { z / (1.0 + z) } else { 1.0 }; // LU-5
+        let film_share = powers
+            .carried
+            .map(|z| if z.is_finite() { z / (1.0 + z) } else { 1.0 }); // LU-5
+        let most_pa = self.half_n_m / self.half_thickness_m; // eta dv/h where the film carries half
         BandFriction {
-            mu: smaller(self.band * warm, MAX_BAND_FRICTION)
-                * (1.0 - self.lift_reduction * film_share),
+            mu: smaller(self.band * warm, MAX_BAND_FRICTION), // LU-4
             film_share,
-        } // LU-4
+            shear_pa: pair(|i| film_share[i] * most_pa * powers.sheared[i]), // FI-1, FI-2
+        }
     }
 }
 

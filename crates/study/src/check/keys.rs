@@ -212,7 +212,7 @@ keys! {
         band_friction: optional(grid(0.0, 0.5)), "band friction at 85 degC; the fluid's, 0.13 in the printed forms, if absent";
         segment_friction: optional(grid(0.0, 0.5)), "segment friction; the fluid's, 0.125 or 0.13 in the printed forms, if absent";
         on_stop: optional(grid(0.0, 1.0)), "1: the primary leans on its end stop, 0: it deflects; the vehicle's ramp if absent";
-        band_speed_share: optional(grid(-0.5, 0.5)), "adopted band speed from the mean, over the range of required speeds";
+        band_speed_share: optional(grid(-0.5, 0.5)), "adopted band speed from the mean, over the range of required speeds; -0.5 in smooth, 0 in the printed forms if absent";
         torque_nm: needed(grid(-5_000.0, 5_000.0)), "torque at the secondary pulley";
     }
 }

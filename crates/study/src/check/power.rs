@@ -99,7 +99,7 @@ const TOGETHER: [(&str, &[&str]); 9] = [
 
 /// Choices that the cars have made otherwise: key and word.
 const CHOICES: [(&str, &str); 9] = [
-    ("lubricant.friction.lift_off.enabled", "false"),
+    ("lubricant.friction.film.enabled", "false"),
     ("road_load.surface", "road"),
     ("thermal.cooler.bypassed", "true"),
     ("transmission.cvt.belt.bands_carry_themselves", "true"),

@@ -8,7 +8,7 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointLimits};
 use cvtcycle_model::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s,
+    Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, film_area_m2,
 };
 
 use super::rows::{
@@ -46,14 +46,14 @@ pub struct Model {
     oil: Lubricant,
     limits: PointLimits,
     pulley_angle_deg: f64,
-    band_speed_share: f64,
+    band_speed_share: Option<f64>,
     belts: [Belt; Formulation::NAMES.len()],
     ratios: [f64; 2],
 }
 
 impl Model {
-    /// None for a car without a belt.
-    pub fn new(setup: &Setup, band_speed_share: f64) -> Option<Self> {
+    /// None for a car without a belt. Travel is that of the given band speed, or of the one that the formulation has (BT-1, BT-7).
+    pub fn new(setup: &Setup, band_speed_share: Option<f64>) -> Option<Self> {
         let Transmission::Cvt(cvt) = setup.transmission() else {
             return None;
         };
@@ -164,8 +164,8 @@ impl Model {
         }
         let point = belt_point(belt, &at, &load);
         let point = match self.band_speed_share {
-            share if share.abs() > 0.0 => point.with_band_speed(belt, share),
-            _ => point,
+            Some(share) => point.with_band_speed(belt, share),
+            None => point,
         };
         let belt_k = belt_k(friction.belt_k);
         let flags = PointFlags::new(&point, &load, pressure_pa, belt_k, &self.limits);
@@ -215,28 +215,18 @@ pub(crate) fn belt_load(
     let [band, segment] = frictions(belt.formulation, oil);
     let mu = or(given.band, band);
     let belt_k = belt_k(given.belt_k);
-    let eta_pa_s = oil.dynamic_pa_s(belt_k);
+    // The printed forms know no film: without sliding there is no lift-off, the rise with temperature stays (LU-4).
+    let sliding = belt.sliding_m_s(ratio, speed_rad_s);
+    let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
     let band = if given.belt_k.is_nan() {
-        let film_share = 0.0;
-        BandFriction { mu, film_share }
+        BandFriction::dry(mu)
     } else {
-        // The printed forms know no film: without sliding there is no lift-off, the rise with temperature stays (LU-4).
-        let sliding = match belt.formulation.has_film() {
-            true => sliding_speed_m_s(belt, ratio, speed_rad_s),
-            false => 0.0,
-        };
-        Friction { band: mu, ..*fluid }.band(belt_k, eta_pa_s, sliding)
+        Friction { band: mu, ..*fluid }.band(belt_k, oil.dynamic_pa_s(belt_k), sliding)
     };
     BeltLoad {
         primary_speed_rad_s: speed_rad_s,
-        output_torque_nm: 0.0,
-        secondary_clamp_n: 0.0,
-        band,
-        eta_pa_s,
-        film_thickness_m: fluid.film_thickness_m,
         segment_friction: or(given.segment, segment),
-        capacity_friction: fluid.capacity,
-        flank_friction: fluid.flank,
+        ..BeltLoad::unloaded(fluid, band, film_area_m2(belt, &geometry), sliding)
     }
 }
 

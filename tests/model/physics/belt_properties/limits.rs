@@ -8,7 +8,7 @@ proptest! {
     /// Without band friction the bands lose nothing, tension makes no step and segments carry all of the torque (TE-3, TE-4, BT-3).
     #[test]
     fn no_band_friction_no_band_loss(f in any_formulation(), p in any_point()) {
-        let s = Point { mu_band: 0.0, ..p }.state(&thesis_belt(f));
+        let s = Point { mu_band: 0.0, film_share: 0.0, ..p }.state(&thesis_belt(f));
         prop_assert_eq!((s.band_nm, s.losses.band_nm, s.tension.step_n), (0.0, 0.0, 0.0));
         let radius = BeltAtRatio::new(&thesis_belt(f), p.ratio).geometry.secondary_radius_m;
         prop_assert!((s.tension.compression_n * radius - p.torque_nm).abs() <= 1e-12 * p.torque_nm.abs());
@@ -33,7 +33,9 @@ proptest! {
         prop_assert!((t.primary_shoulder_n - pressed(primary_n, g.primary_wrap_rad)).abs() <= small, "TE-2 {t:?}");
         prop_assert!((t.secondary_shoulder_n - pressed(p.clamp_n, g.secondary_wrap_rad)).abs() <= small, "TE-2 {t:?}");
         let gripped_n = if f == Formulation::Smooth { t.primary_shoulder_n.min(t.secondary_shoulder_n) } else { t.primary_shoulder_n };
-        prop_assert!((t.step_n + s * p.mu_band * gripped_n).abs() <= small, "TE-3, TE-7 {t:?}");
+        let load = p.load(f);
+        let force_n = p.mu_band * (1.0 - load.band.film_share[0]) * gripped_n + load.film_n[0];
+        prop_assert!((t.step_n + s * force_n).abs() <= small + 1e-12 * force_n, "TE-3, TE-7 {t:?}");
         prop_assert!((t.compression_n + t.step_n - p.torque_nm / g.secondary_radius_m).abs() <= small, "TE-4 {t:?}");
     }
 
@@ -46,13 +48,14 @@ proptest! {
         let sliding = |i: u8| (1.0 / p.ratio - 1.0).abs() / 2.0 * if i == 1 { belt.band_offset_m } else { belt.band_thickness_m };
         let pack = |shoulder_n: f64, wrap: f64, other: f64| {
             let factor = if f == Formulation::Chapter8 { 1.0 } else { (other / wrap).min(1.0) };
-            let over = (1..=n).map(|i| shoulder_n * (1.0 - f64::from(i - 1) / f64::from(n)) * sliding(i));
+            let dry = |i: u8| 1.0 - p.load(f).band.film_share[usize::from(i > 1)]; // LU-5
+            let over = (1..=n).map(|i| dry(i) * shoulder_n * (1.0 - f64::from(i - 1) / f64::from(n)) * sliding(i));
             factor * p.mu_band * over.sum::<f64>()
         };
         let want = pack(s.tension.primary_shoulder_n, g.primary_wrap_rad, g.secondary_wrap_rad)
             + pack(s.tension.secondary_shoulder_n, g.secondary_wrap_rad, g.primary_wrap_rad);
         let want = if f == Formulation::Smooth { (p.ratio.ln() / belt.unity_width).tanh().abs() * want } else { want }; // BT-6
-        prop_assert!((s.band_nm - want).abs() <= 1e-12 * want, "{} instead of {want}", s.band_nm);
+        prop_assert!((s.band_nm - want).abs() <= 1e-11 * want + 1e-15, "{} instead of {want}", s.band_nm);
     }
 
     /// Rigid pulleys, frictionless flanks or no clamping: neither wedging nor penetration (WE-1, WE-3, PE-1).
@@ -114,14 +117,14 @@ proptest! {
         }
     }
 
-    /// Neither oil nor flank friction takes part in tension or slip; no loss but the film's knows the film.
+    /// Flank friction takes no part in tension or slip; films take a share of the step, and their force knows neither torque nor clamping.
     #[test]
     fn causes_do_not_mix(f in any_formulation(), p in any_point()) {
         let (belt, p) = (thesis_belt(f), Point { film_share: 0.5, ..p });
-        let (plain, dry) = (p.state(&belt), Point { film_share: 0.0, mu_flank: 0.2, ..p }.state(&belt));
+        let (plain, dry) = (p.state(&belt), Point { mu_flank: 0.2, ..p }.state(&belt));
         prop_assert_eq!((plain.tension, plain.band_nm), (dry.tension, dry.band_nm));
         prop_assert!(plain.slip == dry.slip || second_law_binds(&dry));
-        prop_assert_eq!(dry.losses.film_nm, 0.0);
+        prop_assert_eq!(Point { film_share: 0.0, ..p }.state(&belt).losses.film_nm, 0.0);
         // Wedge, penetration and film know neither torque nor band and segment friction; the film does not know clamping either.
         let other = Point { torque_nm: -3.0 - p.torque_nm, mu_band: 0.05, mu_segment: 0.05, ..p }.state(&belt);
         prop_assert_eq!((plain.losses.wedge_nm, plain.losses.penetration_nm, plain.film_nm), (other.losses.wedge_nm, other.losses.penetration_nm, other.film_nm));
@@ -131,17 +134,49 @@ proptest! {
         prop_assert_eq!(sticky.losses.capacity_nm == plain.losses.capacity_nm, f != Formulation::Smooth || p.clamp_n * 0.05 < 1e-300);
     }
 
-    /// The film's shear is proportional to its share and to speed (FI-1).
+    /// A contact that the film carries whole has the friction of its shear and no other: the step is that force, the bands lose nothing (LU-5, TE-7).
     #[test]
-    fn film_is_linear_in_share_and_speed(p in any_point()) {
+    fn friction_of_a_lifted_contact_is_shear_alone(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
-        let p = Point { rpm: 1.0 + p.rpm, film_share: 0.2, ..p };
-        let plain = p.state(&belt).film_nm;
-        for twice in [Point { film_share: 0.4, ..p }, Point { rpm: 2.0 * p.rpm, ..p }] {
-            prop_assert!((twice.state(&belt).film_nm - 2.0 * plain).abs() <= 1e-13 * plain);
-        }
-        prop_assert_eq!(plain > 0.0, p.ratio != 1.0);
+        let lifted = BandFriction { film_share: [1.0; 2], ..BandFriction::dry(p.mu_band) };
+        let load = BeltLoad { band: lifted, film_n: [300.0, 7.0], ..p.load(Formulation::Smooth) };
+        let s = belt_state(&belt, &BeltAtRatio::new(&belt, p.ratio), &load);
+        let part = (p.ratio.ln() / belt.unity_width).tanh(); // TE-6
+        prop_assert!((s.tension.step_n - part * 300.0).abs() <= 1e-9);
+        prop_assert_eq!(s.band_nm, 0.0);
+        let levers = [300.0 * belt.band_offset_m, 7.0 * 11.0 * belt.band_thickness_m];
+        let want = part.abs() * (1.0 / p.ratio - 1.0).abs() * (levers[0] + levers[1]);
+        prop_assert!((s.film_nm - want).abs() <= 1e-12 * (1.0 + want), "{} {want}", s.film_nm);
     }
+}
+
+/// A film gives no torque at rest, little at -40 degC, and each interface has its own speed (FI-1, FI-2, FH-1): the shipped fluid at 4000 rpm.
+#[test]
+fn films_of_the_shipped_fluid() {
+    let setup = crate::common::car("rover_216_cvt", &[]);
+    let oil = setup.oils().0;
+    let belt = thesis_belt(Formulation::Smooth);
+    let film = |degc: f64, rpm: f64| {
+        let load = BeltLoad {
+            secondary_clamp_n: 12e3,
+            ..BeltLoad::turning(&belt, oil, degc + 273.15, 0.5, rpm * RPM)
+        };
+        (
+            load,
+            belt_state(&belt, &BeltAtRatio::new(&belt, 0.5), &load),
+        )
+    };
+    let (rest, at_rest) = film(-40.0, 0.0);
+    assert!(rest.film_n == [0.0; 2] && at_rest.film_nm == 0.0 && at_rest.band_nm > 1.0);
+    let (cold, at_cold) = film(-40.0, 4000.0);
+    assert!(
+        at_cold.film_nm > 0.5 && at_cold.film_nm < 3.0,
+        "{} Nm",
+        at_cold.film_nm
+    );
+    assert!(cold.band.film_share[0] > 0.99);
+    let [inner, outer] = film(25.0, 2500.0).0.band.film_share;
+    assert!(inner > 0.3 && outer < 0.05, "{inner} {outer}");
 }
 
 /// Belts as different as the input file allows in what the smooth rules look at.
@@ -252,9 +287,12 @@ proptest! {
         prop_assert_eq!(values(&p.state(&belt)), values(&Point { rpm: -p.rpm, ..p }.state(&belt)));
     }
 
-    /// Slip is defined at standstill: a creeping belt's answer goes over into the standing one's.
+    /// Slip is defined at standstill: a creeping belt's answer goes over into the standing one's. Segments without a grip have none that holds even the
+    /// force of a creeping film.
     #[test]
     fn standing_is_the_limit_of_creeping(p in any_point()) {
+        let grips = p.mu_segment * p.clamp_n > 1e-3;
+        let p = Point { film_share: if grips { p.film_share } else { 0.0 }, ..p };
         let belt = thesis_belt(Formulation::Smooth);
         let (rests, creeps) = (values(&Point { rpm: 0.0, ..p }.state(&belt)), values(&Point { rpm: 1e-5, ..p }.state(&belt)));
         for ((a, b), name) in rests.iter().zip(&creeps).zip(NAMES) {

@@ -99,25 +99,35 @@ impl Point {
         }
     }
 
-    pub fn load(&self) -> BeltLoad {
+    /// The load; the printed forms have no film.
+    pub fn load(&self, formulation: Formulation) -> BeltLoad {
+        let film = if formulation.has_film() { 1.0 } else { 0.0 };
         BeltLoad {
             primary_speed_rad_s: self.rpm * RPM,
             output_torque_nm: self.torque_nm,
             secondary_clamp_n: self.clamp_n,
             band: BandFriction {
-                mu: self.mu_band,
-                film_share: self.film_share,
+                film_share: [1.0, 0.1].map(|part| film * part * self.film_share),
+                ..BandFriction::dry(self.mu_band)
             },
-            eta_pa_s: 0.02,
-            film_thickness_m: 1.5e-6,
+            film_n: self.film_n().map(|n| film * n),
             segment_friction: self.mu_segment,
             capacity_friction: self.mu_segment,
             flank_friction: self.mu_flank,
         }
     }
 
+    /// Forces of the films, N: some hundred at speed, none at rest.
+    pub fn film_n(&self) -> [f64; 2] {
+        [0.02, 0.001].map(|n_per_rpm| n_per_rpm * self.film_share * self.rpm.abs())
+    }
+
     pub fn state(&self, belt: &Belt) -> BeltState {
-        belt_state(belt, &BeltAtRatio::new(belt, self.ratio), &self.load())
+        belt_state(
+            belt,
+            &BeltAtRatio::new(belt, self.ratio),
+            &self.load(belt.formulation),
+        )
     }
 
     /// Output torque at which C_x is zero (TE-5 or TE-7 with Z = 0), written out here from TE-1, TE-2 and TE-6.
@@ -125,15 +135,18 @@ impl Point {
         let at = BeltAtRatio::new(belt, self.ratio);
         let g = at.geometry;
         let v = self.rpm * RPM * g.primary_radius_m;
-        let wrap = if belt.formulation == Formulation::Smooth {
-            g.primary_wrap_rad.min(g.secondary_wrap_rad) // TE-7
+        let smooth = belt.formulation == Formulation::Smooth;
+        let (wrap, mu, film_n) = if smooth {
+            let mu = self.mu_band * (1.0 - self.film_share);
+            let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
+            (least, mu, self.film_n()[0]) // TE-7
         } else {
-            g.primary_wrap_rad
+            (g.primary_wrap_rad, self.mu_band, 0.0)
         };
         let clamp_n = self.clamp_n * at.thrust_ratio;
         let pull = wrap
             * (2.0 * clamp_n * belt.tan_wedge / g.primary_wrap_rad + belt.masses_kg_m()[0] * v * v);
-        (self.ratio.ln() / belt.unity_width).tanh() * self.mu_band * pull * g.secondary_radius_m
+        (self.ratio.ln() / belt.unity_width).tanh() * (mu * pull + film_n) * g.secondary_radius_m
     }
 }
 

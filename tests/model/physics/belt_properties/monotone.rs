@@ -29,6 +29,7 @@ proptest! {
     /// Band loss is proportional to d + t (n - 1)/2 (BT-3): it rises with the offset, on a line that does not go through zero.
     #[test]
     fn band_loss_rises_with_offset(f in any_formulation(), p in any_point(), (a, b) in pair(0.0, 0.02)) {
+        let p = Point { film_share: 0.0, ..p };
         let band = |d: f64| p.state(&Belt { band_offset_m: d, ..thesis_belt(f) }).band_nm;
         rises("band loss", band(a), band(b), b > a + 1e-6 && band(b) > 0.0)?;
         let rest = 0.217e-3 * 11.0 / 2.0;
@@ -155,7 +156,7 @@ proptest! {
     #[test]
     fn val_breakpoint_is_linear_in_clamp_and_friction(p in any_point(), log in 0.1..1.05f64, low in any::<bool>(), clamp_n in 500.0..25e3f64) {
         let belt = thesis_belt(Formulation::Smooth);
-        let p = Point { ratio: if low { log } else { -log }.exp(), clamp_n, mu_band: 0.01 + 0.4 * p.mu_band, ..p };
+        let p = Point { ratio: if low { log } else { -log }.exp(), clamp_n, mu_band: 0.01 + 0.4 * p.mu_band, film_share: 0.0, ..p };
         let found = |p: &Point| {
             let (mut below, mut above) = (-2000.0, 2000.0);
             for _ in 0..60 {
@@ -177,7 +178,7 @@ proptest! {
     #[test]
     fn val_band_loss_is_least_at_the_breakpoint(p in any_point(), (a, b) in pair(0.0, 300.0)) {
         let belt = thesis_belt(Formulation::Smooth);
-        let p = Point { mu_band: 0.01 + 0.9 * p.mu_band, clamp_n: 1000.0 + p.clamp_n, ..p };
+        let p = Point { mu_band: 0.01 + 0.9 * p.mu_band, film_share: 0.9 * p.film_share, clamp_n: 1000.0 + p.clamp_n, ..p };
         prop_assume!(p.ratio.ln().abs() > 0.07 && b > a + 0.1);
         let middle = p.breakpoint_nm(&belt);
         let band = |t: f64| Point { torque_nm: middle + t, ..p }.state(&belt).band_nm;

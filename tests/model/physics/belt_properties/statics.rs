@@ -2,12 +2,6 @@
 
 use super::*;
 
-/// Lever of the one force between bands and segments: |1/I - 1| (d + t (n-1)/2), at the primary shaft, m.
-fn lever_m(belt: &Belt, ratio: f64) -> f64 {
-    (1.0 / ratio - 1.0).abs()
-        * (belt.band_offset_m + belt.band_thickness_m * (belt.band_count - 1.0) / 2.0)
-}
-
 /// Share of slip in the loss, Nm: below zero it relieves the bands (SL-11).
 fn relief_nm(s: &BeltState) -> f64 {
     (s.slip.primary_loss_nm + s.slip.secondary_loss_nm).min(0.0)
@@ -17,24 +11,30 @@ proptest! {
     #![proptest_config(config(4000))]
 
     /// The torque at the primary is what the forces on it say, drive, overrun and inverted loading alike: R_p (C_x + dT) turns the belt, the
-    /// bands take |dT| times their lever, and film, wedging and penetration what they take. Slip is not in it (TE-7, BT-6, SL-11, VA-1).
+    /// bands take the force of each interface times its lever, and wedging and penetration what they take. Slip is not in it (TE-7, BT-6, FI-1, SL-11, VA-1).
     #[test]
     fn statics_of_the_primary(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
-        let (at, s) = (BeltAtRatio::new(&belt, p.ratio), p.state(&belt));
-        let (g, t, load) = (at.geometry, s.tension, p.load());
+        let (g, s) = (BeltAtRatio::new(&belt, p.ratio).geometry, p.state(&belt));
+        let (t, load) = (s.tension, p.load(Formulation::Smooth));
         let compression_n = p.torque_nm / g.secondary_radius_m - t.step_n; // TE-4
-        let film_nm = load.band.film_share * load.eta_pa_s * at.prepared.film_m4 / load.film_thickness_m
-            * load.primary_speed_rad_s.abs(); // FI-1
+        let (turns, film_n) = ((1.0 / p.ratio - 1.0).abs(), load.film_n);
+        let part = (p.ratio.ln() / belt.unity_width).tanh().abs(); // TE-6
+        // Step at the innermost interface; boundary friction and film between the bands.
+        let innermost_nm = turns * belt.band_offset_m * t.step_n.abs();
+        let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
+        let between = (belt.band_count - 1.0) * belt.band_thickness_m;
+        let boundary_n = (1.0 - load.band.film_share[1]) * p.mu_band * (t.mean_tension_n(&g) - t.ring_n) * least;
+        let others_nm = part * turns * between * (0.5 * boundary_n + film_n[1]);
         let want = g.primary_radius_m * (compression_n + t.step_n)
-            + lever_m(&belt, p.ratio) * t.step_n.abs()
-            + film_nm
+            + innermost_nm
+            + others_nm
             + s.losses.wedge_nm
             + s.losses.penetration_nm;
         prop_assert!((s.input_torque_nm - want).abs() <= 1e-9 + 1e-11 * want.abs(), "{} instead of {want}: {s:?}", s.input_torque_nm);
     }
 
-    /// One force serves both pulleys: the step is friction times the shoulder force of the smaller wrap, whichever pulley has it (TE-7).
+    /// One force serves both pulleys: the step is friction times the shoulder force of the smaller wrap, whichever pulley has it, and the film's force (TE-7).
     #[test]
     fn tension_step_is_one_force(p in any_point()) {
         let belt = thesis_belt(Formulation::Smooth);
@@ -42,7 +42,8 @@ proptest! {
         let part = (p.ratio.ln() / belt.unity_width).tanh().abs(); // TE-6
         let mean_n = t.mean_tension_n(&g) - t.ring_n;
         let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
-        prop_assert!((t.step_n.abs() - part * p.mu_band * mean_n * least).abs() <= 1e-10 * (1.0 + mean_n));
+        let force_n = (1.0 - p.film_share) * p.mu_band * mean_n * least + p.film_n()[0];
+        prop_assert!((t.step_n.abs() - part * force_n).abs() <= 1e-10 * (1.0 + mean_n));
     }
 
     /// Second law: no part of the loss is negative, power out never exceeds power in, and what slip relieves the bands of they have (SL-12).

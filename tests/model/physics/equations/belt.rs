@@ -1,4 +1,4 @@
-//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-6, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
+//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-7, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
 //! one branch at a time, in each formulation (the golden tables hold the printed forms).
 
 use super::{near, same};
@@ -6,8 +6,8 @@ use crate::common::car;
 use cvtcycle_model::fluid::BandFriction;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_losses, belt_state, driving_point,
-    sliding_speed_m_s,
+    Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, Geometry, belt_losses, belt_state,
+    driving_point, pulley_sliding_m_s, sliding_speed_m_s,
 };
 use std::f64::consts::PI;
 
@@ -108,6 +108,19 @@ fn branch(b: &Belt, s: &Side) -> Branch {
     }
 }
 
+/// The load as a formulation has it: the printed forms know no film.
+fn of(formulation: Formulation, load: BeltLoad) -> BeltLoad {
+    if formulation == Formulation::Smooth {
+        load
+    } else {
+        BeltLoad {
+            band: BandFriction::dry(load.band.mu),
+            film_n: [0.0; 2],
+            ..load
+        }
+    }
+}
+
 fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     let f = b.formulation;
     let at = BeltAtRatio::new(b, ratio);
@@ -142,8 +155,12 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     let bands = if smooth { b.band_mass_kg_m } else { 0.0 };
     let pressing = (b.mass_kg_m - bands) * v * v; // TE-8
     let a = (2.0 * fp * b.tan_wedge / bp + pressing) * grips;
-    let z = l.output_torque_nm / rs + s * l.band.mu * a;
-    let c = l.band.mu * grips / 2.0;
+    // The film carries a share of the innermost interface; the printed forms know none (LU-5, TE-7).
+    let [inner, outer] = if smooth { l.band.film_share } else { [0.0; 2] };
+    let shear_n = if smooth { l.film_n } else { [0.0; 2] };
+    let mu_step = l.band.mu * (1.0 - inner);
+    let z = l.output_torque_nm / rs + s * (mu_step * a + shear_n[0]);
+    let c = mu_step * grips / 2.0;
     let cx = if z >= 0.0 {
         z / (1.0 - s * c)
     } else {
@@ -151,25 +168,18 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     }; // TE-5
     let qp = 2.0 * fp * b.tan_wedge + bp * pressing + cx.abs() * bp / 2.0; // TE-2
     let qs = 2.0 * fs * b.tan_wedge + bs * pressing + cx.abs() * bs / 2.0;
-    let dt = -s * l.band.mu * qp * grips / bp; // TE-3, TE-7
+    let dt = -s * (mu_step * qp * grips / bp + shear_n[0]); // TE-3, TE-7
     same(cx, l.output_torque_nm / rs - dt); // TE-4
     let part = if smooth { s.abs() } else { 1.0 }; // BT-6
-    let slide = part * (1.0 / ratio - 1.0).abs() / 2.0 * (d + b.band_thickness_m * (n - 1.0) / 2.0);
+    let turns = part * (1.0 / ratio - 1.0).abs();
+    let slide =
+        turns / 2.0 * ((1.0 - inner) * d + (1.0 - outer) * b.band_thickness_m * (n - 1.0) / 2.0);
     let scale = |own: f64| if chapter { 1.0 } else { bp.min(bs) / own }; // BT-4
     let band = [
         l.band.mu * qp * slide * scale(bp),
         l.band.mu * qs * slide * scale(bs),
     ]; // BT-3
-    let spread = l.primary_speed_rad_s * (1.0 / ratio - 1.0) / 2.0;
-    let squares = d * d + (n - 1.0) * b.band_thickness_m * b.band_thickness_m;
-    let film = l.band.film_share
-        * l.eta_pa_s
-        * b.band_width_m
-        * (arc[0] + arc[1])
-        * spread
-        * spread
-        * squares
-        / (l.film_thickness_m * l.primary_speed_rad_s); // FI-1
+    let film = turns * (shear_n[0] * d + shear_n[1] * b.band_thickness_m * (n - 1.0)); // FI-1
     let normal = [
         2.0 * t * fp / (b.cos_wedge * arc[0]),
         2.0 * t * fs / (b.cos_wedge * arc[1]),
@@ -326,11 +336,10 @@ fn load(output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         output_torque_nm,
         secondary_clamp_n,
         band: BandFriction {
-            mu: 0.12,
-            film_share: 0.3,
+            film_share: [0.3, 0.04],
+            ..BandFriction::dry(0.12)
         },
-        eta_pa_s: 0.02,
-        film_thickness_m: 0.5e-6,
+        film_n: [220.0, 9.0],
         segment_friction: 0.14,
         capacity_friction: 0.095,
         flank_friction: 0.11,
@@ -359,7 +368,7 @@ fn val_driving_belt_from_the_tables() {
             for ratio in RATIOS {
                 for torque in TORQUES {
                     for clamp in [60.0, 900.0, 6000.0, 30_000.0] {
-                        let l = load(torque, clamp);
+                        let l = of(formulation, load(torque, clamp));
                         let at = BeltAtRatio::new(&b, ratio);
                         let (want, got) = (sheet(&b, ratio, &l), belt_state(&b, &at, &l));
                         compare(
@@ -375,10 +384,8 @@ fn val_driving_belt_from_the_tables() {
                         blended += i32::from(want.compression.abs() < 200.0);
                         least += i32::from(got.slip.gap < 0.0);
                         let p = driving_point(&b, &at, &l);
-                        let share = p.geometry.primary_radius_m * p.geometry.primary_wrap_rad;
-                        let whole =
-                            share + p.geometry.secondary_radius_m * p.geometry.secondary_wrap_rad;
-                        close(p.film_loss_nm[0], want.film * share / whole, "film");
+                        let on_primary = if ratio > 1.0 { want.film } else { 0.0 };
+                        close(p.film_loss_nm[0], on_primary, "film"); // BT-7
                         close(
                             p.slip_m_s[1],
                             260.0 * p.geometry.primary_radius_m * want.slip[1],
@@ -393,10 +400,13 @@ fn val_driving_belt_from_the_tables() {
                             * (1.0 / p.geometry.primary_radius_m
                                 + 1.0 / p.geometry.secondary_radius_m)
                             - 2.0 * PI;
-                        close(p.band_travel_m[0], offset * turns, "travel"); // BT-5
                         let apart = (1.0 / p.geometry.primary_radius_m
                             - 1.0 / p.geometry.secondary_radius_m)
                             .abs();
+                        let smooth = b.formulation == Formulation::Smooth;
+                        let share = if smooth { -0.5 } else { 0.0 }; // BT-7, BT-1
+                        let own = turns + share * b.length_m * apart;
+                        close(p.band_travel_m[0], offset * own, "travel"); // BT-5
                         let fast = p.with_band_speed(&b, 0.5).band_travel_m;
                         close(
                             fast[1],
@@ -494,11 +504,62 @@ fn val_input_torque_by_hand() {
         assert_eq!(of, [cx, appendix, chapter]);
     }
     same(b.band_area_m2(), 12.0 * 20e-3 * 0.217e-3);
-    same(sliding_speed_m_s(&b, 2.0, -260.0), 0.25 * 3e-3 * 260.0);
-    same(
-        sliding_speed_m_s(&b, 0.7, 260.0),
-        (1.0 / 0.7 - 1.0) / 2.0 * 3e-3 * 260.0,
-    ); // BT-1
+    for formulation in [
+        Formulation::Smooth,
+        Formulation::AppendixC,
+        Formulation::Chapter8,
+    ] {
+        let b = Belt {
+            formulation,
+            ..b.clone()
+        };
+        let smooth = formulation == Formulation::Smooth;
+        let part = if smooth { 1.0 } else { 0.5 }; // BT-7, BT-1
+        let fast = sliding_speed_m_s(&b, 2.0, -260.0);
+        same(fast[0], part * 0.5 * 3e-3 * 260.0);
+        same(fast[1], part * 0.5 * 0.217e-3 * 260.0);
+        let high = part * (1.0 / 0.7 - 1.0) * 3e-3 * 260.0;
+        same(sliding_speed_m_s(&b, 0.7, 260.0)[0], high);
+        let on = |ratio: f64| {
+            let g = Geometry::new(ratio, b.centre_distance_m, b.length_m);
+            pulley_sliding_m_s(&b, &g, 260.0)
+        };
+        let other = |mean: f64| if smooth { 0.0 } else { mean };
+        let low = part * 0.5 * 3e-3 * 260.0;
+        let (at_low, at_high) = (on(2.0), on(0.7));
+        same(at_low[0], low);
+        same(at_high[1], high);
+        assert_eq!(
+            [at_low[1], at_high[0]],
+            [other(at_low[0]), other(at_high[1])]
+        );
+    }
+}
+
+/// BT-6, BT-7: the bands slide on the pulley of smaller radius alone, in drive, overrun and inverted loading. With one band the power that
+/// bands and film lose is the one force of the tension step times the sliding speed there.
+#[test]
+fn val_bands_slide_on_the_smaller_pulley() {
+    let one_band = Belt {
+        band_count: 1.0,
+        ..belt(Formulation::Smooth)
+    };
+    for ratio in [0.45, 0.8, 1.3, 2.3] {
+        for torque_nm in [-40.0, 5.0, 120.0] {
+            let l = load(torque_nm, 20e3);
+            let at = BeltAtRatio::new(&one_band, ratio);
+            let p = driving_point(&one_band, &at, &l);
+            let slides = pulley_sliding_m_s(&one_band, &at.geometry, l.primary_speed_rad_s);
+            let still = usize::from(ratio > 1.0);
+            assert_eq!(
+                [slides[still], p.band_loss_nm[still], p.film_loss_nm[still]],
+                [0.0; 3]
+            );
+            let lost_nm = belt_state(&one_band, &at, &l);
+            let power_w = (lost_nm.band_nm + lost_nm.film_nm) * l.primary_speed_rad_s;
+            same(power_w, p.tension.step_n.abs() * slides[1 - still]);
+        }
+    }
 }
 
 /// VA-3 and PC-1's radius factor of the shipped box, with a centrifugal head.

@@ -257,9 +257,8 @@ fn val_printed_slip_on_the_bench() {
             secondary_clamp_n: cvt.secondary_clamp_n(25e5, ws),
             band: oil
                 .friction
-                .band(90.0 + ZERO, oil.dynamic_pa_s(90.0 + ZERO), 0.0),
-            eta_pa_s: oil.dynamic_pa_s(90.0 + ZERO),
-            film_thickness_m: oil.friction.film_thickness_m,
+                .band(90.0 + ZERO, oil.dynamic_pa_s(90.0 + ZERO), [0.0; 2]),
+            film_n: [0.0; 2],
             segment_friction: cvt.belt.formulation.segment_friction(oil.friction.segment),
             capacity_friction: oil.friction.capacity,
             flank_friction: oil.friction.flank,

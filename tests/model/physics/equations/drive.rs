@@ -15,7 +15,7 @@ use cvtcycle_model::transmission::cvt::controller::{ClampLaw, ClampSignals};
 use cvtcycle_model::transmission::cvt::floors::Floors;
 use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle_model::transmission::cvt::variator::{
-    BeltAtRatio, BeltLoad, belt_state, sliding_speed_m_s,
+    BeltAtRatio, BeltLoad, Geometry, belt_state, sliding_speed_m_s,
 };
 use cvtcycle_model::transmission::cvt::{Cvt, CvtMaps, viscosity_power};
 use cvtcycle_model::transmission::{StepOutput, Transmission};
@@ -65,12 +65,33 @@ fn belt_load(b: &Bench, s: &Setting, wp: f64, secondary_nm: f64, clamp_n: f64) -
         output_torque_nm: secondary_nm,
         secondary_clamp_n: clamp_n,
         band: f.band(s.belt_degc + ZERO, eta, sliding),
-        eta_pa_s: eta,
-        film_thickness_m: f.film_thickness_m,
+        film_n: film_n(b, s, eta, sliding),
         segment_friction: f.segment,
         capacity_friction: f.capacity,
         flank_friction: f.flank,
     }
+}
+
+/// FI-1 from LU-5, FI-2 and FH-1, interface by interface.
+fn film_n(b: &Bench, s: &Setting, eta: f64, sliding: [f64; 2]) -> [f64; 2] {
+    let (belt, f) = (&b.cvt().belt, &b.car.oil.friction);
+    let g = Geometry::new(s.ratio, belt.centre_distance_m, belt.length_m);
+    let (radius_m, wrap_rad) = if s.ratio > 1.0 {
+        (g.primary_radius_m, g.primary_wrap_rad)
+    } else {
+        (g.secondary_radius_m, g.secondary_wrap_rad)
+    };
+    let area_m2 = radius_m * wrap_rad * belt.band_width_m; // BT-7
+    sliding.map(|dv| {
+        if dv == 0.0 {
+            return 0.0;
+        }
+        let x = eta * dv / f.half_n_m;
+        let share = 1.0 / (1.0 + x.powf(-f.film_exponent));
+        let cold_n = share * eta * dv * area_m2 / (f.half_thickness_m * x.powf(0.6));
+        let halving_w = f.film_heating_w;
+        2.0 * cold_n / (1.0 + (1.0 + 4.0 * cold_n * dv / halving_w).sqrt())
+    })
 }
 
 /// Torque at the engine's side of the clutch (CV-6).
@@ -361,7 +382,7 @@ pub fn bench() -> Bench {
         &["transmission.cvt.variator.compensated=false"],
     );
     let mut bench = Bench::new(&setup);
-    bench.car.oil.friction.lift_off = true;
+    bench.car.oil.friction.film = true;
     bench
 }
 

@@ -2,7 +2,7 @@
 
 use super::same;
 use crate::common::{ZERO, car};
-use cvtcycle_model::fluid::{Friction, Lubricant, Viscosity};
+use cvtcycle_model::fluid::{BandFriction, FilmPowers, Friction, Lubricant, Viscosity};
 
 fn friction() -> Friction {
     Friction {
@@ -11,11 +11,11 @@ fn friction() -> Friction {
         segment: 0.125,
         capacity: 0.09,
         flank: 0.13,
-        lift_off: true,
-        lift_reduction: 0.6,
-        lift_n_m: 0.02,
-        lift_exponent: 1.4,
-        film_thickness_m: 5e-7,
+        film: true,
+        half_n_m: 0.02,
+        film_exponent: 1.4,
+        half_thickness_m: 8e-7,
+        film_heating_w: 4000.0,
     }
 }
 
@@ -101,22 +101,56 @@ fn val_band_friction_by_hand() {
     let f = friction();
     for degc in [-40.0f64, -10.0, 25.0, 85.0, 160.0] {
         let warm = (0.004 * (degc - 85.0)).exp();
-        for (eta, sliding) in [(0.01, 0.0), (0.01, 0.7), (0.02, 1.0), (0.5, 2.0)] {
-            let z = (eta * sliding / 0.02f64).powf(1.4);
-            let share = z / (1.0 + z);
-            let got = f.band(degc + ZERO, eta, sliding);
-            same(got.film_share, share);
-            same(got.mu, 0.12 * warm * (1.0 - 0.6 * share));
-            same(f.film_load(eta, sliding), eta * sliding / 0.02);
+        for (eta, sliding) in [(0.01, 0.0), (0.01, 0.7), (0.02, 1.0), (0.5, 2.0f64)] {
+            let got = f.band(degc + ZERO, eta, [sliding, 0.1 * sliding]);
+            same(got.mu, 0.12 * warm);
+            for (i, dv) in [sliding, 0.1 * sliding].into_iter().enumerate() {
+                let x = eta * dv / 0.02;
+                let share = x.powf(1.4) / (1.0 + x.powf(1.4));
+                same(got.film_share[i], share);
+                let thickness = 8e-7 * x.powf(0.6);
+                let shear = if dv > 0.0 {
+                    share * eta * dv / thickness
+                } else {
+                    0.0
+                };
+                same(got.shear_pa[i], shear);
+                same(f.film_loads(eta, [sliding, 0.1 * sliding])[i], x);
+            }
         }
     }
-    let dry = Friction {
-        lift_off: false,
-        ..f
+    let dry = Friction { film: false, ..f };
+    let slides = [2.0, 0.2];
+    assert!(dry.film_loads(0.5, slides) == [0.0; 2]);
+    assert_eq!(dry.band(358.15, 0.5, slides), BandFriction::dry(0.12));
+    // However thick the oil, the film carries all and no more.
+    let thick = FilmPowers {
+        carried: [f64::INFINITY; 2],
+        sheared: [1.0; 2],
     };
-    assert!(dry.film_load(0.5, 2.0) == 0.0 && dry.band(358.15, 0.5, 2.0).film_share == 0.0);
-    same(dry.band(358.15, 0.5, 2.0).mu, 0.12);
-    same(f.band_on_film(358.15, f64::INFINITY).mu, 0.12 * 0.4);
+    assert_eq!(f.band_on_film(358.15, thick).film_share, [1.0; 2]);
+}
+
+/// LU-5 and FI-2: friction over eta dv, boundary and film of one interface together, falls, has one minimum, and rises (Stribeck). Thickness, Pa of
+/// shear and share at half the load are what the keys say.
+#[test]
+fn stribeck() {
+    let f = friction();
+    let pressure_pa = 2e5;
+    let total = |k: i32| {
+        let b = f.band(358.15, 0.02 * 1.1f64.powi(k), [1.0, 0.0]);
+        b.mu * (1.0 - b.film_share[0]) + b.shear_pa[0] / pressure_pa
+    };
+    let all: Vec<f64> = (-60..60).map(total).collect();
+    let turns = all
+        .windows(3)
+        .filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0)
+        .count();
+    assert_eq!(turns, 1, "{all:?}");
+    assert!(all[1] < all[0] && all[119] > all[118]);
+    let half = f.band(358.15, 0.02, [1.0, 0.0]);
+    same(half.film_share[0], 0.5);
+    same(half.shear_pa[0], 0.5 * 0.02 / 8e-7);
 }
 
 /// Ramps in both orders of their ends, and the step that equal ends make.

@@ -156,7 +156,7 @@ fn val_second_box_is_a_difference() {
 #[test]
 fn val_variator_rig_from_its_parts() {
     use cvtcycle_model::bench::variator::{Held, Resolution, VariatorRig};
-    use cvtcycle_model::transmission::cvt::variator::{belt_state, sliding_speed_m_s};
+    use cvtcycle_model::transmission::cvt::variator::belt_state;
     let setup = car(
         "rover_216_cvt",
         &["transmission.cvt.variator.compensated=false"],
@@ -176,19 +176,11 @@ fn val_variator_rig_from_its_parts() {
     let at = BeltAtRatio::new(&cvt.belt, 0.6);
     for row in rig.rows(&held, &[-30.0, 0.0, 40.0, 60.0]) {
         let ws = 180.0 * (1.0 - row.belt.losses.slip_total) / 0.6;
-        let eta = oil.dynamic_pa_s(held.belt_k);
         let l = BeltLoad {
             primary_speed_rad_s: 180.0,
             output_torque_nm: row.output_nm,
             secondary_clamp_n: cvt.secondary_clamp_n(12e5, ws),
-            band: oil
-                .friction
-                .band(held.belt_k, eta, sliding_speed_m_s(&cvt.belt, 0.6, 180.0)),
-            eta_pa_s: eta,
-            film_thickness_m: oil.friction.film_thickness_m,
-            segment_friction: oil.friction.segment,
-            capacity_friction: oil.friction.capacity,
-            flank_friction: oil.friction.flank,
+            ..BeltLoad::turning(&cvt.belt, oil, held.belt_k, 0.6, 180.0)
         };
         let want = belt_state(&cvt.belt, &at, &l);
         assert!(

@@ -63,12 +63,8 @@ fn load(speed_rpm: f64, torque: f64, bar: f64, mu: f64) -> BeltLoad {
         primary_speed_rad_s: speed_rpm * std::f64::consts::PI / 30.0,
         output_torque_nm: torque,
         secondary_clamp_n: bar * 1e5 * 0.97190e-2 + 750.0,
-        band: BandFriction {
-            mu,
-            film_share: 0.0,
-        },
-        eta_pa_s: 0.009,
-        film_thickness_m: 0.5e-6,
+        band: BandFriction::dry(mu),
+        film_n: [0.0; 2],
         segment_friction: 0.125,
         capacity_friction: 0.125,
         flank_friction: 0.13,
@@ -139,9 +135,10 @@ fn driving_points_are_belt_states() {
             let at = BeltAtRatio::new(&belt, ratio);
             let load = BeltLoad {
                 band: BandFriction {
-                    mu: 0.12,
-                    film_share: 0.4,
+                    film_share: [0.4, 0.1],
+                    ..BandFriction::dry(0.12)
                 },
+                film_n: [300.0, 20.0],
                 ..load(3000.0, torque, bar, 0.12)
             };
             let (p, s) = (

@@ -174,7 +174,7 @@ fn a_belt_without_friction_passes_torque_by_its_ratio() {
     let sets = [
         "lubricant.friction.band=0",
         "lubricant.friction.flank=0",
-        "lubricant.friction.lift_off.enabled=false",
+        "lubricant.friction.film.enabled=false",
     ];
     let conditions = Conditions {
         keep_rows: true,

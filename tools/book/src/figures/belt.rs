@@ -186,7 +186,8 @@ fn film(r: &Reference) -> String {
     let belt = r.belt(Formulation::Smooth);
     let mu = |ratio: f64, rpm: f64| {
         sweep(&format!("{rpm:.0} rpm"), -20.0, 120.0, 140, |t| {
-            film_friction(r, &belt, ratio, rpm, t).mu
+            let band = film_friction(r, &belt, ratio, rpm, t);
+            band.mu * (1.0 - band.film_share[0])
         })
     };
     let panel = |heading: &str, ratio: f64| {
@@ -220,7 +221,6 @@ fn film_loss(r: &Reference) -> String {
                     bar,
                 },
                 band,
-                t,
             );
             s.losses.band_nm + s.losses.film_nm
         })

@@ -58,14 +58,14 @@ const CVT: [Line; 8] = [
         "bands",
         &[Component::BeltBand],
         "friction that rises with belt temperature (LU-4)",
-        "nothing but its fall with temperature, and the lift-off of LU-5",
+        "its fall with temperature, and the film that carries (LU-5)",
         FEW,
     ),
     line(
         "film between the bands",
         &[Component::BeltFilm],
         "viscosity at belt temperature (FI-1)",
-        "the belt's own warming (RB-2, TH-1)",
+        "its thickness (FI-2), its heat (FH-1), the belt's own warming",
         "never by itself",
     ),
     Line {

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::fluid::{BandFriction, Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::fluid::{BandFriction, Lubricant};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::Cvt;
 use cvtcycle::model::transmission::cvt::variator::{
@@ -75,40 +75,26 @@ impl Reference {
 
     /// The belt with boundary friction on the bands (no film), at 85 degC.
     pub fn boundary(&self, belt: &Belt, at: At) -> BeltState {
-        self.with_friction(
-            belt,
-            at,
-            BandFriction {
-                mu: self.oil().friction.band,
-                film_share: 0.0,
-            },
-            85.0,
-        )
+        self.with_friction(belt, at, BandFriction::dry(self.oil().friction.band))
     }
 
-    /// The belt with a band friction and temperature.
-    pub fn with_friction(
-        &self,
-        belt: &Belt,
-        at: At,
-        band: BandFriction,
-        belt_degc: f64,
-    ) -> BeltState {
-        let friction = &self.oil().friction;
+    /// The belt with a band friction.
+    pub fn with_friction(&self, belt: &Belt, at: At, band: BandFriction) -> BeltState {
         let cvt = self.cvt();
+        let prepared = BeltAtRatio::new(belt, at.ratio);
         belt_state(
             belt,
-            &BeltAtRatio::new(belt, at.ratio),
+            &prepared,
             &BeltLoad {
                 primary_speed_rad_s: at.rpm * RPM,
                 output_torque_nm: at.output_nm,
                 secondary_clamp_n: cvt.secondary_clamp_n(at.bar * 1e5, at.rpm * RPM / at.ratio),
-                band,
-                eta_pa_s: self.oil().dynamic_pa_s(belt_degc + ZERO_DEGC_K),
-                film_thickness_m: friction.film_thickness_m,
-                segment_friction: friction.segment,
-                capacity_friction: friction.capacity,
-                flank_friction: friction.flank,
+                ..BeltLoad::unloaded(
+                    &self.oil().friction,
+                    band,
+                    prepared.prepared.film_area_m2,
+                    belt.sliding_m_s(at.ratio, at.rpm * RPM),
+                )
             },
         )
     }

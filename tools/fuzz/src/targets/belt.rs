@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::model::fluid::{BandFriction, ZERO_DEGC_K};
+use cvtcycle::model::fluid::BandFriction;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::point::belt_point;
 use cvtcycle::model::transmission::cvt::variator::{
@@ -36,17 +36,15 @@ fn shipped() -> (Belt, BeltLoad) {
         panic!("a car with a belt")
     };
     let (oil, _) = setup.oils();
-    let belt_k = ZERO_DEGC_K + 85.0;
     let load = BeltLoad {
         primary_speed_rad_s: 200.0,
         output_torque_nm: 60.0,
         secondary_clamp_n: 20_000.0,
         band: BandFriction {
-            mu: oil.friction.band,
-            film_share: 0.3,
+            film_share: [0.3, 0.05],
+            ..BandFriction::dry(oil.friction.band)
         },
-        eta_pa_s: oil.dynamic_pa_s(belt_k),
-        film_thickness_m: oil.friction.film_thickness_m,
+        film_n: [200.0, 5.0],
         segment_friction: oil.friction.segment,
         capacity_friction: oil.friction.capacity,
         flank_friction: oil.friction.flank,
@@ -74,15 +72,17 @@ fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
     let (mut belt, mut load) = SHIPPED.with(Clone::clone);
     belt.formulation = formulation;
     let mut ratio = 1.7;
+    let mut inner_share = load.band.film_share[0];
+    let [mut inner_n, mut outer_n] = load.film_n;
     let numbers = [
         &mut ratio,
         &mut load.primary_speed_rad_s,
         &mut load.output_torque_nm,
         &mut load.secondary_clamp_n,
         &mut load.band.mu,
-        &mut load.band.film_share,
-        &mut load.eta_pa_s,
-        &mut load.film_thickness_m,
+        &mut inner_share,
+        &mut inner_n,
+        &mut outer_n,
         &mut load.segment_friction,
         &mut load.capacity_friction,
         &mut load.flank_friction,

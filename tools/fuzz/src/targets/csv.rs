@@ -133,7 +133,7 @@ impl Take for Look {
 fn belt_model() -> Model {
     let setup = setup::load("rover_216_cvt", &Options::default())
         .unwrap_or_else(|_| panic!("the shipped car"));
-    Model::new(&setup, 0.0).unwrap_or_else(|| panic!("a car with a belt"))
+    Model::new(&setup, None).unwrap_or_else(|| panic!("a car with a belt"))
 }
 
 /// Runs a table of belt points, each line of which may be a point.

@@ -6,8 +6,8 @@ use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
-use crate::fluid::OilState;
-use crate::math::{exp_each, larger, ln_each};
+use crate::fluid::{FilmPowers, OilState};
+use crate::math::{exp_each, larger, ln_each, pair};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::step::{DrivelineState, StepInput};
@@ -106,41 +106,60 @@ struct Powers {
     viscosity: ViscosityPowers,
     viscous_factor: f64,
     radius_factor: f64,
-    /// The film's z (LU-5).
-    film: f64,
+    films: FilmPowers,
 }
 
 /// What they are powers of.
 struct Bases {
     nu_m2_s: f64,
     eta_pa_s: f64,
-    film_load: f64,
+    film_loads: [f64; 2],
+    film_exponents: [f64; 2],
 }
 
 impl Powers {
-    /// All of a step together: four logarithms, then five exponentials.
+    /// All of a step together: five logarithms, then eight exponentials.
     #[inline(always)]
-    fn new(cvt: &Cvt, at: &BeltAtRatio, lift_exponent: f64, b: &Bases) -> Self {
-        let films = b.film_load > 0.0;
-        let [nu, pump, film, radius] = ln_each([
+    fn new(cvt: &Cvt, at: &BeltAtRatio, b: &Bases) -> Self {
+        let slides = b.film_loads.map(|x| x > 0.0);
+        let films = pair(|i| if slides[i] { b.film_loads[i] } else { 1.0 });
+        let [nu, pump, inner, outer, radius] = ln_each([
             b.nu_m2_s / NU_REFERENCE_M2_S,
             b.eta_pa_s / ETA_REFERENCE_PA_S,
-            if films { b.film_load } else { 1.0 },
+            films[0],
+            films[1],
             cvt.low_radius_m / at.geometry.primary_radius_m,
         ]);
         let [shaft, clutch] = ViscosityPowers::exponents(cvt, nu);
-        let [shaft, clutch, viscous_factor, radius_factor, film] = exp_each([
+        let [carried, sheared] = b.film_exponents;
+        let [
+            shaft,
+            clutch,
+            viscous_factor,
+            radius_factor,
+            inner_carried,
+            outer_carried,
+            inner_sheared,
+            outer_sheared,
+        ] = exp_each([
             shaft,
             clutch,
             cvt.pump.viscous_exponent * pump,
             cvt.radius_exponent * radius,
-            lift_exponent * film,
+            carried * inner,
+            carried * outer,
+            sheared * inner,
+            sheared * outer,
         ]);
+        let sliding = |powers: [f64; 2]| pair(|i| if slides[i] { powers[i] } else { 0.0 });
         Powers {
             viscosity: ViscosityPowers { shaft, clutch },
             viscous_factor,
             radius_factor,
-            film: if films { film } else { 0.0 },
+            films: FilmPowers {
+                carried: sliding([inner_carried, outer_carried]),
+                sheared: sliding([inner_sheared, outer_sheared]),
+            },
         }
     }
 }
@@ -191,9 +210,10 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     let bases = Bases {
         nu_m2_s: nu_sump,
         eta_pa_s: eta_sump,
-        film_load: friction.film_load(eta_belt, sliding),
+        film_loads: friction.film_loads(eta_belt, sliding),
+        film_exponents: friction.film_exponents(),
     };
-    let powers = Powers::new(cvt, at, friction.lift_exponent, &bases);
+    let powers = Powers::new(cvt, at, &bases);
     let line = Driveline {
         cvt,
         at,
@@ -218,7 +238,12 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         line,
         input,
         secondary_rad_s,
-        load: BeltLoad::unloaded(oil, eta_belt, friction.band_on_film(belt_k, powers.film)),
+        load: BeltLoad::unloaded(
+            friction,
+            friction.band_on_film(belt_k, powers.films),
+            at.prepared.film_area_m2,
+            sliding,
+        ),
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,
         shifting: shift.kept,

@@ -10,7 +10,8 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::PointStatus;
 use cvtcycle_model::transmission::cvt::variator::{
-    Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, sliding_speed_m_s,
+    Belt, BeltAtRatio, BeltLoad, BeltPoint, Formulation, Geometry, belt_point, pulley_sliding_m_s,
+    sliding_speed_m_s, speed_share,
 };
 
 const RATIO: usize = 0;
@@ -30,6 +31,8 @@ pub struct Solved {
     at: BeltAtRatio,
     load: BeltLoad,
     belt_k: f64,
+    /// Dynamic viscosity at the belt's temperature, Pa s.
+    eta_pa_s: f64,
     point: BeltPoint,
 }
 
@@ -41,7 +44,7 @@ pub fn columns() -> Vec<Column<Solved>> {
         "pressure_bar" s => s.x[PRESSURE] / 1e5;
         "torque_nm" s => s.x[TORQUE];
         "belt_degc" s => s.belt_k - ZERO_DEGC_K;
-        "band_speed_share" s => if s.x[BAND_SPEED].is_nan() { 0.0 } else { s.x[BAND_SPEED] };
+        "band_speed_share" s => if s.x[BAND_SPEED].is_nan() { speed_share(&s.belt) } else { s.x[BAND_SPEED] };
         "band_friction" s => s.load.band.mu;
         "primary_radius_mm" s => 1e3 * s.point.geometry.primary_radius_m;
         "secondary_radius_mm" s => 1e3 * s.point.geometry.secondary_radius_m;
@@ -81,9 +84,11 @@ pub fn columns() -> Vec<Column<Solved>> {
         "secondary_arc_mm" s => 1e3 * s.at.prepared.arc_m[1];
         "primary_deflection_mm" s => s.deflection_mm(0);
         "secondary_deflection_mm" s => s.deflection_mm(1);
-        "sliding_m_s" s => sliding_speed_m_s(&s.belt, s.point.geometry.ratio, s.load.primary_speed_rad_s);
-        "film_share" s => s.load.band.film_share;
-        "dynamic_viscosity_mpa_s" s => 1e3 * s.load.eta_pa_s;
+        "band_slide_primary_m_s" s => s.sliding_m_s()[0];
+        "band_slide_secondary_m_s" s => s.sliding_m_s()[1];
+        "sliding_m_s" s => sliding_speed_m_s(&s.belt, s.point.geometry.ratio, s.load.primary_speed_rad_s)[0];
+        "film_share" s => s.load.band.film_share[0];
+        "dynamic_viscosity_mpa_s" s => 1e3 * s.eta_pa_s;
         "primary_segment_force_n" s => s.point.tension.primary_clamp_n * s.at.prepared.normal_per_clamp[0];
         "secondary_segment_force_n" s => s.point.tension.secondary_clamp_n * s.at.prepared.normal_per_clamp[1];
         "band_1_share" s => s.band_1_share();
@@ -106,6 +111,11 @@ impl Solved {
             let per_n = self.belt.secondary_compliance_per_n;
             1e3 * g.secondary_radius_m * t.secondary_clamp_n * per_n
         }
+    }
+
+    fn sliding_m_s(&self) -> [f64; 2] {
+        let w = self.load.primary_speed_rad_s;
+        pulley_sliding_m_s(&self.belt, &self.point.geometry, w)
     }
 
     /// Share of the innermost interface in a loss that falls in equal steps outwards: d over d + t (n-1)/2 (BT-2, BT-3).
@@ -184,6 +194,7 @@ fn solve(x: Vec<f64>, cvt: &Cvt, belt: &Belt, oil: &Lubricant) -> Solved {
     }
     Solved {
         belt_k: belt_k(x[BELT_TEMP]),
+        eta_pa_s: oil.dynamic_pa_s(belt_k(x[BELT_TEMP])),
         x,
         belt: belt.clone(),
         at,

@@ -31,10 +31,14 @@ pub struct Prepared {
     pub band_gap_m_n: f64,
     /// Compression of the free strut per force, m/N (SL-2).
     pub strut_gap_m_n: f64,
-    /// Friction-weighted sliding of the band pack per turn of the primary, times BT-4, m/rad (BT-3).
+    /// Friction-weighted sliding of the band pack per turn of the primary, m/rad (BT-3, BT-6).
     pub slide_m: [f64; 2],
-    /// Film shear torque per share, viscosity, speed over thickness, m4 (FI-1).
-    pub film_m4: f64,
+    /// Part of it that is not at the innermost interface, from 0 to 1.
+    pub outer_part: f64,
+    /// Contact area of a film, m2 (FI-1).
+    pub film_area_m2: f64,
+    /// Levers of the films' forces, innermost interface and all others, m (FI-1).
+    pub film_levers_m: [f64; 2],
     /// Share of the primary's deflection left by its end stop (WE-4).
     pub stop: f64,
     /// Half the cotangent of the angle in the wedge terms (WE-2).
@@ -75,7 +79,9 @@ impl Prepared {
                 / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
             strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
             slide_m: bands::slide_m(belt, g, direction),
-            film_m4: bands::film_m4(belt, g),
+            outer_part: bands::outer_part(belt),
+            film_area_m2: bands::film_area_m2(belt, g),
+            film_levers_m: bands::film_levers_m(belt, g, direction),
             stop: belt
                 .formulation
                 .primary_stop(1.0 - ramp(g.ratio, belt.stop_from_ratio, belt.stop_to_ratio)), // WE-4

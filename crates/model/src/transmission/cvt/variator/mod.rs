@@ -21,7 +21,7 @@ mod printed;
 pub mod point;
 
 pub use at_ratio::{BeltAtRatio, Prepared};
-pub use bands::sliding_speed_m_s;
+pub use bands::{film_area_m2, pulley_sliding_m_s, sliding_speed_m_s, speed_share};
 pub use deflection::Deflection;
 pub use formulation::Formulation;
 pub use geometry::Geometry;
@@ -30,7 +30,7 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::fluid::{BandFriction, Lubricant};
+use crate::fluid::{BandFriction, Friction, Lubricant};
 use crate::math::{Curve, larger, smaller};
 
 /// The checked belt and pulleys.
@@ -102,13 +102,13 @@ impl Belt {
         [self.mass_kg_m - bands, bands] // TE-8
     }
 
-    /// Sliding speed of the innermost band that can carry a film, m/s; 0 for formulations without a film.
+    /// Sliding speeds that can carry a film, at the innermost interface and at each other one, m/s; 0 for formulations without a film.
     #[inline]
-    pub fn sliding_m_s(&self, ratio: f64, primary_rad_s: f64) -> f64 {
+    pub fn sliding_m_s(&self, ratio: f64, primary_rad_s: f64) -> [f64; 2] {
         if self.formulation.has_film() {
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
-            0.0
+            [0.0; 2]
         }
     }
 }
@@ -124,10 +124,8 @@ pub struct BeltLoad {
     pub secondary_clamp_n: f64,
     /// Band friction in force.
     pub band: BandFriction,
-    /// Dynamic viscosity at belt temperature, Pa s.
-    pub eta_pa_s: f64,
-    /// Thickness of the film, m.
-    pub film_thickness_m: f64,
+    /// Force of the film at the innermost interface and at each other one, N (FI-1).
+    pub film_n: [f64; 2],
     /// Segment friction of the fluid.
     pub segment_friction: f64,
     /// Friction of macro slip of the fluid.
@@ -137,19 +135,23 @@ pub struct BeltLoad {
 }
 
 impl BeltLoad {
-    /// The lubricated belt without speed, torque and clamping force, for a viscosity at belt temperature and a band friction.
+    /// The lubricated belt without speed, torque and clamping force, for a band friction in a contact area, m2, that slides at speeds, m/s.
     #[inline]
-    pub fn unloaded(oil: &Lubricant, eta_pa_s: f64, band: BandFriction) -> Self {
+    pub fn unloaded(
+        friction: &Friction,
+        band: BandFriction,
+        film_area_m2: f64,
+        sliding_m_s: [f64; 2],
+    ) -> Self {
         BeltLoad {
             primary_speed_rad_s: 0.0,
             output_torque_nm: 0.0,
             secondary_clamp_n: 0.0,
             band,
-            eta_pa_s,
-            film_thickness_m: oil.friction.film_thickness_m,
-            segment_friction: oil.friction.segment,
-            capacity_friction: oil.friction.capacity,
-            flank_friction: oil.friction.flank,
+            film_n: bands::film_n(friction, &band, film_area_m2, sliding_m_s),
+            segment_friction: friction.segment,
+            capacity_friction: friction.capacity,
+            flank_friction: friction.flank,
         }
     }
 
@@ -161,11 +163,14 @@ impl BeltLoad {
         ratio: f64,
         primary_rad_s: f64,
     ) -> Self {
-        let eta_pa_s = oil.dynamic_pa_s(belt_k);
+        let friction = &oil.friction;
         let sliding = belt.sliding_m_s(ratio, primary_rad_s);
+        let band = friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
+        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
+        let film_area_m2 = bands::film_area_m2(belt, &geometry);
         BeltLoad {
             primary_speed_rad_s: primary_rad_s,
-            ..BeltLoad::unloaded(oil, eta_pa_s, oil.friction.band(belt_k, eta_pa_s, sliding))
+            ..BeltLoad::unloaded(friction, band, film_area_m2, sliding)
         }
     }
 }
@@ -237,7 +242,7 @@ struct Parts {
 fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
     let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
-    let band_nm = bands::band_loss_nm(at, &tension, load.band.mu);
+    let band_nm = bands::band_loss_nm(at, &tension, &load.band);
     let film_nm = bands::film_loss_nm(at, load);
     let slip = slip::slip(belt, at, &tension, mu_segment);
     Parts {

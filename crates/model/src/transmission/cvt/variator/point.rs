@@ -1,6 +1,6 @@
 //! One operating point of the belt with everything that is known of it, for all readings of the model.
 
-use super::bands::{band_loss_nm, travel_m};
+use super::bands::{band_loss_nm, speed_share, travel_m};
 use super::deflection::{Deflection, deflection};
 use super::slip::{Contact, MAX_AREA_N};
 use super::{
@@ -52,7 +52,7 @@ pub struct BeltPoint {
     pub band_travel_m: [f64; 2],
     /// Boundary friction of the bands.
     pub band_loss_nm: [f64; 2],
-    /// Shear of the film, by contact arc; zero in the printed forms.
+    /// Shear of the film, on the smaller wrap; zero in the printed forms.
     pub film_loss_nm: [f64; 2],
     /// Sliding of segments on pulleys.
     pub slip_loss_nm: [f64; 2],
@@ -210,10 +210,9 @@ pub fn driving_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoin
     let parts = parts(belt, at, load);
     let state = state(at, load, &parts);
     let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
-    let arcs = at.prepared.arc_m;
     let (slip, losses) = (state.slip, &state.losses);
     BeltPoint {
-        film_loss_nm: arcs.map(|arc| losses.film_nm * arc / (arcs[0] + arcs[1])), // FI-1
+        film_loss_nm: split_nm(losses.film_nm, at.prepared.slide_m), // FI-1, BT-7
         slip_loss_nm: split_nm(
             losses.slip_nm,
             [slip.primary_loss_nm, slip.secondary_loss_nm],
@@ -255,7 +254,7 @@ fn split_nm(loss_nm: f64, pair: [f64; 2]) -> [f64; 2] {
 /// The point as printed (PR-1 to PR-5).
 fn printed_point(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltPoint {
     let tension = Tension::new(belt, at, load, printed::direction(at.geometry.ratio)); // PR-1
-    let band_nm = band_loss_nm(at, &tension, load.band.mu);
+    let band_nm = band_loss_nm(at, &tension, &load.band);
     let deflection = deflection(belt, at, &tension, printed::FLANK_FRICTION); // PR-5
     let bare = without_slip(belt, at, load, &tension, band_nm, &deflection);
     let bare = BeltPoint {
@@ -306,7 +305,7 @@ fn without_slip(
         tension: *tension,
         belt_speed_m_s: load.primary_speed_rad_s * g.primary_radius_m,
         band_tension_n: [mean - step / 2.0, mean + step / 2.0],
-        band_travel_m: travel_m(belt, g, 0.0),
+        band_travel_m: travel_m(belt, g, speed_share(belt)),
         band_loss_nm,
         film_loss_nm: [0.0; 2],
         slip_loss_nm: [f64::NAN; 2],

@@ -7,7 +7,7 @@
 //! | TE-3 | dT = -s mu_b Q_p, s = -1 in low, +1 in high | source: thesis eq. 46, App. C |
 //! | TE-4 | C_x = T/R_s - dT | source: thesis eq. 42 |
 //! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
-//! | TE-7 | one force on both pulleys: dT = -s mu_b beta Tm, beta the smaller wrap, Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_b beta A and c = mu_b beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
+//! | TE-7 | one force on both pulleys: dT = -s (mu_1 beta Tm + F_v), mu_1 = mu_b (1 - u_1), beta the smaller wrap, F_v the film's force (FI-1), Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_1 beta A + F_v and c = mu_1 beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
 //! | TE-8 | `smooth`: m is that of the segments, and the mean tension of the bands is Q/beta + m_b v2, m_b theirs | derived: free body of a segment, 2 F tan th + m_s beta v2 + \|C_x\| beta/2 = Q, and of a band element, T = Q/beta + m_b v2; the thesis and the printed forms have the whole belt press |
 //! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
 //!
@@ -65,6 +65,13 @@ fn bare_mean_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, centrifugal_n: f6
     belt.tan_wedge * load.secondary_clamp_n * at.prepared.clamps_per_wrap + centrifugal_n
 }
 
+/// Boundary friction of the innermost interface per mean tension: of the part that is not on a film, on the smaller wrap (TE-7).
+#[inline(always)]
+fn grip(g: &Geometry, load: &BeltLoad) -> f64 {
+    let dry = 1.0 - load.band.film_share[0];
+    load.band.mu * dry * smaller(g.primary_wrap_rad, g.secondary_wrap_rad)
+}
+
 impl Tension {
     /// The belt's tension by its formulation, with the smoothed direction of the step (TE-6).
     #[inline(always)]
@@ -83,8 +90,9 @@ impl Tension {
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
         let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
         let mean = bare_mean_n(belt, at, load, centrifugal_n);
-        let grip = load.band.mu * smaller(wraps[0], wraps[1]);
-        let z = load.output_torque_nm * at.prepared.inv_secondary_radius + s * grip * mean;
+        let (grip, film_n) = (grip(g, load), load.film_n[0]);
+        let z =
+            load.output_torque_nm * at.prepared.inv_secondary_radius + s * (grip * mean + film_n);
         let cx = compression_n(z, s * (0.5 * grip)); // TE-7
         let tension = mean + 0.5 * cx.abs();
         Tension {
@@ -93,7 +101,7 @@ impl Tension {
             primary_shoulder_n: tension * wraps[0],
             secondary_shoulder_n: tension * wraps[1],
             compression_n: cx,
-            step_n: -s * (grip * tension), // TE-7
+            step_n: -s * (grip * tension + film_n), // TE-7
             ring_n,
         }
     }
@@ -101,14 +109,13 @@ impl Tension {
     /// Step of tension without compression, N: the torque at which compression changes sign gives it (TE-5, TE-7 with Z = 0).
     pub fn bare_step_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
         let (clamp_n, [centrifugal_n, _]) = forces_n(belt, at, load);
-        let (g, mu) = (&at.geometry, load.band.mu);
-        let pressed_n = if belt.formulation.by_statics() {
-            mu * smaller(g.primary_wrap_rad, g.secondary_wrap_rad)
-                * bare_mean_n(belt, at, load, centrifugal_n)
+        let g = &at.geometry;
+        let force_n = if belt.formulation.by_statics() {
+            grip(g, load) * bare_mean_n(belt, at, load, centrifugal_n) + load.film_n[0]
         } else {
-            mu * (2.0 * clamp_n[0] * belt.tan_wedge + g.primary_wrap_rad * centrifugal_n)
+            load.band.mu * (2.0 * clamp_n[0] * belt.tan_wedge + g.primary_wrap_rad * centrifugal_n)
         };
-        -at.direction * pressed_n
+        -at.direction * force_n
     }
 
     /// Solves tension and compression for a direction s of the tension step, -1 in low, +1 in high (TE-2 to TE-5).
