@@ -425,8 +425,8 @@ fn what_no_car_can_do_is_exit_code_1() {
         fs::write(dir.path().join(name), text).unwrap();
     }
     let gain = "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2=1e-7";
-    let seal = "transmission.manual.seal.torque_nm=20";
-    let thick = "transmission.manual.seal.viscous_exponent=1.5";
+    let still = "thermal.radiator.fan_w_k=0";
+    let closed = "thermal.radiator.ram_w_k_per_m_s=0";
     let manual = ["--vehicle", "rover_216_5mt"];
     for (words, check, unit, text) in [
         (
@@ -452,13 +452,13 @@ fn what_no_car_can_do_is_exit_code_1() {
                 &manual[..],
                 &[
                     "--cycle",
-                    "ece15",
+                    "ftp75",
                     "--ambient",
-                    "-40",
+                    "40",
                     "--set",
-                    seal,
+                    still,
                     "--set",
-                    thick,
+                    closed,
                 ],
             ]
             .concat(),
