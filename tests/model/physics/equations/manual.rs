@@ -443,7 +443,10 @@ fn val_commands_of_gears() {
         let lost: f64 = d.loss_w.iter().sum();
         same(lost, -d.output_w);
         let engine = car.engine.at(k, k, &car.engine_oil, 1.0);
-        same(d.engine_rad_s, within_reach(&car, &engine, &s, 0.0, idle)[0]);
+        same(
+            d.engine_rad_s,
+            within_reach(&car, &engine, &s, 0.0, idle)[0],
+        );
         assert_eq!(state.driveline.gear, gear);
     };
     for dt_s in [0.02, 5.0] {

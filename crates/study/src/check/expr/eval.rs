@@ -7,7 +7,7 @@ use super::reduce::{Point, Points, Table, least, most, short};
 use super::{Expr, Order, Reduce};
 
 /// Most evaluations of parts of expressions and of rows that the rows of a command, or the observations of one evaluation of a fit, may take
-/// together; the shipped rows take less than a fiftieth. Loops and reductions within each other multiply.
+/// together; the shipped rows take less than a tenth. Loops and reductions within each other multiply.
 pub const MAX_EVALUATIONS: u64 = 100_000_000;
 /// Most bytes of the numbers behind a truth, to which more are not added.
 const MAX_BEHIND: usize = 4000;
