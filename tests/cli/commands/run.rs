@@ -474,7 +474,7 @@ fn what_no_car_can_do_is_exit_code_1() {
             .concat(),
             "too_hot",
             "degC",
-            "rover_216_5mt heats the coolant to 25",
+            "rover_216_5mt heats the coolant to 156.7 degC at 3600.0 s in idle",
         ),
     ] {
         let words = [&["run", "--baseline", "none"], &words[..]].concat();
