@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use cvtcycle::config::ProblemKind;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::store::{Exported, Format, export};
 use cvtcycle::study::store::{Kind, Rows, Values};
@@ -329,12 +330,8 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
     fs::write(&spoiled, "no").unwrap();
     for ending in ["csv", "parquet", "xlsx"] {
         let to = dir.path().join(format!("b.{ending}"));
-        assert!(
-            exported(&path, "trace", &to)
-                .unwrap_err()
-                .message
-                .contains("damaged")
-        );
+        let problem = exported(&path, "trace", &to).unwrap_err();
+        assert_eq!(problem.kind, ProblemKind::Damaged);
         assert!(!to.exists());
     }
 }

@@ -16,7 +16,7 @@ use super::parquet::write_parquet;
 use super::read::{Study, is_whole, marked_parts};
 use super::table::{Head, Rows};
 use cvtcycle_config::bounded::{self, ReadError};
-use cvtcycle_config::{Problem, Setting};
+use cvtcycle_config::{Problem, ProblemKind, Setting};
 use cvtcycle_output::files::{
     DirLock, check_directory, complete, failed, list, names_in, problem, sync_directory,
     temporary_in,
@@ -355,7 +355,10 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
     let (Ok(stored), Ok(now)) = (bounded::json(stored), bounded::json(now)) else {
         let hint = "begin the study anew in its place or in another directory";
         let message = format!("{MANIFEST} in {name} is damaged");
-        return problem(path, &message, hint).settings(&[Setting::Replace]);
+        let settings = &[Setting::Replace];
+        return problem(path, &message, hint)
+            .kind(ProblemKind::Damaged)
+            .settings(settings);
     };
     let mut found = differences(&stored, &now);
     let builds =

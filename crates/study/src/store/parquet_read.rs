@@ -13,7 +13,7 @@ use super::names::MAX_PART_ROWS;
 use super::parquet::{COLUMNS_KEY, io_error};
 use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
-use cvtcycle_config::ProblemKind::{Syntax, UnknownKey, Unreadable};
+use cvtcycle_config::ProblemKind::{Damaged, Syntax, UnknownKey, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -62,7 +62,7 @@ impl ParquetFile {
             format!("up to {most} are due")
         };
         let message = format!("the file is damaged: it has {rows} rows, {due}");
-        Err(file_problem(Syntax, &self.path, message, MEND))
+        Err(file_problem(Damaged, &self.path, message, MEND))
     }
 
     /// Opens a file whose bytes are known to be those that were written.
@@ -77,7 +77,7 @@ impl ParquetFile {
             .transpose()
             .map_err(|error| refused(io_error(error)))?;
         let file = reader.filter(|reader| fits(reader, bytes));
-        let file = file.ok_or_else(|| file_problem(Syntax, path, DAMAGED, MEND))?;
+        let file = file.ok_or_else(|| file_problem(Damaged, path, DAMAGED, MEND))?;
         let columns = heads(&file).ok_or_else(|| {
             file_problem(Syntax, path, "the file is no table of this program", "")
         })?;
@@ -260,7 +260,7 @@ pub(super) fn check_sum(path: &Path, file: &File, sum: &Sum) -> Result<(), Probl
         return Ok(());
     }
     let message = "the file is damaged: its checksum is not that of what was written";
-    Err(file_problem(Syntax, path, message, MEND))
+    Err(file_problem(Damaged, path, message, MEND))
 }
 
 pub(super) fn unreadable(path: &Path, error: &ReadError) -> Problem {
