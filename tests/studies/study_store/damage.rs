@@ -106,7 +106,7 @@ fn one_column_over_all_parts() {
         problem.message
     );
     assert_eq!(
-        study.part(0, "runs").unwrap().metadata()[0],
+        study.part(0, "runs").unwrap().metadata()[1],
         ("cvtcycle.part".to_owned(), "x".to_owned())
     );
 }

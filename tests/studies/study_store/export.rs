@@ -11,7 +11,7 @@ use cvtcycle::study::store::{Kind, Rows, Values};
 use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
 use tempfile::TempDir;
 
-use super::{PLAN, head, heads, manifest, manifest_of, rows, whole, write_part};
+use super::{PLAN, RUN, head, heads, manifest, manifest_of, rows, whole, write_part};
 
 const PARTS: usize = 3;
 
@@ -122,13 +122,13 @@ fn parquet_has_a_row_group_a_part_and_the_manifest() {
     assert_eq!(sizes, [3, 4, 5]);
     let table = ParquetFile::open(&file, &sha256(&bytes)).unwrap();
     assert_eq!(table.columns(), heads());
-    let manifest = table
-        .metadata()
-        .into_iter()
-        .find(|(key, _)| key == "cvtcycle.manifest")
-        .unwrap()
-        .1;
-    assert_eq!(manifest.into_bytes(), super::manifest(PARTS));
+    let manifest = String::from_utf8(super::manifest(PARTS)).unwrap();
+    let own = [("cvtcycle.run", RUN), ("cvtcycle.manifest", &*manifest)];
+    let own = own.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    assert_eq!(table.metadata()[..2], own);
+    let part = dir.path().join("study/parts/runs_00000.parquet");
+    let part = ParquetFile::open(&part, &sha256(&fs::read(&part).unwrap())).unwrap();
+    assert_eq!(part.metadata()[0], own[0]);
     let all = Study::open(dir.path().join("study"))
         .unwrap()
         .read("runs", &["run", "reason", "vehicle"])

@@ -215,7 +215,11 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`program` is") && !said.contains("more value"),
         "{said}"
     );
-    let said = refused(dir.path(), |m| m["build"] = "0123456789abcdef".into());
+    // Nor does the word of the run, which is another one with every difference.
+    let said = refused(dir.path(), |m| {
+        m["build"] = "0123456789abcdef".into();
+        m["run"] = "fedcba9876543210".into();
+    });
     let words =
         format!("was begun by another build of the program: {BUILD} there, 0123456789abcdef now");
     assert!(

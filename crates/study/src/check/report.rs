@@ -43,14 +43,15 @@ impl Counts {
 /// A report as one JSON object.
 #[must_use]
 pub fn json(report: &Report) -> Value {
-    Manifest::new(SCHEMA).with(&object!({
+    let rest = object!({
         "vehicle": report.candidate.vehicle,
         "set": report.candidate.set,
         "counts": Counts::of(report.rows.iter()),
         "held_out": report.held_out(),
         "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
         "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),
-    }))
+    });
+    Manifest::new(SCHEMA).of_run(&rest).with(&rest)
 }
 
 /// A row as a JSON object; no number and an infinite one are null.
