@@ -1,13 +1,9 @@
 //! Expressions of the validation rows, over a small table; the rule from numbers to a verdict.
 
-use std::cell::Cell;
-use std::rc::Rc;
-
 use cvtcycle::config::bounded::SOURCE_ROWS;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::study::check::expr::{
-    Computed, FUNCTIONS, Fault, Gives, MAX_EVALUATIONS, MAX_TOKENS, Names, REDUCTIONS, Table,
-    Tables, compute, parse,
+    Computed, FUNCTIONS, Fault, Gives, MAX_EVALUATIONS, MAX_TOKENS, REDUCTIONS, compute, parse,
 };
 use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::check::{
@@ -15,80 +11,12 @@ use cvtcycle::study::check::{
 };
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
 
-struct Fixed {
-    left_out: Cell<usize>,
-    /// Evaluations that are left.
-    left: Cell<u64>,
-}
+use crate::small_tables::SmallTables;
 
-impl Names for Fixed {
-    fn sources(&self) -> Vec<&str> {
-        vec!["low", "trip"]
-    }
-
-    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
-        match (source, totals) {
-            (0, false) => vec!["x", "g", "y"],
-            (1, true) => vec!["fuel"],
-            _ => Vec::new(),
-        }
-    }
-
-    fn keys(&self) -> &[String] {
-        static KEYS: std::sync::OnceLock<Vec<String>> = std::sync::OnceLock::new();
-        KEYS.get_or_init(|| vec!["belt.offset_mm".to_owned()])
-    }
-}
-
-impl Tables for Fixed {
-    fn table(&self, source: usize, _: bool) -> Result<Rc<Table>, String> {
-        // Two groups of y = 2 x + g, and one row at gross slip.
-        let columns = vec![
-            vec![1.0, 2.0, 4.0, 1.0, 2.0, 9.0],
-            vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
-            vec![2.0, 4.0, 8.0, 3.0, 5.0, 99.0],
-        ];
-        let gross = vec![false, false, false, false, false, true];
-        let trip = Table {
-            columns: vec![vec![6.5]],
-            weight: vec![1.0],
-            ..Table::default()
-        };
-        Ok(Rc::new(if source == 1 {
-            trip
-        } else {
-            Table {
-                columns,
-                weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
-                gross,
-                outside: Vec::new(),
-            }
-        }))
-    }
-
-    fn key(&self, _: Option<usize>, _: &str, item: Option<usize>) -> Result<f64, String> {
-        Ok(item.map_or(3.0, |k| k as f64))
-    }
-
-    fn spend(&self, evaluations: u64) -> Result<(), String> {
-        let left = self.left.get().checked_sub(evaluations);
-        self.left.set(left.unwrap_or(0));
-        left.map(drop)
-            .ok_or_else(|| "no evaluations are left".to_owned())
-    }
-
-    fn left_out(&self, rows: usize) {
-        self.left_out.set(self.left_out.get() + rows);
-    }
-
-    fn outside(&self, _: usize) {}
-}
-
-fn fixed() -> Fixed {
-    Fixed {
-        left_out: Cell::default(),
-        left: Cell::new(1_000_000),
-    }
+/// Two groups of y = 2 x + g, and one row at gross slip.
+fn fixed() -> SmallTables {
+    let x = [1.0, 2.0, 4.0, 1.0, 2.0, 9.0];
+    SmallTables::new(x, [2.0, 4.0, 8.0, 3.0, 5.0, 99.0], 1_000_000)
 }
 
 fn of(text: &str) -> Result<Computed, String> {
