@@ -260,6 +260,54 @@ fn nested_loops_and_reductions_end_with_the_evaluations() {
     }
 }
 
+/// Evaluations that an expression takes.
+fn spent(text: &str) -> u64 {
+    let names = fixed();
+    let before = names.left.get();
+    let expr = parse(text, &names).expect(text);
+    assert!(compute(&expr, &names).is_ok(), "{text}");
+    before - names.left.get()
+}
+
+/// By hand: a part is one evaluation, a row one, looking for a table or a key eight, sorting n rows n log2 n, rounded down.
+#[test]
+fn evaluations_count_the_work() {
+    for (text, evaluations) in [
+        ("1", 1),
+        ("1 + 2 * 3", 5),
+        ("key(belt.offset_mm)", 1 + 8),
+        // Six rows, of which five have a value: the last is at gross slip.
+        ("max(low: 1)", 1 + 8 + 6 + 5),
+        ("max(low: y where g == 0)", 1 + 8 + 6 + 6 * 3 + 3),
+        ("slope(low: y over x)", 1 + 8 + 6 + 5 * 2 + 5 * 2),
+        (
+            "interp(low: y over x at 3 where g == 0)",
+            1 + 8 + 6 + 6 * 3 + 3 * 2 + 1 + 3,
+        ),
+        // Twice: once for the truth, and once for the numbers behind it.
+        ("1 < 2", 3 + 2),
+        ("all(low: y > 0)", (1 + 8 + 6 + 5 * 3) + (8 + 6 + 5 * 3)),
+    ] {
+        assert_eq!(spent(text), evaluations, "{text}");
+    }
+}
+
+/// The numbers behind a truth have room for less than 500 of `a: n < 100`; the others are not computed again.
+#[test]
+fn numbers_that_are_not_listed_are_not_computed() {
+    let digits = "0,1,2,3,4,5,6,7,8,9";
+    let body = (0..4).fold("a0 + a1 < 100".to_owned(), |body, k| {
+        format!("each(a{k} in {digits}: {body})")
+    });
+    // A loop is one evaluation, each of its ten numbers one more than the body; the innermost body has five.
+    let truth = (0..4).fold(5, |inner, _| 1 + 10 * (1 + inner));
+    let all = spent(&body);
+    assert!(
+        all > truth && all < truth + 500 * 5,
+        "{all}, of these {truth}"
+    );
+}
+
 /// 500 000 rows are the limit.
 #[test]
 fn the_sources_of_a_shipped_file_have_less_than_half_of_the_rows_that_are_allowed() {
