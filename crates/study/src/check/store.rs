@@ -42,11 +42,18 @@ pub fn once<K: Eq + Hash, T: Clone>(
     made
 }
 
+/// A table, or why there is none.
+type Made = Result<Rc<Table>, String>;
+/// The source of a key, and its item of a list.
+type Owner = (Option<usize>, Option<usize>);
+/// Numbers of keys by their paths, or why there are none.
+type Numbers = HashMap<String, Result<f64, String>>;
+
 /// Everything that was computed, shared by all expressions: sources of equal contents are one.
 pub struct Store<'a> {
     cars: &'a dyn Cars,
     runs: RefCell<HashMap<String, Rc<Result<Driven, String>>>>,
-    tables: RefCell<HashMap<String, Result<Rc<Table>, String>>>,
+    tables: RefCell<HashMap<String, Made>>,
     /// Evaluations that are left; none after one was refused.
     left: Cell<Option<u64>>,
 }
@@ -130,8 +137,8 @@ pub struct View<'a> {
     left_out: Cell<usize>,
     outside: Cell<usize>,
     /// What was found, by source: expressions may look for it in every evaluation.
-    tables: RefCell<HashMap<(usize, bool), Result<Rc<Table>, String>>>,
-    keys: RefCell<HashMap<(Option<usize>, Option<usize>), HashMap<String, Result<f64, String>>>>,
+    tables: RefCell<HashMap<(usize, bool), Made>>,
+    keys: RefCell<HashMap<Owner, Numbers>>,
 }
 
 impl<'a> View<'a> {
