@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod inputs;
+mod named;
 mod run;
 mod streams;
 
