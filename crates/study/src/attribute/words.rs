@@ -1,0 +1,79 @@
+//! What the prices say, as sentences: for the terminal and for reports.
+
+use cvtcycle_output::number::{fixed, plain};
+use cvtcycle_output::summary::{PairPrice, PriceSummary, RunSummary};
+
+/// Losses that a sentence names.
+const NAMED: usize = 5;
+/// Interaction that a sentence takes for none, points.
+const SMALL: f64 = 0.05;
+
+/// What the losses of a car cost, in a sentence; none without a price.
+pub fn answer(run: &RunSummary) -> Option<String> {
+    let price = run.price.as_ref()?;
+    let whole = price.together.percent?;
+    let mut losses: Vec<(String, f64)> = price
+        .losses
+        .iter()
+        .filter_map(|(name, loss)| Some((name.replace('_', " "), loss.saved.percent?)))
+        .collect();
+    losses.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let rest: f64 = losses.iter().skip(NAMED).map(|(_, percent)| percent).sum();
+    let count = losses.len().saturating_sub(NAMED);
+    let named = losses.iter().take(NAMED);
+    let mut parts: Vec<String> = named
+        .map(|(name, x)| format!("{name} {}", fixed(*x, 1)))
+        .collect();
+    if count > 0 {
+        parts.push(format!("{count} others {}", fixed(rest, 1)));
+    }
+    let (whole, parts) = (fixed(whole, 1), parts.join(", "));
+    let tail = of_interaction(run, price);
+    Some(match price.factor {
+        factor if factor > 0.0 => {
+            let factor = plain(factor);
+            format!("With {factor} times each loss it burns {whole} % less: {parts}; {tail}.")
+        }
+        _ => format!("Its losses cost {whole} % of that fuel: {parts}; {tail}."),
+    })
+}
+
+/// The interaction with its cause, as a clause.
+pub fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
+    let points = price.interaction.percent.unwrap_or(0.0);
+    let size = fixed(points.abs(), 1);
+    if points.abs() < SMALL {
+        return "together as much as their sum".to_owned();
+    }
+    let (word, cause) = match (points > 0.0, run.transmission.as_str()) {
+        (true, _) => ("more", "without one loss the others grow in colder oil"),
+        (false, "cvt") => ("less", "less load lowers the clamping pressure"),
+        (false, _) => ("less", "less load makes the others smaller"),
+    };
+    format!("together {size} points {word} than their sum, for {cause}")
+}
+
+/// Both orders of a pair.
+pub fn pair_sentence(
+    pair: &PairPrice,
+    price: &PriceSummary,
+    fuel_l_per_100km: Option<f64>,
+) -> String {
+    let points = pair.interaction.percent.unwrap_or(0.0);
+    let word = if points < 0.0 { "less" } else { "more" };
+    let percent = |litres: Option<f64>| {
+        let share = litres.zip(fuel_l_per_100km);
+        fixed(share.map(|(litres, fuel)| 100.0 * litres / fuel), 2)
+    };
+    let [a, b] = [&pair.a, &pair.b].map(|name| name.replace('_', " "));
+    let size = fixed(points.abs(), 2);
+    let less = match price.factor {
+        factor if factor > 0.0 => format!("with {} times", plain(factor)),
+        _ => "without".to_owned(),
+    };
+    let [a_with, a_without] = [pair.a_with_b, pair.a_without_b].map(percent);
+    let [b_with, b_without] = [pair.b_with_a, pair.b_without_a].map(percent);
+    format!(
+        "{a} and {b}: {size} points {word} together; {a} {a_with} % as the car is and {a_without} % {less} the loss of {b}, {b} {b_with} and {b_without} %"
+    )
+}
