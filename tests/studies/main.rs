@@ -16,6 +16,7 @@ mod fixtures;
 #[path = "../common/tree.rs"]
 mod tree;
 
+mod attribute;
 mod blueprint;
 mod calibrate;
 mod calibrate_cli;

@@ -16,7 +16,7 @@
 
 mod words;
 
-pub use words::{answer, of_interaction, pair_sentence};
+pub use words::answer;
 
 use std::collections::BTreeSet;
 

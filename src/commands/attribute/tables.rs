@@ -4,7 +4,7 @@ use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::summary::{PriceSummary, RunSummary, Saving, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::study::attribute::{answer, pair_sentence};
+use cvtcycle::study::attribute::answer;
 
 use super::AttributionSummary;
 use crate::print::colour::Paint;
@@ -50,17 +50,13 @@ fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> 
     let fuel_line = format!("{}: {} L/100 km.", run.vehicle, fixed(fuel, 2));
     let sentences = std::iter::once(fuel_line).chain(answer(run));
     let sentences = sentences.map(|sentence| wrapped(&sentence, ""));
-    let pairs = price
-        .pairs
-        .iter()
-        .map(|pair| wrapped(&pair_sentence(pair, price, fuel), ""));
     let notes = price.notes.iter().map(|note| wrapped(note, "note: "));
     let parts = [
         (
             title,
             sentences.collect::<String>() + "\n" + &losses(price, run),
         ),
-        ("Pairs".to_owned(), pairs.collect()),
+        ("Pairs, % of the fuel".to_owned(), pairs(price, fuel)),
         ("Shared out over groups (Shapley)".to_owned(), groups(price)),
         (
             "By part of the cycle, L/100 km".to_owned(),
@@ -110,6 +106,36 @@ fn losses(price: &PriceSummary, run: &RunSummary) -> String {
         signed(price.interaction.l_per_100km, 3),
         String::new(),
     ]);
+    table.text()
+}
+
+/// Both orders of each pair.
+fn pairs(price: &PriceSummary, fuel: Option<f64>) -> String {
+    let mut table = TextTable::new("llrrrrr");
+    if !price.pairs.is_empty() {
+        let less = match price.factor {
+            factor if factor > 0.0 => format!("with {} times", plain(factor)),
+            _ => "without".to_owned(),
+        };
+        let [a, b] = ["a", "b"].map(|other| format!("{less} {other}"));
+        let head = ["a", "b", "together", "a", &b, "b", &a];
+        table.row(head);
+    }
+    let percent = |litres: Option<f64>| {
+        let share = litres.zip(fuel);
+        fixed(share.map(|(litres, fuel)| 100.0 * litres / fuel), 2)
+    };
+    for pair in &price.pairs {
+        table.row([
+            words(&pair.a),
+            words(&pair.b),
+            signed(pair.interaction.percent, 2),
+            percent(pair.a_with_b),
+            percent(pair.a_without_b),
+            percent(pair.b_with_a),
+            percent(pair.b_without_a),
+        ]);
+    }
     table.text()
 }
 

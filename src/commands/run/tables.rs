@@ -5,7 +5,7 @@ use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 use cvtcycle::output::summary::{Comparison, RunSummary, Saving, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, WIDTH, wrapped};
-use cvtcycle::study::attribute::{answer, of_interaction};
+use cvtcycle::study::attribute::answer;
 
 use crate::print::colour::Paint;
 use crate::print::sections;
@@ -239,7 +239,6 @@ fn losses(summary: &Summary) -> (&'static str, String) {
     for run in &summary.runs {
         let Some(price) = &run.price else { continue };
         let name = &run.vehicle;
-        text += &format!("{name}: {}\n", of_interaction(run, price));
         let notes = price.notes.iter().chain(&price.failures);
         text.extend(notes.map(|note| format!("{name}: {note}\n")));
     }

@@ -24,22 +24,12 @@ pub fn product(a: &LossFactors, b: &LossFactors) -> LossFactors {
     ByComponent::from_fn(|component| a[component] * b[component])
 }
 
-/// The factors of the table `loss_factor` of a box that has some components. A factor on another component would do nothing: it is a problem.
+/// The factors of the table `loss_factor` of a box that has some components; the keys of others are not read.
 pub(super) fn from_values<V: Values>(s: &V, table: Table, own: &[Component]) -> LossFactors {
     let s = s.table(table.name);
+    let key = |component: Component| table.keys.iter().find(|key| key.name == component.name());
     ByComponent::from_fn(|component| {
-        let Some(key) = table.keys.iter().find(|key| key.name == component.name()) else {
-            return 1.0;
-        };
-        if s.has(key) && !own.contains(&component) {
-            let names: Vec<&str> = own.iter().map(|c| c.name()).collect();
-            s.complain(
-                key.name,
-                &names.join(", "),
-                &format!("this box has no loss `{}`", component.name()),
-                "a measured map replaces the parts that it was measured with",
-            );
-        }
-        s.number(key)
+        let key = key(component).filter(|_| own.contains(&component));
+        key.map_or(1.0, |key| s.number(key))
     })
 }

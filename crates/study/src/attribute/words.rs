@@ -1,7 +1,7 @@
 //! What the prices say, as sentences: for the terminal and for reports.
 
 use cvtcycle_output::number::{fixed, plain};
-use cvtcycle_output::summary::{PairPrice, PriceSummary, RunSummary};
+use cvtcycle_output::summary::{PriceSummary, RunSummary};
 
 /// Losses that a sentence names.
 const NAMED: usize = 5;
@@ -50,30 +50,5 @@ pub fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
         (false, "cvt") => ("less", "less load lowers the clamping pressure"),
         (false, _) => ("less", "less load makes the others smaller"),
     };
-    format!("together {size} points {word} than their sum, for {cause}")
-}
-
-/// Both orders of a pair.
-pub fn pair_sentence(
-    pair: &PairPrice,
-    price: &PriceSummary,
-    fuel_l_per_100km: Option<f64>,
-) -> String {
-    let points = pair.interaction.percent.unwrap_or(0.0);
-    let word = if points < 0.0 { "less" } else { "more" };
-    let percent = |litres: Option<f64>| {
-        let share = litres.zip(fuel_l_per_100km);
-        fixed(share.map(|(litres, fuel)| 100.0 * litres / fuel), 2)
-    };
-    let [a, b] = [&pair.a, &pair.b].map(|name| name.replace('_', " "));
-    let size = fixed(points.abs(), 2);
-    let less = match price.factor {
-        factor if factor > 0.0 => format!("with {} times", plain(factor)),
-        _ => "without".to_owned(),
-    };
-    let [a_with, a_without] = [pair.a_with_b, pair.a_without_b].map(percent);
-    let [b_with, b_without] = [pair.b_with_a, pair.b_without_a].map(percent);
-    format!(
-        "{a} and {b}: {size} points {word} together; {a} {a_with} % as the car is and {a_without} % {less} the loss of {b}, {b} {b_with} and {b_without} %"
-    )
+    format!("together {size} points {word} than their sum: {cause}")
 }

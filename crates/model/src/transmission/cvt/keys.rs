@@ -201,3 +201,18 @@ fn maps<V: Values>(s: &V) -> Option<Box<LossChanges>> {
         })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transmission::component::Part;
+
+    #[test]
+    fn there_is_a_factor_for_each_loss() {
+        let own = |c: &Component| c.part() == Part::Coupling || c.part().is_cvt();
+        let components = Component::ALL.into_iter().filter(own);
+        let names: Vec<&str> = components.map(Component::name).collect();
+        let keys: Vec<&str> = LossFactorKeys::TABLE.keys.iter().map(|k| k.name).collect();
+        assert_eq!(keys, names);
+    }
+}

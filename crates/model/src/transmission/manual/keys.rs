@@ -107,3 +107,17 @@ impl ShiftSpeeds {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transmission::component::Component;
+
+    #[test]
+    fn there_is_a_factor_for_each_loss() {
+        let components = Component::ALL.into_iter().filter(|c| !c.part().is_cvt());
+        let names: Vec<&str> = components.map(Component::name).collect();
+        let keys: Vec<&str> = LossFactorKeys::TABLE.keys.iter().map(|k| k.name).collect();
+        assert_eq!(keys, names);
+    }
+}
