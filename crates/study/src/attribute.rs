@@ -26,7 +26,7 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::{Conditions, drive};
 use cvtcycle_model::transmission::component::LossGroup;
-use cvtcycle_model::transmission::loss_factor::{LossFactors, UNCHANGED};
+use cvtcycle_model::transmission::loss_factor::LossFactors;
 use cvtcycle_output::Component;
 use cvtcycle_output::number::{finite, fixed, plain};
 use cvtcycle_output::summary::{
@@ -114,98 +114,87 @@ fn minus(a: &[f64], b: &[f64]) -> Fuel {
 /// Prices of the losses of a car; `base` are its numbers as it is. The runs are driven on all threads, and summed in one order.
 pub fn attribute(of: &Attribution, base: &RunSummary) -> PriceSummary {
     let runs = Runs::new(of, base);
-    let components = of.losing(base);
-    let [singles, alone] = [false, true].map(|alone| {
-        let wanted = !alone || of.depth.alone;
-        let changed = components.iter().filter(|_| wanted);
-        changed.map(move |own| (*own, alone)).collect::<Vec<_>>()
-    });
-    let pairs: Vec<[Component; 2]> = pairs(&components, of.depth.pairs);
-    let groups: Vec<LossGroup> = match of.depth.shapley {
-        true => components
-            .iter()
-            .map(|c| c.group())
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .collect(),
-        false => Vec::new(),
-    };
-    let sets = match groups.len() {
-        0 => 0,
-        count => 1_usize << count,
-    };
-    let mut changed: Vec<LossFactors> = vec![of.factors(|c| components.contains(&c))];
-    changed.extend(singles.iter().map(|(own, _)| of.factors(|c| c == *own)));
-    changed.extend(
-        alone
-            .iter()
-            .map(|(own, _)| of.factors(|c| components.contains(&c) && c != *own)),
-    );
-    changed.extend(pairs.iter().map(|pair| of.factors(|c| pair.contains(&c))));
-    changed.extend((0..sets).map(|set| {
-        of.factors(|c| {
-            let group = groups.iter().position(|group| *group == c.group());
-            components.contains(&c) && group.is_some_and(|k| set >> k & 1 == 1)
-        })
-    }));
-    let burnt = runs.drive(&changed);
-    let (all, rest) = burnt.split_at(1);
-    let (single, rest) = rest.split_at(singles.len());
-    let (without, rest) = rest.split_at(alone.len());
-    let (paired, sets) = rest.split_at(pairs.len());
-
+    let design = Design::new(of, base);
+    let [all, single, without, paired, sets] = runs.drive(design.changes(of));
     let prices: Vec<Fuel> = single.iter().map(|run| runs.saved(run)).collect();
     let together = runs.saved(&all[0]);
-    let interaction = prices
-        .iter()
-        .fold(together.clone(), |left, price| minus(&left, price)); // AT-3
+    let parts = prices.iter();
+    let interaction = parts.fold(together.clone(), |left, price| minus(&left, price)); // AT-3
     let loss = |(k, own): (usize, &Component)| {
-        let alone = without
-            .get(k)
-            .map(|run| runs.saving(&minus(&run.fuel, &all[0].fuel))); // AT-5
+        let alone = without.get(k);
+        let alone = alone.map(|run| runs.saving(&minus(&run.fuel, &all[0].fuel))); // AT-5
         (own.name().to_owned(), runs.loss(*own, &prices[k], alone))
     };
-    let at = |own: Component| components.iter().position(|c| *c == own);
-    let pair = |([a, b], run): (&[Component; 2], &Burnt)| {
-        let own = [at(*a)?, at(*b)?];
-        let more = minus(&minus(&runs.saved(run), &prices[own[0]]), &prices[own[1]]); // AT-4
-        let [with_b, with_a] = own.map(|k| prices[k][0]);
-        Some(PairPrice {
-            a: a.name().to_owned(),
-            b: b.name().to_owned(),
-            a_with_b: finite(with_b),
-            a_without_b: finite(with_b + more[0]), // AT-4
-            b_with_a: finite(with_a),
-            b_without_a: finite(with_a + more[0]), // AT-4
-            interaction: runs.saving(&more),
-        })
-    };
+    let components = &design.components;
+    let pairs = design.pairs.iter().zip(&paired);
+    let pairs = pairs.map(|(pair, run)| runs.pair(pair.map(|k| (components[k], &*prices[k])), run));
     let shown = |pair: &PairPrice| of.depth.pairs == Pairs::All || is_large(pair);
     PriceSummary {
         factor: of.factor,
         losses: components.iter().enumerate().map(loss).collect(),
         together: runs.saving(&together),
         interaction: runs.saving(&interaction),
-        pairs: pairs
-            .iter()
-            .zip(paired)
-            .filter_map(pair)
-            .filter(shown)
-            .collect(),
-        groups: runs.shares(&groups, sets).into_iter().collect(),
-        notes: of.notes(base, &components, &runs, single),
-        failures: runs.new_failures(&components, single, all),
+        pairs: pairs.filter(shown).collect(),
+        groups: runs.shares(&design.groups, &sets).into_iter().collect(),
+        notes: of.notes(base, components, &runs, &single),
+        failures: runs.new_failures(components, &single, &all),
     }
 }
 
-/// Each pair once, in the order of the power flow.
-fn pairs(components: &[Component], wanted: Pairs) -> Vec<[Component; 2]> {
-    if wanted == Pairs::None {
-        return Vec::new();
+/// Which losses are changed in which drives.
+struct Design {
+    /// The components that lose something, in the order of the power flow.
+    components: Vec<Component>,
+    /// Pairs of them, by their places.
+    pairs: Vec<[usize; 2]>,
+    groups: Vec<LossGroup>,
+}
+
+impl Design {
+    fn new(of: &Attribution, base: &RunSummary) -> Self {
+        let own = of.setup.transmission().components().into_iter();
+        let loses = |c: &Component| base.loss_kj.get(c.name()).is_some_and(|kj| kj >= LEAST_KJ);
+        let components: Vec<Component> = own.filter(loses).collect();
+        let count = components.len();
+        let first = (0..count).filter(|_| of.depth.pairs != Pairs::None);
+        let groups = components.iter().filter(|_| of.depth.shapley);
+        let groups: BTreeSet<LossGroup> = groups.map(|c| c.group()).collect();
+        Design {
+            pairs: first
+                .flat_map(|a| (a + 1..count).map(move |b| [a, b]))
+                .collect(),
+            groups: groups.into_iter().collect(),
+            components,
+        }
     }
-    let later = |k: usize| components[k + 1..].iter();
-    let with = |(k, a): (usize, &Component)| later(k).map(|b| [*a, *b]).collect::<Vec<_>>();
-    components.iter().enumerate().flat_map(with).collect()
+
+    /// Factors of the drives: all losses changed, each by itself, all but each, each pair, each set of groups.
+    fn changes(&self, of: &Attribution) -> [Vec<LossFactors>; 5] {
+        let own = &self.components;
+        let on = |changed: &dyn Fn(Component) -> bool| {
+            LossFactors::from_fn(|c| match own.contains(&c) && changed(c) {
+                true => of.factor,
+                false => 1.0,
+            })
+        };
+        let sets = match self.groups.len() {
+            0 => 0,
+            count => 1_usize << count,
+        };
+        let in_set = |set: usize, c: Component| {
+            let place = self.groups.iter().position(|group| *group == c.group());
+            place.is_some_and(|k| set >> k & 1 == 1)
+        };
+        let alone = own.iter().filter(|_| of.depth.alone);
+        let pair = |[a, b]: &[usize; 2]| on(&|c| c == own[*a] || c == own[*b]);
+        [
+            vec![on(&|_| true)],
+            own.iter().map(|single| on(&|c| c == *single)).collect(),
+            alone.map(|left| on(&|c| c != *left)).collect(),
+            self.pairs.iter().map(pair).collect(),
+            (0..sets).map(|set| on(&|c| in_set(set, c))).collect(),
+        ]
+    }
 }
 
 fn is_large(pair: &PairPrice) -> bool {
@@ -217,24 +206,6 @@ fn is_large(pair: &PairPrice) -> bool {
 }
 
 impl Attribution<'_> {
-    /// The components that lose something, in the order of the power flow.
-    fn losing(&self, base: &RunSummary) -> Vec<Component> {
-        let own = self.setup.transmission().components().into_iter();
-        let loses = |c: &Component| base.loss_kj.get(c.name()).is_some_and(|kj| kj >= LEAST_KJ);
-        own.filter(loses).collect()
-    }
-
-    /// phi on some components.
-    fn factors(&self, changed: impl Fn(Component) -> bool) -> LossFactors {
-        LossFactors::from_fn(|c| {
-            if changed(c) {
-                self.factor
-            } else {
-                UNCHANGED[c]
-            }
-        })
-    }
-
     fn notes(
         &self,
         base: &RunSummary,
@@ -251,7 +222,7 @@ impl Attribution<'_> {
             .filter(|c| [Component::BeltMap, Component::BoxMap].contains(c));
         notes.extend(maps.map(|c| {
             format!(
-                "{} is a measured map: the parts in it cannot be told from each other",
+                "{} is a measured map: its parts have no prices of their own",
                 c.name()
             )
         }));
@@ -284,8 +255,8 @@ impl<'a> Runs<'a> {
         Runs { of, numbers, base }
     }
 
-    /// Drives with each of some factors on the losses; the results in their order.
-    fn drive(&self, changed: &[LossFactors]) -> Vec<Burnt> {
+    /// Drives with each of the factors on the losses; the results in their order.
+    fn drive<const LISTS: usize>(&self, changed: [Vec<LossFactors>; LISTS]) -> [Vec<Burnt>; LISTS] {
         let of = self.of;
         let conditions = Conditions {
             keep_rows: false,
@@ -298,14 +269,13 @@ impl<'a> Runs<'a> {
                 setup: of.setup,
                 outcome: &outcome,
             };
-            Burnt::of(&run_summary(
-                of.cycle,
-                &self.numbers.role,
-                of.settings,
-                &driven,
-            ))
+            let role = &self.numbers.role;
+            Burnt::of(&run_summary(of.cycle, role, of.settings, &driven))
         };
-        changed.par_iter().map(one).collect()
+        let counts = changed.each_ref().map(Vec::len);
+        let burnt: Vec<Burnt> = changed.concat().par_iter().map(one).collect();
+        let mut burnt = burnt.into_iter();
+        counts.map(|count| burnt.by_ref().take(count).collect())
     }
 
     /// Fuel saved by a change (AT-1, AT-2).
@@ -333,6 +303,20 @@ impl<'a> Runs<'a> {
             energy_percent: loss_kj.and_then(percent),
             saved: self.saving(price),
             alone,
+        }
+    }
+
+    /// Two losses with their own prices, from a drive with both changed (AT-4).
+    fn pair(&self, [(a, of_a), (b, of_b)]: [(Component, &[f64]); 2], both: &Burnt) -> PairPrice {
+        let more = minus(&minus(&self.saved(both), of_a), of_b); // AT-4
+        PairPrice {
+            a: a.name().to_owned(),
+            b: b.name().to_owned(),
+            a_with_b: finite(of_a[0]),
+            a_without_b: finite(of_a[0] + more[0]), // AT-4
+            b_with_a: finite(of_b[0]),
+            b_without_a: finite(of_b[0] + more[0]), // AT-4
+            interaction: self.saving(&more),
         }
     }
 

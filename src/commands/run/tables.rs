@@ -235,17 +235,20 @@ fn losses(summary: &Summary) -> (&'static str, String) {
             false => String::new(),
         });
     }
-    let mut text = table.text(&LEAD[..1]);
-    for run in &summary.runs {
-        let Some(price) = &run.price else { continue };
-        let name = &run.vehicle;
-        let notes = price.notes.iter().chain(&price.failures);
-        text.extend(notes.map(|note| format!("{name}: {note}\n")));
-    }
+    let text = table.text(&LEAD[..1]) + &price_notes(summary);
     (
         "Transmission losses: energy, and fuel saved if the loss were zero",
         text,
     )
+}
+
+fn price_notes(summary: &Summary) -> String {
+    let priced = summary.runs.iter().flat_map(|run| {
+        let price = run.price.iter();
+        let notes = price.flat_map(|price| price.notes.iter().chain(&price.failures));
+        notes.map(|note| format!("{}: {note}\n", run.vehicle))
+    });
+    priced.collect()
 }
 
 fn energies(summary: &Summary) -> String {

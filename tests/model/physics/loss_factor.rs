@@ -157,7 +157,7 @@ fn launch_price_by_hand() {
             &[&format!("{}=0", key(&plain, Component::LaunchClutch))],
         );
         let [with, without] = [&plain, &without].map(|car| soak_rows(car, &cycle, 25.0).rows);
-        // The first launch of the cycle, from its first moving row; the oil has not told the cars apart before.
+        // The first launch of the cycle, from its first moving row; both cars are as warm there.
         let first = with.iter().position(|row| row.speed_m_s > 0.0).unwrap();
         let (mut slipping, mut by_hand_j, mut engine_j) = (0, 0.0, 0.0);
         for (a, b) in with.iter().zip(&without).skip(first).take(4) {
