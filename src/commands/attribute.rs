@@ -29,6 +29,8 @@ use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Allowed factor on a loss.
 const FACTOR: Bound = Bound::closed(0.0, 5.0);
+/// Most ambient temperatures of one command: each whole degree that is allowed.
+const MOST_AMBIENTS: usize = 101;
 /// Which pairs are given.
 const PAIRS: [(&str, Pairs); 3] = [
     ("large", Pairs::Large),
@@ -144,6 +146,22 @@ impl Execute for AttributeArgs {
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
         let ambients = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
         let ambients_degc = problems.take(ambients);
+        if let Some(many) = ambients_degc
+            .as_ref()
+            .map(Vec::len)
+            .filter(|n| *n > MOST_AMBIENTS)
+        {
+            let allowed = format!("at most {MOST_AMBIENTS} temperatures");
+            let message = format!("{many} ambient temperatures are too many for one command");
+            let hint = "take a larger step; `cvtcycle study` varies any value";
+            problems.add(bad_value(
+                "--ambient",
+                &self.ambient,
+                &allowed,
+                &message,
+                hint,
+            ));
+        }
         let start = problems.take(run::start(&self.start));
         let dt_s = problems.take(number("--dt", &self.dt, STEP, "dt_s"));
         let factor = problems.take(number("--factor", &self.factor, FACTOR, "factor"));

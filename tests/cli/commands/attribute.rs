@@ -141,6 +141,11 @@ fn bad_inputs_of_an_attribution() {
     for bad in ["-0.1", "nan", "6"] {
         assert!(refused(&["attribute", "--factor", bad]).contains("0 to 5"));
     }
+    let message = refused(&["attribute", "--ambient", "-40..60:0.5"]);
+    assert!(
+        message.contains("201 ambient temperatures are too many"),
+        "{message}"
+    );
     let set = "transmission.cvt.loss_factor.belt_map=0.5";
     let message = refused(&["attribute", "--set", set]);
     assert!(message.contains("belt_map"), "{message}");

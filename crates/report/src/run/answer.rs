@@ -38,7 +38,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
         let answers = study_answers::answers(own).into_iter();
         section.blocks.extend(answers.map(Block::Text));
     }
-    if let Some(price) = cars.first().and_then(|car| attribute::answer(&car.run)) {
+    if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
         section.text(price);
     }
     section.text(where_it_went(cars));
