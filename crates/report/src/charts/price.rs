@@ -5,6 +5,7 @@ use super::engine::{
     stroke,
 };
 use super::picture::{Picture, PictureTable};
+use cvtcycle_output::Component;
 use cvtcycle_output::summary::RunSummary;
 
 /// Right edge of the plot, left edge of what lies below it, height of a row, pixels.
@@ -19,10 +20,14 @@ const BARS: [&str; 2] = ["Energy of the loss", "Fuel saved without the loss"];
 /// Bars of each loss of a car, and of all together: its share of the fuel's energy, and the fuel that would be saved without it.
 pub fn price_bars(run: &RunSummary, subject: &str) -> Picture {
     let name = |component: &str| component.replace('_', " ");
-    let losses = run.price.iter().flat_map(|price| &price.losses);
-    let mut rows: Vec<(String, [Option<f64>; 2])> = losses
-        .map(|(own, loss)| (name(own), [loss.energy_percent, loss.saved.percent]))
-        .collect();
+    // By the table of components, so that a file with other names draws no other rows.
+    let loss = |c: Component| run.price.as_ref()?.losses.get(c.name());
+    let row = |c: Component| {
+        let loss = loss(c)?;
+        Some((name(c.name()), [loss.energy_percent, loss.saved.percent]))
+    };
+    let mut rows: Vec<(String, [Option<f64>; 2])> =
+        Component::ALL.into_iter().filter_map(row).collect();
     if let Some(price) = &run.price {
         let energies: f64 = rows.iter().filter_map(|(_, values)| values[0]).sum();
         rows.push((

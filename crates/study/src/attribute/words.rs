@@ -1,5 +1,6 @@
 //! What the prices say, as sentences: for the terminal and for reports.
 
+use cvtcycle_output::Component;
 use cvtcycle_output::number::{fixed, plain};
 use cvtcycle_output::summary::{PriceSummary, RunSummary};
 
@@ -12,11 +13,11 @@ const SMALL: f64 = 0.05;
 pub fn answer(run: &RunSummary) -> Option<String> {
     let price = run.price.as_ref()?;
     let whole = price.together.percent?;
-    let mut losses: Vec<(String, f64)> = price
-        .losses
-        .iter()
-        .filter_map(|(name, loss)| Some((name.replace('_', " "), loss.saved.percent?)))
-        .collect();
+    let priced = |c: Component| {
+        let percent = price.losses.get(c.name())?.saved.percent?;
+        Some((c.name().replace('_', " "), percent))
+    };
+    let mut losses: Vec<(String, f64)> = Component::ALL.into_iter().filter_map(priced).collect();
     losses.sort_by(|a, b| b.1.total_cmp(&a.1));
     let rest: f64 = losses.iter().skip(NAMED).map(|(_, percent)| percent).sum();
     let count = losses.len().saturating_sub(NAMED);
@@ -39,7 +40,7 @@ pub fn answer(run: &RunSummary) -> Option<String> {
 }
 
 /// The interaction with its cause, as a clause.
-pub fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
+fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
     let points = price.interaction.percent.unwrap_or(0.0);
     let size = fixed(points.abs(), 1);
     if points.abs() < SMALL {
