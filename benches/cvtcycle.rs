@@ -22,7 +22,9 @@ use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
 };
 use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
+use cvtcycle::output::summary::{Driven, Settings, run_summary};
 use cvtcycle::output::{EnergyTerms, Row};
+use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Rows;
 use cvtcycle::study::{NoProgress, PartWriter, Study};
@@ -214,6 +216,42 @@ fn runs_per_second<const ROWS: bool>(bencher: Bencher, name: &str) {
     bencher
         .counter(ItemsCount::new(1usize))
         .bench_local(|| drive(&setup, black_box(&cycle), &conditions));
+}
+
+/// The main job with the price of each loss of the CVT: on all cores, the whole car first; with both orders of all pairs and shares of groups too.
+#[divan::bench(args = [false, true])]
+fn prices_of_the_main_job(bencher: Bencher, pairs: bool) {
+    let (setup, cycle) = (setup("rover_216_cvt"), cycle("ece15_eudc"));
+    let conditions = Conditions {
+        ambient_k: COLD_K,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: false,
+    };
+    let settings = Settings::default();
+    let depth = Depth {
+        alone: pairs,
+        pairs: if pairs { Pairs::All } else { Pairs::None },
+        shapley: pairs,
+    };
+    bencher.bench_local(|| {
+        let outcome = drive(&setup, black_box(&cycle), &conditions);
+        let driven = Driven {
+            name: "rover_216_cvt",
+            setup: &setup,
+            outcome: &outcome,
+        };
+        let base = run_summary(&cycle, "subject", &settings, &driven);
+        let of = Attribution {
+            setup: &setup,
+            cycle: &cycle,
+            conditions,
+            settings: &settings,
+            factor: 0.0,
+            depth,
+        };
+        attribute(&of, &base)
+    });
 }
 
 #[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]

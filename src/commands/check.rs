@@ -50,7 +50,8 @@ pub struct CheckArgs {
     output: JsonArgs,
 }
 
-type Checked = Result<InputKind, Problems>;
+/// Kind of a file, and what its reader should know.
+type Checked = Result<(InputKind, Vec<String>), Problems>;
 
 impl Execute for CheckArgs {
     type Plan = CheckPlan;
@@ -104,7 +105,10 @@ impl CheckArgs {
             .filter_map(|(_, result)| result.as_ref().err());
         Ok(CommandOutput {
             stdout: ok
-                .map(|(file, kind)| format!("ok  {file} ({})\n", kind.word()))
+                .map(|(file, (kind, notes))| {
+                    let notes = notes.iter().map(|note| format!("    {note}\n"));
+                    format!("ok  {file} ({})\n", kind.word()) + &notes.collect::<String>()
+                })
                 .collect(),
             problems: render(
                 &bad.flatten().cloned().collect::<Vec<_>>(),
@@ -118,28 +122,32 @@ impl CheckArgs {
 
 fn check(file: &str) -> Checked {
     let (kind, word) = InputKind::detect(file, true)?;
-    match kind {
-        InputKind::Cycle => cycle::find(&word).map(drop),
+    let none = |()| Vec::new();
+    let notes = match kind {
+        InputKind::Cycle => cycle::find(&word).map(drop).map(none),
         // Only embedded.
-        InputKind::Rig => Ok(()),
-        InputKind::Calibration => open(&word).map(drop),
-        InputKind::Study => Plan::open(&word).and_then(Study::prepare).map(drop),
-        InputKind::Lubricant => setup::load_lubricant(&word).map(drop),
+        InputKind::Rig => Ok(Vec::new()),
+        InputKind::Calibration => open(&word).map(drop).map(none),
+        InputKind::Study => Plan::open(&word)
+            .and_then(Study::prepare)
+            .map(drop)
+            .map(none),
+        InputKind::Lubricant => setup::load_lubricant(&word).map(drop).map(none),
         InputKind::Vehicle => check_vehicle(file, &word),
     }
     .map_err(|found| cite("FILE", found).map(in_options))?;
-    Ok(kind)
+    Ok((kind, notes))
 }
 
 /// Only a run reads the baselines; an unknown name is reported here.
-fn check_vehicle(file: &str, word: &str) -> Result<(), Problems> {
+fn check_vehicle(file: &str, word: &str) -> Result<Vec<String>, Problems> {
     let setup = setup::load(word, &Options::default())?;
     let mut problems = Problems::default();
     for name in &setup.baselines {
         let read = setup::text_of(&relative_to(word, name), Kind::Vehicle, NamedBy::File);
         problems.take(read.map_err(|found| cite(file, found)));
     }
-    problems.finish()
+    problems.finish().map(|()| setup.notes)
 }
 
 fn json_entry(file: &str, result: &Checked) -> Value {
@@ -151,6 +159,11 @@ fn json_entry(file: &str, result: &Checked) -> Value {
     };
     let found = result.as_ref().err().into_iter().flatten();
     let problems: Vec<Value> = found.map(problem).collect();
-    let kind = result.as_ref().ok().map(|kind| kind.word());
-    json!({ "file": file, "ok": result.is_ok(), "kind": kind, "problems": problems })
+    let (kind, notes) = result
+        .as_ref()
+        .ok()
+        .map(|(kind, notes)| (kind.word(), notes))
+        .unzip();
+    let notes = notes.map_or(&[][..], Vec::as_slice);
+    json!({ "file": file, "ok": result.is_ok(), "kind": kind, "problems": problems, "notes": notes })
 }

@@ -1,5 +1,6 @@
 //! The commands, one file each: arguments, a checked plan made of them, and what it computes.
 
+mod attribute;
 mod belt;
 mod calibrate;
 mod check;
@@ -14,6 +15,7 @@ mod show;
 mod study;
 mod threads;
 mod validate;
+mod vehicles;
 
 use std::sync::LazyLock;
 
@@ -57,6 +59,9 @@ pub struct Cli {
 enum Command {
     /// Simulate a vehicle and its baselines on a drive cycle: fuel, losses, temperatures
     Run(Box<run::RunArgs>),
+    /// Compute the fuel that each loss of the transmission costs: the car driven again without it
+    #[command(visible_alias = "price")]
+    Attribute(Box<attribute::AttributeArgs>),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
@@ -115,6 +120,7 @@ impl Cli {
     pub fn execute(&self, terminal: Terminal) -> CommandResult {
         match &self.command {
             Command::Run(args) => args.execute(terminal),
+            Command::Attribute(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
             Command::Validate(args) => args.execute(terminal),

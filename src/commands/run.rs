@@ -2,7 +2,8 @@
 
 mod files;
 mod tables;
-mod vehicles;
+
+pub use tables::failures;
 
 use clap::Args;
 use cvtcycle::config::cycle::Cycle;
@@ -14,7 +15,9 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run, summarise};
+use cvtcycle::study::attribute::{Attribution, Depth, attribute};
 
+use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::did_you_mean;
 use crate::args::{
@@ -22,11 +25,10 @@ use crate::args::{
     one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
-use files::{SensitivityMode, TraceFormat};
-use vehicles::RunVehicle;
+use files::{TraceFormat, When};
 
 /// Allowed length of a step, s.
-const STEP: Bound = Bound::closed(0.01, 10.0);
+pub const STEP: Bound = Bound::closed(0.01, 10.0);
 /// Allowed temperature at the start, degC.
 const START: Bound = Bound::closed(-40.0, 130.0);
 
@@ -76,6 +78,10 @@ pub struct RunArgs {
     dt: String,
     #[command(flatten)]
     formulation: FormulationArgs,
+    /// Drive each vehicle again without each loss for the fuel that it costs: always, never, or auto (unless the cycle has more
+    /// than 20 000 steps)
+    #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
+    price: String,
     /// Fail (exit code 1) also where a model is used outside its validity, at gross slip or a clamp safety factor below 1,
     /// and where the flow of the pump is too small
     #[arg(long)]
@@ -87,7 +93,7 @@ pub struct RunArgs {
     format: String,
     /// Compute the effect of each value of each vehicle for the report: always, never, or auto (unless the cycle has more
     /// than 20 000 steps)
-    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(|| names_of(&SensitivityMode::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
     sensitivity: String,
     #[command(flatten)]
     output: OutputArgs,
@@ -102,7 +108,8 @@ pub struct RunPlan {
     dt_s: f64,
     formulation: Formulation,
     format: TraceFormat,
-    sensitivity: SensitivityMode,
+    price: When,
+    sensitivity: When,
     out: Option<OutputDir>,
 }
 
@@ -112,15 +119,19 @@ impl Execute for RunArgs {
     fn plan(&self, problems: &mut Problems) -> Option<RunPlan> {
         let cycle = self.comparison.cycle(problems);
         let formulation = self.formulation.get(problems);
-        let vehicles = vehicles::load(self, formulation, problems);
+        let comparison = (&self.comparison, Baselines::OfFile);
+        let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
         let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
         let start = problems.take(start(&self.start));
         let dt_s = problems.take(number("--dt", &self.dt, STEP, "dt_s"));
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
-        let sensitivity = one_of("--sensitivity", &self.sensitivity, &SensitivityMode::NAMES);
-        let sensitivity = problems.take(sensitivity);
-        if self.out.out.is_some() {
+        let when = |option: &str, word: &str| one_of(option, word, &When::NAMES);
+        let price = problems.take(when("--price", &self.price));
+        let sensitivity = problems.take(when("--sensitivity", &self.sensitivity));
+        if self.out.out.is_some() || price != Some(When::Never) {
             problems.take(threads::begin(None));
+        }
+        if self.out.out.is_some() {
             let kept = cycle.as_ref().zip(dt_s);
             let kept = kept.map(|(cycle, dt_s)| vehicles::kept_steps(&vehicles, cycle, dt_s));
             kept.and_then(|kept| problems.take(kept));
@@ -134,6 +145,7 @@ impl Execute for RunArgs {
             dt_s: dt_s?,
             formulation,
             format: format?,
+            price: price?,
             sensitivity: sensitivity?,
             out,
         })
@@ -165,7 +177,20 @@ impl Execute for RunArgs {
             set_all: self.comparison.set_all.clone(),
             strict: self.strict,
         };
-        let mut summary = summarise(cycle, plan.ambient_degc, plan.start.1, settings, &driven);
+        let price = plan.price.wanted(cycle, plan.dt_s);
+        let start = plan.start.1;
+        let mut summary = summarise(cycle, plan.ambient_degc, start, settings.clone(), &driven);
+        for (run, car) in summary.runs.iter_mut().zip(vehicles).filter(|_| price) {
+            let of = Attribution {
+                setup: &car.setup,
+                cycle,
+                conditions,
+                settings: &settings,
+                factor: 0.0,
+                depth: Depth::default(),
+            };
+            run.price = Some(attribute(&of, run));
+        }
         let mut record = None;
         if out.is_some() {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;
@@ -188,7 +213,8 @@ impl Execute for RunArgs {
     }
 }
 
-fn start(value: &str) -> Result<(Start, StartWord), Problems> {
+/// The start that a word names.
+pub fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     let word = |start: Start| Ok((start, StartWord::Word(value.to_owned())));
     match value {
         "soak" => return word(Start::Soak),

@@ -18,6 +18,7 @@ mod small_tables;
 #[path = "../common/tree.rs"]
 mod tree;
 
+mod attribute;
 mod blueprint;
 mod calibrate;
 mod calibrate_cli;

@@ -52,7 +52,7 @@ def to_csv(rows):
 def drive(name, car, cycle, ambient, start, extra=(), files=None, before=()):
     """One run of one car with its trace."""
     run = ["run", "--vehicle", car, "--cycle", cycle, "--ambient", str(ambient), "--start", str(start)]
-    run += ["--baseline", "none", "--sensitivity", "never", "--out", "out", "--quiet", *extra]
+    run += ["--baseline", "none", "--price", "never", "--sensitivity", "never", "--out", "out", "--quiet", *extra]
     items = [(f"{name}/summary", "out/summary.json", "json"), (f"{name}/trace", "out/trace_*.csv", "csv")]
     return Job(name, [*before, run], items, files or {})
 
@@ -201,6 +201,16 @@ def together():
             [*run[:-2], "--json", "--set-all", "road_load.mass_kg=1200"],
         ]
         yield Job(name, commands, items, seconds=1)
+
+
+def prices():
+    """What each loss costs: singles, pairs, groups, alone; a part of each loss."""
+    for car in CARS:
+        for factor, cycle in ((0, "ece15_eudc"), (0.5, "ftp75")):
+            name = f"attribute/{car}/{factor}"
+            words = ["attribute", "--vehicle", car, "--cycle", cycle, "--ambient", "-10,25", "--factor", str(factor)]
+            words += ["--pairs", "all", "--shapley", "--json"]
+            yield Job(name, [words], [(name, "out_1", "json")], seconds=0.5)
 
 
 def rigs():
@@ -411,6 +421,7 @@ def all_jobs():
         *runs(),
         *options(),
         *together(),
+        *prices(),
         *rigs(),
         *losses(),
         *belt(),

@@ -1,5 +1,6 @@
 //! Result files: columns, traces, summaries, records of what a run was made from, and files that are whole or absent.
 
+pub mod attribution;
 pub mod escape;
 pub mod file;
 pub mod files;

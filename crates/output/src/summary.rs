@@ -4,9 +4,11 @@
 //! units (degC, kJ, L/100 km) begin here.
 
 mod failure;
+mod price;
 mod run;
 
 pub use failure::{Deficit, Failure};
+pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
 pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
 
 use indexmap::IndexMap;

@@ -12,6 +12,7 @@
 //! | `store` | tables of columns; parts and results on disk, whole or absent; reading and exporting them |
 //! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
 //! | `answer` | what the study says, from its table by car and point |
+//! | `attribute` | what each loss costs: the car driven again without it |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `points` | the belt at points of a table |
 //! | `check` | comparison with published values |
@@ -19,6 +20,7 @@
 //! | `equations` | the labelled equations of model and statistics |
 
 pub mod answer;
+pub mod attribute;
 pub mod check;
 pub mod fit;
 pub mod points;

@@ -10,6 +10,7 @@ use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup};
 use cvtcycle_config::{Problems, unit_of};
 use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_model::transmission::loss_factor;
 use cvtcycle_output::number::finite;
 use cvtcycle_output::record::{Effect, Sensitivity};
 use cvtcycle_output::summary::Driven;
@@ -55,7 +56,8 @@ pub fn sensitivity(
         let keys = setup
             .keys
             .iter()
-            .filter(|info| info.si.is_some() && info.status != "choice");
+            .filter(|info| info.si.is_some() && info.status != "choice")
+            .filter(|info| !loss_factor::is_key(&info.key));
         let slots: Vec<ParameterRef> = keys
             .filter_map(|info| blueprint.slot(&info.key).ok())
             .filter(|slot| slot.base().abs() > 0.0)

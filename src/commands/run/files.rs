@@ -13,7 +13,7 @@ use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::study::sensitivity::{Named, sensitivity};
 use cvtcycle::study::store::write_trace_parquet;
 
-use super::vehicles::RunVehicle;
+use crate::commands::vehicles::RunVehicle;
 
 /// Formats of the traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,12 +88,12 @@ pub fn write(
     dir.put("fuel_comparison.svg", charts::fuel_bars(&runs).svg)
 }
 
-/// Steps of a cycle up to which `auto` computes sensitivities, which take some seven hundred runs.
+/// Steps of a cycle up to which `auto` drives it again and again: fourteen times for prices, some seven hundred times for sensitivities.
 const MAX_STEPS: usize = 20_000;
 
-/// When sensitivities are computed.
+/// When something is computed that drives the cycle again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SensitivityMode {
+pub enum When {
     /// Unless the cycle is long.
     Auto,
     /// Always.
@@ -102,13 +102,22 @@ pub enum SensitivityMode {
     Never,
 }
 
-impl SensitivityMode {
+impl When {
     /// Names on the command line.
-    pub const NAMES: [(&'static str, SensitivityMode); 3] = [
-        ("auto", SensitivityMode::Auto),
-        ("always", SensitivityMode::Always),
-        ("never", SensitivityMode::Never),
+    pub const NAMES: [(&'static str, When); 3] = [
+        ("auto", When::Auto),
+        ("always", When::Always),
+        ("never", When::Never),
     ];
+
+    /// Whether it is computed on a cycle with steps of a length, s.
+    pub fn wanted(self, cycle: &Cycle, dt_s: f64) -> bool {
+        match self {
+            When::Auto => cycle.trace_for(true).step_count(dt_s) <= MAX_STEPS,
+            When::Always => true,
+            When::Never => false,
+        }
+    }
 }
 
 /// Inputs of a run.
@@ -119,17 +128,12 @@ pub fn record(
     vehicles: &[RunVehicle],
     cycle: &Cycle,
     conditions: &Conditions,
-    mode: SensitivityMode,
+    mode: When,
 ) -> Result<Record, Problems> {
     let records = vehicles
         .iter()
         .map(|car| car_record(&car.name, &car.word, &car.options, &car.setup));
-    let steps = cycle.trace_for(true).step_count(conditions.max_dt_s);
-    let wanted = match mode {
-        SensitivityMode::Auto => steps <= MAX_STEPS,
-        SensitivityMode::Always => true,
-        SensitivityMode::Never => false,
-    };
+    let wanted = mode.wanted(cycle, conditions.max_dt_s);
     let named = |car: &RunVehicle| Named {
         name: car.name.clone(),
         word: car.word.clone(),

@@ -3,8 +3,9 @@
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
-use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
-use cvtcycle::output::table::{TextTable, WIDTH};
+use cvtcycle::output::summary::{Comparison, RunSummary, Saving, StartWord, Summary};
+use cvtcycle::output::table::{TextTable, WIDTH, wrapped};
+use cvtcycle::study::attribute::answer;
 
 use crate::print::colour::Paint;
 use crate::print::sections;
@@ -17,12 +18,12 @@ pub fn tables(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     let comparisons = summary.comparison.iter().map(|c| compared(summary, c));
     let body = [
         ("Fuel", fuel(summary) + &comparisons.collect::<String>()),
-        ("Transmission losses", losses(summary)),
+        losses(summary),
         ("Where the fuel energy went", balance(summary)),
         ("End temperatures", ends(summary)),
         ("Time with", flags(summary)),
     ];
-    head(summary, cycle, paint) + &sections(body, paint) + &notes(summary)
+    head(summary, cycle, paint) + &answers(summary) + &sections(body, paint) + &notes(summary)
 }
 
 fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
@@ -50,6 +51,28 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
         table.row(["", "", &oils]);
     }
     text + "\n" + &table.text()
+}
+
+/// What the run says of the subject, in sentences.
+fn answers(summary: &Summary) -> String {
+    let run = summary.runs.first();
+    let fuel = run.and_then(RunSummary::headline_fuel);
+    let Some((run, fuel)) = run.zip(fuel) else {
+        return String::new();
+    };
+    let against = summary.comparison.iter().filter_map(|c| {
+        let percent = c.fuel_percent?;
+        let word = if percent < 0.0 { "less" } else { "more" };
+        Some(format!(
+            ", {} % {word} than {}",
+            fixed(percent.abs(), 1),
+            c.baseline
+        ))
+    });
+    let against: String = against.collect();
+    let fuel = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
+    let lines = std::iter::once(fuel).chain(answer(run));
+    "\n".to_owned() + &lines.map(|line| wrapped(&line, "")).collect::<String>()
 }
 
 /// A table with one column for each vehicle.
@@ -146,9 +169,91 @@ fn kj_and_share(kj: Option<f64>, run: &RunSummary) -> String {
     })
 }
 
-fn losses(summary: &Summary) -> String {
+/// Energy, and fuel that would be saved without the loss; of baselines the fuel alone, so that three cars have room.
+fn priced(run: &RunSummary, kj: Option<f64>, saved: Option<&Saving>) -> String {
+    let percent_of_fuel = fixed(saved.and_then(|saved| saved.percent), 2);
+    if run.role != SUBJECT {
+        return percent_of_fuel;
+    }
+    let energy = percent(kj, run.fuel_energy_kj, 2);
+    let litres = fixed(saved.and_then(|saved| saved.l_per_100km), 3);
+    format!(
+        "{:>7} {energy:>8} {percent_of_fuel:>6} {litres:>8}",
+        fixed(kj, 1)
+    )
+}
+
+/// Role of the first car of a run.
+const SUBJECT: &str = "subject";
+
+fn losses(summary: &Summary) -> (&'static str, String) {
+    if summary.runs.iter().any(|run| run.price.is_none()) {
+        return ("Transmission losses", energies(summary));
+    }
     let mut table = ByVehicle::new(summary);
-    table.add("", "", |_| "kJ  % fuel".into());
+    table.add("", "", |run| match run.role == SUBJECT {
+        true => format!(
+            "{:>7} {:>8} {:>6} {:>8}",
+            "kJ", "% energy", "% fuel", "L/100 km"
+        ),
+        false => "% fuel".to_owned(),
+    });
+    for component in Component::ALL {
+        let name = component.name();
+        let has = |run: &RunSummary| run.loss_kj.iter().any(|(own, _)| own == name);
+        if summary.runs.iter().any(has) {
+            table.add(&name.replace('_', " "), "", |run| {
+                let price = run.price.as_ref().and_then(|price| price.losses.get(name));
+                match has(run) {
+                    true => priced(run, run.loss_kj.get(name), price.map(|loss| &loss.saved)),
+                    false => String::new(),
+                }
+            });
+        }
+    }
+    let together = |run: &RunSummary| {
+        let saved = run.price.as_ref().map(|price| &price.together);
+        priced(run, Some(run.transmission_loss_kj()), saved)
+    };
+    table.add("together", "", together);
+    table.add("interaction", "", |run| {
+        let saved = run.price.as_ref().map(|price| &price.interaction);
+        let points = signed(saved.and_then(|saved| saved.percent), 2);
+        let litres = signed(saved.and_then(|saved| saved.l_per_100km), 3);
+        match run.role == SUBJECT {
+            true => format!("{points:>6} {litres:>8}"),
+            false => points,
+        }
+    });
+    for name in ["accessories", "brake"] {
+        table.add(name, "", |run| match run.role == SUBJECT {
+            true => {
+                let kj = run.loss_kj.get(name);
+                let energy = percent(kj, run.fuel_energy_kj, 2);
+                format!("{:>7} {energy:>8} {:>15}", fixed(kj, 1), "")
+            }
+            false => String::new(),
+        });
+    }
+    let text = table.text(&LEAD[..1]) + &price_notes(summary);
+    (
+        "Transmission losses: energy, and fuel saved if the loss were zero",
+        text,
+    )
+}
+
+fn price_notes(summary: &Summary) -> String {
+    let priced = summary.runs.iter().flat_map(|run| {
+        let price = run.price.iter();
+        let notes = price.flat_map(|price| price.notes.iter().chain(&price.failures));
+        notes.map(|note| format!("{}: {note}\n", run.vehicle))
+    });
+    priced.collect()
+}
+
+fn energies(summary: &Summary) -> String {
+    let mut table = ByVehicle::new(summary);
+    table.add("", "", |_| "kJ  % energy".into());
     for component in Component::ALL {
         let name = component.name();
         let has = |run: &RunSummary| run.loss_kj.iter().any(|(own, _)| own == name);

@@ -1,6 +1,7 @@
 //! The real program in a directory of its own: exit codes, streams, files.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+mod attribute;
 mod inputs;
 mod named;
 mod run;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::catalogue::{self, File};
 use crate::KeyInfo;
 use cvtcycle_model::equations::Equation;
+use cvtcycle_model::transmission::loss_factor;
 
 /// Statuses in the order in which a reader should worry about them.
 const STATUSES: [(&str, &str); 4] = [
@@ -20,7 +21,10 @@ const STATUSES: [(&str, &str); 4] = [
 /// The whole book, with these equations. The same program gives the same text.
 #[must_use]
 pub fn book(equations: &[Equation]) -> String {
-    let files = catalogue::files();
+    let mut files = catalogue::files();
+    for file in &mut files {
+        file.keys.retain(|info| !loss_factor::is_key(&info.key));
+    }
     let mut text = "# Book of assumptions\n\n\
         Printed by `cvtcycle assumptions` from the vehicle files, the lubricant files, the rig files and the heads of the model files; do not \
         edit it by hand.\n\n"

@@ -13,6 +13,7 @@ use cvtcycle_model::keys::Values;
 use cvtcycle_model::road::RoadLoadInput;
 use cvtcycle_model::thermal::Network;
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::manual::Manual;
@@ -190,10 +191,11 @@ impl Frame {
         let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
         let same = self.own_friction == Some(fluids[0].friction);
         let (road_load, car) = parts(&root, fluids, self.formulation, self.name.clone());
-        let notes = match car.transmission.is_cvt() && same {
+        let mut notes = match car.transmission.is_cvt() && same {
             true => vec![SAME_FRICTION.to_owned()],
             false => Vec::new(),
         };
+        notes.extend(changed_losses(&car.transmission));
         let baselines = baselines
             .split(',')
             .map(|b| b.trim().to_owned())
@@ -208,6 +210,20 @@ impl Frame {
             notes,
         })
     }
+}
+
+/// A sentence on each loss that the files change by a factor.
+fn changed_losses(transmission: &Transmission) -> impl Iterator<Item = String> {
+    let factors = transmission.loss_factors();
+    let changed = Component::ALL
+        .into_iter()
+        .filter(move |component| (factors[*component] - 1.0).abs() > 0.0);
+    changed.map(move |component| {
+        let (name, factor) = (component.name(), factors[component]);
+        format!(
+            "loss_factor.{name} = {factor}: to see what a loss costs, no car that could be built"
+        )
+    })
 }
 
 /// What a comparison of fluids does not tell.

@@ -201,10 +201,14 @@ impl OnBench<'_> {
 
     fn belt_state(&self, load: &BeltLoad) -> BeltState {
         let belt = &self.line.cvt.belt;
-        if self.printed {
+        let state = if self.printed {
             printed_state(belt, self.line.at, load)
         } else {
             belt_state(belt, self.line.at, load)
+        };
+        match self.line.changes {
+            Some(changes) => state.times(&changes.factor, load.output_torque_nm, self.point.ratio),
+            None => state,
         }
     }
 

@@ -13,7 +13,7 @@
 //!
 //! Radii come from a bisection of the belt's length, compression, tension and the heating of the film from iteration. Taken over from the
 //! model: boundary friction, film share and shear stress of the fluid, the thrust ratio table, and the torques of wedging and penetration.
-//! PX-1 and PX-2 are those of the driving form; the printed forms break both by design. PX-6, the same data sheet gives the same fuel, is a test.
+//! PX-1 and PX-2 are those of the driving form without factors on its losses (CV-7); the printed forms break both by design. PX-6, the same data sheet gives the same fuel, is a test.
 
 use super::{Car, EnergyTerms, Recorder, Row, State, Vehicle, simulate};
 use crate::cycle::Cycle;
@@ -262,7 +262,12 @@ impl<'a> PhysicsCheck<'a> {
             (shafts_w[0] - shafts_w[1] - lost_w).abs(),
             ROUNDING * (shafts_w[0].abs() + shafts_w[1].abs() + 1.0),
         );
-        let modelled = cvt.belt.formulation.by_statics() && !cvt.has_map(Component::BeltMap);
+        let factor = cvt.loss_factors();
+        let as_modelled = BELT_PARTS
+            .iter()
+            .all(|part| (factor[*part] - 1.0).abs() <= 0.0);
+        let modelled =
+            cvt.belt.formulation.by_statics() && !cvt.has_map(Component::BeltMap) && as_modelled;
         if modelled && !row.flags.contains(Flags::NOT_CONVERGED) {
             let load = BeltLoad {
                 output_torque_nm: row.secondary_nm,

@@ -117,11 +117,12 @@ impl<'a> Drive<'a> {
         let mut output = car.transmission.solve(&input, transmission);
         let inertia = inertia(car, &input, &output, *kinetic_j);
         if output.flags.contains(Flags::CLUTCH_SLIPPING) {
-            output.loss_w[Component::LaunchClutch] += inertia.surplus_w; // SI-4
+            // A clutch that loses a part only passes on the rest (LC-6).
+            let lost = smaller(car.transmission.coupling().loss_factor(), 1.0);
+            output.loss_w[Component::LaunchClutch] += lost * inertia.surplus_w; // SI-4
+            give_back(&mut output, (1.0 - lost) * inertia.surplus_w);
         } else {
-            let helps_w = smaller(inertia.surplus_w, output.deficit_w);
-            output.deficit_w -= helps_w;
-            output.brake_w += inertia.surplus_w - helps_w; // SI-4
+            give_back(&mut output, inertia.surplus_w);
         }
         let mut burn = engine.burn(output.engine_rad_s, inertia.crank_nm);
         if step.engine_off {
@@ -161,6 +162,14 @@ impl<'a> Drive<'a> {
         };
         result
     }
+}
+
+/// Power of the slower engine that reaches the wheels: it makes up for a deficit, or the brakes take it.
+#[inline(always)]
+fn give_back(output: &mut StepOutput, surplus_w: f64) {
+    let helps_w = smaller(surplus_w, output.deficit_w);
+    output.deficit_w -= helps_w;
+    output.brake_w += surplus_w - helps_w; // SI-4
 }
 
 #[inline(always)]

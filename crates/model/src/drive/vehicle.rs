@@ -5,6 +5,7 @@ use crate::engine::Engine;
 use crate::fluid::Lubricant;
 use crate::road::RoadLoadInput;
 use crate::transmission::Transmission;
+use crate::transmission::loss_factor::LossFactors;
 
 /// A checked car with its fluids; [`Vehicle::car`] makes it ready to drive at an ambient temperature.
 #[derive(Clone, Debug)]
@@ -33,6 +34,14 @@ impl Vehicle {
             ambient_k,
             ..self.car
         }
+    }
+
+    /// The car with each loss of its transmission times a factor more (CV-7, MB-6, LC-6).
+    #[must_use]
+    pub fn with_losses_times(&self, factors: &LossFactors) -> Self {
+        let mut changed = self.clone();
+        changed.car.transmission.scale_losses(factors);
+        changed
     }
 
     /// The transmission.

@@ -41,6 +41,43 @@ pub enum HeatTo {
     Coupling,
 }
 
+/// Losses that are shared out together (AT-6).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LossGroup {
+    /// Launch device.
+    Launch,
+    /// Pump.
+    Pump,
+    /// Shafts of a CVT: input shaft, open clutch, seal rings, pulley bearings.
+    Shafts,
+    /// Belt.
+    Belt,
+    /// Final drive of a CVT.
+    FinalDrive,
+    /// Teeth of a manual box, or its map.
+    Gears,
+    /// Bearings and seals of a manual box.
+    BearingsAndSeals,
+    /// Churning of a manual box.
+    Churning,
+}
+
+impl LossGroup {
+    /// Name as in JSON keys.
+    pub const fn name(self) -> &'static str {
+        match self {
+            LossGroup::Launch => "launch",
+            LossGroup::Pump => "pump",
+            LossGroup::Shafts => "shafts",
+            LossGroup::Belt => "belt",
+            LossGroup::FinalDrive => "final_drive",
+            LossGroup::Gears => "gears",
+            LossGroup::BearingsAndSeals => "bearings_and_seals",
+            LossGroup::Churning => "churning",
+        }
+    }
+}
+
 /// Fill of a component in charts: a place on one of two colour ramps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fill {
@@ -59,6 +96,7 @@ struct Entry {
     columns: LossColumns,
     part: Part,
     heat: HeatTo,
+    group: LossGroup,
     fill: Fill,
     map_key: Option<&'static str>,
 }
@@ -79,7 +117,7 @@ pub struct LossColumns {
 }
 
 macro_rules! components {
-    ($($variant:ident: $name:literal, $title:literal, $part:ident, $heat:ident, $fill:expr, $map:expr, $doc:literal;)*) => {
+    ($($variant:ident: $name:literal, $title:literal, $part:ident, $heat:ident, $group:ident, $fill:expr, $map:expr, $doc:literal;)*) => {
         /// A loss component of the transmission, in the order of the power flow from the engine to the wheels.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(usize)]
@@ -107,32 +145,33 @@ macro_rules! components {
             },
             part: Part::$part,
             heat: HeatTo::$heat,
+            group: LossGroup::$group,
             fill: $fill,
             map_key: $map,
         }),*];
     };
 }
 
-// name, title, transmission, heat, fill, key of the map that replaces the model, what the loss is
+// name, title, transmission, heat, group, fill, key of the map that replaces the model, what the loss is
 components! {
-    LaunchClutch: "launch_clutch", "Launch clutch", Coupling, Coupling, Fill::Cvt(0), None, "loss of launch clutch slip and creep";
-    Pump: "pump", "Pump", Cvt, Sump, Fill::Cvt(1), Some("pump"), "loss of the oil pump";
-    InputShaft: "input_shaft", "Input shaft", Cvt, Metal, Fill::Cvt(2), Some("input_shaft"), "loss of the input shaft's bearings and seals";
-    ClutchDrag: "clutch_drag", "Clutch drag", Cvt, Sump, Fill::Cvt(3), Some("clutch_drag"), "drag of the open reverse clutch";
-    SealRing: "seal_ring", "Seal ring", Cvt, Sump, Fill::Cvt(4), Some("seal_ring"), "friction of the rings that seal the oil feed of the rotating cylinders";
-    PulleyBearing: "pulley_bearing", "Pulley bearing", Belt, Metal, Fill::Cvt(5), None, "load friction of the pulley shafts' bearings under the belt's pull";
-    BeltBand: "belt_band", "Belt band", Belt, Belt, Fill::Cvt(6), None, "boundary friction between bands and between band and segments";
-    BeltFilm: "belt_film", "Belt film", Belt, Belt, Fill::Cvt(7), None, "viscous shear between the bands";
-    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Fill::Cvt(8), None, "sliding of the segments along the pulleys";
-    BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Fill::Cvt(9), None, "wedging at pulley entry and exit";
-    BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Fill::Cvt(10), None, "penetration into the deflected pulleys";
-    BeltMap: "belt_map", "Belt map", BeltMap, Belt, Fill::Cvt(6), Some("belt"), "loss of the whole belt, from its measured map";
-    FinalDrive: "final_drive", "Final drive", Cvt, Sump, Fill::Cvt(11), Some("final_drive"), "loss of the final drive of the CVT";
-    GearMesh: "gear_mesh", "Gear mesh", Manual, Sump, Fill::Manual(1), None, "gear mesh loss of the manual box, with its final drive";
-    Bearing: "bearing", "Bearing", Manual, Metal, Fill::Manual(2), None, "bearing loss of the manual box";
-    Churning: "churning", "Churning", Manual, Sump, Fill::Manual(3), None, "churning loss of the manual box";
-    Seal: "seal", "Seal", Manual, Metal, Fill::Manual(4), None, "seal loss of the manual box";
-    BoxMap: "box_map", "Box map", ManualMap, Sump, Fill::Manual(1), Some("box"), "loss of the whole manual box, from its measured map";
+    LaunchClutch: "launch_clutch", "Launch clutch", Coupling, Coupling, Launch, Fill::Cvt(0), None, "loss of launch clutch slip and creep";
+    Pump: "pump", "Pump", Cvt, Sump, Pump, Fill::Cvt(1), Some("pump"), "loss of the oil pump";
+    InputShaft: "input_shaft", "Input shaft", Cvt, Metal, Shafts, Fill::Cvt(2), Some("input_shaft"), "loss of the input shaft's bearings and seals";
+    ClutchDrag: "clutch_drag", "Clutch drag", Cvt, Sump, Shafts, Fill::Cvt(3), Some("clutch_drag"), "drag of the open reverse clutch";
+    SealRing: "seal_ring", "Seal ring", Cvt, Sump, Shafts, Fill::Cvt(4), Some("seal_ring"), "friction of the rings that seal the oil feed of the rotating cylinders";
+    PulleyBearing: "pulley_bearing", "Pulley bearing", Belt, Metal, Shafts, Fill::Cvt(5), None, "load friction of the pulley shafts' bearings under the belt's pull";
+    BeltBand: "belt_band", "Belt band", Belt, Belt, Belt, Fill::Cvt(6), None, "boundary friction between bands and between band and segments";
+    BeltFilm: "belt_film", "Belt film", Belt, Belt, Belt, Fill::Cvt(7), None, "viscous shear between the bands";
+    BeltSlip: "belt_slip", "Belt slip", Belt, Belt, Belt, Fill::Cvt(8), None, "sliding of the segments along the pulleys";
+    BeltWedge: "belt_wedge", "Belt wedge", Belt, Belt, Belt, Fill::Cvt(9), None, "wedging at pulley entry and exit";
+    BeltPenetration: "belt_penetration", "Belt penetration", Belt, Belt, Belt, Fill::Cvt(10), None, "penetration into the deflected pulleys";
+    BeltMap: "belt_map", "Belt map", BeltMap, Belt, Belt, Fill::Cvt(6), Some("belt"), "loss of the whole belt, from its measured map";
+    FinalDrive: "final_drive", "Final drive", Cvt, Sump, FinalDrive, Fill::Cvt(11), Some("final_drive"), "loss of the final drive of the CVT";
+    GearMesh: "gear_mesh", "Gear mesh", Manual, Sump, Gears, Fill::Manual(1), None, "gear mesh loss of the manual box, with its final drive";
+    Bearing: "bearing", "Bearing", Manual, Metal, BearingsAndSeals, Fill::Manual(2), None, "bearing loss of the manual box";
+    Churning: "churning", "Churning", Manual, Sump, Churning, Fill::Manual(3), None, "churning loss of the manual box";
+    Seal: "seal", "Seal", Manual, Metal, BearingsAndSeals, Fill::Manual(4), None, "seal loss of the manual box";
+    BoxMap: "box_map", "Box map", ManualMap, Sump, Gears, Fill::Manual(1), Some("box"), "loss of the whole manual box, from its measured map";
 }
 
 impl Component {
@@ -168,6 +207,11 @@ impl Component {
     /// The thermal node that receives the heat.
     pub const fn heat(self) -> HeatTo {
         self.entry().heat
+    }
+
+    /// The group with which the loss is shared out.
+    pub const fn group(self) -> LossGroup {
+        self.entry().group
     }
 
     /// Fill in charts.

@@ -5,6 +5,7 @@ pub mod component;
 pub mod coupling;
 pub mod cvt;
 pub mod gear_train;
+pub mod loss_factor;
 pub mod viscous_self_heating;
 pub mod manual;
 mod step;
@@ -12,7 +13,9 @@ mod step;
 pub use step::{DrivelineState, StepInput, StepOutput};
 
 use self::component::{Component, Part};
+use self::coupling::Coupling;
 use self::cvt::CvtState;
+use self::loss_factor::LossFactors;
 use crate::maps::LossMap;
 use crate::prime_mover::PrimeMover;
 
@@ -74,7 +77,7 @@ impl Transmission {
     pub fn maps(&self) -> impl Iterator<Item = (Component, &LossMap)> {
         Component::ALL.into_iter().filter_map(move |component| {
             let map = match self {
-                Transmission::Cvt(cvt) => cvt.maps.as_ref()?[component].as_ref(),
+                Transmission::Cvt(cvt) => cvt.changes.as_ref()?.maps[component].as_ref(),
                 Transmission::Manual(manual) => {
                     let own = component.part() == Part::ManualMap;
                     manual.map.as_ref().filter(|_| own)
@@ -90,16 +93,48 @@ impl Transmission {
             Transmission::Cvt(cvt) => (true, cvt.has_map(Component::BeltMap)),
             Transmission::Manual(manual) => (false, manual.map.is_some()),
         };
-        Component::ALL
-            .into_iter()
-            .filter(|component| match component.part() {
-                Part::Coupling => true,
-                Part::Cvt => cvt,
-                Part::Belt => cvt && !mapped,
-                Part::BeltMap => cvt && mapped,
-                Part::Manual => !cvt && !mapped,
-                Part::ManualMap => !cvt && mapped,
-            })
-            .collect()
+        components(cvt, mapped)
     }
+
+    /// The coupling between engine and box.
+    #[inline]
+    pub fn coupling(&self) -> &dyn Coupling {
+        match self {
+            Transmission::Cvt(cvt) => &*cvt.coupling,
+            Transmission::Manual(manual) => &*manual.coupling,
+        }
+    }
+
+    /// Factors on the losses, of the vehicle file and of [`Transmission::scale_losses`] together.
+    pub fn loss_factors(&self) -> LossFactors {
+        let mut factors = match self {
+            Transmission::Cvt(cvt) => cvt.loss_factors(),
+            Transmission::Manual(manual) => manual.loss_factors(),
+        };
+        factors[Component::LaunchClutch] = self.coupling().loss_factor();
+        factors
+    }
+
+    /// Multiplies each loss by a factor (CV-7, MB-6, LC-6); all else follows from the drive.
+    pub fn scale_losses(&mut self, factors: &LossFactors) {
+        match self {
+            Transmission::Cvt(cvt) => cvt.scale_losses(factors),
+            Transmission::Manual(manual) => manual.scale_losses(factors),
+        }
+    }
+}
+
+/// Loss components of a CVT or of a manual box, whose belt or box may be a measured map.
+fn components(cvt: bool, mapped: bool) -> Vec<Component> {
+    Component::ALL
+        .into_iter()
+        .filter(|component| match component.part() {
+            Part::Coupling => true,
+            Part::Cvt => cvt,
+            Part::Belt => cvt && !mapped,
+            Part::BeltMap => cvt && mapped,
+            Part::Manual => !cvt && !mapped,
+            Part::ManualMap => !cvt && mapped,
+        })
+        .collect()
 }

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::failure::{Deficit, Failure, LedgerErrors, failures};
-use super::{Driven, Named, Settings};
+use super::{Driven, Named, PriceSummary, Settings};
 use crate::number::{finite, fixed, tiny};
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::{Cycle, Weighting};
@@ -106,6 +106,9 @@ pub struct RunSummary {
     pub failures: Vec<Failure>,
     /// Demanded work at the wheels in driving over that work with all losses of the transmission; null without either.
     pub transmission_efficiency_percent: Option<f64>,
+    /// What each loss costs; null where it was not computed.
+    #[serde(default)]
+    pub price: Option<PriceSummary>,
 }
 
 /// One group of phases.
@@ -261,6 +264,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         transmission_efficiency_percent: finite(
             100.0 * all.wheel_positive_j / (all.wheel_positive_j + all.terms.losses),
         ),
+        price: None,
     };
     let ledger = LedgerErrors {
         row: summary.ledger_error,

@@ -10,6 +10,7 @@ mod grids;
 pub mod lines;
 mod loss_table;
 mod picture;
+mod price;
 pub mod rig_transmission;
 mod run;
 pub mod study;
@@ -18,6 +19,7 @@ mod variator_curves;
 pub use engine::cell;
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
+pub use price::price_bars;
 pub use run::{
     LossBins, PlotRun, bin_losses, driveline, fuel_bars, group_fuel, losses, operating_points,
     pressure, temperatures,

@@ -7,6 +7,7 @@ use super::super::{study_answers, validation};
 use super::{Car, conditions_line, cycle_title, energy};
 use cvtcycle_output::Component;
 use cvtcycle_output::summary::{Comparison, RunSummary, Summary};
+use cvtcycle_study::attribute;
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("answer", "Answer");
@@ -36,6 +37,9 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
         }
         let answers = study_answers::answers(own).into_iter();
         section.blocks.extend(answers.map(Block::Text));
+    }
+    if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
+        section.text(price);
     }
     section.text(where_it_went(cars));
     if let [subject, baseline, ..] = cars {

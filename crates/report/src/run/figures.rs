@@ -9,7 +9,8 @@ use crate::charts::figures::{
     loss_by_temperature, variogram,
 };
 use crate::charts::{
-    PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure, temperatures,
+    PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure, price_bars,
+    temperatures,
 };
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
@@ -75,6 +76,13 @@ fn losses_section(all: &[Car]) -> Section {
     let picture = loss_by_component(&cars.collect::<Vec<_>>());
     let caption = "Losses of each transmission over the whole cycle.";
     section.figure("loss_by_component", caption, picture);
+    for car in all.iter().filter(|car| car.run.price.is_some()) {
+        let name = &car.run.vehicle;
+        let caption = format!(
+            "What each loss of {name} costs: the car driven again without it. The prices need not add up to that of all together."
+        );
+        section.figure(format!("price_{name}"), caption, price_bars(car.run, name));
+    }
     let traced: Vec<&Car> = all.iter().filter(|car| car.history.is_some()).collect();
     if !traced.is_empty() && all[0].run.phases.len() > 1 {
         let picture = loss_by_phase(&phase_losses(all, &traced));

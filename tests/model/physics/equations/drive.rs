@@ -17,7 +17,7 @@ use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle_model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, Geometry, belt_state, sliding_speed_m_s,
 };
-use cvtcycle_model::transmission::cvt::{Cvt, CvtMaps, viscosity_power};
+use cvtcycle_model::transmission::cvt::{Cvt, LossChanges, viscosity_power};
 use cvtcycle_model::transmission::{StepOutput, Transmission};
 
 /// What fixes the output torque.
@@ -556,10 +556,10 @@ fn val_maps_in_a_step() {
         .to_vec();
     let map = LossMap::new(Grid::from_rows(&rows).unwrap());
     if let Transmission::Cvt(cvt) = &mut b.car.transmission {
-        let mut maps = CvtMaps::default();
-        maps[Component::FinalDrive] = Some(map.clone());
-        maps[Component::Pump] = Some(map);
-        cvt.maps = Some(Box::new(maps));
+        let mut changes = LossChanges::default();
+        changes.maps[Component::FinalDrive] = Some(map.clone());
+        changes.maps[Component::Pump] = Some(map);
+        cvt.changes = Some(Box::new(changes));
     }
     for (sump_degc, wheel_rad_s) in [(60.0, 30.0), (110.0, 30.0), (60.0, 0.0), (10.0, 0.0)] {
         let s = Setting {

@@ -9,6 +9,7 @@ use cvtcycle_model::drive::{
 };
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
+use cvtcycle_model::transmission::loss_factor::UNCHANGED;
 use proptest::prelude::*;
 
 use super::cars::recipes;
@@ -69,6 +70,34 @@ fn every_law_over_random_cars() {
             Ok(())
         },
     );
+}
+
+/// Losses times 0 to 3 each: what is left of the laws holds, and both ledgers close; statics are those of a belt as it is (CV-7).
+#[test]
+fn ledgers_close_at_any_factor() {
+    let factors =
+        prop::collection::vec(prop_oneof![1 => Just(0.0), 3 => 0.0..3.0], Component::COUNT);
+    let worst = std::cell::Cell::new(0.0_f64);
+    hold(
+        200,
+        &(recipes(0.1), traces(), -40.0..60.0, factors),
+        |(recipe, rows, ambient, factors)| {
+            let setup = recipe.car().setup;
+            let mut by_component = UNCHANGED;
+            for (factor, given) in by_component.iter_mut().zip(&factors) {
+                *factor = *given;
+            }
+            let changed = setup.with_losses_times(&by_component);
+            let found = check_physics(&changed, &rows.cycle(), ZERO + ambient, 1.0);
+            prop_assert!(broken(&found).is_empty(), "{}", lines(&found));
+            prop_assert!(found[Law::Statics as usize].rows == 0 || !setup.transmission().is_cvt());
+            let totals = drive(&changed, &rows.cycle(), &at(ambient, Start::Soak)).totals;
+            prop_assert!(totals.ledger_error < 1e-12, "{:e}", totals.ledger_error);
+            worst.set(worst.get().max(totals.ledger_error));
+            Ok(())
+        },
+    );
+    println!("worst ledger error {:e}", worst.get());
 }
 
 fn primary_rad_s(car: &Car, row: &Row) -> f64 {

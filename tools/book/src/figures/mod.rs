@@ -6,6 +6,7 @@ mod clamp;
 mod cold;
 mod drawn;
 mod parts;
+mod prices;
 mod reference;
 pub mod tables;
 
@@ -117,6 +118,9 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
         files.push((format!("img/{name}.svg"), svg));
     }
     files.push(("generated/cold_losses.md".to_owned(), cold::table()?));
+    let (picture, table) = prices::picture_and_table()?;
+    files.push(("img/price_rover_216_cvt.svg".to_owned(), picture));
+    files.push(("generated/prices.md".to_owned(), table));
     files.extend(tables::files(source)?);
     Ok(files)
 }

@@ -4,8 +4,10 @@
 //! the engine's torque only through [`Coupling::engine_side`] and [`Coupling::output_nm`].
 
 mod friction_clutch;
+mod partial_loss;
 
 pub use friction_clutch::FrictionClutch;
+pub(super) use partial_loss::PartialLoss;
 
 use self::friction_clutch::FrictionClutchKeys;
 use crate::keys::{Choice, Key, Values, spec};
@@ -108,6 +110,11 @@ pub trait Coupling: Debug + Send + Sync {
             1.0
         };
         -together * self.overrun_share(output_rad_s, idle_rad_s) * absorbed_nm
+    }
+
+    /// Factor on its loss (LC-6).
+    fn loss_factor(&self) -> f64 {
+        1.0
     }
 
     /// The engine's side for a torque into the box, its speed the one of steady state as far as `reach` has it.

@@ -3,12 +3,12 @@
 use super::controller::ClampSignals;
 use super::pulley_bearing::PulleyBearing;
 use super::pump::{PumpAtTemperature, PumpState};
-use super::variator::{BeltAtRatio, BeltLosses};
-use super::{Cvt, CvtMaps, viscosity_power};
+use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
+use super::{Cvt, LossChanges, viscosity_power};
 use crate::fluid::{Lubricant, OilState};
 use crate::maps::MapPoint;
 use crate::transmission::component::Component;
-use crate::transmission::gear_train::TurningTrain;
+use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
 /// The parts of a CVT that are in the box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,8 +114,8 @@ pub(crate) struct Driveline<'a> {
     pub oil_k: f64,
     /// The same oil.
     pub oil: OilState,
-    /// Measured maps, if there are any.
-    pub maps: Option<&'a CvtMaps>,
+    /// Losses that are not those of the models, if there are any.
+    pub changes: Option<&'a LossChanges>,
 }
 
 /// How the secondary is clamped.
@@ -216,18 +216,19 @@ impl<'a> Driveline<'a> {
             force_log: 0.0,
             oil_k,
             oil: state,
-            maps: cvt.maps.as_deref(),
+            changes: cvt.changes.as_deref(),
         }
     }
 
-    /// Loss that a component's map gives at a speed, torque and pressure, Nm; clears `inside` outside the map.
+    /// Loss that a component's map gives at a speed, torque and pressure, times the component's factor, Nm; clears `inside` outside the map.
     fn mapped(
         &self,
         component: Component,
         (speed_rad_s, torque_nm, pressure_pa): (f64, f64, f64),
         inside: &mut bool,
     ) -> Option<f64> {
-        let map = self.maps?[component].as_ref()?;
+        let changes = self.changes?;
+        let map = changes.maps[component].as_ref()?;
         let (loss, within) = map.loss_nm(&MapPoint {
             ratio: self.at.geometry.ratio,
             input_speed_rad_s: speed_rad_s,
@@ -236,13 +237,51 @@ impl<'a> Driveline<'a> {
             oil_k: self.oil_k,
         });
         *inside &= within;
-        Some(loss)
+        Some(changes.factor[component] * loss) // CV-7
+    }
+
+    /// A model's loss torque, Nm, with the component's factor.
+    #[inline]
+    fn scaled(&self, component: Component, model_nm: f64) -> f64 {
+        match self.changes {
+            Some(changes) => changes.factor[component] * model_nm, // CV-7
+            None => model_nm,
+        }
+    }
+
+    /// Loss torque of a component, Nm: of its map at a speed, torque and pressure, else of its model.
+    #[inline]
+    fn loss_nm(
+        &self,
+        component: Component,
+        at: (f64, f64, f64),
+        inside: &mut bool,
+        model_nm: impl FnOnce() -> f64,
+    ) -> f64 {
+        self.mapped(component, at, inside)
+            .unwrap_or_else(|| self.scaled(component, model_nm()))
+    }
+
+    /// Losses and slip of the belt.
+    #[inline(always)]
+    pub fn belt_losses(&self, load: &BeltLoad) -> BeltLosses {
+        let losses = belt_losses(&self.cvt.belt, self.at, load);
+        match self.changes {
+            Some(changes) => losses.times(&changes.factor), // CV-7
+            None => losses,
+        }
     }
 
     /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
     pub fn final_drive(&self, secondary_rad_s: f64, demand_nm: f64) -> TurningTrain {
         let train = &self.cvt.final_drive.train;
-        train.turning(secondary_rad_s, demand_nm, self.oil)
+        let turning = train.turning(secondary_rad_s, demand_nm, self.oil);
+        match self.changes {
+            Some(changes) => {
+                turning.times(&TrainLosses::all(changes.factor[Component::FinalDrive])) // CV-7
+            }
+            None => turning,
+        }
     }
 
     /// Torques of what turns with the secondary for a torque behind the final drive, Nm: those of the final drive, `drive`, then bearing and
@@ -273,7 +312,8 @@ impl<'a> Driveline<'a> {
         if self.parts.belt {
             torques.bearing[1] = self.bearing_nm(1, clamp);
             if !self.cvt.has_map(Component::SealRing) {
-                torques.ring[1] = self.shafts.ring_per_pa * clamp.pressure_pa;
+                let nm = self.shafts.ring_per_pa * clamp.pressure_pa;
+                torques.ring[1] = self.scaled(Component::SealRing, nm);
             }
             torques.secondary += torques.bearing[1] + torques.ring[1];
         }
@@ -284,7 +324,8 @@ impl<'a> Driveline<'a> {
     #[inline]
     fn bearing_nm(&self, pulley: usize, clamp: &Clamp) -> f64 {
         let pull_n = self.shafts.pull_per_clamp * clamp.secondary_n;
-        self.cvt.pulley_bearing.torque_nm(pulley, pull_n)
+        let nm = self.cvt.pulley_bearing.torque_nm(pulley, pull_n);
+        self.scaled(Component::PulleyBearing, nm)
     }
 
     /// Torque of the primary's rings, Nm, or of those of both pulleys where a map has them (SR-1).
@@ -294,10 +335,9 @@ impl<'a> Driveline<'a> {
             return 0.0;
         }
         let at = (primary_rad_s, 0.0, clamp.pressure_pa);
-        self.mapped(Component::SealRing, at, inside)
-            .unwrap_or_else(|| {
-                self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
-            })
+        self.loss_nm(Component::SealRing, at, inside, || {
+            self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
+        })
     }
 
     /// Loss of a belt that is replaced by a map, Nm at the primary.
@@ -326,10 +366,10 @@ impl<'a> Driveline<'a> {
         torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
             let at = (primary_rad_s, 0.0, clamp.pressure_pa);
-            let mapped = self.mapped(Component::ClutchDrag, at, inside);
             let clutch = &self.cvt.clutch_drag;
-            torques.clutch =
-                mapped.unwrap_or_else(|| clutch.torque_nm(self.viscosity.clutch, primary_rad_s));
+            torques.clutch = self.loss_nm(Component::ClutchDrag, at, inside, || {
+                clutch.torque_nm(self.viscosity.clutch, primary_rad_s)
+            });
         }
     }
 
@@ -349,18 +389,13 @@ impl<'a> Driveline<'a> {
             let pump = &self.cvt.pump;
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = pump.state(&self.pump, engine_rad_s, pressure_pa, need);
-            if let Some(loss) = self.mapped(Component::Pump, at, inside) {
-                state.torque_nm = loss;
-            }
+            state.torque_nm = self.loss_nm(Component::Pump, at, inside, || state.torque_nm);
         }
         torques.pump = state.torque_nm;
-        torques.shaft = self
-            .mapped(Component::InputShaft, at, inside)
-            .unwrap_or_else(|| {
-                self.cvt
-                    .shaft_drag
-                    .torque_nm(self.viscosity.shaft, engine_rad_s)
-            });
+        torques.shaft = self.loss_nm(Component::InputShaft, at, inside, || {
+            let drag = &self.cvt.shaft_drag;
+            drag.torque_nm(self.viscosity.shaft, engine_rad_s)
+        });
         state
     }
 

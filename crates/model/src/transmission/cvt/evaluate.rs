@@ -6,7 +6,7 @@
 
 use super::Shifting;
 use super::driveline::{Clamp, Driveline, PartTorques};
-use super::variator::{BeltLoad, belt_losses};
+use super::variator::BeltLoad;
 use crate::math::{clamp, larger};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::clamp_cause::ClampCause;
@@ -155,7 +155,7 @@ impl<P: PrimeMover> Step<'_, P> {
             inside,
         );
         let secondary_nm = torques.secondary;
-        torques.belt = belt_losses(&line.cvt.belt, line.at, &load(secondary_nm));
+        torques.belt = line.belt_losses(&load(secondary_nm));
         torques.belt_map = line.belt_map_nm(secondary_nm, primary_rad_s, clamp.pressure_pa, inside);
         line.turn_primary(&mut torques, primary_rad_s, clamp, inside);
         torques

@@ -9,12 +9,14 @@ use super::pump::{Pump, PumpKeys};
 use super::seal_ring::{SealRing, SealRingKeys};
 use super::shaft_drag::{ShaftDrag, ShaftKeys};
 use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorKeys};
-use super::{Cvt, CvtMaps};
+use super::{Cvt, LossChanges};
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
 use crate::keys::{Table, Values, keys};
+use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::coupling::{self, LAUNCH};
 use crate::transmission::gear_train::GearKeys;
+use crate::transmission::{components, loss_factor};
 
 /// Table of the final drive: that of a gear train.
 const FINAL_DRIVE: Table = Table {
@@ -26,7 +28,8 @@ keys! {
     /// Keys of `[transmission.cvt]` and its tables.
     CVT: CvtKeys = "cvt" [
         RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
-        PulleyBearingKeys::TABLE, SealRingKeys::TABLE, ShaftKeys::TABLE, ClutchKeys::TABLE, FINAL_DRIVE, MapKeys::TABLE
+        PulleyBearingKeys::TABLE, SealRingKeys::TABLE, ShaftKeys::TABLE, ClutchKeys::TABLE, FINAL_DRIVE, MapKeys::TABLE,
+        LossFactorKeys::TABLE
     ] {
         final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         final_drive_first_ratio: number(0.3, 6.0), "share of that ratio in the stage at the secondary", ["FD-1"];
@@ -43,6 +46,23 @@ keys! {
         clutch_drag: optional(text()), "CSV of measured torque loss at the primary that replaces the reverse-clutch drag";
         seal_ring: optional(text()), "CSV of measured torque loss at the primary that replaces the rings of both pulleys";
         final_drive: optional(text()), "CSV of measured torque loss at the primary that replaces the final drive model";
+    }
+
+    /// Keys of `[transmission.cvt.loss_factor]`, by component.
+    LOSS_FACTOR: LossFactorKeys = "loss_factor" [] {
+        launch_clutch: or(1.0, number(0.0, 5.0)), "factor on the loss of the launch device; 1 is the model, 0 is without it", ["LC-6"];
+        pump: or(1.0, number(0.0, 5.0)), "factor on the loss of the pump; 1 is the model, 0 is without it", ["CV-7"];
+        input_shaft: or(1.0, number(0.0, 5.0)), "factor on the loss of the input shaft; 1 is the model, 0 is without it", ["CV-7"];
+        clutch_drag: or(1.0, number(0.0, 5.0)), "factor on the drag of the reverse clutch; 1 is the model, 0 is without it", ["CV-7"];
+        seal_ring: or(1.0, number(0.0, 5.0)), "factor on the friction of the seal rings; 1 is the model, 0 is without it", ["CV-7"];
+        pulley_bearing: or(1.0, number(0.0, 5.0)), "factor on the load friction of the pulleys' bearings; 1 is the model, 0 is without it", ["CV-7"];
+        belt_band: or(1.0, number(0.0, 5.0)), "factor on the boundary friction of the bands; 1 is the model, 0 is without it", ["CV-7"];
+        belt_film: or(1.0, number(0.0, 5.0)), "factor on the shear between the bands; 1 is the model, 0 is without it", ["CV-7"];
+        belt_slip: or(1.0, number(0.0, 5.0)), "factor on slip and its loss; 1 is the model, 0 is without it", ["CV-7"];
+        belt_wedge: or(1.0, number(0.0, 5.0)), "factor on the loss of wedging; 1 is the model, 0 is without it", ["CV-7"];
+        belt_penetration: or(1.0, number(0.0, 5.0)), "factor on the loss of penetration; 1 is the model, 0 is without it", ["CV-7"];
+        belt_map: or(1.0, number(0.0, 5.0)), "factor on the belt's measured map, where there is one; 1 is the map, 0 is without loss", ["CV-7"];
+        final_drive: or(1.0, number(0.0, 5.0)), "factor on the loss of the final drive; 1 is the model, 0 is without it", ["CV-7"];
     }
 }
 
@@ -70,7 +90,12 @@ impl Cvt {
         let clamp = clamp(s, &CVT.clamp);
         let radius_exponent = pressure.number(&PRESSURE.radius_exponent);
         let (floors, cap_pa) = Floors::from_values(&pressure);
-        Cvt {
+        let changes = maps(&s.table("maps"));
+        let mapped = changes
+            .as_ref()
+            .is_some_and(|changes| changes.maps[Component::BeltMap].is_some());
+        let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &components(true, mapped));
+        let mut cvt = Cvt {
             final_drive: FinalDrive::from_values(
                 &s.table("final_drive"),
                 s.number(&CVT.final_drive_ratio),
@@ -94,10 +119,12 @@ impl Cvt {
             low_radius_m: low.primary_radius_m,
             coupling: coupling::from_values(s, &CVT.launch, 5.0),
             full_load_route,
-            maps: maps(&s.table("maps")),
+            changes,
             belt_heat_share: s.number(&CVT.belt_heat_share),
             belt,
-        }
+        };
+        cvt.scale_losses(&factors);
+        cvt
     }
 }
 
@@ -161,11 +188,31 @@ fn centrifugal<V: Values>(v: &V, oil: &Lubricant) -> f64 {
 }
 
 /// The measured maps that `[transmission.cvt.maps]` names.
-fn maps<V: Values>(s: &V) -> Option<Box<CvtMaps>> {
-    let maps = CvtMaps::from_fn(|component| {
+fn maps<V: Values>(s: &V) -> Option<Box<LossChanges>> {
+    let maps = ByComponent::from_fn(|component| {
         let name = component.map_key().filter(|_| component.part().is_cvt())?;
         let key = MapKeys::TABLE.keys.iter().find(|key| key.name == name)?;
         s.loss_map(key, "ratio")
     });
-    maps.iter().any(Option::is_some).then(|| Box::new(maps))
+    maps.iter().any(Option::is_some).then(|| {
+        Box::new(LossChanges {
+            maps,
+            ..LossChanges::default()
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transmission::component::Part;
+
+    #[test]
+    fn there_is_a_factor_for_each_loss() {
+        let own = |c: &Component| c.part() == Part::Coupling || c.part().is_cvt();
+        let components = Component::ALL.into_iter().filter(own);
+        let names: Vec<&str> = components.map(Component::name).collect();
+        let keys: Vec<&str> = LossFactorKeys::TABLE.keys.iter().map(|k| k.name).collect();
+        assert_eq!(keys, names);
+    }
 }

@@ -8,6 +8,7 @@
 //! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
 //! | CV-6 | launch clutch: T_engine = T_p, loss T_p (w_e - w_p) for T_p >= 0; in overrun T_engine w_e = T_p w_p, no loss | derived |
 //! | CV-5 | unknowns pressure (through throttle), slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
+//! | CV-7 | T' = f T of a part's torque or its map's, slip s' = f s with its loss, final drive GT-2 with f T_0 and f k | derived: definition of a loss changed by a factor f of `loss_factor`, for its price |
 //!
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
 
@@ -45,7 +46,8 @@ use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
-use super::coupling::Coupling;
+use super::coupling::{Coupling, PartialLoss};
+use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::maps::LossMap;
 use crate::math::{Curve, exp, larger, ln};
@@ -60,8 +62,23 @@ pub fn viscosity_power(nu_m2_s: f64, exponent: f64) -> f64 {
     exp(exponent * ln(nu_m2_s / NU_REFERENCE_M2_S))
 }
 
-/// Measured maps in place of models, by component.
-pub type CvtMaps = ByComponent<Option<LossMap>>;
+/// Losses that are not those of the models.
+#[derive(Clone, Debug)]
+pub struct LossChanges {
+    /// Measured maps in place of models.
+    pub maps: ByComponent<Option<LossMap>>,
+    /// Factors on the losses (CV-7).
+    pub factor: LossFactors,
+}
+
+impl Default for LossChanges {
+    fn default() -> Self {
+        LossChanges {
+            maps: ByComponent::default(),
+            factor: UNCHANGED,
+        }
+    }
+}
 
 /// The checked CVT.
 #[derive(Clone, Debug)]
@@ -104,8 +121,8 @@ pub struct Cvt {
     pub coupling: Arc<dyn Coupling>,
     /// Engine speed for a power at full load, W to rad/s.
     pub full_load_route: Curve,
-    /// Measured maps in place of models, if there are any.
-    pub maps: Option<Box<CvtMaps>>,
+    /// Losses that are not those of the models, if there are any.
+    pub changes: Option<Box<LossChanges>>,
     /// Share of belt loss that heats the belt node.
     pub belt_heat_share: f64,
 }
@@ -173,9 +190,27 @@ impl Cvt {
 
     /// True where a measured map replaces the model of a component.
     pub fn has_map(&self, component: Component) -> bool {
-        self.maps
+        self.changes
             .as_ref()
-            .is_some_and(|maps| maps[component].is_some())
+            .is_some_and(|changes| changes.maps[component].is_some())
+    }
+
+    /// Factors on the losses of the box (CV-7), the coupling apart.
+    pub fn loss_factors(&self) -> LossFactors {
+        self.changes
+            .as_ref()
+            .map_or(UNCHANGED, |changes| changes.factor)
+    }
+
+    /// Multiplies each loss by a factor (CV-7, LC-6).
+    pub fn scale_losses(&mut self, factors: &LossFactors) {
+        let launch = factors[Component::LaunchClutch];
+        self.coupling = PartialLoss::of(Arc::clone(&self.coupling), launch);
+        let mut own = product(&self.loss_factors(), factors);
+        own[Component::LaunchClutch] = 1.0; // the coupling has it
+        if loss_factor::changes(&own) || self.changes.is_some() {
+            self.changes.get_or_insert_default().factor = own;
+        }
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.

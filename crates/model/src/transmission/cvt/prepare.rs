@@ -230,7 +230,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
             .force_log(shift.rate_per_s, shift.ratio * secondary_rad_s),
         oil_k: sump_k,
         oil: sump,
-        maps: cvt.maps.as_deref(),
+        changes: cvt.changes.as_deref(),
     };
     Step {
         // The demand of the wheels decides the friction of the teeth (GM-2).

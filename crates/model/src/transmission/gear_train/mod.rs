@@ -79,7 +79,7 @@ pub struct TurningTrain {
     pub bearing_share: f64,
 }
 
-/// Loss torques of a train at shaft 0, Nm.
+/// Loss torques of a train at shaft 0, Nm, or a factor on each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrainLosses {
     /// Teeth.
@@ -179,7 +179,30 @@ impl GearTrain {
     }
 }
 
+impl TrainLosses {
+    /// The same number for each.
+    pub const fn all(number: f64) -> Self {
+        TrainLosses {
+            mesh: number,
+            bearing: number,
+            churning: number,
+            seal: number,
+        }
+    }
+}
+
 impl TurningTrain {
+    /// Each loss times its factor (CV-7, MB-6).
+    pub fn times(&self, factor: &TrainLosses) -> Self {
+        TurningTrain {
+            bearing_nm: factor.bearing * self.bearing_nm,
+            churning_nm: factor.churning * self.churning_nm,
+            seal_nm: factor.seal * self.seal_nm,
+            mesh_share: factor.mesh * self.mesh_share,
+            bearing_share: factor.bearing * self.bearing_share,
+        }
+    }
+
     /// Torque without load, at shaft 0, Nm (GT-1).
     #[inline]
     pub fn no_load_nm(&self) -> f64 {

@@ -12,6 +12,8 @@ pub type PartLosses = [(Component, f64); 5];
 /// The box in a gear at a speed and an oil temperature: what does not depend on the torque that passes is known.
 pub struct Engaged<'a> {
     map: Option<&'a LossMap>,
+    /// Factor on the loss of the map.
+    map_factor: f64,
     gear: u8,
     input_rad_s: f64,
     oil_k: f64,
@@ -41,8 +43,21 @@ impl Manual {
             Some(_) => TurningTrain::default(),
             None => self.trains[usize::from(gear) - 1].turning(input_rad_s, demand_nm, oil),
         };
+        let (train, map_factor) = match &self.factor {
+            Some(factor) => {
+                let parts = TrainLosses {
+                    mesh: factor[Component::GearMesh],
+                    bearing: factor[Component::Bearing],
+                    churning: factor[Component::Churning],
+                    seal: factor[Component::Seal],
+                };
+                (train.times(&parts), factor[Component::BoxMap]) // MB-6
+            }
+            None => (train, 1.0),
+        };
         Engaged {
             map: self.map.as_ref(),
+            map_factor,
             gear,
             input_rad_s,
             oil_k,
@@ -124,13 +139,14 @@ impl Engaged<'_> {
     /// Loss of a measured map, whose torque axis is the input torque, for an output torque: T_in = T_out + loss(T_in) by fixed point.
     fn map_loss(&self, map: &LossMap, output_nm: f64) -> (f64, bool) {
         let at = |torque_nm: f64| {
-            map.loss_nm(&MapPoint {
+            let (loss_nm, inside) = map.loss_nm(&MapPoint {
                 ratio: f64::from(self.gear),
                 input_speed_rad_s: self.input_rad_s,
                 torque_nm,
                 pressure_pa: 0.0,
                 oil_k: self.oil_k,
-            })
+            });
+            (self.map_factor * loss_nm, inside) // MB-6
         };
         let mut answer = at(output_nm);
         for _ in 0..8 {

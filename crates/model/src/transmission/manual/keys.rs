@@ -4,11 +4,12 @@ use super::{Manual, ShiftSpeeds};
 use crate::keys::{Key, Kind, Values, keys};
 use crate::transmission::coupling::{self, LAUNCH};
 use crate::transmission::gear_train::{GearKeys, GearParts};
+use crate::transmission::{components, loss_factor};
 
 keys! {
     /// Keys of `[transmission.manual]` and its tables.
     MANUAL: ManualKeys = "manual" [
-        GearKeys::TABLE, MapKeys::TABLE
+        GearKeys::TABLE, MapKeys::TABLE, LossFactorKeys::TABLE
     ] {
         overall_ratios: list(0.5, 40.0, 2, 10), "engine speed over wheel speed in each gear, from first";
         final_ratio: number(1.0, 10.0), "ratio of the final drive, which is part of them", ["MB-1"];
@@ -21,6 +22,16 @@ keys! {
     /// Keys of `[transmission.manual.maps]`.
     MAPS: MapKeys = "maps" [] {
         r#box: optional(text()), "CSV of measured torque loss at the input shaft that replaces mesh, bearings, churning and seals";
+    }
+
+    /// Keys of `[transmission.manual.loss_factor]`, by component.
+    LOSS_FACTOR: LossFactorKeys = "loss_factor" [] {
+        launch_clutch: or(1.0, number(0.0, 5.0)), "factor on the loss of the launch device; 1 is the model, 0 is without it", ["LC-6"];
+        gear_mesh: or(1.0, number(0.0, 5.0)), "factor on the loss of the teeth; 1 is the model, 0 is without it", ["MB-6"];
+        bearing: or(1.0, number(0.0, 5.0)), "factor on the loss of the bearings; 1 is the model, 0 is without it", ["MB-6"];
+        churning: or(1.0, number(0.0, 5.0)), "factor on churning; 1 is the model, 0 is without it", ["MB-6"];
+        seal: or(1.0, number(0.0, 5.0)), "factor on the loss of the lip seals; 1 is the model, 0 is without it", ["MB-6"];
+        box_map: or(1.0, number(0.0, 5.0)), "factor on the box's measured map, where there is one; 1 is the map, 0 is without loss", ["MB-6"];
     }
 }
 
@@ -39,7 +50,10 @@ impl Manual {
         let last = s.number(&MANUAL.final_ratio);
         let ratios: Vec<[f64; 2]> = overall.iter().map(|all| [all / last, last]).collect();
         let parts = GearParts::from_values(&s.table("gears"), oil_m3, &ratios);
-        Manual {
+        let map = s.table("maps").loss_map(&MAPS.r#box, "gear");
+        let own = components(false, map.is_some());
+        let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
+        let mut manual = Manual {
             shifts: ShiftSpeeds::from_values(s, overall.len()),
             overall,
             trains: ratios
@@ -48,8 +62,11 @@ impl Manual {
                 .collect(),
             neutral_share: s.number(&MANUAL.neutral_share),
             coupling: coupling::from_values(s, &MANUAL.launch, 0.0),
-            map: s.table("maps").loss_map(&MAPS.r#box, "gear"),
-        }
+            map,
+            factor: None,
+        };
+        manual.scale_losses(&factors);
+        manual
     }
 }
 
@@ -88,5 +105,19 @@ impl ShiftSpeeds {
             up_m_s: up,
             down_m_s: down,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transmission::component::Component;
+
+    #[test]
+    fn there_is_a_factor_for_each_loss() {
+        let components = Component::ALL.into_iter().filter(|c| !c.part().is_cvt());
+        let names: Vec<&str> = components.map(Component::name).collect();
+        let keys: Vec<&str> = LossFactorKeys::TABLE.keys.iter().map(|k| k.name).collect();
+        assert_eq!(keys, names);
     }
 }

@@ -7,6 +7,7 @@
 //! | MB-3 | bearings: BR-1 to BR-3 of all shafts | source: Palmgren, SKF; sizes and preload ASSUMED |
 //! | MB-4 | churning: CH-1 of the packet of wheels on the output shaft and of the differential's wheel | source: form of Changenet and Velex; factor fitted to the published hot loss |
 //! | MB-5 | gears: the cycle's, else shift speeds with hysteresis; a lower gear where the one in force lacks torque, and one where the cycle has none and the car would fall behind | prescribed gears source: UN R83; rest derived |
+//! | MB-6 | GT-1 and GT-2 with f_bearing (M_0 + M_pre) and the bearings' part of k, f_churning C, f_seal T_seal, f_mesh the teeth's part of k; a map f times | derived: definition of losses changed by the factors f of `loss_factor`, for their price |
 //!
 //! At 80 degC the mean of gears 3 to 5 without load follows the published 0.925 Nm + 0.000407 Nm/rpm within 25 % from 1000 to 4000 rpm, and
 //! flatter. In neutral the engine turns the input shaft and a share of the losses in top gear; declutched, the wheels turn the box.
@@ -22,8 +23,10 @@ pub use gears::ShiftSpeeds;
 pub use keys::ManualKeys;
 
 use self::step::ManualStep;
-use super::coupling::Coupling;
+use super::component::Component;
+use super::coupling::{Coupling, PartialLoss};
 use super::gear_train::GearTrain;
+use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
@@ -49,9 +52,25 @@ pub struct Manual {
     pub coupling: Arc<dyn Coupling>,
     /// Measured map of the whole box in place of bearings, churning, seals and mesh.
     pub map: Option<LossMap>,
+    /// Factors on the losses (MB-6), if there are any.
+    pub factor: Option<Box<LossFactors>>,
 }
 
 impl Manual {
+    /// Factors on the losses of the box (MB-6), the coupling apart.
+    pub fn loss_factors(&self) -> LossFactors {
+        self.factor.as_deref().copied().unwrap_or(UNCHANGED)
+    }
+
+    /// Multiplies each loss by a factor (MB-6, LC-6).
+    pub fn scale_losses(&mut self, factors: &LossFactors) {
+        let launch = factors[Component::LaunchClutch];
+        self.coupling = PartialLoss::of(Arc::clone(&self.coupling), launch);
+        let mut own = product(&self.loss_factors(), factors);
+        own[Component::LaunchClutch] = 1.0; // the coupling has it
+        self.factor = loss_factor::changes(&own).then(|| Box::new(own));
+    }
+
     /// State at the beginning of a cycle.
     pub fn start<P: PrimeMover>(&self, step: &StepInput<P>) -> DrivelineState {
         let gear = if step.wheel.wheel_rad_s > 0.0 {

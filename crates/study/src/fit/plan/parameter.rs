@@ -6,6 +6,7 @@ use crate::fit::solve::Prior;
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problems, Reader, Section};
 use cvtcycle_model::keys::Values;
+use cvtcycle_model::transmission::loss_factor;
 
 /// Reads a parameter.
 ///
@@ -23,6 +24,15 @@ pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
             allowed,
             &message,
             "`cvtcycle show VEHICLE` lists the keys",
+        );
+    }
+    if loss_factor::is_key(&key) {
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "key",
+            "a parameter of the model",
+            "a factor on a loss is no parameter of the physics",
+            "fit what the loss depends on: `cvtcycle explain KEY` names the equations",
         );
     }
     let [low, high] = [&PARAMETER.low, &PARAMETER.high].map(|key| Values::number(&s, key));

@@ -32,6 +32,8 @@ pub use tension::Tension;
 
 use crate::fluid::{BandFriction, Friction, Lubricant};
 use crate::math::{Curve, larger, smaller};
+use crate::transmission::component::Component;
+use crate::transmission::loss_factor::LossFactors;
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
@@ -218,6 +220,46 @@ impl BeltLosses {
     #[inline]
     pub fn sum_nm(&self) -> f64 {
         self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+    }
+
+    /// Each loss times its factor, slip with the loss that it makes (CV-7).
+    pub fn times(self, factor: &LossFactors) -> Self {
+        let slips = factor[Component::BeltSlip];
+        BeltLosses {
+            band_nm: factor[Component::BeltBand] * self.band_nm,
+            film_nm: factor[Component::BeltFilm] * self.film_nm,
+            slip_nm: slips * self.slip_nm,
+            wedge_nm: factor[Component::BeltWedge] * self.wedge_nm,
+            penetration_nm: factor[Component::BeltPenetration] * self.penetration_nm,
+            slip_total: slips * self.slip_total,
+            ..self
+        } // CV-7
+    }
+}
+
+impl BeltState {
+    /// Each loss times its factor, under an output torque, Nm, at a ratio (CV-7, VA-1).
+    pub fn times(self, factor: &LossFactors, output_nm: f64, ratio: f64) -> Self {
+        let losses = self.losses.times(factor);
+        let slips = factor[Component::BeltSlip];
+        // What a printed sum holds besides VA-1 stays as it is.
+        let own_nm = |l: &BeltLosses| output_nm / ratio * (1.0 - l.slip_total) + l.sum_nm(); // VA-1
+        BeltState {
+            input_torque_nm: self.input_torque_nm + own_nm(&losses) - own_nm(&self.losses),
+            slip: Slip {
+                primary: slips * self.slip.primary,
+                secondary: slips * self.slip.secondary,
+                gap: slips * self.slip.gap,
+                idle: slips * self.slip.idle,
+                primary_loss_nm: slips * self.slip.primary_loss_nm,
+                secondary_loss_nm: slips * self.slip.secondary_loss_nm,
+                ..self.slip
+            },
+            band_nm: factor[Component::BeltBand] * self.band_nm,
+            film_nm: factor[Component::BeltFilm] * self.film_nm,
+            losses,
+            ..self
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The vehicles of a run: the subject with its overrides, then the baselines.
+//! The vehicles that are driven: the subject with its overrides, then the baselines.
 
 use cvtcycle::config::bounded;
 use cvtcycle::config::cycle::Cycle;
@@ -6,8 +6,8 @@ use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 
-use super::RunArgs;
 use crate::args::problems::{assigned, overrides};
+use crate::args::{ComparisonArgs, VehicleArgs};
 
 /// A vehicle of a run.
 pub struct RunVehicle {
@@ -35,9 +35,22 @@ pub fn kept_steps(vehicles: &[RunVehicle], cycle: &Cycle, dt_s: f64) -> Result<(
         .map_err(|problem| problem.in_file("--dt").key("--dt").value(dt_s.to_string()))
 }
 
+/// Which baselines are driven.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Baselines {
+    /// Those given, else those of the vehicle's file.
+    OfFile,
+    /// Those given.
+    Named,
+}
+
 /// Loads all vehicles, subject first. A bad one leaves its problems, and the others are read as well.
-pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -> Vec<RunVehicle> {
-    let (car, comparison) = (&args.car, &args.comparison);
+pub fn load(
+    car: &VehicleArgs,
+    (comparison, baselines): (&ComparisonArgs, Baselines),
+    formulation: Formulation,
+    problems: &mut Problems,
+) -> Vec<RunVehicle> {
     let own = overrides("--set", &car.set, problems);
     let of_all = overrides("--set-all", &comparison.set_all, problems);
     let baseline = Options {
@@ -67,7 +80,10 @@ pub fn load(args: &RunArgs, formulation: Formulation, problems: &mut Problems) -
             problems.take(fluid.transpose().map_err(|found| found.map(named)));
         }
     }
-    let names = comparison.baselines(&car.vehicle, setup.as_ref(), problems);
+    let names = match baselines {
+        Baselines::Named if comparison.baseline.is_empty() => Vec::new(),
+        _ => comparison.baselines(&car.vehicle, setup.as_ref(), problems),
+    };
     // Problems of a baseline cite the file or the option that names it.
     let (option, named_by) = match comparison.baseline.is_empty() {
         true => (car.vehicle.as_str(), NamedBy::File),

@@ -1,0 +1,273 @@
+//! `attribute`: the fuel that each loss costs.
+
+mod files;
+mod tables;
+
+use clap::Args;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::AMBIENT;
+use cvtcycle::config::{Bound, Problems};
+use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::record::Manifest;
+use cvtcycle::output::summary::{Driven, SCHEMA, Settings, StartWord, Summary, summarise};
+use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
+use serde::Serialize;
+
+use super::run::{self, STEP};
+use super::vehicles::{self, Baselines, RunVehicle};
+use super::{Execute, threads};
+use crate::args::problems::bad_value;
+use crate::args::ranges::values;
+use crate::args::{
+    ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs, names_of,
+    number, one_of,
+};
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
+
+/// Allowed factor on a loss.
+const FACTOR: Bound = Bound::closed(0.0, 5.0);
+/// Most ambient temperatures of one command: each whole degree that is allowed.
+const MOST_AMBIENTS: usize = 101;
+/// Which pairs are given.
+const PAIRS: [(&str, Pairs); 3] = [
+    ("large", Pairs::Large),
+    ("all", Pairs::All),
+    ("none", Pairs::None),
+];
+
+/// Arguments of `attribute`.
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.help("Write attribution.csv, pairs.csv, shapley.csv, summary.json and plots (SVG) into this directory")),
+    mut_arg("baseline", |baseline| baseline.help("Another vehicle whose losses are priced as well; repeatable")),
+    after_help = "\
+Examples:
+  cvtcycle attribute
+  cvtcycle attribute --ambient -10,25 --vehicle mycar.toml --cycle wltc_class3b
+  cvtcycle attribute --factor 0.5 --baseline rover_216_5mt
+  cvtcycle attribute --pairs all --shapley --out prices
+
+The car is driven again without each loss, with all else as it follows: oil and engine are colder, pressure and ratio follow. The prices of \
+single losses need not add up to that of all together; `interaction` is the difference. `% energy` is the energy of the loss over that of the \
+fuel, `alone` the fuel that a loss adds to a box without the others. Pairs are given in both orders where the interaction is at least 0.1 % of \
+the fuel, or a tenth of the smaller price."
+)]
+pub struct AttributeArgs {
+    #[command(flatten)]
+    car: VehicleArgs,
+    #[command(flatten)]
+    comparison: ComparisonArgs,
+    /// Ambient temperature, degC, -40 to 60: a number, a list or a range
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
+    ambient: String,
+    /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), or all
+    /// temperatures in degC
+    #[arg(
+        long,
+        value_name = "soak|warm|DEGC",
+        default_value = "soak",
+        allow_hyphen_values = true
+    )]
+    start: String,
+    /// Longest time step, s, 0.01 to 10
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "1",
+        allow_hyphen_values = true
+    )]
+    dt: String,
+    #[command(flatten)]
+    formulation: FormulationArgs,
+    /// Factor on each loss, 0 to 5: 0 is without it, 0.5 is half of it
+    #[arg(
+        long,
+        value_name = "X",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
+    factor: String,
+    /// Pairs of losses in both orders: large, all or none
+    #[arg(long, value_name = "WHICH", default_value = "large", value_parser = Names(|| names_of(&PAIRS)), hide_possible_values = true)]
+    pairs: String,
+    /// Share the whole price out over groups of losses, by Shapley's rule
+    #[arg(long)]
+    shapley: bool,
+    /// Print the price in each part of the cycle
+    #[arg(long)]
+    by_phase: bool,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Checked input of an attribution.
+pub struct AttributePlan {
+    cycle: Cycle,
+    vehicles: Vec<RunVehicle>,
+    ambients_degc: Vec<f64>,
+    start: (Start, StartWord),
+    dt_s: f64,
+    formulation: Formulation,
+    factor: f64,
+    depth: Depth,
+    out: Option<OutputDir>,
+}
+
+/// The object of `--json` and `summary.json`.
+#[derive(Clone, Debug, Serialize)]
+pub struct AttributionSummary {
+    #[serde(flatten)]
+    manifest: Manifest,
+    /// Factor on each loss in turn.
+    factor: f64,
+    /// A run with its prices for each ambient temperature.
+    conditions: Vec<Summary>,
+}
+
+impl Execute for AttributeArgs {
+    type Plan = AttributePlan;
+
+    fn plan(&self, problems: &mut Problems) -> Option<AttributePlan> {
+        let cycle = self.comparison.cycle(problems);
+        let formulation = self.formulation.get(problems);
+        let comparison = (&self.comparison, Baselines::Named);
+        let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
+        let ambients = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
+        let ambients_degc = problems.take(ambients);
+        if let Some(many) = ambients_degc
+            .as_ref()
+            .map(Vec::len)
+            .filter(|n| *n > MOST_AMBIENTS)
+        {
+            let allowed = format!("at most {MOST_AMBIENTS} temperatures");
+            let message = format!("{many} ambient temperatures are too many for one command");
+            let hint = "take a larger step; `cvtcycle study` varies any value";
+            problems.add(bad_value(
+                "--ambient",
+                &self.ambient,
+                &allowed,
+                &message,
+                hint,
+            ));
+        }
+        let start = problems.take(run::start(&self.start));
+        let dt_s = problems.take(number("--dt", &self.dt, STEP, "dt_s"));
+        let factor = problems.take(number("--factor", &self.factor, FACTOR, "factor"));
+        if factor.is_some_and(|factor| (factor - 1.0).abs() <= 0.0) {
+            let message = "with a factor of 1 nothing would change";
+            let hint = "0 removes each loss, 0.5 halves it";
+            let allowed = "0 to 5, and not 1";
+            problems.add(bad_value("--factor", &self.factor, allowed, message, hint));
+        }
+        let pairs = problems.take(one_of("--pairs", &self.pairs, &PAIRS));
+        let threads = self.threads.given(problems);
+        problems.take(threads::begin(threads));
+        let out = self.out.dir(problems);
+        Some(AttributePlan {
+            cycle: cycle?,
+            vehicles,
+            ambients_degc: ambients_degc?,
+            start: start?,
+            dt_s: dt_s?,
+            formulation,
+            factor: factor?,
+            depth: Depth {
+                alone: true,
+                pairs: pairs?,
+                shapley: self.shapley,
+            },
+            out,
+        })
+    }
+
+    fn run(&self, mut plan: AttributePlan, terminal: Terminal) -> CommandResult {
+        let out = plan.out.take();
+        let at = |ambient_degc: &f64| self.priced(&plan, *ambient_degc);
+        let summary = AttributionSummary {
+            manifest: Manifest::new(SCHEMA),
+            factor: plan.factor,
+            conditions: plan.ambients_degc.iter().map(at).collect(),
+        };
+        let json = json_text(&summary)?;
+        let files = WrittenFiles::write(out, |dir| {
+            files::write(dir, &summary)?;
+            dir.put("summary.json", &json)?;
+            Ok("")
+        })?;
+        let results = Results::new(json, failures(&summary), files);
+        let tables = || tables::tables(&summary, &plan.cycle, self.by_phase, terminal.stdout);
+        Ok(results.output(&self.output, tables))
+    }
+}
+
+impl AttributeArgs {
+    /// The runs at one ambient temperature, with their prices.
+    fn priced(&self, plan: &AttributePlan, ambient_degc: f64) -> Summary {
+        let (cycle, vehicles) = (&plan.cycle, &plan.vehicles);
+        let conditions = Conditions {
+            ambient_k: ambient_degc + ZERO_DEGC_K,
+            start: plan.start.0,
+            max_dt_s: plan.dt_s,
+            keep_rows: false,
+        };
+        let settings = Settings {
+            dt_s: plan.dt_s,
+            formulation: plan.formulation.name().to_owned(),
+            set: self.car.set.clone(),
+            set_all: self.comparison.set_all.clone(),
+            strict: false,
+        };
+        let outcomes = vehicles
+            .iter()
+            .map(|car| drive(&car.setup, cycle, &conditions));
+        let outcomes: Vec<_> = outcomes.collect();
+        let driven = vehicles.iter().zip(&outcomes).map(|(car, outcome)| Driven {
+            name: &car.name,
+            setup: &car.setup,
+            outcome,
+        });
+        let driven: Vec<Driven> = driven.collect();
+        let start = plan.start.1.clone();
+        let mut summary = summarise(cycle, ambient_degc, start, settings.clone(), &driven);
+        for (run, car) in summary.runs.iter_mut().zip(vehicles) {
+            let of = Attribution {
+                setup: &car.setup,
+                cycle,
+                conditions,
+                settings: &settings,
+                factor: plan.factor,
+                depth: plan.depth,
+            };
+            run.price = Some(attribute(&of, run));
+        }
+        summary
+    }
+}
+
+/// One line for each failed check, of a car as it is and of one with changed losses.
+fn failures(summary: &AttributionSummary) -> Vec<String> {
+    let of = |summary: &Summary| {
+        let runs = summary.runs.iter();
+        let changed = runs.flat_map(|run| {
+            let price = run.price.iter().flat_map(|price| &price.failures);
+            price.map(|text| format!("check failed: {} {text}", run.vehicle))
+        });
+        run::failures(summary)
+            .into_iter()
+            .chain(changed)
+            .collect::<Vec<_>>()
+    };
+    summary.conditions.iter().flat_map(of).collect()
+}
