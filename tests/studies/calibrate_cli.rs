@@ -49,7 +49,7 @@ fn val_the_example_finds_the_values_that_made_its_data_and_writes_every_file() {
         .as_array()
         .unwrap()
         .iter()
-        .zip([7.5, 0.25, 1.5])
+        .zip([7.5, 4.0, 1.5])
     {
         let (value, error) = (number(&p["value"]), number(&p["standard_error"]));
         assert!(

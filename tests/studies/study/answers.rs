@@ -153,7 +153,7 @@ fn val_blocks_of_saltelli() {
         .lines()
         .find(|line| line.starts_with("Largest effects on the difference to "));
     assert!(
-        strongest.is_some_and(|line| line.contains(": pump (")),
+        strongest.is_some_and(|line| line.contains(": start (")),
         "{printed}"
     );
     assert!(

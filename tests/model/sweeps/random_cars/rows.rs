@@ -153,9 +153,11 @@ fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Checked {
     );
     // An engine that cannot turn its own pump in the cold is outside validity; the row has the flag.
     let flagged = row.flags.contains(Flags::OUTSIDE_VALIDITY);
+    // Rotating energy of an engine that slows down adds to what the charge gives (SI-2, EN-12).
+    let slowing_nm = larger(-row.kinetic_w / w, 0.0);
     prop_assert!(
-        crank_nm <= full + rest || flagged,
-        "crank {crank_nm} Nm of {full} Nm"
+        crank_nm <= full + slowing_nm + rest || flagged,
+        "crank {crank_nm} Nm of {full} and {slowing_nm} Nm"
     );
     Ok(())
 }
@@ -354,7 +356,7 @@ fn every_row_of_unlikely_cars() {
 fn slip_that_jumps_is_not_carried_on_beyond_what_a_belt_can_have() {
     let sets = [
         "transmission.cvt.variator.primary_stiffness_n=100000",
-        "lubricant.friction.band=0.4",
+        "lubricant.friction.band=0.39",
         "transmission.cvt.belt.mass_kg=10",
         "road_load.payload_kg=3423.3756247597075",
         "transmission.cvt.belt.initial_gap_mm=68.47256302538055",

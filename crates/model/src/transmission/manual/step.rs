@@ -182,7 +182,9 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
         self.set_throttle(&mut output, full_load_nm);
         // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it.
-        let on_the_way_w = larger(at.input_nm, 0.0) * speed.excess_rad_s;
+        let mean_rad_s = w + speed.excess_rad_s;
+        let at_mean = (self.manual.coupling).engine_side(at.input_nm, input, mean_rad_s);
+        let on_the_way_w = at_mean.loss_w - side.loss_w;
         output.shaft_nm += on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
         (output, lacks_torque)
