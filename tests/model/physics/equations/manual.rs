@@ -248,7 +248,10 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
         } else {
             0.0
         };
-        let excess = 0.5 * fall * slips;
+        // No more than full load is passed on.
+        let room_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - input_nm;
+        let most = room_nm.max(0.0) * w / input_nm.max(1e-300);
+        let excess = (0.5 * fall * slips).min(most);
         tight(d.shaft_nm, input_nm * (1.0 + excess / w));
         tight(
             d.loss_w[Component::LaunchClutch],

@@ -153,11 +153,9 @@ fn engine_bounds(row: &Row, car: &Car, before: &Heat) -> Checked {
     );
     // An engine that cannot turn its own pump in the cold is outside validity; the row has the flag.
     let flagged = row.flags.contains(Flags::OUTSIDE_VALIDITY);
-    // Rotating energy of an engine that slows down adds to what the charge gives (SI-2, EN-12).
-    let slowing_nm = larger(-row.kinetic_w / w, 0.0);
     prop_assert!(
-        crank_nm <= full + slowing_nm + rest || flagged,
-        "crank {crank_nm} Nm of {full} and {slowing_nm} Nm"
+        crank_nm <= full + rest || flagged,
+        "crank {crank_nm} Nm of {full} Nm"
     );
     Ok(())
 }

@@ -78,7 +78,7 @@ fn index(source: &Path) -> Result<String, String> {
     for stem in PAGES
         .iter()
         .map(|page| page.stem)
-        .chain(["cold", "rigs", "studies"])
+        .chain(["attribution", "cold", "rigs", "studies"])
     {
         let path = source.join(format!("{stem}.md"));
         let page =

@@ -4,7 +4,7 @@ use super::engaged::sum_nm;
 use super::{Engaged, Manual, PartLosses};
 use crate::flags::Flags;
 use crate::fluid::OilState;
-use crate::math::{clamp, larger};
+use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
@@ -181,10 +181,12 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
         flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
         self.set_throttle(&mut output, full_load_nm);
-        // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it.
+        // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it. Where that lags at
+        // full load nothing else may: no more than full load is passed on.
         let mean_rad_s = w + speed.excess_rad_s;
         let at_mean = (self.manual.coupling).engine_side(at.input_nm, input, mean_rad_s);
-        let on_the_way_w = at_mean.loss_w - side.loss_w;
+        let room_nm = full_load_nm - engine.accessories_nm(w) - side.engine_nm;
+        let on_the_way_w = smaller(at_mean.loss_w - side.loss_w, larger(room_nm, 0.0) * w);
         output.shaft_nm += on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
         (output, lacks_torque)
