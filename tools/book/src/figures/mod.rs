@@ -34,7 +34,7 @@ const fn page(stem: &'static str, keys: &'static [&'static str]) -> Page {
 }
 
 /// Pages of mechanisms in the order of the book.
-pub const PAGES: [Page; 27] = [
+pub const PAGES: [Page; 26] = [
     page(
         "belt",
         &[
@@ -98,7 +98,6 @@ pub const PAGES: [Page; 27] = [
     page("thermal", &["thermal."]),
     page("maps", &["transmission.cvt.maps."]),
     page("ledgers", &["vehicle."]),
-    page("physics_checks", &[]),
 ];
 
 /// Every generated file, its name below the book's `src`, and its text.

@@ -75,11 +75,13 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
 fn index(source: &Path) -> Result<String, String> {
     let mut text = MADE_FROM_HEADS.to_owned()
         + "\n| label | page | statement in the code | status |\n|---|---|---|---|\n";
-    for stem in PAGES
-        .iter()
-        .map(|page| page.stem)
-        .chain(["attribution", "cold", "rigs", "studies"])
-    {
+    for stem in PAGES.iter().map(|page| page.stem).chain([
+        "attribution",
+        "cold",
+        "physics_checks",
+        "rigs",
+        "studies",
+    ]) {
         let path = source.join(format!("{stem}.md"));
         let page =
             std::fs::read_to_string(&path).map_err(|why| format!("{}: {why}", path.display()))?;
