@@ -8,7 +8,7 @@ use cvtcycle::config::{Override, ProblemKind};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::output::summary::{Driven, RunSummary, Settings, run_summary};
 
-use crate::range::range;
+use crate::common::range::range;
 
 const PAGE: &str = include_str!("../../docs/attacks.md");
 

@@ -10,8 +10,6 @@
 mod common;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
-#[path = "../common/range.rs"]
-mod range;
 
 mod attacks;
 mod failures;
