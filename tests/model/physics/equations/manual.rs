@@ -192,7 +192,6 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
     if input_nm < 0.0 {
         tight(d.shaft_nm, input_nm * input / w);
         tight(d.loss_w[Component::LaunchClutch], 0.0); // CV-6
-    } else {
     }
     let reach = |nm: f64| {
         let load = CouplingLoad::new(nm, input, idle, s.coupled);
