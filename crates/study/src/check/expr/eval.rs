@@ -8,7 +8,7 @@ use super::{Expr, Order, Reduce};
 
 /// Most evaluations that the rows of a command, or the observations of one evaluation of a fit, may take together; the shipped rows take less
 /// than a third. One is about the work of a sum of two numbers: each part of an expression is one, each row that is looked at is one, finding
-/// a table or a key is [`LOOKING_UP`], sorting rows is [`Form::sorting`]. Loops and reductions within each other multiply.
+/// a table or a key is eight, sorting rows is n log2 n. Loops and reductions within each other multiply.
 pub const MAX_EVALUATIONS: u64 = 100_000_000;
 /// Evaluations that finding a table or a key counts as.
 const LOOKING_UP: u64 = 8;

@@ -88,7 +88,7 @@ pub fn film_n(
     pair(|i| heating.torque_nm(band.shear_pa[i] * area_m2, sliding_m_s[i])) // FI-1
 }
 
-/// Adopted band speed of a formulation as [`travel_m`] takes it (BT-1, BT-7).
+/// Adopted band speed of a formulation as `travel_m` takes it (BT-1, BT-7).
 pub fn speed_share(belt: &Belt) -> f64 {
     if belt.formulation.by_statics() {
         -0.5
