@@ -5,12 +5,20 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
-use cvtcycle::config::{Problems, cycle};
+use cvtcycle::config::{Bound, Problem, Problems, cycle};
+use cvtcycle::model::drive::Start;
+use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::summary::StartWord;
 
-use super::problems::{bad_value, overrides, problem};
-use super::{Names, count, cycles, names_of, one_of, relative_to};
+use super::problems::{bad_value, did_you_mean, overrides, problem};
+use super::{Names, count, cycles, names_of, number, one_of, relative_to};
+
+/// Allowed temperature at the start, degC.
+const START: Bound = Bound::closed(-40.0, 130.0);
+/// Allowed length of a step, s.
+const STEP: Bound = Bound::closed(0.01, 10.0);
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -67,6 +75,57 @@ impl FormulationArgs {
         let found = one_of("--formulation", &self.formulation, &Formulation::NAMES);
         problems.take(found).unwrap_or_default()
     }
+}
+
+/// How a cycle is driven: its start and its steps.
+#[derive(Args, Clone, Debug)]
+pub struct DriveArgs {
+    /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), or all
+    /// temperatures in degC
+    #[arg(
+        long,
+        value_name = "soak|warm|DEGC",
+        default_value = "soak",
+        allow_hyphen_values = true
+    )]
+    pub start: String,
+    /// Longest time step, s, 0.01 to 10
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "1",
+        allow_hyphen_values = true
+    )]
+    pub dt: String,
+}
+
+impl DriveArgs {
+    /// Start and longest time step, s; none of what has a problem.
+    pub fn get(&self, problems: &mut Problems) -> (Option<(Start, StartWord)>, Option<f64>) {
+        let start = problems.take(start(&self.start));
+        (start, problems.take(number("--dt", &self.dt, STEP, "dt_s")))
+    }
+}
+
+/// The start that a word names.
+fn start(value: &str) -> Result<(Start, StartWord), Problems> {
+    let word = |start: Start| Ok((start, StartWord::Word(value.to_owned())));
+    match value {
+        "soak" => return word(Start::Soak),
+        "warm" => return word(Start::Warm),
+        _ => {}
+    }
+    let named = |mut problem: Problem| {
+        problem.allowed = format!("soak, warm, or {}", START.in_unit("°C"));
+        let question = did_you_mean(value, &["soak", "warm"]);
+        if !question.is_empty() {
+            problem.hint = question;
+        }
+        problem
+    };
+    let degc = number("--start", value, START, "start_degc");
+    let degc = degc.map_err(|problems| problems.map(named))?;
+    Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
 
 /// The cycle, and the vehicles that are compared on it.

@@ -16,14 +16,13 @@ use cvtcycle::output::summary::{Driven, SCHEMA, Settings, StartWord, Summary, su
 use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use serde::Serialize;
 
-use super::run::{self, STEP};
 use super::vehicles::{self, Baselines, RunVehicle};
-use super::{Execute, threads};
+use super::{Execute, run, threads};
 use crate::args::problems::bad_value;
 use crate::args::ranges::values;
 use crate::args::{
-    ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs, names_of,
-    number, one_of,
+    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs,
+    VehicleArgs, names_of, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -68,23 +67,8 @@ pub struct AttributeArgs {
         allow_hyphen_values = true
     )]
     ambient: String,
-    /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), or all
-    /// temperatures in degC
-    #[arg(
-        long,
-        value_name = "soak|warm|DEGC",
-        default_value = "soak",
-        allow_hyphen_values = true
-    )]
-    start: String,
-    /// Longest time step, s, 0.01 to 10
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        default_value = "1",
-        allow_hyphen_values = true
-    )]
-    dt: String,
+    #[command(flatten)]
+    drive: DriveArgs,
     #[command(flatten)]
     formulation: FormulationArgs,
     /// Factor on each loss, 0 to 5: 0 is without it, 0.5 is half of it
@@ -162,8 +146,7 @@ impl Execute for AttributeArgs {
                 hint,
             ));
         }
-        let start = problems.take(run::start(&self.start));
-        let dt_s = problems.take(number("--dt", &self.dt, STEP, "dt_s"));
+        let (start, dt_s) = self.drive.get(problems);
         let factor = problems.take(number("--factor", &self.factor, FACTOR, "factor"));
         if factor.is_some_and(|factor| (factor - 1.0).abs() <= 0.0) {
             let message = "with a factor of 1 nothing would change";

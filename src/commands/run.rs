@@ -8,7 +8,7 @@ pub use tables::failures;
 use clap::Args;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::AMBIENT;
-use cvtcycle::config::{Bound, Problem, Problems};
+use cvtcycle::config::Problems;
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -19,18 +19,12 @@ use cvtcycle::study::attribute::{Attribution, Depth, attribute};
 
 use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, threads};
-use crate::args::problems::did_you_mean;
 use crate::args::{
-    ComparisonArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of, number,
-    one_of,
+    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of,
+    number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use files::{TraceFormat, When};
-
-/// Allowed length of a step, s.
-pub const STEP: Bound = Bound::closed(0.01, 10.0);
-/// Allowed temperature at the start, degC.
-const START: Bound = Bound::closed(-40.0, 130.0);
 
 /// Arguments of `run`.
 #[derive(Args, Clone, Debug)]
@@ -59,23 +53,8 @@ pub struct RunArgs {
         allow_hyphen_values = true
     )]
     ambient: String,
-    /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), or all
-    /// temperatures in degC
-    #[arg(
-        long,
-        value_name = "soak|warm|DEGC",
-        default_value = "soak",
-        allow_hyphen_values = true
-    )]
-    start: String,
-    /// Longest time step, s, 0.01 to 10
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        default_value = "1",
-        allow_hyphen_values = true
-    )]
-    dt: String,
+    #[command(flatten)]
+    drive: DriveArgs,
     #[command(flatten)]
     formulation: FormulationArgs,
     /// Drive each vehicle again without each loss for the fuel that it costs: always, never, or auto (unless the cycle has more
@@ -122,8 +101,7 @@ impl Execute for RunArgs {
         let comparison = (&self.comparison, Baselines::OfFile);
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
         let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
-        let start = problems.take(start(&self.start));
-        let dt_s = problems.take(number("--dt", &self.dt, STEP, "dt_s"));
+        let (start, dt_s) = self.drive.get(problems);
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
         let when = |option: &str, word: &str| one_of(option, word, &When::NAMES);
         let price = problems.take(when("--price", &self.price));
@@ -211,25 +189,4 @@ impl Execute for RunArgs {
         let tables = || tables::tables(&summary, cycle, terminal.stdout);
         Ok(results.output(&self.output, tables))
     }
-}
-
-/// The start that a word names.
-pub fn start(value: &str) -> Result<(Start, StartWord), Problems> {
-    let word = |start: Start| Ok((start, StartWord::Word(value.to_owned())));
-    match value {
-        "soak" => return word(Start::Soak),
-        "warm" => return word(Start::Warm),
-        _ => {}
-    }
-    let named = |mut problem: Problem| {
-        problem.allowed = format!("soak, warm, or {}", START.in_unit("°C"));
-        let question = did_you_mean(value, &["soak", "warm"]);
-        if !question.is_empty() {
-            problem.hint = question;
-        }
-        problem
-    };
-    let degc = number("--start", value, START, "start_degc");
-    let degc = degc.map_err(|problems| problems.map(named))?;
-    Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
