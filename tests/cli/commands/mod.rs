@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod attribute;
+mod compare;
 mod inputs;
 mod run;
 mod streams;

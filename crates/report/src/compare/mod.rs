@@ -1,6 +1,9 @@
-//! Comparison of two runs of one cycle: two fluids, two pumps, two offsets.
+//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), a table of any number.
 
 mod figures;
+mod many;
+
+pub use many::{Comparison, Different, Side, compare};
 
 use figures::{difference, traces};
 
@@ -27,7 +30,7 @@ struct Pair<'a> {
 ///
 /// # Errors
 /// Runs of different cycles; runs without a car in common.
-pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
+pub(crate) fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
     if a.summary.cycle != b.summary.cycle {
         let message = format!(
             "{} drives {}, {} drives {}: runs of different cycles cannot be compared",
