@@ -5,6 +5,7 @@ mod attribute;
 mod compare;
 mod inputs;
 mod run;
+mod study;
 mod streams;
 
 use std::fs;
