@@ -92,7 +92,8 @@ impl Execute for LossesArgs {
         let LossesPlan { losses, map, out } = plan;
         if let Some(part) = map {
             let write = |out: &mut dyn io::Write| write_map(out, &losses.bench, part, &losses.grid);
-            return self.write_map(&losses.json_head(), out, write);
+            let head = losses.json_head(self.as_map.as_deref());
+            return self.write_map(&head, out, write);
         }
         let files = WrittenFiles::write(out, |dir| {
             dir.write("losses.csv", |out| losses.write_csv(out, losses.rows()))?;

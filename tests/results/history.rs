@@ -74,7 +74,14 @@ fn what_is_written_is_read_bit_by_bit() {
             );
             let read = History::read_csv("trace.csv", &csv(&rows, cvt, &parts, phases)).unwrap();
             assert_eq!(bits(&read), bits(&history), "{name}");
-            write_trace_parquet(fs::File::create(&path).unwrap(), &columns, &rows, phases).unwrap();
+            write_trace_parquet(
+                fs::File::create(&path).unwrap(),
+                &columns,
+                &rows,
+                phases,
+                "",
+            )
+            .unwrap();
             assert_eq!(
                 bits(&read_trace_parquet(&path).unwrap()),
                 bits(&history),
@@ -284,7 +291,7 @@ fn a_bad_parquet_trace_is_reported_too() {
     assert_eq!(read_problems().len(), 1);
     let columns = columns_for(true, &[]);
     let write = |columns: &[_], rows: &[Row]| {
-        write_trace_parquet(fs::File::create(&path).unwrap(), columns, rows, &[]).unwrap()
+        write_trace_parquet(fs::File::create(&path).unwrap(), columns, rows, &[], "").unwrap()
     };
     write(&columns, &[]);
     assert!(

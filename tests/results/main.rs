@@ -10,7 +10,10 @@
 mod common;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
+#[path = "../common/range.rs"]
+mod range;
 
+mod attacks;
 mod failures;
 mod history;
 mod outputs;

@@ -243,7 +243,7 @@ fn points_outside_validity_are_flagged() {
             "{out}"
         );
     }
-    assert!(!run(&["--test", "steady"]).1.contains("flagged"));
+    assert!(!run(&["--test", "steady"]).1.contains("outside_validity"));
 }
 
 /// Ran, but a check failed.

@@ -60,7 +60,7 @@ fn outputs() {
     for word in [
         "ratio 2.417, 2000 rpm, belt 85",
         "ratio 0.5, 1500 rpm",
-        "78.9",
+        "78.7",
         "100 turns of the belt",
         "curves.csv",
     ] {

@@ -43,6 +43,8 @@ fn val_the_example_finds_the_values_that_made_its_data_and_writes_every_file() {
         printed,
         serde_json::from_str::<Value>(&read("calibration.json")).unwrap()
     );
+    let word = printed["run"].as_str().unwrap();
+    assert!(word.len() == 16 && word.bytes().all(|byte| byte.is_ascii_hexdigit()));
     for (p, truth) in printed["parameters"]
         .as_array()
         .unwrap()
@@ -121,6 +123,7 @@ fn without_folds_nothing_is_predicted_and_starts_and_seed_are_obeyed() {
     let other: Value = serde_json::from_slice(&other.get_output().stdout).unwrap();
     assert_eq!(printed["starts"][0]["from"], other["starts"][0]["from"]);
     assert_ne!(printed["starts"][1]["from"], other["starts"][1]["from"]);
+    assert_ne!(printed["run"], other["run"]);
 }
 
 /// What the plan sets is in the fitted files, and files in the folder of the vehicle are found from wherever they lie: the bench loses with the

@@ -13,6 +13,8 @@ mod common;
 #[allow(dead_code, reason = "the pictures of runs are used by tests/results")]
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
+#[path = "../common/small_tables.rs"]
+mod small_tables;
 #[path = "../common/tree.rs"]
 mod tree;
 

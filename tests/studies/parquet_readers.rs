@@ -268,6 +268,7 @@ fn val_pyarrow_finds_the_cells_of_a_trace_and_of_an_export() {
             &columns,
             &rows,
             &phases,
+            "0123456789abcdef",
         )
         .unwrap();
         write_trace(
@@ -283,7 +284,7 @@ fn val_pyarrow_finds_the_cells_of_a_trace_and_of_an_export() {
             rows: 1180,
             groups: 1,
             units: false,
-            metadata: json!({}),
+            metadata: json!({ "cvtcycle.run": "0123456789abcdef" }),
         }
         .write(&base);
         let counted = compare(&python, &base).unwrap();

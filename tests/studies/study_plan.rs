@@ -410,9 +410,9 @@ fn examples_of_the_documentation() {
     assert_eq!(numbers(&plan.factors[0].values), [7.0, 7.5, 8.0, 8.5, 9.0]);
     assert_eq!(plan.factors[0].unit, "cm³/rev");
     let triangular = Distribution::Triangular {
-        low: 0.975,
-        mode: 0.985,
-        high: 0.99,
+        low: 0.5,
+        mode: 1.0,
+        high: 1.5,
     };
     assert_eq!(
         plan.factors[1].values,

@@ -17,7 +17,7 @@ from array import array
 
 # Not numbers of the program: prose, names of files, versions, hashes of texts.
 SKIPPED = set(
-    "schema program build command version sha256 plan_sha256 resolved_sha256 file path files title question what condition"
+    "schema program build run command version sha256 plan_sha256 resolved_sha256 file path files title question what condition"
     " label reason cause remark note source doc meaning printed tolerance unit".split()
 )
 # Words that are results: they are compared as they are. renamed.txt maps a new word to the old one.

@@ -11,6 +11,7 @@ use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 
 use crate::number::plain;
+use crate::provenance::car_sha256;
 use crate::record::Manifest;
 use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
 use crate::trace::{bar, degc};
@@ -359,9 +360,9 @@ impl LossTable {
         columns(self.setup.transmission())
     }
 
-    /// Everything of the JSON object but its points.
-    pub fn json_head(&self) -> Value {
-        Manifest::new(SCHEMA).with(&json!({
+    /// Everything of the JSON object but its points, which go on as the map of a component where one is named.
+    pub fn json_head(&self, map: Option<&str>) -> Value {
+        let rest = json!({
             "settings": {
                 "vehicle": self.setup.name,
                 "transmission": if self.is_cvt() { "cvt" } else { "manual" },
@@ -371,7 +372,10 @@ impl LossTable {
             },
             "columns": json_columns(&self.columns()),
             "count": self.grid.len(),
-        }))
+        });
+        // What the points follow from: they are computed while they are written.
+        let of = (&rest, car_sha256(&self.setup), &self.grid.values, map);
+        Manifest::new(SCHEMA).of_run(&of).with(&rest)
     }
 
     /// Writes rows as CSV.
@@ -395,6 +399,6 @@ impl LossTable {
         out: &mut dyn Write,
         rows: impl Iterator<Item = LossRow>,
     ) -> io::Result<()> {
-        write_json(out, &self.json_head(), &self.columns(), rows)
+        write_json(out, &self.json_head(None), &self.columns(), rows)
     }
 }

@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::files::Sums;
+use crate::files::{Sums, hex, sha256};
 use crate::{BUILD, PROGRAM};
 
 /// Version of the object; a new number when a name goes or changes its meaning.
@@ -26,7 +26,7 @@ pub struct Manifest {
     /// Which build of the program: [`BUILD`]. Empty in files of versions that had none.
     #[serde(default)]
     pub build: String,
-    /// Which run the file is of, where a run has several files: equal inputs and numbers have one word. Empty in files of versions that had none.
+    /// Which run the file is of: equal inputs and numbers have one [`run_word`]. Empty in files of versions that had none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub run: String,
 }
@@ -41,6 +41,13 @@ impl Manifest {
             build: BUILD.to_owned(),
             run: String::new(),
         }
+    }
+
+    /// Of a run that `of` says everything about, besides what the manifest says itself.
+    #[must_use]
+    pub fn of_run(self, of: &impl Serialize) -> Self {
+        let run = run_word(&(&self, of));
+        Manifest { run, ..self }
     }
 
     /// One JSON object: these entries, then those of `rest`.
@@ -58,6 +65,17 @@ impl Manifest {
         })
         .unwrap_or_default()
     }
+}
+
+/// Length of the word that names a run.
+const RUN_DIGITS: usize = 16;
+
+/// The word that names a run in all its files: a hash of what it was made from, or of what it found.
+pub fn run_word(of: &impl Serialize) -> String {
+    let text = serde_json::to_vec(of).unwrap_or_default();
+    let mut word = hex(&sha256(&text));
+    word.truncate(RUN_DIGITS);
+    word
 }
 
 /// Everything that a run was made from.

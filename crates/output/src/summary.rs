@@ -14,8 +14,7 @@ pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
-use super::record::{Manifest, Record};
-use crate::files::{hex, sha256};
+use super::record::{Manifest, Record, run_word};
 use crate::number::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
@@ -141,18 +140,13 @@ pub fn summarise(
     }
 }
 
-/// Length of the word that names a run.
-const RUN_DIGITS: usize = 16;
-
 /// Names the run of a summary and its record in both: by a hash of what they say, but for the words of the command line.
 pub fn name_run(summary: &mut Summary, record: &mut Record) {
     let bare = Record {
         command: String::new(),
         ..record.clone()
     };
-    let text = serde_json::to_vec(&(&*summary, bare)).unwrap_or_default();
-    let mut word = hex(&sha256(&text));
-    word.truncate(RUN_DIGITS);
+    let word = run_word(&(&*summary, bare));
     summary.manifest.run.clone_from(&word);
     record.manifest.run = word;
 }

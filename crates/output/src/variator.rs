@@ -6,6 +6,7 @@ use cvtcycle_model::bench::variator::{CurveSummary, Held, Resolution, VariatorRi
 use serde_json::json;
 
 use crate::columns;
+use crate::files::Summing;
 use crate::number::fixed;
 use crate::record::Manifest;
 use crate::rig::given;
@@ -130,7 +131,9 @@ impl VariatorCurves {
     /// Those of `out`.
     pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
         let columns = point_columns();
-        let head = Manifest::new(SCHEMA).with(&json!({
+        let mut points = Summing::new(io::sink());
+        self.write_points(&mut points)?;
+        let rest = json!({
             "settings": {
                 "vehicle": self.vehicle,
                 "lubricant": self.lubricant,
@@ -141,8 +144,9 @@ impl VariatorCurves {
             "curves": json_rows(&curve_columns(), &self.numbers()),
             "columns": json_columns(&columns),
             "count": self.points().count(),
-        }));
-        write_json(out, &head, &columns, self.points())
+        });
+        let head = Manifest::new(SCHEMA).of_run(&(&rest, points.finish()));
+        write_json(out, &head.with(&rest), &columns, self.points())
     }
 }
 

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::problems::{belongs, consistent, problem, unreadable};
 use cvtcycle_config::bounded;
-use cvtcycle_config::{Input, Place, Problem, Problems, Setting};
+use cvtcycle_config::{Input, Place, Problem, ProblemKind, Problems, Setting};
 use cvtcycle_output::files::{self, hex, sum_of};
 use cvtcycle_output::history::History;
 use cvtcycle_output::provenance::hash;
@@ -388,7 +388,7 @@ fn typed<T: serde::de::DeserializeOwned>(
         }
         Some(_) => serde_json::from_value(value).map_err(|error| {
             let message = format!("the file is not as this program writes it: {error}");
-            problem(path, &message, "it is damaged; run it again")
+            problem(path, &message, "it is damaged; run it again").kind(ProblemKind::Damaged)
         }),
         None => Err(problem(
             path,

@@ -10,6 +10,7 @@ use cvtcycle::model::bench::transmission::{Conditions, Plan as TestPoints};
 use cvtcycle::model::bench::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::record::Manifest;
 use cvtcycle::output::rig::{RigResults, RigTest};
 use cvtcycle::report::charts::rig_transmission::{self as plots, Subject};
 use serde_json::{Value, json};
@@ -20,6 +21,8 @@ use crate::args::{FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, name
 use crate::commands::Execute;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
+/// Version of the JSON object.
+const SCHEMA: u32 = 1;
 /// Ratios that can be tested.
 const RATIO: Bound = Bound::closed(0.3, 3.0);
 /// Input speeds that can be tested, rpm.
@@ -201,7 +204,7 @@ impl RigPlan {
             entries.extend(found.json(&self.points));
             entries.insert("failed_checks".to_owned(), json!(failures));
         }
-        all
+        Manifest::new(SCHEMA).of_run(&all).with(&all)
     }
 
     fn pictures(&self, found: &RigResults) -> impl Iterator<Item = (String, String)> {

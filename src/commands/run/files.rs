@@ -61,7 +61,7 @@ pub fn write(
         }
         if format != TraceFormat::Csv {
             dir.write(&format!("trace_{name}.parquet"), |out| {
-                write_trace_parquet(out, columns, rows, phases)
+                write_trace_parquet(out, columns, rows, phases, &summary.manifest.run)
             })?;
         }
         let plot = PlotRun {

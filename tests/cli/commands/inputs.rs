@@ -25,7 +25,7 @@ fn lists_name_what_can_be_driven() {
             .as_array()
             .unwrap()
             .len(),
-        3
+        4
     );
     assert_eq!(
         json(&["list", "lubricants", "--json"])["lubricants"]

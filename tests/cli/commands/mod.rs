@@ -4,6 +4,7 @@
 mod attribute;
 mod compare;
 mod inputs;
+mod named;
 mod run;
 mod study;
 mod streams;

@@ -425,8 +425,8 @@ fn what_no_car_can_do_is_exit_code_1() {
         fs::write(dir.path().join(name), text).unwrap();
     }
     let gain = "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2=1e-7";
-    let seal = "transmission.manual.seal.torque_nm=20";
-    let thick = "transmission.manual.seal.viscous_exponent=1.5";
+    let still = "thermal.radiator.fan_w_k=0";
+    let closed = "thermal.radiator.ram_w_k_per_m_s=0";
     let manual = ["--vehicle", "rover_216_5mt"];
     for (words, check, unit, text) in [
         (
@@ -452,13 +452,13 @@ fn what_no_car_can_do_is_exit_code_1() {
                 &manual[..],
                 &[
                     "--cycle",
-                    "ece15",
+                    "ftp75",
                     "--ambient",
-                    "-40",
+                    "40",
                     "--set",
-                    seal,
+                    still,
                     "--set",
-                    thick,
+                    closed,
                 ],
             ]
             .concat(),
@@ -474,7 +474,7 @@ fn what_no_car_can_do_is_exit_code_1() {
             .concat(),
             "too_hot",
             "degC",
-            "rover_216_5mt heats the coolant to 25",
+            "rover_216_5mt heats the coolant to 156.7 degC at 3600.0 s in idle",
         ),
     ] {
         let words = [&["run", "--baseline", "none"], &words[..]].concat();
@@ -503,5 +503,46 @@ fn what_no_car_can_do_is_exit_code_1() {
         assert_eq!(found["unit"].as_str().unwrap_or_default(), unit);
         let beyond = found["value"].as_f64().zip(found["limit"].as_f64());
         assert!(beyond.map_or(unit.is_empty(), |(value, limit)| value > limit));
+    }
+}
+
+/// Twenty thousand options, words of 100 kB, lists and ranges without end: an answer, no panic.
+#[test]
+fn command_lines_without_end_are_refused_in_a_moment() {
+    let long = "x".repeat(100_000);
+    let (key, list) = (format!("{long}=1"), vec!["1"; 40_000].join(","));
+    let deep = format!(
+        "road_load.mass_kg={}1{}",
+        "[".repeat(30_000),
+        "]".repeat(30_000)
+    );
+    let many = ["--set"].into_iter().cycle().take(20_000);
+    let many = many.flat_map(|option| [option, "road_load.mass_kg=1000"]);
+    let repeated: Vec<&str> = ["losses"].into_iter().chain(many).collect();
+    let same = ["losses", "--speed", &list, "--temp", &list];
+    for line in [&repeated[..], &same] {
+        assert!(run(line).status.success(), "{:.200}", stderr(&run(line)));
+    }
+    for line in [
+        vec!["run", "--vehicle", &long],
+        vec!["run", "--cycle", &long],
+        vec!["run", "--set", &key],
+        vec!["run", "--set", &deep],
+        vec![&long],
+        vec!["explain", &long],
+        vec!["losses", "--speed", "1..9000:1e-9"],
+        vec![
+            "losses",
+            "--speed",
+            "1..1e308:1e-308",
+            "--torque",
+            "nan..inf",
+        ],
+        vec!["rig", "variator", "--torque", "0..1e15:1"],
+    ] {
+        let output = run(&line);
+        let code = output.status.code();
+        assert_eq!(code, Some(2), "{:.200}", stderr(&output));
+        assert!(output.stdout.is_empty() && stderr(&output).len() < 1_000_000);
     }
 }

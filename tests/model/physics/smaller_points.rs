@@ -94,7 +94,7 @@ fn a_small_primary_piston_is_flagged() {
 }
 
 /// B5: after a change up the clutch slips until the engine has come down, and what it loses is of the size of J (w1 - w2)2/2, whatever the step; the
-/// rotating energy is that of the speed after every row.
+/// rotating energy is that of the speed after every row. Only after a change down, where full load cannot speed the engine up within a step, it follows later.
 #[test]
 fn a_change_up_is_paid_by_the_clutch() {
     for name in &CARS[1..] {
@@ -107,11 +107,17 @@ fn a_change_up_is_paid_by_the_clutch() {
             let rows = drive(&car(name, &[]), &cycle("eudc"), &conditions).rows;
             let j = car(name, &[]).car(25.0 + ZERO).engine.inertia_kg_m2;
             let mut energy_j = 0.5 * j * rows[0].engine_speed_rad_s.powi(2);
-            for row in &rows[1..] {
+            let mut changed_down_s = f64::NEG_INFINITY;
+            for pair in rows.windows(2) {
+                let row = &pair[1];
+                if row.gear < pair[0].gear {
+                    changed_down_s = row.time_s;
+                }
                 energy_j += row.kinetic_w * row.dt_s;
                 let want_j = 0.5 * j * row.engine_speed_rad_s.powi(2);
+                let lags = row.time_s <= changed_down_s + 0.5 && energy_j < want_j;
                 assert!(
-                    (energy_j - want_j).abs() < 1e-6,
+                    lags || (energy_j - want_j).abs() < 1e-6,
                     "{name} {} s: {energy_j} J instead of {want_j}",
                     row.time_s
                 );

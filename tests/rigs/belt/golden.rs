@@ -89,7 +89,7 @@ fn val_printed_defaults_need_no_columns() {
         "--set",
         "lubricant.friction.band=0.2",
         "--set",
-        "lubricant.friction.segment=0.3",
+        "lubricant.friction.segment=0.19",
         "--set",
         "lubricant.friction.flank=0.3",
     ];

@@ -199,7 +199,7 @@ fn temperature_moves_friction_only_where_it_is_given() {
             &[("belt_temp_degc", temp), ("formulation", formulation)],
             &[],
         )
-        .number(0, "band_loss_primary_nm")
+        .number(0, "band_loss_secondary_nm")
     };
     // Cold and fast the film lifts the bands in smooth; the printed forms know the boundary part alone.
     let (none, hot, cold) = (

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use cvtcycle::config::{Argument, Setting};
+use cvtcycle::config::{Argument, ProblemKind, Setting};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::study::store::{Study, StudyDir};
 use serde_json::json;
@@ -165,11 +165,7 @@ fn only_one_process_writes_a_study_and_others_may_read() {
         StudyDir::resume(dir.path(), &manifest(2), PLAN).unwrap_err(),
         StudyDir::create(dir.path(), &manifest(2), PLAN, true).unwrap_err(),
     ] {
-        assert!(
-            second.message.contains("another process is writing"),
-            "{}",
-            second.message
-        );
+        assert_eq!(second.kind, ProblemKind::Locked);
     }
     assert_eq!(Study::open(dir.path()).unwrap().present(), [0]);
     drop(first);
@@ -204,9 +200,8 @@ fn a_manifest_that_leads_astray_is_refused() {
         let problem = Study::open(dir.path()).unwrap_err();
         assert!(
             problem.place.input.to_string().ends_with("study.json")
-                && problem.message.contains("damaged"),
-            "{layout}: {}",
-            problem.message
+                && problem.kind == ProblemKind::Damaged,
+            "{layout}: {problem:?}"
         );
     }
     let none = TempDir::new().unwrap();

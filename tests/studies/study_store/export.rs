@@ -4,13 +4,14 @@ use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use cvtcycle::config::ProblemKind;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::store::{Exported, Format, export};
 use cvtcycle::study::store::{Kind, Rows, Values};
 use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
 use tempfile::TempDir;
 
-use super::{PLAN, head, heads, manifest, manifest_of, rows, whole, write_part};
+use super::{PLAN, RUN, head, heads, manifest, manifest_of, rows, whole, write_part};
 
 const PARTS: usize = 3;
 
@@ -121,13 +122,13 @@ fn parquet_has_a_row_group_a_part_and_the_manifest() {
     assert_eq!(sizes, [3, 4, 5]);
     let table = ParquetFile::open(&file, &sha256(&bytes)).unwrap();
     assert_eq!(table.columns(), heads());
-    let manifest = table
-        .metadata()
-        .into_iter()
-        .find(|(key, _)| key == "cvtcycle.manifest")
-        .unwrap()
-        .1;
-    assert_eq!(manifest.into_bytes(), super::manifest(PARTS));
+    let manifest = String::from_utf8(super::manifest(PARTS)).unwrap();
+    let own = [("cvtcycle.run", RUN), ("cvtcycle.manifest", &*manifest)];
+    let own = own.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    assert_eq!(table.metadata()[..2], own);
+    let part = dir.path().join("study/parts/runs_00000.parquet");
+    let part = ParquetFile::open(&part, &sha256(&fs::read(&part).unwrap())).unwrap();
+    assert_eq!(part.metadata()[0], own[0]);
     let all = Study::open(dir.path().join("study"))
         .unwrap()
         .read("runs", &["run", "reason", "vehicle"])
@@ -329,12 +330,8 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
     fs::write(&spoiled, "no").unwrap();
     for ending in ["csv", "parquet", "xlsx"] {
         let to = dir.path().join(format!("b.{ending}"));
-        assert!(
-            exported(&path, "trace", &to)
-                .unwrap_err()
-                .message
-                .contains("damaged")
-        );
+        let problem = exported(&path, "trace", &to).unwrap_err();
+        assert_eq!(problem.kind, ProblemKind::Damaged);
         assert!(!to.exists());
     }
 }

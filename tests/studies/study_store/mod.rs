@@ -78,10 +78,13 @@ fn rows(part: usize) -> Rows {
 
 fn manifest_of(parts: usize, tables: &[&str], csv: bool) -> Vec<u8> {
     let layout = json!({ "parts": parts, "tables": tables, "csv": csv });
-    json!({ "program": "cvtcycle 0.1.0", "build": BUILD, "seed": 7, "layout": layout, "plan": "title = 1\n" })
+    json!({ "program": "cvtcycle 0.1.0", "build": BUILD, "run": RUN, "seed": 7, "layout": layout, "plan": "title = 1\n" })
         .to_string()
         .into_bytes()
 }
+
+/// The word of that study.
+const RUN: &str = "0123456789abcdef";
 
 /// Manifest of a study with two tables a part, as Parquet and CSV.
 fn manifest(parts: usize) -> Vec<u8> {

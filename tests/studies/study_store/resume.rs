@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::thread;
 
-use cvtcycle::config::Setting;
+use cvtcycle::config::{ProblemKind, Setting};
 use cvtcycle::output::BUILD;
 use cvtcycle::study::store::{Study, StudyDir};
 use serde_json::Value;
@@ -215,7 +215,11 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`program` is") && !said.contains("more value"),
         "{said}"
     );
-    let said = refused(dir.path(), |m| m["build"] = "0123456789abcdef".into());
+    // Nor does the word of the run, which is another one with every difference.
+    let said = refused(dir.path(), |m| {
+        m["build"] = "0123456789abcdef".into();
+        m["run"] = "fedcba9876543210".into();
+    });
     let words =
         format!("was begun by another build of the program: {BUILD} there, 0123456789abcdef now");
     assert!(
@@ -256,7 +260,8 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
     );
     assert_eq!(files(dir.path()), all);
     fs::write(dir.path().join("study.json"), b"{\"a\": ").unwrap();
-    assert!(refused(dir.path(), |_| {}).contains("damaged"));
+    let problem = StudyDir::resume(dir.path(), &manifest(PARTS), PLAN).unwrap_err();
+    assert_eq!(problem.kind, ProblemKind::Damaged);
     let empty = TempDir::new().unwrap();
     for path in [empty.path().to_path_buf(), empty.path().join("nowhere")] {
         let said = refused(&path, |_| {});

@@ -292,9 +292,11 @@ fn a_trace_is_the_same_in_parquet_and_csv() {
         let rows = fixtures::rows(400, 0.5, cvt);
         let columns = columns_for(cvt, components);
         let (mut parquet, mut text) = (Vec::new(), Vec::new());
-        write_trace_parquet(&mut parquet, &columns, &rows, &fixtures::phases()).unwrap();
+        write_trace_parquet(&mut parquet, &columns, &rows, &fixtures::phases(), "run7").unwrap();
         write_trace(&mut text, &columns, &rows, &fixtures::phases()).unwrap();
         let file = opened(&parquet);
+        let run = ("cvtcycle.run".to_owned(), "run7".to_owned());
+        assert!(file.metadata().contains(&run));
         let names: Vec<&str> = columns.iter().map(|column| &*column.name).collect();
         assert_eq!(
             file.columns()
@@ -321,7 +323,7 @@ fn a_trace_is_the_same_in_parquet_and_csv() {
         );
     }
     assert_eq!(
-        write_trace_parquet(Vec::new(), &columns_for(true, &[]), &[], &[])
+        write_trace_parquet(Vec::new(), &columns_for(true, &[]), &[], &[], "")
             .map_err(|error| error.kind()),
         Ok(())
     );

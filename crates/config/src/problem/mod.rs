@@ -59,6 +59,8 @@ kinds! {
     TooLarge too_large "More rows, values, bytes or cases than the limit.";
     Unreadable unreadable "A file that cannot be read.";
     Output output "A file or folder that cannot be written.";
+    Locked locked "A folder in which another process writes.";
+    Damaged damaged "A file of this program with other content than it wrote.";
     Failed failed "A calculation without a result.";
     Stopped stopped "The user or a time limit stopped the work.";
 }

@@ -9,7 +9,7 @@
 //! | EN-5 | charge g = (p/p_0) (298.15 K/T_amb)^0.5 | source: form of SAE J1349 (charge with pressure and root of temperature, friction constant) |
 //! | EN-6 | waste = fuel - crank power; exhaust takes its share, falling linearly with speed, at most fuel - indicated; oil takes its share of friction, the coolant the rest | source: ADVISOR (0.40 to 0.30 of fuel less shaft power); bound derived; unburnt enrichment goes to the exhaust |
 //! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3); without fuel cut (EN-11) the engine turns itself | source: CO2MPAS rule; drag factor ASSUMED |
-//! | EN-12 | free engine without fuel: w = sqrt(k2 + w0_2) - k, k = (T + drag at idle) dt/J | derived: its rotating energy turns against its own drag and the torque T that it passes on |
+//! | EN-12 | free engine without fuel: w = sqrt(b2 + w0_2 - k w0) - b, k = T dt/J, b = k/2 + (drag at idle) dt/J | derived: its rotating energy turns against its own drag at w and the torque T that it passes on at the mean of w0 and w |
 //! | EN-8 | full load = g (T_hot + T_f) - Theta T_f, at least 2 % of T_hot; T_hot the line of the file, T_f hot friction | derived: the air limits indicated torque, friction takes its part |
 //!
 //! nu is the viscosity of the oil in use, nu_r that of the reference oil, for which the hot friction of the fuel model holds. The share 1 - s of
@@ -276,9 +276,12 @@ impl PrimeMover for EngineAtTemperature<'_> {
     /// EN-12: the drag at idle is that of the slowest engine, so that none of it is missing on the way.
     #[inline]
     fn slowed_rad_s(&self, from_rad_s: f64, load_nm: f64, dt_s: f64) -> f64 {
-        let slowing_nm = load_nm + self.own_drag_nm(self.idle_rad_s);
-        let k = slowing_nm * dt_s / self.engine.inertia_kg_m2;
-        (k * k + from_rad_s * from_rad_s).sqrt() - k // EN-12
+        let drag_nm = self.own_drag_nm(self.idle_rad_s);
+        let per_nm = dt_s / self.engine.inertia_kg_m2;
+        let k = load_nm * per_nm;
+        let b = 0.5 * k + drag_nm * per_nm;
+        let square = b * b + from_rad_s * (from_rad_s - k);
+        larger(larger(square, 0.0).sqrt() - b, 0.0) // EN-12
     }
 
     #[inline]

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::Duration;
 
-use cvtcycle_config::Problem;
+use cvtcycle_config::{Problem, ProblemKind};
 
 use super::{JOURNAL, LOCK, failed, is_temporary, problem};
 
@@ -95,7 +95,7 @@ impl DirLock {
         }
         let message = format!("another process is writing in {}", path.display());
         let hint = "wait until it has ended, or choose another directory";
-        Err(problem(path, &message, hint))
+        Err(problem(path, &message, hint).kind(ProblemKind::Locked))
     }
 
     /// The directory.

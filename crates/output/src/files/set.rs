@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use cvtcycle_config::Problem;
 use cvtcycle_config::bounded;
+use cvtcycle_config::{Problem, ProblemKind};
 
 use super::lock::{DirLock, is_there, sync_directory};
 use super::sum::{Sum, Summing};
@@ -296,7 +296,7 @@ pub fn complete(lock: &DirLock) -> Result<(), Problem> {
     let Some(journal) = Journal::read(root, &file) else {
         let message = format!("{JOURNAL} in {name} is damaged");
         let hint = "remove it, and write the results anew in another directory";
-        return Err(problem(root, &message, hint));
+        return Err(problem(root, &message, hint).kind(ProblemKind::Damaged));
     };
     journal
         .complete(root)
@@ -540,7 +540,7 @@ mod tests {
         let dir = folder(&Tree::new());
         let first = begun(dir.path(), &RUN, &[]);
         let problem = DirLock::take(dir.path()).expect_err("it is locked");
-        assert!(problem.message.contains("another process is writing in"));
+        assert_eq!(problem.kind, ProblemKind::Locked);
         first.commit().expect("put into place");
         assert_eq!(tree(dir.path()), tree_of(&RUN));
         drop(begun(dir.path(), &[("c.csv", "2")], &[]));
@@ -586,11 +586,7 @@ mod tests {
             std::os::unix::fs::symlink("../else", dir.join("link")).expect("linked");
             let before = tree(outer.path());
             let problem = settle(&dir).expect_err("it is damaged");
-            assert!(
-                problem.message.contains("damaged"),
-                "{text}: {}",
-                problem.message
-            );
+            assert_eq!(problem.kind, ProblemKind::Damaged, "{text}");
             assert_eq!(tree(outer.path()), before, "{text}");
         }
     }

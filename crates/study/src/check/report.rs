@@ -56,14 +56,15 @@ pub fn json(report: &Report) -> Value {
         });
         (group.word().to_owned(), found)
     };
-    Manifest::new(SCHEMA).with(&object!({
+    let rest = object!({
         "vehicle": report.candidate.vehicle,
         "set": report.candidate.set,
         "counts": Counts::of(report.rows.iter()),
         "groups": report.groups().into_iter().map(group).collect::<serde_json::Map<_, _>>(),
         "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
         "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),
-    }))
+    });
+    Manifest::new(SCHEMA).of_run(&rest).with(&rest)
 }
 
 /// A row as a JSON object; no number and an infinite one are null.

@@ -42,11 +42,18 @@ pub fn once<K: Eq + Hash, T: Clone>(
     made
 }
 
+/// A table, or why there is none.
+type Made = Result<Rc<Table>, String>;
+/// The source of a key, and its item of a list.
+type Owner = (Option<usize>, Option<usize>);
+/// Numbers of keys by their paths, or why there are none.
+type Numbers = HashMap<String, Result<f64, String>>;
+
 /// Everything that was computed, shared by all expressions: sources of equal contents are one.
 pub struct Store<'a> {
     cars: &'a dyn Cars,
     runs: RefCell<HashMap<String, Rc<Result<Driven, String>>>>,
-    tables: RefCell<HashMap<String, Result<Rc<Table>, String>>>,
+    tables: RefCell<HashMap<String, Made>>,
     /// Evaluations that are left; none after one was refused.
     left: Cell<Option<u64>>,
 }
@@ -129,6 +136,9 @@ pub struct View<'a> {
     sources: &'a [Source],
     left_out: Cell<usize>,
     outside: Cell<usize>,
+    /// What was found, by source: expressions may look for it in every evaluation.
+    tables: RefCell<HashMap<(usize, bool), Made>>,
+    keys: RefCell<HashMap<Owner, Numbers>>,
 }
 
 impl<'a> View<'a> {
@@ -139,6 +149,8 @@ impl<'a> View<'a> {
             sources,
             left_out: Cell::default(),
             outside: Cell::default(),
+            tables: RefCell::default(),
+            keys: RefCell::default(),
         }
     }
 
@@ -148,21 +160,12 @@ impl<'a> View<'a> {
         self.outside.set(0);
     }
 
-    /// Points left out because of gross slip, and points that count though they lie outside the validity of a model.
-    pub fn noted(&self) -> (usize, usize) {
-        (self.left_out.get(), self.outside.get())
-    }
-}
-
-impl Tables for View<'_> {
-    fn table(&self, source: usize, totals: bool) -> Result<Rc<Table>, String> {
-        let spec = self.sources.get(source).ok_or("no such source")?;
-        self.store
-            .table(spec, totals)
-            .map_err(|why| format!("source `{}`: {why}", spec.name))
-    }
-
-    fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
+    fn find_key(
+        &self,
+        source: Option<usize>,
+        path: &str,
+        item: Option<usize>,
+    ) -> Result<f64, String> {
         let spec = source.and_then(|k| self.sources.get(k));
         let of_keys = |owner: &str, keys: &[KeyInfo]| {
             let info = keys.iter().find(|info| info.key == path);
@@ -176,6 +179,36 @@ impl Tables for View<'_> {
         let setup = self.store.cars.setup(spec);
         let setup = setup.map_err(|_| "the vehicle cannot be loaded".to_owned())?;
         of_keys(&format!("vehicle `{}`", setup.name), &setup.keys)
+    }
+
+    /// Points left out because of gross slip, and points that count though they lie outside the validity of a model.
+    pub fn noted(&self) -> (usize, usize) {
+        (self.left_out.get(), self.outside.get())
+    }
+}
+
+impl Tables for View<'_> {
+    fn table(&self, source: usize, totals: bool) -> Result<Rc<Table>, String> {
+        once(&self.tables, (source, totals), || {
+            let spec = self.sources.get(source).ok_or("no such source")?;
+            let table = self.store.table(spec, totals);
+            table.map_err(|why| format!("source `{}`: {why}", spec.name))
+        })
+    }
+
+    fn key(&self, source: Option<usize>, path: &str, item: Option<usize>) -> Result<f64, String> {
+        let known = self
+            .keys
+            .borrow()
+            .get(&(source, item))
+            .and_then(|keys| keys.get(path).cloned());
+        known.unwrap_or_else(|| {
+            let found = self.find_key(source, path, item);
+            let mut keys = self.keys.borrow_mut();
+            let keys = keys.entry((source, item)).or_default();
+            keys.insert(path.to_owned(), found.clone());
+            found
+        })
     }
 
     fn spend(&self, evaluations: u64) -> Result<(), String> {
@@ -201,5 +234,57 @@ fn number_of(info: &KeyInfo, item: Option<usize>) -> Option<f64> {
             let inner = value.strip_prefix('[')?.strip_suffix(']')?;
             inner.split(',').nth(k)?.trim().parse().ok()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::check::CandidateVehicle;
+    use cvtcycle_config::setup::{Options, load};
+
+    /// The shipped car, and how often it and the rig were made.
+    #[derive(Default)]
+    struct Counted {
+        made: Cell<usize>,
+    }
+
+    impl Cars for Counted {
+        fn setup(&self, _: Option<&Source>) -> Result<Rc<Setup>, Problems> {
+            self.made.set(self.made.get() + 1);
+            load("rover_216_cvt", &Options::default()).map(Rc::new)
+        }
+
+        fn conditions(
+            &self,
+            source: Option<&Source>,
+        ) -> Result<(Conditions, Vec<KeyInfo>), Problems> {
+            self.made.set(self.made.get() + 1);
+            CandidateVehicle::default().conditions(source)
+        }
+    }
+
+    /// However often an expression looks for a key, its car or rig is made once: a loop may do it millions of times.
+    #[test]
+    fn a_key_is_found_once() {
+        let cars = Counted::default();
+        let store = Store::new(&cars);
+        let view = View::new(&store, &[]);
+        let keys = [
+            ("road_load.mass_kg", None),
+            ("rig.transient.speed_rpm", None),
+            ("no.such_key", None),
+            ("road_load.mass_kg", Some(1)),
+        ];
+        for (number, (path, item)) in keys.into_iter().enumerate() {
+            let first = view.key(None, path, item);
+            assert_eq!(first.is_ok(), number < 2, "{first:?}");
+            for _ in 0..10 {
+                assert_eq!(view.key(None, path, item), first);
+            }
+            assert_eq!(cars.made.get(), number + 1, "{path}");
+        }
+        assert!(view.table(0, false).is_err() && view.table(0, true).is_err());
+        assert_eq!(cars.made.get(), keys.len());
     }
 }

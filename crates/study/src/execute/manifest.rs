@@ -24,7 +24,7 @@ impl Study {
             kind: Some("study".to_owned()),
             ..Manifest::new(SCHEMA)
         };
-        let value = manifest.with(&json!({
+        let rest = json!({
             "title": plan.title,
             "question": plan.question,
             "plan_sha256": hash(plan.text.as_bytes()),
@@ -41,7 +41,8 @@ impl Study {
             "columns": columns(&self.columns),
             "trace_columns": columns(&self.trace_columns),
             "cars": self.cars.iter().map(|car| self.car_values(car)).collect::<Vec<_>>(),
-        }));
+        });
+        let value = manifest.of_run(&rest).with(&rest);
         let text = serde_json::to_string_pretty(&value).unwrap_or_default();
         text + "\n"
     }

@@ -12,11 +12,11 @@ use super::files::{NO_LINK, clear, link_in, put};
 use super::manifest::{Difference, differences, lines};
 use super::names::Layout;
 use super::names::{self, MANIFEST, PARTS, PLAN, RESULTS, SUMMARY};
-use super::parquet::write_parquet;
+use super::parquet::{RUN_KEY, run_of, write_parquet};
 use super::read::{Study, is_whole, marked_parts};
 use super::table::{Head, Rows};
 use cvtcycle_config::bounded::{self, ReadError};
-use cvtcycle_config::{Problem, Setting};
+use cvtcycle_config::{Problem, ProblemKind, Setting};
 use cvtcycle_output::files::{
     DirLock, check_directory, complete, failed, list, names_in, problem, sync_directory,
     temporary_in,
@@ -40,6 +40,8 @@ pub struct PartTable<'a> {
 pub struct StudyDir {
     path: PathBuf,
     layout: Layout,
+    /// Its word in the manifest, where there is one.
+    run: Option<String>,
     whole: Mutex<BTreeSet<usize>>,
     lock: DirLock,
 }
@@ -110,10 +112,11 @@ impl StudyDir {
         Ok(dir)
     }
 
-    fn new(path: PathBuf, layout: Layout, lock: DirLock) -> Self {
+    fn new(path: PathBuf, (layout, run): (Layout, Option<String>), lock: DirLock) -> Self {
         StudyDir {
             path,
             layout,
+            run,
             whole: Mutex::default(),
             lock,
         }
@@ -149,11 +152,13 @@ impl StudyDir {
         let parts = self.parts();
         let mut list = Checksums::default();
         for table in tables {
+            let own = self.run.iter().map(|run| (RUN_KEY, run.as_str()));
+            let pairs: Vec<_> = own.chain(table.metadata.iter().copied()).collect();
             for ending in self.layout.endings() {
                 let name = names::part_file(table.name, index, ending);
                 let written = put(&parts, &name, |out| match *ending {
                     "csv" => write_csv(out, table.columns, table.rows),
-                    _ => write_parquet(out, table.columns, table.rows, table.metadata),
+                    _ => write_parquet(out, table.columns, table.rows, &pairs),
                 });
                 let sum = written.map_err(|error| self.cannot_write(&name, &error))?;
                 list.0.push((name, sum));
@@ -300,10 +305,10 @@ fn no_link(path: &Path) -> Result<(), Problem> {
     link_in(path).map_or(Ok(()), |message| Err(problem(path, &message, NO_LINK)))
 }
 
-fn layout_of(path: &Path, manifest: &[u8]) -> Result<Layout, Problem> {
+fn layout_of(path: &Path, manifest: &[u8]) -> Result<(Layout, Option<String>), Problem> {
     let parsed = bounded::json(manifest).ok();
-    let layout = parsed.as_ref().and_then(Layout::of);
-    layout.ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
+    let read = parsed.and_then(|manifest| Some((Layout::of(&manifest)?, run_of(&manifest))));
+    read.ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
 }
 
 /// Whether the directory holds an earlier study. Refuses what is not to be written over.
@@ -355,7 +360,10 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
     let (Ok(stored), Ok(now)) = (bounded::json(stored), bounded::json(now)) else {
         let hint = "begin the study anew in its place or in another directory";
         let message = format!("{MANIFEST} in {name} is damaged");
-        return problem(path, &message, hint).settings(&[Setting::Replace]);
+        let settings = &[Setting::Replace];
+        return problem(path, &message, hint)
+            .kind(ProblemKind::Damaged)
+            .settings(settings);
     };
     let mut found = differences(&stored, &now);
     let builds =
@@ -366,6 +374,8 @@ fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Pr
         let text = String::from_utf8_lossy;
         found.insert(0, lines(PLAN, &text(&stored), &text(plan)));
     }
+    // The word of the run follows from all others.
+    found.retain(|difference| difference.path != "run");
     let before = found.len();
     found.retain(|difference| difference.path != "build");
     if found.is_empty() && before > 0 {

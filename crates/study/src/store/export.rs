@@ -11,7 +11,7 @@ use std::path::Path;
 
 use super::RowWriter;
 use super::csv::{CsvTable, Header};
-use super::parquet::ParquetTable;
+use super::parquet::{ParquetTable, RUN_KEY, run_of};
 use super::read::{Status, Study};
 use super::table::{Head, Kind, Rows, Values};
 use super::xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
@@ -95,7 +95,7 @@ pub fn export(
         check_size(out.path(), rows, heads.len())?;
     }
     let bom = format == Format::Csv && beyond_ascii(study, table, &heads)?;
-    let manifest = study.manifest().to_string();
+    let (run, manifest) = (run_of(study.manifest()), study.manifest().to_string());
     let file = &mut *out;
     let begin = |first: &Rows| -> io::Result<Box<dyn RowWriter + '_>> {
         Ok(match format {
@@ -104,7 +104,9 @@ pub fn export(
                 Box::new(CsvTable::new(file, &heads, Header::Units)?)
             }
             Format::Parquet => {
-                let metadata = [("cvtcycle.manifest", manifest.as_str())];
+                let run = run.iter().map(|run| (RUN_KEY, run.as_str()));
+                let own = [("cvtcycle.manifest", manifest.as_str())];
+                let metadata: Vec<_> = run.chain(own).collect();
                 Box::new(ParquetTable::new(file, &heads, &metadata, first)?)
             }
             Format::Xlsx => Box::new(XlsxTable::new(file, table, &heads)?),

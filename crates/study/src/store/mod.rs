@@ -21,6 +21,7 @@ mod csv;
 mod dir;
 mod export;
 mod files;
+mod footer;
 mod manifest;
 mod names;
 mod parquet;

@@ -12,13 +12,20 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::{ColumnPath, Type};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::table::{Head, Kind, Rows, Values};
 use super::{RowWriter, check_shape};
 
 /// Key of the metadata of the heads of the columns, as JSON.
 pub const COLUMNS_KEY: &str = "cvtcycle.columns";
+/// Key of the metadata of the word of the run or study.
+pub const RUN_KEY: &str = "cvtcycle.run";
+
+/// The word of the run or study in its manifest, where there is one.
+pub(super) fn run_of(manifest: &Value) -> Option<String> {
+    manifest["run"].as_str().map(str::to_owned)
+}
 /// Writer of the files, as Parquet's own field says it.
 const CREATED_BY: &str = cvtcycle_output::PROGRAM;
 /// A dictionary is kept where values are repeated at least so often on average.

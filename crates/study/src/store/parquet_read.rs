@@ -2,18 +2,19 @@
 
 use std::collections::HashSet;
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::file_problem;
 use super::files::{Sum, sum_of};
+use super::footer;
 use super::names::MAX_PART_ROWS;
 use super::parquet::{COLUMNS_KEY, io_error};
 use super::table::{Head, Rows, Values};
 use cvtcycle_config::Problem;
-use cvtcycle_config::ProblemKind::{Syntax, UnknownKey, Unreadable};
+use cvtcycle_config::ProblemKind::{Damaged, Syntax, UnknownKey, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -24,8 +25,6 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 /// What helps with a damaged file.
 pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued";
 
-/// Most bytes of the footer; that of a table with all columns and a hundred groups of rows has some hundred kB.
-const MAX_METADATA: u32 = 16 << 20;
 /// Bytes that a byte of a column can become at most: a copy of Snappy's takes three bytes for up to 64. Small columns have a head in addition.
 const MAX_UNPACKED: u64 = 32;
 const HEAD: u64 = 1 << 16;
@@ -62,7 +61,7 @@ impl ParquetFile {
             format!("up to {most} are due")
         };
         let message = format!("the file is damaged: it has {rows} rows, {due}");
-        Err(file_problem(Syntax, &self.path, message, MEND))
+        Err(file_problem(Damaged, &self.path, message, MEND))
     }
 
     /// Opens a file whose bytes are known to be those that were written.
@@ -70,14 +69,14 @@ impl ParquetFile {
         const DAMAGED: &str =
             "the file is damaged: it is shorter than it says, or longer than any of this program";
         let refused = |error: io::Error| unreadable(path, &error.into());
-        let is_short = is_short(&mut file).map_err(refused)?;
+        let is_sound = footer::is_sound(&mut file).map_err(refused)?;
         let bytes = file.metadata().map_err(refused)?.len();
-        let reader = is_short.then(|| SerializedFileReader::new(file));
+        let reader = is_sound.then(|| SerializedFileReader::new(file));
         let reader = reader
             .transpose()
             .map_err(|error| refused(io_error(error)))?;
         let file = reader.filter(|reader| fits(reader, bytes));
-        let file = file.ok_or_else(|| file_problem(Syntax, path, DAMAGED, MEND))?;
+        let file = file.ok_or_else(|| file_problem(Damaged, path, DAMAGED, MEND))?;
         let columns = heads(&file).ok_or_else(|| {
             file_problem(Syntax, path, "the file is no table of this program", "")
         })?;
@@ -155,20 +154,6 @@ impl ParquetFile {
 
 fn damage(message: &str) -> ParquetError {
     ParquetError::General(message.to_owned())
-}
-
-/// Whether the file's last bytes do not ask for more memory than the footer of a table takes. The file is left at its beginning.
-fn is_short(file: &mut File) -> io::Result<bool> {
-    let mut last = [0; 8];
-    let length = file.seek(SeekFrom::End(0))?;
-    if length >= 8 {
-        file.seek(SeekFrom::End(-8))?;
-        file.read_exact(&mut last)?;
-    }
-    file.rewind()?;
-    let [a, b, c, d, ..] = last;
-    // The reader refuses a file of eight bytes and less.
-    Ok(u32::from_le_bytes([a, b, c, d]) <= MAX_METADATA || !last.ends_with(b"PAR1"))
 }
 
 /// Whether all that the footer says lies within the file: the library trusts it, and makes room for what it says.
@@ -260,7 +245,7 @@ pub(super) fn check_sum(path: &Path, file: &File, sum: &Sum) -> Result<(), Probl
         return Ok(());
     }
     let message = "the file is damaged: its checksum is not that of what was written";
-    Err(file_problem(Syntax, path, message, MEND))
+    Err(file_problem(Damaged, path, message, MEND))
 }
 
 pub(super) fn unreadable(path: &Path, error: &ReadError) -> Problem {

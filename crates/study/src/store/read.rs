@@ -16,7 +16,7 @@ use super::names::{self, MANIFEST, MAX_PART_ROWS, PLAN, RESULTS, RUNS};
 use super::parquet_read::{MEND, ParquetFile, check_sum, unreadable};
 use super::table::{Head, Rows};
 use cvtcycle_config::Problem;
-use cvtcycle_config::ProblemKind::{Conflict, Missing, Syntax, TooLarge, UnknownName, Unreadable};
+use cvtcycle_config::ProblemKind::{Conflict, Damaged, Missing, TooLarge, UnknownName, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
 
 /// How far a study has come.
@@ -71,7 +71,7 @@ impl Study {
             return Err(file_problem(Unreadable, &path, message, NO_LINK));
         }
         let bytes = bounded::read_file(&file, bounded::RECORD).map_err(no_study)?;
-        let damaged = || file_problem(Syntax, &file, "the manifest of the study is damaged", "");
+        let damaged = || file_problem(Damaged, &file, "the manifest of the study is damaged", "");
         let manifest = bounded::json(&bytes).map_err(|found| match found.kind {
             TooLarge => found.in_file(file.display().to_string()),
             _ => damaged(),
@@ -165,7 +165,7 @@ impl Study {
             let list = Checksums::read(&folder.join(names::part_mark(index)));
             let right = list.as_ref().and_then(|list| list.get(&name));
             let message = "the list of checksums of this part is damaged";
-            let right = right.ok_or_else(|| file_problem(Syntax, &path, message, MEND))?;
+            let right = right.ok_or_else(|| file_problem(Damaged, &path, message, MEND))?;
             check_sum(&path, &file, right)?;
             known.insert(name);
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::RowWriter;
 use super::file_problem;
-use super::parquet::ParquetTable;
+use super::parquet::{ParquetTable, RUN_KEY};
 use super::parquet_read::{ParquetFile, unreadable};
 use super::table::{Head, Rows, Values};
 use cvtcycle_config::ProblemKind::{
@@ -24,7 +24,7 @@ use cvtcycle_output::{Flags, Row};
 /// Rows of a row group.
 const GROUP: usize = 1 << 16;
 
-/// Writes the rows of a run as Parquet, with the columns and cells of its CSV.
+/// Writes the rows of a run as Parquet, with the columns and cells of its CSV, and the word of the run in the metadata.
 ///
 /// # Errors
 /// Those of `out`.
@@ -33,6 +33,7 @@ pub fn write_trace_parquet<W: Write + Send>(
     columns: &[&'static TraceColumn],
     rows: &[Row],
     phases: &[String],
+    run: &str,
 ) -> io::Result<()> {
     let heads: Vec<Head> = columns.iter().map(|column| column.head()).collect();
     let mut words = SharedWords::default();
@@ -43,7 +44,7 @@ pub fn write_trace_parquet<W: Write + Send>(
     };
     let mut groups = rows.chunks(GROUP);
     let first = cells(groups.next().unwrap_or_default());
-    let mut table = Box::new(ParquetTable::new(out, &heads, &[], &first)?);
+    let mut table = Box::new(ParquetTable::new(out, &heads, &[(RUN_KEY, run)], &first)?);
     table.write(&first)?;
     groups.try_for_each(|group| table.write(&cells(group)))?;
     table.finish()

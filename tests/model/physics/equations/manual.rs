@@ -131,30 +131,31 @@ fn spin(car: &Car, gear: u8, speed: f64, k: f64) -> f64 {
     train.turning(speed, 0.0, car.oil.state(k)).no_load_nm()
 }
 
-/// The nearest speed to the wanted one that the engine's inertia allows: up by its largest torque, down by own drag and load, whose work is the
-/// rotating energy that it gives (EN-12).
+/// The nearest speed to the wanted one that the engine's inertia allows: up by its largest torque, down by own drag at the speed reached and load
+/// at the mean speed, whose work is the rotating energy that it gives; and the mean of the speed above it in the step (EN-12).
 fn within_reach(
     car: &Car,
     engine: &EngineAtTemperature,
     s: &Step,
     load_nm: f64,
     wanted: f64,
-) -> f64 {
+) -> [f64; 2] {
     let (e, before) = (&car.engine, s.before_rad_s);
     let fastest = before + e.inertia_torque_nm / e.inertia_kg_m2 * s.dt_s;
-    let braking_nm = load_nm + engine.own_drag_nm(engine.idle_rad_s);
-    // The speed at which braking_nm w dt is what J w2/2 has lost: between zero and the speed before.
+    let drag_nm = engine.own_drag_nm(engine.idle_rad_s);
+    // The speed at which that work is what J w2/2 has lost: between zero and the speed before.
     let (mut low, mut high) = (0.0, before);
     for _ in 0..200 {
         let w = 0.5 * (low + high);
         let given = 0.5 * e.inertia_kg_m2 * (before * before - w * w);
-        if given > braking_nm * w * s.dt_s {
+        if given > (drag_nm * w + load_nm * 0.5 * (before + w)) * s.dt_s {
             low = w;
         } else {
             high = w;
         }
     }
-    wanted.clamp(low.min(fastest), fastest)
+    let reached = wanted.clamp(low.min(fastest), fastest);
+    [reached, low]
 }
 
 /// A step in gear against MB-1, LC-1 to LC-4 and the bounds of the engine. Answers with what bound it: 0 demand, 1 least, 2 full load.
@@ -192,14 +193,13 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
         tight(d.shaft_nm, input_nm * input / w);
         tight(d.loss_w[Component::LaunchClutch], 0.0); // CV-6
     } else {
-        tight(d.shaft_nm, input_nm);
-        tight(d.loss_w[Component::LaunchClutch], input_nm * (w - input)); // LC-4
     }
-    let speed = |nm: f64| {
+    let reach = |nm: f64| {
         let load = CouplingLoad::new(nm, input, idle, s.coupled);
         let wanted = m.coupling.engine_rad_s(&load);
-        within_reach(car, &engine, s, nm.max(0.0), wanted).max(input)
+        within_reach(car, &engine, s, nm.max(0.0), wanted)
     };
+    let speed = |nm: f64| reach(nm)[0].max(input);
     let demanded = demand_nm
         + losses(car, gear, input, (demand_nm, demand_nm), k)
             .iter()
@@ -239,6 +239,21 @@ fn check(car: &Car, s: &Step, d: &StepOutput, gear: u8) -> usize {
             tight(w, first);
             tight(d.deficit_w, power - d.output_w);
         }
+    }
+    if input_nm >= 0.0 {
+        let [_, slowest] = reach(if bind == 1 { least } else { demanded });
+        let fall = (s.before_rad_s - w).max(0.0);
+        let slips = if fall > 0.0 {
+            (fall / (s.before_rad_s - slowest)).min(1.0)
+        } else {
+            0.0
+        };
+        let excess = 0.5 * fall * slips;
+        tight(d.shaft_nm, input_nm * (1.0 + excess / w));
+        tight(
+            d.loss_w[Component::LaunchClutch],
+            input_nm * (w - input + excess),
+        ); // LC-4, EN-12
     }
     let share = (input_nm + engine.accessories_nm(w)) / engine.full_load_nm(w);
     near(d.throttle + 1.0, share.clamp(0.0, 1.0) + 1.0, 1e-9);
@@ -428,7 +443,10 @@ fn val_commands_of_gears() {
         let lost: f64 = d.loss_w.iter().sum();
         same(lost, -d.output_w);
         let engine = car.engine.at(k, k, &car.engine_oil, 1.0);
-        same(d.engine_rad_s, within_reach(&car, &engine, &s, 0.0, idle));
+        same(
+            d.engine_rad_s,
+            within_reach(&car, &engine, &s, 0.0, idle)[0],
+        );
         assert_eq!(state.driveline.gear, gear);
     };
     for dt_s in [0.02, 5.0] {

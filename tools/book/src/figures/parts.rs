@@ -4,8 +4,12 @@ use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::coupling::CouplingLoad;
+use cvtcycle::model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};
+use cvtcycle::model::transmission::cvt::seal_ring::SealRing;
+use cvtcycle::model::transmission::cvt::variator::BeltAtRatio;
 use cvtcycle::model::transmission::cvt::viscosity_power;
+use cvtcycle::model::transmission::gear_train::TurningTrain;
 use cvtcycle::output::Component;
 
 const SPEED: &str = "Engine speed [rpm]";
@@ -18,6 +22,9 @@ pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
         ("pump_flow", flow(r)),
         ("input_shaft_torque", input_shaft(r)),
         ("reverse_clutch_drag", reverse_clutch(r)),
+        ("seal_ring_torque", seal_ring(r)),
+        ("pulley_bearing_torque", pulley_bearing(r)),
+        ("gear_train_parts", gear_train(r)),
         ("final_drive_torque", final_drive(r)),
         ("launch_speed", launch(r)),
         ("manual_torque", manual(r)),
@@ -146,6 +153,82 @@ fn reverse_clutch(r: &Reference) -> String {
             "Torque [Nm]",
             vec![drag],
         )],
+    )
+}
+
+fn seal_ring(r: &Reference) -> String {
+    let with = |friction: f64| {
+        let ring = SealRing {
+            friction,
+            ..r.cvt().seal_ring
+        };
+        sweep(&format!("friction {friction:.3}"), 0.0, 40.0, 2, |bar| {
+            ring.torque_per_pa() * bar * 1e5
+        })
+    };
+    plot(
+        "Seal rings of a pulley",
+        "rings of the Rover with their friction and the ends of its range (SR-1)",
+        "Friction torque of the seal rings of one pulley against the pressure in its cylinder, for three coefficients of friction.",
+        "",
+        vec![axes(
+            "",
+            "Pressure of the cylinder [bar]",
+            "Torque [Nm]",
+            vec![with(0.03), with(r.cvt().seal_ring.friction), with(0.06)],
+        )],
+    )
+}
+
+fn pulley_bearing(r: &Reference) -> String {
+    let cvt = r.cvt();
+    let at = |ratio: f64| {
+        let per_n = PulleyBearing::pull_per_clamp(&cvt.belt, &BeltAtRatio::new(&cvt.belt, ratio));
+        sweep(&format!("I = {ratio}"), 0.0, 40.0, 2, |kn| {
+            cvt.pulley_bearing.torque_nm(0, per_n * kn * 1e3)
+        })
+    };
+    plot(
+        "Bearings of a pulley under the belt's pull",
+        "primary of the Rover (PB-1, PB-2)",
+        "Friction torque of the bearings of the primary shaft against the clamping force of the secondary, in low, at 1 and in high ratio.",
+        "",
+        vec![axes(
+            "",
+            "Clamping force of the secondary [kN]",
+            "Torque at the shaft [Nm]",
+            [2.417, 1.0, 0.5].map(at).to_vec(),
+        )],
+    )
+}
+
+fn gear_train(r: &Reference) -> String {
+    let train = &r.cvt().final_drive.train;
+    let oil = r.cvt_car.oils().0;
+    let parts = |degc: f64| -> Vec<Line> {
+        let state = oil.state(degc + ZERO_DEGC_K);
+        let part = |name: &str, of: fn(&TurningTrain) -> f64| {
+            sweep(name, 200.0, 8000.0, 90, |n| {
+                of(&train.turning(n * RPM, 0.0, state))
+            })
+        };
+        vec![
+            part("bearings, preload included", |t| t.bearing_nm),
+            part("churning", |t| t.churning_nm),
+            part("seals", |t| t.seal_nm),
+        ]
+    };
+    let x = "Speed of the secondary [rpm]";
+    let y = "Torque at the secondary [Nm]";
+    plot(
+        "Parts of a gear train without load",
+        "final drive of the Rover (BR-1, BR-2, CH-1, LS-1)",
+        "Torque without load of bearings, churning and seals of the Rover's final drive against the speed of the secondary, at 80 and at -10 degC.",
+        "",
+        vec![
+            axes("80 degC", x, y, parts(80.0)),
+            axes("-10 degC", x, y, parts(-10.0)),
+        ],
     )
 }
 

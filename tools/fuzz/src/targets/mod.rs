@@ -21,6 +21,8 @@ mod expression;
 #[path = "../../../../tests/common/range.rs"]
 mod range;
 mod results;
+#[path = "../../../../tests/common/small_tables.rs"]
+mod small_tables;
 mod toml;
 
 /// Does something with any bytes.

@@ -11,7 +11,7 @@ pub(super) use partial_loss::PartialLoss;
 
 use self::friction_clutch::FrictionClutchKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{clamp, larger, ramp};
+use crate::math::{clamp, larger, ramp, smaller};
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -142,5 +142,17 @@ impl Reach {
     #[inline]
     pub fn nearest(&self, wanted_rad_s: f64) -> f64 {
         clamp(wanted_rad_s, self.slowest_rad_s, self.fastest_rad_s)
+    }
+
+    /// Mean over the step of how much faster the engine is than at its end, to which it slows down as fast as it can, rad/s.
+    #[inline]
+    pub fn mean_excess_rad_s(&self, end_rad_s: f64) -> f64 {
+        let fall = self.from_rad_s - end_rad_s;
+        let most = self.from_rad_s - self.slowest_rad_s;
+        if fall > 0.0 && most > 0.0 {
+            0.5 * fall * smaller(fall / most, 1.0) // EN-12
+        } else {
+            0.0
+        }
     }
 }

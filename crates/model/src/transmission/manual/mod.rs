@@ -181,12 +181,13 @@ impl Manual {
         };
         state.engine_rad_s = output.engine_rad_s;
         let turning = output.gear > 0 && !output.flags.contains(Flags::CLUTCH_OPEN);
-        // A clutch that was locked and slips after a change up only has the engine come down: it is no launch (LC-5).
+        // A clutch that was locked and slips after a change up only has the engine come down: it is no launch (LC-5), unless the box is slower
+        // than the idling engine, where LC-5 lets both slip alike.
         let input_rad_s = match output.gear {
             0 => 0.0,
             gear => self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s,
         };
-        let locks = input_rad_s >= self.coupling.locked_from_rad_s(step.engine.idle_rad_s());
+        let locks = input_rad_s >= step.engine.idle_rad_s();
         let slips = output.flags.contains(Flags::CLUTCH_SLIPPING);
         state.coupled = turning && (!slips || (state.coupled && locks));
         state.stood = step.wheel.wheel_rad_s <= 0.0;

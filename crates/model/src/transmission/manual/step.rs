@@ -122,7 +122,8 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let demand_nm = wheel.power_w / input;
         let engaged = self.box_in(gear, input, demand_nm);
         let mut at = engaged.at(demand_nm); // MB-1
-        let (mut w, settled_rad_s) = self.engine_rad_s(at.input_nm, input);
+        let mut speed = self.engine_speed(at.input_nm, input);
+        let w = speed.end_rad_s;
         let accessories_nm = engine.accessories_nm(w);
         let absorbed_nm = engine.drag_nm(w) + accessories_nm;
         let least = self
@@ -136,7 +137,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             self.manual.coupling.output_nm(engine_nm, input, w)
         };
         let most = most_at(w);
-        let lacks_torque = at.input_nm > most || at.input_nm > most_at(settled_rad_s);
+        let lacks_torque = at.input_nm > most || at.input_nm > most_at(speed.settled_rad_s);
         let limit = if at.input_nm < least {
             Some(least)
         } else if at.input_nm > most {
@@ -156,10 +157,11 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             at = engaged.at(output_nm);
             output.residual = (at.input_nm - torque).abs() / full_load_nm;
             if torque <= least {
-                (w, _) = self.engine_rad_s(torque, input);
-                full_load_nm = engine.full_load_nm(w);
+                speed = self.engine_speed(torque, input);
+                full_load_nm = engine.full_load_nm(speed.end_rad_s);
             }
         }
+        let w = speed.end_rad_s;
         output.engine_rad_s = w;
         let side = self.manual.coupling.engine_side(at.input_nm, input, w);
         output.shaft_nm = side.engine_nm;
@@ -179,12 +181,16 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
         flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
         self.set_throttle(&mut output, full_load_nm);
+        // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it.
+        let on_the_way_w = larger(at.input_nm, 0.0) * speed.excess_rad_s;
+        output.shaft_nm += on_the_way_w / w;
+        output.add_loss(Component::LaunchClutch, on_the_way_w);
         (output, lacks_torque)
     }
 
-    /// Engine speed over the coupling in this step, and the one on which it settles, rad/s: at once that of a faster box; over a slower one, as
-    /// after a change up, the coupling slips until the engine's rotating energy is spent.
-    fn engine_rad_s(&self, input_nm: f64, input_rad_s: f64) -> (f64, f64) {
+    /// Engine speed over the coupling in this step: at once that of a faster box; over a slower one, as after a change up, the coupling slips
+    /// until the engine's rotating energy is spent.
+    fn engine_speed(&self, input_nm: f64, input_rad_s: f64) -> EngineSpeed {
         let wanted = self.manual.coupling.engine_rad_s(&CouplingLoad {
             output_nm: input_nm,
             output_rad_s: input_rad_s,
@@ -196,8 +202,23 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         // What passes on at full load is no more than that; the rest of a demand is missing.
         let passed_nm = clamp(input_nm, 0.0, self.step.engine.full_load_nm(before_rad_s));
         let reach = self.step.reach(before_rad_s, passed_nm);
-        (larger(reach.nearest(wanted), least), larger(wanted, least))
+        let end_rad_s = larger(reach.nearest(wanted), least);
+        EngineSpeed {
+            end_rad_s,
+            settled_rad_s: larger(wanted, least),
+            excess_rad_s: reach.mean_excess_rad_s(end_rad_s),
+        }
     }
+}
+
+/// Engine speed over a coupling in a step, rad/s.
+struct EngineSpeed {
+    /// At the end of the step.
+    end_rad_s: f64,
+    /// On which it settles.
+    settled_rad_s: f64,
+    /// Mean over the step above that at its end, of an engine that comes down.
+    excess_rad_s: f64,
 }
 
 fn lose(output: &mut StepOutput, losses_nm: &PartLosses, speed: f64) {

@@ -6,9 +6,12 @@ use super::functions::{Compute, Form, Gives, truth};
 use super::reduce::{Point, Points, Table, least, most, short};
 use super::{Expr, Order, Reduce};
 
-/// Most evaluations of parts of expressions and of rows that the rows of a command, or the observations of one evaluation of a fit, may take
-/// together; the shipped rows take less than a fiftieth. Loops and reductions within each other multiply.
+/// Most evaluations that the rows of a command, or the observations of one evaluation of a fit, may take together; the shipped rows take less
+/// than a tenth. One is about the work of a sum of two numbers: each part of an expression is one, each row that is looked at is one, finding
+/// a table or a key is [`LOOKING_UP`], sorting rows is [`Form::sorting`]. Loops and reductions within each other multiply.
 pub const MAX_EVALUATIONS: u64 = 100_000_000;
+/// Evaluations that finding a table or a key counts as.
+const LOOKING_UP: u64 = 8;
 /// Most bytes of the numbers behind a truth, to which more are not added.
 const MAX_BEHIND: usize = 4000;
 
@@ -75,7 +78,9 @@ pub fn compute(expr: &Expr, tables: &dyn Tables) -> Result<Computed, String> {
         Gives::Truth => {
             let holds = context.eval(expr)? > 0.5;
             context.recording = false;
-            Ok(Computed::Truth(holds, context.behind(expr)))
+            let mut list = Listed::default();
+            context.behind(expr, &mut list);
+            Ok(Computed::Truth(holds, list.text))
         }
         Gives::Range => {
             let (low, high) = match expr {
@@ -136,10 +141,14 @@ impl Context<'_> {
             }
             Expr::Reduce(r) => {
                 let points = self.points(r)?;
+                self.tables.spend(r.of.form.sorting(points.0.len()))?;
                 (r.of.compute)(points)?
             }
             Expr::Loop(_, list, body) => truth(self.looped(list, body)?.iter().all(|x| *x > 0.5)),
-            Expr::Key(source, path, item) => self.tables.key(*source, path, *item)?,
+            Expr::Key(source, path, item) => {
+                self.tables.spend(LOOKING_UP)?;
+                self.tables.key(*source, path, *item)?
+            }
         })
     }
 
@@ -202,6 +211,7 @@ impl Context<'_> {
     }
 
     fn rows(&mut self, r: &Reduce, table: &Table) -> Result<Vec<Point>, String> {
+        self.tables.spend(LOOKING_UP)?;
         let mut found = Vec::new();
         let (mut left_out, mut outside) = (0, 0);
         let mut inner = Context {
@@ -241,41 +251,40 @@ impl Context<'_> {
         self.eval(expr).map_or_else(|_| "-".into(), short)
     }
 
-    /// The numbers behind a truth.
-    fn behind(&mut self, expr: &Expr) -> String {
+    /// Lists the numbers behind a truth; nothing is evaluated for which there is no room.
+    fn behind(&mut self, expr: &Expr, list: &mut Listed) {
+        if list.is_full {
+            return;
+        }
         match expr {
-            Expr::Compare(list, orders) => {
-                let mut text = self.text(&list[0]);
-                for (order, part) in orders.iter().zip(&list[1..]) {
+            Expr::Compare(parts, orders) => {
+                let mut text = self.text(&parts[0]);
+                for (order, part) in orders.iter().zip(&parts[1..]) {
                     text += &format!(" {} {}", order.sign(), self.text(part));
                 }
-                text
+                list.add(&text);
             }
-            Expr::And(list) | Expr::Or(list) => {
-                let mut text = String::new();
-                for part in list {
-                    add(&mut text, &self.behind(part));
-                }
-                text
+            Expr::And(parts) | Expr::Or(parts) => {
+                parts.iter().for_each(|part| self.behind(part, list));
             }
-            Expr::Not(inner) => format!("not {}", self.behind(inner)),
-            Expr::Loop(_, list, body) => {
-                let mut text = String::new();
-                for item in list {
+            Expr::Not(inner) => list.within("not ", |list| self.behind(inner, list)),
+            Expr::Loop(_, items, body) => {
+                for item in items {
+                    if list.is_full {
+                        break;
+                    }
                     let Ok(value) = self.eval(item) else { continue };
                     self.variables.push(value);
-                    add(
-                        &mut text,
-                        &format!("{}: {}", short(value), self.behind(body)),
-                    );
+                    let name = format!("{}: ", short(value));
+                    list.within(&name, |list| self.behind(body, list));
                     self.variables.pop();
                 }
-                text
             }
             Expr::Reduce(r) if r.of.gives == Gives::Truth => {
-                self.behind_rows(r).unwrap_or_else(|_| "-".to_owned())
+                let text = self.behind_rows(r);
+                list.add(text.as_deref().unwrap_or("-"));
             }
-            other => self.text(other),
+            other => list.add(&self.text(other)),
         }
     }
 
@@ -292,19 +301,38 @@ impl Context<'_> {
     }
 }
 
-/// Adds to a list in words as long as there is room.
-fn add(list: &mut String, next: &str) {
-    const MORE: &str = "; ...";
-    if !list.is_empty() && list.len() + next.len() > MAX_BEHIND {
-        if !list.ends_with(MORE) {
-            *list += MORE;
+/// A list in words, as long as there is room.
+#[derive(Default)]
+struct Listed {
+    text: String,
+    /// What goes before the next entry.
+    begin: String,
+    is_full: bool,
+}
+
+impl Listed {
+    /// Adds entries, the first of which begins with a word.
+    fn within(&mut self, word: &str, entries: impl FnOnce(&mut Self)) {
+        let outer = self.begin.len();
+        self.begin += word;
+        entries(self);
+        self.begin.truncate(outer);
+    }
+
+    fn add(&mut self, entry: &str) {
+        let is_first = self.text.is_empty();
+        self.is_full = !is_first && self.text.len() + self.begin.len() + entry.len() > MAX_BEHIND;
+        if !is_first {
+            self.text += "; ";
         }
-        return;
+        if self.is_full {
+            self.text += "...";
+        } else {
+            self.text += &self.begin;
+            self.text += entry;
+            self.begin.clear();
+        }
     }
-    if !list.is_empty() {
-        *list += "; ";
-    }
-    *list += next;
 }
 
 impl Order {

@@ -90,6 +90,17 @@ pub enum Form {
     Total,
 }
 
+impl Form {
+    /// Evaluations that putting so many rows in order counts as; none where their order does not matter.
+    pub(super) fn sorting(self, rows: usize) -> u64 {
+        let comparisons = rows.checked_ilog2().map_or(0, u64::from) * rows as u64;
+        match self {
+            Form::Over | Form::OverAt => comparisons,
+            Form::Value | Form::Condition | Form::Total => 0,
+        }
+    }
+}
+
 /// A reduction of the rows of a source.
 #[derive(Debug)]
 pub struct Reduction {

@@ -1,0 +1,82 @@
+//! Two small tables for expressions: a source of six rows with columns `x`, `g` and `y`, the last row at gross slip, and a run with one total.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use cvtcycle::study::check::expr::{Names, Table, Tables};
+
+pub struct SmallTables {
+    keys: Vec<String>,
+    low: Rc<Table>,
+    trip: Rc<Table>,
+    /// Rows at gross slip so far.
+    pub left_out: Cell<usize>,
+    /// Evaluations that are left.
+    pub left: Cell<u64>,
+}
+
+impl SmallTables {
+    /// With two groups of rows, `g` 0 and 1.
+    pub fn new(x: [f64; 6], y: [f64; 6], evaluations: u64) -> Self {
+        let g = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let low = Table {
+            columns: [x, g, y].map(Vec::from).into(),
+            weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
+            gross: vec![false, false, false, false, false, true],
+            outside: Vec::new(),
+        };
+        let trip = Table {
+            columns: vec![vec![6.5]],
+            weight: vec![1.0],
+            ..Table::default()
+        };
+        SmallTables {
+            keys: vec!["belt.offset_mm".to_owned()],
+            low: Rc::new(low),
+            trip: Rc::new(trip),
+            left_out: Cell::default(),
+            left: Cell::new(evaluations),
+        }
+    }
+}
+
+impl Names for SmallTables {
+    fn sources(&self) -> Vec<&str> {
+        vec!["low", "trip"]
+    }
+
+    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
+        match (source, totals) {
+            (0, false) => vec!["x", "g", "y"],
+            (1, true) => vec!["fuel"],
+            _ => Vec::new(),
+        }
+    }
+
+    fn keys(&self) -> &[String] {
+        &self.keys
+    }
+}
+
+impl Tables for SmallTables {
+    fn table(&self, source: usize, _: bool) -> Result<Rc<Table>, String> {
+        Ok([&self.low, &self.trip][source].clone())
+    }
+
+    fn key(&self, _: Option<usize>, _: &str, item: Option<usize>) -> Result<f64, String> {
+        Ok(item.map_or(3.0, |k| k as f64))
+    }
+
+    fn spend(&self, evaluations: u64) -> Result<(), String> {
+        let left = self.left.get().checked_sub(evaluations);
+        self.left.set(left.unwrap_or(0));
+        left.map(drop)
+            .ok_or_else(|| "no evaluations are left".to_owned())
+    }
+
+    fn left_out(&self, rows: usize) {
+        self.left_out.set(self.left_out.get() + rows);
+    }
+
+    fn outside(&self, _: usize) {}
+}
