@@ -6,7 +6,7 @@ use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::report::compare::{Comparison, Side, compare};
+use cvtcycle::report::compare::{Comparison, Side, compare, names};
 
 use super::{Execute, threads};
 use crate::args::OutputArgs;
@@ -64,7 +64,18 @@ impl Execute for CompareArgs {
             ));
             return None;
         }
-        problems.take(compare(&self.dirs, self.reference.as_deref(), self.loosely))
+        let names = names(&self.dirs);
+        let place = |word: &String| names.iter().position(|name| name == word);
+        let reference = match &self.reference {
+            None => 0,
+            Some(word) => place(word).unwrap_or_else(|| {
+                let message = format!("none of the runs is named `{word}`");
+                let allowed = format!("one of {}", names.join(", "));
+                problems.add(bad_value("--reference", word, &allowed, &message, ""));
+                0
+            }),
+        };
+        problems.take(compare(&self.dirs, reference, self.loosely))
     }
 
     fn run(&self, found: Comparison, terminal: Terminal) -> CommandResult {

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use clap::Args;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
+use cvtcycle::model::transmission::loss_factor;
 use cvtcycle::output::table::{Head, TextTable};
 use cvtcycle::output::trace::COLUMNS;
 use cvtcycle::output::{Component, Flags};
@@ -272,7 +273,8 @@ fn matching_keys(word: &str, known: &'static [KeyInfo]) -> Vec<&'static KeyInfo>
         (!keys.is_empty()).then_some(keys)
     };
     pick(&|key| key == word)
-        .or_else(|| pick(&|key| key.ends_with(&end)))
+        // The name of a component is no question for its factor.
+        .or_else(|| pick(&|key| key.ends_with(&end) && !loss_factor::is_key(key)))
         .or_else(|| pick(&|key| key.starts_with(&start)))
         .unwrap_or_default()
 }

@@ -16,7 +16,7 @@ fn a_grid_of_two_factors_prints_its_matrix() {
         .as_array()
         .unwrap()
         .iter()
-        .find(|o| o["output"] == "fuel_l_per_100km" && o["car"] == "rover_216_cvt");
+        .find(|o| o["output"] == "headline_fuel_l_per_100km" && o["car"] == "rover_216_cvt");
     let matrix = &fuel.unwrap()["matrix"];
     let words = |name: &str| matrix[name].as_array().unwrap().clone();
     assert_eq!((words("rows").len(), words("columns").len()), (5, 7));

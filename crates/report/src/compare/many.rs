@@ -1,13 +1,13 @@
 //! Any number of runs next to each other: the subject of each against that of one of them.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::Serialize;
 
 use crate::problems::problem;
 use crate::results::{ResultDir, RunResults, find};
-use cvtcycle_config::{Problem, Problems};
+use cvtcycle_config::{Problem, Problems, Setting};
 use cvtcycle_output::number::{finite, plain};
 use cvtcycle_output::record::Manifest;
 use cvtcycle_output::summary::{RunSummary, StartWord};
@@ -108,16 +108,11 @@ impl Comparison {
     }
 }
 
-/// Compares the runs of some directories with one of them, the first where none is named. Runs under different conditions are refused unless
-/// `loosely`.
+/// Compares the runs of some directories with that at the place `reference`. Runs under different conditions are refused unless `loosely`.
 ///
 /// # Errors
-/// Directories that hold no run, an unknown reference, runs that were not driven alike.
-pub fn compare(
-    dirs: &[PathBuf],
-    reference: Option<&str>,
-    loosely: bool,
-) -> Result<Comparison, Problems> {
+/// Directories that hold no run, runs that were not driven alike.
+pub fn compare(dirs: &[PathBuf], reference: usize, loosely: bool) -> Result<Comparison, Problems> {
     let (mut problems, mut found) = (Problems::new(), Vec::new());
     for dir in dirs {
         match find(dir, &[]) {
@@ -134,15 +129,7 @@ pub fn compare(
         return Err(problems);
     }
     let mut named: Vec<(String, RunResults)> = names(dirs).into_iter().zip(found).collect();
-    if let Some(word) = reference {
-        let Some(place) = named.iter().position(|(name, _)| name == word) else {
-            let known: Vec<&str> = named.iter().map(|(name, _)| name.as_str()).collect();
-            let message = format!("none of the runs is named `{word}`");
-            let unknown = problem(Path::new("--reference"), &message, "");
-            return Err(unknown.allowed(known.join(", ")).into());
-        };
-        named[..=place].rotate_right(1);
-    }
+    named[..=reference].rotate_right(1);
     let conditions = conditions(&named);
     if let Some(first) = conditions.first().filter(|_| !loosely) {
         return Err(apart(first, &named).into());
@@ -151,7 +138,7 @@ pub fn compare(
 }
 
 /// Names of the directories, with numbers where they are the same.
-fn names(dirs: &[PathBuf]) -> Vec<String> {
+pub fn names(dirs: &[PathBuf]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for dir in dirs {
         let name = match dir.file_name() {
@@ -211,8 +198,8 @@ fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
     let (key, [a, b]) = (&different.key, [0, other].map(|k| &named[k].0));
     let [here, there] = [0, other].map(|k| &different.values[k]);
     let message = format!("{key} of {a} is {here}, of {b} {there}");
-    let hint = "drive both alike, or add --loosely to compare them all the same";
-    problem(&named[other].1.path, &message, hint)
+    let hint = "drive both alike, or compare them all the same";
+    problem(&named[other].1.path, &message, hint).settings(&[Setting::Loosely])
 }
 
 fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Comparison {

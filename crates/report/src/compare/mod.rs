@@ -3,7 +3,7 @@
 mod figures;
 mod many;
 
-pub use many::{Comparison, Different, Side, compare};
+pub use many::{Comparison, Different, Side, compare, names};
 
 use figures::{difference, traces};
 
@@ -45,7 +45,7 @@ pub(crate) fn document(a: &RunResults, b: &RunResults) -> Result<Document, Probl
     }
     let (cars_a, cars_b) = (cars(a), cars(b));
     let pairs = pairs(&cars_a, &cars_b);
-    let names = names(a, b);
+    let names = both_names(a, b);
     let mut sections = vec![
         answer(a, b, &pairs, &names),
         conditions(a, b, &pairs, &names),
@@ -73,7 +73,7 @@ pub(crate) fn document(a: &RunResults, b: &RunResults) -> Result<Document, Probl
 }
 
 /// What the two are called: the names of their directories, with letters where these are the same.
-fn names(a: &RunResults, b: &RunResults) -> [String; 2] {
+fn both_names(a: &RunResults, b: &RunResults) -> [String; 2] {
     let name = |found: &RunResults| match found.path.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
         None => found.path.display().to_string(),
