@@ -8,6 +8,8 @@
 //! | `overrides` | assignments of `--set`, one a line |
 //! | `cycle`, `map`, `points`, `measured`, `history` | a CSV file, after a byte that chooses the form where there are several |
 //! | `summary`, `inputs`, `study_manifest`, `checksums` | a file of results (JSON; a list of checksums), the manifest after a byte that chooses its plan |
+//! | `parquet` | a Parquet table up to its pages: edits of a small one, or the bytes themselves |
+//! | `journal` | the journal of files that are put into place, in a folder with some |
 //! | `belt` | a belt and its operating point: any finite numbers, or a table row with numbers in their ranges |
 //! | `drive` | a valid car and a short cycle: numbers of a shipped car moved within what their keys allow |
 //!
@@ -18,6 +20,7 @@ mod csv;
 mod drive;
 mod edits;
 mod expression;
+mod files;
 #[path = "../../../../tests/common/range.rs"]
 mod range;
 mod results;
@@ -29,7 +32,7 @@ mod toml;
 pub type Target = fn(&[u8]);
 
 /// The targets by name.
-pub const TARGETS: [(&str, Target); 19] = [
+pub const TARGETS: [(&str, Target); 21] = [
     ("vehicle", toml::vehicle),
     ("lubricant", toml::lubricant),
     ("study_plan", toml::study_plan),
@@ -47,6 +50,8 @@ pub const TARGETS: [(&str, Target); 19] = [
     ("inputs", results::inputs),
     ("study_manifest", results::study_manifest),
     ("checksums", results::checksums),
+    ("parquet", files::parquet),
+    ("journal", files::journal),
     ("belt", belt::belt),
     ("drive", drive::drive_car),
 ];

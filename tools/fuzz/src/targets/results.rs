@@ -10,7 +10,7 @@ use cvtcycle::study::store::Checksums;
 use super::within_memory;
 
 /// A refusal has words, and they can be shown.
-fn checked<T>(answer: Result<T, Problem>) -> Option<T> {
+pub(super) fn checked<T>(answer: Result<T, Problem>) -> Option<T> {
     answer
         .map_err(|problem| {
             assert!(!problem.message.is_empty(), "refused without a word");
