@@ -58,7 +58,10 @@ fn a_value_of_the_car_makes_another_word() {
     let dir = tempfile::tempdir().unwrap();
     let shipped = include_str!("../../../vehicles/rover_216_5mt.toml");
     let of = |own: &str| {
-        let text = shipped.replace("value = 0.78", own);
+        let text = shipped.replace(
+            "neutral_share = { value = 0.5",
+            &format!("neutral_share = {{ {own}"),
+        );
         fs::write(dir.path().join("own.toml"), text).unwrap();
         let output = run_in(
             dir.path(),
@@ -67,7 +70,7 @@ fn a_value_of_the_car_makes_another_word() {
         assert!(output.status.success(), "{}", stderr(&output));
         word(&serde_json::from_slice(&output.stdout).unwrap())
     };
-    let seal = of("value = 0.78");
-    assert_eq!(seal, of("value = 0.780"));
-    assert_ne!(seal, of("value = 0.79"));
+    let share = of("value = 0.5");
+    assert_eq!(share, of("value = 0.50"));
+    assert_ne!(share, of("value = 0.6"));
 }
