@@ -68,6 +68,7 @@ fn flag_of(setting: Setting) -> &'static str {
         Setting::Replace => "--force",
         Setting::Resume => "--resume",
         Setting::Added => "--with",
+        Setting::Loosely => "--loosely",
     }
 }
 

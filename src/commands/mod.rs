@@ -4,6 +4,7 @@ mod attribute;
 mod belt;
 mod calibrate;
 mod check;
+mod compare;
 mod explain;
 mod list;
 mod losses;
@@ -66,6 +67,8 @@ enum Command {
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
     Report(report::ReportArgs),
+    /// Compare runs with each other: fuel, losses, and the values in which the cars differ
+    Compare(compare::CompareArgs),
     /// Compare with the published values of the thesis, and with your own measurements
     Validate(Box<validate::ValidateArgs>),
     /// Fit parameters to measurements, with standard errors and prediction errors
@@ -123,6 +126,7 @@ impl Cli {
             Command::Attribute(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
+            Command::Compare(args) => args.execute(terminal),
             Command::Validate(args) => args.execute(terminal),
             Command::Calibrate(args) => args.execute(terminal),
             Command::Rig(args) => args.execute(terminal),

@@ -6,7 +6,7 @@
 //! | `cover` | the user's own title, logo, author and remarks |
 //! | `document` | sections, paragraphs, tables, figures: the content of a report, without its form |
 //! | `number` | numbers to text with their unit |
-//! | `run`, `compare`, `study`, `validation` | the sections on a run, two runs, a study, a validation |
+//! | `run`, `compare`, `study`, `validation` | the sections on a run, two runs (and a table of any number), a study, a validation |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
 //! | `write` | the files of a report |
@@ -15,7 +15,7 @@
 //! Nothing is computed here that the results do not hold: sums, differences and shares of their numbers only.
 
 pub mod charts;
-mod compare;
+pub mod compare;
 pub mod cover;
 pub mod document;
 pub mod results;

@@ -16,12 +16,14 @@ use cvtcycle::study::{Answer, StudyManifest};
 use crate::print::colour::Paint;
 use crate::print::sections;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
-use cvtcycle::output::table::TextColumns;
+use cvtcycle::output::table::{TextColumns, TextTable};
 
 /// Number of factors that are listed for an output.
 const MAX_FACTORS: usize = 10;
 /// Number of reasons of failed runs that are listed.
 const MAX_REASONS: usize = 5;
+/// Rows and columns of a matrix that fit on a page.
+const MATRIX: [usize; 2] = [40, 10];
 
 /// All results of a study for people.
 pub fn tables(study: &StudyResults, paint: Paint) -> String {
@@ -223,8 +225,37 @@ fn effects(output: &OutputAnswer, outline: &StudyManifest) -> String {
     match (output.sobol.last(), &output.tornado) {
         (Some(indices), _) => sobol(output, outline, indices),
         (None, Some(of)) => tornado(of),
-        (None, None) => rank(output) + &levels(output),
+        (None, None) => grid(output) + &rank(output) + &levels(output),
     }
+}
+
+/// The matrix of a grid of two factors, its smallest number marked.
+fn grid(output: &OutputAnswer) -> String {
+    let Some(matrix) = &output.matrix else {
+        return String::new();
+    };
+    let [of_rows, of_columns] = &matrix.factors;
+    let (high, wide) = (matrix.rows.len(), matrix.columns.len());
+    if wide > MATRIX[1] || high > MATRIX[0] {
+        return format!("  {of_rows} by {of_columns}: {high} by {wide} numbers, in matrix.csv\n");
+    }
+    let mut table = TextTable::new(&("l".to_owned() + &"r".repeat(wide))).indented();
+    let columns = matrix.columns.iter().cloned();
+    table.row(
+        [format!("{of_rows} \\ {of_columns}")]
+            .into_iter()
+            .chain(columns),
+    );
+    let least = matrix.least();
+    for (i, (name, row)) in matrix.rows.iter().zip(&matrix.cells).enumerate() {
+        let cell = |(k, x): (usize, &Option<f64>)| {
+            let mark = if least == Some((i, k)) { "*" } else { "" };
+            format!("{mark}{}", fixed(*x, 3))
+        };
+        let cells = row.iter().enumerate().map(cell);
+        table.row([name.clone()].into_iter().chain(cells));
+    }
+    table.text() + "  * least\n"
 }
 
 fn tornado(tornado: &Tornado) -> String {

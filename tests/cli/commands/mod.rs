@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod attribute;
+mod compare;
 mod inputs;
 mod named;
 mod run;
+mod study;
 mod streams;
 
 use std::fs;

@@ -75,6 +75,8 @@ pub enum Setting {
     Resume,
     /// Results that are added to a report.
     Added,
+    /// Runs that were not driven alike are compared.
+    Loosely,
 }
 
 /// One problem of an input.

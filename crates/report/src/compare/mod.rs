@@ -1,6 +1,9 @@
-//! Comparison of two runs of one cycle: two fluids, two pumps, two offsets.
+//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), a table of any number.
 
 mod figures;
+mod many;
+
+pub use many::{Comparison, Different, Side, compare, names};
 
 use figures::{difference, traces};
 
@@ -27,7 +30,7 @@ struct Pair<'a> {
 ///
 /// # Errors
 /// Runs of different cycles; runs without a car in common.
-pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
+pub(crate) fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
     if a.summary.cycle != b.summary.cycle {
         let message = format!(
             "{} drives {}, {} drives {}: runs of different cycles cannot be compared",
@@ -42,7 +45,7 @@ pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
     }
     let (cars_a, cars_b) = (cars(a), cars(b));
     let pairs = pairs(&cars_a, &cars_b);
-    let names = names(a, b);
+    let names = both_names(a, b);
     let mut sections = vec![
         answer(a, b, &pairs, &names),
         conditions(a, b, &pairs, &names),
@@ -70,7 +73,7 @@ pub fn document(a: &RunResults, b: &RunResults) -> Result<Document, Problems> {
 }
 
 /// What the two are called: the names of their directories, with letters where these are the same.
-fn names(a: &RunResults, b: &RunResults) -> [String; 2] {
+fn both_names(a: &RunResults, b: &RunResults) -> [String; 2] {
     let name = |found: &RunResults| match found.path.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
         None => found.path.display().to_string(),

@@ -1,9 +1,11 @@
 //! From a study's table to what it says: each output described, the subject held against its baselines, and which factor decides.
 
 pub mod ambient;
+mod grid;
 mod study_table;
 mod tables;
 
+pub use grid::GridMatrix;
 pub use study_table::{StudyTable, TableSource};
 pub use tables::tables;
 
@@ -100,6 +102,9 @@ pub struct OutputAnswer {
     /// Means at the levels of factors: in grids of all, else of words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub levels: Vec<(String, Groups)>,
+    /// Of a grid of two factors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrix: Option<GridMatrix>,
 }
 
 /// Rank correlations with the factors that are drawn numbers.
@@ -316,6 +321,7 @@ fn output(
         tornado: None,
         rank: None,
         levels: Vec::new(),
+        matrix: GridMatrix::of(plan, &found),
     };
     match plan.design {
         Design::Saltelli { .. } => answer.sobol = sobol(&found, plan.factors.len()),

@@ -3,7 +3,7 @@
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, csv_bytes};
 
-use super::{Answer, OutputAnswer, Ranked};
+use super::{Answer, GridMatrix, OutputAnswer, Ranked};
 use crate::execute::manifest::StudyManifest;
 use crate::statistics::{
     Estimate, FactorIndices, Group, QUANTILES, RankFactor, SobolIndices, Tornado, TornadoBar,
@@ -26,6 +26,7 @@ pub fn tables(answer: &Answer, outline: &StudyManifest) -> Vec<(String, Vec<u8>)
             "main_effects.csv",
             csv_bytes(&levels(), &level_rows(answer)),
         ),
+        ("matrix.csv", csv_bytes(&matrix(), &matrix_rows(answer))),
     ];
     let with_rows = |(name, bytes): (&str, Option<Vec<u8>>)| Some((name.to_owned(), bytes?));
     files.into_iter().filter_map(with_rows).collect()
@@ -113,6 +114,32 @@ fn sobol<'a>() -> Vec<Column<SobolRow<'a>>> {
     });
     list.extend(estimate("first", |r: &SobolRow| &r.3.first));
     list.extend(estimate("total", |r: &SobolRow| &r.3.total));
+    list
+}
+
+/// Output, its matrix, row and column.
+type MatrixRow<'a> = (&'a OutputAnswer, &'a GridMatrix, usize, usize);
+
+fn matrix_rows(answer: &Answer) -> Vec<MatrixRow<'_>> {
+    let mut rows = Vec::new();
+    for output in &answer.outputs {
+        if let Some(matrix) = &output.matrix {
+            let row = |i: usize| (0..matrix.columns.len()).map(move |k| (output, matrix, i, k));
+            rows.extend((0..matrix.rows.len()).flat_map(row));
+        }
+    }
+    rows
+}
+
+fn matrix<'a>() -> Vec<Column<MatrixRow<'a>>> {
+    let mut list = of_output_in_unit(|r: &MatrixRow<'a>| r.0);
+    list.extend(columns! { MatrixRow<'a>;
+        text "row_factor", "", "", r => r.1.factors[0].clone();
+        text "row", "", "", r => r.1.rows[r.2].clone();
+        text "column_factor", "", "", r => r.1.factors[1].clone();
+        text "column", "", "", r => r.1.columns[r.3].clone();
+        optional "value", "", "", r => r.1.cells.get(r.2).and_then(|row| *row.get(r.3)?);
+    });
     list
 }
 

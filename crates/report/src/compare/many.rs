@@ -1,0 +1,284 @@
+//! Any number of runs next to each other: the subject of each against that of one of them.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::problems::problem;
+use crate::results::{ResultDir, RunResults, find};
+use cvtcycle_config::{Problem, Problems, Setting};
+use cvtcycle_output::number::{finite, plain};
+use cvtcycle_output::record::Manifest;
+use cvtcycle_output::summary::{RunSummary, StartWord};
+use cvtcycle_output::{Component, summary::SCHEMA};
+
+/// A loss whose difference is smaller than this share of the largest one is left out.
+const LEAST_SHARE: f64 = 0.01;
+/// Most values that are named where runs differ in few.
+const FEW: usize = 8;
+
+/// Runs next to each other.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// Version of the object, and the program.
+    #[serde(flatten)]
+    pub manifest: Manifest,
+    /// Name of the run that the others are compared with.
+    pub reference: String,
+    /// The runs, the reference first.
+    pub runs: Vec<Side>,
+    /// What the runs are driven under, where it is not the same.
+    pub conditions: Vec<Different>,
+    /// Values of the cars that are not the same; none where a run has no record of them.
+    pub values: Option<Vec<Different>>,
+    /// Losses whose difference counts, in the order of the power flow.
+    pub components: Vec<String>,
+}
+
+/// The subject of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Side {
+    /// Name of the directory, unique.
+    pub name: String,
+    /// Name of its vehicle.
+    pub vehicle: String,
+    /// Headline fuel.
+    pub fuel_l_per_100km: Option<f64>,
+    /// Difference to the reference.
+    pub difference_l_per_100km: Option<f64>,
+    /// The same, per cent.
+    pub difference_percent: Option<f64>,
+    /// Carbon dioxide of the headline fuel.
+    pub co2_g_per_km: Option<f64>,
+    /// Loss of each component for a kilometre.
+    pub loss_kj_per_km: BTreeMap<String, Option<f64>>,
+    /// All losses of the transmission for a kilometre.
+    pub transmission_loss_kj_per_km: Option<f64>,
+    /// Smallest clamp safety factor.
+    pub min_clamp_safety: Option<f64>,
+    /// Time in which the car could not follow.
+    pub trace_missed_s: f64,
+    /// Names of the checks that failed.
+    pub failed_checks: Vec<String>,
+}
+
+/// Something that is not the same in all runs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Different {
+    /// Dotted key, or a condition of the run.
+    pub key: String,
+    /// Unit, `-` for none.
+    pub unit: String,
+    /// Value in each run, empty where it has none.
+    pub values: Vec<String>,
+}
+
+impl Different {
+    fn of(key: &str, unit: &str, values: Vec<String>) -> Option<Self> {
+        let same = values.windows(2).all(|pair| pair[0] == pair[1]);
+        (!same).then(|| Different {
+            key: key.to_owned(),
+            unit: unit.to_owned(),
+            values,
+        })
+    }
+}
+
+impl Comparison {
+    /// What the runs differ in, where it can be said in a sentence.
+    pub fn cause(&self) -> Option<String> {
+        let found = self.values.as_deref()?;
+        let said = |different: &Different| {
+            let unit = match different.unit.as_str() {
+                "-" | "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            format!("{}: {}{unit}", different.key, different.values.join(", "))
+        };
+        Some(match found {
+            [] => "no value of the cars differs".to_owned(),
+            [one] => format!("they differ in one value alone, {}", said(one)),
+            some if some.len() <= FEW => {
+                let list: Vec<String> = some.iter().map(said).collect();
+                format!("they differ in {}", list.join("; "))
+            }
+            many => format!("they differ in {} values", many.len()),
+        })
+    }
+}
+
+/// Compares the runs of some directories with that at the place `reference`. Runs under different conditions are refused unless `loosely`.
+///
+/// # Errors
+/// Directories that hold no run, runs that were not driven alike.
+pub fn compare(dirs: &[PathBuf], reference: usize, loosely: bool) -> Result<Comparison, Problems> {
+    let (mut problems, mut found) = (Problems::new(), Vec::new());
+    for dir in dirs {
+        match find(dir, &[]) {
+            Ok(ResultDir::Run(run)) => found.push(*run),
+            Ok(ResultDir::Study(_)) => {
+                let message = format!("{} holds a study, not a run", dir.display());
+                let hint = "a study compares its cars itself: `cvtcycle study show DIR`";
+                problems.push(problem(dir, &message, hint));
+            }
+            Err(more) => problems.extend(more),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let mut named: Vec<(String, RunResults)> = names(dirs).into_iter().zip(found).collect();
+    named[..=reference].rotate_right(1);
+    let conditions = conditions(&named);
+    if let Some(first) = conditions.first().filter(|_| !loosely) {
+        return Err(apart(first, &named).into());
+    }
+    Ok(of_runs(&named, conditions))
+}
+
+/// Names of the directories, with numbers where they are the same.
+pub fn names(dirs: &[PathBuf]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for dir in dirs {
+        let name = match dir.file_name() {
+            Some(name) => name.to_string_lossy().into_owned(),
+            None => dir.display().to_string(),
+        };
+        let numbered = (2..).map(|n| format!("{name}_{n}"));
+        let mut tried = std::iter::once(name.clone()).chain(numbered);
+        names.extend(tried.find(|name| !names.contains(name)));
+    }
+    names
+}
+
+/// What the runs were driven under, where it differs.
+fn conditions(named: &[(String, RunResults)]) -> Vec<Different> {
+    let each = |key: &str, unit: &str, of: &dyn Fn(&RunResults) -> String| {
+        let values = named.iter().map(|(_, run)| of(run));
+        Different::of(key, unit, values.collect())
+    };
+    let start = |run: &RunResults| match &run.summary.start {
+        StartWord::Word(word) => word.clone(),
+        StartWord::Degc(degc) => format!("{} degC", plain(*degc)),
+    };
+    // A cycle of a file may have changed under its name.
+    let trace = |run: &RunResults| {
+        let record = run.record.as_ref();
+        record.map_or_else(String::new, |record| record.cycle.sha256.clone())
+    };
+    let cycle = each("cycle", "-", &|run| run.summary.cycle.clone());
+    let recorded = named.iter().all(|(_, run)| run.record.is_some());
+    let traces = each("SHA-256 of the cycle", "-", &trace).filter(|_| recorded && cycle.is_none());
+    let ambient = each("ambient temperature", "degC", &|run| {
+        plain(run.summary.ambient_degc)
+    });
+    let step = each("time step", "s", &|run| plain(run.summary.settings.dt_s));
+    let belt = each("belt model", "-", &|run| {
+        run.summary.settings.formulation.clone()
+    });
+    let all = [
+        cycle,
+        traces,
+        ambient,
+        each("start", "-", &start),
+        step,
+        belt,
+    ];
+    all.into_iter().flatten().collect()
+}
+
+/// The problem of runs that were not driven alike.
+fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
+    let other = different
+        .values
+        .iter()
+        .position(|value| *value != different.values[0]);
+    let other = other.unwrap_or(0);
+    let (key, [a, b]) = (&different.key, [0, other].map(|k| &named[k].0));
+    let [here, there] = [0, other].map(|k| &different.values[k]);
+    let message = format!("{key} of {a} is {here}, of {b} {there}");
+    let hint = "drive both alike, or compare them all the same";
+    problem(&named[other].1.path, &message, hint).settings(&[Setting::Loosely])
+}
+
+fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Comparison {
+    let base = &named[0].1.summary.runs[0];
+    let runs: Vec<Side> = named
+        .iter()
+        .map(|(name, run)| side(name, &run.summary.runs[0], base))
+        .collect();
+    let spread = |component: &Component| {
+        let losses = runs.iter().map(|run| loss(run, component.name()));
+        let ends = losses.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        ends.1 - ends.0
+    };
+    let largest = Component::ALL.iter().map(spread).fold(0.0, f64::max);
+    let counts = |c: &Component| largest > 0.0 && spread(c) >= LEAST_SHARE * largest;
+    let components = Component::ALL.into_iter().filter(counts);
+    Comparison {
+        manifest: Manifest::new(SCHEMA),
+        reference: runs[0].name.clone(),
+        components: components.map(|c| c.name().to_owned()).collect(),
+        conditions,
+        values: values(named),
+        runs,
+    }
+}
+
+/// A loss for a kilometre; zero of a car without this component.
+fn loss(run: &Side, component: &str) -> f64 {
+    run.loss_kj_per_km
+        .get(component)
+        .copied()
+        .flatten()
+        .unwrap_or(0.0)
+}
+
+fn side(name: &str, run: &RunSummary, base: &RunSummary) -> Side {
+    let each_km = |kj: f64| finite(kj / run.distance_km);
+    let own = |c: Component| {
+        Some((
+            c.name().to_owned(),
+            run.loss_kj.get(c.name()).and_then(each_km)?,
+        ))
+    };
+    let fuels = run.headline_fuel().zip(base.headline_fuel());
+    Side {
+        name: name.to_owned(),
+        vehicle: run.vehicle.clone(),
+        fuel_l_per_100km: run.headline_fuel(),
+        difference_l_per_100km: fuels.map(|(fuel, base)| fuel - base),
+        difference_percent: fuels.and_then(|(fuel, base)| finite(100.0 * (fuel / base - 1.0))),
+        co2_g_per_km: run.weighted_co2_g_per_km.or(run.co2_g_per_km),
+        loss_kj_per_km: Component::ALL
+            .into_iter()
+            .filter_map(own)
+            .map(|(name, kj)| (name, Some(kj)))
+            .collect(),
+        transmission_loss_kj_per_km: each_km(run.transmission_loss_kj()),
+        min_clamp_safety: run.min_clamp_safety,
+        trace_missed_s: run.trace_missed_s,
+        failed_checks: run.failed_checks.clone(),
+    }
+}
+
+/// Values of the subjects that differ, in the order of their keys; none where a run has no record.
+fn values(named: &[(String, RunResults)]) -> Option<Vec<Different>> {
+    let mut by_key: BTreeMap<&str, (&str, Vec<String>)> = BTreeMap::new();
+    for (place, (_, run)) in named.iter().enumerate() {
+        let car = run.record.as_ref()?.cars.first()?;
+        for value in &car.values {
+            let none = || (value.unit.as_str(), vec![String::new(); named.len()]);
+            by_key.entry(&value.key).or_insert_with(none).1[place].clone_from(&value.value);
+        }
+    }
+    let different = by_key.into_iter();
+    Some(
+        different
+            .filter_map(|(key, (unit, values))| Different::of(key, unit, values))
+            .collect(),
+    )
+}

@@ -1,0 +1,143 @@
+//! `compare`: runs next to each other.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use cvtcycle::config::Problems;
+use cvtcycle::output::number::{fixed, signed};
+use cvtcycle::output::table::{TextTable, wrapped};
+use cvtcycle::report::compare::{Comparison, Side, compare, names};
+
+use super::{Execute, threads};
+use crate::args::OutputArgs;
+use crate::args::problems::bad_value;
+use crate::print::colour::Paint;
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text, sections};
+
+/// Most runs of a comparison.
+const MOST: usize = 20;
+/// Runs next to each other in a table.
+const ABREAST: usize = 5;
+
+/// Arguments of `compare`.
+#[derive(Args, Clone, Debug)]
+#[command(after_help = "\
+Examples:
+  cvtcycle run --out offset_3mm
+  cvtcycle run --set transmission.cvt.belt.band_offset_mm=2 --out offset_2mm
+  cvtcycle run --set transmission.cvt.belt.band_offset_mm=1 --out offset_1mm
+  cvtcycle compare offset_3mm offset_2mm offset_1mm
+  cvtcycle compare offset_*mm --reference offset_2mm --json
+
+The subject of each run, against that of the first one or of --reference. Losses are for a kilometre; those that hardly differ are left \
+out of the table. `cvtcycle report A B` writes a document on two runs.")]
+pub struct CompareArgs {
+    /// Directories written by `run --out`, 2 to 20
+    #[arg(value_name = "DIR", required = true)]
+    dirs: Vec<PathBuf>,
+    /// Name of the directory that the others are compared with [default: the first]
+    #[arg(long, value_name = "NAME")]
+    reference: Option<String>,
+    /// Compare runs of different cycles, temperatures or steps as well
+    #[arg(long)]
+    loosely: bool,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+impl Execute for CompareArgs {
+    type Plan = Comparison;
+
+    fn plan(&self, problems: &mut Problems) -> Option<Comparison> {
+        problems.take(threads::begin(None));
+        let count = self.dirs.len();
+        if !(2..=MOST).contains(&count) {
+            let message = format!("{count} directories cannot be compared");
+            let hint = "name the directories of the runs, the one to compare with first";
+            let allowed = format!("2 to {MOST} directories");
+            problems.add(bad_value(
+                "DIR",
+                &count.to_string(),
+                &allowed,
+                &message,
+                hint,
+            ));
+            return None;
+        }
+        let names = names(&self.dirs);
+        let place = |word: &String| names.iter().position(|name| name == word);
+        let reference = match &self.reference {
+            None => 0,
+            Some(word) => place(word).unwrap_or_else(|| {
+                let message = format!("none of the runs is named `{word}`");
+                let allowed = format!("one of {}", names.join(", "));
+                problems.add(bad_value("--reference", word, &allowed, &message, ""));
+                0
+            }),
+        };
+        problems.take(compare(&self.dirs, reference, self.loosely))
+    }
+
+    fn run(&self, found: Comparison, terminal: Terminal) -> CommandResult {
+        let json = json_text(&found)?;
+        let failures = found.runs.iter().flat_map(|run| {
+            let failed = run.failed_checks.iter();
+            failed.map(|check| format!("check failed: {}: {check}", run.name))
+        });
+        let results = Results::new(json, failures.collect(), WrittenFiles::default());
+        Ok(results.output(&self.output, || text(&found, terminal.stdout)))
+    }
+}
+
+fn text(found: &Comparison, paint: Paint) -> String {
+    let (reference, others) = found.runs.split_at(1);
+    let tables = others.chunks(ABREAST).map(|chunk| {
+        let runs: Vec<&Side> = reference.iter().chain(chunk).collect();
+        (format!("Against {}", found.reference), table(found, &runs))
+    });
+    let cause = found.cause().map(|cause| wrapped(&cause, ""));
+    let conditions = found.conditions.iter().map(|different| {
+        let line = format!("{}: {}", different.key, different.values.join(", "));
+        wrapped(&line, "not alike: ")
+    });
+    let body = sections(tables.collect::<Vec<_>>(), paint);
+    let notes = conditions.chain(cause).collect::<String>();
+    body.trim_start().to_owned() + "\n" + &notes
+}
+
+fn table(found: &Comparison, runs: &[&Side]) -> String {
+    let mut table = TextTable::new(&("ll".to_owned() + &"r".repeat(runs.len())));
+    let mut add = |name: &str, unit: &str, cell: &dyn Fn(&Side) -> String| {
+        let head = [name.to_owned(), unit.to_owned()].into_iter();
+        table.row(head.chain(runs.iter().map(|run| cell(run))));
+    };
+    add("", "", &|run| run.name.clone());
+    add("fuel", "L/100 km", &|run| fixed(run.fuel_l_per_100km, 3));
+    let own = |run: &Side| run.name == found.reference;
+    add("difference", "L/100 km", &|run| match own(run) {
+        true => String::new(),
+        false => signed(run.difference_l_per_100km, 3),
+    });
+    add("", "%", &|run| match own(run) {
+        true => String::new(),
+        false => signed(run.difference_percent, 2),
+    });
+    add("CO2", "g/km", &|run| fixed(run.co2_g_per_km, 1));
+    for name in &found.components {
+        add(&name.replace('_', " "), "kJ/km", &|run| {
+            fixed(run.loss_kj_per_km.get(name).copied().flatten(), 2)
+        });
+    }
+    add("transmission", "kJ/km", &|run| {
+        fixed(run.transmission_loss_kj_per_km, 2)
+    });
+    if runs.iter().any(|run| run.min_clamp_safety.is_some()) {
+        add("clamp safety, least", "-", &|run| {
+            fixed(run.min_clamp_safety, 2)
+        });
+    }
+    if runs.iter().any(|run| run.trace_missed_s > 0.0) {
+        add("trace missed", "s", &|run| fixed(run.trace_missed_s, 1));
+    }
+    table.text()
+}
