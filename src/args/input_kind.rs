@@ -13,6 +13,8 @@ use super::{bytes, cycles};
 pub enum InputKind {
     /// A vehicle file.
     Vehicle,
+    /// Values of a class of cars.
+    Class,
     /// A lubricant file.
     Lubricant,
     /// A drive cycle.
@@ -29,8 +31,9 @@ pub enum InputKind {
 type KindRow = (InputKind, &'static str, fn() -> Vec<&'static str>);
 
 /// All kinds.
-const KINDS: [KindRow; 6] = [
+const KINDS: [KindRow; 7] = [
     (InputKind::Vehicle, "vehicle", || Kind::Vehicle.names()),
+    (InputKind::Class, "class", || Kind::Class.names()),
     (InputKind::Lubricant, "lubricant", || {
         Kind::Lubricant.names()
     }),
@@ -74,6 +77,8 @@ impl InputKind {
     /// Unknown name, unreadable file, or a file of none of the kinds.
     pub fn detect(word: &str, prefer_file: bool) -> Result<(Self, String), Problems> {
         let exists = Path::new(word).exists();
+        // As `like` has it.
+        let word = word.strip_prefix("class:").unwrap_or(word);
         if !prefer_file || !exists {
             if let Some(kind) = InputKind::of_embedded(word) {
                 return Ok((kind, word.to_owned()));

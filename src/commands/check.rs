@@ -126,7 +126,7 @@ fn check(file: &str) -> Checked {
     let notes = match kind {
         InputKind::Cycle => cycle::find(&word).map(drop).map(none),
         // Only embedded.
-        InputKind::Rig => Ok(Vec::new()),
+        InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
         InputKind::Study => Plan::open(&word)
             .and_then(Study::prepare)

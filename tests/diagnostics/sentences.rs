@@ -41,7 +41,7 @@ const OUTSIDE: &[(&str, &str)] = &[
 ];
 
 /// Submodules of those above that read input files.
-const INSIDE: &[&str] = &["config::setup::template"];
+const INSIDE: &[&str] = &["config::setup::like", "config::setup::template"];
 
 /// Modules that make sentences and no problems: a reader passes their sentences on.
 const PASSED_ON: [&str; 4] = [

@@ -3,17 +3,21 @@
 use crate::bench::transmission::RigKeys;
 use crate::engine::EngineKeys;
 use crate::fluid::FluidKeys;
-use crate::keys::{Choice, Table, keys};
+use crate::keys::{Choice, Kind, Presence, Table, keys};
 use crate::road::RoadLoadKeys;
 use crate::thermal::ThermalKeys;
 use crate::transmission::cvt::CvtKeys;
 use crate::transmission::manual::ManualKeys;
 
+/// Names: one text with commas, or a list of texts.
+const NAMES: Kind<'static> = Kind::Either(&[Kind::Text, Kind::Texts]);
+
 keys! {
     /// Keys of `[vehicle]`.
     HEAD: HeadKeys = "vehicle" [] {
         title: computed("name of the file", text()), "name for people";
-        baselines: computed("none", text()), "names of the baseline vehicles, comma separated";
+        like: (NAMES, Presence::Optional), "what gives the values that this file leaves out: vehicles by name or path, and classes as class:NAME; of several, the later takes precedence";
+        baselines: (NAMES, Presence::Computed("none")), "names of the baseline vehicles";
         transmission_oil: text(), "name of the transmission oil";
         engine_oil: text(), "name of the engine oil";
     }

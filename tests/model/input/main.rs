@@ -8,6 +8,7 @@ mod loose;
 mod choices;
 mod cycle;
 mod files;
+mod like;
 mod overrides;
 mod problems;
 mod reading;

@@ -127,6 +127,10 @@ impl<'r> Values for Section<'r> {
         })
     }
 
+    fn texts(&self, key: &Key<'_>) -> Vec<String> {
+        self.read_texts(key)
+    }
+
     fn word(&self, key: &Key<'_>) -> &'static str {
         self.read_word(key, default_option(key).unwrap_or_default())
     }

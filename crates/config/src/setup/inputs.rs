@@ -1,7 +1,9 @@
 //! The documents of a car, and one reading of them.
 
+use super::like::resolve;
 use super::{
-    Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, read_lubricant, stem, text_of,
+    Files, Kind, NamedBy, Options, Origin, Setup, is_path, load_lubricant, read_lubricant, stem,
+    text_of,
 };
 use crate::files::TableCache;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
@@ -41,7 +43,7 @@ pub(super) struct Inputs {
 pub(super) struct Frame {
     /// Name of the car.
     pub name: String,
-    /// Names of transmission oil and engine oil; empty where neither vehicle nor user has one.
+    /// Names or paths of transmission oil and engine oil; empty where neither vehicle nor user has one.
     fluids: [String; 2],
     pub files: TableCache,
     formulation: Formulation,
@@ -69,18 +71,21 @@ impl Inputs {
         files: Box<dyn Files>,
         options: &Options,
     ) -> Result<Self, Problems> {
-        let mut document = Document::parse(file, text)?;
+        let files = TableCache::new(files);
+        let mut document = resolve(Document::parse(file, text)?, &files)?;
         let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         // Set all the same, keys of another box would call for a whole box.
         wrong_keys(&document, &options.set, &name).finish()?;
         let of_vehicle = |target| [Target::Vehicle, Target::Rig].contains(&target);
         let problems = apply(&mut document, &options.set, of_vehicle);
         let own = head(&Reader::check_only(&document).root(), "");
+        let written_in = |key: &str| written_in(&document, key);
+        let files_of_fluids = FLUIDS.map(written_in);
         let own_friction = options
             .lubricant
             .as_ref()
-            .and_then(|_| friction(file, &own.fluid));
-        let fluid = |own: String, asked: &Option<String>, target| match asked {
+            .and_then(|_| friction(&files_of_fluids[0], &own.fluid));
+        let fluid = |own: String, asked: &Option<String>, target, file: &str| match asked {
             Some(word) => {
                 let argument = match target {
                     Target::EngineOil => Argument::EngineOil,
@@ -105,17 +110,22 @@ impl Inputs {
                 )
             }
         };
-        let (oil, oil_name) = fluid(own.fluid, &options.lubricant, Target::Lubricant);
-        let (engine_oil, engine_oil_name) =
-            fluid(own.engine_oil, &options.engine_oil, Target::EngineOil);
+        let [of_oil, of_engine_oil] = &files_of_fluids;
+        let (oil, oil_word) = fluid(own.fluid, &options.lubricant, Target::Lubricant, of_oil);
+        let (engine_oil, engine_oil_word) = fluid(
+            own.engine_oil,
+            &options.engine_oil,
+            Target::EngineOil,
+            of_engine_oil,
+        );
         let vehicle = CarFile {
             document: Some(document),
             problems,
         };
         let frame = Frame {
             name,
-            fluids: [oil_name, engine_oil_name],
-            files: TableCache::new(files),
+            fluids: [oil_word, engine_oil_word],
+            files,
             formulation: options.formulation,
             own_friction,
         };
@@ -162,9 +172,28 @@ impl Inputs {
         }
         let setup = assembled?;
         if problems.is_empty() {
-            Ok(Setup { keys, ..setup })
+            let origin = self.origin();
+            Ok(Setup {
+                keys,
+                origin,
+                ..setup
+            })
         } else {
             Err(problems)
+        }
+    }
+}
+
+impl Inputs {
+    /// The files that are read besides the vehicle's own.
+    fn origin(&self) -> Origin {
+        let sources = self.files[0].document.iter().flat_map(|of| &of.sources);
+        let parents = sources.filter(|source| source.parent.is_some());
+        Origin {
+            parents: parents
+                .map(|source| (source.input.to_string(), source.text.clone()))
+                .collect(),
+            fluids: self.frame.fluids.clone(),
         }
     }
 }
@@ -184,7 +213,10 @@ impl Frame {
             title, baselines, ..
         } = head(&root, &self.name);
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
-            Some(reader) => Ok(Lubricant::from_values(&reader.root(), &self.fluids[k])),
+            Some(reader) => Ok(Lubricant::from_values(
+                &reader.root(),
+                &stem(&self.fluids[k]),
+            )),
             // Some fluid, so that the reading goes on.
             None => load_lubricant("cvtf_ezl799_class").map(|found| found.0),
         };
@@ -196,11 +228,6 @@ impl Frame {
             false => Vec::new(),
         };
         notes.extend(changed_losses(&car.transmission));
-        let baselines = baselines
-            .split(',')
-            .map(|b| b.trim().to_owned())
-            .filter(|b| !b.is_empty())
-            .collect();
         Ok(Setup {
             name: self.name.clone(),
             title,
@@ -208,6 +235,7 @@ impl Frame {
             vehicle: Vehicle::new(car, road_load),
             keys: Vec::new(),
             notes,
+            origin: Origin::default(),
         })
     }
 }
@@ -238,6 +266,16 @@ fn fluid_of_file(file: &str, fluid: String) -> String {
     )
 }
 
+/// Keys of `[vehicle]` that name its fluids.
+const FLUIDS: [&str; 2] = [HEAD.transmission_oil.name, HEAD.engine_oil.name];
+
+/// Name of the file in which a key of `[vehicle]` is written.
+fn written_in(document: &Document, key: &str) -> String {
+    let node = document.root.node(&["vehicle", key]);
+    let source = node.and_then(|node| document.parent(&node.span).map(|_| node.span.source));
+    document.sources[source.unwrap_or(0)].input.to_string()
+}
+
 /// Friction of the fluid that a vehicle's file names; none where it cannot be read.
 fn friction(file: &str, fluid: &str) -> Option<Friction> {
     let word = fluid_of_file(file, fluid.to_owned());
@@ -246,7 +284,7 @@ fn friction(file: &str, fluid: &str) -> Option<Friction> {
     Some(own.friction)
 }
 
-/// The file of a fluid with its overrides, and its name. Problems of the word are at `place`.
+/// The file of a fluid with its overrides, and its name or path. Problems of the word are at `place`.
 fn fluid_file(
     word: String,
     by: NamedBy,
@@ -273,7 +311,7 @@ fn fluid_file(
             }),
         },
     };
-    (file, stem(&word))
+    (file, word)
 }
 
 /// Ends the reading of a fluid; its keys with their prefix.
@@ -299,16 +337,18 @@ fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bo
 /// What the `[vehicle]` table says.
 pub(super) struct Head {
     title: String,
-    baselines: String,
+    baselines: Vec<String>,
     fluid: String,
     engine_oil: String,
 }
 
 pub(super) fn head<V: Values>(root: &V, name: &str) -> Head {
     let head = root.table("vehicle");
+    // Resolved before.
+    let _ = head.texts(&HEAD.like);
     Head {
         title: head.text_or(&HEAD.title, name),
-        baselines: head.text_or(&HEAD.baselines, ""),
+        baselines: head.texts(&HEAD.baselines),
         fluid: head.text(&HEAD.transmission_oil),
         engine_oil: head.text(&HEAD.engine_oil),
     }

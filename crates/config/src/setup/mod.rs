@@ -6,6 +6,7 @@ pub mod assumptions;
 pub mod catalogue;
 pub mod template;
 mod inputs;
+mod like;
 pub mod rig;
 
 pub use crate::files::embedded::{
@@ -64,6 +65,17 @@ pub struct Setup {
     pub keys: Vec<KeyInfo>,
     /// What a reader of its results should know, a sentence each.
     pub notes: Vec<String>,
+    /// The files that its own inherits from, and the words by which its fluids were found.
+    pub origin: Origin,
+}
+
+/// The files of a car besides its own.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// Name and text of each file that the vehicle's own inherits from.
+    pub parents: Vec<(String, String)>,
+    /// Name or path of transmission oil and engine oil.
+    pub fluids: [String; 2],
 }
 
 impl std::ops::Deref for Setup {
@@ -79,6 +91,8 @@ impl std::ops::Deref for Setup {
 pub enum Kind {
     /// A vehicle.
     Vehicle,
+    /// Values of a class of cars, for `like` of a vehicle.
+    Class,
     /// A lubricant.
     Lubricant,
     /// What a test rig is set to.
@@ -95,6 +109,7 @@ impl Kind {
     pub const fn embedded(self) -> &'static [embedded::File] {
         match self {
             Kind::Vehicle => embedded::vehicles(),
+            Kind::Class => embedded::classes(),
             Kind::Lubricant => embedded::lubricants(),
             Kind::Rig => embedded::rigs(),
             Kind::Plan => embedded::plans(),
@@ -115,13 +130,14 @@ impl Kind {
             Kind::Lubricant => Argument::Lubricant,
             Kind::Plan => Argument::Plan,
             Kind::Calibration => Argument::Calibration,
-            Kind::Rig => Argument::File,
+            Kind::Class | Kind::Rig => Argument::File,
         }
     }
 
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Kind::Vehicle => "vehicle",
+            Kind::Class => "class",
             Kind::Lubricant => "lubricant",
             Kind::Rig => "rig",
             Kind::Plan => "plan",
@@ -152,13 +168,18 @@ pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, D
 
 fn unknown_name(word: &str, kind: Kind) -> Problem {
     let names = kind.names();
-    let hint = did_you_mean(word, names.iter().copied())
-        .map_or_else(String::new, |question| question + " ");
-    Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
+    let question = did_you_mean(word, names.iter().copied());
+    let names = names.join(", ");
+    let problem = Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
         .at(kind.argument())
-        .value(word)
-        .allowed(format!("{}, or the path of a TOML file", names.join(", ")))
-        .hint(format!("{hint}a path needs a / or an ending"))
+        .value(word);
+    if kind == Kind::Class {
+        return problem.allowed(names).hint(question.unwrap_or_default());
+    }
+    let question = question.map_or_else(String::new, |question| question + " ");
+    problem
+        .allowed(format!("{names}, or the path of a TOML file"))
+        .hint(format!("{question}a path needs a / or an ending"))
 }
 
 fn unreadable(word: &str, kind: Kind, why: &ReadError) -> Problem {
