@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use cvtcycle::config::setup::{Kind, is_path};
+use cvtcycle::config::setup::{Kind, is_path, is_twin};
 use cvtcycle::config::{Document, Problem, Problems, bounded, cycle, decode};
 
 use super::problems::{bad_value, did_you_mean, problem};
@@ -77,6 +77,9 @@ impl InputKind {
     /// Unknown name, unreadable file, or a file of none of the kinds.
     pub fn detect(word: &str, prefer_file: bool) -> Result<(Self, String), Problems> {
         let exists = Path::new(word).exists();
+        if is_twin(word) {
+            return Ok((InputKind::Vehicle, word.to_owned()));
+        }
         // As `like` has it.
         let word = word.strip_prefix("class:").unwrap_or(word);
         if !prefer_file || !exists {

@@ -93,11 +93,17 @@ pub fn load(
         named_by,
         ..baseline
     };
-    let mut loaded = vec![(&car.vehicle, setup, subject)];
+    let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
+    // A twin is made of the subject as it is driven.
+    let twin = subject.of_twin(named_by);
     for name in &names {
-        let setup = load_one(name, &baseline, &of_all).map_err(|found| cite_vehicle(option, found));
+        let options = match setup::is_twin(name) {
+            true => &twin,
+            false => &baseline,
+        };
+        let setup = load_one(name, options, &of_all).map_err(|found| cite_vehicle(option, found));
         let setup = problems.take(setup);
-        loaded.push((name, setup, baseline.clone()));
+        loaded.push((name, setup, options.clone()));
     }
     let mut vehicles: Vec<RunVehicle> = Vec::new();
     for (word, setup, options) in loaded {

@@ -50,6 +50,9 @@ pub fn message(kind: &str, case: &str) -> String {
             calibration::data(kind, case)
         }
         "vehicle" => return vehicle(case, &String::from_utf8(bytes).unwrap()),
+        "like" if name.starts_with("twin_") => {
+            setup::load(&setup::baseline_of(case, setup::TWIN), &Options::default()).err()
+        }
         "like" => setup::load(case, &Options::default()).err(),
         "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
         "lubricant" => setup::load_lubricant(case).err(),

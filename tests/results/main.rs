@@ -14,6 +14,7 @@ mod fixtures;
 mod range;
 
 mod attacks;
+mod alike;
 mod failures;
 mod history;
 mod outputs;

@@ -13,3 +13,4 @@ mod overrides;
 mod problems;
 mod reading;
 mod setup;
+mod twin;

@@ -122,6 +122,9 @@ impl Table {
             change(&mut entry.key);
             entry.node.each_span(change);
         }
+        if let Some(choice) = &mut self.choice {
+            choice.each_span(change);
+        }
     }
 
     /// The node at a path of tables in it.

@@ -13,6 +13,10 @@ impl<'r> Values for Section<'r> {
         Section::table(self, name)
     }
 
+    fn exists(&self) -> bool {
+        Section::exists(self)
+    }
+
     fn has(&self, key: &Key<'_>) -> bool {
         Section::has(self, key.name)
     }

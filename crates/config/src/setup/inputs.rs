@@ -1,15 +1,16 @@
 //! The documents of a car, and one reading of them.
 
 use super::like::resolve;
+use super::twin::{TwinTable, twin};
 use super::{
-    Files, Kind, NamedBy, Options, Origin, Setup, is_path, load_lubricant, read_lubricant, stem,
-    text_of,
+    Files, Kind, NamedBy, Options, Origin, Setup, is_path, is_twin, load_lubricant, read_lubricant,
+    stem, text_of,
 };
 use crate::files::TableCache;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
-use cvtcycle_model::files::{HEAD, VEHICLE_FILE};
+use cvtcycle_model::files::{HEAD, TwinKeys, VEHICLE_FILE};
 use cvtcycle_model::fluid::{Friction, Lubricant};
 use cvtcycle_model::keys::Values;
 use cvtcycle_model::road::RoadLoadInput;
@@ -58,7 +59,8 @@ impl Inputs {
     /// Problems that leave nothing to read: no such vehicle, no TOML, overrides of a box that the vehicle does not have.
     pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
-        Inputs::of_text(&file, &text, Box::new(disk), options)
+        let is_twin = is_twin(word);
+        Inputs::of(&file, &text, Box::new(disk), options, is_twin)
     }
 
     /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
@@ -71,15 +73,30 @@ impl Inputs {
         files: Box<dyn Files>,
         options: &Options,
     ) -> Result<Self, Problems> {
+        Inputs::of(file, text, files, options, false)
+    }
+
+    /// Of the car of a text, or of its twin.
+    fn of(
+        file: &str,
+        text: &str,
+        files: Box<dyn Files>,
+        options: &Options,
+        is_twin: bool,
+    ) -> Result<Self, Problems> {
         let files = TableCache::new(files);
         let mut document = resolve(Document::parse(file, text)?, &files)?;
-        let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
+        let mut name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         // Set all the same, keys of another box would call for a whole box.
         wrong_keys(&document, &options.set, &name).finish()?;
         let of_vehicle = |target| [Target::Vehicle, Target::Rig].contains(&target);
         let problems = apply(&mut document, &options.set, of_vehicle);
+        if is_twin {
+            document = twin(document, file, &files)?;
+            name += "_twin";
+        }
         let own = head(&Reader::check_only(&document).root(), "");
-        let written_in = |key: &str| written_in(&document, key);
+        let written_in = |key: &str| written_in(&document, key, file);
         let files_of_fluids = FLUIDS.map(written_in);
         let own_friction = options
             .lubricant
@@ -269,11 +286,14 @@ fn fluid_of_file(file: &str, fluid: String) -> String {
 /// Keys of `[vehicle]` that name its fluids.
 const FLUIDS: [&str; 2] = [HEAD.transmission_oil.name, HEAD.engine_oil.name];
 
-/// Name of the file in which a key of `[vehicle]` is written.
-fn written_in(document: &Document, key: &str) -> String {
+/// Name of the file in which a key of `[vehicle]` is written: that of the car, or one that it inherits from.
+fn written_in(document: &Document, key: &str, file: &str) -> String {
     let node = document.root.node(&["vehicle", key]);
-    let source = node.and_then(|node| document.parent(&node.span).map(|_| node.span.source));
-    document.sources[source.unwrap_or(0)].input.to_string()
+    let parent = node.filter(|node| document.parent(&node.span).is_some());
+    parent.map_or_else(
+        || file.to_owned(),
+        |node| document.sources[node.span.source].input.to_string(),
+    )
 }
 
 /// Friction of the fluid that a vehicle's file names; none where it cannot be read.
@@ -344,8 +364,12 @@ pub(super) struct Head {
 
 pub(super) fn head<V: Values>(root: &V, name: &str) -> Head {
     let head = root.table("vehicle");
-    // Resolved before.
+    // Resolved before; what is made of the rest is the twin's.
     let _ = head.texts(&HEAD.like);
+    let twin = root.table(TwinKeys::TABLE.name);
+    if twin.exists() {
+        let _ = TwinTable::from_values(&twin);
+    }
     Head {
         title: head.text_or(&HEAD.title, name),
         baselines: head.texts(&HEAD.baselines),

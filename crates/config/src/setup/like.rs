@@ -34,21 +34,12 @@ const OWN: [&str; 3] = [HEAD.title.name, HEAD.baselines.name, HEAD.like.name];
 /// # Errors
 /// Names that are not known, files that cannot be read or are no vehicle, and files that inherit from themselves.
 pub(super) fn resolve(document: Document, files: &dyn Files) -> Result<Document, Problems> {
-    let file = match &document.sources[0].input {
-        Input::File(file) => PathBuf::from(file),
-        _ => PathBuf::new(),
-    };
-    let shown = file.parent().map(Path::to_path_buf).unwrap_or_default();
-    let mut resolver = Resolver {
-        files,
-        shown,
-        chain: vec![file.to_string_lossy().into_owned()],
-        count: 0,
-    };
-    resolver.resolve(document, Path::new(""))
+    let file = document.sources[0].input.to_string();
+    Resolver::new(&file, files).resolve(document, Path::new(""))
 }
 
-struct Resolver<'f> {
+/// Finds what a vehicle file names.
+pub(super) struct Resolver<'f> {
     files: &'f dyn Files,
     /// Folder of the vehicle's file, from which `files` counts.
     shown: PathBuf,
@@ -58,7 +49,18 @@ struct Resolver<'f> {
     count: usize,
 }
 
-impl Resolver<'_> {
+impl<'f> Resolver<'f> {
+    /// For the vehicle `file`; the files that it names come from `files`.
+    pub fn new(file: &str, files: &'f dyn Files) -> Self {
+        let shown = Path::new(file).parent().map(Path::to_path_buf);
+        Resolver {
+            files,
+            shown: shown.unwrap_or_default(),
+            chain: vec![file.to_owned()],
+            count: 0,
+        }
+    }
+
     /// A document in a folder with all that it inherits.
     fn resolve(&mut self, mut document: Document, folder: &Path) -> Result<Document, Problems> {
         let mut problems = Problems::new();
@@ -96,7 +98,7 @@ impl Resolver<'_> {
     }
 
     /// A class or a car that a file in `folder` names.
-    fn parent(&mut self, word: &str, folder: &Path) -> Result<Document, Problems> {
+    pub fn parent(&mut self, word: &str, folder: &Path) -> Result<Document, Problems> {
         let (name, text, parent) = self.source(word, folder)?;
         if let Some(at) = self.chain.iter().position(|before| *before == name) {
             let ring: Vec<&str> = self.chain[at..].iter().map(String::as_str).collect();
@@ -243,7 +245,7 @@ fn plain(path: &Path) -> PathBuf {
 }
 
 /// Adds to a table at a path what is inherited and not in it.
-fn join(own: &mut Table, inherited: Table, path: &str) {
+pub(super) fn join(own: &mut Table, inherited: Table, path: &str) {
     for (name, theirs) in inherited.entries {
         let path = match path {
             "" => name.clone(),

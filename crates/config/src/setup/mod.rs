@@ -8,6 +8,7 @@ pub mod template;
 mod inputs;
 mod like;
 pub mod rig;
+mod twin;
 
 pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
@@ -17,7 +18,8 @@ pub use crate::files::{Disk, Files};
 use crate::files::bounded::{self, ReadError};
 use crate::files::embedded;
 use crate::{
-    Argument, Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, did_you_mean,
+    Argument, Bound, Document, KeyInfo, Override, Problem, Problems, Reader, Target, decode,
+    did_you_mean,
 };
 use cvtcycle_model::drive::Vehicle;
 
@@ -151,6 +153,11 @@ impl Kind {
 /// # Errors
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
 pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, Disk), Problems> {
+    let word = match kind {
+        // That of its car.
+        Kind::Vehicle => word.strip_prefix(twin::MARK).unwrap_or(word),
+        _ => word,
+    };
     if !is_path(word) {
         let text = embedded::text(kind.embedded(), word).ok_or_else(|| unknown_name(word, kind))?;
         let file = format!("embedded:{word}.toml");
@@ -164,6 +171,53 @@ pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, D
     let bytes = read.map_err(|error| unreadable(word, kind, &error))?;
     let folder = path.parent().map(ToOwned::to_owned).unwrap_or_default();
     Ok((word.to_owned(), decode(word, &bytes)?, Disk { folder }))
+}
+
+/// As a baseline the same car with a manual box.
+pub const TWIN: &str = "twin";
+
+impl Options {
+    /// Those of the twin of a car with these: it has another transmission oil, and all else of the car.
+    #[must_use]
+    pub fn of_twin(&self, named_by: NamedBy) -> Options {
+        let own = self.set.iter();
+        let own = own.filter(|by| by.target() != Target::Lubricant);
+        Options {
+            lubricant: None,
+            set: own.cloned().collect(),
+            named_by,
+            ..self.clone()
+        }
+    }
+}
+
+/// Whether the word is that of a twin.
+#[must_use]
+pub fn is_twin(word: &str) -> bool {
+    word.starts_with(twin::MARK)
+}
+
+/// Name of a car by its word, as results have it.
+#[must_use]
+pub fn name_of(word: &str) -> String {
+    match word.strip_prefix(twin::MARK) {
+        Some(of) => stem(of) + "_twin",
+        None => stem(word),
+    }
+}
+
+/// The word for a vehicle that the file of the vehicle `of` names as its baseline: a path is relative to that file, `twin` is the same car
+/// with a manual box.
+#[must_use]
+pub fn baseline_of(of: &str, named: &str) -> String {
+    if named == TWIN {
+        return format!("{}{of}", twin::MARK);
+    }
+    let folder = std::path::Path::new(of).parent();
+    match folder.filter(|_| is_path(of) && is_path(named)) {
+        Some(folder) => folder.join(named).to_string_lossy().into_owned(),
+        None => named.to_owned(),
+    }
 }
 
 fn unknown_name(word: &str, kind: Kind) -> Problem {

@@ -235,6 +235,9 @@ pub trait Values: Sized {
     /// The table `name` in this one.
     fn table(&self, name: &str) -> Self;
 
+    /// Whether the table is present.
+    fn exists(&self) -> bool;
+
     /// Whether the key is given.
     fn has(&self, key: &Key<'_>) -> bool;
 
