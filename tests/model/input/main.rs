@@ -9,6 +9,7 @@ mod choices;
 mod cycle;
 mod files;
 mod like;
+mod new_car;
 mod overrides;
 mod problems;
 mod reading;

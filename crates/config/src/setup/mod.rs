@@ -4,6 +4,7 @@
 
 pub mod assumptions;
 pub mod catalogue;
+pub mod new_car;
 pub mod template;
 mod inputs;
 mod like;

@@ -124,22 +124,30 @@ impl TwinTable {
         (ratios.collect(), Origin::of("derived", words))
     }
 
-    /// Road speeds at which the gears change up, km/h.
-    fn shifts_kmh(&self, overall: &[f64], radius_m: f64, rated_rad_s: f64) -> (Vec<f64>, Origin) {
-        if !self.shift_m_s.is_empty() {
-            let kmh = self.shift_m_s.iter().map(|v| 3.6 * v).collect();
-            return (kmh, Origin::given(&TWIN.shift_kmh));
+    /// Road speeds at which the gears change up and down, km/h, and where they come from.
+    fn shifts(&self, overall: &[f64], radius_m: f64, rated_rad_s: f64) -> ([Vec<f64>; 2], Origin) {
+        if self.shift_m_s.is_empty() {
+            let origin = Origin::of("assumed", "TW-3".to_owned());
+            return (shifts_kmh(overall, radius_m, rated_rad_s), origin);
         }
-        let changes = overall.iter().take(overall.len() - 1).enumerate();
-        let speed = |(k, ratio): (usize, &f64)| {
-            let share = UP.0 - UP.1 * k as f64; // TW-3
-            3.6 * share * rated_rad_s * radius_m / ratio
-        };
-        (
-            changes.map(speed).collect(),
-            Origin::of("assumed", "TW-3".to_owned()),
-        )
+        let up: Vec<f64> = self.shift_m_s.iter().map(|v| 3.6 * v).collect();
+        (with_down(up), Origin::given(&TWIN.shift_kmh))
     }
+}
+
+/// Road speeds at which the gears change up and down (TW-3), km/h.
+pub(super) fn shifts_kmh(overall: &[f64], radius_m: f64, rated_rad_s: f64) -> [Vec<f64>; 2] {
+    let changes = overall.iter().take(overall.len().saturating_sub(1));
+    let speed = |(k, ratio): (usize, &f64)| {
+        let share = UP.0 - UP.1 * k as f64;
+        3.6 * share * rated_rad_s * radius_m / ratio
+    };
+    with_down(changes.enumerate().map(speed).collect())
+}
+
+fn with_down(up: Vec<f64>) -> [Vec<f64>; 2] {
+    let down = up.iter().map(|kmh| DOWN * kmh).collect();
+    [up, down]
 }
 
 /// Status and source of a value of the twin.
@@ -235,8 +243,7 @@ fn text(table: &TwinTable, root: &Section<'_>) -> Option<String> {
     let power = |row: &Vec<f64>| row[0] * row[1];
     let rated = line.iter().max_by(|a, b| power(a).total_cmp(&power(b)))?;
     let (overall, of_ratios) = table.ratios(radius_m);
-    let (up, of_shifts) = table.shifts_kmh(&overall, radius_m, rated[0]);
-    let down: Vec<f64> = up.iter().map(|kmh| DOWN * kmh).collect();
+    let ([up, down], of_shifts) = table.shifts(&overall, radius_m, rated[0]);
     let own = match root.table("vehicle").text_or(&HEAD.title, "") {
         title if title.is_empty() => "this car".to_owned(),
         title => title,
@@ -256,11 +263,7 @@ fn text(table: &TwinTable, root: &Section<'_>) -> Option<String> {
             format!("[vehicle]\ntitle = {title}\n\n[transmission.manual]\n"),
             entry("overall_ratios", &overall, &of_ratios),
             entry("upshift_kmh", &up, &of_shifts),
-            entry(
-                "downshift_kmh",
-                &down,
-                &Origin::of("assumed", "TW-3".to_owned()),
-            ),
+            entry("downshift_kmh", &down, &of_shifts),
         ]
         .concat(),
     )
