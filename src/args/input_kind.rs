@@ -106,9 +106,10 @@ impl InputKind {
 
     fn of_embedded(word: &str) -> Option<Self> {
         let named = KINDS.iter().find(|(_, _, names)| names().contains(&word));
-        let constant = word.starts_with("constant_") && !cycle::is_csv(word);
-        let constant = constant.then_some(InputKind::Cycle);
-        named.map(|(kind, ..)| *kind).or(constant)
+        let is_cycle = cycle::name_of(word).is_some()
+            || (word.starts_with("constant_") && !cycle::is_csv(word));
+        let cycle = is_cycle.then_some(InputKind::Cycle);
+        named.map(|(kind, ..)| *kind).or(cycle)
     }
 
     /// Kind by the first words of the lines; the text may have any other error.

@@ -95,7 +95,8 @@ fn list_cycles() -> Listing {
         json: json!({ "cycles": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Cycles",
         table: columns.lines(&list),
-        note: "Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
+        note: "Also nedc (ece15_eudc), wltc or wltp (wltc_class3b), ftp (ftp75), la4 (udds), hwy (hwfet), 10-15; in any capitals.\n\
+            Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
             Two distances: a manual car drives the trace with gear-change plateaux, an automatic car the one without.\n",
     }
 }

@@ -66,19 +66,7 @@ pub fn load(
     };
     let setup = problems.take(load_one(&car.vehicle, &subject, &of_all));
     if setup.is_none() {
-        // The fluids are checked by themselves where the vehicle cannot be read.
-        let fluids = [
-            (&car.lubricant, Argument::Lubricant),
-            (&comparison.engine_oil, Argument::EngineOil),
-        ];
-        for (word, argument) in fluids {
-            let fluid = word.as_ref().map(|word| setup::load_lubricant(word));
-            let named = |problem: Problem| match problem.place.is_argument(Argument::Lubricant) {
-                true => problem.at(argument),
-                false => problem,
-            };
-            problems.take(fluid.transpose().map_err(|found| found.map(named)));
-        }
+        check_fluids(args, problems);
     }
     let names = match baselines {
         Baselines::Named if comparison.baseline.is_empty() => Vec::new(),
@@ -116,6 +104,22 @@ pub fn load(
         });
     }
     vehicles
+}
+
+/// Checks the fluids by themselves, where the vehicle cannot be read.
+fn check_fluids(args: &RunArgs, problems: &mut Problems) {
+    let fluids = [
+        (&args.car.lubricant, Argument::Lubricant),
+        (&args.comparison.engine_oil, Argument::EngineOil),
+    ];
+    for (word, argument) in fluids {
+        let fluid = word.as_ref().map(|word| setup::load_lubricant(word));
+        let named = |problem: Problem| match problem.place.is_argument(Argument::Lubricant) {
+            true => problem.at(argument),
+            false => problem,
+        };
+        problems.take(fluid.transpose().map_err(|found| found.map(named)));
+    }
 }
 
 /// Problems of the vehicle's name under what gives it.

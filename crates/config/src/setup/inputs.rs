@@ -102,39 +102,20 @@ impl Inputs {
             .lubricant
             .as_ref()
             .and_then(|_| friction(&files_of_fluids[0], &own.fluid));
-        let fluid = |own: String, asked: &Option<String>, target, file: &str| match asked {
-            Some(word) => {
-                let argument = match target {
-                    Target::EngineOil => Argument::EngineOil,
-                    _ => Argument::Lubricant,
-                };
-                fluid_file(
-                    word.clone(),
-                    options.named_by,
-                    argument.into(),
-                    options,
-                    target,
-                )
-            }
-            None => {
-                let place = Place::file(file);
-                fluid_file(
-                    fluid_of_file(file, own),
-                    NamedBy::File,
-                    place,
-                    options,
-                    target,
-                )
-            }
-        };
         let [of_oil, of_engine_oil] = &files_of_fluids;
-        let (oil, oil_word) = fluid(own.fluid, &options.lubricant, Target::Lubricant, of_oil);
-        let (engine_oil, engine_oil_word) = fluid(
-            own.engine_oil,
-            &options.engine_oil,
-            Target::EngineOil,
-            of_engine_oil,
-        );
+        let words = [
+            fluid_word(of_oil, own.fluid, &options.lubricant, Argument::Lubricant),
+            fluid_word(
+                of_engine_oil,
+                own.engine_oil,
+                &options.engine_oil,
+                Argument::EngineOil,
+            ),
+        ];
+        let [(oil, oil_word), (engine_oil, engine_oil_word)] = [
+            fluid_file(&words[0], options, Target::Lubricant),
+            fluid_file(&words[1], options, Target::EngineOil),
+        ];
         let vehicle = CarFile {
             document: Some(document),
             problems,
@@ -304,15 +285,34 @@ fn friction(file: &str, fluid: &str) -> Option<Friction> {
     Some(own.friction)
 }
 
-/// The file of a fluid with its overrides, and its name or path. Problems of the word are at `place`.
-fn fluid_file(
+/// What names a fluid.
+struct FluidWord {
     word: String,
-    by: NamedBy,
+    by: Option<NamedBy>,
+    /// Where problems of the word are.
     place: Place,
-    options: &Options,
-    target: Target,
-) -> (CarFile, String) {
-    let read = text_of(&word, Kind::Lubricant, by)
+}
+
+/// The fluid that was asked for, or that of the vehicle's file.
+fn fluid_word(file: &str, own: String, asked: &Option<String>, argument: Argument) -> FluidWord {
+    match asked {
+        Some(word) => FluidWord {
+            word: word.clone(),
+            by: None,
+            place: argument.into(),
+        },
+        None => FluidWord {
+            word: fluid_of_file(file, own),
+            by: Some(NamedBy::File),
+            place: Place::file(file),
+        },
+    }
+}
+
+/// The file of a fluid with its overrides, and its name or path.
+fn fluid_file(of: &FluidWord, options: &Options, target: Target) -> (CarFile, String) {
+    let by = of.by.unwrap_or(options.named_by);
+    let read = text_of(&of.word, Kind::Lubricant, by)
         .and_then(|(file, text, _)| Document::parse(&file, &text));
     let file = match read {
         Ok(mut document) => CarFile {
@@ -322,16 +322,14 @@ fn fluid_file(
         Err(problems) => CarFile {
             document: None,
             problems: problems.map(|problem| {
-                let is_word = problem.place.is_argument(Argument::Lubricant);
-                if is_word {
-                    problem.at(place.clone())
-                } else {
-                    problem
+                match problem.place.is_argument(Argument::Lubricant) {
+                    true => problem.at(of.place.clone()),
+                    false => problem,
                 }
             }),
         },
     };
-    (file, word)
+    (file, of.word.clone())
 }
 
 /// Ends the reading of a fluid; its keys with their prefix.

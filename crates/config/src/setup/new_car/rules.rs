@@ -70,6 +70,9 @@ const PLAIN: [(&str, &str, Units); 9] = [
 const OF_CVT: [&str; 5] = ["ratio-low", "ratio-high", "span", "centre-distance", "pump"];
 const OF_MANUAL: [&str; 1] = ["gears"];
 
+const LOW: &str = "transmission.cvt.ratio.low";
+const CENTRE: &str = "transmission.cvt.variator.centre_distance_mm";
+
 /// Least running radius of a belt, m (NC-4).
 const LEAST_RADIUS_M: f64 = 0.030;
 /// Mass of a belt, kg/m (NC-4).
@@ -116,7 +119,8 @@ pub(super) fn lines(answers: &Answers, base: &Setup) -> Result<Vec<Line>, Proble
         }
     }
     given.wheel();
-    given.engine();
+    given.size();
+    given.power();
     match base.transmission().is_cvt() {
         true => given.belt(),
         false => given.gears(),
@@ -277,181 +281,182 @@ impl Given<'_> {
         Some((value, speeds))
     }
 
-    fn engine(&mut self) {
-        if let Some(cc) = self.number("displacement", &VOLUME).filter(|cc| *cc > 0.0) {
-            let litres = cc / 1e3;
-            let words = |label: &str| format!("{label}: {} l", digits(litres));
-            let stroke_mm = (cc * 1e3 / PI).cbrt(); // NC-9: four cylinders of pi/4 s^3
-            self.follows(
+    /// What follows from the size of the engine.
+    fn size(&mut self) {
+        let Some(cc) = self.number("displacement", &VOLUME).filter(|cc| *cc > 0.0) else {
+            return;
+        };
+        let litres = cc / 1e3;
+        let stroke_mm = (cc * 1e3 / PI).cbrt(); // NC-9: four cylinders of pi/4 s^3
+        for (key, value, rule) in [
+            (
                 "engine.stroke_mm",
                 format!("{stroke_mm:.1}"),
-                words("NC-9, ASSUMED"),
-            );
-            self.follows(
+                "NC-9, ASSUMED",
+            ),
+            (
                 "engine.inertia_kg_m2",
                 format!("{:.3}", 0.05 + 0.1 * litres),
-                words("NC-3"),
-            );
-            self.follows(
+                "NC-3",
+            ),
+            (
                 "engine.accessory_nm",
                 format!("{:.3}", 0.175 * litres + 0.2021),
-                words("NC-3"),
-            );
+                "NC-3",
+            ),
+        ] {
+            self.follows(key, value, format!("{rule}: {} l", digits(litres)));
         }
+    }
+
+    /// What follows from power and torque of the engine.
+    fn power(&mut self) {
         let torque = self.at_speed("torque", &TORQUE);
         let Some((kw, speeds)) = self.at_speed("power", &POWER) else {
             return;
         };
         let rated_rpm = speeds.first().copied().unwrap_or(RATED_RPM);
         self.is_given("power", "engine.rated_kw", digits(kw));
-        self.follows(
-            "thermal.engine.block_kj_k",
-            format!("{:.1}", 0.525 * kw),
-            "NC-6".to_owned(),
-        );
-        self.follows(
-            "thermal.engine.oil_kj_k",
-            format!("{:.1}", 0.28 * kw),
-            "NC-6".to_owned(),
-        );
-        let highest = self
+        for (key, kj_k) in [
+            ("thermal.engine.block_kj_k", 0.525),
+            ("thermal.engine.oil_kj_k", 0.28),
+        ] {
+            self.follows(key, format!("{:.1}", kj_k * kw), "NC-6".to_owned());
+        }
+        let highest_rpm = self
             .number("highest", &SPEED)
             .unwrap_or(rated_rpm + BEYOND_RATED_RPM);
         if self.text("highest").is_none() {
-            self.follows(
-                "engine.highest_rpm",
-                digits(highest),
-                "400 rpm above the speed of rated power".to_owned(),
-            );
+            let words = "400 rpm above the speed of rated power";
+            self.follows("engine.highest_rpm", digits(highest_rpm), words.to_owned());
         }
         let idle_rpm = self.number("idle", &SPEED);
-        let idle_rpm = idle_rpm.unwrap_or_else(|| self.inherited("engine.idle.hot_rpm"));
         let rated_nm = kw * 1e3 / (rated_rpm * RPM);
-        let (usual, at) = USUAL_TORQUE;
-        let (nm, at) = torque.unwrap_or((
-            usual * rated_nm,
-            vec![(at * rated_rpm / 100.0).round() * 100.0],
-        ));
-        let plateau = match at.as_slice() {
-            [] => [0.68 * rated_rpm; 2],
-            all => [all[0], all[all.len() - 1]],
-        };
-        if nm < rated_nm {
-            let message = format!(
-                "rated power needs {rated_nm:.0} Nm at {rated_rpm:.0} rpm, more than the highest torque of {nm:.0} Nm"
-            );
-            self.complain(
-                "power",
-                &message,
-                "check both numbers, their units and speeds",
-            );
-            return;
-        }
-        let ordered = idle_rpm < plateau[0] && plateau[1] < rated_rpm && rated_rpm <= highest;
-        if !ordered {
-            self.complain("power", "idle, highest torque, rated power and highest speed are not in this order of speed", "check the speeds after @");
-            return;
-        }
+        let usual = (USUAL_TORQUE.0 * rated_nm, Vec::new());
+        let (nm, at) = torque.unwrap_or(usual);
         let curve = Curve {
             nm,
-            plateau,
+            plateau: match at.as_slice() {
+                [] => [(USUAL_TORQUE.1 * rated_rpm / 100.0).round() * 100.0; 2],
+                all => [all[0], all[all.len() - 1]],
+            },
             rated_nm,
             rated_rpm,
-            idle_rpm,
+            idle_rpm: idle_rpm.unwrap_or_else(|| self.inherited("engine.idle.hot_rpm")),
+            highest_rpm,
         };
-        let words = format!("NC-2 through {nm:.0} Nm and {} kW", digits(kw));
-        self.follows("engine.full_load", curve.rows(highest), words);
+        match curve.mistake() {
+            Some(message) => self.complain(
+                "power",
+                &message,
+                "check both numbers, their units and the speeds after @",
+            ),
+            None => {
+                let words = format!("NC-2 through {nm:.0} Nm and {} kW", digits(kw));
+                self.follows("engine.full_load", curve.rows(), words);
+            }
+        }
     }
 
-    /// Limits of the belt's ratio, and the belt that reaches them.
-    fn belt(&mut self) {
-        let final_drive = self.number("final-drive", &RATIO);
-        if let Some(ratio) = final_drive {
-            self.is_given(
-                "final-drive",
-                "transmission.cvt.final_drive_ratio",
-                digits(ratio),
-            );
-        }
-        let (low, high) = (
-            self.number("ratio-low", &RATIO),
-            self.number("ratio-high", &RATIO),
-        );
+    /// Low and high ratio of the belt, of which a span may give one; none after a problem.
+    fn ratio_limits(&mut self) -> Option<[Option<f64>; 2]> {
+        let low = self.number("ratio-low", &RATIO);
+        let high = self.number("ratio-high", &RATIO);
         let span = self.number("span", &RATIO);
-        let (low, high) = match (low, high, span) {
+        match (low, high, span) {
+            (low, high, None) => Some([low, high]),
+            (None, Some(high), Some(span)) => Some([Some(high * span), Some(high)]),
+            (Some(low), None, Some(span)) => Some([Some(low), Some(low / span)]),
             (Some(_), Some(_), Some(_)) => {
                 self.complain(
                     "span",
                     "a span and both ratios at once",
                     "give two of the three",
                 );
-                return;
+                None
             }
-            (None, Some(high), Some(span)) => (Some(high * span), Some(high)),
-            (Some(low), None, Some(span)) => (Some(low), Some(low / span)),
             (None, None, Some(_)) => {
                 self.complain(
                     "span",
                     "a span without one of its ends",
                     "give --ratio-high too",
                 );
-                return;
+                None
             }
-            (low, high, None) => (low, high),
-        };
+        }
+    }
+
+    /// Limits of the belt's ratio, and the belt that reaches them.
+    fn belt(&mut self) {
+        if let Some(ratio) = self.number("final-drive", &RATIO) {
+            self.is_given(
+                "final-drive",
+                "transmission.cvt.final_drive_ratio",
+                digits(ratio),
+            );
+        }
+        let limits = self.ratio_limits();
         let centre_mm = self.number("centre-distance", &LENGTH);
+        let Some([low, high]) = limits else { return };
         for (option, key, value) in [
-            ("ratio-low", "transmission.cvt.ratio.low", low),
+            ("ratio-low", LOW, low),
             ("ratio-high", "transmission.cvt.ratio.high", high),
-            (
-                "centre-distance",
-                "transmission.cvt.variator.centre_distance_mm",
-                centre_mm,
-            ),
+            ("centre-distance", CENTRE, centre_mm),
         ] {
-            let Some(value) = value else { continue };
-            match self.text(option) {
-                Some(_) => self.is_given(option, key, digits(value)),
-                None => self.follows(
+            match (value, self.text(option)) {
+                (Some(value), Some(_)) => self.is_given(option, key, digits(value)),
+                (Some(value), None) => self.follows(
                     key,
                     digits(value),
                     "the span and the other ratio".to_owned(),
                 ),
+                (None, _) => {}
             }
         }
         if low.is_none() && centre_mm.is_none() {
             return;
         }
-        let low = low.unwrap_or_else(|| self.inherited("transmission.cvt.ratio.low"));
-        let centre_mm = centre_mm
-            .unwrap_or_else(|| self.inherited("transmission.cvt.variator.centre_distance_mm"));
+        let low = low.unwrap_or_else(|| self.inherited(LOW));
+        let centre_mm = centre_mm.unwrap_or_else(|| self.inherited(CENTRE));
+        self.belt_of(low, centre_mm);
+    }
+
+    /// The belt that runs at the least radius in low.
+    fn belt_of(&mut self, low: f64, centre_mm: f64) {
         let length_m = belt_length_m(low, centre_mm / 1e3);
-        if !(length_m > 0.0) {
+        if length_m.is_nan() {
+            let hint = "check the low ratio and the centre distance";
             self.complain(
                 "ratio-low",
                 "no belt reaches this ratio at this distance of the pulleys",
-                "check the low ratio and the centre distance",
+                hint,
             );
             return;
         }
-        let words = "NC-4: least running radius 30 mm";
-        self.follows(
-            "transmission.cvt.belt.length_m",
-            format!("{length_m:.4}"),
-            words.to_owned(),
-        );
-        self.follows(
-            "transmission.cvt.belt.mass_kg",
-            format!("{:.3}", BELT_KG_M * length_m),
-            "NC-4: 1.6 kg/m".to_owned(),
-        );
-        let stop = "no deflection of the primary in low".to_owned();
-        self.follows(
-            "transmission.cvt.variator.stop_from_ratio",
-            digits(low - STOP),
-            stop.clone(),
-        );
-        self.follows("transmission.cvt.variator.stop_to_ratio", digits(low), stop);
+        for (key, value, source) in [
+            (
+                "transmission.cvt.belt.length_m",
+                format!("{length_m:.5}"),
+                "NC-4: least running radius 30 mm",
+            ),
+            (
+                "transmission.cvt.belt.mass_kg",
+                format!("{:.3}", BELT_KG_M * length_m),
+                "NC-4: 1.6 kg/m",
+            ),
+            (
+                "transmission.cvt.variator.stop_from_ratio",
+                digits(low - STOP),
+                "no deflection of the primary in low",
+            ),
+            (
+                "transmission.cvt.variator.stop_to_ratio",
+                digits(low),
+                "no deflection of the primary in low",
+            ),
+        ] {
+            self.follows(key, value, source.to_owned());
+        }
     }
 
     /// The gear set, and shift speeds for it.
@@ -488,31 +493,32 @@ impl Given<'_> {
         let overall: Vec<f64> = gears.iter().map(|gear| gear * last).collect();
         let words = format!("gears {text} times a final drive of {}", digits(last));
         self.follows("transmission.manual.overall_ratios", list(&overall), words);
-        let engine = self.base.engine();
-        let rated = self
-            .at_speed("power", &POWER)
-            .and_then(|(_, speeds)| speeds.first().copied());
-        let rated_rad_s = rated.map_or(engine.highest_rad_s - BEYOND_RATED_RPM * RPM, |rpm| {
-            rpm * RPM
-        });
-        let radius_m = self
+        self.shifts(&overall);
+    }
+
+    /// Shift speeds of a gear set.
+    fn shifts(&mut self, overall: &[f64]) {
+        let rated = self.at_speed("power", &POWER);
+        let rated = rated.and_then(|(_, speeds)| speeds.first().copied());
+        let usual = self.base.engine().highest_rad_s - BEYOND_RATED_RPM * RPM;
+        let rated_rad_s = rated.map_or(usual, |rpm| rpm * RPM);
+        let mut radii = self
             .lines
             .iter()
-            .rev()
-            .find(|line| line.key == "road_load.wheel_radius_m");
-        let radius_m = radius_m.and_then(|line| line.value.parse().ok());
+            .filter(|line| line.key == "road_load.wheel_radius_m");
+        let radius_m = radii.next().and_then(|line| line.value.parse().ok());
         let radius_m = radius_m.unwrap_or(self.base.road_load.base.wheel_radius_m);
-        let [up, down] = shifts_kmh(&overall, radius_m, rated_rad_s);
-        let words = format!("TW-3, rated speed {:.0} rpm", rated_rad_s * RAD_S);
-        for (key, speeds) in [
-            ("transmission.manual.upshift_kmh", up),
-            ("transmission.manual.downshift_kmh", down),
-        ] {
+        let speeds = shifts_kmh(overall, radius_m, rated_rad_s);
+        let keys = [
+            "transmission.manual.upshift_kmh",
+            "transmission.manual.downshift_kmh",
+        ];
+        for (key, speeds) in keys.into_iter().zip(speeds) {
             self.lines.push(Line {
                 key,
                 value: list(&speeds),
                 status: "assumed",
-                source: words.clone(),
+                source: format!("TW-3, rated speed {:.0} rpm", rated_rad_s * RAD_S),
             });
         }
     }
@@ -533,9 +539,27 @@ struct Curve {
     rated_nm: f64,
     rated_rpm: f64,
     idle_rpm: f64,
+    highest_rpm: f64,
 }
 
 impl Curve {
+    /// Why there is no such line.
+    fn mistake(&self) -> Option<String> {
+        let [from, to] = self.plateau;
+        if self.nm < self.rated_nm {
+            return Some(format!(
+                "rated power needs {:.0} Nm at {:.0} rpm, more than the highest torque of {:.0} Nm",
+                self.rated_nm, self.rated_rpm, self.nm
+            ));
+        }
+        let speeds = [self.idle_rpm, from, to, self.rated_rpm, self.highest_rpm];
+        let ordered = speeds[0] < from && to < self.rated_rpm && self.rated_rpm <= self.highest_rpm;
+        let speeds = speeds.map(|rpm| format!("{rpm:.0}")).join(", ");
+        (!ordered).then(|| {
+            format!("the speeds of idle, highest torque, rated power and the highest one do not rise: {speeds} rpm")
+        })
+    }
+
     fn torque_nm(&self, rpm: f64) -> f64 {
         let [from, to] = self.plateau;
         if rpm < from {
@@ -548,7 +572,8 @@ impl Curve {
         }
     }
 
-    fn rows(&self, highest_rpm: f64) -> String {
+    fn rows(&self) -> String {
+        let highest_rpm = self.highest_rpm;
         let steps = (1..40).map(|k| 500.0 * f64::from(k));
         let inner = steps.filter(|rpm| *rpm > self.idle_rpm + 50.0 && *rpm < highest_rpm - 50.0);
         let mut speeds: Vec<f64> = inner
