@@ -66,7 +66,7 @@ pub fn load(
     };
     let setup = problems.take(load_one(&car.vehicle, &subject, &of_all));
     if setup.is_none() {
-        check_fluids(args, problems);
+        check_fluids(car, comparison, problems);
     }
     let names = match baselines {
         Baselines::Named if comparison.baseline.is_empty() => Vec::new(),
@@ -107,10 +107,10 @@ pub fn load(
 }
 
 /// Checks the fluids by themselves, where the vehicle cannot be read.
-fn check_fluids(args: &RunArgs, problems: &mut Problems) {
+fn check_fluids(car: &VehicleArgs, comparison: &ComparisonArgs, problems: &mut Problems) {
     let fluids = [
-        (&args.car.lubricant, Argument::Lubricant),
-        (&args.comparison.engine_oil, Argument::EngineOil),
+        (&car.lubricant, Argument::Lubricant),
+        (&comparison.engine_oil, Argument::EngineOil),
     ];
     for (word, argument) in fluids {
         let fluid = word.as_ref().map(|word| setup::load_lubricant(word));

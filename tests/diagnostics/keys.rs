@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use cvtcycle::config::setup::{Kind, Options, catalogue, load, load_lubricant};
-use cvtcycle::config::{Document, KeyInfo, Problem, Problems, Reader};
+use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader};
 
 use super::kinds::written;
 
@@ -478,6 +478,16 @@ pub fn check() {
         .filter(|file| file.kind != Kind::Class)
         .map(|file| Plain::new(file.kind, &file.keys))
         .collect();
+    // No shipped car has a table of its twin.
+    let twin = Options {
+        set: vec![Override::number("twin.gears", 6.0)],
+        ..Options::default()
+    };
+    let twin = load("rover_216_cvt", &twin).unwrap().keys.into_iter();
+    let is_fluid =
+        |key: &str| key.starts_with(catalogue::OIL) || key.starts_with(catalogue::ENGINE_OIL);
+    let twin: Vec<KeyInfo> = twin.filter(|info| !is_fluid(&info.key)).collect();
+    waiting.push(Plain::new(Kind::Vehicle, &twin));
     while let Some(plain) = waiting.pop() {
         let prefix = if plain.kind == Kind::Lubricant {
             catalogue::OIL

@@ -147,7 +147,7 @@ fn check_reports_every_file() {
     assert_eq!(good.status.code(), Some(0), "{}", stderr(&good));
     let doubt = format!(
         "    doubt: baseline mondeo_20_5mt is {}\n",
-        "not like for like: mass +230 kg, rated power +14 kW, displacement +400 cm3, f0 +0.7 N and 10 other values"
+        "not like for like: mass +230 kg, rated power +14 kW, displacement +400 cm3 and 11 other values"
     );
     assert_eq!(
         stdout(&good),

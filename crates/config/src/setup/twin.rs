@@ -82,7 +82,8 @@ impl TwinTable {
         } else {
             overall.len()
         };
-        if !shift_m_s.is_empty() && shift_m_s.len() + 1 != gears {
+        let is_read = shift_m_s.iter().all(|speed| speed.is_finite());
+        if is_read && !shift_m_s.is_empty() && shift_m_s.len() + 1 != gears {
             s.complain(
                 TWIN.shift_kmh.name,
                 &format!("{} speeds", gears - 1),

@@ -54,7 +54,7 @@ const NAMED: [Named; 7] = [
     }),
 ];
 /// So many of them are named, so that the words stay on a line.
-const MOST_NAMED: usize = 4;
+const MOST_NAMED: usize = 3;
 
 /// What differs besides the transmission and its oil.
 #[must_use]

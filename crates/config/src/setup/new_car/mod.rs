@@ -127,7 +127,7 @@ pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
             problem
                 .names_key()
                 .allowed(meaning(name))
-                .hint("a class has none that is this car's, or name a car with --like"),
+                .hint("a class has none that is this car's; only a car that it is like has"),
         );
     }
     let Some(parents) = parents.filter(|_| problems.is_empty()) else {
@@ -193,7 +193,7 @@ fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
     if let Some(car) = &answers.like {
         if answers.class.is_some() {
             let problem = Problem::conflict("a car and a class at once").key("class");
-            return Err(problem.hint("give --like or --class"));
+            return Err(problem.hint("give one of them"));
         }
         let gearbox = answers
             .gearbox

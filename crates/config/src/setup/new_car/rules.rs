@@ -210,7 +210,7 @@ impl Given<'_> {
                 self.complain(
                     option,
                     &format!("the car has {has}"),
-                    "choose the box with --box",
+                    "choose another class of box",
                 );
             }
         }
@@ -379,7 +379,7 @@ impl Given<'_> {
                 self.complain(
                     "span",
                     "a span without one of its ends",
-                    "give --ratio-high too",
+                    "give the smallest ratio too",
                 );
                 None
             }
