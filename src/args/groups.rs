@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::{self, Kind, Options, Setup};
+use cvtcycle::config::setup::{self, Kind, Options, Setup, TWIN, baseline_of};
 use cvtcycle::config::{Bound, Problem, Problems, cycle};
 use cvtcycle::model::drive::Start;
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -13,7 +13,7 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::StartWord;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
-use super::{Names, count, cycles, names_of, number, one_of, relative_to};
+use super::{Names, count, cycles, names_of, number, one_of};
 
 /// Allowed temperature at the start, degC.
 const START: Bound = Bound::closed(-40.0, 130.0);
@@ -134,8 +134,8 @@ pub struct ComparisonArgs {
     /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
     #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
     pub cycle: String,
-    /// Vehicle to compare with; repeatable; `none` for no comparison [default: baselines of the vehicle file]
-    #[arg(long, value_name = "NAME|FILE.toml|none", value_parser = Names(|| [Kind::Vehicle.names(), vec!["none"]].concat()), hide_possible_values = true)]
+    /// Vehicle to compare with; repeatable; `twin` for the same car with a manual box, `none` for no comparison [default: baselines of the vehicle file]
+    #[arg(long, value_name = "NAME|FILE.toml|twin|none", value_parser = Names(|| [Kind::Vehicle.names(), vec!["twin", "none"]].concat()), hide_possible_values = true)]
     pub baseline: Vec<String>,
     /// Engine oil of all vehicles
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Lubricant.names()), hide_possible_values = true)]
@@ -160,9 +160,13 @@ impl ComparisonArgs {
     ) -> Vec<String> {
         if self.baseline.is_empty() {
             let own = setup.iter().flat_map(|setup| &setup.baselines);
-            return own.map(|name| relative_to(vehicle, name)).collect();
+            return own.map(|name| baseline_of(vehicle, name)).collect();
         }
-        let named: Vec<String> = self.named_baselines().cloned().collect();
+        let word = |name: &String| match name.as_str() {
+            TWIN => baseline_of(vehicle, name),
+            name => name.to_owned(),
+        };
+        let named: Vec<String> = self.named_baselines().map(word).collect();
         if !named.is_empty() && named.len() < self.baseline.len() {
             let message = "`none` together with a baseline";
             let hint = "give either `--baseline none` or names";

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use cvtcycle::config::setup::{Kind, is_path};
+use cvtcycle::config::setup::{Kind, is_path, is_twin};
 use cvtcycle::config::{Document, Problem, Problems, bounded, cycle, decode};
 
 use super::problems::{bad_value, did_you_mean, problem};
@@ -13,6 +13,8 @@ use super::{bytes, cycles};
 pub enum InputKind {
     /// A vehicle file.
     Vehicle,
+    /// Values of a class of cars.
+    Class,
     /// A lubricant file.
     Lubricant,
     /// A drive cycle.
@@ -29,8 +31,9 @@ pub enum InputKind {
 type KindRow = (InputKind, &'static str, fn() -> Vec<&'static str>);
 
 /// All kinds.
-const KINDS: [KindRow; 6] = [
+const KINDS: [KindRow; 7] = [
     (InputKind::Vehicle, "vehicle", || Kind::Vehicle.names()),
+    (InputKind::Class, "class", || Kind::Class.names()),
     (InputKind::Lubricant, "lubricant", || {
         Kind::Lubricant.names()
     }),
@@ -74,6 +77,11 @@ impl InputKind {
     /// Unknown name, unreadable file, or a file of none of the kinds.
     pub fn detect(word: &str, prefer_file: bool) -> Result<(Self, String), Problems> {
         let exists = Path::new(word).exists();
+        if is_twin(word) {
+            return Ok((InputKind::Vehicle, word.to_owned()));
+        }
+        // As `like` has it.
+        let word = word.strip_prefix("class:").unwrap_or(word);
         if !prefer_file || !exists {
             if let Some(kind) = InputKind::of_embedded(word) {
                 return Ok((kind, word.to_owned()));
@@ -98,9 +106,10 @@ impl InputKind {
 
     fn of_embedded(word: &str) -> Option<Self> {
         let named = KINDS.iter().find(|(_, _, names)| names().contains(&word));
-        let constant = word.starts_with("constant_") && !cycle::is_csv(word);
-        let constant = constant.then_some(InputKind::Cycle);
-        named.map(|(kind, ..)| *kind).or(constant)
+        let is_cycle = cycle::name_of(word).is_some()
+            || (word.starts_with("constant_") && !cycle::is_csv(word));
+        let cycle = is_cycle.then_some(InputKind::Cycle);
+        named.map(|(kind, ..)| *kind).or(cycle)
     }
 
     /// Kind by the first words of the lines; the text may have any other error.

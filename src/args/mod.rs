@@ -14,7 +14,6 @@ use std::ops::RangeInclusive;
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::bounded::Limit;
-use cvtcycle::config::setup::is_path;
 use cvtcycle::config::{Argument, Bound, Problem, Problems, cycle, unit_of};
 
 use problems::{bad_value, cite, did_you_mean};
@@ -164,15 +163,4 @@ pub fn one_of<T: Copy>(
 /// The bytes of a file that an option names.
 pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Problems> {
     cycle::bytes(Argument::File, path, limit).map_err(|found| cite(option, found))
-}
-
-/// Path of a file named in another file, whose folder is where its paths begin.
-pub fn relative_to(file: &str, named: &str) -> String {
-    let folder = std::path::Path::new(file)
-        .parent()
-        .filter(|_| is_path(file) && is_path(named));
-    match folder {
-        Some(folder) => folder.join(named).to_string_lossy().into_owned(),
-        None => named.to_owned(),
-    }
 }

@@ -3,8 +3,9 @@
 mod physics;
 
 use clap::Args;
-use cvtcycle::config::setup::{self, Kind, NamedBy, Options};
+use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, cycle, render};
+use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
 use cvtcycle::study::plan::Plan;
@@ -13,7 +14,7 @@ use serde_json::{Value, json};
 use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{cite, in_options};
-use crate::args::{JsonArgs, Names, cycles, relative_to};
+use crate::args::{JsonArgs, Names, cycles};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 use physics::PhysicsPlan;
 
@@ -126,7 +127,7 @@ fn check(file: &str) -> Checked {
     let notes = match kind {
         InputKind::Cycle => cycle::find(&word).map(drop).map(none),
         // Only embedded.
-        InputKind::Rig => Ok(Vec::new()),
+        InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
         InputKind::Study => Plan::open(&word)
             .and_then(Study::prepare)
@@ -139,15 +140,27 @@ fn check(file: &str) -> Checked {
     Ok((kind, notes))
 }
 
-/// Only a run reads the baselines; an unknown name is reported here.
+/// Only a run reads the baselines; what is wrong with them is reported here, and what makes that they are not like for like is doubted.
 fn check_vehicle(file: &str, word: &str) -> Result<Vec<String>, Problems> {
     let setup = setup::load(word, &Options::default())?;
     let mut problems = Problems::default();
+    let mut notes = Vec::new();
+    let options = Options {
+        named_by: NamedBy::File,
+        ..Options::default()
+    };
     for name in &setup.baselines {
-        let read = setup::text_of(&relative_to(word, name), Kind::Vehicle, NamedBy::File);
-        problems.take(read.map_err(|found| cite(file, found)));
+        let baseline = setup::load(&setup::baseline_of(word, name), &options);
+        let baseline = problems.take(baseline.map_err(|found| cite(file, found)));
+        let Some(baseline) = baseline else { continue };
+        let unlike = differences(&setup, &baseline);
+        if !unlike.is_empty() {
+            let why = likeness(&setup, &baseline, &unlike);
+            notes.push(format!("doubt: baseline {name} is {why}"));
+        }
     }
-    problems.finish().map(|()| setup.notes)
+    notes.extend(setup.notes);
+    problems.finish().map(|()| notes)
 }
 
 fn json_entry(file: &str, result: &Checked) -> Value {

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::{self, Cycle};
+use cvtcycle::config::setup::catalogue::{self, File};
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
 use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::output::number::fixed;
@@ -31,6 +32,8 @@ enum ListedKind {
     Cycles,
     /// Vehicles
     Vehicles,
+    /// Classes of cars and boxes, which vehicle files inherit from
+    Classes,
     /// Transmission and engine oils
     Lubricants,
 }
@@ -50,6 +53,7 @@ impl Execute for ListArgs {
         match self.what {
             ListedKind::Cycles => Some(list_cycles()),
             ListedKind::Vehicles => list_vehicles(problems),
+            ListedKind::Classes => Some(list_classes()),
             ListedKind::Lubricants => list_lubricants(problems),
         }
     }
@@ -91,7 +95,8 @@ fn list_cycles() -> Listing {
         json: json!({ "cycles": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Cycles",
         table: columns.lines(&list),
-        note: "Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
+        note: "Also nedc (ece15_eudc), wltc or wltp (wltc_class3b), ftp (ftp75), la4 (udds), hwy (hwfet), 10-15; in any capitals.\n\
+            Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
             Two distances: a manual car drives the trace with gear-change plateaux, an automatic car the one without.\n",
     }
 }
@@ -129,6 +134,30 @@ fn list_vehicles(problems: &mut Problems) -> Option<Listing> {
         table: columns.lines(&list),
         note: "`cvtcycle show NAME` prints every value with its source; --vehicle also takes the path of a TOML file.\n",
     })
+}
+
+fn list_classes() -> Listing {
+    let files = catalogue::files().into_iter();
+    let list: Vec<File> = files.filter(|file| file.kind == Kind::Class).collect();
+    let value = |file: &File, key: &str| {
+        let info = file.keys.iter().find(|info| info.key == key);
+        info.map_or_else(String::new, |info| info.value.clone())
+    };
+    let shown = |key: &'static str| move |file: &File| value(file, key);
+    let columns = TextColumns::new()
+        .left("name", |file: &File| file.name)
+        .right("kg", shown("road_load.mass_kg"))
+        .right("cm3", shown("engine.displacement_cc"))
+        .right("kW", shown("engine.rated_kw"))
+        .left("title", shown("vehicle.title"));
+    let json = |file: &File| json!({ "name": file.name, "title": value(file, "vehicle.title"), "keys": file.keys.len() });
+    Listing {
+        json: json!({ "classes": list.iter().map(json).collect::<Vec<_>>() }),
+        heading: "Classes",
+        table: columns.lines(&list),
+        note: "A vehicle file takes what it leaves out from them: like = [\"class:compact_2020\", \"class:box_cvt_clutch\"] in [vehicle].\n\
+            `cvtcycle show NAME` prints every value with its source.\n",
+    }
 }
 
 fn list_lubricants(problems: &mut Problems) -> Option<Listing> {

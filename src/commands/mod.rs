@@ -8,6 +8,7 @@ mod compare;
 mod explain;
 mod list;
 mod losses;
+mod new;
 mod report;
 mod rig;
 mod run;
@@ -79,7 +80,9 @@ enum Command {
     Losses(Box<losses::LossesArgs>),
     /// Evaluate the belt model at the operating points of a table
     Belt(Box<belt::BeltArgs>),
-    /// List the built-in cycles, vehicles or lubricants
+    /// Write a vehicle file from catalogue numbers
+    New(Box<new::NewArgs>),
+    /// List the built-in cycles, vehicles, classes or lubricants
     List(list::ListArgs),
     /// Show all values of a vehicle or lubricant with status and source, or a cycle
     Show(show::ShowArgs),
@@ -132,6 +135,7 @@ impl Cli {
             Command::Rig(args) => args.execute(terminal),
             Command::Losses(args) => args.execute(terminal),
             Command::Belt(args) => args.execute(terminal),
+            Command::New(args) => args.execute(terminal),
             Command::List(args) => args.execute(terminal),
             Command::Show(args) => args.execute(terminal),
             Command::Explain(args) => args.execute(terminal),

@@ -6,9 +6,9 @@ mod tables;
 pub use tables::failures;
 
 use clap::Args;
+use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::AMBIENT;
-use cvtcycle::config::Problems;
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;

@@ -25,11 +25,12 @@ const MAX_VALUE_LEN: usize = 18;
 #[command(after_help = "\
 Examples:
   cvtcycle show rover_216_cvt --status assumed
+  cvtcycle show compact_2020
   cvtcycle show dexron_iii
   cvtcycle show ece15_eudc")]
 pub struct ShowArgs {
-    /// Vehicle, lubricant, rig or cycle: a name or a file
-    #[arg(value_name = "NAME|FILE", value_parser = Names(|| [Kind::Vehicle.names(), Kind::Lubricant.names(), Kind::Rig.names(), cycles()].concat()), hide_possible_values = true)]
+    /// Vehicle, class, lubricant, rig or cycle: a name or a file
+    #[arg(value_name = "NAME|FILE", value_parser = Names(|| [Kind::Vehicle.names(), Kind::Class.names(), Kind::Lubricant.names(), Kind::Rig.names(), cycles()].concat()), hide_possible_values = true)]
     name: String,
     /// Only values of this status; repeatable
     #[arg(long, value_enum, value_name = "STATUS")]
@@ -51,6 +52,10 @@ enum Status {
     Assumed,
     /// In a file without a status
     User,
+    /// Not in the file: of a class that it inherits from
+    Class,
+    /// Not in the file: of another car that it inherits from
+    Like,
     /// Not in the file: default of the program
     Default,
 }
@@ -59,7 +64,7 @@ enum Status {
 pub fn key_json(info: &KeyInfo) -> Value {
     json!({
         "key": info.key, "value": info.value, "unit": info.unit, "status": info.status, "source": info.source,
-        "note": info.note, "allowed": info.allowed, "meaning": info.meaning(),
+        "note": info.note, "from": info.from, "allowed": info.allowed, "meaning": info.meaning(),
     })
 }
 
@@ -70,7 +75,8 @@ pub fn value_row(name: &str, info: &KeyInfo, max_len: usize, instead: &str) -> [
         true => (instead.to_owned(), own.as_str()),
         false => (own.clone(), ""),
     };
-    let remarks = [moved, &info.source, &info.note].into_iter();
+    let source = if is_inherited(info) { "" } else { &info.source };
+    let remarks = [moved, source, &info.note].into_iter();
     let remarks: Vec<&str> = remarks.filter(|text| !text.is_empty()).collect();
     [
         name.to_owned(),
@@ -78,6 +84,13 @@ pub fn value_row(name: &str, info: &KeyInfo, max_len: usize, instead: &str) -> [
         info.status.clone(),
         remarks.join("; "),
     ]
+}
+
+/// Whether the value is of a class or of another car.
+fn is_inherited(info: &KeyInfo) -> bool {
+    [Status::Class, Status::Like]
+        .iter()
+        .any(|status| status.word() == info.status)
 }
 
 /// What is shown.
@@ -112,7 +125,7 @@ impl Execute for ShowArgs {
                 let (oil, keys) = problems.take(setup::load_lubricant(&word).map_err(by_name))?;
                 (oil.title, keys)
             }
-            InputKind::Rig => rig(&word),
+            InputKind::Class | InputKind::Rig => embedded(&word),
             InputKind::Calibration | InputKind::Study => {
                 let (plan, instead) = match kind {
                     InputKind::Calibration => ("a calibration", "name the vehicle that it fits"),
@@ -155,13 +168,14 @@ impl Execute for ShowArgs {
     }
 }
 
-/// Title and keys of an embedded rig.
-fn rig(word: &str) -> (String, Vec<KeyInfo>) {
+/// Title and keys of an embedded class or rig.
+fn embedded(word: &str) -> (String, Vec<KeyInfo>) {
     let mut files = catalogue::files().into_iter();
     let keys = files
         .find(|file| file.name == word)
         .map_or_else(Vec::new, |file| file.keys);
-    let title = keys.iter().find(|info| info.key == "rig.title");
+    let is_title = |info: &&KeyInfo| ["vehicle.title", "rig.title"].contains(&info.key.as_str());
+    let title = keys.iter().find(is_title);
     (
         title.map_or_else(String::new, |info| info.value.clone()),
         keys,
@@ -183,17 +197,27 @@ fn split(key: &str) -> (&str, &str) {
 
 fn tables(keys: &[KeyInfo], paint: Paint) -> String {
     let width = |of: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(of).max().unwrap_or(0);
+    let inherits = keys.iter().any(is_inherited);
     let widths = [
         width(&|info| split(&info.key).1.len()),
         width(&|info| value(info).chars().count().min(MAX_VALUE_LEN)),
         width(&|info| info.status.len()),
+        width(&|info| if inherits { info.from.len() } else { 0 }),
     ];
     // In the order of reading, but every table in one piece.
     let order = distinct(keys.iter().map(|info| split(&info.key).0));
     let section = |name: &str| {
-        let mut table = TextTable::new("llll").indented().min_widths(&widths);
+        let mut table = match inherits {
+            true => TextTable::new("lllll"),
+            false => TextTable::new("llll"),
+        };
+        table = table.indented().min_widths(&widths);
         for info in keys.iter().filter(|info| split(&info.key).0 == name) {
-            table.row(value_row(split(&info.key).1, info, MAX_VALUE_LEN, "..."));
+            let [key, value, status, remarks] =
+                value_row(split(&info.key).1, info, MAX_VALUE_LEN, "...");
+            let from = inherits.then(|| info.from.clone());
+            let cells = [key, value, status].into_iter().chain(from);
+            table.row(cells.chain([remarks]));
         }
         let name = if name.is_empty() { "top" } else { name };
         (format!("[{name}]"), table.text())

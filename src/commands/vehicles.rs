@@ -66,19 +66,7 @@ pub fn load(
     };
     let setup = problems.take(load_one(&car.vehicle, &subject, &of_all));
     if setup.is_none() {
-        // The fluids are checked by themselves where the vehicle cannot be read.
-        let fluids = [
-            (&car.lubricant, Argument::Lubricant),
-            (&comparison.engine_oil, Argument::EngineOil),
-        ];
-        for (word, argument) in fluids {
-            let fluid = word.as_ref().map(|word| setup::load_lubricant(word));
-            let named = |problem: Problem| match problem.place.is_argument(Argument::Lubricant) {
-                true => problem.at(argument),
-                false => problem,
-            };
-            problems.take(fluid.transpose().map_err(|found| found.map(named)));
-        }
+        check_fluids(car, comparison, problems);
     }
     let names = match baselines {
         Baselines::Named if comparison.baseline.is_empty() => Vec::new(),
@@ -93,11 +81,17 @@ pub fn load(
         named_by,
         ..baseline
     };
-    let mut loaded = vec![(&car.vehicle, setup, subject)];
+    let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
+    // A twin is made of the subject as it is driven.
+    let twin = subject.of_twin(named_by);
     for name in &names {
-        let setup = load_one(name, &baseline, &of_all).map_err(|found| cite_vehicle(option, found));
+        let options = match setup::is_twin(name) {
+            true => &twin,
+            false => &baseline,
+        };
+        let setup = load_one(name, options, &of_all).map_err(|found| cite_vehicle(option, found));
         let setup = problems.take(setup);
-        loaded.push((name, setup, baseline.clone()));
+        loaded.push((name, setup, options.clone()));
     }
     let mut vehicles: Vec<RunVehicle> = Vec::new();
     for (word, setup, options) in loaded {
@@ -110,6 +104,22 @@ pub fn load(
         });
     }
     vehicles
+}
+
+/// Checks the fluids by themselves, where the vehicle cannot be read.
+fn check_fluids(car: &VehicleArgs, comparison: &ComparisonArgs, problems: &mut Problems) {
+    let fluids = [
+        (&car.lubricant, Argument::Lubricant),
+        (&comparison.engine_oil, Argument::EngineOil),
+    ];
+    for (word, argument) in fluids {
+        let fluid = word.as_ref().map(|word| setup::load_lubricant(word));
+        let named = |problem: Problem| match problem.place.is_argument(Argument::Lubricant) {
+            true => problem.at(argument),
+            false => problem,
+        };
+        problems.take(fluid.transpose().map_err(|found| found.map(named)));
+    }
 }
 
 /// Problems of the vehicle's name under what gives it.

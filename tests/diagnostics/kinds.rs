@@ -16,8 +16,9 @@ use cvtcycle::study::plan::Plan;
 use super::calibration;
 
 /// Kinds of bad files.
-pub const KINDS: [&str; 14] = [
+pub const KINDS: [&str; 15] = [
     "vehicle",
+    "like",
     "lubricant",
     "rig",
     "plan",
@@ -49,6 +50,10 @@ pub fn message(kind: &str, case: &str) -> String {
             calibration::data(kind, case)
         }
         "vehicle" => return vehicle(case, &String::from_utf8(bytes).unwrap()),
+        "like" if name.starts_with("twin_") => {
+            setup::load(&setup::baseline_of(case, setup::TWIN), &Options::default()).err()
+        }
+        "like" => setup::load(case, &Options::default()).err(),
         "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
         "lubricant" => setup::load_lubricant(case).err(),
         "plan" => Plan::open(case).and_then(Study::prepare).err(),
@@ -193,7 +198,7 @@ fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String 
 
 /// A value as written in a file.
 pub fn written(info: &KeyInfo) -> String {
-    let is_text = info.allowed == "text" || info.allowed.starts_with("one of ");
+    let is_text = info.allowed.starts_with("text") || info.allowed.starts_with("one of ");
     if is_text {
         format!("{:?}", info.value)
     } else {

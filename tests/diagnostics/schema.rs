@@ -19,7 +19,13 @@ fn mistakes(schema: &Value, value: &Value, at: &str) -> Vec<String> {
     for (word, rule) in schema.as_object().expect("a schema") {
         let limit = rule.as_f64().unwrap_or(f64::NAN);
         let holds = match word.as_str() {
-            "$schema" | "title" | "description" | "default" => true,
+            "$schema" | "title" | "description" | "default" | "if" => true,
+            "else" => {
+                if !mistakes(&schema["if"], value, at).is_empty() {
+                    found.extend(mistakes(rule, value, at));
+                }
+                true
+            }
             "type" => is_type(value, rule.as_str().expect("one type")),
             "enum" => rule.as_array().expect("values").contains(value),
             "minimum" => number.is_none_or(|x| x >= limit),
@@ -209,6 +215,28 @@ fn mistakes_are_seen() {
         found,
         [".density15_kg_m3: type", ".density15_kg_m3.status: enum"]
     );
+}
+
+/// Only a file that inherits may leave out what a car needs.
+#[test]
+fn a_car_that_inherits_may_be_incomplete() {
+    let checked = |text: &str| checked(&files::VEHICLE, text);
+    let like = "[vehicle]\nlike = [\"class:compact_2020\", \"class:box_cvt_clutch\"]\n";
+    let own = "[road_load]\nmass_kg = 1320\n[road_load.form.coefficients]\nf0_n = 100\n";
+    assert_eq!(checked(&format!("{like}{own}")), [] as [&str; 0]);
+    let wrong = checked(&format!("{like}{own}f9_n = 3\n"));
+    assert!(
+        wrong.iter().any(|m| m.ends_with(".f9_n: unknown")),
+        "{wrong:?}"
+    );
+    let alone = checked(own);
+    for mistake in [
+        ": required",
+        ".road_load: required",
+        ".road_load.form.coefficients: required",
+    ] {
+        assert!(alone.iter().any(|m| m == mistake), "{mistake}: {alone:?}");
+    }
 }
 
 #[test]

@@ -41,7 +41,11 @@ const OUTSIDE: &[(&str, &str)] = &[
 ];
 
 /// Submodules of those above that read input files.
-const INSIDE: &[&str] = &["config::setup::template"];
+const INSIDE: &[&str] = &[
+    "config::setup::like",
+    "config::setup::template",
+    "config::setup::twin",
+];
 
 /// Modules that make sentences and no problems: a reader passes their sentences on.
 const PASSED_ON: [&str; 4] = [

@@ -12,6 +12,7 @@ mod common;
 mod fixtures;
 
 mod attacks;
+mod alike;
 mod failures;
 mod history;
 mod outputs;

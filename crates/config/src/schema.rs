@@ -2,6 +2,7 @@
 //!
 //! Editors with a TOML server show ranges, options, units and meanings from it and mark unknown keys.
 
+use cvtcycle_model::files::{HEAD, HeadKeys};
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Repeat, Table};
 use serde_json::{Map, Value, json};
 
@@ -18,23 +19,32 @@ use crate::reader::value::STATUSES;
 /// ```
 #[must_use]
 pub fn of(file: &str, keys: &Table) -> Value {
-    let mut schema = table(keys);
+    let is_head = |table: &&Table| table.name == HeadKeys::TABLE.name;
+    let head = keys.tables.iter().find(is_head);
+    let mut schema = table(keys, head.is_none());
+    if let Some(head) = head {
+        // What is required may be inherited.
+        let like = json!({ "required": [HEAD.like.name] });
+        schema["if"] = json!({ "required": [head.name], "properties": { head.name: like } });
+        schema["else"] = requirements(keys);
+    }
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
     schema["title"] = json!(format!("cvtcycle {file} file"));
     schema
 }
 
-fn table(table: &Table) -> Value {
+/// A table with all its keys; `complete` if those that are required have to be there.
+fn table(table: &Table, complete: bool) -> Value {
     let mut properties = Map::new();
     let mut required = Vec::new();
     for key in table.keys {
-        properties.insert(key.name.to_owned(), entry(key));
+        properties.insert(key.name.to_owned(), entry(key, complete));
         if matches!(key.presence, Presence::Required) {
             required.push(key.name);
         }
     }
     for inner in table.tables {
-        let mut schema = self::table(inner);
+        let mut schema = self::table(inner, complete);
         if inner.name.is_empty() {
             // Keys of one of several forms of this table: of equal names each form is allowed.
             for (name, entry) in schema["properties"].as_object_mut().into_iter().flatten() {
@@ -59,10 +69,32 @@ fn table(table: &Table) -> Value {
         "properties": properties,
         "additionalProperties": false,
     });
-    if !required.is_empty() {
+    if complete && !required.is_empty() {
         schema["required"] = json!(required);
     }
     schema
+}
+
+/// Only what is required in a table and below it.
+fn requirements(table: &Table) -> Value {
+    let mut properties = Map::new();
+    let mut required = Vec::new();
+    for key in table.keys {
+        if matches!(key.presence, Presence::Required) {
+            required.push(key.name);
+        }
+        if let Kind::Options(choices) = key.kind {
+            let options = choices.iter();
+            let options = options.map(|one| (one.name.to_owned(), requirements(&one.table)));
+            let options: Map<_, _> = options.collect();
+            properties.insert(key.name.to_owned(), json!({ "properties": options }));
+        }
+    }
+    for inner in table.tables.iter().filter(|inner| is_required(inner)) {
+        required.push(inner.name);
+        properties.insert(inner.name.to_owned(), requirements(inner));
+    }
+    json!({ "required": required, "properties": properties })
 }
 
 /// Whether a table has a key that is always required.
@@ -73,7 +105,7 @@ fn is_required(table: &Table) -> bool {
 }
 
 /// A key: its bare value, or the value with its origin; an option also as a table.
-fn entry(key: &Key<'_>) -> Value {
+fn entry(key: &Key<'_>, complete: bool) -> Value {
     let bare = value(&key.kind);
     let text = json!({ "type": "string" });
     let mut forms = vec![
@@ -91,7 +123,7 @@ fn entry(key: &Key<'_>) -> Value {
         }),
     ];
     if let Kind::Options(choices) = key.kind {
-        forms.push(options(choices));
+        forms.push(options(choices, complete));
     }
     let mut schema = json!({ "description": description(key), "anyOf": forms });
     match key.presence {
@@ -104,9 +136,9 @@ fn entry(key: &Key<'_>) -> Value {
     schema
 }
 
-fn options(choices: &[Choice]) -> Value {
+fn options(choices: &[Choice], complete: bool) -> Value {
     let tables = choices.iter().map(|choice| {
-        let mut schema = table(&choice.table);
+        let mut schema = table(&choice.table, complete);
         schema["description"] = json!(choice.doc);
         (choice.name.to_owned(), schema)
     });

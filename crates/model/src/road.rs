@@ -14,7 +14,7 @@
 mod keys;
 mod tyre;
 
-pub use keys::RoadLoadKeys;
+pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Motion, Step};

@@ -114,31 +114,25 @@ pub fn car_record(
     options: &Options,
     setup: &Setup,
 ) -> Result<CarRecord, Problems> {
-    let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
-    let fluid = |asked: &Option<String>, key: &str| {
-        let own = setup.keys.iter().find(|info| info.key == key);
-        let own = own.map_or("", |info| info.value.as_str());
-        let default = if is_path(own) {
-            disk.folder.join(own).to_string_lossy().into_owned()
-        } else {
-            own.to_owned()
-        };
-        let word = asked.as_ref().unwrap_or(&default);
-        let (file, text, _) = text_of(word, Kind::Lubricant, options.named_by)?;
-        Ok::<_, Problems>(FileRecord {
-            file,
-            sha256: hash(text.as_bytes()),
-        })
+    let (file, text, _) = text_of(word, Kind::Vehicle, options.named_by)?;
+    let of = |file: String, text: &str| FileRecord {
+        file,
+        sha256: hash(text.as_bytes()),
     };
+    let fluid = |word: &str| {
+        let (file, text, _) = text_of(word, Kind::Lubricant, options.named_by)?;
+        Ok::<_, Problems>(of(file, &text))
+    };
+    let [oil, engine_oil] = &setup.origin.fluids;
+    let parents = setup.origin.parents.iter();
+    let inherited = parents.map(|(file, text)| of(file.clone(), text));
     let reference = reference(setup, word, options)?;
     Ok(CarRecord {
         name: name.to_owned(),
-        vehicle: FileRecord {
-            file,
-            sha256: hash(text.as_bytes()),
-        },
-        lubricant: fluid(&options.lubricant, "vehicle.transmission_oil")?,
-        engine_oil: fluid(&options.engine_oil, "vehicle.engine_oil")?,
+        vehicle: of(file, &text),
+        inherited: inherited.collect(),
+        lubricant: fluid(oil)?,
+        engine_oil: fluid(engine_oil)?,
         resolved_sha256: car_sha256(setup),
         reference_values: (reference.same, reference.setup.keys.len()),
         changes: changes(&reference.setup.keys, &setup.keys),

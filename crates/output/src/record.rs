@@ -131,6 +131,9 @@ pub struct CarRecord {
     pub name: String,
     /// Vehicle file.
     pub vehicle: FileRecord,
+    /// Files that it inherits from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inherited: Vec<FileRecord>,
     /// Transmission oil.
     pub lubricant: FileRecord,
     /// Engine oil.
@@ -173,7 +176,7 @@ pub struct ValueRecord {
     pub value: String,
     /// Unit, `-` for none.
     pub unit: String,
-    /// `source`, `derived`, `fitted`, `assumed`, `user`, `set`, `default` or `choice`.
+    /// `source`, `derived`, `fitted`, `assumed`, `user`, `set`, `default`, `choice`, `class` or `like`.
     pub status: String,
     /// Reference; may be empty.
     pub source: String,

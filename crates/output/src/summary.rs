@@ -3,10 +3,12 @@
 //! Names are a contract with users' scripts. A number that was not computed, or is none, is null. Outside
 //! units (degC, kJ, L/100 km) begin here.
 
+mod alike;
 mod failure;
 mod price;
 mod run;
 
+pub use alike::{Difference, differences, words as likeness};
 pub use failure::{Deficit, Failure};
 pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
 pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
@@ -76,6 +78,12 @@ pub struct Comparison {
     pub fuel_percent: Option<f64>,
     /// Difference by group of phases, per cent.
     pub phases_percent: Named,
+    /// "like for like", or what makes that it is not; empty in results of earlier versions.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub likeness: String,
+    /// What differs besides the transmission and its oil: nothing where the comparison is like for like.
+    #[serde(default)]
+    pub differences: Vec<Difference>,
 }
 
 /// A car that has been driven.
@@ -125,9 +133,17 @@ pub fn summarise(
     let runs: Vec<RunSummary> = runs
         .map(|(car, role)| run_summary(cycle, role, &settings, car))
         .collect();
-    let baselines = runs.iter().skip(1);
+    let baselines = runs.iter().zip(driven).skip(1);
     let comparison = baselines
-        .map(|baseline| compare(&runs[0], baseline))
+        .map(|(baseline, of)| {
+            let subject = driven[0].setup;
+            let differences = differences(subject, of.setup);
+            Comparison {
+                likeness: likeness(subject, of.setup, &differences),
+                differences,
+                ..compare(&runs[0], baseline)
+            }
+        })
         .collect();
     Summary {
         manifest: Manifest::new(SCHEMA),
@@ -161,6 +177,8 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
         baseline: baseline.vehicle.clone(),
         fuel_percent: percent(subject.headline_fuel(), baseline.headline_fuel()),
         phases_percent: phases.collect(),
+        likeness: String::new(),
+        differences: Vec::new(),
     }
 }
 

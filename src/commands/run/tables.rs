@@ -158,6 +158,9 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
         let fits = line.len() + detail.len() < usize::from(WIDTH);
         line += &format!("{}{detail}", if fits { " " } else { "\n  " });
     }
+    if !comparison.likeness.is_empty() {
+        line += &format!("\n  {}", comparison.likeness);
+    }
     line + "\n"
 }
 

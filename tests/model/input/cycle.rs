@@ -461,3 +461,31 @@ fn other_names_are_left_to_others_and_bad_speeds_explained() {
         );
     }
 }
+
+/// Names as people write them; every alias leads to a cycle, and none hides the name of another one.
+#[test]
+fn cycles_have_other_names() {
+    use cvtcycle_config::cycle::{ALIASES, find, name_of, names};
+    for (word, name) in [
+        ("nedc", "ece15_eudc"),
+        ("NEDC", "ece15_eudc"),
+        ("MVEG-B", "ece15_eudc"),
+        ("WLTP", "wltc_class3b"),
+        ("wltc class 3b", "wltc_class3b"),
+        ("FTP-75", "ftp75"),
+        ("LA4", "udds"),
+        ("HWFET", "hwfet"),
+        ("10-15", "jp_10_15_mode"),
+        ("US06", "us06"),
+    ] {
+        assert_eq!(find(word).unwrap().name, name, "{word}");
+    }
+    for (alias, name) in ALIASES {
+        assert!(names().contains(&name), "{alias}");
+    }
+    for name in names() {
+        assert_eq!(name_of(name), Some(*name));
+    }
+    let problem = &find("nedcc").unwrap_err()[0];
+    assert!(problem.hint.contains("nedc"), "{}", problem.hint);
+}

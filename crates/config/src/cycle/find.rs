@@ -5,7 +5,47 @@ use crate::files::bounded::{self, Limit};
 use crate::files::embedded::is_path;
 use crate::{Argument, Problem, Problems, near, suggestion};
 
-/// A cycle by name (`ece15_eudc`, `constant_90`), or from the CSV file at a path.
+/// Other names of the cycles, without capitals and the signs between words: what people call them, and what it is here.
+pub const ALIASES: [(&str, &str); 21] = [
+    ("nedc", "ece15_eudc"),
+    ("mvegb", "ece15_eudc"),
+    ("mvega", "mvega_idle40"),
+    ("wltc", "wltc_class3b"),
+    ("wltp", "wltc_class3b"),
+    ("wltc3", "wltc_class3b"),
+    ("wltc3b", "wltc_class3b"),
+    ("wltc3a", "wltc_class3a"),
+    ("wltc2", "wltc_class2"),
+    ("wltc1", "wltc_class1"),
+    ("ftp", "ftp75"),
+    ("epa75", "ftp75"),
+    ("la4", "udds"),
+    ("fuds", "udds"),
+    ("hwy", "hwfet"),
+    ("hwfe", "hwfet"),
+    ("hfet", "hwfet"),
+    ("1015", "jp_10_15_mode"),
+    ("1015mode", "jp_10_15_mode"),
+    ("cadcurban", "artemis_urban"),
+    ("cadcroad", "artemis_road"),
+];
+
+/// The name of a cycle that a word means: itself, in other capitals and signs, or one of [`ALIASES`].
+#[must_use]
+pub fn name_of(word: &str) -> Option<&'static str> {
+    let bare = |word: &str| {
+        let letters = word.chars().filter(|c| !" -_.".contains(*c));
+        letters.collect::<String>().to_lowercase()
+    };
+    let wanted = bare(word);
+    let alias = ALIASES.iter().find(|(alias, _)| *alias == wanted);
+    let names = || names().iter().copied();
+    alias
+        .map(|(_, name)| *name)
+        .or_else(|| names().find(|name| bare(name) == wanted))
+}
+
+/// A cycle by name (`ece15_eudc`, `nedc`, `constant_90`), or from the CSV file at a path.
 ///
 /// # Errors
 /// An unknown name with those like it, an unreadable file, or all problems of the file.
@@ -13,6 +53,7 @@ use crate::{Argument, Problem, Problems, near, suggestion};
 /// ```
 /// use cvtcycle_config::cycle::find;
 /// assert_eq!(find("ece15")?.trace_for(true).duration_s(), 195.0);
+/// assert_eq!(find("NEDC")?.name, "ece15_eudc");
 /// assert_eq!(find("ece15_euc").unwrap_err()[0].suggested[0], "ece15_eudc");
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
@@ -20,13 +61,14 @@ pub fn find(word: &str) -> Result<Cycle, Problems> {
     if let Some(constant) = constant_speed(word).filter(|_| !is_csv(word)) {
         return constant.map_err(Problems::from);
     }
-    if let Some(found) = embedded(word) {
+    if let Some(found) = name_of(word).and_then(embedded) {
         return Ok(found);
     }
     if is_path(word) {
         return read_csv(word, &bytes(Argument::Cycle, word, bounded::TABLE)?);
     }
-    let near = near(word, names().iter().copied());
+    let aliases = ALIASES.iter().map(|(alias, _)| *alias);
+    let near = near(word, names().iter().copied().chain(aliases));
     let question = suggestion(&near).map_or_else(String::new, |question| question + " ");
     let quoted = match word {
         "" => "an empty value".to_owned(),

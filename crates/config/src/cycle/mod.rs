@@ -13,5 +13,5 @@ mod row;
 
 pub use cvtcycle_model::cycle::*;
 pub use embedded::{embedded, names};
-pub use find::{CONSTANT, bytes, constant_speed, find, is_csv};
+pub use find::{ALIASES, CONSTANT, bytes, constant_speed, find, is_csv, name_of};
 pub use read::read_csv;

@@ -14,20 +14,22 @@ use toml::de::{DeInteger, DeTable, DeValue};
 
 use self::shape::Excess;
 use crate::problem::place::{Input, Place};
-use crate::problem::source::{MAX_VALUE, Source, shortened};
+use crate::problem::source::{MAX_VALUE, Parent, Source, shortened};
 use crate::problem::{Problem, Problems};
 
 /// A stretch of one source, in bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Span {
     pub source: usize,
+    /// Whether that source is an override rather than a file.
+    pub is_override: bool,
     pub range: Range<usize>,
 }
 
 impl Span {
-    /// Whether it comes from an override rather than from the file.
+    /// Whether it comes from an override rather than from a file.
     pub fn is_set(&self) -> bool {
-        self.source > 0
+        self.is_override
     }
 }
 
@@ -39,6 +41,12 @@ pub(crate) struct Node {
 }
 
 impl Node {
+    /// Changes its place and those of all that is in it.
+    pub fn each_span(&mut self, change: &impl Fn(&mut Span)) {
+        change(&mut self.span);
+        self.value.each_span(change);
+    }
+
     /// The value itself where it is of the form `{ value = …, status = … }`.
     pub fn inner(&self) -> &Node {
         match &self.value {
@@ -85,18 +93,11 @@ impl Value {
         }
     }
 
-    /// Says that all of it comes from the source of that index.
-    pub fn move_to(&mut self, source: usize) {
-        let node = |node: &mut Node| {
-            node.span.source = source;
-            node.value.move_to(source);
-        };
+    /// Changes the places of all that is in it.
+    pub fn each_span(&mut self, change: &impl Fn(&mut Span)) {
         match self {
-            Value::List(items) => items.iter_mut().for_each(node),
-            Value::Table(table) => table.entries.values_mut().for_each(|entry| {
-                entry.key.source = source;
-                node(&mut entry.node);
-            }),
+            Value::List(items) => items.iter_mut().for_each(|item| item.each_span(change)),
+            Value::Table(table) => table.each_span(change),
             _ => {}
         }
     }
@@ -113,6 +114,28 @@ impl Table {
     /// The value of the form `{ value = …, status = … }`.
     pub fn wrapped(&self) -> Option<&Node> {
         self.entries.get("value").map(|entry| &entry.node)
+    }
+
+    /// Changes the places of all that is in it.
+    pub fn each_span(&mut self, change: &impl Fn(&mut Span)) {
+        for entry in self.entries.values_mut() {
+            change(&mut entry.key);
+            entry.node.each_span(change);
+        }
+        if let Some(choice) = &mut self.choice {
+            choice.each_span(change);
+        }
+    }
+
+    /// The node at a path of tables in it.
+    pub fn node(&self, path: &[&str]) -> Option<&Node> {
+        let (first, rest) = path.split_first()?;
+        let node = &self.entries.get(*first)?.node;
+        match &node.value {
+            _ if rest.is_empty() => Some(node),
+            Value::Table(inner) => inner.node(rest),
+            _ => None,
+        }
     }
 
     /// The table at a path of tables in it.
@@ -159,11 +182,18 @@ impl Document {
     /// All places where the text is not valid TOML, at most one per line; beyond some number the rest is counted. One problem where the
     /// text has more tables or is nested deeper than any input could be.
     pub fn parse(file: &str, text: &str) -> Result<Document, Problems> {
-        let source = Source::new(Input::File(file.to_owned()), text);
-        if let Some(excess) = shape::excess(text) {
+        Document::of(Source::new(Input::File(file.to_owned()), text))
+    }
+
+    /// Parses the text of a source.
+    ///
+    /// # Errors
+    /// As [`Document::parse`].
+    pub(crate) fn of(source: Source) -> Result<Document, Problems> {
+        if let Some(excess) = shape::excess(&source.text) {
             return Err(too_much(&source, excess).into());
         }
-        let (table, errors) = DeTable::parse_recoverable(text);
+        let (table, errors) = DeTable::parse_recoverable(&source.text);
         if !errors.is_empty() {
             return Err(syntax::problems(&source, &errors));
         }
@@ -213,6 +243,20 @@ impl Document {
     /// Place of a span.
     pub(crate) fn place(&self, span: &Span) -> Place {
         self.sources[span.source].place(span.range.clone())
+    }
+
+    /// What the source of a span is to the file, where it is another one that it inherits from.
+    pub(crate) fn parent(&self, span: &Span) -> Option<&Parent> {
+        self.sources[span.source].parent.as_ref()
+    }
+
+    /// From where a value comes: its line in the file, the class or car that it is inherited from, or an override.
+    pub(crate) fn from(&self, span: &Span) -> String {
+        match self.parent(span) {
+            _ if span.is_set() => "override".to_owned(),
+            Some(parent) => parent.from.clone(),
+            None => format!("line {}", self.place(span).line),
+        }
     }
 
     /// The text of a span as written.
@@ -324,7 +368,11 @@ impl Levels {
 }
 
 fn of_file(range: Range<usize>) -> Span {
-    Span { source: 0, range }
+    Span {
+        source: 0,
+        is_override: false,
+        range,
+    }
 }
 
 fn convert_integer(integer: &DeInteger<'_>) -> Value {

@@ -182,13 +182,16 @@ impl Override {
 
     /// The value as a part of a document, whose source of that index has the text of the value.
     pub(crate) fn node(&self, source: usize) -> Node {
-        let mut value = self.value.clone();
-        value.move_to(source);
-        let range = 0..self.value_text.len();
-        Node {
-            value,
-            span: Span { source, range },
-        }
+        let mut node = Node {
+            value: self.value.clone(),
+            span: Span {
+                source,
+                is_override: true,
+                range: 0..self.value_text.len(),
+            },
+        };
+        node.each_span(&|span| (span.source, span.is_override) = (source, true));
+        node
     }
 }
 

@@ -32,9 +32,14 @@ impl PatchedDocument {
     /// A copy of a document, without any change.
     pub fn new(document: &Document) -> Self {
         let source = document.sources.len();
-        let without_text = Arc::new(Source::new(Input::Override(String::new()), ""));
+        let without_text = |parent| {
+            let input = Input::Override(String::new());
+            Arc::new(Source::new(input, "").inherited(parent))
+        };
+        let of_files = document.sources.iter();
+        let of_files = of_files.map(|source| without_text(source.parent.clone()));
         let document = Document {
-            sources: vec![without_text; source + 1],
+            sources: of_files.chain([without_text(None)]).collect(),
             root: bare(&document.root),
             header: document.header.clone(),
             title: document.title.clone(),
@@ -68,6 +73,7 @@ impl PatchedDocument {
         };
         let span = Span {
             source: self.source,
+            is_override: true,
             range: 0..0,
         };
         let node = Node {

@@ -1,5 +1,6 @@
 //! The text of an input, and places in it.
 use std::ops::Range;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use crate::problem::place::{Input, Place};
@@ -9,21 +10,42 @@ const MAX_LINE: usize = 1000;
 /// A longer value is cut where it is repeated.
 pub(crate) const MAX_VALUE: usize = 200;
 
-/// One input: the file, or one override.
+/// One input: the file, one that it inherits from, or one override.
 #[derive(Debug)]
 pub(crate) struct Source {
     pub input: Input,
     pub text: String,
+    /// What it is to the file that inherits from it.
+    pub parent: Option<Parent>,
     /// Bytes of the line ends; found when the first place is needed.
     ends: OnceLock<Vec<usize>>,
 }
 
+/// A file that another one inherits from.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Parent {
+    /// Status of its values in the file that inherits them.
+    pub status: &'static str,
+    /// From where they come, as `show` says it.
+    pub from: String,
+    /// Source of its values in the file that inherits them.
+    pub words: String,
+    /// Its folder, relative to that of the file.
+    pub folder: PathBuf,
+}
+
 impl Source {
+    /// As an input that a file inherits from.
+    pub fn inherited(self, parent: Option<Parent>) -> Self {
+        Source { parent, ..self }
+    }
+
     /// An input with its text.
     pub fn new(input: Input, text: &str) -> Self {
         Source {
             input,
             text: text.to_string(),
+            parent: None,
             ends: OnceLock::new(),
         }
     }

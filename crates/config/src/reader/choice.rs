@@ -125,32 +125,32 @@ impl<'r> Section<'r> {
             };
         }
         match (touched.as_slice(), present.as_slice()) {
-            ([one], _) => self.taken(key, *one, "set"),
+            ([one], _) => self.taken(key, *one, node),
             ([first, second, ..], _) => self.clash(key, *first, *second),
-            ([], [one]) => self.taken(key, *one, if node.span.is_set() { "set" } else { "choice" }),
+            ([], [one]) => self.taken(key, *one, node),
             ([], [first, second, ..]) => self.clash(key, *first, *second),
             ([], []) => self.default_choice(key),
         }
     }
 
+    /// The option of a table, which may be set as a whole.
     fn taken(
         &self,
         key: &Key<'_>,
         (option, node): (&'static str, &'r Node),
-        status: &'static str,
+        whole: &'r Node,
     ) -> Choice<'r> {
         if !matches!(node.value, Value::Table(_)) {
             self.wrong_type(&format!("{}.{option}", key.name), node, "a table");
             return Choice::Failed;
         }
-        let source = if status == "set" { "command line" } else { "" };
+        let found = Found::new(self.reader.document, node, "choice");
+        let is_set = whole.span.is_set() || is_touched(node);
         Choice::Given(
             option,
-            Found {
-                node,
-                status,
-                source,
-                note: "",
+            match is_set {
+                true => found.set(),
+                false => found,
             },
         )
     }

@@ -124,6 +124,33 @@ impl<'r> Section<'r> {
         Some((found, items))
     }
 
+    /// Texts, written as one text with commas or as a list; empty if the key is absent.
+    pub(crate) fn read_texts(&self, key: &Key<'_>) -> Vec<String> {
+        let found = match self.open(key) {
+            Lookup::Found(found) => found,
+            Lookup::Absent => {
+                self.defaulted(key.name, "", None);
+                return Vec::new();
+            }
+            Lookup::Bad => return Vec::new(),
+        };
+        let mut texts = Vec::new();
+        match &found.node.value {
+            Value::Text(text) => texts.extend(words(text)),
+            Value::List(items) => {
+                for item in items {
+                    match &item.value {
+                        Value::Text(text) => texts.extend(words(text)),
+                        _ => self.wrong_type(key.name, item, "text"),
+                    }
+                }
+            }
+            _ => self.wrong_type(key.name, found.node, &key.allowed()),
+        }
+        self.given(key.name, &found, texts.join(", "), None);
+        texts
+    }
+
     /// What `read` makes of the texts of a list; empty if the key is absent.
     fn list<T: fmt::Debug>(
         &self,
@@ -193,6 +220,12 @@ impl<'r> Section<'r> {
         }
         good.then_some(row)
     }
+}
+
+/// The words of a text, between commas.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = String> {
+    let words = text.split(',').map(str::trim);
+    words.filter(|word| !word.is_empty()).map(str::to_owned)
 }
 
 /// Most numbers of one range.

@@ -15,12 +15,15 @@ pub struct KeyInfo {
     pub value: String,
     /// Value in SI units; none for what is no single number.
     pub si: Option<f64>,
-    /// Where it comes from: source, derived, fitted, assumed, user, set or default; `choice` for a model chosen by its table.
+    /// How it is known: source, derived, fitted, assumed, user, set or default; `choice` for a model chosen by its table; `class` or `like`
+    /// for what is inherited from a class or from another car.
     pub status: String,
     /// Reference for the value; empty where none is given.
     pub source: String,
     /// Remark on the value; may be empty.
     pub note: String,
+    /// From where it comes: "line 12" of the file, the class or car that it is inherited from, "override" or "default".
+    pub from: String,
     /// Allowed range or words.
     pub allowed: String,
     /// Whether the value is a single number.

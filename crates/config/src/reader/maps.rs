@@ -52,8 +52,14 @@ fn read(
         rows: "a row for every point of the grid",
         ..Schema::default()
     };
+    let own = embedded::text(embedded::maps(), file);
+    let path = match own {
+        Some(_) => file.to_owned(),
+        None => s.path_of_file(key, file),
+    };
+    let file = path.as_str();
     let mut make = || {
-        let bytes = match embedded::text(embedded::maps(), file) {
+        let bytes = match own {
             Some(text) => Cow::Borrowed(text.as_bytes()),
             None => match bytes_of(s.reader.files, file) {
                 Ok(bytes) => Cow::Owned(bytes),

@@ -7,18 +7,18 @@ pub(crate) mod log;
 mod maps;
 pub(crate) mod raw_value;
 pub(crate) mod section;
-mod unknown;
+pub(crate) mod unknown;
 pub(crate) mod value;
 mod values;
 
 use std::cell::{Cell, RefCell};
 
-use crate::document::Document;
+use crate::document::{Document, Entry};
 use crate::files::Files;
 use crate::problem::place::Place;
 use crate::problem::{Problem, Problems};
 use crate::reader::log::{KeyInfo, Log, parent};
-use crate::reader::unknown::unread;
+use crate::reader::unknown::{is_row, unread};
 
 /// One reading session. It collects all problems and what is known about every key that is read.
 ///
@@ -136,6 +136,11 @@ impl<'d> Reader<'d> {
         let mut log = log.into_inner();
         let mut unknown = Vec::new();
         unread(&log, &document.root, "", &mut unknown);
+        // What a car inherits and, with another box or engine model, has no use for, is no mistake of its file.
+        let useless = |(path, entry): &(String, &Entry)| {
+            document.parent(&entry.key).is_some() && is_row(path)
+        };
+        unknown.retain(|found| !useless(found));
         for (path, entry) in unknown {
             if !log.has_room() {
                 log.more += 1;

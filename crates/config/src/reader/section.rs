@@ -63,6 +63,17 @@ impl<'r> Section<'r> {
         }
     }
 
+    /// The path of a file that the value of `key` names, relative to the folder of the whole input: one that is inherited is relative to
+    /// the file in which it is written.
+    pub(crate) fn path_of_file(&self, key: &str, file: &str) -> String {
+        let node = self.table.and_then(|table| table.entries.get(key));
+        let parent = node.and_then(|entry| self.reader.document.parent(&entry.node.span));
+        parent.map_or_else(
+            || file.to_owned(),
+            |parent| parent.folder.join(file).to_string_lossy().into_owned(),
+        )
+    }
+
     /// The table `name` within this one. It may be absent: keys read from it are then missing.
     pub fn table(&self, name: &str) -> Section<'r> {
         let mut section = self.below(name);

@@ -1,10 +1,13 @@
 //! Entries of a document that no reading asked for: what their keys most likely mean.
 use std::collections::BTreeSet;
+use std::sync::OnceLock;
 
+use crate::document::overrides::rows_of;
 use crate::document::{Document, Entry, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{is_suggestion, similarity, suggestion};
 use crate::reader::log::{Log, join, last, parent};
+use cvtcycle_model::files::VEHICLE;
 use cvtcycle_model::keys::{Quantity, stem};
 
 /// Similarity above which a name in another table may be what was meant: short names of all tables are like each other.
@@ -192,6 +195,18 @@ impl Log {
         let names: Vec<&str> = names.into_iter().collect();
         format!("remove it; known here: {}", names.join(", "))
     }
+}
+
+/// Whether a vehicle file may have this key or table, whatever options it chooses.
+pub(crate) fn is_row(path: &str) -> bool {
+    static ROWS: OnceLock<BTreeSet<String>> = OnceLock::new();
+    let rows = ROWS.get_or_init(|| {
+        let rows = rows_of("", &VEHICLE).into_iter();
+        rows.map(|(path, _)| path).collect()
+    });
+    let table = format!("{path}.");
+    let mut below = rows.range(table.clone()..);
+    rows.contains(path) || below.next().is_some_and(|key| key.starts_with(&table))
 }
 
 /// Collects the entries that were not read; an unknown table counts as one entry.

@@ -1,8 +1,9 @@
 //! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
+use std::borrow::Cow;
 use std::fmt::Display;
 
 use crate::document::syntax::{decimal_comma, number_hint, number_with_unit};
-use crate::document::{Node, Span, Table, Value};
+use crate::document::{Document, Node, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{did_you_mean, one_of, suggest};
 use crate::problem::place::Place;
@@ -15,12 +16,80 @@ pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"
 /// Fields of a value with its origin.
 const FIELDS: [&str; 4] = ["value", "status", "source", "note"];
 
+/// Status and source of what an override gives.
+const SET: (&str, &str) = ("set", "command line");
+
 /// A value as found, with its origin.
 pub(crate) struct Found<'r> {
     pub node: &'r Node,
     pub status: &'r str,
     pub source: &'r str,
-    pub note: &'r str,
+    pub note: Cow<'r, str>,
+}
+
+impl<'r> Found<'r> {
+    /// A value of a file, of one that it inherits from, or of an override, without what it says about itself.
+    pub fn new(document: &'r Document, node: &'r Node, own: &'r str) -> Self {
+        let (status, source) = match document.parent(&node.span) {
+            _ if node.span.is_set() => SET,
+            Some(parent) => (parent.status, parent.words.as_str()),
+            None => (own, ""),
+        };
+        Found {
+            node,
+            status,
+            source,
+            note: Cow::Borrowed(""),
+        }
+    }
+
+    /// As set by an override.
+    pub fn set(self) -> Self {
+        let (status, source) = SET;
+        Found {
+            status,
+            source,
+            ..self
+        }
+    }
+
+    /// Adds what the value says about itself. What an inherited one says is a remark: it is true of the car that it was written for.
+    fn add(&mut self, own: Origin<'r>, is_inherited: bool) {
+        if is_inherited {
+            self.note = Cow::Owned(own.words());
+            return;
+        }
+        if !own.status.is_empty() && self.status != "set" {
+            self.status = own.status;
+        }
+        (self.source, self.note) = (own.source, Cow::Borrowed(own.note));
+    }
+}
+
+/// What a value says about itself; empty where it does not.
+#[derive(Default)]
+struct Origin<'r> {
+    status: &'r str,
+    source: &'r str,
+    note: &'r str,
+}
+
+impl Origin<'_> {
+    /// In one line: "there assumed: the usual fill; 5 l in the manual".
+    fn words(&self) -> String {
+        let there = match self.status {
+            "" => String::new(),
+            status => format!("there {status}"),
+        };
+        let parts = [(&*there, ": "), (self.source, "; "), (self.note, "")].into_iter();
+        let mut text = String::new();
+        let mut before = "";
+        for (part, after) in parts.filter(|(part, _)| !part.is_empty()) {
+            text = text + before + part;
+            before = after;
+        }
+        text
+    }
 }
 
 /// Value at a key.
@@ -136,17 +205,7 @@ impl<'r> Section<'r> {
 
     /// The value with its origin, from either of its two forms.
     pub(crate) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
-        let (status, source) = if node.span.is_set() {
-            ("set", "command line")
-        } else {
-            ("user", "")
-        };
-        let mut found = Found {
-            node,
-            status,
-            source,
-            note: "",
-        };
+        let mut found = Found::new(self.reader.document, node, "user");
         let Value::Table(table) = &node.value else {
             return Lookup::Found(found);
         };
@@ -159,25 +218,28 @@ impl<'r> Section<'r> {
         };
         found.node = value;
         if !self.reader.is_check_only() {
-            self.origin(key, table, &mut found);
+            let own = self.origin(key, table);
+            let is_inherited = self.reader.document.parent(&node.span).is_some();
+            found.add(own, is_inherited && found.status != "set");
         }
         Lookup::Found(found)
     }
 
     /// Reads status, source and note of the value.
-    fn origin(&self, key: &str, table: &'r Table, found: &mut Found<'r>) {
+    fn origin(&self, key: &str, table: &'r Table) -> Origin<'r> {
+        let mut own = Origin::default();
         for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
             let text = match &entry.node.value {
                 Value::Text(text) => text.as_str(),
                 _ => "",
             };
             match name.as_str() {
-                "status" => self.check_status(key, &entry.node, text, &mut found.status),
+                "status" => own.status = self.check_status(key, &entry.node, text),
                 "source" | "note" if !matches!(entry.node.value, Value::Text(_)) => {
                     self.wrong_type(&format!("{key}.{name}"), &entry.node, "text");
                 }
-                "source" => found.source = text,
-                "note" => found.note = text,
+                "source" => own.source = text,
+                "note" => own.note = text,
                 _ => {
                     let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
                     let problem = Problem::unknown_key(message)
@@ -188,19 +250,21 @@ impl<'r> Section<'r> {
                 }
             }
         }
+        own
     }
 
-    fn check_status(&self, key: &str, node: &Node, text: &'r str, status: &mut &'r str) {
-        if !STATUSES.contains(&text) {
-            let message = format!("`{}` has no known status", join(&self.path, key));
-            let problem = Problem::unknown_name(message)
-                .names_key()
-                .allowed(one_of(&STATUSES))
-                .hint(did_you_mean(text, STATUSES).unwrap_or_default());
-            self.report(&node.span, key, problem);
-        } else if *status != "set" {
-            *status = text;
+    /// The status, where it is a known one.
+    fn check_status(&self, key: &str, node: &Node, text: &'r str) -> &'r str {
+        if STATUSES.contains(&text) {
+            return text;
         }
+        let message = format!("`{}` has no known status", join(&self.path, key));
+        let problem = Problem::unknown_name(message)
+            .names_key()
+            .allowed(one_of(&STATUSES))
+            .hint(did_you_mean(text, STATUSES).unwrap_or_default());
+        self.report(&node.span, key, problem);
+        ""
     }
 
     /// Completes what is known about a key with the value that was given.
@@ -210,6 +274,7 @@ impl<'r> Section<'r> {
             info.status = found.status.to_string();
             info.source = found.source.to_string();
             info.note = found.note.to_string();
+            info.from = self.reader.document.from(&found.node.span);
         });
     }
 
@@ -218,6 +283,7 @@ impl<'r> Section<'r> {
         self.fill(key, |info| {
             (info.value, info.si) = (value.to_string(), si);
             info.status = "default".to_string();
+            info.from = "default".to_string();
         });
     }
 

@@ -13,6 +13,10 @@ impl<'r> Values for Section<'r> {
         Section::table(self, name)
     }
 
+    fn exists(&self) -> bool {
+        Section::exists(self)
+    }
+
     fn has(&self, key: &Key<'_>) -> bool {
         Section::has(self, key.name)
     }
@@ -125,6 +129,10 @@ impl<'r> Values for Section<'r> {
             self.defaulted(key.name, default, None);
             default.to_string()
         })
+    }
+
+    fn texts(&self, key: &Key<'_>) -> Vec<String> {
+        self.read_texts(key)
     }
 
     fn word(&self, key: &Key<'_>) -> &'static str {

@@ -4,8 +4,9 @@
 
 use std::sync::OnceLock;
 
-use super::Kind;
 use super::inputs::{head, parts};
+use super::like::resolve;
+use super::{Disk, Kind};
 use crate::document::overrides::{rows, rows_of};
 use crate::files::embedded;
 use crate::setup::rig;
@@ -24,7 +25,7 @@ pub const ENGINE_OIL: &str = Target::EngineOil.prefix();
 pub struct File {
     /// Name without the ending.
     pub name: &'static str,
-    /// Vehicle, lubricant or rig.
+    /// Vehicle, class, lubricant or rig.
     pub kind: Kind,
     /// Keys in the order of reading, without a prefix.
     pub keys: Vec<KeyInfo>,
@@ -42,10 +43,10 @@ impl File {
     }
 }
 
-/// All embedded files: vehicles, lubricants, rigs.
+/// All embedded files: vehicles, classes, lubricants, rigs.
 #[must_use]
 pub fn files() -> Vec<File> {
-    let kinds = [Kind::Vehicle, Kind::Lubricant, Kind::Rig];
+    let kinds = [Kind::Vehicle, Kind::Class, Kind::Lubricant, Kind::Rig];
     let file = |kind: Kind, (name, text): embedded::File| File {
         name,
         kind,
@@ -94,22 +95,29 @@ fn info((key, row): (String, &Key<'_>)) -> KeyInfo {
 
 /// Keys that are read from a text, with their values.
 fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
-    let Ok(document) = Document::parse(name, text) else {
+    let document = Document::parse(name, text);
+    let document = document.and_then(|document| resolve(document, &Disk::default()));
+    let Ok(document) = document else {
         return Vec::new();
     };
     let reader = Reader::new(&document);
     let root = reader.root();
     match kind {
         Kind::Lubricant => drop(Lubricant::from_values(&root, name)),
-        Kind::Vehicle => drop(head(&root, name)),
+        Kind::Vehicle | Kind::Class => drop(head(&root, name)),
         Kind::Rig => drop(rig::read(&root)),
         Kind::Plan | Kind::Calibration => {}
     }
-    if let (Kind::Vehicle, Some(oil)) = (kind, oil()) {
+    if let (Kind::Vehicle | Kind::Class, Some(oil)) = (kind, oil()) {
         let oils = [oil.clone(), oil];
         drop(parts(&root, oils, Formulation::default(), name.to_owned()));
     }
-    reader.known()
+    let mut keys = reader.known();
+    if kind == Kind::Class {
+        // It need not have all that a car has.
+        keys.retain(|info| !["", "default"].contains(&info.status.as_str()));
+    }
+    keys
 }
 
 /// Any checked fluid: which one has no influence on the keys of a vehicle.

@@ -1,13 +1,16 @@
 //! The documents of a car, and one reading of them.
 
+use super::like::resolve;
+use super::twin::{TwinTable, twin};
 use super::{
-    Files, Kind, NamedBy, Options, Setup, is_path, load_lubricant, read_lubricant, stem, text_of,
+    Files, Kind, NamedBy, Options, Origin, Setup, is_path, is_twin, load_lubricant, read_lubricant,
+    stem, text_of,
 };
 use crate::files::TableCache;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
-use cvtcycle_model::files::{HEAD, VEHICLE_FILE};
+use cvtcycle_model::files::{HEAD, TwinKeys, VEHICLE_FILE};
 use cvtcycle_model::fluid::{Friction, Lubricant};
 use cvtcycle_model::keys::Values;
 use cvtcycle_model::road::RoadLoadInput;
@@ -41,7 +44,7 @@ pub(super) struct Inputs {
 pub(super) struct Frame {
     /// Name of the car.
     pub name: String,
-    /// Names of transmission oil and engine oil; empty where neither vehicle nor user has one.
+    /// Names or paths of transmission oil and engine oil; empty where neither vehicle nor user has one.
     fluids: [String; 2],
     pub files: TableCache,
     formulation: Formulation,
@@ -56,7 +59,8 @@ impl Inputs {
     /// Problems that leave nothing to read: no such vehicle, no TOML, overrides of a box that the vehicle does not have.
     pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
-        Inputs::of_text(&file, &text, Box::new(disk), options)
+        let is_twin = is_twin(word);
+        Inputs::of(&file, &text, Box::new(disk), options, is_twin)
     }
 
     /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
@@ -69,53 +73,57 @@ impl Inputs {
         files: Box<dyn Files>,
         options: &Options,
     ) -> Result<Self, Problems> {
-        let mut document = Document::parse(file, text)?;
-        let name = stem(file.strip_prefix("embedded:").unwrap_or(file));
+        Inputs::of(file, text, files, options, false)
+    }
+
+    /// Of the car of a text, or of its twin.
+    fn of(
+        file: &str,
+        text: &str,
+        files: Box<dyn Files>,
+        options: &Options,
+        is_twin: bool,
+    ) -> Result<Self, Problems> {
+        let files = TableCache::new(files);
+        let mut document = resolve(Document::parse(file, text)?, &files)?;
+        let mut name = stem(file.strip_prefix("embedded:").unwrap_or(file));
         // Set all the same, keys of another box would call for a whole box.
         wrong_keys(&document, &options.set, &name).finish()?;
         let of_vehicle = |target| [Target::Vehicle, Target::Rig].contains(&target);
         let problems = apply(&mut document, &options.set, of_vehicle);
+        if is_twin {
+            document = twin(document, file, &files)?;
+            name += "_twin";
+        }
         let own = head(&Reader::check_only(&document).root(), "");
+        let written_in = |key: &str| written_in(&document, key, file);
+        let files_of_fluids = FLUIDS.map(written_in);
         let own_friction = options
             .lubricant
             .as_ref()
-            .and_then(|_| friction(file, &own.fluid));
-        let fluid = |own: String, asked: &Option<String>, target| match asked {
-            Some(word) => {
-                let argument = match target {
-                    Target::EngineOil => Argument::EngineOil,
-                    _ => Argument::Lubricant,
-                };
-                fluid_file(
-                    word.clone(),
-                    options.named_by,
-                    argument.into(),
-                    options,
-                    target,
-                )
-            }
-            None => {
-                let place = Place::file(file);
-                fluid_file(
-                    fluid_of_file(file, own),
-                    NamedBy::File,
-                    place,
-                    options,
-                    target,
-                )
-            }
-        };
-        let (oil, oil_name) = fluid(own.fluid, &options.lubricant, Target::Lubricant);
-        let (engine_oil, engine_oil_name) =
-            fluid(own.engine_oil, &options.engine_oil, Target::EngineOil);
+            .and_then(|_| friction(&files_of_fluids[0], &own.fluid));
+        let [of_oil, of_engine_oil] = &files_of_fluids;
+        let words = [
+            fluid_word(of_oil, own.fluid, &options.lubricant, Argument::Lubricant),
+            fluid_word(
+                of_engine_oil,
+                own.engine_oil,
+                &options.engine_oil,
+                Argument::EngineOil,
+            ),
+        ];
+        let [(oil, oil_word), (engine_oil, engine_oil_word)] = [
+            fluid_file(&words[0], options, Target::Lubricant),
+            fluid_file(&words[1], options, Target::EngineOil),
+        ];
         let vehicle = CarFile {
             document: Some(document),
             problems,
         };
         let frame = Frame {
             name,
-            fluids: [oil_name, engine_oil_name],
-            files: TableCache::new(files),
+            fluids: [oil_word, engine_oil_word],
+            files,
             formulation: options.formulation,
             own_friction,
         };
@@ -162,9 +170,28 @@ impl Inputs {
         }
         let setup = assembled?;
         if problems.is_empty() {
-            Ok(Setup { keys, ..setup })
+            let origin = self.origin();
+            Ok(Setup {
+                keys,
+                origin,
+                ..setup
+            })
         } else {
             Err(problems)
+        }
+    }
+}
+
+impl Inputs {
+    /// The files that are read besides the vehicle's own.
+    fn origin(&self) -> Origin {
+        let sources = self.files[0].document.iter().flat_map(|of| &of.sources);
+        let parents = sources.filter(|source| source.parent.is_some());
+        Origin {
+            parents: parents
+                .map(|source| (source.input.to_string(), source.text.clone()))
+                .collect(),
+            fluids: self.frame.fluids.clone(),
         }
     }
 }
@@ -184,7 +211,10 @@ impl Frame {
             title, baselines, ..
         } = head(&root, &self.name);
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
-            Some(reader) => Ok(Lubricant::from_values(&reader.root(), &self.fluids[k])),
+            Some(reader) => Ok(Lubricant::from_values(
+                &reader.root(),
+                &stem(&self.fluids[k]),
+            )),
             // Some fluid, so that the reading goes on.
             None => load_lubricant("cvtf_ezl799_class").map(|found| found.0),
         };
@@ -196,11 +226,6 @@ impl Frame {
             false => Vec::new(),
         };
         notes.extend(changed_losses(&car.transmission));
-        let baselines = baselines
-            .split(',')
-            .map(|b| b.trim().to_owned())
-            .filter(|b| !b.is_empty())
-            .collect();
         Ok(Setup {
             name: self.name.clone(),
             title,
@@ -208,6 +233,7 @@ impl Frame {
             vehicle: Vehicle::new(car, road_load),
             keys: Vec::new(),
             notes,
+            origin: Origin::default(),
         })
     }
 }
@@ -238,6 +264,19 @@ fn fluid_of_file(file: &str, fluid: String) -> String {
     )
 }
 
+/// Keys of `[vehicle]` that name its fluids.
+const FLUIDS: [&str; 2] = [HEAD.transmission_oil.name, HEAD.engine_oil.name];
+
+/// Name of the file in which a key of `[vehicle]` is written: that of the car, or one that it inherits from.
+fn written_in(document: &Document, key: &str, file: &str) -> String {
+    let node = document.root.node(&["vehicle", key]);
+    let parent = node.filter(|node| document.parent(&node.span).is_some());
+    parent.map_or_else(
+        || file.to_owned(),
+        |node| document.sources[node.span.source].input.to_string(),
+    )
+}
+
 /// Friction of the fluid that a vehicle's file names; none where it cannot be read.
 fn friction(file: &str, fluid: &str) -> Option<Friction> {
     let word = fluid_of_file(file, fluid.to_owned());
@@ -246,15 +285,34 @@ fn friction(file: &str, fluid: &str) -> Option<Friction> {
     Some(own.friction)
 }
 
-/// The file of a fluid with its overrides, and its name. Problems of the word are at `place`.
-fn fluid_file(
+/// What names a fluid.
+struct FluidWord {
     word: String,
-    by: NamedBy,
+    by: Option<NamedBy>,
+    /// Where problems of the word are.
     place: Place,
-    options: &Options,
-    target: Target,
-) -> (CarFile, String) {
-    let read = text_of(&word, Kind::Lubricant, by)
+}
+
+/// The fluid that was asked for, or that of the vehicle's file.
+fn fluid_word(file: &str, own: String, asked: &Option<String>, argument: Argument) -> FluidWord {
+    match asked {
+        Some(word) => FluidWord {
+            word: word.clone(),
+            by: None,
+            place: argument.into(),
+        },
+        None => FluidWord {
+            word: fluid_of_file(file, own),
+            by: Some(NamedBy::File),
+            place: Place::file(file),
+        },
+    }
+}
+
+/// The file of a fluid with its overrides, and its name or path.
+fn fluid_file(of: &FluidWord, options: &Options, target: Target) -> (CarFile, String) {
+    let by = of.by.unwrap_or(options.named_by);
+    let read = text_of(&of.word, Kind::Lubricant, by)
         .and_then(|(file, text, _)| Document::parse(&file, &text));
     let file = match read {
         Ok(mut document) => CarFile {
@@ -264,16 +322,14 @@ fn fluid_file(
         Err(problems) => CarFile {
             document: None,
             problems: problems.map(|problem| {
-                let is_word = problem.place.is_argument(Argument::Lubricant);
-                if is_word {
-                    problem.at(place.clone())
-                } else {
-                    problem
+                match problem.place.is_argument(Argument::Lubricant) {
+                    true => problem.at(of.place.clone()),
+                    false => problem,
                 }
             }),
         },
     };
-    (file, stem(&word))
+    (file, of.word.clone())
 }
 
 /// Ends the reading of a fluid; its keys with their prefix.
@@ -299,16 +355,22 @@ fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bo
 /// What the `[vehicle]` table says.
 pub(super) struct Head {
     title: String,
-    baselines: String,
+    baselines: Vec<String>,
     fluid: String,
     engine_oil: String,
 }
 
 pub(super) fn head<V: Values>(root: &V, name: &str) -> Head {
     let head = root.table("vehicle");
+    // Resolved before; what is made of the rest is the twin's.
+    let _ = head.texts(&HEAD.like);
+    let twin = root.table(TwinKeys::TABLE.name);
+    if twin.exists() {
+        let _ = TwinTable::from_values(&twin);
+    }
     Head {
         title: head.text_or(&HEAD.title, name),
-        baselines: head.text_or(&HEAD.baselines, ""),
+        baselines: head.texts(&HEAD.baselines),
         fluid: head.text(&HEAD.transmission_oil),
         engine_oil: head.text(&HEAD.engine_oil),
     }

@@ -4,9 +4,12 @@
 
 pub mod assumptions;
 pub mod catalogue;
+pub mod new_car;
 pub mod template;
 mod inputs;
+mod like;
 pub mod rig;
+mod twin;
 
 pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
@@ -16,7 +19,8 @@ pub use crate::files::{Disk, Files};
 use crate::files::bounded::{self, ReadError};
 use crate::files::embedded;
 use crate::{
-    Argument, Bound, Document, KeyInfo, Override, Problem, Problems, Reader, decode, did_you_mean,
+    Argument, Bound, Document, KeyInfo, Override, Problem, Problems, Reader, Target, decode,
+    did_you_mean,
 };
 use cvtcycle_model::drive::Vehicle;
 
@@ -64,6 +68,17 @@ pub struct Setup {
     pub keys: Vec<KeyInfo>,
     /// What a reader of its results should know, a sentence each.
     pub notes: Vec<String>,
+    /// The files that its own inherits from, and the words by which its fluids were found.
+    pub origin: Origin,
+}
+
+/// The files of a car besides its own.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// Name and text of each file that the vehicle's own inherits from.
+    pub parents: Vec<(String, String)>,
+    /// Name or path of transmission oil and engine oil.
+    pub fluids: [String; 2],
 }
 
 impl std::ops::Deref for Setup {
@@ -79,6 +94,8 @@ impl std::ops::Deref for Setup {
 pub enum Kind {
     /// A vehicle.
     Vehicle,
+    /// Values of a class of cars, for `like` of a vehicle.
+    Class,
     /// A lubricant.
     Lubricant,
     /// What a test rig is set to.
@@ -95,6 +112,7 @@ impl Kind {
     pub const fn embedded(self) -> &'static [embedded::File] {
         match self {
             Kind::Vehicle => embedded::vehicles(),
+            Kind::Class => embedded::classes(),
             Kind::Lubricant => embedded::lubricants(),
             Kind::Rig => embedded::rigs(),
             Kind::Plan => embedded::plans(),
@@ -115,13 +133,14 @@ impl Kind {
             Kind::Lubricant => Argument::Lubricant,
             Kind::Plan => Argument::Plan,
             Kind::Calibration => Argument::Calibration,
-            Kind::Rig => Argument::File,
+            Kind::Class | Kind::Rig => Argument::File,
         }
     }
 
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Kind::Vehicle => "vehicle",
+            Kind::Class => "class",
             Kind::Lubricant => "lubricant",
             Kind::Rig => "rig",
             Kind::Plan => "plan",
@@ -135,6 +154,11 @@ impl Kind {
 /// # Errors
 /// Unknown name (with the near ones), unreadable path, binary or empty file.
 pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, Disk), Problems> {
+    let word = match kind {
+        // That of its car.
+        Kind::Vehicle => word.strip_prefix(twin::MARK).unwrap_or(word),
+        _ => word,
+    };
     if !is_path(word) {
         let text = embedded::text(kind.embedded(), word).ok_or_else(|| unknown_name(word, kind))?;
         let file = format!("embedded:{word}.toml");
@@ -150,15 +174,67 @@ pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, D
     Ok((word.to_owned(), decode(word, &bytes)?, Disk { folder }))
 }
 
+/// As a baseline the same car with a manual box.
+pub const TWIN: &str = "twin";
+
+impl Options {
+    /// Those of the twin of a car with these: it has another transmission oil, and all else of the car.
+    #[must_use]
+    pub fn of_twin(&self, named_by: NamedBy) -> Options {
+        let own = self.set.iter();
+        let own = own.filter(|by| by.target() != Target::Lubricant);
+        Options {
+            lubricant: None,
+            set: own.cloned().collect(),
+            named_by,
+            ..self.clone()
+        }
+    }
+}
+
+/// Whether the word is that of a twin.
+#[must_use]
+pub fn is_twin(word: &str) -> bool {
+    word.starts_with(twin::MARK)
+}
+
+/// Name of a car by its word, as results have it.
+#[must_use]
+pub fn name_of(word: &str) -> String {
+    match word.strip_prefix(twin::MARK) {
+        Some(of) => stem(of) + "_twin",
+        None => stem(word),
+    }
+}
+
+/// The word for a vehicle that the file of the vehicle `of` names as its baseline: a path is relative to that file, `twin` is the same car
+/// with a manual box.
+#[must_use]
+pub fn baseline_of(of: &str, named: &str) -> String {
+    if named == TWIN {
+        return format!("{}{of}", twin::MARK);
+    }
+    let folder = std::path::Path::new(of).parent();
+    match folder.filter(|_| is_path(of) && is_path(named)) {
+        Some(folder) => folder.join(named).to_string_lossy().into_owned(),
+        None => named.to_owned(),
+    }
+}
+
 fn unknown_name(word: &str, kind: Kind) -> Problem {
     let names = kind.names();
-    let hint = did_you_mean(word, names.iter().copied())
-        .map_or_else(String::new, |question| question + " ");
-    Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
+    let question = did_you_mean(word, names.iter().copied());
+    let names = names.join(", ");
+    let problem = Problem::unknown_name(format!("there is no {} named `{word}`", kind.word()))
         .at(kind.argument())
-        .value(word)
-        .allowed(format!("{}, or the path of a TOML file", names.join(", ")))
-        .hint(format!("{hint}a path needs a / or an ending"))
+        .value(word);
+    if kind == Kind::Class {
+        return problem.allowed(names).hint(question.unwrap_or_default());
+    }
+    let question = question.map_or_else(String::new, |question| question + " ");
+    problem
+        .allowed(format!("{names}, or the path of a TOML file"))
+        .hint(format!("{question}a path needs a / or an ending"))
 }
 
 fn unreadable(word: &str, kind: Kind, why: &ReadError) -> Problem {

@@ -20,7 +20,7 @@ mod keys;
 mod start;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
-pub use keys::EngineKeys;
+pub use keys::{ENGINE, EngineKeys};
 pub use start::Running;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};

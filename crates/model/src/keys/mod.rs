@@ -235,6 +235,9 @@ pub trait Values: Sized {
     /// The table `name` in this one.
     fn table(&self, name: &str) -> Self;
 
+    /// Whether the table is present.
+    fn exists(&self) -> bool;
+
     /// Whether the key is given.
     fn has(&self, key: &Key<'_>) -> bool;
 
@@ -258,6 +261,9 @@ pub trait Values: Sized {
 
     /// A text with a default; empty after a problem.
     fn text_or(&self, key: &Key<'_>, default: &str) -> String;
+
+    /// Texts, written as one with commas or as a list; none where the key is absent.
+    fn texts(&self, key: &Key<'_>) -> Vec<String>;
 
     /// One of the key's words.
     fn word(&self, key: &Key<'_>) -> &'static str;

@@ -104,7 +104,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity
     }
 }
 
-const UNITS: [Quantity; 60] = [
+const UNITS: [Quantity; 61] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -143,6 +143,7 @@ const UNITS: [Quantity; 60] = [
     unit("_per_s", "1/s", 1.0),
     unit("_per_rad", "1/rad", 1.0),
     unit("_rpm", "rpm", RPM),
+    unit("_rpm_per_kmh", "rpm/(km/h)", RPM * 3.6),
     unit("_rad_s", "rad/s", 1.0),
     unit("_deg", "°", PI / 180.0),
     unit("_rad", "rad", 1.0),

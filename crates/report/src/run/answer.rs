@@ -74,8 +74,9 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let compared = baselines.iter().zip(&summary.comparison);
     let differences = compared.filter_map(|(baseline, comparison)| {
         let size = more_or_less(comparison)?;
+        let kind = likeness(comparison).map_or_else(String::new, |kind| format!(", {kind}"));
         Some(format!(
-            "{size} than {} ({})",
+            "{size} than {} ({}{kind})",
             baseline.title,
             fuel(baseline)
         ))
@@ -85,6 +86,15 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         text += &format!(": {}", differences.join(", and "));
     }
     text + "."
+}
+
+/// "like for like" or "not like for like"; none in results of earlier versions.
+fn likeness(comparison: &Comparison) -> Option<&'static str> {
+    let kind = match comparison.differences.is_empty() {
+        true => "like for like",
+        false => "not like for like",
+    };
+    (!comparison.likeness.is_empty()).then_some(kind)
 }
 
 /// "5.9 % more", by the sign of the difference.
@@ -227,6 +237,11 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
         format!("{name} ran outside the validity of a model for {seconds}.")
     });
     let mut list: Vec<String> = outside.collect();
+    let unlike = found.summary.comparison.iter();
+    let unlike = unlike.filter(|comparison| !comparison.differences.is_empty());
+    list.extend(
+        unlike.map(|of| format!("The comparison with {} is {}.", of.baseline, of.likeness)),
+    );
     let below: Vec<String> = cars.iter().filter_map(cold_time).collect();
     if !below.is_empty() {
         list.push(format!(

@@ -13,9 +13,23 @@ const SHOWN: usize = 20;
 /// Effects below this, per cent of fuel, are written as 0.
 const SMALL_PERCENT: f64 = 0.005;
 
-/// True for a value from judgement or a fit, not from a source.
+/// True for a value from judgement or a fit, or of a class or another car, not from a source of this one.
 fn is_doubtful(value: &ValueRecord) -> bool {
-    ["assumed", "fitted", "default"].contains(&value.status.as_str())
+    ["assumed", "fitted", "default"].contains(&value.status.as_str()) || is_inherited(value)
+}
+
+/// True for a value of a class or of another car.
+fn is_inherited(value: &ValueRecord) -> bool {
+    ["class", "like"].contains(&value.status.as_str())
+}
+
+/// "assumed, fitted or X", with what is inherited where there is such a value.
+fn doubtful_words(car: &CarRecord, last: &str) -> String {
+    let inherited = match car.values.iter().any(is_inherited) {
+        true => ", inherited",
+        false => "",
+    };
+    format!("assumed, fitted{inherited} or {last}")
 }
 
 /// True if there is a value: neither a choice of a model nor an optional key without a value.
@@ -90,7 +104,8 @@ fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivi
     let doubtful = ranked(car, sensitivity, is_doubtful);
     let (first, rest) = doubtful.split_at(doubtful.len().min(SHOWN));
     let caption = format!(
-        "Values of {name} that are assumed, fitted or left at the program's default, the strongest first"
+        "Values of {name} that are {}, the strongest first",
+        doubtful_words(car, "left at the program's default")
     );
     section.table(table(&caption, first, sensitivity));
     if !rest.is_empty() {
@@ -164,8 +179,9 @@ pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
         return None;
     }
     let mut text = format!(
-        "{doubtful} of the {numbers} values of {} are assumed, fitted or defaults",
-        subject.name
+        "{doubtful} of the {numbers} values of {} are {}",
+        subject.name,
+        doubtful_words(subject, "defaults")
     );
     let sensitivity = record.sensitivity.as_ref();
     if let (Some((value, Some(effect))), Some(sensitivity)) = (

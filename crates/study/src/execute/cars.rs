@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::plan::{Acts, Base, Cars, Factor, FactorValue, Plan};
 use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
-use cvtcycle_config::setup::{NamedBy, Options, Setup};
+use cvtcycle_config::setup::{NamedBy, Options, Setup, is_twin};
 use cvtcycle_config::{Override, Problem, ProblemKind, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
@@ -79,7 +79,10 @@ impl StudyCar {
             role: if subject { "subject" } else { "baseline" }.into(),
             word: word.to_owned(),
             bindings,
-            options: options(&plan.base, subject),
+            options: match is_twin(word) {
+                true => options(&plan.base, true).of_twin(NamedBy::File),
+                false => options(&plan.base, subject),
+            },
             variants: (0..stride).map(|_| OnceLock::new()).collect(),
         })
     }

@@ -9,7 +9,7 @@ use crate::plan::{Keep, Plan};
 use crate::store::{Head, Kind};
 use cvtcycle_config::ProblemKind::{self, TooLarge, UnknownName};
 use cvtcycle_config::cycle::{self, Cycle};
-use cvtcycle_config::setup::is_path;
+use cvtcycle_config::setup::{TWIN, baseline_of, is_path, name_of};
 use cvtcycle_config::{Argument, Input, Place, Problem, Problems, did_you_mean, unit_of};
 use cvtcycle_output::Component;
 use cvtcycle_output::table::Column;
@@ -178,12 +178,12 @@ fn cars(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<StudyCar> {
     let subject = in_folder(folder, &plan.base.vehicle);
     let own = add(&subject, "vehicle");
     // Names in the vehicle's file are relative to that file.
-    let (names, folder) = match &plan.base.baselines {
-        Some(names) => (names, folder),
-        None => (&own, Path::new(&subject).parent().unwrap_or(Path::new(""))),
+    let word = |name: &String| match &plan.base.baselines {
+        Some(_) if name != TWIN => in_folder(folder, name),
+        _ => baseline_of(&subject, name),
     };
-    for name in names {
-        add(&in_folder(folder, name), "baselines");
+    for name in plan.base.baselines.as_ref().unwrap_or(&own) {
+        add(&word(name), "baselines");
     }
     cars
 }
@@ -206,11 +206,7 @@ fn in_plan(plan: &Plan, key: &str, problem: Problem) -> Problem {
 
 /// A name of a car that no other one has, made of that of its file.
 fn unique(word: &str, cars: &[StudyCar]) -> String {
-    let stem = Path::new(word).file_stem();
-    let name = stem.map_or_else(
-        || word.to_owned(),
-        |stem| stem.to_string_lossy().into_owned(),
-    );
+    let name = name_of(word);
     let is_free = |name: &String| cars.iter().all(|car| !car.name.eq_ignore_ascii_case(name));
     let numbered = (2..).map(|n| format!("{name}_{n}"));
     std::iter::once(name.clone())

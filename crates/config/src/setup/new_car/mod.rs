@@ -1,0 +1,256 @@
+//! A vehicle file from catalogue numbers; what is not given is inherited from classes or from another car.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | NC-1 | r = 3.05 D/(2 pi), D = rim + 2 width height | source: CO2MPAS |
+//! | NC-2 | full load below n_T: T_max (1 - 0.31 ((n_T - n)/(n_T - n_idle))^1.5); above: T_max - (T_max - T_P)((n - n_T)/(n_P - n_T))^2, T_P = P/w_P | fitted to the CO2MPAS shape of the Rover |
+//! | NC-3 | inertia 0.05 + 0.1 V kg m2, accessories 0.175 V + 0.2021 Nm, V in litres | source: CO2MPAS |
+//! | NC-4 | belt length by GE-3 from centre distance, low ratio and a least running radius of 30 mm; its mass 1.6 kg/m | derived; radius ASSUMED 25 to 35 mm |
+//! | NC-6 | heat capacity of the engine by rated power: block 0.525, oil 0.28 kJ/K per kW | derived from ADVISOR |
+//! | NC-7 | units by their definitions | source |
+//! | NC-9 | stroke of four cylinders of equal bore and stroke | ASSUMED |
+//!
+//! `units` reads numbers with their units, `rules` makes the values, this module the file.
+
+mod rules;
+mod units;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::{Disk, Kind, Options, Setup, read};
+use crate::problem::near::suggest;
+use crate::{Problem, Problems};
+use rules::Line;
+
+/// Catalogue numbers by the names of their options, as texts.
+#[derive(Clone, Debug, Default)]
+pub struct Answers {
+    /// Name or path of the file, which problems of its values cite.
+    pub file: String,
+    /// Name for people.
+    pub title: String,
+    /// Car from which the rest comes.
+    pub like: Option<String>,
+    /// Class of the body and the engine.
+    pub class: Option<String>,
+    /// Class of the transmission.
+    pub gearbox: Option<String>,
+    /// The numbers.
+    pub numbers: BTreeMap<&'static str, String>,
+}
+
+/// A vehicle file.
+#[derive(Clone, Debug)]
+pub struct NewCar {
+    /// The file.
+    pub text: String,
+    /// The car that it is.
+    pub setup: Setup,
+    /// What to look at again.
+    pub doubts: Vec<String>,
+}
+
+/// Names of the numbers that a car may have, with their meaning.
+pub const NUMBERS: [(&str, &str); 21] = [
+    ("mass", "test mass, the driver with it: kg, lb or t"),
+    ("f0", "constant part of the road load: N or lbf"),
+    ("f1", "part linear in speed: N/(km/h) or lbf/mph"),
+    ("f2", "part quadratic in speed: N/(km/h)2 or lbf/mph2"),
+    ("tyre", "tyre code, such as 215/55 R16"),
+    (
+        "wheel-radius",
+        "dynamic radius of the wheel in place of the tyre: mm",
+    ),
+    ("displacement", "displacement of the engine: cm3 or l"),
+    (
+        "power",
+        "rated power, and its speed: 104@6400; kW, hp or PS",
+    ),
+    (
+        "torque",
+        "highest torque, and its speed or speeds: 172@4000 or 172@3800-4400; Nm or lbft",
+    ),
+    ("idle", "idle speed of the warm engine: rpm"),
+    ("highest", "highest speed of the engine: rpm"),
+    (
+        "gears",
+        "gears of a manual box, first gear first: 3.64,2.08,1.36",
+    ),
+    ("final-drive", "ratio of the final drive"),
+    ("ratio-low", "largest ratio of the belt"),
+    ("ratio-high", "smallest ratio of the belt"),
+    (
+        "span",
+        "largest ratio of the belt over the smallest, in place of one of them",
+    ),
+    ("centre-distance", "distance of the pulleys: mm"),
+    ("pump", "displacement of the pump: cc/rev"),
+    ("oil", "oil in the transmission: l"),
+    ("fluid", "transmission oil, by name or path"),
+    ("engine-oil", "engine oil, by name or path"),
+];
+
+/// Classes that are taken where nothing is said.
+const USUAL: [&str; 2] = ["compact_2020", "box_cvt_clutch"];
+/// Keys of inherited values that move the fuel most.
+const OF_WEIGHT: [&str; 14] = [
+    "road_load.mass_kg",
+    "road_load.form.coefficients.f0_n",
+    "road_load.form.coefficients.f2_n_per_kmh2",
+    "road_load.wheel_radius_m",
+    "engine.model.willans.l",
+    "engine.model.willans.a",
+    "engine.idle.hot_rpm",
+    "engine.electrical_w",
+    "transmission.cvt.final_drive_ratio",
+    "transmission.cvt.ratio.gentle_rpm",
+    "transmission.cvt.clamp.torque_following.safety_factor",
+    "transmission.cvt.pump.displacement_cc_rev",
+    "transmission.manual.overall_ratios",
+    "transmission.manual.upshift_kmh",
+];
+
+/// Writes the file of a car.
+///
+/// # Errors
+/// All numbers that are none or do not fit each other; a problem's key is the name of its option.
+pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
+    let mut problems = Problems::new();
+    let parents = problems.take(parents(answers));
+    let missing = ["displacement", "power"]
+        .into_iter()
+        .filter(|name| answers.like.is_none() && !answers.numbers.contains_key(name));
+    for name in missing {
+        let problem = Problem::missing(format!("the {name} of the engine is missing")).key(name);
+        problems.push(
+            problem
+                .names_key()
+                .allowed(meaning(name))
+                .hint("a class has none that is this car's; only a car that it is like has"),
+        );
+    }
+    let Some(parents) = parents.filter(|_| problems.is_empty()) else {
+        return Err(problems);
+    };
+    let like = parents.iter().map(|name| format!("{name:?}"));
+    let like = like.collect::<Vec<_>>().join(", ");
+    // What the rules take from the class, the car without a value of its own has.
+    let bare = head("", &like, false);
+    let base = car(answers, &bare)?;
+    let lines = rules::lines(answers, &base)?;
+    let title = toml::Value::String(answers.title.clone()).to_string();
+    let own = lines.iter().filter(|line| line.table() == VEHICLE);
+    let own: String = own.map(Line::text).collect();
+    let title = format!("title = {title}\n{own}");
+    let mut text = head(&title, &like, base.transmission().is_cvt());
+    text += &tables(&lines);
+    let setup = car(answers, &text)?;
+    text += &of_weight(&setup);
+    Ok(NewCar {
+        doubts: rules::doubts(&setup),
+        text,
+        setup,
+    })
+}
+
+/// The car of a text that is to be the file.
+fn car(answers: &Answers, text: &str) -> Result<Setup, Problems> {
+    let folder = Path::new(&answers.file).parent();
+    let folder = folder.map(Path::to_path_buf).unwrap_or_default();
+    read(
+        &answers.file,
+        text,
+        Box::new(Disk { folder }),
+        &Options::default(),
+    )
+}
+
+fn meaning(name: &str) -> &'static str {
+    let found = NUMBERS.iter().find(|(own, _)| *own == name);
+    found.map_or("", |(_, meaning)| meaning)
+}
+
+/// What the car inherits from.
+fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
+    let class = |name: &str, option: &str, is_box: bool| {
+        let known: Vec<&str> = Kind::Class.names();
+        let known: Vec<&str> = known
+            .into_iter()
+            .filter(|of| of.starts_with("box_") == is_box)
+            .collect();
+        match known.contains(&name) {
+            true => Ok(format!("class:{name}")),
+            false => Err(
+                Problem::unknown_name(format!("there is no class named `{name}`"))
+                    .key(option)
+                    .value(name)
+                    .allowed(known.join(", "))
+                    .hint(suggest(name, &known)),
+            ),
+        }
+    };
+    if let Some(car) = &answers.like {
+        if answers.class.is_some() {
+            let problem = Problem::conflict("a car and a class at once").key("class");
+            return Err(problem.hint("give one of them"));
+        }
+        let gearbox = answers
+            .gearbox
+            .as_ref()
+            .map(|name| class(name, "box", true));
+        let gearbox = gearbox.transpose()?;
+        return Ok([car.clone()].into_iter().chain(gearbox).collect());
+    }
+    let [body, gearbox] = USUAL;
+    Ok(vec![
+        class(answers.class.as_deref().unwrap_or(body), "class", false)?,
+        class(answers.gearbox.as_deref().unwrap_or(gearbox), "box", true)?,
+    ])
+}
+
+/// The begin of the file.
+fn head(title: &str, like: &str, has_twin: bool) -> String {
+    let baselines = match has_twin {
+        true => "# The same car with a manual box.\nbaselines = [\"twin\"]\n",
+        false => "",
+    };
+    format!(
+        "#:schema vehicle.schema.json\n\
+         # Made by `cvtcycle new`. What is not here comes from what `like` names: `cvtcycle show` prints every value and from where it comes,\n\
+         # `cvtcycle schema vehicle > vehicle.schema.json` gives an editor the keys with their ranges.\n\
+         [vehicle]\nlike = [{like}]\n{title}{baselines}"
+    )
+}
+
+/// The table of the head of the file.
+const VEHICLE: &str = "vehicle";
+
+/// The lines by their tables, in the order in which these come first.
+fn tables(lines: &[Line]) -> String {
+    let mut text = String::new();
+    let mut done = vec![VEHICLE];
+    for table in lines.iter().map(Line::table) {
+        if !done.contains(&table) {
+            done.push(table);
+            let own = lines.iter().filter(|line| line.table() == table);
+            text += &format!("\n[{table}]\n{}", own.map(Line::text).collect::<String>());
+        }
+    }
+    text
+}
+
+/// What the car inherits and is worth a look, as comments.
+fn of_weight(setup: &Setup) -> String {
+    let inherited = setup.keys.iter().filter(|info| {
+        OF_WEIGHT.contains(&info.key.as_str()) && ["class", "like"].contains(&info.status.as_str())
+    });
+    let lines = inherited.map(|info| format!("# {} = {}  # {}\n", info.key, info.value, info.from));
+    let lines: String = lines.collect();
+    match lines.as_str() {
+        "" => lines,
+        lines => format!(
+            "\n# Not given, and of weight for the fuel; written in its table, a value is this car's:\n{lines}"
+        ),
+    }
+}

@@ -1,0 +1,156 @@
+//! `new`: a vehicle file from catalogue numbers.
+
+use std::io::Write;
+
+use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use cvtcycle::config::setup::Kind;
+use cvtcycle::config::setup::catalogue::{ENGINE_OIL, OIL};
+use cvtcycle::config::setup::new_car::{self, Answers, NUMBERS, NewCar};
+use cvtcycle::config::{Problem, Problems};
+use cvtcycle::output::file::OutputFile;
+
+use super::Execute;
+use crate::args::problems::{bad_value, in_options};
+use crate::args::{Names, OutArgs};
+use crate::print::{CommandOutput, CommandResult, Terminal};
+
+/// Arguments of `new`.
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.value_name("FILE.toml").help("Write this file [default: NAME.toml]")),
+    mut_arg("force", |force| force.help("Replace the file")),
+    after_help = "\
+Example:
+  cvtcycle new mycar --mass 1320 --f0 105 --f1 0.55 --f2 0.0305 --tyre '215/55 R16' --displacement 1.8l --power 104@6400 --torque 172@4000
+
+What is not given comes from a class (`cvtcycle list classes`) or from the car of --like, with the status `class` or `like`; the file says what was given and
+which rule made what follows from it. A unit may be given with each number: 3000lb, 17.4lbf, 158hp@6500. Then `cvtcycle check mycar.toml`, \
+`cvtcycle run --vehicle mycar.toml`."
+)]
+pub struct NewArgs {
+    /// Name of the car and of its file: letters, digits, - and _
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// Title [default: NAME]
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// Car from which the rest comes: a name, or a path relative to the new file
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
+    like: Option<String>,
+    /// Class of body and engine [default: compact_2020]
+    #[arg(long, value_name = "CLASS", value_parser = Names(|| Kind::Class.names()), hide_possible_values = true)]
+    class: Option<String>,
+    /// Class of the transmission [default: that of --like, else box_cvt_clutch]
+    #[arg(long = "box", value_name = "CLASS", value_parser = Names(|| Kind::Class.names()), hide_possible_values = true)]
+    gearbox: Option<String>,
+    #[command(flatten)]
+    numbers: Numbers,
+    #[command(flatten)]
+    out: OutArgs,
+}
+
+/// The catalogue numbers, an option each.
+#[derive(Clone, Debug, Default)]
+struct Numbers(Vec<(&'static str, String)>);
+
+impl FromArgMatches for Numbers {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = NUMBERS.iter().filter_map(|(name, _)| {
+            let text = matches.get_one::<String>(name)?;
+            Some((*name, text.clone()))
+        });
+        Ok(Numbers(given.collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Numbers::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Numbers {
+    fn augment_args(command: Command) -> Command {
+        NUMBERS.iter().fold(command, |command, (name, meaning)| {
+            let mut meaning = (*meaning).to_owned();
+            meaning[..1].make_ascii_uppercase();
+            let option = Arg::new(*name).long(*name).help(meaning);
+            command.arg(option.value_name("VALUE").allow_hyphen_values(true))
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Numbers::augment_args(command)
+    }
+}
+
+/// A car, and the file that it goes to.
+pub struct NewPlan {
+    car: NewCar,
+    file: OutputFile,
+}
+
+impl Execute for NewArgs {
+    type Plan = NewPlan;
+
+    fn plan(&self, problems: &mut Problems) -> Option<NewPlan> {
+        let fits = |c: char| c.is_ascii_alphanumeric() || "-_".contains(c);
+        if self.name.is_empty() || self.name.starts_with('-') || !self.name.chars().all(fits) {
+            let message = "this is no name of a car";
+            let hint = "a path is given with --out, words for people with --title";
+            let allowed = "letters, digits, - and _";
+            problems.add(bad_value("NAME", &self.name, allowed, message, hint));
+            return None;
+        }
+        let path = match &self.out.out {
+            Some(path) => path.clone(),
+            None => format!("{}.toml", self.name).into(),
+        };
+        let answers = Answers {
+            file: path.display().to_string(),
+            title: self.title.clone().unwrap_or_else(|| self.name.clone()),
+            like: self.like.clone(),
+            class: self.class.clone(),
+            gearbox: self.gearbox.clone(),
+            numbers: self.numbers.0.iter().cloned().collect(),
+        };
+        let car = problems.take(new_car::write(&answers).map_err(|found| found.map(option)));
+        let file = OutputFile::create(path, self.out.force);
+        let file = problems.take(file.map_err(in_options));
+        Some(NewPlan {
+            car: car?,
+            file: file?,
+        })
+    }
+
+    fn run(&self, plan: NewPlan, _: Terminal) -> CommandResult {
+        let NewPlan { car, mut file } = plan;
+        let written = file.write_all(car.text.as_bytes());
+        written.map_err(|error| in_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(in_options)?;
+        let path = path.display();
+        let is_fluid = |key: &str| key.starts_with(OIL) || key.starts_with(ENGINE_OIL);
+        let count = |status: &str| {
+            let keys = car.setup.keys.iter();
+            keys.filter(|info| info.status == status && !is_fluid(&info.key))
+                .count()
+        };
+        let [given, derived] = ["user", "derived"].map(count);
+        let inherited = count("class") + count("like");
+        let mut text = format!(
+            "{path}  {}\n{given} values given, {derived} by rule, {inherited} inherited: `cvtcycle show {path}` prints them\n",
+            car.setup.title
+        );
+        text.extend(car.doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
+        Ok(CommandOutput::text(text))
+    }
+}
+
+/// A problem of a number under its option.
+fn option(problem: Problem) -> Problem {
+    let is_number = NUMBERS.iter().any(|(name, _)| *name == problem.key);
+    if is_number || ["class", "box"].contains(&problem.key.as_str()) {
+        let option = format!("--{}", problem.key);
+        return problem.in_file(&option).key(option);
+    }
+    problem
+}

@@ -1,0 +1,241 @@
+//! Vehicle files from catalogue numbers. The truth is the arithmetic of each rule, worked out here, and the geometry of the belt in the model.
+
+use cvtcycle_config::setup::new_car::{Answers, NewCar, write};
+use cvtcycle_config::setup::{Kind, Options, Setup, load};
+use cvtcycle_config::{KeyInfo, Problems};
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::variator::Geometry;
+
+const ENGINE: [(&str, &str); 2] = [("displacement", "1.8l"), ("power", "104@6400")];
+
+fn new(class: &str, gearbox: &str, numbers: &[(&'static str, &str)]) -> Result<NewCar, Problems> {
+    let numbers = ENGINE.iter().chain(numbers);
+    write(&Answers {
+        file: "mycar.toml".to_owned(),
+        title: "My car".to_owned(),
+        class: Some(class.to_owned()),
+        gearbox: Some(gearbox.to_owned()),
+        numbers: numbers
+            .map(|(name, text)| (*name, (*text).to_owned()))
+            .collect(),
+        ..Answers::default()
+    })
+}
+
+fn cvt(numbers: &[(&'static str, &str)]) -> Setup {
+    new("compact_2020", "box_cvt_clutch", numbers)
+        .unwrap()
+        .setup
+}
+
+fn find<'s>(setup: &'s Setup, key: &str) -> &'s KeyInfo {
+    let found = setup.keys.iter().find(|info| info.key == key);
+    found.unwrap_or_else(|| panic!("{key}"))
+}
+
+fn number(setup: &Setup, key: &str) -> f64 {
+    find(setup, key).value.parse().unwrap()
+}
+
+#[test]
+fn every_class_makes_a_car_that_is_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mycar.toml");
+    for class in Kind::Class
+        .names()
+        .iter()
+        .filter(|name| !name.starts_with("box_"))
+    {
+        for gearbox in Kind::Class
+            .names()
+            .iter()
+            .filter(|name| name.starts_with("box_"))
+        {
+            let car = new(class, gearbox, &[])
+                .unwrap_or_else(|found| panic!("{class} {gearbox}: {found:?}"));
+            std::fs::write(&path, &car.text).unwrap();
+            let again = load(path.to_str().unwrap(), &Options::default()).unwrap();
+            assert_eq!(again.keys, car.setup.keys, "{class} {gearbox}");
+            assert_eq!(again.baselines.is_empty(), !again.transmission().is_cvt());
+            assert!(car.doubts.is_empty(), "{class}: {:?}", car.doubts);
+        }
+    }
+}
+
+#[test]
+fn what_is_given_is_the_user_s_and_the_rest_of_a_class() {
+    let numbers = [
+        ("mass", "2910lb"),
+        ("f0", "17.45lbf"),
+        ("f1", "0.1608lbf"),
+        ("f2", "0.01586lbf"),
+        ("idle", "650"),
+    ];
+    let setup = cvt(&numbers);
+    let mass = find(&setup, "road_load.mass_kg");
+    assert_eq!(
+        (mass.status.as_str(), mass.source.as_str()),
+        ("user", "given: 2910lb")
+    );
+    // By the definitions of pound, pound-force and mile.
+    for (key, value) in [
+        ("road_load.mass_kg", 2910.0 * 0.453_592_37),
+        ("road_load.form.coefficients.f0_n", 77.621),
+        ("road_load.form.coefficients.f1_n_per_kmh", 0.444_45),
+        ("road_load.form.coefficients.f2_n_per_kmh2", 0.027_239),
+        ("engine.idle.hot_rpm", 650.0),
+        ("engine.displacement_cc", 1800.0),
+        ("engine.rated_kw", 104.0),
+    ] {
+        let got = number(&setup, key);
+        assert!((got / value - 1.0).abs() < 1e-4, "{key}: {got}");
+    }
+    for info in setup
+        .keys
+        .iter()
+        .filter(|info| !info.key.starts_with("lubricant.") && !info.key.starts_with("engine_oil."))
+    {
+        let status = info.status.as_str();
+        assert!(
+            ["user", "derived", "class", "choice", "default", ""].contains(&status),
+            "{info:?}"
+        );
+    }
+}
+
+#[test]
+fn the_rules_are_their_arithmetic() {
+    let setup = cvt(&[("tyre", "215/55 R16")]);
+    // NC-1: (16 in + 2 x 215 x 0.55) x 3.05 / 2 pi
+    let diameter = 16.0 * 25.4 + 2.0 * 215.0 * 0.55;
+    let radius = diameter * 3.05 / std::f64::consts::TAU / 1e3;
+    assert!((number(&setup, "road_load.wheel_radius_m") - radius).abs() < 6e-5);
+    assert_eq!(find(&setup, "road_load.wheel_radius_m").status, "derived");
+    // NC-3 and NC-9 of 1.8 l: four cylinders of 450 cm3 with bore = stroke.
+    assert!((number(&setup, "engine.inertia_kg_m2") - 0.23).abs() < 1e-9);
+    let stroke = number(&setup, "engine.stroke_mm") / 10.0;
+    assert!((std::f64::consts::FRAC_PI_4 * stroke.powi(3) / 450.0 - 1.0).abs() < 2e-3);
+}
+
+/// The shipped Rover's line, which is the CO2MPAS shape through 145 Nm at 3000 rpm and 82 kW at 6000 rpm.
+#[test]
+fn full_load_meets_the_shape_that_it_was_fitted_to() {
+    let rover = load("rover_216_cvt", &Options::default()).unwrap();
+    let numbers = [
+        ("idle", "850"),
+        ("torque", "145@3000"),
+        ("power", "82@6000"),
+        ("displacement", "1588"),
+        ("highest", "6500"),
+    ];
+    let own = cvt(&numbers);
+    for rpm in [1000.0, 1500.0, 2000.0, 3000.0, 4000.0, 5000.0, 6000.0] {
+        let at = rpm * std::f64::consts::PI / 30.0;
+        let [own, shipped] = [&own, &rover].map(|car| car.engine().full_load.at(at));
+        assert!(
+            (own - shipped).abs() < 5.0,
+            "{rpm} rpm: {own} and {shipped} Nm"
+        );
+    }
+}
+
+#[test]
+fn the_belt_runs_at_thirty_millimetres_in_low() {
+    for (low, centre) in [("2.526", "172"), ("2.2", "160")] {
+        let setup = cvt(&[
+            ("ratio-low", low),
+            ("ratio-high", "0.42"),
+            ("centre-distance", centre),
+        ]);
+        let Transmission::Cvt(cvt) = setup.transmission() else {
+            unreachable!("a CVT")
+        };
+        let at_low = Geometry::new(cvt.ratio.low, cvt.belt.centre_distance_m, cvt.belt.length_m);
+        assert!((at_low.primary_radius_m - 0.030).abs() < 5e-5, "{at_low:?}");
+    }
+    let setup = cvt(&[("span", "6"), ("ratio-high", "0.4")]);
+    assert!((number(&setup, "transmission.cvt.ratio.low") - 2.4).abs() < 1e-9);
+}
+
+#[test]
+fn a_manual_box_has_its_gears() {
+    let numbers = [
+        ("gears", "3.642,2.08,1.361,1.023,0.829,0.686"),
+        ("final-drive", "4.105"),
+        ("wheel-radius", "309.5"),
+    ];
+    let car = new("compact_2020", "box_manual_6", &numbers).unwrap();
+    let Transmission::Manual(manual) = car.setup.transmission() else {
+        unreachable!("a manual box")
+    };
+    assert_eq!(manual.overall.len(), 6);
+    assert!((manual.overall[0] - 3.642 * 4.105).abs() < 1e-3);
+    assert!(car.text.contains("TW-3") && !car.text.contains("baselines"));
+}
+
+#[test]
+fn all_that_is_missing_or_wrong_is_said_at_once() {
+    let keys = |found: Problems| {
+        found
+            .iter()
+            .map(|problem| problem.key.clone())
+            .collect::<Vec<_>>()
+    };
+    let none = write(&Answers {
+        file: "a.toml".to_owned(),
+        ..Answers::default()
+    });
+    assert_eq!(keys(none.unwrap_err()), ["displacement", "power"]);
+    for (name, text) in [
+        ("mass", "heavy"),
+        ("mass", "1320 stone"),
+        ("f0", "17,4"),
+        ("tyre", "55/215 R16"),
+        ("power", "158@6500@7000"),
+        ("power", "104hp@-5"),
+        ("power", "104@0"),
+        ("torque", "172@4400-3800"),
+        ("torque", "100@4000"),
+        ("span", "6"),
+        ("gears", "3,2,1"),
+        ("ratio-low", "2.5x"),
+    ] {
+        let found = new("compact_2020", "box_cvt_clutch", &[(name, text)]);
+        let found = found.err().unwrap_or_else(|| panic!("{name} {text}"));
+        let expected = if name == "torque" && text.starts_with("100") {
+            "power"
+        } else {
+            name
+        };
+        assert_eq!(keys(found.clone()), [expected], "{name} {text}: {found:?}");
+        assert!(
+            !found[0].allowed.is_empty() || !found[0].hint.is_empty(),
+            "{found:?}"
+        );
+    }
+    let manual = new(
+        "compact_2020",
+        "box_manual_6",
+        &[("pump", "8"), ("span", "6"), ("gears", "1,2")],
+    );
+    assert_eq!(keys(manual.unwrap_err()), ["span", "pump", "gears"]);
+    assert!(new("box_manual_6", "compact_2020", &[]).is_err());
+}
+
+#[test]
+fn numbers_in_the_wrong_unit_are_doubted() {
+    let doubts = |numbers: &[(&'static str, &str)]| {
+        new("compact_2020", "box_cvt_clutch", numbers)
+            .unwrap()
+            .doubts
+    };
+    let pounds = doubts(&[("f0", "17.45"), ("f1", "0.1608"), ("f2", "0.01586")]);
+    assert!(pounds.len() == 1 && pounds[0].contains("lbf"), "{pounds:?}");
+    let heavy = doubts(&[("mass", "3000")]);
+    assert!(heavy.iter().any(|doubt| doubt.contains("lb?")), "{heavy:?}");
+    let small = doubts(&[("displacement", "500")]);
+    assert!(
+        small.iter().any(|doubt| doubt.contains("kW per litre")),
+        "{small:?}"
+    );
+}
