@@ -5,6 +5,7 @@ mod attribute;
 mod compare;
 mod inputs;
 mod named;
+mod new;
 mod run;
 mod study;
 mod streams;

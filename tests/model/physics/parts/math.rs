@@ -194,7 +194,7 @@ fn ranges_in_words() {
 }
 
 /// Key, value, SI value worked out by hand, unit as shown.
-const EXPECTED: [(&str, f64, f64, &str); 64] = [
+const EXPECTED: [(&str, f64, f64, &str); 65] = [
     (
         "fall_per_1000_rpm",
         0.2,
@@ -272,6 +272,7 @@ const EXPECTED: [(&str, f64, f64, &str); 64] = [
         "N m/rpm²",
     ),
     ("slip_percent", 2.5, 0.025, "%"),
+    ("first_rpm_per_kmh", 126.0, 47.500_880_922_277_67, "rpm/(km/h)"),
     // Names that end like a unit without being one of the pair `_unit`.
     ("nm", 1.0, 1.0, "-"),
     ("belts", 1.0, 1.0, "-"),
