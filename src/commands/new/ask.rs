@@ -8,7 +8,7 @@ use cvtcycle::config::{Problem, Problems};
 
 use crate::args::problems::{did_you_mean, problem};
 
-/// Asks for class and box, then for each number that is not given. An empty line takes what stands in brackets; the end of the input
+/// Reads class and box, then each number that is not given, a question before each. An empty line takes what is in brackets; the end of the input
 /// leaves the rest as it is.
 ///
 /// # Errors
