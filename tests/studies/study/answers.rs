@@ -207,6 +207,57 @@ fn val_one_at_a_time() {
             );
         }
         widths.push((swing, name));
+        let line = printed
+            .lines()
+            .skip_while(|line| !line.starts_with("Effects on headline"))
+            .find(|line| line.contains(name))
+            .unwrap();
+        assert!(
+            line.ends_with(&format!("{swing:.3}")),
+            "{swing} is not at the end of {line}"
+        );
+    }
+    assert!(reported(dir.path()).contains("swing in percentage points"));
+    // Uniform from 7 to 11: the quantiles 0.05 and 0.95 are 7.2 and 10.8.
+    let pump: Vec<f64> = own[1..3]
+        .iter()
+        .map(|row| number(row, "transmission.cvt.pump.displacement_cc_rev"))
+        .collect();
+    assert!(
+        (pump[0] - 7.2).abs() < 1e-9 && (pump[1] - 10.8).abs() < 1e-9,
+        "{pump:?}"
+    );
+    widths.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let order: Vec<&str> = file
+        .iter()
+        .filter(|row| row["car"] == CVT && row["output"] == FUEL)
+        .map(|row| row["factor"].as_str())
+        .collect();
+    assert_eq!(
+        order,
+        widths.iter().map(|(_, name)| *name).collect::<Vec<_>>()
+    );
+}
+
+/// Truth: means of the rows by word.
+#[test]
+fn val_words_of_a_grid_are_compared_by_group() {
+    let factor = "[[factor]]\nkey = \"lubricant\"\nname = \"oil\"\nvalues = [\"dexron_ii\", \"cvtf_ezl799_class\"]\n\
+        [[factor]]\nkey = \"ambient_degc\"\nname = \"air\"\nvalues = [-20, 0, 20]\n";
+    let dir = folder(&format!(
+        "{}\n[study.design.grid]\n{factor}",
+        HEAD.replace("ambient_degc = -10\n", "")
+    ));
+    let (printed, own) = studied(dir.path(), &[]);
+    assert_eq!(own.len(), 6);
+    for oil in ["dexron_ii", "cvtf_ezl799_class"] {
+        let fuels: Vec<f64> = own
+            .iter()
+            .filter(|row| row["lubricant"] == oil)
+            .map(|row| number(row, FUEL))
+            .collect();
+        let mean = fuels.iter().sum::<f64>() / 3.0;
+        let of = |f: fn(f64, f64) -> f64| fuels.iter().copied().reduce(f).unwrap();
         let lines = || {
             let after = printed
                 .lines()
