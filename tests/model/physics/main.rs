@@ -26,3 +26,4 @@ mod rig_transmission;
 mod rig_variator;
 mod smaller_points;
 mod targets;
+mod torque_converter;

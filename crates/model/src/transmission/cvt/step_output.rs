@@ -203,7 +203,8 @@ pub(super) fn finish<P: PrimeMover>(
         .trend
         .push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
     remember(past, &output, false);
-    past.coupled = p.locked || we <= wp * (1.0 + 1e-4);
+    let turns_together = we <= wp * (1.0 + 1e-4);
+    past.coupled = p.locked || (turns_together && !step.line.cvt.coupling.by_command());
     output
 }
 
@@ -229,9 +230,15 @@ fn solve_flags<P: PrimeMover>(
         belt.capacity_nm < p.torques.secondary.abs(),
     );
     flags.set(Flags::FLOW_LIMITED, p.flow_limited || step.shift_held);
+    // A lock-up clutch that closes slips until the engine has come down.
+    let closes = p.locked && !past.coupled && past.engine_rad_s > wp;
     flags.set(
         Flags::CLUTCH_SLIPPING,
-        we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0,
+        (we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0) || closes,
+    );
+    flags.set(
+        Flags::LOCKUP_OPEN,
+        step.line.cvt.coupling.by_command() && !p.locked,
     );
     flags.set(
         Flags::CLUTCH_OPEN,
