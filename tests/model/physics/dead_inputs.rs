@@ -133,7 +133,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 28] = [
+const NEEDS: [(&str, &[&str], &str); 27] = [
     (
         "reverse_clutch.oil_share",
         &["transmission.cvt.reverse_clutch.peak_rpm=4000"],
@@ -204,11 +204,6 @@ const NEEDS: [(&str, &[&str], &str); 28] = [
         "ratio.cold_to_degc",
         &["transmission.cvt.ratio.cold_rise_rpm=500"],
         "where the line of a cold car ends, only with one",
-    ),
-    (
-        "ratio.cold_by",
-        &["transmission.cvt.ratio.cold_rise_rpm=500"],
-        "whose temperature ends it, only with one",
     ),
     (
         "belt.slip_bound_percent",

@@ -3,7 +3,7 @@
 use crate::common::bench_step::{Bench, Setting};
 use crate::common::{Keep, RPM, ZERO, at, car, cycle, larger, soak_rows};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{Row, Start, State, drive, simulate};
+use cvtcycle_model::drive::{Row, Start, State, check_physics, drive, simulate};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::SUMP;
 use cvtcycle_model::transmission::component::Component;
@@ -427,4 +427,17 @@ fn cold_line_ends_with_the_coolant() {
     assert!(above(&cold, true).abs() < 5.0 && above(&by_sump, true) > 5.0);
     let fuel = |rows: &[Row]| rows.iter().map(|r| r.fuel_kg_s * r.dt_s).sum::<f64>();
     assert!(fuel(&by_sump) > fuel(&cold) && fuel(&cold) > fuel(&plain));
+}
+
+/// PX-1 to PX-8, which share no code with the solve, hold over an open and a locked converter.
+#[test]
+fn physics_checks_hold_over_the_converter() {
+    for sets in [&[][..], &["lockup.enabled=false"], &["lockup.slip_rpm=60"]] {
+        for degc in [-10.0, 25.0] {
+            let setup = converter_car(sets);
+            for found in check_physics(&setup, &cycle("ece15_eudc"), degc + ZERO, 1.0) {
+                assert!(found.holds(), "{sets:?} {degc}: {found:?}");
+            }
+        }
+    }
 }

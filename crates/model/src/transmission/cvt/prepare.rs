@@ -68,7 +68,7 @@ fn shift<P: PrimeMover>(
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let drawn = route
         .pump
-        .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
+        .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
