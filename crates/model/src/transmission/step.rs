@@ -87,6 +87,8 @@ pub struct StepOutput {
     pub clamp_safety: f64,
     /// Loss power of each component, W.
     pub loss_w: ByComponent<f64>,
+    /// Loss of the alternator for an electric pump, W.
+    pub alternator_w: f64,
     /// Power that the driveline gives to the wheels (negative: takes from them).
     pub output_w: f64,
     /// Power into the brakes.
@@ -120,6 +122,7 @@ impl StepOutput {
             secondary_nm: f64::NAN,
             clamp_safety: f64::NAN,
             loss_w: ByComponent([0.0; Component::COUNT]),
+            alternator_w: 0.0,
             output_w: 0.0,
             brake_w: 0.0,
             deficit_w: 0.0,

@@ -66,6 +66,7 @@ fn shifted(
             &engine,
             wheel.power_w / cvt.ratio.route_efficiency,
         ),
+        cold_rad_s: 0.0,
         ratio_before: from,
         flow_down_per_s: free / down,
         flow_up_per_s: free / up,

@@ -52,6 +52,7 @@ use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::maps::LossMap;
 use crate::math::{Curve, exp, larger, ln};
 use crate::prime_mover::PrimeMover;
+use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
 
 /// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
@@ -225,6 +226,7 @@ impl Cvt {
                 input.engine,
                 input.wheel.power_w / self.ratio.route_efficiency,
             ),
+            cold_rad_s: (self.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,

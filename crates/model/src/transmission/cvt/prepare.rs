@@ -9,7 +9,8 @@ use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
 use crate::fluid::{FilmPowers, OilState};
 use crate::math::{exp_each, larger, ln_each, pair};
 use crate::prime_mover::PrimeMover;
-use crate::thermal::{BELT, SUMP};
+use crate::thermal::{BELT, COOLANT, SUMP};
+use crate::transmission::coupling::LockSignals;
 use crate::transmission::step::{DrivelineState, StepInput};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
@@ -67,7 +68,7 @@ fn shift<P: PrimeMover>(
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let drawn = route
         .pump
-        .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
+        .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
@@ -75,10 +76,11 @@ fn shift<P: PrimeMover>(
         power_w: input.wheel.power_w,
         share,
         full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
+        cold_rad_s: (cvt.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
-        coupled: past.coupled,
+        coupled: past.coupled || cvt.coupling.by_command(),
         last_direction: route.last_direction,
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
@@ -176,11 +178,6 @@ pub(super) fn prepare<'a, P: PrimeMover>(
 ) -> Step<'a, P> {
     let (oil, friction) = (input.oil, &input.oil.friction);
     let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
-    let locked_from_rad_s = if past.coupled {
-        cvt.coupling.locked_from_rad_s(input.engine.idle_rad_s())
-    } else {
-        f64::INFINITY
-    };
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
     let sump = OilState {
         kinematic_m2_s: nu_sump,
@@ -204,6 +201,12 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     }
     let at = &*belt;
     let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
+    let signals = LockSignals {
+        speed_m_s: input.wheel.speed_m_s,
+        sump_k,
+        output_rad_s: shift.ratio * secondary_rad_s,
+        idle_rad_s: input.engine.idle_rad_s(),
+    };
     let sliding = cvt
         .belt
         .sliding_m_s(shift.ratio, shift.ratio * secondary_rad_s);
@@ -249,7 +252,6 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         shifting: shift.kept,
         reach: input.reach(past.engine_rad_s, 0.0),
         pressure_before_pa: past.secondary_pa,
-        coupled: past.coupled,
-        locked_from_rad_s,
+        hold: cvt.coupling.hold(&signals, past.coupled),
     }
 }

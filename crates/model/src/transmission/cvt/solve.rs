@@ -33,10 +33,11 @@ impl<P: PrimeMover> Step<'_, P> {
         if above_idle && p.primary_nm >= 0.0 && p.throttle < 1.0 {
             return Limit::None; // CV-3 is below zero here, CV-4 above
         }
-        let (w, spin_nm) = (p.guess.engine_rad_s, p.torques.engine_nm());
-        if p.primary_nm < self.min_primary_nm(p.primary_rad_s, w, spin_nm) - margin_nm {
+        let at = self.turning(p.primary_rad_s, p.guess.engine_rad_s);
+        let spin_nm = p.torques.engine_nm();
+        if p.primary_nm < self.min_primary_nm(&at, spin_nm) - margin_nm {
             Limit::EngineDrag
-        } else if p.primary_nm > self.max_primary_nm(p.primary_rad_s, w, spin_nm) + margin_nm {
+        } else if p.primary_nm > self.max_primary_nm(&at, spin_nm) + margin_nm {
             Limit::FullLoad
         } else {
             Limit::None
@@ -128,7 +129,8 @@ impl<P: PrimeMover> Step<'_, P> {
             count += 1;
             work.residual = point.moved();
             if let Some((before, before_next_pa)) = &last {
-                work.slopes.update(before, *before_next_pa, point);
+                let open = !point.locked && self.line.cvt.coupling.by_command();
+                work.slopes.update((before, *before_next_pa), point, open);
             }
             let scale = larger(point.full_load_nm, 1.0);
             let damped = count > DAMPED_FROM;

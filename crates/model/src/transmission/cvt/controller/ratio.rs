@@ -11,12 +11,13 @@
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
+//! | RC-11 | cold: target + r clip((T_to - T)/(T_to - T_from), 0, 1) u_1, T of coolant or sump, u_1 rising from 0 without power to 1 at 1 % of rated power | ASSUMED: r 300 to 1000 rpm, gone by 40 to 60 degC coolant in modern cars; none in overrun |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
-use crate::keys::{Values, keys};
-use crate::math::{clamp, exp, larger, ln, smaller};
+use crate::keys::{Choice, Values, keys};
+use crate::math::{clamp, exp, larger, ln, ramp, smaller};
 
 /// The checked controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,6 +48,38 @@ pub struct RatioControl {
     pub hysteresis: f64,
     /// Time constant of the demand that gentle driving looks at, s; 0 without a filter.
     pub filter_s: f64,
+    /// What a cold car adds to the target.
+    pub cold: ColdRise,
+}
+
+/// What a cold car adds to the target of engine speed (RC-11).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColdRise {
+    /// Rise in full, rad/s.
+    pub rise_rad_s: f64,
+    /// Temperature up to which it is in full, K.
+    pub from_k: f64,
+    /// Temperature from which there is none, K.
+    pub to_k: f64,
+    /// True where the sump's temperature counts, false for the coolant's.
+    pub by_sump: bool,
+}
+
+impl ColdRise {
+    /// None.
+    pub const NONE: ColdRise = ColdRise {
+        rise_rad_s: 0.0,
+        from_k: 0.0,
+        to_k: 1.0,
+        by_sump: false,
+    };
+
+    /// The rise at the temperatures of coolant and sump, K, rad/s.
+    #[inline]
+    pub fn at(&self, coolant_k: f64, sump_k: f64) -> f64 {
+        let temp_k = if self.by_sump { sump_k } else { coolant_k };
+        self.rise_rad_s * (1.0 - ramp(temp_k, self.from_k, self.to_k)) // RC-11
+    }
 }
 
 /// What the controller looks at.
@@ -60,6 +93,8 @@ pub struct RatioDemand {
     pub share: f64,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: f64,
+    /// What a cold car adds to the target, rad/s.
+    pub cold_rad_s: f64,
     /// Ratio before the step.
     pub ratio_before: f64,
     /// Limit from pump flow towards low, 1/s.
@@ -88,6 +123,9 @@ impl RatioControl {
         let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
+        }
+        if d.cold_rad_s > 0.0 {
+            speed += d.cold_rad_s * clamp(share / LEAST_GENTLE_SHARE, 0.0, 1.0); // RC-11
         }
         if d.power_w > 0.0 && d.full_load_rad_s > speed {
             speed = d.full_load_rad_s; // RC-3
@@ -163,7 +201,7 @@ impl RatioControl {
 /// Primary speed over idle speed up to which the ratio turns round at once: the car pulls away and stops in low (RC-10).
 pub const FREE_OVER_IDLE: f64 = 1.2;
 
-/// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2).
+/// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2, RC-11).
 const LEAST_GENTLE_SHARE: f64 = 0.01;
 
 /// Change of ln I that counts as one (RC-10).
@@ -195,6 +233,13 @@ keys! {
         rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold", ["RC-4"];
         hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round", ["RC-10"];
         filter_s: or(1.0, number(0.0, 10.0)), "time constant of the demand in gentle driving", ["RC-9"];
+        cold_rise_rpm: or(0.0, number(0.0, 2000.0)), "rise of engine speed in a cold car", ["RC-11"];
+        cold_from_degc: or(0.0, number(-60.0, 110.0)), "temperature up to which that is in full", ["RC-11"];
+        cold_to_degc: or(50.0, number(-50.0, 120.0)), "temperature from which there is none of it", ["RC-11"];
+        cold_by: words(&[
+            Choice::word("coolant", "the temperature is that of the coolant"),
+            Choice::word("sump", "the temperature is that of the transmission oil"),
+        ], "coolant"), "whose temperature that is", ["RC-11"];
     }
 }
 
@@ -216,7 +261,21 @@ impl RatioControl {
             rate_speed_rad_s: s.number(&RATIO.rate_speed_rpm),
             hysteresis: s.number(&RATIO.hysteresis),
             filter_s: s.number(&RATIO.filter_s),
+            cold: ColdRise {
+                rise_rad_s: s.number(&RATIO.cold_rise_rpm),
+                from_k: s.number(&RATIO.cold_from_degc),
+                to_k: s.number(&RATIO.cold_to_degc),
+                by_sump: s.word(&RATIO.cold_by) == "sump",
+            },
         };
+        if control.cold.to_k <= control.cold.from_k {
+            s.complain(
+                RATIO.cold_to_degc.name,
+                "above cold_from_degc",
+                "the line of a cold car would end before it is in full",
+                "raise it or lower `cold_from_degc`",
+            );
+        }
         if control.low <= control.high {
             s.complain(
                 "low",
