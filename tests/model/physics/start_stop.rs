@@ -436,7 +436,7 @@ fn start_fuel_is_not_given_twice() {
     }
 }
 
-/// SS-5: pressure falls while the CVT stands, to that of its electric pump if it has one; FTP75's soak is the cycle's own and has none of it.
+/// SS-5: pressure falls while the CVT is at rest, to that of its electric pump if it has one; FTP75's soak is the cycle's own and has none of it.
 #[test]
 fn pressure_decays() {
     let ftp = cycle("ftp75");

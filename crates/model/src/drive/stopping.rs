@@ -49,7 +49,7 @@ impl<'a> Stopping<'a> {
         Some(Stopping { on, command })
     }
 
-    /// Whether the engine stands still.
+    /// Whether the engine is at rest.
     pub fn stopped(&self) -> bool {
         self.command == Command::Stop
     }

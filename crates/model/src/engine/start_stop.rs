@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | SS-1 | stops at rest t_d after the car stands, in neutral, where coolant, sump (of a CVT) and ambient are within their limits, the engine ran t_r since its start, the car was faster than v_min since the last stop, and E > E_0/2 | limits source: service data of Toyota, Honda, Infiniti, Ford; t_d and E ASSUMED |
+//! | SS-1 | stops after t_d at rest, in neutral, where coolant, sump (of a CVT) and ambient are within their limits, the engine ran t_r since its start, the car was faster than v_min since the last stop, and E > E_0/2 | limits source: service data of Toyota, Honda, Infiniti, Ford; t_d and E ASSUMED |
 //! | SS-2 | starts t_l before the car moves, or where a limit fails, E < E_0/4, or after the longest stop | ASSUMED: a driver's foot leaves the brake 0.3 to 1 s before |
 //! | SS-3 | fuel of the start m = max(t_i m'_idle, m_0 clip((60 degC - T)/60 K, 0, 1)) in its step; EN-9 and the raised idle of EN-1 are of the first start alone | source: Ford Fusion 2.5 L, a restart is 9 s of idle, enrichment included (FOTW 1239); t_i ASSUMED, 1 to 9 s |
 //! | SS-4 | starter: E = (J w_idle2/2 + W_c)/eta_s, W_c = T_drag(w_idle) w_idle t_c/2 heats the block | derived; eta_s source: starter data, 2 kW in and 1.1 kW out; t_c ASSUMED |
@@ -102,7 +102,7 @@ pub struct Conditions {
 pub enum Command {
     /// It runs.
     Run,
-    /// It stands still.
+    /// It is at rest.
     Stop,
     /// It is started, and runs.
     Start,

@@ -7,7 +7,7 @@
 //! | TC-3 | creep: T_t = k(nu) lambda(nu) w_idle2 at nu = w_t/w_idle, none from nu = 1; at rest times the share that neutral idle leaves | derived: TC-1 at idle |
 //! | TC-4 | loss = T_e w_e - T_t w_t, never negative for k nu <= 1; all of it heats the sump | derived: power balance |
 //! | TC-5 | T_e = T_t/k(nu) at the speeds in force; TC-1 holds for the engine's speed as far as its inertia lets it get there | ASSUMED, as LC-1 |
-//! | TC-6 | overrun, open: \|T\| = c lambda(r) w_t2 at r = w_e/w_t, k = 1; at least T_t = -min(absorbed, c lambda(w_idle/w_t) w_t2) | ASSUMED: the table mirrored; c 0.7 to 1.5 (the source has 1.4 at nu 1.09) |
+//! | TC-6 | overrun, open: \|T\| = c lambda(r) w_t2 at r = w_e/w_t, k = 1; at least T_t = -min(absorbed, c lambda(w_idle/w_t) w_t2) | ASSUMED: the table mirrored; c 0.7 to 1.5 (1.4 is printed at nu 1.09) |
 //! | TC-7 | lock-up: closes above v_on and T_on and 1.1 n_least, n_least the larger of n_open and idle; opens below v_off, T_on - 3 K or n_least; once a step, from the state before it | temperature source: Honda Civic and Volvo XC70 service data, 20 degC; speeds and widths ASSUMED |
 //! | TC-8 | slip lock-up: w_e - w_t = dn clip(T_t/10 Nm, 0, 1), up to a temperature of the sump; T_e = T_t | source: Volvo XC70 2009: 50 rpm at 20 to 120 degC; ramp ASSUMED |
 //!
