@@ -96,7 +96,7 @@ impl InputKind {
             false => format!("./{word}"),
         };
         let kind = match extension(word).as_deref() {
-            Some("csv" | "tsv" | "txt") => {
+            Some("csv" | "tsv" | "txt" | "vdri") => {
                 bytes("FILE", word, bounded::TABLE).map(|_| InputKind::Cycle)
             }
             _ => InputKind::of_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),

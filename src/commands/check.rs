@@ -3,6 +3,7 @@
 mod physics;
 
 use clap::Args;
+use cvtcycle::config::csv::Columns;
 use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
@@ -14,7 +15,7 @@ use serde_json::{Value, json};
 use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{cite, in_options};
-use crate::args::{JsonArgs, Names, cycles};
+use crate::args::{ColumnsArgs, JsonArgs, Names, cycles};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 use physics::PhysicsPlan;
 
@@ -48,6 +49,8 @@ pub struct CheckArgs {
     )]
     ambient: String,
     #[command(flatten)]
+    columns: ColumnsArgs,
+    #[command(flatten)]
     output: JsonArgs,
 }
 
@@ -63,7 +66,11 @@ impl Execute for CheckArgs {
             return physics::plan(&self.files, drive, problems)
                 .map(|plan| CheckPlan::Physics(Box::new(plan)));
         }
-        let files = self.files.iter().map(|file| (file.clone(), check(file)));
+        let columns = self.columns.get(problems);
+        let files = self
+            .files
+            .iter()
+            .map(|file| (file.clone(), check(file, &columns)));
         Some(CheckPlan::Files(files.collect()))
     }
 
@@ -121,11 +128,14 @@ impl CheckArgs {
     }
 }
 
-fn check(file: &str) -> Checked {
+fn check(file: &str, columns: &Columns) -> Checked {
     let (kind, word) = InputKind::detect(file, true)?;
     let none = |()| Vec::new();
     let notes = match kind {
-        InputKind::Cycle => cycle::find(&word).map(drop).map(none),
+        InputKind::Cycle => cycle::open(&word, columns).map(|cycle| {
+            let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
+            read_as.into_iter().collect()
+        }),
         // Only embedded.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),

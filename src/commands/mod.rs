@@ -5,6 +5,7 @@ mod belt;
 mod calibrate;
 mod check;
 mod compare;
+mod convert;
 mod explain;
 mod list;
 mod losses;
@@ -82,6 +83,8 @@ enum Command {
     Belt(Box<belt::BeltArgs>),
     /// Write a vehicle file from catalogue numbers
     New(Box<new::NewArgs>),
+    /// Convert a drive cycle from one form of file to another: EPA, FASTSim, VECTO, a logger's table
+    Convert(convert::ConvertArgs),
     /// List the built-in cycles, vehicles, classes or lubricants
     List(list::ListArgs),
     /// Show all values of a vehicle or lubricant with status and source, or a cycle
@@ -135,6 +138,7 @@ impl Cli {
             Command::Rig(args) => args.execute(terminal),
             Command::Losses(args) => args.execute(terminal),
             Command::Belt(args) => args.execute(terminal),
+            Command::Convert(args) => args.execute(terminal),
             Command::New(args) => args.execute(terminal),
             Command::List(args) => args.execute(terminal),
             Command::Show(args) => args.execute(terminal),

@@ -3,7 +3,8 @@
 //! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
 //! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
 
-use cvtcycle::config::cycle;
+use cvtcycle::config::csv::Columns;
+use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader, render};
 use cvtcycle::output::History;
@@ -59,12 +60,23 @@ pub fn message(kind: &str, case: &str) -> String {
         "plan" => Plan::open(case).and_then(Study::prepare).err(),
         "rows" => rows(case, &bytes),
         "cover" => Cover::read(case).err(),
-        "cycle" => cycle::read_csv(case, &bytes).err(),
+        "cycle" => cycle(case, &bytes).err(),
         "map" => map(case, name),
         "trace" => History::read_csv(case, &bytes).err(),
         _ => unreachable!("{kind}"),
     };
     render(&problems.unwrap_or_default(), false)
+}
+
+/// A comment `# --columns LIST` in the first line gives the columns.
+fn cycle(case: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
+    let text = String::from_utf8_lossy(bytes);
+    let list = text
+        .lines()
+        .next()
+        .and_then(|line| line.strip_prefix("# --columns "));
+    let columns = list.map(Columns::parse).transpose()?.unwrap_or_default();
+    cycle::read_columns(case, bytes, &columns)
 }
 
 fn rows(case: &str, bytes: &[u8]) -> Option<Problems> {

@@ -32,6 +32,9 @@ pub struct Summary {
     pub manifest: Manifest,
     /// Name of the cycle.
     pub cycle: String,
+    /// How the cycle's file was read, where it was not written as the program's own are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub read_as: Option<String>,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
     /// `soak`, `warm`, or the temperature of all nodes in degC.
@@ -148,6 +151,7 @@ pub fn summarise(
     Summary {
         manifest: Manifest::new(SCHEMA),
         cycle: cycle.name.clone(),
+        read_as: cycle.read_as.clone(),
         ambient_degc,
         start,
         settings,

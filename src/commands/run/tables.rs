@@ -41,6 +41,12 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     let mut text = format!(
         "{name}  {title}\nambient {ambient} degC, {start}\nsteps of {dt} s, belt model {belt}\n"
     );
+    text.extend(
+        cycle
+            .read_as
+            .iter()
+            .map(|words| wrapped(words, "read as: ")),
+    );
     for (option, list) in [("--set", &settings.set), ("--set-all", &settings.set_all)] {
         text.extend(list.iter().map(|set| format!("{option} {set}\n")));
     }

@@ -3,6 +3,7 @@
 
 mod attribute;
 mod compare;
+mod cycles;
 mod inputs;
 mod named;
 mod new;

@@ -200,8 +200,8 @@ pub fn check_physics(
     let car = &vehicle.car(ambient_k);
     let start = State::at(ambient_k);
     let mut check = PhysicsCheck::new(car, &start);
-    let trace = cycle.trace_for(car.transmission.is_cvt());
-    simulate(car, trace, max_dt_s, start, &mut check);
+    let trace = vehicle.trace(cycle).trace;
+    simulate(car, &trace, max_dt_s, start, &mut check);
     check.findings().to_vec()
 }
 

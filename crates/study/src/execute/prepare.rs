@@ -58,7 +58,7 @@ impl Study {
             .to_path_buf();
         let mut problems = Problems::new();
         let cars = cars(&plan, &folder, &mut problems);
-        let cycles = cycles(&plan, &folder, &mut problems);
+        let cycles = cycles(&plan, &folder, &cars, &mut problems);
         let Some(points) = plan.design.points(&plan.factors) else {
             let message = "the design has more points than can be counted";
             problems.push(of_plan(
@@ -216,7 +216,12 @@ fn unique(word: &str, cars: &[StudyCar]) -> String {
 }
 
 /// The plan's cycle, then those of its factor.
-fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
+fn cycles(plan: &Plan, folder: &Path, cars: &[StudyCar], problems: &mut Problems) -> Vec<Cycle> {
+    let mut subjects = cars
+        .iter()
+        .take(1)
+        .flat_map(|car| car.setups(&plan.factors));
+    let subject = subjects.next();
     let factor = plan.factors.iter().find(|factor| factor.key == "cycle");
     let own = (Arc::from(plan.base.cycle.as_str()), plan.places.of("cycle"));
     let named = factor.into_iter().flat_map(|factor| {
@@ -225,6 +230,11 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
     });
     let find = |(word, place): (Arc<str>, &Place)| {
         let found = cycle::find(&in_folder(folder, &word));
+        // The class of a WLTC is that of the subject.
+        let found = found.map(|cycle| match subject {
+            Some(car) => cycle::for_car(&word, cycle, car),
+            None => cycle,
+        });
         let of_plan = |problem: Problem| {
             // A problem within a file keeps its place there, with a line or without.
             if !problem.place.is_argument(Argument::Cycle) {
