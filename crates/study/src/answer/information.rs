@@ -73,7 +73,7 @@ impl Information {
         Some(Self::new(plan, (of.n, summary.sd, of.noise), share, above))
     }
 
-    /// From the indices of a Saltelli design, whose first two blocks are a sample by which chance is told apart; none of an output that does
+    /// From the indices of a Saltelli design, whose first two blocks are a sample that shows what chance gives; none of an output that does
     /// not vary, and of too few draws.
     pub(super) fn of_indices(
         plan: &Plan,
