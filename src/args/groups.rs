@@ -12,6 +12,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::StartWord;
+use cvtcycle::study::statistics::Confidence;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
 use super::{Names, count, cycles, names_of, number, one_of};
@@ -146,6 +147,28 @@ impl ColumnsArgs {
             .take(columns.transpose())
             .flatten()
             .unwrap_or_default()
+    }
+}
+
+/// How sure intervals are.
+#[derive(Args, Clone, Debug)]
+pub struct ConfidenceArgs {
+    /// Confidence of all intervals, and share of the draws between the two ends that are printed of an output, 0.5 to 0.999
+    /// [default: 0.95 of intervals, 0.9 of the draws]
+    #[arg(long, value_name = "P", allow_hyphen_values = true)]
+    confidence: Option<String>,
+}
+
+/// Allowed confidence.
+const CONFIDENCE: Bound = Bound::closed(0.5, 0.999);
+
+impl ConfidenceArgs {
+    /// The confidence; the default with a problem if it is none.
+    pub fn get(&self, problems: &mut Problems) -> Confidence {
+        let given = self.confidence.as_ref();
+        let level = given.map(|text| number("--confidence", text, CONFIDENCE, ""));
+        let level = level.and_then(|level| problems.take(level));
+        level.map_or_else(Confidence::default, Confidence::of)
     }
 }
 

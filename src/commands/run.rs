@@ -16,6 +16,7 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, attribute};
+use cvtcycle::study::words;
 
 use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, threads};
@@ -172,6 +173,7 @@ impl Execute for RunArgs {
             };
             run.price = Some(attribute(&of, run));
         }
+        words::run::assess(&mut summary, cycle, &driven);
         let mut record = None;
         if out.is_some() {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;

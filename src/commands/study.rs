@@ -16,7 +16,7 @@ use cvtcycle::study::plan::{Design, MAX_SAMPLES, Plan};
 
 use super::{Execute, threads};
 use crate::args::problems::{bad_value, problem};
-use crate::args::{Names, OutputArgs, count_if_given};
+use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given};
 use crate::print::{CommandResult, Terminal};
 use execution::{StudyRunArgs, results};
 
@@ -28,7 +28,7 @@ use execution::{StudyRunArgs, results};
 Examples:
   cvtcycle study ambient
   cvtcycle study ambient --out ambient_study
-  cvtcycle study uncertainty_rover --samples 64
+  cvtcycle study uncertainty_rover --samples 64 --confidence 0.8
   cvtcycle study my_plan.toml --out my_study
   cvtcycle study my_plan.toml --out my_study --resume
   cvtcycle study show my_study
@@ -143,6 +143,8 @@ struct StudyShowArgs {
     #[arg(value_name = "DIR")]
     dir: PathBuf,
     #[command(flatten)]
+    confidence: ConfidenceArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
@@ -151,7 +153,8 @@ impl Execute for StudyShowArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<StudyResults> {
         problems.take(threads::begin(None));
-        problems.take(StudyResults::open(&self.dir))
+        let confidence = self.confidence.get(problems);
+        problems.take(StudyResults::open(&self.dir, confidence))
     }
 
     fn run(&self, study: StudyResults, terminal: Terminal) -> CommandResult {

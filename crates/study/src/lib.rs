@@ -12,6 +12,7 @@
 //! | `store` | tables of columns; parts and results on disk, whole or absent; reading and exporting them |
 //! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
 //! | `answer` | what the study says, from its table by car and point |
+//! | `words` | results in sentences, with what is known of how sure they are and which published number they contradict |
 //! | `attribute` | what each loss costs: the car driven again without it |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `points` | the belt at points of a table |
@@ -31,6 +32,7 @@ pub mod execute;
 pub mod plan;
 pub mod statistics;
 pub mod store;
+pub mod words;
 
 pub use answer::{Answer, StudyTable, TableSource, answer};
 pub use execute::{End, PartWriter, Study, StudyCar, StudyManifest};

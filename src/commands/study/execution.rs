@@ -16,7 +16,7 @@ use tempfile::TempDir;
 use super::super::threads;
 use super::tables;
 use crate::args::problems::{bad_value, problem};
-use crate::args::{OutArgs, OutputArgs, ThreadArgs};
+use crate::args::{ConfidenceArgs, OutArgs, OutputArgs, ThreadArgs};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
@@ -41,6 +41,8 @@ pub struct StudyRunArgs {
     )]
     format: PartFormat,
     #[command(flatten)]
+    confidence: ConfidenceArgs,
+    #[command(flatten)]
     threads: ThreadArgs,
     /// Run a study of more runs than `most_runs` of the plan
     #[arg(long)]
@@ -63,6 +65,7 @@ impl StudyRunArgs {
     pub fn begin(&self, problems: &mut Problems) {
         handle_interrupts();
         self.out.path(problems);
+        self.confidence.get(problems);
         let threads = self.threads.given(problems);
         problems.take(threads::begin(threads));
     }
@@ -105,7 +108,9 @@ impl StudyRunArgs {
         if self.compute(study, &dir)? == End::Stopped {
             return Ok(self.stopped(study, &dir));
         }
-        let found = StudyResults::of(StudyManifest::of(study), dir.study()?)?;
+        // Checked when the study began.
+        let confidence = self.confidence.get(&mut Problems::default());
+        let found = StudyResults::of(StudyManifest::of(study), dir.study()?, confidence)?;
         let list = match &self.out.out {
             Some(_) => tables::written(dir.path(), &dir.finish(&files(&found)?)?),
             None => String::new(),

@@ -10,6 +10,7 @@ mod new;
 mod run;
 mod study;
 mod streams;
+mod words;
 
 use std::fs;
 use std::path::Path;

@@ -7,6 +7,7 @@ use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, is_twin};
 use cvtcycle_config::{Override, Problem, ProblemKind, Problems};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
+use cvtcycle_output::provenance::car_sha256;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
 pub const MAX_VARIANTS: usize = 4096;
@@ -93,6 +94,12 @@ impl StudyCar {
             (Binding::Words { stride }, Some(value)) => of.entry_of(value) * stride,
             _ => 0,
         }
+    }
+
+    /// Hash of the car as its files have it; empty of a car that cannot be read.
+    pub fn sha256(&self, factors: &[Factor]) -> String {
+        let variant = self.variant(0, factors);
+        variant.map_or_else(|_| String::new(), |variant| car_sha256(&variant.setup))
     }
 
     /// A variant, made when it is first asked for; its problems if its words do not go together.

@@ -7,6 +7,7 @@
 mod cars;
 pub mod manifest;
 pub mod outputs;
+mod notes;
 mod point;
 mod preflight;
 mod prepare;

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::cars::{StudyCar, words};
+use super::notes::notes;
 use super::outputs::{EXCESS, FUEL, Run, outputs, phase_excess, phase_fuel};
 use crate::plan::{Keep, Plan};
 use crate::store::{Head, Kind};
@@ -31,6 +32,8 @@ pub struct Study {
     pub columns: Vec<Head>,
     /// Columns of the table of traces; empty if none are kept.
     pub trace_columns: Vec<Head>,
+    /// What its results do not show, a sentence each.
+    pub notes: Vec<String>,
     /// Factors of each column that holds the values of a key.
     pub(super) factor_columns: Vec<Vec<usize>>,
     pub(super) outputs: Vec<Column<Run>>,
@@ -88,6 +91,7 @@ impl Study {
         let trace_heads = head_columns().into_iter().take(2);
         let study = Study {
             points,
+            notes: notes(&plan, &cars),
             cars,
             cycles,
             phases,

@@ -51,6 +51,7 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
         values: values.unwrap_or(FactorValues::List(Vec::new())),
         status,
         source: Values::text_or(&s, &FACTOR.source, ""),
+        test: Values::text_or(&s, &FACTOR.test, ""),
         place: s.place("key"),
         places,
         key,

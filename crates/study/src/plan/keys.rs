@@ -109,6 +109,7 @@ keys! {
         distribution: optional(options(DISTRIBUTIONS)), "how the values are distributed";
         status: (Kind::Words(STATUSES), Presence::RequiredIf("with a distribution")), "how the values are known";
         source: optional(text()), "reason or reference for the values";
+        test: optional(text()), "the test that would tell the value, for people: what to measure next";
     }
 }
 

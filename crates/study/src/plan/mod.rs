@@ -109,6 +109,8 @@ pub struct Factor {
     pub status: String,
     /// Reason or reference for them.
     pub source: String,
+    /// The test that would tell the value, in words; may be empty.
+    pub test: String,
     /// Place of its key in the plan.
     pub place: Place,
     /// Places of its values: `values` and its items, `range`, `distribution` and `distribution.low` or the like.

@@ -100,6 +100,7 @@ fn factor(key: &str, name: &str, axis: Axis) -> Factor {
         values,
         status: String::new(),
         source: String::new(),
+        test: String::new(),
         places: Places::new(axis.place.clone()),
         place: axis.place,
     }
