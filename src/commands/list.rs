@@ -8,6 +8,7 @@ use cvtcycle::config::setup::{self, Kind, Options, Setup};
 use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::TextColumns;
+use cvtcycle::study::levers::{Lever, LeverFile};
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -36,6 +37,8 @@ enum ListedKind {
     Classes,
     /// Transmission and engine oils
     Lubricants,
+    /// Changes of a car's design
+    Levers,
 }
 
 /// A list in both forms.
@@ -55,6 +58,7 @@ impl Execute for ListArgs {
             ListedKind::Vehicles => list_vehicles(problems),
             ListedKind::Classes => Some(list_classes()),
             ListedKind::Lubricants => list_lubricants(problems),
+            ListedKind::Levers => list_levers(problems),
         }
     }
 
@@ -158,6 +162,35 @@ fn list_classes() -> Listing {
         note: "A vehicle file takes what it leaves out from them: like = [\"class:compact_2020\", \"class:box_cvt_clutch\"] in [vehicle].\n\
             `cvtcycle show NAME` prints every value with its source.\n",
     }
+}
+
+fn list_levers(problems: &mut Problems) -> Option<Listing> {
+    let read = |name: &'static str| {
+        let levers = problems.take(LeverFile::open(name))?.levers.into_iter();
+        Some(levers.map(|lever| (name, lever)).collect::<Vec<_>>())
+    };
+    let files = Kind::Levers.names().into_iter().map(read);
+    let files: Vec<_> = files.collect::<Option<_>>()?;
+    let list: Vec<(&str, Lever)> = files.into_iter().flatten().collect();
+    let group = |lever: &Lever| lever.group.clone().unwrap_or_default();
+    let columns = TextColumns::new()
+        .left("file", |(file, _): &(&str, Lever)| *file)
+        .left("name", |(_, lever)| lever.name.clone())
+        .left("group", move |(_, lever)| group(lever))
+        .left("title", |(_, lever)| lever.title.clone());
+    let json = |(file, lever): &(&str, Lever)| {
+        json!({
+            "file": file, "name": lever.name, "title": lever.title, "set": lever.set, "lubricant": lever.lubricant,
+            "engine_oil": lever.engine_oil, "group": lever.group, "combine": lever.combine, "needs": lever.needs,
+            "status": lever.status, "source": lever.source,
+        })
+    };
+    Some(Listing {
+        json: json!({ "levers": list.iter().map(json).collect::<Vec<_>>() }),
+        heading: "Levers",
+        table: columns.lines(&list),
+        note: "`cvtcycle levers` drives them next to the car as it is; it takes your own TOML file as well.\n",
+    })
 }
 
 fn list_lubricants(problems: &mut Problems) -> Option<Listing> {

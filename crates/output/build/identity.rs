@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 /// What counts, below the root of the workspace: a file, or a folder with all files in it.
-pub const INPUTS: [&str; 19] = [
+pub const INPUTS: [&str; 20] = [
     "Cargo.lock",
     "calibrations",
     "crates/config/Cargo.toml",
@@ -24,6 +24,7 @@ pub const INPUTS: [&str; 19] = [
     "crates/study/Cargo.toml",
     "crates/study/src",
     "cycles",
+    "levers",
     "lubricants",
     "plans",
     "rigs",

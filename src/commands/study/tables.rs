@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::report::study_answers::{Measure, ranked};
 use cvtcycle::study::answer::ambient::Matrix;
-use cvtcycle::study::answer::{Comparison, OutputAnswer};
+use cvtcycle::study::answer::{Comparison, Ended, OutputAnswer};
 use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{
@@ -345,8 +345,7 @@ fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices)
 }
 
 /// Failed runs with their reasons, as one message; none if all are good.
-pub fn failures(answer: &Answer) -> Vec<String> {
-    let runs = &answer.runs;
+pub fn failures(runs: &Ended) -> Vec<String> {
     let bad = runs.failed + runs.not_run;
     if bad == 0 {
         return Vec::new();

@@ -4,6 +4,7 @@
 mod attribute;
 mod compare;
 mod inputs;
+mod levers;
 mod named;
 mod new;
 mod run;

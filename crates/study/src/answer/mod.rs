@@ -23,7 +23,7 @@ use crate::statistics::{
 };
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
-use study_table::Status;
+pub(crate) use study_table::Status;
 
 /// What a study says.
 #[derive(Clone, Debug, Serialize)]
@@ -53,7 +53,7 @@ pub struct Answer {
     pub matrix: Option<Matrix>,
 }
 
-/// How the runs ended.
+/// How the runs of a study ended.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Ended {
     /// Fine.
@@ -239,7 +239,7 @@ fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
         .collect()
 }
 
-fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
+pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
     for car in 0..frame.outline.cars.len() {

@@ -42,6 +42,10 @@ impl Study {
             "trace_columns": columns(&self.trace_columns),
             "cars": self.cars.iter().map(|car| self.car_values(car)).collect::<Vec<_>>(),
         });
+        let mut rest = rest;
+        if let Some(levers) = &self.levers {
+            rest["levers"] = levers.clone();
+        }
         let value = manifest.of_run(&rest).with(&rest);
         let text = serde_json::to_string_pretty(&value).unwrap_or_default();
         text + "\n"
@@ -139,6 +143,8 @@ pub struct StudyManifest {
     pub points_per_part: u64,
     /// Factors and design.
     pub plan: Plan,
+    /// What its columns are, where they are changes of cars.
+    pub levers: Option<Value>,
 }
 
 /// The entries of `study.json` that are read.
@@ -155,6 +161,8 @@ struct Stored {
     phases: Vec<String>,
     columns: Vec<StoredColumn>,
     cars: Vec<StoredCar>,
+    #[serde(default)]
+    levers: Option<Value>,
 }
 
 #[derive(Deserialize)]
@@ -183,6 +191,7 @@ impl StudyManifest {
             points: study.points,
             points_per_part: study.points_per_part(),
             plan: study.plan.clone(),
+            levers: study.levers.clone(),
         }
     }
 
@@ -223,6 +232,7 @@ impl StudyManifest {
             points,
             points_per_part,
             plan,
+            levers: stored.levers,
         })
     }
 

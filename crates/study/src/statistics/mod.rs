@@ -5,6 +5,7 @@
 //! `null`. Nothing here depends on the number of threads.
 
 mod describe;
+mod enough;
 mod groups;
 mod intervals;
 mod rank;
@@ -12,6 +13,7 @@ mod sobol;
 mod tornado;
 
 pub use describe::{QUANTILES, Quantile, Share, Spread, Summary, quantile_of_sorted};
+pub use enough::Enough;
 pub use groups::{Group, Groups, group_means};
 pub use rank::{RankFactor, RankSensitivity, rank_sensitivity};
 pub use sobol::{Blocks, Bootstrap, FactorIndices, SobolIndices, sobol_convergence, sobol_indices};
