@@ -9,6 +9,7 @@ use cvtcycle::config::{Problem, Problems, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
+use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 
@@ -30,7 +31,7 @@ Prints `ok` for every file without problems, and all problems of the others with
 code is then 2. With --physics every vehicle is driven after a soak, and each law has a line: the step in which most of its bound is \
 used, by how much, and whether it holds; the exit code is 1 if one fails.")]
 pub struct CheckArgs {
-    /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV); detected from the contents of the file
+    /// Vehicle, lubricant, calibration, study or levers (TOML), or cycle (CSV); detected from the contents of the file
     #[arg(value_name = "FILE", required = true)]
     files: Vec<String>,
     /// Drive each vehicle, and check torques, forces, power and heat of every step by statics and energy, apart from the model
@@ -139,6 +140,7 @@ fn check(file: &str, columns: &Columns) -> Checked {
         // Only embedded.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
+        InputKind::Levers => LeverFile::open(&word).map(drop).map(none),
         InputKind::Study => Plan::open(&word)
             .and_then(Study::prepare)
             .map(drop)

@@ -10,6 +10,7 @@ use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::model::keys::stem;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::TextColumns;
+use cvtcycle::study::levers::{Lever, LeverFile};
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -40,6 +41,8 @@ enum ListedKind {
     Lubricants,
     /// Columns of a cycle's file, with their names in files of other programs
     Columns,
+    /// Changes of a car's design
+    Levers,
 }
 
 /// A list in both forms.
@@ -60,6 +63,7 @@ impl Execute for ListArgs {
             ListedKind::Classes => Some(list_classes()),
             ListedKind::Lubricants => list_lubricants(problems),
             ListedKind::Columns => Some(list_columns()),
+            ListedKind::Levers => list_levers(problems),
         }
     }
 
@@ -170,6 +174,35 @@ fn list_classes() -> Listing {
         note: "A vehicle file takes what it leaves out from them: like = [\"class:compact_2020\", \"class:box_cvt_clutch\"] in [vehicle].\n\
             `cvtcycle show NAME` prints every value with its source.\n",
     }
+}
+
+fn list_levers(problems: &mut Problems) -> Option<Listing> {
+    let read = |name: &'static str| {
+        let levers = problems.take(LeverFile::open(name))?.levers.into_iter();
+        Some(levers.map(|lever| (name, lever)).collect::<Vec<_>>())
+    };
+    let files = Kind::Levers.names().into_iter().map(read);
+    let files: Vec<_> = files.collect::<Option<_>>()?;
+    let list: Vec<(&str, Lever)> = files.into_iter().flatten().collect();
+    let group = |lever: &Lever| lever.group.clone().unwrap_or_default();
+    let columns = TextColumns::new()
+        .left("file", |(file, _): &(&str, Lever)| *file)
+        .left("name", |(_, lever)| lever.name.clone())
+        .left("group", move |(_, lever)| group(lever))
+        .left("title", |(_, lever)| lever.title.clone());
+    let json = |(file, lever): &(&str, Lever)| {
+        json!({
+            "file": file, "name": lever.name, "title": lever.title, "set": lever.set, "lubricant": lever.lubricant,
+            "engine_oil": lever.engine_oil, "group": lever.group, "combine": lever.combine, "needs": lever.needs,
+            "status": lever.status, "source": lever.source,
+        })
+    };
+    Some(Listing {
+        json: json!({ "levers": list.iter().map(json).collect::<Vec<_>>() }),
+        heading: "Levers",
+        table: columns.lines(&list),
+        note: "`cvtcycle levers` drives them next to the car as it is; it takes your own TOML file as well.\n",
+    })
 }
 
 fn list_lubricants(problems: &mut Problems) -> Option<Listing> {

@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod convert;
 mod explain;
+mod levers;
 mod list;
 mod losses;
 mod new;
@@ -65,6 +66,8 @@ enum Command {
     /// Compute the fuel that each loss of the transmission costs: the car driven again without it
     #[command(visible_alias = "price")]
     Attribute(Box<attribute::AttributeArgs>),
+    /// Drive changes of a design next to the car as it is: what each saves, how sure that is, and what it does besides
+    Levers(Box<levers::LeversArgs>),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
@@ -85,7 +88,7 @@ enum Command {
     New(Box<new::NewArgs>),
     /// Convert a drive cycle from one form of file to another: EPA, FASTSim, VECTO, a logger's table
     Convert(convert::ConvertArgs),
-    /// List the built-in cycles, vehicles, classes or lubricants
+    /// List the built-in cycles, vehicles, classes, lubricants or levers
     List(list::ListArgs),
     /// Show all values of a vehicle or lubricant with status and source, or a cycle
     Show(show::ShowArgs),
@@ -130,6 +133,7 @@ impl Cli {
         match &self.command {
             Command::Run(args) => args.execute(terminal),
             Command::Attribute(args) => args.execute(terminal),
+            Command::Levers(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
             Command::Compare(args) => args.execute(terminal),

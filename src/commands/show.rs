@@ -133,13 +133,15 @@ impl Execute for ShowArgs {
                 (oil.title, keys)
             }
             InputKind::Class | InputKind::Rig => embedded(&word),
-            InputKind::Calibration | InputKind::Study => {
+            InputKind::Calibration | InputKind::Study | InputKind::Levers => {
                 let (plan, instead) = match kind {
-                    InputKind::Calibration => ("a calibration", "name the vehicle that it fits"),
-                    _ => ("a study", "name the vehicle that it varies"),
+                    InputKind::Calibration => {
+                        ("the plan of a calibration", "name the vehicle that it fits")
+                    }
+                    InputKind::Study => ("the plan of a study", "name the vehicle that it varies"),
+                    _ => ("a file of levers", "name a vehicle that can have them"),
                 };
-                let message =
-                    format!("`{word}` is the plan of {plan}, which has no values of a vehicle");
+                let message = format!("`{word}` is {plan}, which has no values of a vehicle");
                 let hint = format!("{instead}; `cvtcycle check` reads a plan");
                 let allowed = "a vehicle, lubricant, cycle or rig";
                 problems.add(bad_value("NAME", &word, allowed, &message, &hint));

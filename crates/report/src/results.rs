@@ -75,6 +75,15 @@ impl StudyResults {
     /// # Errors
     /// A directory that is no study, a manifest or a part that cannot be read.
     pub fn open(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
+        let (outline, store) = Self::stored(path)?;
+        Self::of(outline, store, confidence)
+    }
+
+    /// Opens without an answer.
+    ///
+    /// # Errors
+    /// A directory that is no study, or a manifest that cannot be read.
+    pub fn stored(path: &Path) -> Result<(StudyManifest, store::Study), Problem> {
         let store = store::Study::open(path)?;
         let text = String::from_utf8_lossy(&store.plan()?).into_owned();
         let file = path.join("plan.toml").display().to_string();
@@ -86,7 +95,7 @@ impl StudyResults {
                 hint,
             )
         })?;
-        Self::of(outline, store, confidence)
+        Ok((outline, store))
     }
 
     /// Answers from the parts that are there.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::ambient::Matrix;
-use cvtcycle::study::answer::{Information, LeastOf, OutputAnswer};
+use cvtcycle::study::answer::{Ended, Information, LeastOf, OutputAnswer};
 use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{
@@ -383,8 +383,7 @@ fn sobol(outline: &StudyManifest, indices: &SobolIndices, confidence: Confidence
 }
 
 /// Failed runs with their reasons, as one message; none if all are good.
-pub fn failures(answer: &Answer) -> Vec<String> {
-    let runs = &answer.runs;
+pub fn failures(runs: &Ended) -> Vec<String> {
     let bad = runs.failed + runs.not_run;
     if bad == 0 {
         return Vec::new();

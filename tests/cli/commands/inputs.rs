@@ -34,7 +34,7 @@ fn lists_name_what_can_be_driven() {
             .len(),
         6
     );
-    for what in ["cycles", "vehicles", "classes", "lubricants"] {
+    for what in ["cycles", "vehicles", "classes", "lubricants", "levers"] {
         let text = stdout(&run(&["list", what]));
         assert!(
             text.lines().count() > 4 && text.lines().all(|line| line.chars().count() <= 120),

@@ -5,6 +5,7 @@ mod attribute;
 mod compare;
 mod cycles;
 mod inputs;
+mod levers;
 mod named;
 mod new;
 mod run;

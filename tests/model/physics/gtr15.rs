@@ -112,9 +112,19 @@ fn sums(found: &GtrGears, kmh: &[f64]) -> (Vec<usize>, f64, usize) {
     ((0..=highest).map(count).collect(), mean, weighted.sum())
 }
 
+/// Car, test mass in kg, cycle; seconds in each gear, mean gear in motion, sum of time and gear.
+type Case = (
+    &'static Data,
+    f64,
+    &'static str,
+    &'static [usize],
+    f64,
+    usize,
+);
+
 #[test]
 fn seconds_in_each_gear_are_those_of_the_other_program() {
-    let cases: [(&Data, f64, &str, &[usize], f64, usize); 4] = [
+    let cases: [Case; 4] = [
         (
             &SIX,
             1385.0,
@@ -249,10 +259,10 @@ proptest! {
         vehicle.rpm_per_kmh = (0..count).map(|k| first / step.powi(k as i32) * wheel_rpm).collect();
         let found = gears(&kmh, &vehicle);
         let fall = |t: usize| kmh[t] >= 1.0 && kmh.get(t + 1).is_some_and(|next| *next < kmh[t] - 1e-3);
-        for t in 1..kmh.len() - 1 {
+        for (t, &speed_kmh) in kmh.iter().enumerate().take(kmh.len() - 1).skip(1) {
             let (before, own) = (found.gear[t - 1], found.gear[t]);
             prop_assert!(usize::from(own) <= count);
-            if kmh[t] < 1.0 {
+            if speed_kmh < 1.0 {
                 prop_assert!(own <= 1, "{t}");
             }
             let falls_long = t >= 3 && (t - 3..=t + 1).all(fall);

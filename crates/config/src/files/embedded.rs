@@ -30,6 +30,8 @@ embedded! {
     maps: "vehicles/maps" ".csv" ["si_1900_bsfc"];
     /// Plans of studies.
     plans: "plans" ".toml" ["fluids_by_ambient" "oil_at_minus_10" "pump_and_offset" "uncertainty_rover"];
+    /// Changes of a car's design.
+    levers: "levers" ".toml" ["cvt" "manual"];
     /// Plans of calibrations.
     calibrations: "calibrations" ".toml" ["rover_216_transmission" "rover_216_warm_up"];
     /// Tolerances and sources that all files with published values may use.

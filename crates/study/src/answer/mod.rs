@@ -27,7 +27,7 @@ use crate::statistics::{
 };
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
-use study_table::Status;
+pub(crate) use study_table::Status;
 
 /// Version of an [`Answer`] as JSON. 2: intervals of any confidence under one name, ends in place of moments where the points are no sample.
 const SCHEMA: u32 = 2;
@@ -65,7 +65,7 @@ pub struct Answer {
     pub matrix: Option<Matrix>,
 }
 
-/// How the runs ended.
+/// How the runs of a study ended.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Ended {
     /// Fine.
@@ -273,7 +273,7 @@ fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
         .collect()
 }
 
-fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
+pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
     for car in 0..frame.outline.cars.len() {

@@ -45,6 +45,9 @@ impl Study {
         if !self.notes.is_empty() {
             rest["notes"] = json!(self.notes);
         }
+        if let Some(levers) = &self.levers {
+            rest["levers"] = levers.clone();
+        }
         let value = manifest.of_run(&rest).with(&rest);
         let text = serde_json::to_string_pretty(&value).unwrap_or_default();
         text + "\n"
@@ -148,6 +151,8 @@ pub struct StudyManifest {
     pub points_per_part: u64,
     /// Factors and design.
     pub plan: Plan,
+    /// What its columns are, where they are changes of cars.
+    pub levers: Option<Value>,
 }
 
 /// The entries of `study.json` that are read.
@@ -166,6 +171,8 @@ struct Stored {
     phases: Vec<String>,
     columns: Vec<StoredColumn>,
     cars: Vec<StoredCar>,
+    #[serde(default)]
+    levers: Option<Value>,
 }
 
 #[derive(Deserialize)]
@@ -195,6 +202,7 @@ impl StudyManifest {
             points: study.points,
             points_per_part: study.points_per_part(),
             plan: study.plan.clone(),
+            levers: study.levers.clone(),
         }
     }
 
@@ -236,6 +244,7 @@ impl StudyManifest {
             points,
             points_per_part,
             plan,
+            levers: stored.levers,
         })
     }
 

@@ -158,7 +158,7 @@ fn name(s: &Section, key: &str, cars: Cars) -> String {
 }
 
 /// Unit of its numbers.
-pub(super) fn unit(key: &str, acts: Acts) -> String {
+pub(crate) fn unit(key: &str, acts: Acts) -> String {
     let unit = quantity(key).unit();
     let unit = match acts {
         Acts::Scale => "-",

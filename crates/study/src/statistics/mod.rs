@@ -6,6 +6,7 @@
 
 mod confidence;
 mod describe;
+mod enough;
 mod groups;
 mod information;
 mod intervals;
@@ -15,6 +16,7 @@ mod tornado;
 
 pub use confidence::{Confidence, of_hundred};
 pub use describe::{Quantile, Share, Spread, Summary, quantile_of_sorted};
+pub use enough::Enough;
 pub use groups::{Group, Groups, group_means};
 pub use information::{Column, Shares, sd_left, shares};
 pub use intervals::least_draws;

@@ -406,10 +406,7 @@ mod tests {
     fn a_test_is_named_only_where_a_factor_above_chance() {
         let say = |of: &Information| worth_knowing(of, "points").unwrap();
         let mut gears = factor("gear set", 0.64, None, true);
-        let alone = information(
-            Some(0.06),
-            vec![gears.clone(), factor("pump", 0.05, None, false)],
-        );
+        let alone = information(0.06, vec![gears.clone(), factor("pump", 0.05, None, false)]);
         let text = say(&alone);
         assert_eq!(
             text,

@@ -79,6 +79,7 @@ fn index(source: &Path) -> Result<String, String> {
         "attribution",
         "cold",
         "cycles",
+        "levers",
         "physics_checks",
         "rigs",
         "studies",
