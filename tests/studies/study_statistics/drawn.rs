@@ -197,7 +197,7 @@ fn effects(factors: usize, scale: f64) -> (String, Picture) {
                 scale * (7.0 + 0.5 * weight(i) * ((r % labels.len()) as f64 - 1.0) + 0.3 * u)
             })
             .collect();
-        group_means(&rows, &y, (i % 3 > 0).then(Confidence::default))
+        group_means(&rows, &y, (!i.is_multiple_of(3)).then(Confidence::default))
     };
     let (names, groups): (Vec<String>, Vec<Groups>) =
         (names(factors), (0..factors).map(group).collect());
