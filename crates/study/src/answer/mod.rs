@@ -189,7 +189,7 @@ pub struct Ranked {
 /// let manifest = StudyManifest::of(&study);
 /// let answer = answer(&StudyTable::new(&manifest, &table)?, Confidence::default())?;
 /// let fuel = answer.outputs[0].range.as_ref().expect("a grid is no sample");
-/// assert_eq!((answer.points, answer.runs.ok, fuel.n, fuel.least_at.as_str()), (2, 2, 2, "ambient_degc 25 degC"));
+/// assert_eq!((answer.points, answer.runs.ok, fuel.n, fuel.least_at.as_str()), (2, 2, 2, "ambient_degc 25 °C"));
 /// # Ok::<(), Problems>(())
 /// ```
 ///

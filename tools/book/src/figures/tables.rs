@@ -82,7 +82,9 @@ fn index(source: &Path) -> Result<String, String> {
         "levers",
         "physics_checks",
         "rigs",
+        "start_stop",
         "studies",
+        "torque_converter",
     ]) {
         let path = source.join(format!("{stem}.md"));
         let page =
