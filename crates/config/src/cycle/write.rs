@@ -55,7 +55,7 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Writes a trace of a cycle. Numbers have as many figures as it takes to read the same again.
+/// Writes a trace of a cycle. Speeds and grades have up to twelve decimals.
 ///
 /// ```
 /// use cvtcycle_config::cycle::{Format, embedded, read_csv, write};
@@ -67,11 +67,17 @@ impl<'a> Column<'a> {
 /// ```
 #[must_use]
 pub fn write(cycle: &Cycle, trace: &Trace, format: Format) -> Written {
-    let speed =
-        |name, unit_m_s: f64| Column::new(name, move |k| (at(trace, k).1 / unit_m_s).to_string());
+    let speed = |name, unit_m_s: f64| {
+        Column::new(name, move |k| {
+            rounded(at(trace, k).1 / unit_m_s).to_string()
+        })
+    };
     let time = |name| Column::new(name, |k| at(trace, k).0.to_string());
-    let grade =
-        |name, factor: f64| Column::new(name, move |k| (held(trace, k).grade * factor).to_string());
+    let grade = |name, factor: f64| {
+        Column::new(name, move |k| {
+            rounded(held(trace, k).grade * factor).to_string()
+        })
+    };
     let has_grade = trace.intervals.iter().any(|i| i.grade != 0.0);
     let is_off = trace.intervals.iter().any(|i| i.engine_off);
     let has = |is: bool, what: &'static str| is.then_some(what);
@@ -133,6 +139,12 @@ fn table(columns: &[Column<'_>], intervals: usize, sign: &str) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Without the digits of a unit's rounding: 3.6 km/h, not 3.5999999999999996.
+fn rounded(x: f64) -> f64 {
+    const DECIMALS: f64 = 1e12;
+    (x * DECIMALS).round() / DECIMALS
 }
 
 /// Time in s and speed in m/s of a row.

@@ -19,6 +19,9 @@ use crate::execute::side_effects::{FLOOR, LOCKED, LUGGING, RESERVE};
 use crate::statistics::{Confidence, Enough, Quantile, Share, Summary, quantile_of_sorted};
 use cvtcycle_config::{Problem, ProblemKind};
 
+/// Change of fuel, %, up to which two runs have the same fuel: rounding alone moves it so far.
+const EQUAL_PERCENT: f64 = 1e-6;
+
 /// Column of the carbon dioxide.
 const CO2: &str = "co2_g_per_km";
 
@@ -265,9 +268,9 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
             .filter(|(own, reference)| !**own && **reference)
             .count(),
         fuel_percent: quantile(0.5),
-        low_percent: quantile(low),                                // PV-2
-        high_percent: quantile(high),                              // PV-2
-        saves: Share::of(&percent, Some(confidence), |x| x < 0.0), // PV-3
+        low_percent: quantile(low),   // PV-2
+        high_percent: quantile(high), // PV-2
+        saves: Share::of(&percent, Some(confidence), |x| x < -EQUAL_PERCENT), // PV-3
         fuel_l_per_100km: differences(&numbers.fuel),
         co2_g_per_km: differences(&numbers.co2),
         sum_percent: None,
