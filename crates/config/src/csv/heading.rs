@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-/// Units as people write them, [`bare`], and the unit that is meant.
+/// Units as people write them, `bare`, and the unit that is meant.
 pub const UNITS: [(&str, &str); 38] = [
     ("s", "s"),
     ("sec", "s"),
@@ -72,7 +72,7 @@ pub struct Foreign {
     pub headings: &'static [(&'static str, &'static str)],
     /// Whole lines of names that nothing separates, and their columns in the order of the rows below, as [`super::Columns::parse`] has them.
     pub lines: &'static [(&'static str, &'static str)],
-    /// Words, [`bare`], and the name of a column without its unit.
+    /// Words, `bare`, and the name of a column without its unit.
     pub words: &'static [(&'static str, &'static str)],
 }
 
