@@ -498,10 +498,7 @@ fn a_cut_trace_is_the_same_trace() {
         .chain([20.5, f64::INFINITY]) // in first gear
         .collect();
     let cut = trace.cut(&at_s);
-    assert_eq!(
-        cut.intervals.len(),
-        trace.intervals.len() + rests.len() + 1
-    );
+    assert_eq!(cut.intervals.len(), trace.intervals.len() + rests.len() + 1);
     assert!((cut.distance_m() / trace.distance_m() - 1.0).abs() < 1e-12);
     let ends: Vec<f64> = cut.intervals.iter().map(|i| i.end_s).collect();
     assert!(rests.iter().all(|rest| ends.contains(&(rest.0 + 0.4))));
