@@ -11,9 +11,11 @@ pub use groups::{
 };
 
 use std::ops::RangeInclusive;
+use std::path::absolute;
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use cvtcycle::config::bounded::Limit;
+use cvtcycle::config::setup::is_path;
 use cvtcycle::config::{Argument, Bound, Problem, Problems, cycle, unit_of};
 
 use problems::{bad_value, cite, did_you_mean};
@@ -163,4 +165,12 @@ pub fn one_of<T: Copy>(
 /// The bytes of a file that an option names.
 pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Problems> {
     cycle::bytes(Argument::File, path, limit).map_err(|found| cite(option, found))
+}
+
+/// A name or path of the command line as a plan has it: paths of the command line begin at the current folder, those of a plan at its own.
+pub fn word_of_plan(word: &str) -> String {
+    match is_path(word) {
+        true => absolute(word).map_or_else(|_| word.to_owned(), |path| path.display().to_string()),
+        false => word.to_owned(),
+    }
 }

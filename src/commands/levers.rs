@@ -4,7 +4,6 @@ use clap::Args;
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{Bound, Problem, Problems};
-use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::Study;
 use cvtcycle::study::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::plan::{MAX_SAMPLES, Plan};
@@ -113,10 +112,7 @@ impl Execute for LeversArgs {
             vehicles: self.vehicle.clone(),
             ambients_degc: ambients?,
             cycle: self.cycle.clone(),
-            start: match start?.1 {
-                StartWord::Word(word) => word,
-                StartWord::Degc(degc) => degc.to_string(),
-            },
+            start: start?.1.text(),
             dt_s: dt_s?,
             engine_oil: self.engine_oil.clone(),
             draws: draws?,

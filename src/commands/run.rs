@@ -5,6 +5,8 @@ mod tables;
 
 pub use tables::failures;
 
+use std::ops::RangeInclusive;
+
 use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
@@ -16,16 +18,23 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, attribute};
+use cvtcycle::study::execute::Study;
+use cvtcycle::study::plan::Base;
 use cvtcycle::study::words;
+use cvtcycle::study::words::drawn::{differences, prepare};
 
 use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, threads};
+use crate::args::problems::{overrides, problem};
 use crate::args::{
     ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
-    VehicleArgs, names_of, number, one_of,
+    VehicleArgs, count_if_given, names_of, number, one_of, word_of_plan,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use files::{TraceFormat, When};
+
+/// Allowed number of draws.
+const DRAWS: RangeInclusive<u64> = 2..=100_000;
 
 /// Arguments of `run`.
 #[derive(Args, Clone, Debug)]
@@ -36,6 +45,7 @@ Examples:
   cvtcycle run --cycle ece15_eudc --ambient -10
   cvtcycle run --cycle ftp75 --baseline none --set transmission.cvt.pump.displacement_cc_rev=8
   cvtcycle run --cycle constant_120 --start 90 --json
+  cvtcycle run --vehicle mycar.toml --baseline twin --draws 256
   cvtcycle run --ambient -10 --out cold_run
   cvtcycle run --out run2 --format parquet
 
@@ -64,6 +74,10 @@ pub struct RunArgs {
     /// than 20 000 steps)
     #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
     price: String,
+    /// How sure the difference to each baseline is: drive all cars again with so many draws of the plan uncertainty_rover, its
+    /// ranges relative to the values of these cars. What --set gives is certain [default: only what is known of the shipped cars]
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    draws: Option<String>,
     /// Fail (exit code 1) also where a model is used outside its validity, at gross slip or a clamp safety factor below 1,
     /// and where the flow of the pump is too small
     #[arg(long)]
@@ -91,8 +105,48 @@ pub struct RunPlan {
     formulation: Formulation,
     format: TraceFormat,
     price: When,
+    draws: Option<Study>,
     sensitivity: When,
     out: Option<OutputDir>,
+}
+
+impl RunArgs {
+    /// The run as a plan has it, for its draws.
+    fn base(
+        &self,
+        (ambient_degc, start, dt_s, formulation): (f64, &StartWord, f64, Formulation),
+        vehicles: &[RunVehicle],
+        problems: &mut Problems,
+    ) -> Option<Base> {
+        let (_, baselines) = vehicles.split_first()?;
+        let refused = match (baselines.is_empty(), &self.columns.columns) {
+            (true, _) => Some(("there is no baseline", "name one: --baseline twin")),
+            (false, Some(_)) => Some((
+                "the draws have no --columns",
+                "write the cycle in the program's own form: `cvtcycle convert cycle`",
+            )),
+            (false, None) => None,
+        };
+        if let Some((message, hint)) = refused {
+            problems.add(problem("--draws", message, hint));
+            return None;
+        }
+        let named = self.comparison.named_baselines();
+        let named: Vec<String> = named.map(|name| word_of_plan(name)).collect();
+        Some(Base {
+            vehicle: word_of_plan(&self.car.vehicle),
+            baselines: (!named.is_empty()).then_some(named),
+            cycle: word_of_plan(&self.comparison.cycle),
+            ambient_degc,
+            start: start.text(),
+            lubricant: self.car.lubricant.as_deref().map(word_of_plan),
+            engine_oil: self.comparison.engine_oil.as_deref().map(word_of_plan),
+            set: overrides("--set", &self.car.set, problems),
+            set_all: overrides("--set-all", &self.comparison.set_all, problems),
+            dt_s,
+            formulation,
+        })
+    }
 }
 
 impl Execute for RunArgs {
@@ -110,9 +164,17 @@ impl Execute for RunArgs {
         let when = |option: &str, word: &str| one_of(option, word, &When::NAMES);
         let price = problems.take(when("--price", &self.price));
         let sensitivity = problems.take(when("--sensitivity", &self.sensitivity));
-        if self.out.out.is_some() || price != Some(When::Never) {
+        if self.out.out.is_some() || price != Some(When::Never) || self.draws.is_some() {
             problems.take(threads::begin(None));
         }
+        let wanted = count_if_given("--draws", self.draws.as_ref(), DRAWS, problems);
+        let draws = match (wanted, ambient, &start, dt_s) {
+            (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
+                let base = self.base((degc, start, dt_s, formulation), &vehicles, problems);
+                base.and_then(|base| problems.take(prepare(base, n)))
+            }
+            _ => None,
+        };
         if self.out.out.is_some() {
             let kept = cycle.as_ref().zip(dt_s);
             let kept = kept.map(|(cycle, dt_s)| vehicles::kept_steps(&vehicles, cycle, dt_s));
@@ -128,6 +190,7 @@ impl Execute for RunArgs {
             formulation,
             format: format?,
             price: price?,
+            draws,
             sensitivity: sensitivity?,
             out,
         })
@@ -174,6 +237,12 @@ impl Execute for RunArgs {
             run.price = Some(attribute(&of, run));
         }
         words::run::assess(&mut summary, cycle, &driven);
+        if let Some(study) = &plan.draws {
+            let drawn = differences(study)?;
+            for (comparison, drawn) in summary.comparison.iter_mut().zip(drawn) {
+                comparison.interval = Some(drawn);
+            }
+        }
         let mut record = None;
         if out.is_some() {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;

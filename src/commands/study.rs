@@ -6,10 +6,10 @@ mod export;
 pub mod levers;
 mod tables;
 
-use std::path::{self, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use cvtcycle::config::setup::{Kind, is_path};
+use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::execute::relative;
@@ -19,7 +19,7 @@ use cvtcycle::study::{Study, StudyManifest, store};
 
 use super::{Execute, threads};
 use crate::args::problems::{bad_value, problem};
-use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given};
+use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given, word_of_plan};
 use crate::print::{CommandResult, Terminal};
 use execution::{Says, StudyRunArgs};
 use levers::LeverResults;
@@ -126,19 +126,10 @@ impl StudyPlanArgs {
     /// The plan for another vehicle.
     fn of_vehicle(&self, plan: Plan, vehicle: &str, problems: &mut Problems) -> Option<Plan> {
         let (mut plan, _) = problems.take(relative(plan))?;
-        // Paths of the command line begin at the current folder, those of a plan at its own.
-        let word = |word: &String| match is_path(word) {
-            true => path::absolute(word)
-                .map_or_else(|_| word.clone(), |path| path.display().to_string()),
-            false => word.clone(),
-        };
-        let named = self
-            .baseline
-            .iter()
-            .filter(|name| *name != "none")
-            .map(word);
+        let named = self.baseline.iter().filter(|name| *name != "none");
+        let named = named.map(|name| word_of_plan(name));
         plan.base.baselines = (!self.baseline.is_empty()).then(|| named.collect());
-        plan.base.vehicle = word(&vehicle.to_owned());
+        plan.base.vehicle = word_of_plan(vehicle);
         plan.title = format!("{}: {vehicle}", plan.title);
         Some(plan)
     }

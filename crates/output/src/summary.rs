@@ -62,6 +62,17 @@ pub enum StartWord {
     Degc(f64),
 }
 
+impl StartWord {
+    /// As an option has it: the word, or the number.
+    #[must_use]
+    pub fn text(&self) -> String {
+        match self {
+            StartWord::Word(word) => word.clone(),
+            StartWord::Degc(degc) => degc.to_string(),
+        }
+    }
+}
+
 /// Settings other than cycle, ambient and start.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Settings {

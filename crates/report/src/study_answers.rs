@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::number::degc;
 use super::results::StudyResults;
-use cvtcycle_output::summary::{StartWord, Summary};
+use cvtcycle_output::summary::Summary;
 use cvtcycle_study::words::study::sentences;
 
 /// Differences between the cases of a study and of a run; none if they are the same.
@@ -32,10 +32,7 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
     if let Some(ambient) = ambient.filter(|_| free("ambient_degc")) {
         differ("ambient", &degc(ambient), &degc(run.ambient_degc));
     }
-    let start = match &run.start {
-        StartWord::Word(word) => word.clone(),
-        StartWord::Degc(degc) => degc.to_string(),
-    };
+    let start = run.start.text();
     if let Some(own) = base["start"].as_str().filter(|_| free("start")) {
         differ("start", own, &start);
     }

@@ -1,9 +1,12 @@
 //! The first lines of a run: published numbers that it contradicts, and how sure its differences are.
 
 use super::*;
+use cvtcycle::config::Override;
 use cvtcycle::study::check::{
     COMMON, CandidateVehicle, Computed, Verdict, embedded_rows, judge, read,
 };
+use cvtcycle::study::plan::Plan;
+use cvtcycle::study::words::drawn::prepare;
 use cvtcycle::study::words::intervals::{CASES, draw, line};
 
 /// The words of a run of a case, without prices.
@@ -157,5 +160,87 @@ fn intervals_are_those_of_the_draws() {
     );
     let changed = [&words[..], &["--set", "engine.electrical_w=250"]].concat();
     let text = flat(&stdout(&run(&changed)));
-    assert!(text.contains(" than rover_216_5mt (no interval)"), "{text}");
+    assert!(
+        text.contains(" than rover_216_5mt (no interval: --draws)"),
+        "{text}"
+    );
+}
+
+/// Truth: the intervals that the program carries, whose draws are those of the plan itself: relative ranges of the plan's own cars are the
+/// same values up to rounding.
+#[test]
+fn draws_of_a_run_give_the_known_interval() {
+    let words = of_case(
+        &["rover_216_cvt", "rover_216_5mt"],
+        "ece15_eudc",
+        "-10",
+        "soak",
+    );
+    let interval = |more: &[&str]| {
+        json(&[&words[..], more, &["--json"]].concat())["comparison"][0]["interval"].clone()
+    };
+    let (known, drawn) = (interval(&[]), interval(&["--draws", "256"]));
+    for key in ["draws", "more", "plan"] {
+        assert_eq!(known[key], drawn[key]);
+    }
+    for k in 0..3 {
+        let [known, drawn] = [&known, &drawn].map(|of| of["percent"][k].as_f64().unwrap());
+        assert!((known - drawn).abs() < 6e-4, "{known} {drawn}");
+    }
+}
+
+/// Property: what the user sets for all cars of a factor is certain, and a list that would replace it too; what is set for the subject alone
+/// leaves the doubt about the others.
+#[test]
+fn what_is_set_is_certain() {
+    let factors = |set: &[&str], set_all: &[&str]| -> Vec<String> {
+        let mut base = Plan::open("uncertainty_rover").unwrap().base;
+        base.set = Override::parse_all(set).unwrap();
+        base.set_all = Override::parse_all(set_all).unwrap();
+        let study = prepare(base, 2).unwrap();
+        let factors = study.plan.factors.iter();
+        factors.map(|factor| factor.key.clone()).collect()
+    };
+    let all = factors(&[], &[]);
+    let without = |gone: &str| {
+        all.iter()
+            .filter(|key| *key != gone)
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    let mass = "road_load.mass_kg";
+    assert_eq!(factors(&[], &["road_load.mass_kg=1130"]), without(mass));
+    assert_eq!(factors(&["road_load.mass_kg=1130"], &[]), all);
+    assert_eq!(factors(&[], &["road_load.mass_kg*=1.1"]), all);
+    let pump = "transmission.cvt.pump.displacement_cc_rev";
+    assert!(all.iter().any(|key| key == pump), "{all:?}");
+    assert_eq!(
+        factors(&["transmission.cvt.pump.displacement_cc_rev=8"], &[]),
+        without(pump)
+    );
+}
+
+/// Truth: the draws of a car whose clamp is too weak for some of them. Pairs that cannot be driven are left out and counted.
+#[test]
+fn draws_that_fail_are_left_out_and_counted() {
+    let words = [
+        "run",
+        "--vehicle",
+        "civic_20_cvt",
+        "--cycle",
+        "ftp75",
+        "--draws",
+        "16",
+        "--price",
+        "never",
+    ];
+    let found = json(&[&words[..], &["--json"]].concat());
+    let of = &found["comparison"][0]["interval"];
+    let [draws, left_out] = ["draws", "left_out"].map(|key| of[key].as_u64().unwrap());
+    assert_eq!(draws + left_out, 16, "{of}");
+    assert!(left_out > 0, "{of}");
+    let text = flat(&stdout(&run(&words)));
+    assert!(text.contains(&format!("; {left_out} left out)")), "{text}");
+    let text = refused(&["run", "--baseline", "none", "--draws", "8"]);
+    assert!(text.contains("--draws: there is no baseline"), "{text}");
 }

@@ -9,6 +9,9 @@ pub struct DrawnDifference {
     pub plan: String,
     /// Number of pairs.
     pub draws: u64,
+    /// Pairs left out because a run fails.
+    #[serde(default)]
+    pub left_out: u64,
     /// Pairs in which the subject uses more.
     pub more: u64,
     /// Quantiles 0.05, 0.5 and 0.95 of the difference, per cent.

@@ -3,26 +3,18 @@
 //! `intervals/penalty.csv` holds the results with the hashes of what they were made from; a row is used for a run of the same hashes only.
 //! `cargo run --release --example intervals` writes the file, a test draws a row of it again.
 
-use std::collections::BTreeSet;
-use std::sync::Mutex;
-
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::{Problem, Problems, embedded};
+use cvtcycle_config::{Problems, embedded};
 use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
 use cvtcycle_output::summary::DrawnDifference;
 
-use crate::NoProgress;
-use crate::execute::outputs::EXCESS;
-use crate::execute::{PartWriter, Study};
+use super::drawn::{PLAN, differences};
+use crate::execute::Study;
 use crate::plan::{Design, Plan};
-use crate::statistics::{Confidence, Share, Summary};
-use crate::store::{Rows, Values};
 
 /// The file.
 const TABLE: &str = include_str!("../../../../intervals/penalty.csv");
-/// The plan that is drawn.
-const PLAN: &str = "uncertainty_rover";
 /// Number of draws, independent ones.
 const DRAWS: u64 = 256;
 /// Head of the file.
@@ -86,24 +78,10 @@ pub fn known(pair: &Pair) -> Option<DrawnDifference> {
     Some(DrawnDifference {
         plan: PLAN.to_owned(),
         draws: count(7)?,
+        left_out: DRAWS - count(7)?,
         more: count(8)?,
         percent: [number(9)?, number(10)?, number(11)?],
     })
-}
-
-/// Keeps the table of runs.
-#[derive(Default)]
-struct Memory(Mutex<Vec<(u64, Rows)>>);
-
-impl PartWriter for Memory {
-    fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
-        let mut parts = self
-            .0
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
-        parts.push((part, runs.clone()));
-        Ok(())
-    }
 }
 
 /// Draws a case: a line of the file.
@@ -120,43 +98,14 @@ pub fn draw((cycle, ambient_degc, start): (&str, f64, &str)) -> Result<String, P
     plan.base.ambient_degc = ambient_degc;
     plan.base.start = start.to_owned();
     let study = Study::prepare(plan)?;
-    let memory = Memory::default();
-    study.execute(&BTreeSet::new(), &memory, &NoProgress)?;
-    let mut parts = memory
-        .0
-        .into_inner()
-        .unwrap_or_else(std::sync::PoisonError::into_inner);
-    parts.sort_by_key(|(part, _)| *part);
-    let excess = differences(&study, &parts);
-    let summary = Summary::of(&excess, Confidence::default());
-    let more = Share::above_zero(&excess, None);
+    let mut found = differences(&study)?;
+    let of = found.swap_remove(0);
     let [subject, baseline] = [0, 1].map(|car| study.cars[car].sha256(&study.plan.factors));
-    let [low, median, high] = [0.05, 0.5, 0.95].map(|p| summary.quantile(p));
     let (of_cycle, plan) = (cycle_sha256(&study.cycles[0]), plan_sha256());
-    let (n, more) = (more.n, more.k);
+    let (n, more, [low, median, high]) = (of.draws, of.more, of.percent);
     Ok(format!(
         "{cycle},{ambient_degc},{start},{subject},{baseline},{of_cycle},{plan},{n},{more},{low:.3},{median:.3},{high:.3}\n"
     ))
-}
-
-/// Excess of the subject over the baseline, draw by draw, of good pairs.
-fn differences(study: &Study, parts: &[(u64, Rows)]) -> Vec<f64> {
-    let column = |name: &str| study.columns.iter().position(|head| head.name == name);
-    let (Some(excess), Some(status)) = (column(EXCESS), column("status")) else {
-        return Vec::new();
-    };
-    let mut list = Vec::new();
-    for (_, rows) in parts {
-        let (Values::Number(excess), Values::Text(status)) =
-            (&rows.values[excess], &rows.values[status])
-        else {
-            continue;
-        };
-        let pairs = excess.chunks_exact(2).zip(status.chunks_exact(2));
-        let good = pairs.filter(|(_, status)| status.iter().all(|word| &**word == "ok"));
-        list.extend(good.map(|(excess, _)| excess[1]));
-    }
-    list
 }
 
 /// The whole file.

@@ -1,6 +1,7 @@
 //! Results in sentences, for the terminal and for documents. A sentence is made only where it is true; a number has the digits that its
 //! interval leaves it.
 
+pub mod drawn;
 pub mod intervals;
 pub mod run;
 pub mod study;

@@ -145,14 +145,20 @@ fn against(comparison: &Comparison) -> Option<String> {
     let Some(drawn) = &comparison.interval else {
         let compared = more_or_less(percent, 1);
         let than = than(&compared);
-        return Some(format!(", {compared} {than} {baseline} (no interval)"));
+        return Some(format!(
+            ", {compared} {than} {baseline} (no interval: --draws)"
+        ));
     };
     let ends = [drawn.percent[0], drawn.percent[2]];
     let compared = more_or_less(percent, decimals(ends));
     let (than, ends) = (than(&compared), between(ends, "%"));
     let (draws, more) = (drawn.draws, drawn.more);
+    let left_out = match drawn.left_out {
+        0 => String::new(),
+        n => format!("; {n} left out"),
+    };
     Some(format!(
-        ", {compared} {than} {baseline} (90 % of {draws} draws: {ends}; more in {more})"
+        ", {compared} {than} {baseline} (90 % of {draws} draws: {ends}; more in {more}{left_out})"
     ))
 }
 
