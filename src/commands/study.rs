@@ -139,7 +139,22 @@ impl StudyPlanArgs {
             .map(word);
         plan.base.baselines = (!self.baseline.is_empty()).then(|| named.collect());
         plan.base.vehicle = word(&vehicle.to_owned());
-        plan.title = format!("{}: {vehicle}", plan.title);
+        let against = match plan.base.baselines.as_deref() {
+            None | Some([]) => String::new(),
+            Some(_) => format!(" against {}", self.baseline.join(", ")),
+        };
+        // Title and question of the plan are of its own cars.
+        let of = self.plan.as_deref().unwrap_or_default();
+        let is_varied = |key: &str| plan.factors.iter().any(|factor| factor.key == key);
+        let mut at = String::new();
+        if !is_varied("ambient_degc") {
+            at += &format!(" at {} degC", plan.base.ambient_degc);
+        }
+        if !is_varied("cycle") {
+            at += &format!(" on {}", plan.base.cycle);
+        }
+        plan.title = format!("{vehicle}{against}{at}, with the ranges of {of}");
+        plan.question = String::new();
         Some(plan)
     }
 }

@@ -124,7 +124,7 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock) -> ReportTable {
     ];
     let columns = columns.map(|(name, unit)| (name.to_owned(), unit));
     let caption = format!("Levers, {}", case(block));
-    let mut table = ReportTable::of_numbers(&caption, "Lever", columns.into_iter());
+    let mut table = ReportTable::of_numbers(&caption, "Lever", columns);
     for row in &block.rows {
         let name = match row.failed {
             0 => row.of.title.clone(),
