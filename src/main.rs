@@ -7,8 +7,9 @@ mod print;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches};
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Problem, is_hidden, visible};
 
 use args::problems::bad_value;
@@ -29,7 +30,8 @@ fn main() -> ExitCode {
             let terminal = Terminal::new(cli.color);
             print::finish(cli.execute(terminal), terminal)
         }
-        Err(error) => {
+        Err(mut error) => {
+            suggest_vehicle(&mut error, &words);
             let terminal = Terminal::new(colour);
             let result = match error.kind() {
                 ErrorKind::InvalidUtf8 => Err(not_utf8(&words).into()),
@@ -37,6 +39,29 @@ fn main() -> ExitCode {
             };
             print::finish(result, terminal)
         }
+    }
+}
+
+/// `run mycar.toml`: where a command has `--vehicle`, a file without an option is likely to be one.
+fn suggest_vehicle(error: &mut clap::Error, words: &[OsString]) {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else {
+        return;
+    };
+    let program = Cli::command();
+    let name = words.get(1).and_then(|word| word.to_str());
+    let command = name.and_then(|name| program.find_subcommand(name));
+    let has_vehicle = |command: &clap::Command| {
+        let mut options = command.get_arguments();
+        options.any(|option| option.get_long() == Some("vehicle"))
+    };
+    let is_file =
+        !word.starts_with('-') && (is_path(word) || Kind::Vehicle.names().contains(&word.as_str()));
+    if error.kind() == ErrorKind::UnknownArgument && is_file && command.is_some_and(has_vehicle) {
+        let tip = format!("a vehicle is named by an option: --vehicle {word}");
+        error.insert(
+            ContextKind::Suggested,
+            ContextValue::StyledStrs(vec![tip.into()]),
+        );
     }
 }
 

@@ -49,6 +49,8 @@ pub fn in_options(mut problem: Problem) -> Problem {
     if !problem.settings.is_empty() {
         let options: Vec<&str> = problem.settings.iter().map(|s| flag_of(*s)).collect();
         problem.hint += &format!(" ({})", options.join(", "));
+        // Once, however often it is handed on.
+        problem.settings = &[];
     }
     match &problem.place.input {
         Input::File(_) => {}

@@ -5,7 +5,7 @@ mod physics;
 use clap::Args;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::setup::{self, NamedBy, Options};
-use cvtcycle::config::{Problem, Problems, cycle, render};
+use cvtcycle::config::{Problem, Problems, bounded, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
@@ -15,8 +15,8 @@ use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
-use crate::args::problems::{cite, in_options};
-use crate::args::{ColumnsArgs, JsonArgs, Names, cycles};
+use crate::args::problems::{bad_value, cite, in_options};
+use crate::args::{ColumnsArgs, JsonArgs, Names, bytes, cycles};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 use physics::PhysicsPlan;
 
@@ -133,10 +133,13 @@ fn check(file: &str, columns: &Columns) -> Checked {
     let (kind, word) = InputKind::detect(file, true)?;
     let none = |()| Vec::new();
     let notes = match kind {
-        InputKind::Cycle => cycle::open(&word, columns).map(|cycle| {
-            let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
-            read_as.into_iter().collect()
-        }),
+        InputKind::Cycle => match cycle::open(&word, columns) {
+            Ok(cycle) => {
+                let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
+                Ok(read_as.into_iter().collect())
+            }
+            Err(found) => Err(of_map(&word).map_or(found, Into::into)),
+        },
         // Only embedded.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
@@ -152,11 +155,35 @@ fn check(file: &str, columns: &Columns) -> Checked {
     Ok((kind, notes))
 }
 
+/// Columns that only the measured maps of a vehicle have.
+const OF_MAPS: [&str; 2] = ["torque_loss_nm", "bsfc_g_kwh"];
+
+/// What is said of a table that is a map of a vehicle, and no cycle.
+fn of_map(word: &str) -> Option<Problem> {
+    let bytes = bytes("FILE", word, bounded::TABLE).ok()?;
+    let text = String::from_utf8_lossy(&bytes);
+    let head = text
+        .lines()
+        .find(|line| !line.trim_start().starts_with('#'))?;
+    let is_map = OF_MAPS.iter().any(|column| head.contains(column));
+    let hint = "check the vehicle file that names it: its maps are read with it";
+    is_map.then(|| {
+        bad_value(
+            "FILE",
+            word,
+            "a cycle",
+            "this is a measured map of a vehicle",
+            hint,
+        )
+    })
+}
+
 /// Only a run reads the baselines; what is wrong with them is reported here, and what makes that they are not like for like is doubted.
 fn check_vehicle(file: &str, word: &str) -> Result<Vec<String>, Problems> {
     let setup = setup::load(word, &Options::default())?;
     let mut problems = Problems::default();
-    let mut notes = Vec::new();
+    let doubts = setup.doubts().into_iter();
+    let mut notes: Vec<String> = doubts.map(|doubt| format!("doubt: {doubt}")).collect();
     let options = Options {
         named_by: NamedBy::File,
         ..Options::default()

@@ -4,7 +4,8 @@ use std::sync::OnceLock;
 
 use clap::Args;
 use cvtcycle::config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
-use cvtcycle::config::{KeyInfo, Problem, Problems, near, suggestion};
+use cvtcycle::config::{KeyInfo, Override, Problem, Problems, near, suggestion};
+use cvtcycle::model::keys::Presence;
 use cvtcycle::model::transmission::loss_factor;
 use cvtcycle::output::table::{Head, TextTable};
 use cvtcycle::output::trace::COLUMNS;
@@ -236,13 +237,30 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
     }
     let text = paragraph(&known.key, &facts, paint);
     if values.is_empty() {
-        return text + "  not set in any built-in file\n";
+        let default = default_of(known).map(|value| format!("; {value} by default"));
+        let default = default.unwrap_or_default();
+        return text + &format!("  not set in any built-in file{default}\n");
     }
     let mut table = TextTable::new("llll").indented();
     for (file, info) in values {
         table.row(value_row(file, info, MAX_VALUE_LEN, ""));
     }
     text + &table.text()
+}
+
+/// The value of a key that is not given, with its unit.
+fn default_of(known: &KeyInfo) -> Option<String> {
+    let value = match Override::number(&known.key, 0.0).row()?.presence {
+        Presence::Number(x) => x.to_string(),
+        Presence::Integer(n) => n.to_string(),
+        Presence::Flag(on) => on.to_string(),
+        Presence::Word(word) => word.to_owned(),
+        _ => return None,
+    };
+    Some(match or_none(&known.unit) {
+        "none" => value,
+        unit => format!("{value} {unit}"),
+    })
 }
 
 fn or_none(unit: &str) -> &str {

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use cvtcycle::config::cycle;
-use cvtcycle::config::setup::Kind;
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::study::Study;
 use cvtcycle::study::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
@@ -11,6 +11,7 @@ use cvtcycle::study::plan::{MAX_SAMPLES, Plan};
 use super::Execute;
 use super::study::execution::StudyRunArgs;
 use super::study::levers::LeverResults;
+use crate::args::input_kind::InputKind;
 use crate::args::problems::{bad_value, cite, did_you_mean, in_options};
 use crate::args::{AmbientsArgs, DriveArgs, Names, count, cycles, number};
 use crate::print::{CommandResult, Terminal};
@@ -35,7 +36,7 @@ median, what 90 % of the draws are within (`--confidence`), and in how many it s
 serves any car. A lever that gives a key a value leaves the doubt about that key out, in its reference as well. The combination has the levers \
 that save fuel and go together, the best of each group; --combine names others, `none` drives none.
 
-docs/book has the page `Levers`. Exit codes: 0 success; 1 some runs failed; 2 bad input; 130 stopped by Ctrl-C: finished parts are kept, \
+docs/book has the page `Levers`. Exit codes: 0 success, with the number of draws that fail a check and are left out; 1 the car as it is fails in more than half of its draws (without draws: a run fails); 2 bad input; 130 stopped by Ctrl-C: finished parts are kept, \
 --resume continues.")]
 pub struct LeversArgs {
     /// Lever files: names of built-in ones, or TOML files [default: all built-in ones]
@@ -148,6 +149,17 @@ impl Execute for LeversArgs {
     }
 }
 
+/// The levers of a file; a vehicle in its place has a hint.
+fn of_levers(word: &str) -> Result<LeverFile, Problems> {
+    let is_vehicle = || matches!(InputKind::detect(word, true), Ok((InputKind::Vehicle, _)));
+    if is_path(word) && is_vehicle() {
+        let hint = format!("name it with --vehicle {word}");
+        let message = "this is a vehicle";
+        return Err(bad_value("FILE", word, "a lever file", message, &hint).into());
+    }
+    LeverFile::open(word).map_err(|found| cite("FILE", found))
+}
+
 impl LeversArgs {
     /// The levers of all files that are asked for; none after a problem.
     fn levers(&self, problems: &mut Problems) -> Option<Vec<Lever>> {
@@ -165,8 +177,8 @@ impl LeversArgs {
         };
         let mut all: Vec<Lever> = Vec::new();
         for word in &words {
-            let file = LeverFile::open(word).map_err(|found| cite("FILE", found));
-            for lever in problems.take(file)?.levers {
+            let file = problems.take(of_levers(word));
+            for lever in file?.levers {
                 let same = |other: &&Lever| {
                     let apart = other.of_cvt.zip(lever.of_cvt).is_some_and(|(a, b)| a != b);
                     other.name == lever.name && !apart

@@ -11,6 +11,7 @@ use cvtcycle::model::keys::stem;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::TextColumns;
 use cvtcycle::study::levers::{Lever, LeverFile};
+use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -43,6 +44,8 @@ enum ListedKind {
     Columns,
     /// Changes of a car's design
     Levers,
+    /// Plans of studies
+    Plans,
 }
 
 /// A list in both forms.
@@ -64,6 +67,7 @@ impl Execute for ListArgs {
             ListedKind::Lubricants => list_lubricants(problems),
             ListedKind::Columns => Some(list_columns()),
             ListedKind::Levers => list_levers(problems),
+            ListedKind::Plans => list_plans(problems),
         }
     }
 
@@ -202,6 +206,27 @@ fn list_levers(problems: &mut Problems) -> Option<Listing> {
         heading: "Levers",
         table: columns.lines(&list),
         note: "`cvtcycle levers` drives them next to the car as it is; it takes your own TOML file as well.\n",
+    })
+}
+
+fn list_plans(problems: &mut Problems) -> Option<Listing> {
+    let read = |name: &'static str| Some((name, problems.take(Plan::open(name))?));
+    let list = Kind::Plan.names().into_iter().map(read);
+    let list: Vec<(&str, Plan)> = list.collect::<Option<_>>()?;
+    let points = |plan: &Plan| plan.design.points(&plan.factors);
+    let columns = TextColumns::new()
+        .left("name", |(name, _): &(&str, Plan)| *name)
+        .right("factors", |(_, plan)| plan.factors.len().to_string())
+        .right("points", move |(_, plan)| {
+            points(plan).map_or_else(String::new, |n| n.to_string())
+        })
+        .left("title", |(_, plan)| plan.title.clone());
+    let json = |(name, plan): &(&str, Plan)| json!({ "name": name, "title": plan.title, "factors": plan.factors.len(), "points": points(plan) });
+    Some(Listing {
+        json: json!({ "plans": list.iter().map(json).collect::<Vec<_>>() }),
+        heading: "Plans of studies",
+        table: columns.lines(&list),
+        note: "`cvtcycle study NAME` runs one; it takes your own TOML file as well. `--vehicle` puts another car in its place.\n",
     })
 }
 

@@ -24,10 +24,10 @@ use crate::print::{CommandOutput, CommandResult, Terminal};
     mut_arg("force", |force| force.help("Replace the file")),
     after_help = "\
 Example:
-  cvtcycle new mycar --mass 1320 --f0 105 --f1 0.55 --f2 0.0305 --tyre '215/55 R16' --displacement 1.8l --power 104@6400 --torque 172@4000
+  cvtcycle new mycar --mass 1320 --f0 105 --f1 0.55 --f2 0.0305 --tyre '215/55 R16' --displacement 1.8l --power 104kW@6400 --torque 172@4000
 
 What is not given comes from a class (`cvtcycle list classes`) or from the car of --like, with the status `class` or `like`; the file says what was given and
-which rule made what follows from it. A unit may be given with each number: 3000lb, 17.4lbf, 158hp@6500. `cvtcycle new mycar` in a \
+which rule made what follows from it. A unit may be given with each number, and has to be with power: 3000lb, 17.4lbf, 158hp@6500. `cvtcycle new mycar` in a \
 terminal has a question for each. Then `cvtcycle check mycar.toml`, `cvtcycle run --vehicle mycar.toml`."
 )]
 pub struct NewArgs {
@@ -92,9 +92,14 @@ impl Args for Numbers {
     }
 }
 
+/// What is to be known of the box that is taken where none is named.
+const USUAL_BOX: &str = "box: box_cvt_clutch, with a wet launch clutch; most CVTs from 2010 on have a torque converter: --box box_cvt_converter\n";
+
 /// A car, and the file that it goes to.
 pub struct NewPlan {
     car: NewCar,
+    /// Whether the box is the usual one because no other was named.
+    has_usual_box: bool,
     file: OutputFile,
 }
 
@@ -124,17 +129,23 @@ impl Execute for NewArgs {
             ..Answers::default()
         };
         self.complete(&mut answers, problems);
+        let has_usual_box = answers.like.is_none() && answers.gearbox.is_none();
         let car = problems.take(new_car::write(&answers).map_err(|found| found.map(option)));
         let file = OutputFile::create(path, self.out.force);
         let file = problems.take(file.map_err(in_options));
         Some(NewPlan {
             car: car?,
+            has_usual_box,
             file: file?,
         })
     }
 
     fn run(&self, plan: NewPlan, _: Terminal) -> CommandResult {
-        let NewPlan { car, mut file } = plan;
+        let NewPlan {
+            car,
+            has_usual_box,
+            mut file,
+        } = plan;
         let written = file.write_all(car.text.as_bytes());
         written.map_err(|error| in_options(file.cannot_write(&error)))?;
         let path = file.commit().map_err(in_options)?;
@@ -151,7 +162,11 @@ impl Execute for NewArgs {
             "{path}  {}\n{given} values given, {derived} by rule, {inherited} inherited: `cvtcycle show {path}` prints them\n",
             car.setup.title
         );
-        text.extend(car.doubts.iter().map(|doubt| format!("doubt: {doubt}\n")));
+        if has_usual_box {
+            text += USUAL_BOX;
+        }
+        let doubts = car.setup.doubts().into_iter();
+        text.extend(doubts.map(|doubt| format!("doubt: {doubt}\n")));
         Ok(CommandOutput::text(text))
     }
 }
@@ -166,7 +181,12 @@ impl NewArgs {
         let (input, output) = (std::io::stdin(), std::io::stderr());
         let in_terminal = input.is_terminal() && output.is_terminal() && needs_numbers(answers);
         if problems.is_empty() && (self.ask || in_terminal) {
-            problems.take(ask::ask(answers, &mut input.lock(), &mut output.lock()));
+            problems.take(ask::ask(
+                answers,
+                input.is_terminal(),
+                &mut input.lock(),
+                &mut output.lock(),
+            ));
         }
         if answers.title.is_empty() {
             answers.title.clone_from(&self.name);

@@ -16,7 +16,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run, summarise};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, find_maps_left, name_run, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, attribute};
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
@@ -225,6 +225,7 @@ impl Execute for RunArgs {
         let price = plan.price.wanted(cycle, plan.dt_s);
         let start = plan.start.1;
         let mut summary = summarise(cycle, plan.ambient_degc, start, settings.clone(), &driven);
+        find_maps_left(&mut summary, cycle, &conditions, &driven);
         for (run, car) in summary.runs.iter_mut().zip(vehicles).filter(|_| price) {
             let of = Attribution {
                 setup: &car.setup,

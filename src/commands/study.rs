@@ -130,7 +130,22 @@ impl StudyPlanArgs {
         let named = named.map(|name| word_of_plan(name));
         plan.base.baselines = (!self.baseline.is_empty()).then(|| named.collect());
         plan.base.vehicle = word_of_plan(vehicle);
-        plan.title = format!("{}: {vehicle}", plan.title);
+        let against = match plan.base.baselines.as_deref() {
+            None | Some([]) => String::new(),
+            Some(_) => format!(" against {}", self.baseline.join(", ")),
+        };
+        // Title and question of the plan are of its own cars.
+        let of = self.plan.as_deref().unwrap_or_default();
+        let is_varied = |key: &str| plan.factors.iter().any(|factor| factor.key == key);
+        let mut at = String::new();
+        if !is_varied("ambient_degc") {
+            at += &format!(" at {} degC", plan.base.ambient_degc);
+        }
+        if !is_varied("cycle") {
+            at += &format!(" on {}", plan.base.cycle);
+        }
+        plan.title = format!("{vehicle}{against}{at}, with the ranges of {of}");
+        plan.question = String::new();
         Some(plan)
     }
 }

@@ -205,3 +205,48 @@ fn val_the_calibration_example_is_what_the_program_prints() {
     }
     assert!(example.lines().count() > 15);
 }
+
+/// Words of a command: blanks separate them, except between single quotes.
+fn words(command: &str) -> Vec<String> {
+    let (mut words, mut quoted) = (vec![String::new()], false);
+    for letter in command.chars() {
+        match letter {
+            '\'' => quoted = !quoted,
+            ' ' if !quoted => words.push(String::new()),
+            letter => words.last_mut().unwrap().push(letter),
+        }
+    }
+    words
+}
+
+/// The blocks of docs/book/src/your_car.md in order, in an empty folder: a file begins with a line that has its name, a command must end with exit code 0.
+#[test]
+fn the_commands_of_your_car_in_an_hour_run() {
+    let page = read("docs/book/src/your_car.md");
+    let folder = tempfile::tempdir().unwrap();
+    let (mut files, mut commands) = (0, 0);
+    // Every second part is a block: its language, then its lines.
+    for block in page.split("```").skip(1).step_by(2) {
+        let (language, text) = block.split_once('\n').unwrap();
+        if language != "console" {
+            let name = text.lines().next().unwrap();
+            if let Some(name) = name.strip_prefix("# ") {
+                std::fs::write(folder.path().join(name), text).unwrap();
+                files += 1;
+            }
+            continue;
+        }
+        for line in text.lines() {
+            let Some(line) = line.strip_prefix("$ cvtcycle ") else {
+                continue;
+            };
+            let mut command = Command::cargo_bin("cvtcycle").unwrap();
+            command.args(words(line)).current_dir(folder.path());
+            let output = command.output().unwrap();
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert_eq!(output.status.code(), Some(0), "{line}: {error}");
+            commands += 1;
+        }
+    }
+    assert!(files >= 6 && commands > 20, "{files} {commands}");
+}

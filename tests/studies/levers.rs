@@ -184,6 +184,49 @@ fn the_rovers_draws_are_those_of_its_plan() {
     assert!(changed > 70, "{changed}");
 }
 
+/// What no draw moves is named: of a car of a class, whose engine has no enrichment and whose clamp is another, and of its twin with six gears, where
+/// the plan has lists of five.
+#[test]
+fn a_study_names_the_factors_that_do_not_act() {
+    let (mut plan, _) = relative(uncertainty()).unwrap();
+    plan.base.vehicle = "civic_20_cvt".to_owned();
+    plan.base.baselines = Some(vec!["twin".to_owned()]);
+    let study = Study::prepare(plan).unwrap();
+    let [subject, twin, shifts] = study.notes.as_slice() else {
+        panic!("{:?}", study.notes)
+    };
+    for (note, parts) in [
+        (
+            subject,
+            &[
+                "civic_20_cvt: ",
+                "cold enrichment; ",
+                "clamp pressure level",
+            ][..],
+        ),
+        (
+            twin,
+            &["civic_20_cvt_twin: ", "gear set", "cold enrichment"],
+        ),
+        (
+            shifts,
+            &["civic_20_cvt_twin: its shift speeds (TW-3, assumed) are in no factor"],
+        ),
+    ] {
+        assert!(parts.iter().all(|part| note.contains(part)), "{note}");
+    }
+    // Their draws are those of a car without the factor: no value of theirs is in the table.
+    let gears = study
+        .plan
+        .factors
+        .iter()
+        .position(|f| f.name == "gear set")
+        .unwrap();
+    assert!(study.cars[1].idle.contains(&gears) && !study.cars[0].idle.contains(&gears));
+    // The shipped study has nothing to name.
+    assert!(Study::prepare(uncertainty()).unwrap().notes.is_empty());
+}
+
 /// Truth: the car read by `setup::load` with the draw's values and the lever's words as overrides, and driven.
 #[test]
 fn a_draw_is_the_car_with_its_values() {
@@ -464,7 +507,7 @@ fn missing_keys_and_bounds_of_a_plan() {
     let manual = "transmission.manual.final_ratio";
     assert!(study(text("", manual, 0.9, 1.1)).is_err());
     let skipped = study(text("missing = \"skip\"", manual, 0.9, 1.1)).unwrap();
-    assert_eq!(skipped.cars[0].missing, [0]);
+    assert_eq!(skipped.cars[0].idle, [0]);
     let offset = "transmission.cvt.belt.band_offset_mm";
     assert!(study(text("", offset, 0.5, 20.0)).is_err());
     let clipped = study(text("bounds = \"clip\"", offset, 0.5, 20.0)).unwrap();

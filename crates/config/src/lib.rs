@@ -38,6 +38,7 @@ pub use problem::{Problem, ProblemKind, Problems, Setting, readable};
 pub use reader::Reader;
 pub use reader::lists::{decimal, evenly};
 pub use reader::log::KeyInfo;
+pub use reader::maps::loss_map_axes;
 pub use reader::raw_value::RawValue;
 pub use reader::section::Section;
 pub use setup::rig;

@@ -6,12 +6,14 @@
 mod alike;
 mod failure;
 mod known;
+mod maps_left;
 mod price;
 mod run;
 
 pub use alike::{Difference, differences, words as likeness};
 pub use failure::{Deficit, Failure};
 pub use known::{Contradiction, DrawnDifference};
+pub use maps_left::{MapLeft, find_maps_left};
 pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
 pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
 
@@ -23,6 +25,7 @@ use crate::number::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::Outcome;
+use cvtcycle_model::fluid::ZERO_DEGC_K;
 
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -153,7 +156,10 @@ pub fn summarise(
     let roles = ["subject"].into_iter().chain(std::iter::repeat("baseline"));
     let runs = driven.iter().zip(roles);
     let runs: Vec<RunSummary> = runs
-        .map(|(car, role)| run_summary(cycle, role, &settings, car))
+        .map(|(car, role)| RunSummary {
+            notes: notes(car.setup, driven[0].setup, ambient_degc),
+            ..run_summary(cycle, role, &settings, car)
+        })
         .collect();
     let baselines = runs.iter().zip(driven).skip(1);
     let comparison = baselines
@@ -178,6 +184,30 @@ pub fn summarise(
         comparison,
         contradicted: Vec::new(),
     }
+}
+
+/// What a reader of a car's numbers should know, with the first of its doubts; what is doubted of the subject is not said again.
+fn notes(setup: &Setup, subject: &Setup, ambient_degc: f64) -> Vec<String> {
+    let mut doubts = setup.doubts();
+    if !std::ptr::eq(setup, subject) {
+        let known = subject.doubts();
+        doubts.retain(|doubt| !known.contains(doubt));
+    }
+    let mut notes = setup.notes.clone();
+    let least_degc = setup
+        .engine()
+        .start_stop
+        .map(|on| on.ambient_k - ZERO_DEGC_K);
+    notes.extend(least_degc.filter(|least| ambient_degc < *least).map(|least| {
+        format!(
+            "start-stop does not stop the engine below {least:.0} degC of ambient (engine.start_stop.ambient_min_degc)"
+        )
+    }));
+    notes.extend(doubts.first().map(|first| match doubts.len() - 1 {
+        0 => format!("doubt: {first}"),
+        n => format!("doubt: {first} ({n} more: `cvtcycle check` prints them)"),
+    }));
+    notes
 }
 
 /// Names the run of a summary and its record in both: by a hash of what they say, but for the words of the command line.

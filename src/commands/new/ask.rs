@@ -15,6 +15,7 @@ use crate::args::problems::{did_you_mean, problem};
 /// A class or car that is none, or an input or output that fails.
 pub fn ask(
     answers: &mut Answers,
+    in_terminal: bool,
     input: &mut impl BufRead,
     output: &mut impl Write,
 ) -> Result<(), Problems> {
@@ -44,7 +45,7 @@ pub fn ask(
                             .hint(did_you_mean(word, &known)),
                     ),
                 };
-                *slot = answer(&prompt, true, check, input, output).map_err(failed)?;
+                *slot = answer(&prompt, true, check, in_terminal, input, output).map_err(failed)?;
             }
         }
     }
@@ -52,7 +53,14 @@ pub fn ask(
         let usual = question.usual.as_deref().unwrap_or("needed");
         let prompt = format!("{}: {} [{usual}]", question.name, question.meaning);
         let check = |text: &str| mistake(answers, question.name, text);
-        let found = answer(&prompt, question.usual.is_some(), check, input, output);
+        let found = answer(
+            &prompt,
+            question.usual.is_some(),
+            check,
+            in_terminal,
+            input,
+            output,
+        );
         if let Some(text) = found.map_err(failed)? {
             answers.numbers.insert(question.name, text);
         }
@@ -65,6 +73,7 @@ fn answer(
     prompt: &str,
     may_be_empty: bool,
     check: impl Fn(&str) -> Option<Problem>,
+    in_terminal: bool,
     input: &mut impl BufRead,
     output: &mut impl Write,
 ) -> io::Result<Option<String>> {
@@ -73,8 +82,12 @@ fn answer(
         output.flush()?;
         let mut line = String::new();
         // A longer line is no number.
-        if io::Read::take(&mut *input, 1000).read_line(&mut line)? == 0 {
+        let length = io::Read::take(&mut *input, 1000).read_line(&mut line)?;
+        // In a terminal the person ends the line.
+        if length == 0 || !in_terminal {
             writeln!(output)?;
+        }
+        if length == 0 {
             return Ok(None);
         }
         let text = line.trim();

@@ -23,7 +23,7 @@ const MAX_FACTORS: usize = 10;
 /// Number of factors above chance that are listed.
 const MAX_CAUSES: usize = 5;
 /// Number of reasons of failed runs that are listed.
-const MAX_REASONS: usize = 5;
+pub const MAX_REASONS: usize = 5;
 /// Rows and columns of a matrix that fit on a page.
 const MATRIX: [usize; 2] = [40, 10];
 

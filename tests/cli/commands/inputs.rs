@@ -20,21 +20,34 @@ fn lists_name_what_can_be_driven() {
     );
     assert!((nedc["distance_km"].as_f64().unwrap() - 11.028).abs() < 1e-3);
     assert!((nedc["distance_automatic_km"].as_f64().unwrap() - 10.937).abs() < 1e-3);
+    let plans = json(&["list", "plans", "--json"]);
+    let plan = |name: &str| {
+        let mut list = plans["plans"].as_array().unwrap().iter();
+        list.find(|plan| plan["name"] == name).unwrap()["factors"].as_u64()
+    };
+    assert_eq!(plan("uncertainty_rover"), Some(87));
     assert_eq!(
         json(&["list", "vehicles", "--json"])["vehicles"]
             .as_array()
             .unwrap()
             .len(),
-        4
+        6
     );
     assert_eq!(
         json(&["list", "lubricants", "--json"])["lubricants"]
             .as_array()
             .unwrap()
             .len(),
-        6
+        7
     );
-    for what in ["cycles", "vehicles", "classes", "lubricants", "levers"] {
+    for what in [
+        "cycles",
+        "vehicles",
+        "classes",
+        "lubricants",
+        "levers",
+        "plans",
+    ] {
         let text = stdout(&run(&["list", what]));
         assert!(
             text.lines().count() > 4 && text.lines().all(|line| line.chars().count() <= 120),
@@ -77,7 +90,7 @@ fn explain_knows_keys_columns_flags_and_equations() {
     }
     assert_eq!(stdout(&run(&["explain", "band_offset_mm"])), whole);
     let oil = json(&["explain", "engine_oil.kv40_mm2_s", "--json"]);
-    assert_eq!(oil["keys"][0]["values"].as_array().unwrap().len(), 6);
+    assert_eq!(oil["keys"][0]["values"].as_array().unwrap().len(), 7);
     // An option that no embedded vehicle chooses.
     assert!(
         stdout(&run(&["explain", "dual_cavity"])).contains("share")

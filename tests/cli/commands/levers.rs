@@ -252,3 +252,39 @@ fn a_plan_serves_another_car() {
     assert_eq!(json["cars"], serde_json::json!(["own", "own_twin"]));
     assert_eq!(json["runs"]["not_run"], 0);
 }
+
+/// A cap of 3 bar holds no belt: by the flag of each draw the lever does not work, and that is a result, not a failed command. Without draws, and
+/// of a car that fails itself, it is exit code 1.
+#[test]
+fn a_lever_that_fails_is_no_lever_that_saves() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = "[[lever]]\nname = \"soft\"\nset = [\"transmission.cvt.pressure.cap_bar=6\"]\n";
+    fs::write(dir.path().join("own.toml"), file).unwrap();
+    let line = "levers own.toml --cycle ftp75 --samples 8 --combine none";
+    let output = run_in(dir.path(), &words(line));
+    let text = stdout(&output);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    for part in [
+        "L/100 km in the median of the draws; no lever saves fuel.",
+        "soft does not work in this car: gross_slip",
+        "in 8 of 8 draws.",
+        "soft !8",
+        "note: 8 of 16 runs fail a check and are left out: 8 x gross_slip",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+    assert!(!text.contains("It is open"), "{text}");
+    let nominal = run_in(
+        dir.path(),
+        &words("levers own.toml --cycle ftp75 --samples 0"),
+    );
+    assert_eq!(nominal.status.code(), Some(1));
+    assert!(stdout(&nominal).contains("soft does not work in this car: gross_slip."));
+    let car = "[vehicle]\nlike = \"rover_216_cvt\"\n[transmission.cvt.pressure]\ncap_bar = 6\n";
+    fs::write(dir.path().join("car.toml"), car).unwrap();
+    let line =
+        "levers --only offset_2mm --vehicle car.toml --cycle ftp75 --samples 8 --combine none";
+    let failed = run_in(dir.path(), &words(line));
+    assert_eq!(failed.status.code(), Some(1), "{}", stdout(&failed));
+    assert!(stdout(&failed).contains("In 8 of 8 draws the car as it is fails by gross_slip"));
+}

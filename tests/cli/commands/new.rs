@@ -13,13 +13,13 @@ const NUMBERS: [(&str, &str); 9] = [
     ("f2", "0.0305"),
     ("tyre", "215/55 R16"),
     ("displacement", "1.8l"),
-    ("power", "104@6400"),
+    ("power", "104kW@6400"),
     ("torque", "172@4000"),
     ("ratio-low", "2.6"),
 ];
 /// The same as answers, in the order of the questions; before them class and box.
 const ANSWERS: &str =
-    "\n\n3000lb\n105\n0.55\n0.0305\n215/55 R16\n1.8l\n104@6400\n172@4000\n\n\n\n2.6\n";
+    "\n\n3000lb\n105\n0.55\n0.0305\n215/55 R16\n1.8l\n104kW@6400\n172@4000\n\n\n\n2.6\n";
 
 fn options() -> Vec<String> {
     let parts = NUMBERS.iter();
@@ -61,7 +61,8 @@ fn options_answers_and_questions_make_the_same_car() {
     ] {
         assert!(by_options.contains(part), "{part}\n{by_options}");
     }
-    let lines = NUMBERS.map(|(name, value)| format!("{name} = \"{value}\"\n"));
+    // Keys of a file may have the sign of TOML.
+    let lines = NUMBERS.map(|(name, value)| format!("{} = \"{value}\"\n", name.replace('-', "_")));
     fs::write(
         dir.join("answers.toml"),
         format!(
@@ -77,7 +78,8 @@ fn options_answers_and_questions_make_the_same_car() {
     for part in [
         "class: compact_1995, compact_2020,",
         "mass: test mass, the driver with it: kg, lb or t [1364 kg, class compact_2020]: ",
-        "displacement: displacement of the engine: cm3 or l [needed]: ",
+        // Of a pipe no person ends the lines.
+        "\ndisplacement: displacement of the engine: cm3 or l [needed]: \n",
     ] {
         assert!(questions.contains(part), "{part}\n{questions}");
     }
@@ -114,7 +116,8 @@ fn a_wrong_answer_is_asked_for_again() {
 #[test]
 fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
     let dir = tempfile::tempdir().unwrap();
-    let answers = "mass = \"3000 stone\"\ndisplacement = 1800\npowr = \"104@6400\"\nidle = true\n";
+    let answers =
+        "mass = \"3000 stone\"\ndisplacement = 1800\npowr = \"104kW@6400\"\nidle = true\n";
     fs::write(dir.path().join("answers.toml"), answers).unwrap();
     let words = "new mycar --answers answers.toml --final-drive 4,9 --gears 3,2 --tyre 55/215";
     let words: Vec<&str> = words.split(' ').collect();
@@ -127,7 +130,8 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
         "did you mean `power`?",
         "idle: expected text or a number, found a boolean\n --> answers.toml:4:8",
         "--power: the power of the engine is missing",
-        "--final-drive: a ratio has no unit, not `,9`",
+        "--final-drive: a number with a comma",
+        "write 4.9 with a decimal point",
         "--gears: the car has a CVT",
         "--tyre: this is no tyre code",
         "7 problems",
@@ -156,6 +160,26 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
             &["new", "a", "--like", "rover_216_cvv"],
             "did you mean `rover_216_cvt`",
         ),
+        (
+            &["new", "a", "--like", "mondeo"],
+            "did you mean `mondeo_20_5mt`",
+        ),
+        // Under the option, with the unit that is meant, and nothing of the stroke that follows from it.
+        (
+            &["new", "a", "--displacement", "1.8", "--power", "132hp@6000"],
+            "--displacement: `engine.displacement_cc` is out of range\n |\n = note: 1.8; allowed: 200 to 10000 cm³\n = help: did you mean 1.8l?\n\n1 problem in",
+        ),
+        (
+            &[
+                "new",
+                "a",
+                "--displacement",
+                "1.8l",
+                "--power",
+                "132 hp @ 6,000 rpm",
+            ],
+            "write 6.000 with a decimal point, or 6000 without a comma",
+        ),
     ] {
         let output = run_in(dir.path(), words);
         assert_eq!(output.status.code(), Some(2), "{words:?}");
@@ -168,5 +192,229 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
     assert_eq!(
         fs::read_to_string(dir.path().join("kept.toml")).unwrap(),
         "mine"
+    );
+    assert_eq!(stderr(&output).matches("--force").count(), 1);
+}
+
+/// US coefficients without their unit: 33.21 - 0.0887 80 + 0.02124 80^2 = 162 N at 80 km/h.
+#[test]
+fn a_doubt_of_new_is_one_of_check_and_of_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let words = "new mycar --displacement 1.8l --power 132hp@6000 --f0 33.21 --f1 -0.0887 --f2 0.02124 --mass 3125";
+    let words: Vec<&str> = words.split(' ').collect();
+    let doubts = [
+        "the road load is 162 N at 80 km/h, of cars of the classes 0.22 to 0.28 N per kg: are the coefficients in lbf?",
+        "the mass is 3125 kg: is it in lb?",
+    ];
+    let made = run_in(dir, &words);
+    let checked = run_in(dir, &["check", "mycar.toml"]);
+    for output in [&made, &checked] {
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
+        for doubt in doubts {
+            let line = format!("doubt: {doubt}\n");
+            assert!(stdout(output).contains(&line), "{}", stdout(output));
+        }
+    }
+    let driven = run_in(
+        dir,
+        &[
+            "run",
+            "--vehicle",
+            "mycar.toml",
+            "--cycle",
+            "ece15",
+            "--price",
+            "never",
+        ],
+    );
+    let line = format!(
+        "mycar: doubt: {} (1 more: `cvtcycle check` prints them)\n",
+        doubts[0]
+    );
+    assert_eq!(driven.status.code(), Some(0), "{}", stderr(&driven));
+    // Once, though its twin has the same mass and road load.
+    assert!(stdout(&driven).contains(&line), "{}", stdout(&driven));
+    assert_eq!(stdout(&driven).matches("doubt:").count(), 1);
+}
+
+/// A pump map from 8 bar on, where gentle driving needs 2 to 8: the headline says where the map was left, by the trace of the run.
+#[test]
+fn a_map_that_is_left_for_long_is_a_headline() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let mut map = "input_speed_rpm,secondary_pressure_bar,torque_loss_nm\n".to_owned();
+    for (rpm, bar) in [(0, 8), (0, 60), (7000, 8), (7000, 60)] {
+        map += &format!("{rpm},{bar},1.5\n");
+    }
+    fs::write(dir.join("pump.csv"), map).unwrap();
+    let like = "[\"class:compact_2020\", \"class:box_cvt_clutch\"]";
+    let car = format!("[vehicle]\nlike = {like}\n[transmission.cvt.maps]\npump = \"pump.csv\"\n");
+    fs::write(dir.join("car.toml"), car).unwrap();
+    let words = [
+        "run",
+        "--vehicle",
+        "car.toml",
+        "--cycle",
+        "ece15",
+        "--price",
+        "never",
+        "--out",
+        "out",
+        "--sensitivity",
+        "never",
+    ];
+    let output = run_in(dir, &words);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let trace = fs::read_to_string(dir.join("out/trace_car.csv")).unwrap();
+    let mut lines = trace.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|own| *own == name).unwrap();
+    let (dt, bar) = (column("dt_s"), column("secondary_pressure_bar"));
+    let (mut below_s, mut all_s) = (0.0, 0.0);
+    for line in lines {
+        let cells: Vec<&str> = line.split(',').collect();
+        let [dt_s, bar]: [f64; 2] = [dt, bar].map(|k| cells[k].parse().unwrap());
+        all_s += dt_s;
+        below_s += if bar < 8.0 { dt_s } else { 0.0 };
+    }
+    let line = format!(
+        "car: pump.csv was left for {:.0} % of the time with the engine on, most by secondary_pressure_bar below 8;",
+        100.0 * below_s / all_s
+    );
+    let text = stdout(&output).replace('\n', " ");
+    assert!(
+        below_s > 0.2 * all_s && text.contains(&line),
+        "{line}\n{text}"
+    );
+    // The same without rows, and nothing of a map that covers the drive.
+    let again = run_in(dir, &words[..7]);
+    assert!(
+        stdout(&again).replace('\n', " ").contains(&line),
+        "{}",
+        stdout(&again)
+    );
+    let whole = fs::read_to_string(dir.join("pump.csv"))
+        .unwrap()
+        .replace(",8,", ",0,");
+    fs::write(dir.join("pump.csv"), whole).unwrap();
+    let covered = run_in(dir, &words[..7]);
+    assert!(
+        !stdout(&covered).contains("was left"),
+        "{}",
+        stdout(&covered)
+    );
+}
+
+/// The box that is taken where none is named; where one is, nothing is said of it.
+#[test]
+fn the_usual_box_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let words = [
+        "new",
+        "a",
+        "--displacement",
+        "1.8l",
+        "--power",
+        "132hp@6000",
+    ];
+    let usual = stdout(&run_in(dir.path(), &words));
+    let line = "box: box_cvt_clutch, with a wet launch clutch; most CVTs from 2010 on have a torque converter: --box box_cvt_converter\n";
+    assert!(usual.contains(line), "{usual}");
+    let named = [&words[..], &["--box", "box_cvt_clutch", "--force"]].concat();
+    assert!(!stdout(&run_in(dir.path(), &named)).contains("box:"));
+}
+
+/// What people try with the name of a file has the right option as its hint.
+#[test]
+fn a_file_in_the_wrong_place_is_known() {
+    let dir = tempfile::tempdir().unwrap();
+    let words = [
+        "new",
+        "a",
+        "--displacement",
+        "1.8l",
+        "--power",
+        "132hp@6000",
+    ];
+    assert_eq!(run_in(dir.path(), &words).status.code(), Some(0));
+    let map = "# a map\ninput_speed_rpm,torque_loss_nm\n600,1\n3000,2\n";
+    fs::write(dir.path().join("pump.csv"), map).unwrap();
+    for (words, part) in [
+        (
+            &["run", "a.toml"][..],
+            "a vehicle is named by an option: --vehicle a.toml",
+        ),
+        (&["attribute", "a.toml"], "--vehicle a.toml"),
+        (&["levers", "a.toml"], "this is a vehicle"),
+        (&["run", "--vehicle", "a"], "did you mean `a.toml`?"),
+        (
+            &["check", "pump.csv"],
+            "this is a measured map of a vehicle",
+        ),
+        (
+            &[
+                "run",
+                "--vehicle",
+                "a.toml",
+                "--set",
+                "road_load.mass_kg=3125lb",
+            ],
+            "write 1417.48 without a unit: 3125 lb are 1417.48 kg",
+        ),
+        (
+            &[
+                "run",
+                "--vehicle",
+                "a.toml",
+                "--set",
+                "engine.start_stop=true",
+            ],
+            "set one of its keys: engine.start_stop.KEY=VALUE",
+        ),
+    ] {
+        let output = run_in(dir.path(), words);
+        assert_eq!(output.status.code(), Some(2), "{words:?}");
+        assert!(
+            stderr(&output).contains(part),
+            "{words:?}: {}",
+            stderr(&output)
+        );
+    }
+    let words = [
+        "run",
+        "--vehicle",
+        "a.toml",
+        "--cycle",
+        "ece15",
+        "--ambient",
+        "-10",
+        "--price",
+        "never",
+        "--set",
+        "engine.start_stop.delay_s=0.5",
+    ];
+    let cold = stdout(&run_in(dir.path(), &words));
+    for part in [
+        "a: start-stop does not stop the engine below -5 degC of ambient",
+        "a_twin: gears prescribed by the cycle",
+    ] {
+        assert!(cold.contains(part), "{part}\n{cold}");
+    }
+    let by_rule = stdout(&run_in(
+        dir.path(),
+        &[
+            "run",
+            "--vehicle",
+            "a.toml",
+            "--cycle",
+            "sc03",
+            "--price",
+            "never",
+        ],
+    ));
+    assert!(
+        by_rule.contains("a_twin: shift speeds by the rule TW-3, assumed\n"),
+        "{by_rule}"
     );
 }

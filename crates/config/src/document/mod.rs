@@ -1,9 +1,10 @@
-//! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML), and the overrides put into it.
+//! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML; `units`: numbers with units), and the overrides put into it.
 
 pub(crate) mod overrides;
 pub(crate) mod patched;
 mod shape;
 pub(crate) mod syntax;
+pub(crate) mod units;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;

@@ -1,8 +1,10 @@
 //! Problems that are found before any key is read: bytes that are no text, text that is no TOML.
 use std::ops::Range;
 
+use super::units::{decimal_comma, number_hint};
 use crate::problem::source::{MAX_VALUE, Source, shortened};
 use crate::problem::{Problem, Problems};
+use cvtcycle_model::keys::Quantity;
 
 /// Bytes of a line up to which slips are looked for: longer lines are not written by hand, and the search
 /// takes time with the square of the length.
@@ -117,7 +119,10 @@ fn slip(line: &str) -> Option<(Range<usize>, String)> {
         }
         let number = value.split(',').next().unwrap_or_default().trim_end();
         if let Some((figure, unit)) = number_with_unit(number) {
-            return Some((at..at + number.len(), number_hint(figure, unit)));
+            // The first name of the line, which may be followed by `{ value = …`.
+            let key = line.split('=').next().unwrap_or_default().trim();
+            let hint = number_hint(figure, unit, Quantity::of(key).unit());
+            return Some((at..at + number.len(), hint));
         }
         let bare = value.starts_with(char::is_alphabetic)
             && value
@@ -133,17 +138,6 @@ fn slip(line: &str) -> Option<(Range<usize>, String)> {
     })
 }
 
-/// Length of a number with a decimal comma at the start of `text`, and the number with a point.
-pub(crate) fn decimal_comma(text: &str) -> Option<(usize, String)> {
-    let digits =
-        |text: &str| text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-    let sign = usize::from(text.starts_with(['+', '-']));
-    let whole = digits(&text[sign..]);
-    let fraction = text[sign + whole..].strip_prefix(',').map_or(0, digits);
-    let length = sign + whole + 1 + fraction;
-    (whole > 0 && fraction > 0).then(|| (length, text[..length].replace(',', ".")))
-}
-
 /// Splits "3 mm" into the figure and the unit.
 pub(crate) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
     let text = text.trim();
@@ -153,12 +147,6 @@ pub(crate) fn number_with_unit(text: &str) -> Option<(&str, &str)> {
         && unit.chars().count() <= 12
         && !unit.contains(':');
     (figure.contains(|c: char| c.is_ascii_digit()) && is_unit).then_some((figure, unit))
-}
-
-/// What to write instead of a number with its unit.
-pub(crate) fn number_hint(figure: &str, unit: &str) -> String {
-    let figure = figure.replace(',', ".");
-    format!("write {figure} without `{unit}`: the unit is at the end of the key's name")
 }
 
 #[cfg(test)]

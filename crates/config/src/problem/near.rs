@@ -3,6 +3,9 @@
 /// Similarity below which a known name is no plausible reading of the written one.
 const MIN_SIMILARITY: f64 = 0.6;
 
+/// Length from which on the first word of a name is taken for it.
+const LEAST_WORD: usize = 4;
+
 /// A longer word is no mistyped name and is not compared with names: that takes time with its length.
 const MAX_LEN: usize = 200;
 
@@ -15,7 +18,13 @@ pub(crate) fn similarity(a: &str, b: &str) -> f64 {
     // Truncated and extended names ("mass" for "mass_kg") cost many edits; their common start
     // counts only when the similarity is high, since names of one table often begin alike.
     let start = strsim::jaro_winkler(a, b);
-    if start > 0.9 { edit.max(start) } else { edit }
+    // Of a name in several words the first one is enough.
+    let is_first_word =
+        a.len() >= LEAST_WORD && b.strip_prefix(a).is_some_and(|b| b.starts_with('_'));
+    match is_first_word || start > 0.9 {
+        true => edit.max(start),
+        false => edit,
+    }
 }
 
 /// Whether a similarity is high enough to suggest the name.

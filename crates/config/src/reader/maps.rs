@@ -145,22 +145,35 @@ pub(crate) fn bsfc_map(
     Some(map)
 }
 
+/// Columns of a loss map without that of the loss, of a CVT or of a manual box.
+#[must_use]
+pub const fn loss_map_axes(is_cvt: bool) -> [&'static str; GRID_AXES] {
+    let [first, torque] = match is_cvt {
+        true => ["ratio", "output_torque_nm"],
+        false => ["gear", "input_torque_nm"],
+    };
+    [
+        first,
+        "input_speed_rpm",
+        torque,
+        "secondary_pressure_bar",
+        "oil_temp_degc",
+    ]
+}
+
 /// A measured torque-loss map from CSV; `first` is the name of its first axis, `ratio` or `gear`.
 pub(crate) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
-    let torque = if first == "gear" {
-        "input_torque_nm"
-    } else {
-        "output_torque_nm"
-    };
-    let column = |name, low, high| Column::number(name, Bound::closed(low, high));
-    let columns = vec![
-        column(first, 0.2, 12.0),
-        column("input_speed_rpm", 0.0, 20_000.0),
-        column(torque, -3000.0, 3000.0),
-        column("secondary_pressure_bar", 0.0, 200.0),
-        column("oil_temp_degc", -60.0, 200.0),
-        column("torque_loss_nm", 0.0, 1000.0).required(),
+    let column = |name, (low, high)| Column::number(name, Bound::closed(low, high));
+    let ranges = [
+        (0.2, 12.0),
+        (0.0, 20_000.0),
+        (-3000.0, 3000.0),
+        (0.0, 200.0),
+        (-60.0, 200.0),
     ];
+    let axes = loss_map_axes(first != "gear").into_iter().zip(ranges);
+    let mut columns: Vec<Column> = axes.map(|(name, range)| column(name, range)).collect();
+    columns.push(column("torque_loss_nm", (0.0, 1000.0)).required());
     let quantities: Vec<Quantity> = columns.iter().map(|c| Quantity::of(&c.name)).collect();
     let table = read(s, key, file, first, columns)?;
     if let Some(map) = table.loss.get() {

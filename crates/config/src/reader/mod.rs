@@ -4,7 +4,7 @@
 mod choice;
 pub mod lists;
 pub(crate) mod log;
-mod maps;
+pub mod maps;
 pub(crate) mod raw_value;
 pub(crate) mod section;
 pub(crate) mod unknown;

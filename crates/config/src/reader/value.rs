@@ -2,7 +2,8 @@
 use std::borrow::Cow;
 use std::fmt::Display;
 
-use crate::document::syntax::{decimal_comma, number_hint, number_with_unit};
+use crate::document::syntax::number_with_unit;
+use crate::document::units::{decimal_comma, number_hint};
 use crate::document::{Document, Node, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{did_you_mean, one_of, suggest};
@@ -100,12 +101,12 @@ pub(crate) enum Lookup<'r> {
     Found(Found<'r>),
 }
 
-/// What to write instead of a number in quotes.
-fn text_hint(text: &str) -> String {
+/// What to write instead of a number in quotes, for a key of a unit.
+fn text_hint(text: &str, of: &str) -> String {
     if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
         format!("write {point} with a decimal point and without quotes")
     } else if let Some((figure, unit)) = number_with_unit(text) {
-        number_hint(figure, unit)
+        number_hint(figure, unit, of)
     } else if text.trim().parse::<f64>().is_ok() {
         format!("write {} without quotes", text.trim())
     } else {
@@ -301,14 +302,18 @@ impl<'r> Section<'r> {
     pub(crate) fn wrong_type(&self, key: &str, node: &Node, expected: &str) {
         let (path, found) = (self.dotted(key), node.value.kind());
         let message = format!("`{path}`: expected {expected}, found {found}");
-        // The range that the key was registered with, where the message does not say it already.
-        let mut allowed = String::new();
+        // Unit and range that the key was registered with, the range where the message does not say it already.
+        let (mut allowed, mut unit) = (String::new(), String::new());
         self.reader.record(|log| {
-            let info = log.info(&join(&self.path, key));
-            let range = info.map(|info| info.allowed.clone());
-            allowed = range.filter(|range| *range != expected).unwrap_or_default();
+            let Some(info) = log.info(&join(&self.path, key)) else {
+                return;
+            };
+            unit.clone_from(&info.unit);
+            if info.allowed != expected {
+                allowed.clone_from(&info.allowed);
+            }
         });
-        let hint = self.type_hint(key, node, expected);
+        let hint = self.type_hint((key, &unit), node, expected);
         let problem = Problem::wrong_type(message).names_key();
         let problem = problem.allowed(allowed).hint(hint);
         self.report(&node.span, key, problem);
@@ -329,11 +334,11 @@ impl<'r> Section<'r> {
     }
 
     /// What to write instead of a value of another kind.
-    fn type_hint(&self, key: &str, node: &Node, expected: &str) -> String {
+    fn type_hint(&self, (key, unit): (&str, &str), node: &Node, expected: &str) -> String {
         let written = self.reader.document.written(&node.span);
         match &node.value {
             Value::Text(text) if expected.contains("number") || expected.contains("integer") => {
-                text_hint(text)
+                text_hint(text, unit)
             }
             Value::Text(_) if expected == "true or false" => {
                 format!("write `{key} = true` or `{key} = false`, without quotes")
@@ -342,6 +347,9 @@ impl<'r> Section<'r> {
                 "write one text in quotes".to_string()
             }
             _ if expected == "text" => format!("write it in quotes: \"{written}\""),
+            _ if expected == "a table" && node.span.is_set() => {
+                format!("set one of its keys: {}.KEY=VALUE", self.dotted(key))
+            }
             _ if expected == "a table" => format!(
                 "write [{}] with its keys on the lines below",
                 self.dotted(key)

@@ -4,6 +4,7 @@
 
 pub mod assumptions;
 pub mod catalogue;
+mod doubts;
 pub mod new_car;
 pub mod template;
 mod inputs;
@@ -79,6 +80,14 @@ pub struct Origin {
     pub parents: Vec<(String, String)>,
     /// Name or path of transmission oil and engine oil.
     pub fluids: [String; 2],
+}
+
+impl Setup {
+    /// What looks like a slip in its values, a sentence each.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        doubts::doubts(self)
+    }
 }
 
 impl std::ops::Deref for Setup {
@@ -235,6 +244,11 @@ fn unknown_name(word: &str, kind: Kind) -> Problem {
     if kind == Kind::Class {
         return problem.allowed(names).hint(question.unwrap_or_default());
     }
+    let file = format!("{word}.toml");
+    let question = match std::path::Path::new(&file).is_file() {
+        true => Some(format!("did you mean `{file}`?")),
+        false => question,
+    };
     let question = question.map_or_else(String::new, |question| question + " ");
     problem
         .allowed(format!("{names}, or the path of a TOML file"))

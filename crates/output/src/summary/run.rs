@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::failure::{Deficit, Failure, LedgerErrors, failures};
+use super::maps_left::MapLeft;
 use super::{Driven, Named, PriceSummary, Settings};
 use crate::number::{finite, fixed, tiny};
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
@@ -13,6 +14,11 @@ use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_model::transmission::clamp_cause::ClampCause;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
+
+/// Source of the shift speeds of a twin without own ones.
+const BY_RULE: &str = "TW-3";
+/// What a drive says of shift speeds that are values of its car.
+const OF_FILE: &str = "shift speeds of the vehicle file";
 
 /// Miles per imperial gallon at 1 L/100 km.
 const MPG_UK: f64 = 282.481;
@@ -96,6 +102,9 @@ pub struct RunSummary {
     pub worst_deficit: Option<Deficit>,
     /// How the implicit solve went.
     pub solve: Solve,
+    /// Measured maps that were left for a large part of the drive.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub maps_left: Vec<MapLeft>,
     /// What a reader of these numbers should know.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
@@ -228,8 +237,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         transmission: if cvt { "cvt" } else { "manual" }.to_owned(),
         lubricant: oil.name.clone(),
         engine_oil: engine_oil.name.clone(),
-        gear_schedule: (!outcome.gear_schedule.is_empty())
-            .then(|| outcome.gear_schedule.to_owned()),
+        gear_schedule: gear_schedule(driven),
         distance_km: all.distance_m / 1e3,
         duration_s: all.duration_s,
         fuel_kg: all.fuel_kg,
@@ -268,6 +276,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
         },
+        maps_left: Vec::new(),
         notes: setup.notes.clone(),
         failed_checks: Vec::new(),
         failures: Vec::new(),
@@ -284,6 +293,19 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let names = summary.failures.iter().map(|failure| failure.check.clone());
     summary.failed_checks = names.collect();
     summary
+}
+
+/// Where the gears come from; the shift speeds of a twin are in no file.
+fn gear_schedule(driven: &Driven) -> Option<String> {
+    let words = driven.outcome.gear_schedule;
+    let mut keys = driven.setup.keys.iter();
+    let is_rule =
+        keys.any(|info| info.key == "transmission.manual.upshift_kmh" && info.source == BY_RULE);
+    let words = match is_rule {
+        true => words.replacen(OF_FILE, "shift speeds by the rule TW-3, assumed", 1),
+        false => words.to_owned(),
+    };
+    Some(words).filter(|words| !words.is_empty())
 }
 
 fn larger(a: f64, b: f64) -> f64 {

@@ -8,7 +8,7 @@ use super::{Car, conditions_line, cycle_title, energy};
 use cvtcycle_output::Component;
 use cvtcycle_output::summary::{Comparison, RunSummary, Summary};
 use cvtcycle_study::attribute;
-use cvtcycle_study::words::run::{contradictions, intervals};
+use cvtcycle_study::words::run::{contradictions, intervals, maps_left};
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("answer", "Answer");
@@ -251,6 +251,7 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
         format!("{name} ran outside the validity of a model for {seconds}.")
     });
     let mut list: Vec<String> = outside.collect();
+    list.extend(maps_left(&found.summary));
     let unlike = found.summary.comparison.iter();
     let unlike = unlike.filter(|comparison| !comparison.differences.is_empty());
     list.extend(

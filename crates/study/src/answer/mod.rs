@@ -274,7 +274,7 @@ fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
 }
 
 pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
-    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    let mut reasons: Vec<String> = Vec::new();
     let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
     for car in 0..frame.outline.cars.len() {
         if !frame.status(car).any(is_bad) {
@@ -290,19 +290,26 @@ pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
                 // Of a failed check the name alone: what follows differs from run to run.
                 let name = one.split(' ').next().unwrap_or_default();
                 let word = if status == Status::Failed { name } else { one };
-                *reasons.entry(word.to_owned()).or_default() += 1;
+                reasons.push(word.to_owned());
             }
         }
     }
-    let mut reasons: Vec<(String, usize)> = reasons.into_iter().collect();
-    reasons.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
     Ok(Ended {
         ok: frame.count(Status::Ok),
         failed: frame.count(Status::Failed),
         not_run: frame.count(Status::NotRun),
         missing: frame.count(Status::Missing),
-        reasons,
+        reasons: counted(reasons.into_iter()),
     })
+}
+
+/// Words with their counts, the commonest first.
+pub(crate) fn counted(words: impl Iterator<Item = String>) -> Vec<(String, usize)> {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    words.for_each(|word| *counts.entry(word).or_default() += 1);
+    let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
+    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    counts
 }
 
 /// Points from which rank correlations are computed at most: more would cost memory and tell nothing that can be seen.

@@ -78,8 +78,8 @@ pub struct StudyCar {
     pub word: String,
     /// Ambient temperature of its own, degC.
     pub ambient_degc: Option<f64>,
-    /// Factors that would act on it, but for a key that it does not have.
-    pub missing: Vec<usize>,
+    /// Factors that would act on it, but for a key that it does not have, or for 0 of which they are a share.
+    pub idle: Vec<usize>,
     pub(super) bindings: Vec<Binding>,
     /// Of each factor what is done with its value afterwards.
     then: Vec<Vec<Override>>,
@@ -109,7 +109,7 @@ impl StudyCar {
             role: if subject { "subject" } else { "baseline" }.into(),
             word: word.to_owned(),
             ambient_degc: None,
-            missing: Vec::new(),
+            idle: Vec::new(),
             bindings: Vec::new(),
             then: vec![Vec::new(); plan.factors.len()],
             clip: plan.clip,
@@ -144,7 +144,7 @@ impl StudyCar {
             role: column.role.as_str().into(),
             word: column.word.clone(),
             ambient_degc: Some(column.ambient_degc),
-            missing: Vec::new(),
+            idle: Vec::new(),
             bindings: Vec::new(),
             then,
             clip: plan.clip,
@@ -168,10 +168,11 @@ impl StudyCar {
             };
             let acts = binding != Binding::Not;
             if let Some(template) = template.as_ref().filter(|_| acts)
-                && self.is_missing(factor, template)
+                && (self.is_missing(factor, template)
+                    || is_share_of_zero(binding, factor, template))
             {
                 binding = Binding::Not;
-                self.missing.push(index);
+                self.idle.push(index);
             }
             self.bindings.push(binding);
             if matches!(binding, Binding::Words { .. }) {
@@ -378,6 +379,12 @@ fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
         _ if !factor.values.are_numbers() => Binding::Words { stride },
         _ => Binding::Number(factor.acts),
     }
+}
+
+/// Whether a share of the value of the car's file is drawn that is 0.
+fn is_share_of_zero(binding: Binding, factor: &Factor, template: &VehicleTemplate) -> bool {
+    let base = || template.slot(&factor.key).map(|slot| slot.base());
+    binding == Binding::Number(Acts::Scale) && base().is_ok_and(|base| base == 0.0)
 }
 
 /// The entries of a factor's list as text; nothing for a distribution.

@@ -17,6 +17,7 @@ pub mod side_effects;
 
 pub use cars::{Column, StudyCar};
 pub use manifest::StudyManifest;
+pub(crate) use notes::idle;
 pub use prepare::{Columns, Study};
 pub use relative::relative;
 

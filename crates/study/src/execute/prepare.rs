@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::cars::{Column, StudyCar, words};
-use super::notes::notes;
+use super::notes::{not_drawn, notes};
 use super::outputs::{EXCESS, FUEL, Run, outputs, phase_excess, phase_fuel};
 use super::side_effects::SideEffects;
 use crate::plan::{Keep, Plan};
@@ -127,10 +127,14 @@ impl Study {
         let sides = columns.as_ref().map(|columns| columns.heard_rpm);
         let extra = sides.into_iter().flat_map(|_| SideEffects::heads());
         let traces = traces(&plan, &cars, &parts);
+        let mut notes = notes(&plan, &cars);
+        if columns.is_none() {
+            notes.extend(not_drawn(&plan, &cars));
+        }
         let trace_heads = head_columns().into_iter().take(2);
         let study = Study {
             points,
-            notes: notes(&plan, &cars),
+            notes,
             cars,
             cycles,
             phases,

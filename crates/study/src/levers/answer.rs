@@ -9,10 +9,12 @@
 //!
 //! Draws of which one of the two runs failed are left out of d and counted.
 
+use std::sync::Arc;
+
 use serde::Serialize;
 
 use super::prepare::{ColumnNote, LeverNotes};
-use crate::answer::{Ended, Status, StudyTable, ended};
+use crate::answer::{Ended, Status, StudyTable, counted, ended};
 use crate::execute::manifest::SCHEMA;
 use crate::execute::outputs::FUEL;
 use crate::execute::side_effects::{FLOOR, LOCKED, LUGGING, RESERVE};
@@ -21,6 +23,9 @@ use cvtcycle_config::{Problem, ProblemKind};
 
 /// Change of fuel, %, up to which two runs have the same fuel: rounding alone moves it so far.
 const EQUAL_PERCENT: f64 = 1e-6;
+
+/// Share of the draws above which failed ones make that a lever does not work in a car, or a car not in its draws.
+const MOST_FAILED: f64 = 0.5;
 
 /// Column of the carbon dioxide.
 const CO2: &str = "co2_g_per_km";
@@ -73,6 +78,12 @@ pub struct LeverBlock {
     pub ambient_degc: f64,
     /// Fuel of the car as it is, median, L/100 km.
     pub fuel_l_per_100km: f64,
+    /// Draws in which the car as it is fails a check or cannot be driven.
+    pub failed: usize,
+    /// Of how many.
+    pub n: usize,
+    /// Checks that it fails there with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
     /// Levers, then combinations, each from the largest saving on.
     pub rows: Vec<LeverRow>,
 }
@@ -87,6 +98,8 @@ pub struct LeverRow {
     pub n: usize,
     /// Draws in which its own run fails a check or cannot be driven and that of the reference can.
     pub failed: usize,
+    /// Checks that its own run fails there with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
     /// Median change of the fuel, %.
     pub fuel_percent: Quantile,
     /// The lower end of the draws.
@@ -121,7 +134,30 @@ pub struct SideEffect {
     pub change: f64,
 }
 
+impl LeverAnswer {
+    /// Whether a car as it is fails in most of its draws; without draws, whether any run fails.
+    pub fn is_failed(&self) -> bool {
+        match self.plan {
+            Some(_) => self
+                .blocks
+                .iter()
+                .any(|block| is_most(block.failed, block.n)),
+            None => self.runs.failed + self.runs.not_run > 0,
+        }
+    }
+}
+
+/// Whether failed draws are too many for the others to speak for all.
+fn is_most(failed: usize, n: usize) -> bool {
+    failed as f64 > MOST_FAILED * n as f64
+}
+
 impl LeverRow {
+    /// Whether it fails in most of the draws in which its reference does not.
+    pub fn does_not_work(&self) -> bool {
+        is_most(self.failed, self.failed + self.n)
+    }
+
     /// The worst value of a side effect; NaN where there is none.
     pub fn worst(&self, name: &str) -> f64 {
         let found = self.effects.iter().find(|effect| effect.name == name);
@@ -140,6 +176,23 @@ struct Numbers {
     co2: Vec<Vec<f64>>,
     effects: Vec<Vec<Vec<f64>>>,
     ok: Vec<Vec<bool>>,
+    /// Reasons of failed runs; none of a column without one.
+    reasons: Vec<Vec<Arc<str>>>,
+}
+
+impl Numbers {
+    /// The checks that a column fails at some points.
+    fn reasons(&self, column: usize, at: &[bool]) -> Vec<(String, usize)> {
+        let of_points = self.reasons[column].iter().zip(at);
+        let texts = of_points.filter(|(_, at)| **at);
+        counted(texts.flat_map(|(text, _)| names(text)))
+    }
+}
+
+/// The first words of the reasons of a run, which are the names of its failed checks: what follows differs from run to run.
+fn names(reason: &str) -> impl Iterator<Item = String> {
+    let all = reason.split("; ");
+    all.filter_map(|one| Some(one.split(' ').next()?.to_owned()))
 }
 
 /// Computes what a lever study says from the parts that are there.
@@ -173,7 +226,16 @@ pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverA
             .map(|status| status == Status::Ok)
             .collect()
     };
+    let is_bad = |car: usize| {
+        let mut status = frame.status(car);
+        status.any(|status| matches!(status, Status::Failed | Status::NotRun))
+    };
+    let reasons = (0..outline.cars.len()).map(|car| match is_bad(car) {
+        true => frame.words("reason", car),
+        false => Ok(Vec::new()),
+    });
     let numbers = Numbers {
+        reasons: reasons.collect::<Result<_, _>>()?,
         fuel: of(FUEL),
         co2: of(CO2),
         effects: names.iter().map(|name| of(name)).collect(),
@@ -204,10 +266,15 @@ fn blocks(columns: &[ColumnNote], numbers: &Numbers, confidence: Confidence) -> 
     for (k, column) in columns.iter().enumerate() {
         if column.kind == "reference" {
             if column.name == "reference" {
+                let failed = numbers.ok[k].iter().map(|ok| !ok);
+                let failed: Vec<bool> = failed.collect();
                 blocks.push(LeverBlock {
                     vehicle: column.vehicle.clone(),
                     ambient_degc: column.ambient_degc,
                     fuel_l_per_100km: median(numbers.fuel[k].iter().copied()),
+                    failed: failed.iter().filter(|failed| **failed).count(),
+                    n: failed.len(),
+                    reasons: numbers.reasons(k, &failed),
                     rows: Vec::new(),
                 });
             }
@@ -260,13 +327,13 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
     let [low, high] = confidence.ends();
     let differences = |of: &[Vec<f64>]| median(pairs(of).into_iter().map(|(x, of)| x - of));
     let both = numbers.ok[column].iter().zip(&numbers.ok[reference]);
+    let failed: Vec<bool> = both.map(|(own, reference)| !own && *reference).collect();
     let effects = EFFECTS.iter().zip(&numbers.effects);
     LeverRow {
         of: note.clone(),
         n: summary.n,
-        failed: both
-            .filter(|(own, reference)| !**own && **reference)
-            .count(),
+        failed: failed.iter().filter(|failed| **failed).count(),
+        reasons: numbers.reasons(column, &failed),
         fuel_percent: quantile(0.5),
         low_percent: quantile(low),   // PV-2
         high_percent: quantile(high), // PV-2

@@ -11,12 +11,9 @@ use super::cars::{LeverCar, cars};
 use super::combine::{Combination, Combine, Nominal, check, combinations};
 use super::{Lever, options};
 use crate::execute::outputs::FUEL;
-use crate::execute::{Column, Columns, Study, relative};
+use crate::execute::{Column, Columns, Study, idle, relative};
 use crate::plan::{Base, Design, Factor, Plan, RUN_OPTIONS};
 use cvtcycle_config::{Problem, Problems};
-
-/// Names of factors that a sentence lists.
-const MOST_NAMES: usize = 6;
 
 /// What is to be driven.
 #[derive(Clone, Debug)]
@@ -388,20 +385,9 @@ impl<'r> Builder<'r> {
     }
 }
 
-/// A sentence on the factors whose keys a car does not have, and on each whose draws are held at the ends of its range.
+/// A sentence on the factors that do not act on a car, and on each whose draws are held at the ends of its range.
 fn skipped(study: &Study, columns: &[ColumnNote]) -> Vec<String> {
     let factors = &study.plan.factors;
-    let names = |list: &[usize]| {
-        let first = list
-            .iter()
-            .take(MOST_NAMES)
-            .map(|f| factors[*f].name.as_str());
-        let more = match list.len().saturating_sub(MOST_NAMES) {
-            0 => String::new(),
-            n => format!(" and {n} more"),
-        };
-        first.collect::<Vec<_>>().join(", ") + &more
-    };
     let mut notes: Vec<String> = Vec::new();
     let first = &columns.first().map(|column| column.ambient_degc);
     for (car, column) in study.cars.iter().zip(columns) {
@@ -409,12 +395,7 @@ fn skipped(study: &Study, columns: &[ColumnNote]) -> Vec<String> {
             continue;
         }
         let vehicle = &column.vehicle;
-        if !car.missing.is_empty() {
-            let (n, all, list) = (car.missing.len(), factors.len(), names(&car.missing));
-            notes.push(format!(
-                "{vehicle}: {n} of {all} factors are of keys that it does not have: {list}"
-            ));
-        }
+        notes.extend(idle(vehicle, car, factors));
         notes.extend(study.held(car).into_iter().map(|(f, draws)| {
             format!(
                 "{vehicle}: {draws} draws of {} are held at the end of its range",

@@ -7,13 +7,21 @@ use cvtcycle_output::number::{fixed, signed};
 pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> {
     let mut sentences = Vec::new();
     let fuel = fixed(block.fuel_l_per_100km, 2);
-    let single = || block.rows.iter().filter(|row| !row.is_combination());
+    let of_draws = match answer.plan {
+        Some(_) => " in the median of the draws",
+        None => "",
+    };
+    let all = || block.rows.iter().filter(|row| !row.is_combination());
+    // What little holds of a lever that mostly fails says nothing.
+    let single = || all().filter(|row| !row.does_not_work());
     match single().find(|row| row.fuel_percent.value < 0.0) {
         Some(best) => {
             let (name, change) = (&best.of.title, change(answer, best));
-            sentences.push(format!("{fuel} L/100 km; {name} saves most: {change}."));
+            sentences.push(format!(
+                "{fuel} L/100 km{of_draws}; {name} saves most: {change}."
+            ));
         }
-        None => sentences.push(format!("{fuel} L/100 km; no lever saves fuel.")),
+        None => sentences.push(format!("{fuel} L/100 km{of_draws}; no lever saves fuel.")),
     }
     let is_open = |row: &&LeverRow| {
         let interval = row.saves.interval;
@@ -30,6 +38,23 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         let list = open.join(", ");
         sentences.push(format!("It is open whether these save: {list}."));
     }
+    for row in all().filter(|row| row.does_not_work()) {
+        let (name, draws) = (&row.of.name, row.failed + row.n);
+        let why = why(&row.reasons);
+        sentences.push(match answer.plan {
+            Some(_) => format!(
+                "{name} does not work in this car: {why} in {} of {draws} draws.",
+                row.failed
+            ),
+            None => format!("{name} does not work in this car: {why}."),
+        });
+    }
+    if answer.plan.is_some() && block.failed > 0 {
+        let (failed, n, why) = (block.failed, block.n, why(&block.reasons));
+        sentences.push(format!(
+            "In {failed} of {n} draws the car as it is fails by {why}; they are left out."
+        ));
+    }
     for row in block.rows.iter().filter(|row| row.is_combination()) {
         let (list, change) = (row.of.members.join(" + "), change(answer, row));
         let sum = signed(row.sum_percent, 2);
@@ -38,6 +63,12 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         ));
     }
     sentences
+}
+
+/// Names of the failed checks.
+fn why(reasons: &[(String, usize)]) -> String {
+    let names: Vec<&str> = reasons.iter().map(|(name, _)| name.as_str()).collect();
+    names.join(", ")
 }
 
 /// Median, range and certainty of a change.

@@ -4,10 +4,13 @@
 use std::cell::OnceCell;
 
 use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::decimal;
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
 use cvtcycle_output::number::fixed;
 use cvtcycle_output::provenance::car_sha256;
-use cvtcycle_output::summary::{Comparison, Contradiction, Driven, RunSummary, StartWord, Summary};
+use cvtcycle_output::summary::{
+    Comparison, Contradiction, Driven, MapLeft, RunSummary, StartWord, Summary,
+};
 
 use super::intervals as drawn;
 use super::{against_print, between, decimals, more_or_less, of_difference, than};
@@ -113,7 +116,32 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let against: String = summary.comparison.iter().filter_map(against).collect();
     let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
     let lines = [Some(first), price(run)].into_iter().flatten();
+    let lines = lines.chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
+}
+
+/// The measured maps that a car left for a large part of the run, a sentence each.
+pub fn maps_left(summary: &Summary) -> Vec<String> {
+    let of = |run: &RunSummary| {
+        let maps = run.maps_left.iter();
+        maps.map(|map| left_map(run, map)).collect::<Vec<_>>()
+    };
+    summary.runs.iter().flat_map(of).collect()
+}
+
+/// A measured map that a car left: "mycar: pump.csv was left for 78 % of the time with the engine on, most of it with …".
+fn left_map(run: &RunSummary, map: &MapLeft) -> String {
+    let end = map
+        .end
+        .map_or_else(String::new, |end| format!(" {}", decimal(end)));
+    format!(
+        "{}: {} was left for {} % of the time with the engine on, most by {} {}{end}; the value of its edge is held there.",
+        run.vehicle,
+        map.file,
+        fixed(map.percent, 0),
+        map.column,
+        map.side
+    )
 }
 
 /// The published numbers that a run contradicts, a sentence each.

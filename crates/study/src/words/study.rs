@@ -236,7 +236,9 @@ fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
                 factor.name
             )
         });
-        let needed = of.draws_needed().map_or_else(String::new, |n| {
+        // Fewer than there are would be no advice.
+        let needed = of.draws_needed().filter(|n| *n > 2.0 * of.n as f64);
+        let needed = needed.map_or_else(String::new, |n| {
             let round = 10f64.powf(n.log10().floor());
             format!(
                 "; about {} draws would tell",

@@ -2,9 +2,11 @@
 
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
+use cvtcycle::study::answer::Ended;
 use cvtcycle::study::execute::side_effects::{FLOOR, LUGGING};
 use cvtcycle::study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words};
 
+use super::super::tables::MAX_REASONS;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
@@ -42,7 +44,25 @@ pub fn tables(answer: &LeverAnswer, (present, all): (usize, usize), paint: Paint
         text.extend(doubts.iter().map(|doubt| wrapped(doubt, "note: ")));
     }
     text.extend(answer.notes.iter().map(|note| wrapped(note, "note: ")));
-    text
+    text + &left_out(&answer.runs)
+}
+
+/// The runs that are left out, with their reasons.
+fn left_out(runs: &Ended) -> String {
+    let bad = runs.failed + runs.not_run;
+    if bad == 0 {
+        return String::new();
+    }
+    let reasons = runs.reasons.iter().take(MAX_REASONS);
+    let reasons: Vec<String> = reasons
+        .map(|(reason, n)| format!("{n} x {reason}"))
+        .collect();
+    let all = runs.ok + bad;
+    let note = format!(
+        "{bad} of {all} runs fail a check and are left out: {}",
+        reasons.join(", ")
+    );
+    wrapped(&note, "note: ")
 }
 
 fn levers(answer: &LeverAnswer, block: &LeverBlock) -> String {

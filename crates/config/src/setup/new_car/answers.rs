@@ -33,7 +33,9 @@ impl Answers {
                     continue;
                 }
             };
-            let number = NUMBERS.iter().find(|(own, _)| own == name);
+            // Keys of TOML files have `_` where options have `-`.
+            let option = name.replace('_', "-");
+            let number = NUMBERS.iter().find(|(own, _)| *own == option);
             match (number, name.as_str()) {
                 (Some((own, _)), _) if !self.numbers.contains_key(own) => {
                     self.numbers.insert(own, text);

@@ -1,5 +1,10 @@
 //! The full-load line through highest torque and rated power (NC-2).
 
+use cvtcycle_model::keys::RPM;
+
+/// Power at the speed of highest torque over rated power: data sheets round both.
+const MOST_OF_RATED: f64 = 1.03;
+
 /// Idle, highest torque, rated power and the highest speed of an engine.
 pub(super) struct Curve {
     pub nm: f64,
@@ -11,9 +16,17 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Why there is no such line.
+    /// Why there is no such line. Highest torque is that at rated power at least, and at its own speed no more power than the rated one.
     pub fn mistake(&self) -> Option<String> {
         let [from, to] = self.plateau;
+        let kw = |nm: f64, rpm: f64| nm * rpm * RPM / 1e3;
+        let (highest_kw, rated_kw) = (kw(self.nm, to), kw(self.rated_nm, self.rated_rpm));
+        if highest_kw > MOST_OF_RATED * rated_kw {
+            return Some(format!(
+                "{:.0} Nm at {to:.0} rpm are {highest_kw:.0} kW, more than the rated power of {rated_kw:.0} kW",
+                self.nm
+            ));
+        }
         if self.nm < self.rated_nm {
             return Some(format!(
                 "rated power needs {:.0} Nm at {:.0} rpm, more than the highest torque of {:.0} Nm",

@@ -9,14 +9,17 @@
 //! | NC-6 | heat capacity of the engine by rated power: block 0.525, oil 0.28 kJ/K per kW | derived from ADVISOR |
 //! | NC-7 | units by their definitions | source |
 //! | NC-9 | stroke of four cylinders of equal bore and stroke | ASSUMED |
+//! | NC-10 | a CVT of a class keeps an engine that has its fuel cut later than the class expects 100 rpm above that speed in overrun | ASSUMED: controllers of CVTs hold the cut, 50 to 200 rpm |
 //!
-//! `units` reads numbers with their units, `rules` makes the values, `full_load` the line of full load, this module the file; `answers`
+//! `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, this module the file; `options` puts what is wrong with it under their options, `answers`
 //! reads the numbers from a file, `questions` says what may be asked for.
 
 mod answers;
 mod full_load;
+mod options;
 mod questions;
 mod rules;
+mod tyre;
 mod units;
 
 use std::collections::BTreeMap;
@@ -54,8 +57,6 @@ pub struct NewCar {
     pub text: String,
     /// The car that it is.
     pub setup: Setup,
-    /// What to look at again.
-    pub doubts: Vec<String>,
 }
 
 /// Names of the numbers that a car may have, with their meaning.
@@ -72,7 +73,7 @@ pub const NUMBERS: [(&str, &str); 21] = [
     ("displacement", "displacement of the engine: cm3 or l"),
     (
         "power",
-        "rated power, and its speed: 104@6400; kW, hp or PS",
+        "rated power with its unit, and its speed: 104kW@6400; kW, hp or PS",
     ),
     (
         "torque",
@@ -157,13 +158,10 @@ fn made(answers: &Answers) -> Result<NewCar, Problems> {
     let title = format!("title = {title}\n{own}");
     let mut text = head(&title, &base.like, base.car.transmission().is_cvt());
     text += &tables(&lines);
-    let setup = car(answers, &text)?;
+    let setup = car(answers, &text);
+    let setup = setup.map_err(|found| options::under_options(found, &lines, answers))?;
     text += &of_weight(&setup);
-    Ok(NewCar {
-        doubts: rules::doubts(&setup),
-        text,
-        setup,
-    })
+    Ok(NewCar { text, setup })
 }
 
 /// Whether a number that a class cannot have is missing.

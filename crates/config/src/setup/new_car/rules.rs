@@ -1,17 +1,19 @@
-//! From catalogue numbers to values of keys (NC-1 to NC-9).
+//! From catalogue numbers to values of keys (NC-1 to NC-10).
 
 use std::f64::consts::PI;
 
 use super::full_load::Curve;
-use super::units::{
+use super::tyre::tyre;
+use super::{Answers, NUMBERS, meaning};
+use crate::document::units::{
     FORCE, FORCE_PER_SPEED, FORCE_PER_SPEED2, LENGTH, MASS, OIL, PER_TURN, POWER, RATIO, SPEED,
-    TORQUE, Units, VOLUME, tyre,
+    TORQUE, Units, VOLUME,
 };
-use super::{Answers, meaning};
 use crate::setup::Setup;
 use crate::setup::twin::shifts_kmh;
 use crate::{Problem, Problems, decimal};
 use cvtcycle_model::keys::{RAD_S, RPM};
+use cvtcycle_model::transmission::Transmission;
 
 /// A value of the file.
 pub(super) struct Line {
@@ -21,6 +23,8 @@ pub(super) struct Line {
     /// `derived`, `assumed`, or nothing for what the user has given.
     pub status: &'static str,
     pub source: String,
+    /// The option whose number it is.
+    pub option: Option<&'static str>,
 }
 
 impl Line {
@@ -44,7 +48,7 @@ impl Line {
 }
 
 /// Numbers that are values of a key as they are: option, key, units.
-const PLAIN: [(&str, &str, Units); 9] = [
+pub(super) const PLAIN: [(&str, &str, Units); 9] = [
     ("mass", "road_load.mass_kg", MASS),
     ("f0", "road_load.form.coefficients.f0_n", FORCE),
     (
@@ -83,8 +87,13 @@ const STOP: f64 = 0.12;
 /// Speed of rated power where none is given, rpm, and highest speed above it.
 const RATED_RPM: f64 = 6200.0;
 const BEYOND_RATED_RPM: f64 = 400.0;
+/// Engine speed of a CVT in overrun over that from which all fuel is cut, rpm (NC-10).
+const OVER_CUT_RPM: f64 = 100.0;
 /// Highest torque over that at rated power, and its speed over that of rated power, where none are given.
 const USUAL_TORQUE: (f64, f64) = (1.09, 0.68);
+
+/// Power has its unit: data sheets have kW, hp or PS, and a number of one is a likely power in the others, so that no doubt finds it.
+const POWER_HINT: &str = "write its unit: 104kW@6400, 140hp@6400 or 142PS@6400";
 
 /// The numbers that are given.
 struct Given<'a> {
@@ -162,7 +171,10 @@ impl Given<'_> {
 
     /// A number that is a part of the text of an option.
     fn read(&mut self, option: &str, part: &str, text: &str, units: &Units) -> Option<f64> {
-        let found = units.number(part);
+        self.take(option, text, units.number(part))
+    }
+
+    fn take(&mut self, option: &str, text: &str, found: Result<f64, Problem>) -> Option<f64> {
         self.problems
             .take(found.map_err(|problem| problem.key(option).value(text)))
     }
@@ -181,6 +193,10 @@ impl Given<'_> {
             value,
             status: "",
             source,
+            option: NUMBERS
+                .iter()
+                .map(|(own, _)| *own)
+                .find(|own| *own == option),
         });
     }
 
@@ -190,6 +206,7 @@ impl Given<'_> {
             value,
             status: "derived",
             source,
+            option: None,
         });
     }
 
@@ -261,7 +278,10 @@ impl Given<'_> {
             Some((value, speeds)) => (value, speeds.trim_end_matches("rpm").split('-').collect()),
             None => (text.as_str(), Vec::new()),
         };
-        let value = self.read(option, value, &text, units)?;
+        let value = match option {
+            "power" => self.take(option, &text, units.number_with_unit(value, POWER_HINT)),
+            _ => self.read(option, value, &text, units),
+        }?;
         let count = speeds.len();
         let speeds = speeds
             .into_iter()
@@ -396,6 +416,7 @@ impl Given<'_> {
                 digits(ratio),
             );
         }
+        self.overrun();
         let limits = self.ratio_limits();
         let centre_mm = self.number("centre-distance", &LENGTH);
         let Some([low, high]) = limits else { return };
@@ -420,6 +441,21 @@ impl Given<'_> {
         let low = low.unwrap_or_else(|| self.inherited(LOW));
         let centre_mm = centre_mm.unwrap_or_else(|| self.inherited(CENTRE));
         self.belt_of(low, centre_mm);
+    }
+
+    /// Engine speed in overrun where that of the class is too low for the engine to have its fuel cut (NC-10). A car has its own.
+    fn overrun(&mut self) {
+        let Transmission::Cvt(cvt) = self.base.transmission() else {
+            return;
+        };
+        let cut = self.base.engine().cut_above_rad_s;
+        if self.answers.like.is_none() && cvt.ratio.overrun_rad_s < cut {
+            self.follows(
+                "transmission.cvt.ratio.overrun_rpm",
+                digits((cut * RAD_S).round() + OVER_CUT_RPM),
+                "NC-10: above the speed from which all fuel is cut".to_owned(),
+            );
+        }
     }
 
     /// The belt that runs at the least radius in low.
@@ -520,6 +556,7 @@ impl Given<'_> {
                 value: list(&speeds),
                 status: "assumed",
                 source: format!("TW-3, rated speed {:.0} rpm", rated_rad_s * RAD_S),
+                option: None,
             });
         }
     }
@@ -531,31 +568,4 @@ fn belt_length_m(low: f64, centre_m: f64) -> f64 {
     let alpha = ((secondary - primary) / centre_m).asin();
     let strut = (centre_m * centre_m - (secondary - primary).powi(2)).sqrt();
     primary * (PI - 2.0 * alpha) + secondary * (PI + 2.0 * alpha) + 2.0 * strut
-}
-
-/// What looks like a slip in the numbers of a car.
-pub(super) fn doubts(setup: &Setup) -> Vec<String> {
-    let base = &setup.road_load.base;
-    let v = 80.0 / 3.6;
-    let force_n = base.f0_n + (base.f1_n_per_m_s + base.f2_n_per_m_s2 * v) * v;
-    let mut list = Vec::new();
-    if force_n < 0.15 * base.mass_kg {
-        list.push(format!(
-            "the road load is {force_n:.0} N at 80 km/h, of cars of the classes 0.22 to 0.28 N per kg: are the coefficients in lbf?"
-        ));
-    }
-    if base.mass_kg > 2500.0 {
-        list.push(format!("the mass is {:.0} kg: is it in lb?", base.mass_kg));
-    }
-    let (rated_kw, litres) = (
-        setup.engine().rated_w / 1e3,
-        setup.engine().displacement_m3 * 1e3,
-    );
-    let per_litre = rated_kw / litres;
-    if !(25.0..=150.0).contains(&per_litre) {
-        list.push(format!(
-            "the engine has {per_litre:.0} kW per litre: check displacement and power"
-        ));
-    }
-    list
 }

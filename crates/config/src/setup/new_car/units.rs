@@ -1,53 +1,37 @@
-//! Catalogue numbers with their units (NC-7): what is given without a unit is in the first of its kind.
+//! Catalogue numbers with their units: what is given without a unit is in the first of its kind.
 
+use crate::document::units::{Units, decimal_comma, parts_thousands};
 use crate::problem::near::one_of;
 use crate::{Problem, did_you_mean};
 
-/// Names of a unit, and its size in the unit of the key.
-type Unit = (&'static [&'static str], f64);
-
-/// Units of a catalogue number; the first has the size 1.
-#[derive(Debug)]
-pub(super) struct Units(pub &'static [Unit]);
-
-const LB: f64 = 0.453_592_37;
-/// N of a pound-force.
-const LBF: f64 = 4.448_221_615_260_5;
-/// km of a mile.
-const MILE: f64 = 1.609_344;
-
-pub(super) const MASS: Units = Units(&[(&["kg"], 1.0), (&["lb", "lbs"], LB), (&["t"], 1000.0)]);
-pub(super) const FORCE: Units = Units(&[(&["N"], 1.0), (&["lbf"], LBF)]);
-pub(super) const FORCE_PER_SPEED: Units = Units(&[
-    (&["N/(km/h)", "N/kmh"], 1.0),
-    (&["lbf/mph", "lbf"], LBF / MILE),
-]);
-pub(super) const FORCE_PER_SPEED2: Units = Units(&[
-    (&["N/(km/h)2", "N/kmh2"], 1.0),
-    (&["lbf/mph2", "lbf"], LBF / (MILE * MILE)),
-]);
-pub(super) const VOLUME: Units = Units(&[(&["cm3", "cc", "ccm"], 1.0), (&["l", "L"], 1000.0)]);
-pub(super) const OIL: Units = Units(&[(&["l", "L"], 1.0)]);
-pub(super) const POWER: Units = Units(&[
-    (&["kW"], 1.0),
-    (&["hp", "bhp"], 0.745_699_87),
-    (&["PS"], 0.735_498_75),
-]);
-pub(super) const TORQUE: Units =
-    Units(&[(&["Nm"], 1.0), (&["lbft", "lb-ft", "ftlb"], 1.355_817_9)]);
-pub(super) const SPEED: Units = Units(&[(&["rpm"], 1.0)]);
-pub(super) const LENGTH: Units = Units(&[(&["mm"], 1.0), (&["cm"], 10.0), (&["m"], 1000.0)]);
-pub(super) const PER_TURN: Units = Units(&[(&["cc/rev", "cc", "cm3"], 1.0)]);
-pub(super) const RATIO: Units = Units(&[]);
-
 impl Units {
+    /// As [`Units::number`], of a text that has to have its unit.
+    ///
+    /// # Errors
+    /// The text is no number, or has no unit.
+    pub fn number_with_unit(&self, text: &str, hint: &str) -> Result<f64, Problem> {
+        let number = self.number(text)?;
+        match text
+            .trim()
+            .ends_with(|c: char| c.is_ascii_digit() || c == '.')
+        {
+            false => Ok(number),
+            true => Err(Problem::missing("the number has no unit")
+                .allowed(self.allowed())
+                .hint(hint)),
+        }
+    }
+
     /// The number of a text, in the unit of the key.
     pub fn number(&self, text: &str) -> Result<f64, Problem> {
         let text = text.trim();
         let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.".contains(c)));
         let (figure, unit) = text.split_at(end.unwrap_or(text.len()));
         let unit = unit.trim();
-        let size = match self.0.iter().find(|(names, _)| names.contains(&unit)) {
+        if let Some(problem) = self.with_comma(text) {
+            return Err(problem);
+        }
+        let size = match self.find(unit) {
             Some((_, size)) => *size,
             None if unit.is_empty() => 1.0,
             None => return Err(self.wrong_unit(unit)),
@@ -58,6 +42,21 @@ impl Units {
                 .allowed(self.allowed())
                 .hint("write the number with a decimal point, and its unit after it")),
         }
+    }
+
+    /// A number with a comma, which is a decimal point in one country and parts thousands in another.
+    fn with_comma(&self, text: &str) -> Option<Problem> {
+        let (length, point) = decimal_comma(text)?;
+        let (figure, rest) = text.split_at(length);
+        let mut hint = format!("write {point}{rest} with a decimal point");
+        if parts_thousands(&point) {
+            hint += &format!(", or {}{rest} without a comma", figure.replace(',', ""));
+        }
+        Some(
+            Problem::wrong_type("a number with a comma")
+                .allowed(self.allowed())
+                .hint(hint),
+        )
     }
 
     fn wrong_unit(&self, unit: &str) -> Problem {
@@ -82,21 +81,11 @@ impl Units {
     }
 }
 
-/// Width mm, height over width in per cent, and rim in inches of a tyre code such as 215/55 R16.
-pub(super) fn tyre(code: &str) -> Option<[f64; 3]> {
-    let (width, rest) = code.trim().split_once('/')?;
-    let (height, rim) = rest.split_once(['R', 'r'])?;
-    let height = height.trim_end_matches(|c: char| c.is_ascii_alphabetic() || c == ' ');
-    let number = |text: &str| text.trim().parse::<f64>().ok();
-    let found = [number(width)?, number(height)?, number(rim)?];
-    let ranges = [125.0..=355.0, 20.0..=90.0, 10.0..=24.0];
-    let fits = found.iter().zip(ranges).all(|(x, range)| range.contains(x));
-    fits.then_some(found)
-}
-
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::document::units::{
+        FORCE, FORCE_PER_SPEED, FORCE_PER_SPEED2, MASS, POWER, TORQUE, VOLUME,
+    };
 
     /// Definitions of the units: 17.45 lbf, 0.1608 lbf/mph and 0.01586 lbf/mph2 are 77.62 N, 0.4445 N/(km/h) and 0.02724 N/(km/h)2.
     #[test]
@@ -117,23 +106,6 @@ mod tests {
         }
         for bad in ["", "kg", "1,320", "1320 stone", "1e999", "nan"] {
             assert!(MASS.number(bad).is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn tyre_codes_are_read() {
-        for good in ["215/55 R16", "215/55R16", "215/55 r16", "215/55 ZR16"] {
-            assert_eq!(tyre(good), Some([215.0, 55.0, 16.0]), "{good}");
-        }
-        for bad in [
-            "215/55",
-            "55/215 R16",
-            "215-55-16",
-            "R16",
-            "215/55 R",
-            "215/55 R160",
-        ] {
-            assert_eq!(tyre(bad), None, "{bad}");
         }
     }
 }
