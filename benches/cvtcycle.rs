@@ -129,6 +129,7 @@ fn driveline_step(bencher: Bencher, name: &str) {
         oil: &car.oil,
         heat: &heat,
         gear: None,
+        hold: None,
         dt_s: 1.0,
         engine_off: false,
     };

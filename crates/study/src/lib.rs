@@ -13,6 +13,7 @@
 //! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
 //! | `answer` | what the study says, from its table by car and point |
 //! | `attribute` | what each loss costs: the car driven again without it |
+//! | `optimum` | the least fuel that any controller of ratio and clamp can burn, and the operating line near it |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `points` | the belt at points of a table |
 //! | `check` | comparison with published values |
@@ -23,6 +24,7 @@ pub mod answer;
 pub mod attribute;
 pub mod check;
 pub mod fit;
+pub mod optimum;
 pub mod points;
 pub mod sensitivity;
 pub mod design;

@@ -17,6 +17,7 @@ mod cvt_part_properties;
 mod cycles;
 mod dead_inputs;
 mod equations;
+mod held;
 mod loss_factor;
 mod maps;
 mod metamorphic;

@@ -16,7 +16,7 @@ use crate::math::{clamp, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
-use crate::transmission::{StepInput, StepOutput, Transmission};
+use crate::transmission::{Hold, StepInput, StepOutput, Transmission};
 
 /// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
 ///
@@ -71,6 +71,16 @@ impl<'a> Drive<'a> {
     /// Drives one step: its row and its energy terms.
     #[inline(always)]
     pub fn step(&mut self, step: &Step) -> (Row, EnergyTerms) {
+        self.step_by(step, None)
+    }
+
+    /// The same with a CVT that is held at a ratio and a clamp law: any controller drives some sequence of these (RC-12).
+    pub fn step_held(&mut self, step: &Step, hold: &Hold) -> (Row, EnergyTerms) {
+        self.step_by(step, Some(*hold))
+    }
+
+    #[inline(always)]
+    fn step_by(&mut self, step: &Step, hold: Option<Hold>) -> (Row, EnergyTerms) {
         let car = self.car;
         let State {
             heat,
@@ -101,6 +111,7 @@ impl<'a> Drive<'a> {
             oil: &car.oil,
             heat,
             gear: self.gears.and_then(|g| g.get(step.interval).copied()),
+            hold,
             dt_s: step.dt_s,
             engine_off: step.engine_off,
         };

@@ -3,6 +3,7 @@
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
 use super::coupling::Reach;
+use super::cvt::controller::ClampLaw;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
@@ -23,10 +24,21 @@ pub struct StepInput<'a, P> {
     pub heat: &'a Heat,
     /// Gear that the cycle prescribes, if it does.
     pub gear: Option<GearCommand>,
+    /// What a CVT is held at, if it is.
+    pub hold: Option<Hold>,
     /// Length of the step, s.
     pub dt_s: f64,
     /// True where the engine is switched off.
     pub engine_off: bool,
+}
+
+/// What is imposed on a CVT in a step, in place of its controller (RC-12).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Belt ratio at the end of the step; the one before at rest.
+    pub ratio: f64,
+    /// Clamp law; that of the box without one.
+    pub clamp: Option<ClampLaw>,
 }
 
 impl<P: PrimeMover> StepInput<'_, P> {

@@ -38,6 +38,7 @@ fn shifted(
         oil: &car.oil,
         heat: &heat,
         gear: None::<GearCommand>,
+        hold: None,
         dt_s: 0.5,
         engine_off: false,
     };
@@ -58,6 +59,7 @@ fn shifted(
     let (down, up) = volumes(cvt, from);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
+        speed_m_s: wheel.speed_m_s,
         power_w: wheel.power_w,
         // From nothing before, half a second of the filter (RC-9).
         share: wheel.power_w / car.engine.rated_w * (1.0 - (-0.5 / cvt.ratio.filter_s).exp()),
@@ -225,6 +227,7 @@ fn after(
         oil: &b.car.oil,
         heat: &heat,
         gear: None,
+        hold: None,
         dt_s,
         engine_off: false,
     };
@@ -321,6 +324,7 @@ fn an_engine_at_rest_turns_nothing() {
         oil: &car.oil,
         heat: &heat,
         gear: None,
+        hold: None,
         dt_s: 1.0,
         engine_off: true,
     };

@@ -219,6 +219,7 @@ impl Cvt {
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
+            speed_m_s: input.wheel.speed_m_s,
             power_w: input.wheel.power_w,
             share,
             full_load_rad_s: self.full_load_rad_s(
@@ -262,7 +263,20 @@ impl Cvt {
         load: impl FnOnce() -> BeltLoad,
         secondary_rad_s: f64,
     ) -> (f64, ClampCause) {
-        let (wanted, cause) = match &self.clamp {
+        self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s)
+    }
+
+    /// The same by any law.
+    #[inline(always)]
+    fn pressure_by(
+        &self,
+        law: &ClampLaw,
+        signals: &ClampSignals,
+        at: &BeltAtRatio,
+        load: impl FnOnce() -> BeltLoad,
+        secondary_rad_s: f64,
+    ) -> (f64, ClampCause) {
+        let (wanted, cause) = match law {
             ClampLaw::Map(map) => (map.pressure_pa(signals), ClampCause::Law),
             law => Clamping {
                 cvt: self,

@@ -7,7 +7,7 @@ use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
 use crate::fluid::{FilmPowers, OilState};
-use crate::math::{exp_each, larger, ln_each, pair};
+use crate::math::{exp_each, larger, ln, ln_each, pair};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::step::{DrivelineState, StepInput};
@@ -72,6 +72,7 @@ fn shift<P: PrimeMover>(
     let free = larger(free, 0.0);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * input.wheel.wheel_rad_s,
+        speed_m_s: input.wheel.speed_m_s,
         power_w: input.wheel.power_w,
         share,
         full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
@@ -83,7 +84,10 @@ fn shift<P: PrimeMover>(
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
-    let (ratio, change, held) = cvt.ratio.step(&demand);
+    let (ratio, change, held) = match &input.hold {
+        Some(hold) => (hold.ratio, ln(hold.ratio / before.ratio), false), // RC-12
+        None => cvt.ratio.step(&demand),
+    };
     let volume = if change > 0.0 {
         down_m3 * change
     } else {
@@ -248,6 +252,11 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         shift_held: shift.held,
         shifting: shift.kept,
         reach: input.reach(past.engine_rad_s, 0.0),
+        clamp: input
+            .hold
+            .as_ref()
+            .and_then(|hold| hold.clamp.as_ref())
+            .unwrap_or(&cvt.clamp),
         pressure_before_pa: past.secondary_pa,
         coupled: past.coupled,
         locked_from_rad_s,

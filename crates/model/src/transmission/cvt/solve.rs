@@ -80,11 +80,12 @@ impl<P: PrimeMover> Step<'_, P> {
             output_torque_nm: output_nm,
             ..self.load
         };
-        let pressure_pa = match &self.line.cvt.clamp {
+        let pressure_pa = match self.clamp {
             ClampLaw::SlipLimited { .. } => self.pressure_before_pa,
             _ => {
                 let cvt = self.line.cvt;
-                cvt.pressure_pa(&signals, self.line.at, load, self.secondary_rad_s)
+                let speed = self.secondary_rad_s;
+                cvt.pressure_by(self.clamp, &signals, self.line.at, load, speed)
                     .0
             }
         };
@@ -281,7 +282,8 @@ pub(super) fn solve<P: PrimeMover>(
         }
         let ratio = step.line.at.geometry.ratio;
         let again = ratio.to_bits() == tried_ratio.to_bits();
-        let full_load_wanted = again || efficiency <= MIN_ROUTE_EFFICIENCY;
+        let last = again || efficiency <= MIN_ROUTE_EFFICIENCY;
+        let full_load_wanted = last || input.hold.is_some();
         let Some(limit) = step.limited(warm_start, full_load_wanted, &mut work) else {
             tried_ratio = ratio;
             efficiency = step.kick_down(efficiency, &work.point);

@@ -4,4 +4,4 @@ mod ratio;
 
 pub use pressure::{ClampKeys, ClampLaw, ClampSignals, MapLaw, clamp};
 pub(super) use ratio::{FREE_OVER_IDLE, direction_after};
-pub use ratio::{RatioControl, RatioDemand, RatioKeys};
+pub use ratio::{OperatingLine, RatioControl, RatioDemand, RatioKeys};

@@ -1,0 +1,259 @@
+//! The operating line: engine speed over demand while driving, over road speed in overrun.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | DP-12 | nodes of n_d(P/P_rated) and n_o(v) that burn least when driven by RC-11: from the means of the best path, each node moved up and down by 320, 160 ... 5 rpm while that burns less | derived: search by the model's own drive, one node at a time |
+//!
+//! A controller that looks at demand and speed knows nothing of what comes: what its best line burns more than the bound is the worth of looking ahead.
+
+use cvtcycle_model::drive::{Car, Drive, EnergyTerms, Recorder, Row};
+use cvtcycle_model::keys::{Quantity, rpm};
+use cvtcycle_model::math::Curve;
+use cvtcycle_model::prime_mover::PrimeMover;
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::controller::OperatingLine;
+
+use super::{Bound, Task};
+
+/// Nodes of the drive line, per cent of rated power.
+const SHARES_PERCENT: [f64; 12] = [
+    0.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 22.0, 30.0, 45.0, 70.0, 100.0,
+];
+/// Nodes of the overrun line, km/h.
+const SPEEDS_KMH: [f64; 9] = [0.0, 15.0, 25.0, 35.0, 50.0, 70.0, 90.0, 120.0, 160.0];
+/// First and last step of the search, rpm.
+const STEPS_RPM: [f64; 7] = [320.0, 160.0, 80.0, 40.0, 20.0, 10.0, 5.0];
+/// Most passes over the nodes with one step.
+const PASSES: usize = 4;
+/// Part of the least engine speed that a target may be below it: slip makes the engine faster than its target in drive.
+const BELOW: f64 = 0.96;
+/// Fuel that a joule missing at the wheels counts for, kg/J: more than an engine needs for it.
+const MISSED_KG_J: f64 = 4e-7;
+/// Fuel that a second at half the least speed counts for, kg.
+const SLOW_KG_S: f64 = 2e-3;
+/// Efficiency with which the route over the engine's best points is begun where the cycle asks for no such power.
+const ROUTE_EFFICIENCY: f64 = 0.85;
+
+/// A drive line and an overrun line, in the units of a vehicle file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// Share of rated power, per cent; engine speed, rpm.
+    pub drive: Vec<(f64, f64)>,
+    /// Road speed, km/h; engine speed, rpm.
+    pub overrun: Vec<(f64, f64)>,
+}
+
+/// A line and how well it does.
+#[derive(Clone, Debug)]
+pub struct LineFit {
+    /// The line.
+    pub line: Line,
+    /// Fuel of the car driven by it, kg.
+    pub fuel_kg: f64,
+    /// Fuel by the means of the best path, before the search, kg.
+    pub first_kg: f64,
+    /// Drives that the search took.
+    pub drives: usize,
+    /// Slowest engine in a step that leaves a choice, rad/s.
+    pub slowest_rad_s: f64,
+}
+
+impl Line {
+    /// The car with this line in place of its own, its demand unfiltered and without hysteresis.
+    #[must_use]
+    pub fn on(&self, car: &Car) -> Car {
+        let curve = |points: &[(f64, f64)], unit: &str| {
+            let (x, y) = (Quantity::of(unit), Quantity::of("speed_rpm"));
+            let points: Vec<(f64, f64)> = points
+                .iter()
+                .map(|(a, b)| (x.to_si(*a), y.to_si(*b)))
+                .collect();
+            Curve::new(&points).ok()
+        };
+        let mut car = car.clone();
+        if let Transmission::Cvt(cvt) = &mut car.transmission {
+            cvt.ratio.hysteresis = 0.0;
+            cvt.ratio.filter_s = 0.0;
+            cvt.ratio.line = Some(Box::new(OperatingLine {
+                drive: curve(&self.drive, "power_percent"),
+                overrun: curve(&self.overrun, "speed_kmh"),
+            }));
+        }
+        car
+    }
+
+    /// The table of a vehicle file that is like another one but for the line.
+    pub fn table(&self) -> String {
+        let rows = |points: &[(f64, f64)]| {
+            let rows: Vec<String> = points.iter().map(|(x, n)| format!("[{x}, {n}]")).collect();
+            rows.join(", ")
+        };
+        format!(
+            "[transmission.cvt.ratio]\nfilter_s = 0\nhysteresis = 0\ndrive_line = [{}]\noverrun_line = [{}]\n",
+            rows(&self.drive),
+            rows(&self.overrun)
+        )
+    }
+
+    fn node(&mut self, k: usize) -> &mut f64 {
+        match self.drive.len() {
+            count if k < count => &mut self.drive[k].1,
+            count => &mut self.overrun[k - count].1,
+        }
+    }
+}
+
+/// Fuel of a drive, and what counts as fuel for what is not allowed.
+struct Burnt<'a> {
+    chosen: &'a [bool],
+    least_rad_s: f64,
+    step: usize,
+    fuel_kg: f64,
+    counted_kg: f64,
+    slowest_rad_s: f64,
+}
+
+impl Recorder for Burnt<'_> {
+    fn record(&mut self, row: &Row, _: &EnergyTerms) {
+        self.fuel_kg += row.fuel_kg_s * row.dt_s;
+        self.counted_kg += MISSED_KG_J * row.deficit_w * row.dt_s;
+        if self.chosen[self.step] {
+            self.slowest_rad_s = self.slowest_rad_s.min(row.engine_speed_rad_s);
+            let short = 1.0 - row.engine_speed_rad_s / self.least_rad_s;
+            self.counted_kg += SLOW_KG_S * short.max(0.0) * row.dt_s;
+        }
+        self.step += 1;
+    }
+}
+
+fn burnt<'a>(task: &Task, chosen: &'a [bool], line: &Line) -> Burnt<'a> {
+    let car = line.on(task.car);
+    let mut burnt = Burnt {
+        chosen,
+        least_rad_s: task.limits.least_rad_s,
+        step: 0,
+        fuel_kg: 0.0,
+        counted_kg: 0.0,
+        slowest_rad_s: f64::INFINITY,
+    };
+    let mut drive = Drive::new(&car, task.start);
+    for step in task.steps {
+        let (row, terms) = drive.step(step);
+        burnt.record(&row, &terms);
+    }
+    burnt
+}
+
+/// The line that burns least, beginning at the means of the best path.
+pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
+    let mut line = means(task, bound);
+    let whole = |line: &Line| {
+        let burnt = burnt(task, &bound.chosen, line);
+        burnt.fuel_kg + burnt.counted_kg
+    };
+    let first_kg = burnt(task, &bound.chosen, &line).fuel_kg;
+    let (mut best, mut drives) = (whole(&line), 1);
+    let least_rpm = (BELOW * rpm(task.limits.least_rad_s)).ceil();
+    let most_rpm = rpm(task.car.engine.highest_rad_s).floor();
+    let count = line.drive.len() + line.overrun.len();
+    for step in STEPS_RPM {
+        for _ in 0..PASSES {
+            let before = best;
+            for k in 0..count {
+                let moved = |by: f64| {
+                    let mut line = line.clone();
+                    let node = line.node(k);
+                    *node = (*node + by).clamp(least_rpm, most_rpm);
+                    (whole(&line), line)
+                };
+                let (up, down) = rayon::join(|| moved(step), || moved(-step));
+                drives += 2;
+                let other = if up.0 < down.0 { up } else { down };
+                if other.0 < best {
+                    (best, line) = other;
+                }
+            }
+            if best >= before {
+                break;
+            }
+        }
+    }
+    let burnt = burnt(task, &bound.chosen, &line);
+    LineFit {
+        line,
+        fuel_kg: burnt.fuel_kg,
+        first_kg,
+        drives,
+        slowest_rad_s: burnt.slowest_rad_s,
+    }
+}
+
+/// Means of the best path's engine speeds at the nodes, in whole rpm; where the cycle asks for no such power, the engine's best points.
+fn means(task: &Task, bound: &Bound) -> Line {
+    let rated_w = task.car.engine.rated_w;
+    let chosen = || {
+        let rows = bound.rows.iter().zip(&bound.chosen);
+        rows.filter(|(_, chosen)| **chosen).map(|(row, _)| row)
+    };
+    let target_rpm = |row: &Row| rpm(row.engine_speed_rad_s) * (1.0 - row.slip);
+    let drive: Vec<(f64, f64)> = chosen()
+        .filter(|row| row.wheel_power_w > 0.0)
+        .map(|row| (100.0 * row.wheel_power_w / rated_w, target_rpm(row)))
+        .collect();
+    let overrun: Vec<(f64, f64)> = chosen()
+        .filter(|row| row.wheel_power_w <= 0.0)
+        .map(|row| (3.6 * row.speed_m_s, target_rpm(row)))
+        .collect();
+    let least_rpm = rpm(task.limits.least_rad_s).ceil();
+    let route = |percent: f64| best_point_rpm(task, percent / 100.0 * rated_w / ROUTE_EFFICIENCY);
+    Line {
+        drive: at_nodes(&SHARES_PERCENT, &drive, route),
+        overrun: at_nodes(&SPEEDS_KMH, &overrun, |_| least_rpm),
+    }
+}
+
+/// Means of points at nodes, each point shared between its two neighbours; `other` where there is none.
+fn at_nodes(
+    nodes: &[f64],
+    points: &[(f64, f64)],
+    other: impl Fn(f64) -> f64,
+) -> Vec<(f64, f64)> {
+    let share = |k: usize, x: f64| {
+        let below = k.checked_sub(1).map(|k| nodes[k]);
+        let above = nodes.get(k + 1).copied();
+        match (x < nodes[k], below, above) {
+            (true, Some(below), _) => (x - below) / (nodes[k] - below),
+            (false, _, Some(above)) => (above - x) / (above - nodes[k]),
+            _ => 1.0,
+        }
+        .max(0.0)
+    };
+    let mean = |k: usize| {
+        let sums = points.iter().fold((0.0, 0.0), |(sum, weight), (x, y)| {
+            let own = share(k, *x);
+            (sum + own * y, weight + own)
+        });
+        match sums.1 > 0.0 {
+            true => sums.0 / sums.1,
+            false => other(nodes[k]),
+        }
+    };
+    (0..nodes.len())
+        .map(|k| (nodes[k], mean(k).round()))
+        .collect()
+}
+
+/// Speed at which the warm engine gives a power with the least fuel, within the limits, rpm.
+fn best_point_rpm(task: &Task, power_w: f64) -> f64 {
+    let engine = &task.car.engine;
+    let warm = engine.at(engine.hot_k, engine.hot_k, &task.car.engine_oil, task.car.charge);
+    let (low, high) = (task.limits.least_rad_s, engine.peak_power_rad_s());
+    let speeds = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
+    let burn = |w: f64| {
+        let crank_nm = power_w / w + warm.accessories_nm(w);
+        let within = crank_nm <= (1.0 - task.limits.reserve) * warm.full_load_nm(w);
+        within.then(|| (warm.burn(w, crank_nm).fuel_kg_s, w))
+    };
+    let best = speeds.filter_map(burn).min_by(|a, b| a.0.total_cmp(&b.0));
+    rpm(best.map_or(high, |(_, w)| w)).round()
+}
