@@ -9,6 +9,7 @@ mod explain;
 mod list;
 mod losses;
 mod new;
+mod optimum;
 mod report;
 mod rig;
 mod run;
@@ -64,6 +65,8 @@ enum Command {
     /// Compute the fuel that each loss of the transmission costs: the car driven again without it
     #[command(visible_alias = "price")]
     Attribute(Box<attribute::AttributeArgs>),
+    /// Compute the least fuel that any controller of ratio and clamp can burn, and the best operating line
+    Optimum(Box<optimum::OptimumArgs>),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
@@ -127,6 +130,7 @@ impl Cli {
         match &self.command {
             Command::Run(args) => args.execute(terminal),
             Command::Attribute(args) => args.execute(terminal),
+            Command::Optimum(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
             Command::Compare(args) => args.execute(terminal),

@@ -115,22 +115,7 @@ pub fn drive_into(
     let car = &vehicle.car(conditions.ambient_k);
     let trace = cycle.trace_for(car.transmission.is_cvt());
     let gear_schedule = gear_schedule(car, trace);
-    let start = match conditions.start {
-        Start::Soak => State::at(conditions.ambient_k),
-        Start::At(temp_k) => State::at(temp_k),
-        Start::Warm => simulate(
-            car,
-            trace,
-            conditions.max_dt_s,
-            State::at(conditions.ambient_k),
-            &mut NullRecorder,
-        ),
-    };
-    // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
-    let start = State {
-        transmission: None,
-        ..start
-    };
+    let start = start_state(car, trace, conditions);
     let mut totals = Totals::new(cycle.phases.len());
     let end = match give {
         Some(give) => {
@@ -151,6 +136,26 @@ pub fn drive_into(
         rows: Vec::new(),
         end: end.heat,
         gear_schedule,
+    }
+}
+
+/// The state in which a car begins a trace.
+pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
+    let start = match conditions.start {
+        Start::Soak => State::at(conditions.ambient_k),
+        Start::At(temp_k) => State::at(temp_k),
+        Start::Warm => simulate(
+            car,
+            trace,
+            conditions.max_dt_s,
+            State::at(conditions.ambient_k),
+            &mut NullRecorder,
+        ),
+    };
+    // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
+    State {
+        transmission: None,
+        ..start
     }
 }
 

@@ -3,9 +3,10 @@
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::thermal::NODES;
 
+use super::nodes::Scene;
 use super::program::{Controls, follow, solve};
 use super::reference::Reference;
-use super::stages::{Problem, Scene, Table};
+use super::stages::{Problem, Table};
 use super::{Limits, Solved, Task};
 
 /// A limit.
@@ -87,12 +88,7 @@ pub struct Infeasible {
 }
 
 /// Least fuel without a limit, kg.
-pub(super) fn without(
-    scene: &Scene,
-    solved: &Solved,
-    task: &Task,
-    name: LimitName,
-) -> Option<f64> {
+pub(super) fn without(scene: &Scene, solved: &Solved, task: &Task, name: LimitName) -> Option<f64> {
     solved.least_kg(scene, &solved.table, name.dropped(task.limits))
 }
 

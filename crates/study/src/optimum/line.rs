@@ -213,11 +213,7 @@ fn means(task: &Task, bound: &Bound) -> Line {
 }
 
 /// Means of points at nodes, each point shared between its two neighbours; `other` where there is none.
-fn at_nodes(
-    nodes: &[f64],
-    points: &[(f64, f64)],
-    other: impl Fn(f64) -> f64,
-) -> Vec<(f64, f64)> {
+fn at_nodes(nodes: &[f64], points: &[(f64, f64)], other: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
     let share = |k: usize, x: f64| {
         let below = k.checked_sub(1).map(|k| nodes[k]);
         let above = nodes.get(k + 1).copied();
@@ -246,7 +242,12 @@ fn at_nodes(
 /// Speed at which the warm engine gives a power with the least fuel, within the limits, rpm.
 fn best_point_rpm(task: &Task, power_w: f64) -> f64 {
     let engine = &task.car.engine;
-    let warm = engine.at(engine.hot_k, engine.hot_k, &task.car.engine_oil, task.car.charge);
+    let warm = engine.at(
+        engine.hot_k,
+        engine.hot_k,
+        &task.car.engine_oil,
+        task.car.charge,
+    );
     let (low, high) = (task.limits.least_rad_s, engine.peak_power_rad_s());
     let speeds = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
     let burn = |w: f64| {

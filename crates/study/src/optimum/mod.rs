@@ -4,10 +4,12 @@
 //! | module | contents | labels |
 //! |---|---|---|
 //! | `program` | the dynamic program, without physics | DP-1, DP-3, DP-6 |
-//! | `stages` | what engine and box do at each ratio of each step | DP-2, DP-4, DP-5 |
+//! | `nodes` | what engine and box do in a step at a ratio | DP-4 |
+//! | `stages` | the car on its trace as stages of the program | DP-2, DP-5 |
 //! | `reference` | a drive with its states, and the worth of heat | DP-7, DP-8 |
 //! | `line` | curves of engine speed over demand and road speed, improved by driving | DP-12 |
 //! | `limits` | what each limit costs, and which one cannot be held | |
+//! | `answer` | all of it for a car, its clamp laws and a cycle | |
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -19,12 +21,17 @@
 //! such controller burns less than the bound. Temperatures follow the path: the program is solved in those of a drive, its path is driven, and
 //! so on until the fuel settles; what another controller's heat would save later is in the worth of heat.
 
+mod answer;
 mod limits;
 mod line;
+mod nodes;
 mod program;
 mod reference;
 mod stages;
 
+pub use answer::{
+    Answer, LawBound, LawCar, LimitPrice, LineAnswer, NoAnswer, Question, TIGHT, answer,
+};
 pub use limits::{Infeasible, LimitName};
 pub use line::{Line, LineFit, fit_line};
 
@@ -35,9 +42,10 @@ use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::{Hold, Transmission};
 use rayon::prelude::*;
 
+use self::nodes::Scene;
 use self::program::{Controls, Path, follow, solve};
 use self::reference::Reference;
-use self::stages::{Problem, Scene, Table};
+use self::stages::{Problem, Table};
 
 /// Largest change of the driven fuel between two sets of temperatures that is taken for settled.
 const SETTLED: f64 = 2e-4;

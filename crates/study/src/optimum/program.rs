@@ -347,7 +347,10 @@ mod tests {
             least(&of, Controls::WithEnds).expect("a path").total() - p * 0.64
         };
         let errors = [31, 61, 121].map(error);
-        assert!(errors.iter().all(|e| *e >= -1e-12 && *e < 2e-3), "{errors:?}");
+        assert!(
+            errors.iter().all(|e| *e >= -1e-12 && *e < 2e-3),
+            "{errors:?}"
+        );
         assert!(errors[2] < 0.4 * errors[0], "{errors:?}");
     }
 

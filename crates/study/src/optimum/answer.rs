@@ -1,0 +1,291 @@
+//! The answer in numbers: bounds, how far from them each controller is, the line and its proof.
+
+use cvtcycle_config::Problems;
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::{Disk, Options, Setup, read};
+use cvtcycle_model::cycle::Step;
+use cvtcycle_model::drive::{Car, Conditions, Drive, Row, drive, litres_per_100km, start_state};
+use cvtcycle_model::keys::{rad_s, rpm};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::limits::{Infeasible, LimitName};
+use super::line::{Line, fit_line};
+use super::{Bound, Clamp, Limits, Task, bound};
+
+/// Gap between the driven path and the bound above which the bound is not tight.
+pub const TIGHT: f64 = 5e-3;
+
+/// A car under one of its clamp laws.
+#[derive(Clone, Copy, Debug)]
+pub struct LawCar<'a> {
+    /// Name of the law.
+    pub law: &'a str,
+    /// Its input.
+    pub setup: &'a Setup,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// The car with its own clamp law, then with the others.
+    pub cars: &'a [LawCar<'a>],
+    /// The cycle.
+    pub cycle: &'a Cycle,
+    /// How it is driven.
+    pub conditions: Conditions,
+    /// Least engine speed with the clutch locked, rpm.
+    pub least_rpm: f64,
+    /// Share of full load that is kept.
+    pub reserve: f64,
+    /// Least safety factor and largest slip of a free clamp; none: no bound for one.
+    pub free: Option<(f64, f64)>,
+    /// Rates of ln I towards high and low, 1/s; those of the car if there are none.
+    pub rates_per_s: Option<(f64, f64)>,
+    /// Ratios of the grid.
+    pub grid: usize,
+    /// Whether the operating line is sought.
+    pub line: bool,
+    /// Other least engine speeds, rpm.
+    pub least_speeds_rpm: &'a [f64],
+}
+
+/// The bound for one clamp law.
+#[derive(Clone, Debug, Serialize)]
+pub struct LawBound {
+    /// Clamp law, or `free`.
+    pub clamp: String,
+    /// Fuel of the car with this law and its own ratio control, L/100 km; none for `free`.
+    pub own_l_per_100km: Option<f64>,
+    /// With this law and the operating line.
+    pub line_l_per_100km: Option<f64>,
+    /// Least fuel (DP-9).
+    pub least_l_per_100km: f64,
+    /// Tolerance (DP-11).
+    pub tolerance_l_per_100km: f64,
+    /// Fuel of the best path as driven (DP-10).
+    pub driven_l_per_100km: f64,
+    /// That above the least fuel less the tolerance, per cent.
+    pub gap_percent: f64,
+    /// Least fuel by ratios of the grid, coarsest first.
+    pub grid: Vec<(usize, f64)>,
+    /// Least fuel in each set of temperatures, on half of the grid.
+    pub temperatures: Vec<f64>,
+}
+
+/// What a limit costs.
+#[derive(Clone, Debug, Serialize)]
+pub struct LimitPrice {
+    /// Limit.
+    pub limit: &'static str,
+    /// Fuel saved without it, per cent.
+    pub percent: f64,
+}
+
+/// The operating line.
+#[derive(Clone, Debug, Serialize)]
+pub struct LineAnswer {
+    /// Share of rated power, per cent; engine speed, rpm.
+    pub drive: Vec<(f64, f64)>,
+    /// Road speed, km/h; engine speed, rpm.
+    pub overrun: Vec<(f64, f64)>,
+    /// Fuel of the car of the vehicle file, read and driven.
+    pub l_per_100km: f64,
+    /// That above the least fuel with the same clamp law, per cent: what looking ahead is worth.
+    pub above_least_percent: f64,
+    /// The same above the least fuel less the tolerance.
+    pub above_bound_percent: f64,
+    /// Slowest engine where there is a choice, rpm.
+    pub slowest_rpm: f64,
+    /// Drives that the search took.
+    pub drives: usize,
+    /// The vehicle file.
+    #[serde(skip)]
+    pub file: String,
+}
+
+/// The answer.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// By clamp law, that of the car first.
+    pub bounds: Vec<LawBound>,
+    /// Least fuel with the car's law by least engine speed, rpm; none where no ratio holds it.
+    pub least_speeds: Vec<(f64, Option<f64>)>,
+    /// What each limit costs with the car's law.
+    pub limits: Vec<LimitPrice>,
+    /// The operating line, if it was sought.
+    pub line: Option<LineAnswer>,
+    /// Failed checks.
+    pub failures: Vec<String>,
+    /// Rows of the best path as driven, with the car's law.
+    #[serde(skip)]
+    pub path: Vec<Row>,
+}
+
+/// Why there is no answer.
+#[derive(Debug)]
+pub enum NoAnswer {
+    /// The limits cannot be held.
+    Infeasible(Box<Infeasible>),
+    /// The line's own file cannot be read.
+    Line(Problems),
+}
+
+/// Answers a question; `like` names the car in the line's file, `options` are those it was read with.
+///
+/// # Errors
+/// The limits cannot be held.
+pub fn answer(of: &Question, like: &str, options: &Options) -> Result<Answer, NoAnswer> {
+    let trace = of.cycle.trace_for(true);
+    let steps: Vec<Step> = trace.steps(of.conditions.max_dt_s).collect();
+    let cars: Vec<Car> = of
+        .cars
+        .iter()
+        .map(|car| car.setup.car(of.conditions.ambient_k))
+        .collect();
+    let own = &cars[0];
+    let density = own.engine.fuel_density_kg_m3;
+    let litres = |kg: f64| litres_per_100km(kg, density, trace.distance_m());
+    let least_speeds: Vec<f64> = of.least_speeds_rpm.iter().map(|n| rad_s(*n)).collect();
+    let task = |car: usize, clamp: Clamp| {
+        let main = car == 0 && clamp == Clamp::Law;
+        Task {
+            car: &cars[car],
+            steps: &steps,
+            start: start_state(&cars[car], trace, &of.conditions),
+            clamp,
+            limits: of.limits(&cars[car]),
+            grid: of.grid,
+            least_speeds_rad_s: if main { &least_speeds } else { &[] },
+            prices: if main { &LimitName::ALL } else { &[] },
+        }
+    };
+    let free = of.free.map(|(safety, slip)| Clamp::Free { safety, slip });
+    let laws = (0..cars.len()).map(|car| task(car, Clamp::Law));
+    let tasks: Vec<Task> = laws.chain(free.map(|clamp| task(0, clamp))).collect();
+    let bounds: Result<Vec<Bound>, _> = tasks.par_iter().map(bound).collect();
+    let bounds = bounds.map_err(NoAnswer::Infeasible)?;
+    let fit = of.line.then(|| fit_line(&tasks[0], &bounds[0]));
+    let kg = |car: &Car, task: &Task| -> f64 {
+        let mut drive = Drive::new(car, task.start);
+        let rows = steps.iter().map(|step| drive.step(step).0);
+        rows.map(|row| row.fuel_kg_s * row.dt_s).sum()
+    };
+    let law_bound = |(k, (task, bound)): (usize, (&Task, &Bound))| {
+        let law = of.cars.get(k);
+        let with_line = law.and(fit.as_ref()).map(|fit| fit.line.on(task.car));
+        LawBound {
+            clamp: law.map_or("free", |car| car.law).to_owned(),
+            own_l_per_100km: law.map(|_| litres(kg(task.car, task))),
+            line_l_per_100km: with_line.map(|car| litres(kg(&car, task))),
+            least_l_per_100km: litres(bound.fuel_kg),
+            tolerance_l_per_100km: litres(bound.tolerance_kg),
+            driven_l_per_100km: litres(bound.driven_kg),
+            gap_percent: 100.0 * bound.gap(),
+            grid: bound
+                .coarser
+                .iter()
+                .map(|(n, kg)| (*n, litres(*kg)))
+                .collect(),
+            temperatures: bound.temperatures.iter().map(|kg| litres(*kg)).collect(),
+        }
+    };
+    let main = &bounds[0];
+    let mut found = Answer {
+        bounds: tasks
+            .iter()
+            .zip(&bounds)
+            .enumerate()
+            .map(law_bound)
+            .collect(),
+        least_speeds: main
+            .least_speeds
+            .iter()
+            .map(|(w, kg)| (rpm(*w).round(), kg.map(litres)))
+            .collect(),
+        limits: main
+            .without
+            .iter()
+            .map(|(name, kg)| price(*name, *kg, main))
+            .collect(),
+        line: None,
+        failures: Vec::new(),
+        path: main.rows.clone(),
+    };
+    for law in &found.bounds {
+        if law.gap_percent > 100.0 * TIGHT {
+            found.failures.push(format!(
+                "bound not tight: with the clamp `{}` the best path burns {:.2} % more than the bound",
+                law.clamp, law.gap_percent
+            ));
+        }
+    }
+    if let Some(fit) = fit {
+        let file = of.file(&fit.line, like);
+        let proven_kg = of.proof_kg(&file, options).map_err(NoAnswer::Line)?;
+        if (proven_kg / fit.fuel_kg - 1.0).abs() > 1e-9 {
+            let text =
+                "line not proven: its file, read and driven, gives another fuel than the line";
+            found.failures.push(text.to_owned());
+        }
+        let above = |kg: f64| 100.0 * (proven_kg / kg - 1.0);
+        found.line = Some(LineAnswer {
+            l_per_100km: litres(proven_kg),
+            above_least_percent: above(main.fuel_kg),
+            above_bound_percent: above(main.least_kg()),
+            slowest_rpm: rpm(fit.slowest_rad_s),
+            drives: fit.drives,
+            drive: fit.line.drive,
+            overrun: fit.line.overrun,
+            file,
+        });
+    }
+    Ok(found)
+}
+
+fn price(name: LimitName, without_kg: f64, bound: &Bound) -> LimitPrice {
+    LimitPrice {
+        limit: name.name(),
+        percent: 100.0 * (1.0 - without_kg / bound.fuel_kg),
+    }
+}
+
+impl Question<'_> {
+    fn limits(&self, car: &Car) -> Limits {
+        let own = super::cvt(car).map(|cvt| (cvt.ratio.up_per_s, cvt.ratio.down_per_s));
+        let (up_per_s, down_per_s) = self.rates_per_s.or(own).unwrap_or((0.0, 0.0));
+        Limits {
+            least_rad_s: rad_s(self.least_rpm),
+            reserve: self.reserve,
+            up_per_s,
+            down_per_s,
+        }
+    }
+
+    /// A vehicle file that is like the car but for its line.
+    fn file(&self, line: &Line, like: &str) -> String {
+        let degc = self.conditions.ambient_k - 273.15;
+        format!(
+            "# Operating line of the least fuel on {} at {degc:.0} degC, engine at least {} rpm (cvtcycle optimum).\n\
+             # What was given by --set or --lubricant has to be given again.\n\
+             [vehicle]\ntitle = \"{} with the best line on {}\"\nlike = {}\n\n{}",
+            self.cycle.name,
+            self.least_rpm,
+            self.cars[0].setup.name,
+            self.cycle.name,
+            serde_json::Value::from(like),
+            line.table()
+        )
+    }
+
+    /// Fuel of a file's car on the cycle, kg.
+    fn proof_kg(&self, file: &str, options: &Options) -> Result<f64, Problems> {
+        let setup = read("line.toml", file, Box::new(Disk::default()), options)?;
+        let conditions = Conditions {
+            keep_rows: false,
+            ..self.conditions
+        };
+        let outcome = drive(&setup, self.cycle, &conditions);
+        Ok(outcome.totals.total().fuel_kg)
+    }
+}

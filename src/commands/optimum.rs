@@ -1,0 +1,396 @@
+//! `optimum`: the least fuel that any controller of ratio and clamp can burn, and the operating line near it.
+
+mod tables;
+
+use clap::Args;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
+use cvtcycle::config::{Bound, Problem, Problems};
+use cvtcycle::model::drive::{Conditions, Start};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::keys::rpm;
+use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::number::fixed;
+use cvtcycle::output::record::Manifest;
+use cvtcycle::output::summary::{SCHEMA, StartWord};
+use cvtcycle::study::optimum::{self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question};
+use serde::Serialize;
+
+use super::{Execute, threads, vehicles};
+use crate::args::problems::bad_value;
+use crate::args::{
+    DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs, count, cycles,
+    number,
+};
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
+
+/// Allowed least engine speed, rpm.
+const LEAST_RPM: Bound = Bound::closed(300.0, 8000.0);
+/// Allowed share of full load that is kept, per cent.
+const RESERVE: Bound = Bound::closed(0.0, 90.0);
+/// Allowed least safety factor.
+const SAFETY: Bound = Bound::closed(1.0, 10.0);
+/// Allowed largest slip, per cent.
+const SLIP: Bound = Bound::closed(0.1, 20.0);
+/// Fewest and most ratios of the grid.
+const GRID: std::ops::RangeInclusive<u64> = 13..=769;
+/// Least engine speeds for which the bound is printed, rpm.
+const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
+
+/// Arguments of `optimum`.
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.help("Write bound.csv, least_speed.csv, path.csv, the vehicle file with the line and summary.json into this directory")),
+    mut_arg("dt", |dt| dt.default_value("0.25")),
+    after_help = "\
+Examples:
+  cvtcycle optimum
+  cvtcycle optimum --ambient -10 --least-rpm 1200 --reserve 15 --out best
+  cvtcycle run --vehicle best/rover_216_cvt_line.toml
+  cvtcycle optimum --vehicle mycar.toml --cycle wltc_class3b --no-line
+
+Least fuel by dynamic programming over the ratio, and the clamping pressure where it is free, with the losses and temperatures of the model. \
+No controller of ratio and clamp within the limits burns less than the bound, which is the least fuel less its tolerance. The least engine \
+speed decides it, so it is given for several. The operating line is what a controller can do that sees demand and speed only: curves of a \
+vehicle file (drive_line, overrun_line), proven by driving that file. Steps of 0.25 s: knowing the next second is worth more with longer ones."
+)]
+pub struct OptimumArgs {
+    #[command(flatten)]
+    car: VehicleArgs,
+    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
+    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
+    cycle: String,
+    /// Ambient temperature, degC, -40 to 60
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
+    ambient: String,
+    #[command(flatten)]
+    drive: DriveArgs,
+    #[command(flatten)]
+    formulation: FormulationArgs,
+    /// Least engine speed with the clutch locked, rpm
+    #[arg(
+        long,
+        value_name = "RPM",
+        default_value = "1100",
+        allow_hyphen_values = true
+    )]
+    least_rpm: String,
+    /// Torque that is kept in reserve, % of full load
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value = "10",
+        allow_hyphen_values = true
+    )]
+    reserve: String,
+    /// Least safety factor of a free clamp
+    #[arg(
+        long,
+        value_name = "X",
+        default_value = "1.3",
+        allow_hyphen_values = true
+    )]
+    safety: String,
+    /// Largest slip with a free clamp, %
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value = "3",
+        allow_hyphen_values = true
+    )]
+    max_slip: String,
+    /// Ratios of the grid: four times a number, and one
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "97",
+        allow_hyphen_values = true
+    )]
+    grid: String,
+    /// The car's own clamp law only
+    #[arg(long)]
+    own_clamp: bool,
+    /// No operating line
+    #[arg(long)]
+    no_line: bool,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Checked input.
+pub struct OptimumPlan {
+    cycle: Cycle,
+    /// The car under its own clamp law, then under the others.
+    cars: Vec<(&'static str, Setup)>,
+    options: Options,
+    conditions: Conditions,
+    start: StartWord,
+    numbers: Numbers,
+    out: Option<OutputDir>,
+}
+
+/// Numbers of the question.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Numbers {
+    ambient_degc: f64,
+    dt_s: f64,
+    least_rpm: f64,
+    reserve_percent: f64,
+    safety: f64,
+    max_slip_percent: f64,
+    ratios: usize,
+}
+
+/// The object of `--json` and `summary.json`.
+#[derive(Debug, Serialize)]
+pub struct OptimumSummary {
+    #[serde(flatten)]
+    manifest: Manifest,
+    vehicle: String,
+    cycle: String,
+    start: StartWord,
+    #[serde(flatten)]
+    numbers: Numbers,
+    #[serde(flatten)]
+    answer: Answer,
+}
+
+impl Execute for OptimumArgs {
+    type Plan = OptimumPlan;
+
+    fn plan(&self, problems: &mut Problems) -> Option<OptimumPlan> {
+        let cycle = problems.take(cvtcycle::config::cycle::find(&self.cycle));
+        let formulation = self.formulation.get(problems);
+        let options = self.car.options(formulation, problems);
+        let setup = problems.take(setup::load(&self.car.vehicle, &options));
+        let hint = "a manual box has gears; `study` varies its shift speeds";
+        self.car.need_cvt(setup.as_ref(), hint, problems);
+        let (start, dt_s) = self.drive.get(problems);
+        let numbers = self.numbers(dt_s, problems);
+        if let (Some(setup), Some(numbers)) = (&setup, &numbers) {
+            self.check_least(setup, numbers.least_rpm, problems);
+        }
+        if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
+            self.check_cycle(cycle, dt_s, problems);
+        }
+        let given = self.threads.given(problems);
+        problems.take(threads::begin(given));
+        let out = self.out.dir(problems);
+        let (numbers, start) = (numbers?, start?);
+        let own = setup.filter(|setup| setup.transmission().is_cvt())?;
+        Some(OptimumPlan {
+            cycle: cycle?,
+            cars: self.laws(own, &options),
+            options,
+            conditions: conditions(&numbers, start.0),
+            start: start.1,
+            numbers,
+            out,
+        })
+    }
+
+    fn run(&self, mut plan: OptimumPlan, terminal: Terminal) -> CommandResult {
+        let out = plan.out.take();
+        let cars: Vec<LawCar> = plan
+            .cars
+            .iter()
+            .map(|(law, setup)| LawCar { law, setup })
+            .collect();
+        let n = plan.numbers;
+        let free = (n.safety, n.max_slip_percent / 100.0);
+        let question = Question {
+            cars: &cars,
+            cycle: &plan.cycle,
+            conditions: plan.conditions,
+            least_rpm: n.least_rpm,
+            reserve: n.reserve_percent / 100.0,
+            free: (!self.own_clamp).then_some(free),
+            rates_per_s: None,
+            grid: n.ratios,
+            line: !self.no_line,
+            least_speeds_rpm: &LEAST_SPEEDS_RPM,
+        };
+        let answer = optimum::answer(&question, &self.like(), &plan.options);
+        let answer = answer.map_err(|none| match none {
+            NoAnswer::Infeasible(why) => infeasible(&why, &n).into(),
+            NoAnswer::Line(problems) => problems,
+        })?;
+        let summary = OptimumSummary {
+            manifest: Manifest::new(SCHEMA),
+            vehicle: plan.cars[0].1.name.clone(),
+            cycle: plan.cycle.name.clone(),
+            start: plan.start,
+            numbers: n,
+            answer,
+        };
+        let json = json_text(&summary)?;
+        let files = WrittenFiles::write(out, |dir| {
+            tables::write(dir, &summary)?;
+            dir.put("summary.json", &json)?;
+            Ok("")
+        })?;
+        let failures = summary.answer.failures.clone();
+        let results = Results::new(json, failures, files);
+        Ok(results.output(&self.output, || tables::text(&summary, terminal.stdout)))
+    }
+}
+
+fn conditions(numbers: &Numbers, start: Start) -> Conditions {
+    Conditions {
+        ambient_k: numbers.ambient_degc + ZERO_DEGC_K,
+        start,
+        max_dt_s: numbers.dt_s,
+        keep_rows: false,
+    }
+}
+
+impl OptimumArgs {
+    fn numbers(&self, dt_s: Option<f64>, problems: &mut Problems) -> Option<Numbers> {
+        let mut take = |option: &str, text: &str, range: Bound, suffix: &str| {
+            problems.take(number(option, text, range, suffix))
+        };
+        let ambient = take("--ambient", &self.ambient, AMBIENT, "ambient_degc");
+        let least = take("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
+        let reserve = take("--reserve", &self.reserve, RESERVE, "reserve_percent");
+        let safety = take("--safety", &self.safety, SAFETY, "safety");
+        let slip = take("--max-slip", &self.max_slip, SLIP, "slip_percent");
+        let ratios = problems.take(count("--grid", &self.grid, GRID));
+        if ratios.is_some_and(|n| n % 4 != 1) {
+            let message = "the grid is compared with one of half and of a quarter of its ratios";
+            let allowed = "13, 17, 21 to 769";
+            let hint = "four times a number, and one: 49, 97, 193";
+            problems.add(bad_value("--grid", &self.grid, allowed, message, hint));
+        }
+        Some(Numbers {
+            ambient_degc: ambient?,
+            dt_s: dt_s?,
+            least_rpm: least?,
+            reserve_percent: reserve?,
+            safety: safety?,
+            max_slip_percent: slip?,
+            ratios: usize::try_from(ratios?).ok()?,
+        })
+    }
+
+    fn check_least(&self, setup: &Setup, least_rpm: f64, problems: &mut Problems) {
+        let engine = setup.engine();
+        let [idle, peak] = [engine.idle_hot_rad_s, engine.peak_power_rad_s()].map(rpm);
+        if !(idle..=peak).contains(&least_rpm) {
+            let allowed = format!("{} to {} rpm", fixed(idle, 0), fixed(peak, 0));
+            let message = "the least engine speed is outside those in which the engine is driven";
+            let hint = "above idle speed, up to that of greatest power";
+            problems.add(bad_value(
+                "--least-rpm",
+                &self.least_rpm,
+                &allowed,
+                message,
+                hint,
+            ));
+        }
+    }
+
+    fn check_cycle(&self, cycle: &Cycle, dt_s: f64, problems: &mut Problems) {
+        let trace = cycle.trace_for(true);
+        if trace.max_speed_m_s() <= 0.0 {
+            let message = "the car stands all the time: there is nothing to choose";
+            let allowed = "a cycle that is driven";
+            problems.add(bad_value("--cycle", &self.cycle, allowed, message, ""));
+        }
+        problems.take(vehicles::kept_count(trace.step_count(dt_s), dt_s));
+    }
+
+    /// The car under its own clamp law, then under each other one that its file has values for.
+    fn laws(&self, own: Setup, options: &Options) -> Vec<(&'static str, Setup)> {
+        let name = law_of(&own);
+        let mut cars = vec![(name, own)];
+        let others = ClampKeys::CHOICES.iter().map(|choice| choice.name);
+        for law in others.filter(|law| *law != name && !self.own_clamp) {
+            let set = format!("transmission.cvt.clamp={law}").parse();
+            let Ok(set) = set else { continue };
+            let mut options = options.clone();
+            options.set.push(set);
+            cars.extend(setup::load(&self.car.vehicle, &options).map(|car| (law, car)));
+        }
+        cars
+    }
+
+    /// The vehicle as the file of its line names it: a path is made absolute, since the file may be moved.
+    fn like(&self) -> String {
+        let word = &self.car.vehicle;
+        match word.ends_with(".toml") {
+            true => std::path::absolute(word)
+                .map_or_else(|_| word.clone(), |path| path.display().to_string()),
+            false => word.clone(),
+        }
+    }
+}
+
+fn law_of(setup: &Setup) -> &'static str {
+    let law = optimum::cvt(&setup.car(ZERO_DEGC_K)).map(|cvt| cvt.clamp);
+    match law {
+        Some(ClampLaw::TorqueFollowing { .. }) => "torque_following",
+        Some(ClampLaw::SlipLimited { .. }) => "slip_limited",
+        Some(ClampLaw::Map(_)) | None => "map",
+    }
+}
+
+/// The limit that cannot be held, where, and how much of it can be.
+fn infeasible(why: &Infeasible, numbers: &Numbers) -> Problem {
+    let row = &why.row;
+    let place = format!(
+        "at {} s ({} km/h, {} kW at the wheels)",
+        fixed(row.time_s, 1),
+        fixed(3.6 * row.speed_m_s, 1),
+        fixed(row.wheel_power_w / 1e3, 1)
+    );
+    let value = |name: LimitName| match name {
+        LimitName::LeastSpeed => numbers.least_rpm.to_string(),
+        LimitName::Reserve => numbers.reserve_percent.to_string(),
+        LimitName::ShiftRate => String::new(),
+    };
+    let option = |name: LimitName| match name {
+        LimitName::LeastSpeed => "--least-rpm",
+        LimitName::Reserve => "--reserve",
+        LimitName::ShiftRate => "--vehicle",
+    };
+    let most = |name: LimitName, most: Option<f64>| match (name, most) {
+        (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),
+        (LimitName::Reserve, Some(share)) => format!("at most {} %", fixed(100.0 * share, 1)),
+        _ => "a faster shift".to_owned(),
+    };
+    match (why.each.first(), why.both) {
+        (Some((name, can)), _) => {
+            let others = why.each.iter().skip(1).map(|(name, _)| name.name());
+            let others: Vec<&str> = others.collect();
+            let hint = match others.is_empty() {
+                true => "relax it".to_owned(),
+                false => format!("or relax {}", others.join(" or ")),
+            };
+            let message = format!("no ratio holds this limit {place}");
+            let allowed = most(*name, *can);
+            bad_value(option(*name), &value(*name), &allowed, &message, &hint)
+        }
+        (None, Some([a, b])) => {
+            let message = format!(
+                "no ratio holds the limits {} and {} {place}",
+                a.name(),
+                b.name()
+            );
+            bad_value(option(a), &value(a), "", &message, "relax both")
+        }
+        (None, None) => {
+            let message = format!("no ratio lets the car follow the cycle {place}");
+            bad_value("--cycle", "", "", &message, "take a gentler cycle")
+        }
+    }
+}
