@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use cvtcycle::config::cycle::{Cycle, embedded, read_csv};
 use cvtcycle::config::setup::template::VehicleTemplate;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::config::{Problem, render};
+use cvtcycle::config::{Override, Problem, render};
 use cvtcycle::model::drive::{Car, Recorder, State, simulate};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::fluid::BandFriction;
@@ -129,7 +129,6 @@ fn driveline_step(bencher: Bencher, name: &str) {
         oil: &car.oil,
         heat: &heat,
         gear: None,
-        hold: None,
         dt_s: 1.0,
         engine_off: false,
     };
@@ -202,6 +201,32 @@ fn cycle_without_history(bencher: Bencher, name: &str) {
 #[divan::bench(args = CARS)]
 fn cycle_with_history(bencher: Bencher, name: &str) {
     whole(bencher, name, "ece15_eudc", true);
+}
+
+/// The CVT with each launch device, and with a converter that never locks.
+#[divan::bench(args = ["friction_clutch.creep_nm=5", "torque_converter.capacity_nm=27", "torque_converter.lockup.enabled=false"])]
+fn launch_device(bencher: Bencher, set: &str) {
+    let launch = "transmission.cvt.launch";
+    let sets = [
+        format!(
+            "{launch}.{}",
+            set.replace("lockup.enabled=false", "capacity_nm=27")
+        ),
+        format!("{launch}.{set}"),
+    ];
+    let options = Options {
+        set: Override::parse_all(&sets).unwrap_or_else(|p| panic!("{}", render(&p, false))),
+        ..Options::default()
+    };
+    let setup = load("rover_216_cvt", &options).unwrap_or_else(|p| panic!("{}", render(&p, false)));
+    let cycle = cycle("ece15_eudc");
+    let conditions = Conditions {
+        ambient_k: COLD_K,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: false,
+    };
+    bencher.bench_local(|| drive(&setup, black_box(&cycle), &conditions));
 }
 
 /// Whole runs of ECE15+EUDC, the car built anew for each as in a study: runs a second on one core (target of studies: 3 000).

@@ -1,17 +1,20 @@
 //! `new`: a vehicle file from catalogue numbers.
 
-use std::io::Write;
+mod ask;
+
+use std::io::{IsTerminal, Write};
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use cvtcycle::config::bounded::TOML;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::setup::catalogue::{ENGINE_OIL, OIL};
 use cvtcycle::config::setup::new_car::{self, Answers, NUMBERS, NewCar};
-use cvtcycle::config::{Problem, Problems};
+use cvtcycle::config::{Problem, Problems, decode};
 use cvtcycle::output::file::OutputFile;
 
 use super::Execute;
 use crate::args::problems::{bad_value, in_options};
-use crate::args::{Names, OutArgs};
+use crate::args::{Names, OutArgs, bytes};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
 /// Arguments of `new`.
@@ -24,8 +27,8 @@ Example:
   cvtcycle new mycar --mass 1320 --f0 105 --f1 0.55 --f2 0.0305 --tyre '215/55 R16' --displacement 1.8l --power 104@6400 --torque 172@4000
 
 What is not given comes from a class (`cvtcycle list classes`) or from the car of --like, with the status `class` or `like`; the file says what was given and
-which rule made what follows from it. A unit may be given with each number: 3000lb, 17.4lbf, 158hp@6500. Then `cvtcycle check mycar.toml`, \
-`cvtcycle run --vehicle mycar.toml`."
+which rule made what follows from it. A unit may be given with each number: 3000lb, 17.4lbf, 158hp@6500. `cvtcycle new mycar` in a \
+terminal has a question for each. Then `cvtcycle check mycar.toml`, `cvtcycle run --vehicle mycar.toml`."
 )]
 pub struct NewArgs {
     /// Name of the car and of its file: letters, digits, - and _
@@ -43,6 +46,12 @@ pub struct NewArgs {
     /// Class of the transmission [default: that of --like, else box_cvt_clutch]
     #[arg(long = "box", value_name = "CLASS", value_parser = Names(|| Kind::Class.names()), hide_possible_values = true)]
     gearbox: Option<String>,
+    /// Take what is not given as an option from this file, a TOML table: mass = "3000lb"
+    #[arg(long, value_name = "FILE.toml")]
+    answers: Option<String>,
+    /// Ask for each number that is not given [default: in a terminal, where displacement or power is missing]
+    #[arg(long)]
+    ask: bool,
     #[command(flatten)]
     numbers: Numbers,
     #[command(flatten)]
@@ -105,14 +114,16 @@ impl Execute for NewArgs {
             Some(path) => path.clone(),
             None => format!("{}.toml", self.name).into(),
         };
-        let answers = Answers {
+        let mut answers = Answers {
             file: path.display().to_string(),
-            title: self.title.clone().unwrap_or_else(|| self.name.clone()),
+            title: self.title.clone().unwrap_or_default(),
             like: self.like.clone(),
             class: self.class.clone(),
             gearbox: self.gearbox.clone(),
             numbers: self.numbers.0.iter().cloned().collect(),
+            ..Answers::default()
         };
+        self.complete(&mut answers, problems);
         let car = problems.take(new_car::write(&answers).map_err(|found| found.map(option)));
         let file = OutputFile::create(path, self.out.force);
         let file = problems.take(file.map_err(in_options));
@@ -145,8 +156,35 @@ impl Execute for NewArgs {
     }
 }
 
+impl NewArgs {
+    /// Adds what a file and a person say, and a title.
+    fn complete(&self, answers: &mut Answers, problems: &mut Problems) {
+        if let Some(file) = &self.answers {
+            let text = bytes("--answers", file, TOML).and_then(|bytes| decode(file, &bytes));
+            problems.take(text.and_then(|text| answers.add_file(file, &text)));
+        }
+        let (input, output) = (std::io::stdin(), std::io::stderr());
+        let in_terminal = input.is_terminal() && output.is_terminal() && needs_numbers(answers);
+        if problems.is_empty() && (self.ask || in_terminal) {
+            problems.take(ask::ask(answers, &mut input.lock(), &mut output.lock()));
+        }
+        if answers.title.is_empty() {
+            answers.title.clone_from(&self.name);
+        }
+    }
+}
+
+/// Whether a number is missing that neither class nor car has.
+fn needs_numbers(answers: &Answers) -> bool {
+    new_car::questions(answers)
+        .is_ok_and(|list| list.iter().any(|question| question.usual.is_none()))
+}
+
 /// A problem of a number under its option.
 fn option(problem: Problem) -> Problem {
+    if problem.place.line > 0 {
+        return problem;
+    }
     let is_number = NUMBERS.iter().any(|(name, _)| *name == problem.key);
     if is_number || ["class", "box"].contains(&problem.key.as_str()) {
         let option = format!("--{}", problem.key);

@@ -179,6 +179,7 @@ impl Execute for OptimumArgs {
         let numbers = self.numbers(dt_s, problems);
         if let (Some(setup), Some(numbers)) = (&setup, &numbers) {
             self.check_least(setup, numbers.least_rpm, problems);
+            self.check_car(setup, problems);
         }
         if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
             self.check_cycle(cycle, dt_s, problems);
@@ -224,6 +225,11 @@ impl Execute for OptimumArgs {
         let answer = answer.map_err(|none| match none {
             NoAnswer::Infeasible(why) => infeasible(&why, &n).into(),
             NoAnswer::Line(problems) => problems,
+            NoAnswer::NoCvt => {
+                let allowed = "a vehicle with a CVT";
+                let message = "the vehicle has no CVT";
+                bad_value("--vehicle", &self.car.vehicle, allowed, message, "").into()
+            }
         })?;
         let summary = OptimumSummary {
             manifest: Manifest::new(SCHEMA),
@@ -299,10 +305,32 @@ impl OptimumArgs {
         }
     }
 
+    /// Cars whose engine stops by itself, or whose launch device never locks, have other choices than a ratio.
+    fn check_car(&self, setup: &Setup, problems: &mut Problems) {
+        let engine = setup.engine();
+        let coupling = setup.transmission().coupling();
+        let from_rad_s = coupling.locked_from_rad_s(engine.idle_hot_rad_s);
+        let locks = from_rad_s.is_finite() && !coupling.by_command();
+        let why = match (engine.start_stop.is_some(), locks) {
+            (true, _) => "the engine of this car stops by itself, which the bound does not know",
+            (false, false) => "the launch device of this car is no clutch that locks by itself",
+            (false, true) => return,
+        };
+        let allowed = "a car with a clutch, without start-stop";
+        let hint = "`study` varies its values";
+        problems.add(bad_value(
+            "--vehicle",
+            &self.car.vehicle,
+            allowed,
+            why,
+            hint,
+        ));
+    }
+
     fn check_cycle(&self, cycle: &Cycle, dt_s: f64, problems: &mut Problems) {
         let trace = cycle.trace_for(true);
         if trace.max_speed_m_s() <= 0.0 {
-            let message = "the car stands all the time: there is nothing to choose";
+            let message = "the car is at rest all the time: there is nothing to choose";
             let allowed = "a cycle that is driven";
             problems.add(bad_value("--cycle", &self.cycle, allowed, message, ""));
         }

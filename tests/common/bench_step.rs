@@ -110,7 +110,6 @@ impl Bench {
             oil: &car.oil,
             heat,
             gear: (!cvt).then_some(GearCommand::InGear(s.ratio as u8)),
-            hold: None,
             dt_s: 100.0, // long enough for any change of engine speed
             engine_off: false,
         };

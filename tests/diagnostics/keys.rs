@@ -484,7 +484,7 @@ pub fn check() {
         .filter(|file| file.kind != Kind::Class)
         .map(|file| Plain::new(file.kind, &file.keys))
         .collect();
-    // No shipped car has a table of its twin.
+    // No shipped car has a table of its twin: this one is tried last, for these keys alone.
     let twin = Options {
         set: vec![Override::number("twin.gears", 6.0)],
         ..Options::default()
@@ -493,7 +493,7 @@ pub fn check() {
     let is_fluid =
         |key: &str| key.starts_with(catalogue::OIL) || key.starts_with(catalogue::ENGINE_OIL);
     let twin: Vec<KeyInfo> = twin.filter(|info| !is_fluid(&info.key)).collect();
-    waiting.push(Plain::new(Kind::Vehicle, &twin));
+    waiting.insert(0, Plain::new(Kind::Vehicle, &twin));
     while let Some(plain) = waiting.pop() {
         let prefix = if plain.kind == Kind::Lubricant {
             catalogue::OIL

@@ -6,10 +6,8 @@ use cvtcycle::config::setup::{Options, load};
 use cvtcycle::model::cycle::{Interval, Step};
 use cvtcycle::model::drive::{Car, Drive, State};
 use cvtcycle::model::keys::rad_s;
-use cvtcycle::model::transmission::Hold;
-use cvtcycle::study::optimum::{
-    Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line,
-};
+use cvtcycle::model::transmission::cvt::Hold;
+use cvtcycle::study::optimum::{Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line};
 
 const DEGC: f64 = 273.15;
 
@@ -19,7 +17,9 @@ fn car(sets: &[&str], ambient_degc: f64) -> Car {
         set: set.collect(),
         ..Options::default()
     };
-    load("rover_216_cvt", &options).unwrap().car(ambient_degc + DEGC)
+    load("rover_216_cvt", &options)
+        .unwrap()
+        .car(ambient_degc + DEGC)
 }
 
 fn limits(car: &Car, least_rpm: f64) -> Limits {
@@ -35,6 +35,7 @@ fn limits(car: &Car, least_rpm: f64) -> Limits {
 fn task<'a>(car: &'a Car, steps: &'a [Step], start_degc: f64) -> Task<'a> {
     Task {
         car,
+        cvt: cvt(car).unwrap(),
         steps,
         start: State::at(start_degc + DEGC),
         clamp: Clamp::Law,
@@ -80,12 +81,20 @@ fn bound_is_below_every_car_that_drives() {
     }
     for (number, size) in [(1_usize, 0.01), (2, 0.03), (3, 0.1)] {
         let mut drive = Drive::new(&own, of.start);
-        let rows = steps.iter().zip(&found.holds).enumerate().map(|(k, (step, hold))| {
-            let wave = (k * number) as f64 * 0.7;
-            let more = if found.chosen[k] { size * wave.sin().abs() } else { 0.0 };
-            let ratio = (hold.ratio * (1.0 + more)).min(cvt(&own).unwrap().ratio.low);
-            drive.step_held(step, &Hold { ratio, ..*hold }).0
-        });
+        let rows = steps
+            .iter()
+            .zip(&found.holds)
+            .enumerate()
+            .map(|(k, (step, hold))| {
+                let wave = (k * number) as f64 * 0.7;
+                let more = if found.chosen[k] {
+                    size * wave.sin().abs()
+                } else {
+                    0.0
+                };
+                let ratio = (hold.ratio * (1.0 + more)).min(cvt(&own).unwrap().ratio.low);
+                drive.step_held(step, &Hold { ratio, ..*hold }).0
+            });
         let kg: f64 = rows.map(|row| row.fuel_kg_s * row.dt_s).sum();
         assert!(kg > found.least_kg(), "{size}: {kg}");
     }
@@ -147,7 +156,11 @@ fn looser_limits_never_cost_fuel() {
         ..task(&own, &steps, 80.0)
     };
     let found = least(&of);
-    let fuel: Vec<f64> = found.least_speeds.iter().filter_map(|(_, kg)| *kg).collect();
+    let fuel: Vec<f64> = found
+        .least_speeds
+        .iter()
+        .filter_map(|(_, kg)| *kg)
+        .collect();
     assert_eq!(fuel.len(), 4);
     assert!(fuel.windows(2).all(|pair| pair[0] <= pair[1]), "{fuel:?}");
     assert!((fuel[1] - found.fuel_kg).abs() < 1e-9 * fuel[1]);
@@ -169,7 +182,10 @@ fn a_finer_grid_moves_the_bound_less_and_less() {
     let [a, b] = [0, 1].map(|k| found.coarser[k].1);
     assert_eq!([0, 1].map(|k| found.coarser[k].0), [25, 49]);
     let (first, second) = ((a - b).abs(), (b - found.fuel_kg).abs());
-    assert!(second < first && second < 1e-3 * found.fuel_kg, "{first} {second}");
+    assert!(
+        second < first && second < 1e-3 * found.fuel_kg,
+        "{first} {second}"
+    );
 }
 
 /// The best line comes near the bound, holds the least speed, and is better than any one speed.
@@ -181,7 +197,12 @@ fn the_line_is_near_the_bound() {
     let found = least(&of);
     let fit = fit_line(&of, &found);
     assert!(fit.fuel_kg >= found.least_kg());
-    assert!(fit.fuel_kg < 1.01 * found.least_kg(), "{} {}", fit.fuel_kg, found.least_kg());
+    assert!(
+        fit.fuel_kg < 1.01 * found.least_kg(),
+        "{} {}",
+        fit.fuel_kg,
+        found.least_kg()
+    );
     assert!(fit.fuel_kg < own_kg(&own, &of));
     assert!(fit.slowest_rad_s > 0.99 * of.limits.least_rad_s);
 }

@@ -64,6 +64,7 @@ flags! {
         TOO_HOT = 14, "too_hot", "coolant above 130 degC (a half-and-half mix boils at 129 degC with 1 bar over ambient), or engine oil or transmission oil above 160 degC; exit code 1";
         WRONG_GEAR = 15, "wrong_gear", "the cycle prescribes no gear or an open clutch while the car is driven faster; a gear was engaged; exit code 1";
         PRIMARY_PRESSURE_SHORT = 16, "primary_pressure_short", "the primary needs a higher pressure than the line pressure for its clamping force; its piston is too small for this ratio";
+        LOCKUP_OPEN = 17, "lockup_open", "the car moves over the open lock-up clutch of its torque converter";
     }
 }
 

@@ -289,6 +289,7 @@ fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
         full_load_rad_s: cvt
             .full_load_route
             .at(share * rated_w / cvt.ratio.route_efficiency),
+        cold_rad_s: 0.0,
         ratio_before: 1.0,
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,

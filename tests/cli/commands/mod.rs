@@ -6,6 +6,7 @@ mod optimum;
 mod compare;
 mod inputs;
 mod named;
+mod new;
 mod run;
 mod study;
 mod streams;

@@ -27,26 +27,47 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
-    assert!(text.lines().all(|line| line.chars().count() <= 100), "{text}");
+    assert!(
+        text.lines().all(|line| line.chars().count() <= 100),
+        "{text}"
+    );
     let file = |name: &str| fs::read_to_string(dir.path().join("best").join(name)).unwrap();
     let summary: Value = serde_json::from_str(&file("summary.json")).unwrap();
     let number = |path: &str| summary.pointer(path).and_then(Value::as_f64).unwrap();
     let said = number("/line/l_per_100km");
     let run = [
-        "run", "--cycle", "ece15", "--dt", "0.5", "--start", "80", "--baseline", "none", "--price", "never",
-        "--json", "--vehicle", "best/rover_216_cvt_line.toml",
+        "run",
+        "--cycle",
+        "ece15",
+        "--dt",
+        "0.5",
+        "--start",
+        "80",
+        "--baseline",
+        "none",
+        "--price",
+        "never",
+        "--json",
+        "--vehicle",
+        "best/rover_216_cvt_line.toml",
     ];
     let run: Value = serde_json::from_str(&stdout(&run_in(dir.path(), &run))).unwrap();
     let burnt = run["runs"][0]["fuel_l_per_100km"].as_f64().unwrap();
     assert!((burnt / said - 1.0).abs() < 1e-12, "{burnt} {said}");
     let bounds = summary["bounds"].as_array().unwrap();
-    let names: Vec<&str> = bounds.iter().map(|b| b["clamp"].as_str().unwrap()).collect();
+    let names: Vec<&str> = bounds
+        .iter()
+        .map(|b| b["clamp"].as_str().unwrap())
+        .collect();
     assert_eq!(names, ["map", "torque_following", "slip_limited", "free"]);
     for bound in bounds {
         let number = |key: &str| bound[key].as_f64();
         let least = number("least_l_per_100km").unwrap() - number("tolerance_l_per_100km").unwrap();
         for key in ["own_l_per_100km", "line_l_per_100km", "driven_l_per_100km"] {
-            assert!(number(key).is_none_or(|litres| litres >= least), "{key} {bound}");
+            assert!(
+                number(key).is_none_or(|litres| litres >= least),
+                "{key} {bound}"
+            );
         }
         assert!(number("gap_percent").unwrap() < 0.5);
     }
@@ -59,9 +80,26 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
 #[test]
 fn all_problems_of_the_limits_at_once() {
     let message = refused(&[
-        "optimum", "--least-rpm", "700", "--reserve", "95", "--grid", "50", "--safety", "0", "--max-slip", "x",
+        "optimum",
+        "--least-rpm",
+        "700",
+        "--reserve",
+        "95",
+        "--grid",
+        "50",
+        "--safety",
+        "0",
+        "--max-slip",
+        "x",
     ]);
-    for part in ["--least-rpm", "--reserve", "--grid", "--safety", "--max-slip", "four times a number, and one"] {
+    for part in [
+        "--least-rpm",
+        "--reserve",
+        "--grid",
+        "--safety",
+        "--max-slip",
+        "four times a number, and one",
+    ] {
         assert!(message.contains(part), "{part} is not in\n{message}");
     }
     let message = refused(&["optimum", "--vehicle", "rover_216_5mt"]);
@@ -70,8 +108,18 @@ fn all_problems_of_the_limits_at_once() {
 
 #[test]
 fn a_limit_that_cannot_be_held_is_named_with_its_place() {
-    let words = [&QUICK[..], &["80", "--reserve", "85", "--own-clamp", "--no-line"]].concat();
+    let words = [
+        &QUICK[..],
+        &["80", "--reserve", "85", "--own-clamp", "--no-line"],
+    ]
+    .concat();
     let message = refused(&words);
-    assert!(message.contains("no ratio holds this limit at"), "{message}");
-    assert!(message.contains("km/h") && message.contains("at most"), "{message}");
+    assert!(
+        message.contains("no ratio holds this limit at"),
+        "{message}"
+    );
+    assert!(
+        message.contains("km/h") && message.contains("at most"),
+        "{message}"
+    );
 }

@@ -235,7 +235,7 @@ proptest! {
         (a, b) in pair(1e-6, 5e-3),
         w in 0.0..1500.0f64,
     ) {
-        let clutch = ClutchDrag { drag_nm: clutch_nm, exponent, cap_nm: 0.5, peak_rad_s: None, clearance_m: 0.3e-3, oil_share: 1.0 };
+        let clutch = ClutchDrag { drag_nm: clutch_nm, exponent, cap_nm: 0.5, peak_rad_s: None, clearance_m: 0.3e-3, oil_share: 1.0, set_nm: 0.0, set_nm_s: 0.0 };
         let drags = |nu: f64| [shaft_nm(&shaft, nu, w), clutch.torque_nm(viscosity_power(nu, exponent), w)];
         for (x, y) in drags(a).iter().zip(drags(b)) {
             prop_assert!(x.is_finite() && *x >= 0.0 && y >= x * (1.0 - 1e-12), "{x} then {y}");
@@ -257,7 +257,7 @@ proptest! {
         (peak, oil_share) in (50.0..800.0f64, 0.05..2.0f64),
         w in 0.0..1500.0f64,
     ) {
-        let clutch = ClutchDrag { drag_nm, exponent: 0.5, cap_nm: 20.0, peak_rad_s: Some(peak), clearance_m: 0.3e-3, oil_share };
+        let clutch = ClutchDrag { drag_nm, exponent: 0.5, cap_nm: 20.0, peak_rad_s: Some(peak), clearance_m: 0.3e-3, oil_share, set_nm: 0.0, set_nm_s: 0.0 };
         let largest = clutch.torque_nm(power, oil_share * peak);
         prop_assert_eq!(clutch.torque_nm(power, 0.0), 0.0);
         prop_assert!((largest - oil_share * drag_nm * power).abs() <= 1e-12 * largest);

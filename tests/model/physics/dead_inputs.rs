@@ -133,7 +133,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 25] = [
+const NEEDS: [(&str, &[&str], &str); 27] = [
     (
         "reverse_clutch.oil_share",
         &["transmission.cvt.reverse_clutch.peak_rpm=4000"],
@@ -194,6 +194,16 @@ const NEEDS: [(&str, &[&str], &str); 25] = [
         "ratio.rate_speed_rpm",
         &["transmission.cvt.ratio.rate_speed_rpm=2500"],
         "the shipped rates are full from 1000 rpm",
+    ),
+    (
+        "ratio.cold_from_degc",
+        &["transmission.cvt.ratio.cold_rise_rpm=500"],
+        "where the line of a cold car begins, only with one",
+    ),
+    (
+        "ratio.cold_to_degc",
+        &["transmission.cvt.ratio.cold_rise_rpm=500"],
+        "where the line of a cold car ends, only with one",
     ),
     (
         "belt.slip_bound_percent",

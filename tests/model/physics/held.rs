@@ -6,7 +6,8 @@ use crate::common::{ZERO, car, cycle};
 use cvtcycle_model::drive::{Drive, Row, State};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::transmission::cvt::controller::ClampLaw;
-use cvtcycle_model::transmission::{Hold, Transmission};
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::Hold;
 
 const CVT: &str = "rover_216_cvt";
 
@@ -53,7 +54,9 @@ fn assert_alike(rows: &[Row], held: &[Row]) {
 fn a_car_held_at_its_own_ratios_is_that_car() {
     let (rows, held) = driven_and_held(&[], &[], None);
     assert_alike(&rows, &held);
-    let moves = rows.windows(2).filter(|w| w[0].belt_ratio > w[1].belt_ratio);
+    let moves = rows
+        .windows(2)
+        .filter(|w| w[0].belt_ratio > w[1].belt_ratio);
     assert!(moves.count() > 5, "the cycle shifts");
 }
 
@@ -70,7 +73,7 @@ fn a_held_clamp_law_is_the_law_of_a_car_that_has_it() {
     assert_alike(&rows, &held);
 }
 
-/// At rest no ratio moves (RC-4), and a hold asks for no other try where full load does not suffice (RC-7).
+/// At rest no ratio moves (RC-4), and a hold makes no other try where full load does not suffice (RC-7).
 #[test]
 fn a_hold_moves_nothing_at_rest_and_kicks_nothing_down() {
     let own = car(CVT, &["road_load.mass_kg=4000"]).car(ZERO);
@@ -85,7 +88,11 @@ fn a_hold_moves_nothing_at_rest_and_kicks_nothing_down() {
         let (row, _) = drive.step_held(&step, &high);
         let rests = step.end_speed_m_s <= 0.0 && step.start_speed_m_s <= 0.0;
         let expected = if step.time_s < 11.5 { 2.4169 } else { 0.4137 };
-        assert!((row.belt_ratio - expected).abs() < 1e-12 || rests, "{}", row.belt_ratio);
+        assert!(
+            (row.belt_ratio - expected).abs() < 1e-12 || rests,
+            "{}",
+            row.belt_ratio
+        );
         missed += usize::from(row.flags.contains(Flags::MISSED_TRACE));
     }
     assert!(missed > 0);

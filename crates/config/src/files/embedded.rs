@@ -19,7 +19,7 @@ embedded! {
     /// Vehicles.
     vehicles: "vehicles" ".toml" ["c_segment_20_6mt" "mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
     /// Classes of cars and boxes, which vehicle files inherit from.
-    classes: "classes" ".toml" ["compact_1995" "compact_2020" "midsize_2020" "subcompact_2020" "suv_2020" "box_cvt_clutch" "box_manual_5" "box_manual_6"];
+    classes: "classes" ".toml" ["compact_1995" "compact_2020" "midsize_2020" "subcompact_2020" "suv_2020" "box_cvt_clutch" "box_cvt_converter" "box_manual_5" "box_manual_6"];
     /// Lubricants.
     lubricants: "lubricants" ".toml" [
         "cvtf_ezl799_class" "dexron_ii" "dexron_iii" "gear_75w80" "engine_5w30" "engine_10w40"

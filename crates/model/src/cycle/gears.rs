@@ -154,6 +154,21 @@ impl GearColumns {
             .filter_map(|(name, column)| Some((name, column.as_deref()?)))
     }
 
+    /// The columns with one command for each of some intervals, by their numbers.
+    #[must_use]
+    pub fn of(&self, intervals: &[usize]) -> Self {
+        let of = |column: &Option<Vec<GearCommand>>| {
+            let column = column.as_ref()?;
+            Some(intervals.iter().map(|i| column[*i]).collect())
+        };
+        Self {
+            five: of(&self.five),
+            six: of(&self.six),
+            plain: of(&self.plain),
+            plain_highest: self.plain_highest,
+        }
+    }
+
     /// True without any column.
     pub fn is_empty(&self) -> bool {
         self.five.is_none() && self.six.is_none() && self.plain.is_none()

@@ -28,6 +28,11 @@ impl Interval {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s) * (self.end_s - self.start_s)
     }
 
+    /// Whether the car moves in it.
+    fn moves(&self) -> bool {
+        self.start_speed_m_s > 0.0 || self.end_speed_m_s > 0.0
+    }
+
     // 1e-9: an interval that is a multiple of max_dt up to rounding is not cut once more
     #[inline]
     fn parts(&self, max_dt_s: f64) -> usize {
@@ -200,6 +205,58 @@ impl Trace {
     /// user's column `gear` serves every gearbox that has all the gears it names.
     pub fn gears(&self, gear_count: usize) -> Option<&[GearCommand]> {
         self.gears.for_count(gear_count)
+    }
+
+    /// Time from an instant in an interval, s, until the car moves, s; infinite where it moves no more.
+    pub fn rest_s(&self, interval: usize, from_s: f64) -> f64 {
+        let later = self.intervals.get(interval..).unwrap_or_default();
+        let mut moving = later.iter().filter(|interval| interval.moves());
+        moving.next().map_or(f64::INFINITY, |interval| {
+            larger(interval.start_s - from_s, 0.0)
+        })
+    }
+
+    /// Begin and end of each rest of the car, s; the end of the last may be infinite.
+    pub fn rests_s(&self) -> Vec<(f64, f64)> {
+        let starts = self
+            .intervals
+            .iter()
+            .enumerate()
+            .filter(|(number, interval)| {
+                !interval.moves() && (*number == 0 || self.intervals[number - 1].moves())
+            });
+        let rest = |(number, interval): (usize, &Interval)| {
+            let from_s = interval.start_s;
+            (from_s, from_s + self.rest_s(number, from_s))
+        };
+        starts.map(rest).collect()
+    }
+
+    /// The same trace with rows at more times, s, in rising order.
+    #[must_use]
+    pub fn cut(&self, at_s: &[f64]) -> Self {
+        let mut intervals = Vec::with_capacity(self.intervals.len() + at_s.len());
+        let mut from = Vec::with_capacity(intervals.capacity());
+        for (number, interval) in self.intervals.iter().enumerate() {
+            let mut rest = *interval;
+            for &time_s in at_s {
+                if rest.start_s < time_s && time_s < rest.end_s {
+                    let share = (time_s - rest.start_s) / (rest.end_s - rest.start_s);
+                    let rise_m_s = rest.end_speed_m_s - rest.start_speed_m_s;
+                    let speed_m_s = rest.start_speed_m_s + share * rise_m_s;
+                    intervals.push(Interval {
+                        end_s: time_s,
+                        end_speed_m_s: speed_m_s,
+                        ..rest
+                    });
+                    from.push(number);
+                    (rest.start_s, rest.start_speed_m_s) = (time_s, speed_m_s);
+                }
+            }
+            intervals.push(rest);
+            from.push(number);
+        }
+        Self::with_gears(intervals, self.gears.of(&from))
     }
 
     /// Duration, s.

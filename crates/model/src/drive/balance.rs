@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | LE-1 | fuel + work from wheels = work to wheels + brake + accessories + transmission losses + change of rotating energy + heat to the engine + exhaust | derived: first law |
+//! | LE-1 | fuel + work from wheels + power out of the electric store = work to wheels + brake + accessories + transmission losses + change of rotating energy + heat to the engine + exhaust + electric losses | derived: first law |
 //! | LE-2 | transmission losses + heat to the engine = heat into the nodes = stored + given to the air | derived: first law |
 //! | LE-3 | error = \|in - out\| / sum of absolute terms, 0 for an empty row | contract |
 
@@ -47,6 +47,8 @@ energy_terms! {
     node_heat: "Heat into all nodes, as the thermal network received it.";
     stored: "Heat stored.";
     to_air: "Heat given to the air.";
+    store: "Power out of the electric store; negative into it.";
+    electric_loss: "Losses of alternator, electric store and starter, those of the alternator's own load apart.";
 }
 
 #[inline]
@@ -69,7 +71,8 @@ impl EnergyTerms {
             + self.losses
             + self.kinetic
             + self.engine_heat
-            + self.exhaust;
+            + self.exhaust
+            + self.electric_loss;
         let scale = self.fuel.abs()
             + self.wheels.abs()
             + self.brake.abs()
@@ -77,8 +80,10 @@ impl EnergyTerms {
             + self.losses.abs()
             + self.kinetic.abs()
             + self.engine_heat.abs()
-            + self.exhaust.abs();
-        error((self.fuel + from - out).abs(), scale)
+            + self.exhaust.abs()
+            + self.store.abs()
+            + self.electric_loss.abs();
+        error((self.fuel + from + self.store - out).abs(), scale)
     }
 
     /// Relative error of the heat ledger (LE-2).

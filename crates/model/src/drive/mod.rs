@@ -7,6 +7,7 @@ mod row;
 mod run;
 mod simulate;
 mod step;
+mod stopping;
 mod totals;
 mod vehicle;
 

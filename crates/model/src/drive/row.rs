@@ -2,6 +2,7 @@
 
 use super::{Car, EnergyTerms};
 use crate::cycle::Step;
+use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
@@ -70,7 +71,7 @@ pub struct Row {
     pub clamp_safety: f64,
     /// Loss power of each component, W, never negative.
     pub loss_w: ByComponent<f64>,
-    /// Power of the accessories, W.
+    /// Power of the accessories, W; charging of the electric store with it.
     pub accessories_w: f64,
     /// Power into the wheel brakes, W.
     pub brake_w: f64,
@@ -135,6 +136,8 @@ pub(super) struct Solved<'a> {
     /// Heat into each node, as the network received it.
     pub power_w: [f64; NODES],
     pub heat: &'a HeatStep,
+    /// Store, starter and alternator of start-stop.
+    pub electric: &'a Electric,
     pub tyre_k: f64,
 }
 
@@ -145,7 +148,8 @@ fn terms(input: &Input, a: &Solved) -> EnergyTerms {
     let node_heat: f64 = a.power_w.iter().sum();
     let losses: f64 = d.loss_w.iter().sum();
     let engine_heat = b.to_coolant_w + b.to_oil_w;
-    let accessories = a.inertia.accessories_nm * d.engine_rad_s;
+    let shaft_w = a.inertia.accessories_nm * d.engine_rad_s;
+    let accessories = shaft_w - a.electric.charging_w + a.electric.consumers_w;
     EnergyTerms {
         fuel: b.fuel_w,
         wheels: wheel.power_w - d.deficit_w,
@@ -158,6 +162,8 @@ fn terms(input: &Input, a: &Solved) -> EnergyTerms {
         node_heat,
         stored: a.heat.stored_w,
         to_air: a.heat.to_air_w,
+        store: a.electric.store_w,
+        electric_loss: a.electric.loss_w + d.alternator_w,
     }
 }
 
@@ -206,7 +212,7 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         secondary_nm: d.secondary_nm,
         clamp_safety: d.clamp_safety,
         loss_w: d.loss_w,
-        accessories_w: terms.accessories,
+        accessories_w: terms.accessories + a.electric.charging_w,
         brake_w: d.brake_w,
         kinetic_w: a.inertia.kinetic_w,
         fuel_kg_s: b.fuel_kg_s,

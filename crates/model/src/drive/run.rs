@@ -3,6 +3,7 @@
 use crate::cycle::{Cycle, Trace};
 use crate::drive::{Car, Recorder, State, Vehicle, simulate};
 use crate::drive::{EnergyTerms, Row, Totals};
+use crate::engine::StartStop;
 use crate::math::larger;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::Heat;
@@ -115,6 +116,8 @@ pub fn drive_into(
     let car = &vehicle.car(conditions.ambient_k);
     let trace = cycle.trace_for(car.transmission.is_cvt());
     let gear_schedule = gear_schedule(car, trace);
+    let cut = car.engine.start_stop.map(|on| cut_at_stops(trace, &on));
+    let trace = cut.as_ref().unwrap_or(trace);
     let start = start_state(car, trace, conditions);
     let mut totals = Totals::new(cycle.phases.len());
     let end = match give {
@@ -157,6 +160,16 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
         transmission: None,
         ..start
     }
+}
+
+/// The trace with rows where the engine may stop and where it starts again, so that a step is with or without it.
+fn cut_at_stops(trace: &Trace, on: &StartStop) -> Trace {
+    let ends = |(from_s, to_s): (f64, f64)| {
+        let stop_s = from_s + on.delay_s;
+        [stop_s, larger(to_s - on.lead_s, stop_s)]
+    };
+    let at_s: Vec<f64> = trace.rests_s().into_iter().flat_map(ends).collect();
+    trace.cut(&at_s)
 }
 
 fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {

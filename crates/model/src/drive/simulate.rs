@@ -4,6 +4,7 @@ use super::step::Drive;
 use super::{Car, EnergyTerms, Row};
 use crate::cycle::Trace;
 use crate::engine::Running;
+use crate::engine::start_stop::StartStopState;
 use crate::thermal::Heat;
 use crate::transmission::TransmissionState;
 
@@ -20,6 +21,8 @@ pub struct State {
     pub running: Running,
     /// Temperature of the tyres, K.
     pub tyre_k: f64,
+    /// What start-stop did.
+    pub start_stop: StartStopState,
 }
 
 impl State {
@@ -31,6 +34,7 @@ impl State {
             kinetic_j: f64::NAN,
             running: Running::STOPPED,
             tyre_k: temp_k,
+            start_stop: StartStopState::default(),
         }
     }
 }

@@ -8,15 +8,18 @@
 //! | SI-3 | heat: engine to coolant and oil, 70 % of belt loss to the belt, input shaft to the metal, other losses to the sump | fitted share; rest ASSUMED |
 
 use super::row::{Inertia, Input, Solved, row};
+use super::stopping::{Stopping, add_start};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
+use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, Running};
 use crate::flags::Flags;
 use crate::math::{clamp, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
-use crate::transmission::{Hold, StepInput, StepOutput, Transmission};
+use crate::transmission::cvt::Hold;
+use crate::transmission::{StepInput, StepOutput, Transmission};
 
 /// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
 ///
@@ -36,16 +39,19 @@ use crate::transmission::{Hold, StepInput, StepOutput, Transmission};
 #[derive(Clone, Debug)]
 pub struct Drive<'a> {
     car: &'a Car,
+    /// What is driven, where it is known before.
+    trace: Option<&'a Trace>,
     /// Gears of the cycle, one an interval.
     gears: Option<&'a [GearCommand]>,
     state: State,
 }
 
 impl<'a> Drive<'a> {
-    /// A car in a state; a manual box shifts by its shift speeds.
+    /// A car in a state; a manual box shifts by its shift speeds, and start-stop does not know when the car moves again.
     pub fn new(car: &'a Car, state: State) -> Self {
         Drive {
             car,
+            trace: None,
             gears: None,
             state,
         }
@@ -58,6 +64,7 @@ impl<'a> Drive<'a> {
             Transmission::Cvt(_) => None,
         };
         Drive {
+            trace: Some(trace),
             gears,
             ..Drive::new(car, state)
         }
@@ -88,7 +95,11 @@ impl<'a> Drive<'a> {
             kinetic_j,
             running,
             tyre_k,
+            start_stop,
         } = &mut self.state;
+        let gear = self.gears.and_then(|g| g.get(step.interval).copied());
+        let stopping = Stopping::new(car, self.trace, gear, step, heat, start_stop);
+        let engine_off = step.engine_off || stopping.as_ref().is_some_and(Stopping::stopped);
         let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
         *tyre_k = car
             .tyre
@@ -97,7 +108,7 @@ impl<'a> Drive<'a> {
         if !car.transmission.is_cvt() {
             *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
         }
-        let engine = car.engine.in_step(
+        let mut engine = car.engine.in_step(
             heat.node_k[COOLANT],
             heat.node_k[ENGINE_OIL],
             &car.engine_oil,
@@ -105,39 +116,53 @@ impl<'a> Drive<'a> {
             running,
             step.dt_s,
         );
+        if let Some(stopping) = &stopping {
+            engine.charging_w = stopping.charging_w(start_stop, step.dt_s);
+        }
+        let engine = engine;
         let input = StepInput {
             wheel: &wheel,
             engine: &engine,
             oil: &car.oil,
             heat,
-            gear: self.gears.and_then(|g| g.get(step.interval).copied()),
-            hold,
+            gear,
             dt_s: step.dt_s,
-            engine_off: step.engine_off,
+            engine_off,
         };
         // Not `get_or_insert_with`, which is a call in every step.
         let transmission = match transmission {
             Some(state) => state,
             none => none.insert(car.transmission.start(&input)),
         };
+        if let Some(own) = &mut transmission.cvt {
+            own.hold = hold;
+        }
         if kinetic_j.is_nan() {
             let w = transmission.driveline.engine_rad_s;
             let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
             *kinetic_j = if step.engine_off { 0.0 } else { idling };
         }
         let mut output = car.transmission.solve(&input, transmission);
-        let inertia = inertia(car, &input, &output, *kinetic_j);
-        if output.flags.contains(Flags::CLUTCH_SLIPPING) {
-            // A clutch that loses a part only passes on the rest (LC-6).
-            let lost = smaller(car.transmission.coupling().loss_factor(), 1.0);
-            output.loss_w[Component::LaunchClutch] += lost * inertia.surplus_w; // SI-4
-            give_back(&mut output, (1.0 - lost) * inertia.surplus_w);
-        } else {
-            give_back(&mut output, inertia.surplus_w);
+        let mut electric = Electric::default();
+        if let Some(stopping) = &stopping {
+            electric = stopping.electric(&input, (car, transmission), &mut output, start_stop);
+            *kinetic_j += electric.kinetic_w * step.dt_s;
         }
+        let mut inertia = inertia(car, &input, &output, *kinetic_j);
+        spend(car, &mut output, inertia.surplus_w);
         let mut burn = engine.burn(output.engine_rad_s, inertia.crank_nm);
-        if step.engine_off {
+        if engine_off {
             burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
+        }
+        // An engine at rest has no rotating energy, not even a rest of rounding.
+        *kinetic_j = if output.engine_rad_s <= 0.0 {
+            0.0
+        } else {
+            *kinetic_j + inertia.kinetic_w * step.dt_s
+        };
+        if electric.kinetic_w > 0.0 {
+            inertia.kinetic_w += electric.kinetic_w; // SS-4
+            add_start(&mut burn, &electric, car.engine.heating_value_j_kg);
         }
         let power_w = node_power(car, &output, &burn);
         let heat_step = advance(car, power_w, &output, &input, step.motion.speed_power_07);
@@ -152,6 +177,7 @@ impl<'a> Drive<'a> {
                 power_w,
                 heat: &heat_step,
                 tyre_k: *tyre_k,
+                electric: &electric,
             },
         );
         *heat = heat_step.heat;
@@ -165,14 +191,20 @@ impl<'a> Drive<'a> {
                 ..*running
             }
         };
-        // An engine at rest has no rotating energy, not even a rest of rounding.
-        *kinetic_j = if output.engine_rad_s <= 0.0 {
-            0.0
-        } else {
-            *kinetic_j + inertia.kinetic_w * step.dt_s
-        };
         result
     }
+}
+
+/// What a slower engine gives beyond its drag and load goes into a coupling that slips, else to the wheels.
+#[inline(always)]
+fn spend(car: &Car, output: &mut StepOutput, surplus_w: f64) {
+    if !output.flags.contains(Flags::CLUTCH_SLIPPING) {
+        return give_back(output, surplus_w);
+    }
+    // A clutch that loses a part only passes on the rest (LC-6).
+    let lost = smaller(car.transmission.coupling().loss_factor(), 1.0);
+    output.loss_w[Component::LaunchClutch] += lost * surplus_w; // SI-4
+    give_back(output, (1.0 - lost) * surplus_w);
 }
 
 /// Power of the slower engine that reaches the wheels: it makes up for a deficit, or the brakes take it.

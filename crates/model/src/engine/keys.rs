@@ -1,14 +1,17 @@
 //! Keys of `[engine]`, and an engine from their values.
 
+use super::start_stop::{StartStop, StartStopKeys};
 use super::{EFFICIENCY, Engine, FuelModel, Willans};
 use crate::fluid::{Viscosity, viscosity};
-use crate::keys::{Bound, Choice, Values, curve, keys};
+use crate::keys::{Bound, Choice, Repeat, Values, curve, keys};
 use crate::maps::BsfcMap;
 use crate::math::{Curve, clamp};
 
 keys! {
     /// Keys of `[engine]` and its tables.
-    ENGINE: EngineKeys = "engine" [IdleKeys::TABLE, FrictionKeys::TABLE, FuelKeys::TABLE, HeatKeys::TABLE] {
+    ENGINE: EngineKeys = "engine" [
+        IdleKeys::TABLE, FrictionKeys::TABLE, FuelKeys::TABLE, HeatKeys::TABLE, StartStopKeys::TABLE.repeated(Repeat::Optional)
+    ] {
         displacement_cc: number(200.0, 10_000.0), "swept volume";
         stroke_mm: number(40.0, 150.0), "piston stroke";
         rated_kw: number(5.0, 600.0), "rated power; the ratio controller's measure of power";
@@ -98,6 +101,7 @@ impl Engine {
     pub fn from_values<V: Values>(s: &V) -> Self {
         let (friction, idle) = (s.table("friction"), s.table("idle"));
         let (fuel, heat) = (s.table("fuel"), s.table("heat"));
+        let stopping = s.table("start_stop");
         let displacement_m3 = s.number(&ENGINE.displacement_cc);
         let hot_k = friction.number(&FRICTION.hot_degc);
         let line;
@@ -140,7 +144,11 @@ impl Engine {
                 line = table;
                 model
             },
+            start_stop: StartStop::from_values(&stopping),
         };
+        if let Some(on) = &engine.start_stop {
+            on.check_store(&stopping, &engine);
+        }
         check_efficiency(&line, &engine);
         check_pairs(&idle, &fuel, &engine);
         engine

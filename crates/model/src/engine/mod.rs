@@ -18,10 +18,12 @@
 mod fuel;
 mod keys;
 mod start;
+pub mod start_stop;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
 pub use keys::{ENGINE, EngineKeys};
 pub use start::Running;
+pub use start_stop::StartStop;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, clamp, exp, larger, ln, smaller};
@@ -103,6 +105,8 @@ pub struct Engine {
     pub co2_kg_kg: f64,
     /// Fuel model.
     pub fuel: FuelModel,
+    /// Start-stop, if there is one.
+    pub start_stop: Option<StartStop>,
 }
 
 /// The engine at one temperature state, in one air.
@@ -122,6 +126,8 @@ pub struct EngineAtTemperature<'a> {
     pub cut_share: f64,
     /// Charge of the cylinders over that at 25 degC and sea level (EN-5).
     pub charge: f64,
+    /// Power at the alternator's shaft that charges the store of start-stop, W (EL-2).
+    pub charging_w: f64,
 }
 
 /// What the engine burns and rejects at one operating point, W unless said.
@@ -178,6 +184,7 @@ impl Engine {
             start_kg_s: self.start_kg_s(running, dt_s),
             cut_share: self.cut_share(coolant_k, running),
             charge,
+            charging_w: 0.0,
         }
     }
 
@@ -303,7 +310,7 @@ impl PrimeMover for EngineAtTemperature<'_> {
         let least = 0.5 * self.engine.idle_hot_rad_s;
         let w = larger(speed_rad_s, least);
         if speed_rad_s > 0.0 {
-            self.engine.electrical_w / w + self.engine.accessory_nm
+            (self.engine.electrical_w + self.charging_w) / w + self.engine.accessory_nm
         } else {
             0.0
         } // EN-4

@@ -75,11 +75,17 @@ impl Running {
     }
 }
 
+/// Share of the fuel of a start that it takes at a temperature of the coolant, K.
+#[inline]
+pub(super) fn cold_share(coolant_k: f64) -> f64 {
+    clamp((60.0 + ZERO_DEGC_K - coolant_k) / 60.0, 0.0, 1.0)
+}
+
 impl Engine {
     /// Fuel of the start in a step, kg/s.
     #[inline]
     pub(super) fn start_kg_s(&self, running: &Running, dt_s: f64) -> f64 {
-        let cold = clamp((60.0 + ZERO_DEGC_K - running.start_k) / 60.0, 0.0, 1.0);
+        let cold = cold_share(running.start_k);
         self.start_kg * cold * running.spending_per_s(self.start_s, dt_s) // EN-9
     }
 

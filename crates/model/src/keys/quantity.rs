@@ -104,7 +104,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity
     }
 }
 
-const UNITS: [Quantity; 61] = [
+const UNITS: [Quantity; 62] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -151,6 +151,7 @@ const UNITS: [Quantity; 61] = [
     unit("_kmh", "km/h", 1.0 / 3.6),
     unit("_w", "W", 1.0),
     unit("_kw", "kW", 1e3),
+    unit("_wh", "Wh", 3600.0),
     unit("_w_k", "W/K", 1.0),
     unit("_j_k", "J/K", 1.0),
     unit("_kj_k", "kJ/K", 1e3),

@@ -10,7 +10,7 @@ pub mod viscous_self_heating;
 pub mod manual;
 mod step;
 
-pub use step::{DrivelineState, Hold, StepInput, StepOutput};
+pub use step::{DrivelineState, StepInput, StepOutput};
 
 use self::component::{Component, Part};
 use self::coupling::Coupling;

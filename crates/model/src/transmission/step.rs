@@ -3,7 +3,6 @@
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
 use super::coupling::Reach;
-use super::cvt::controller::ClampLaw;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
@@ -24,21 +23,10 @@ pub struct StepInput<'a, P> {
     pub heat: &'a Heat,
     /// Gear that the cycle prescribes, if it does.
     pub gear: Option<GearCommand>,
-    /// What a CVT is held at, if it is.
-    pub hold: Option<Hold>,
     /// Length of the step, s.
     pub dt_s: f64,
     /// True where the engine is switched off.
     pub engine_off: bool,
-}
-
-/// What is imposed on a CVT in a step, in place of its controller (RC-12).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
-    /// Belt ratio at the end of the step; the one before at rest.
-    pub ratio: f64,
-    /// Clamp law; that of the box without one.
-    pub clamp: Option<ClampLaw>,
 }
 
 impl<P: PrimeMover> StepInput<'_, P> {
@@ -99,6 +87,8 @@ pub struct StepOutput {
     pub clamp_safety: f64,
     /// Loss power of each component, W.
     pub loss_w: ByComponent<f64>,
+    /// Loss of the alternator for an electric pump, W.
+    pub alternator_w: f64,
     /// Power that the driveline gives to the wheels (negative: takes from them).
     pub output_w: f64,
     /// Power into the brakes.
@@ -132,6 +122,7 @@ impl StepOutput {
             secondary_nm: f64::NAN,
             clamp_safety: f64::NAN,
             loss_w: ByComponent([0.0; Component::COUNT]),
+            alternator_w: 0.0,
             output_w: 0.0,
             brake_w: 0.0,
             deficit_w: 0.0,

@@ -10,11 +10,13 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::limits::{Infeasible, LimitName};
-use super::line::{Line, fit_line};
+use super::line::{Line, LineFit, fit_line};
 use super::{Bound, Clamp, Limits, Task, bound};
 
 /// Gap between the driven path and the bound above which the bound is not tight.
 pub const TIGHT: f64 = 5e-3;
+/// Relative difference of two sums of the same drive.
+const PROVEN: f64 = 1e-9;
 
 /// A car under one of its clamp laws.
 #[derive(Clone, Copy, Debug)]
@@ -95,6 +97,8 @@ pub struct LineAnswer {
     pub above_least_percent: f64,
     /// The same above the least fuel less the tolerance.
     pub above_bound_percent: f64,
+    /// Whether the car of the file burns what the line does.
+    pub proven: bool,
     /// Slowest engine where there is a choice, rpm.
     pub slowest_rpm: f64,
     /// Drives that the search took.
@@ -129,6 +133,8 @@ pub enum NoAnswer {
     Infeasible(Box<Infeasible>),
     /// The line's own file cannot be read.
     Line(Problems),
+    /// The car has no CVT.
+    NoCvt,
 }
 
 /// Answers a question; `like` names the car in the line's file, `options` are those it was read with.
@@ -138,69 +144,37 @@ pub enum NoAnswer {
 pub fn answer(of: &Question, like: &str, options: &Options) -> Result<Answer, NoAnswer> {
     let trace = of.cycle.trace_for(true);
     let steps: Vec<Step> = trace.steps(of.conditions.max_dt_s).collect();
-    let cars: Vec<Car> = of
-        .cars
-        .iter()
-        .map(|car| car.setup.car(of.conditions.ambient_k))
-        .collect();
-    let own = &cars[0];
-    let density = own.engine.fuel_density_kg_m3;
-    let litres = |kg: f64| litres_per_100km(kg, density, trace.distance_m());
+    let ready = |law: &LawCar| law.setup.car(of.conditions.ambient_k);
+    let cars: Vec<Car> = of.cars.iter().map(ready).collect();
     let least_speeds: Vec<f64> = of.least_speeds_rpm.iter().map(|n| rad_s(*n)).collect();
-    let task = |car: usize, clamp: Clamp| {
-        let main = car == 0 && clamp == Clamp::Law;
-        Task {
-            car: &cars[car],
-            steps: &steps,
-            start: start_state(&cars[car], trace, &of.conditions),
-            clamp,
-            limits: of.limits(&cars[car]),
-            grid: of.grid,
-            least_speeds_rad_s: if main { &least_speeds } else { &[] },
-            prices: if main { &LimitName::ALL } else { &[] },
-        }
-    };
-    let free = of.free.map(|(safety, slip)| Clamp::Free { safety, slip });
-    let laws = (0..cars.len()).map(|car| task(car, Clamp::Law));
-    let tasks: Vec<Task> = laws.chain(free.map(|clamp| task(0, clamp))).collect();
+    let tasks = of.tasks(&cars, &steps, &least_speeds);
     let bounds: Result<Vec<Bound>, _> = tasks.par_iter().map(bound).collect();
     let bounds = bounds.map_err(NoAnswer::Infeasible)?;
-    let fit = of.line.then(|| fit_line(&tasks[0], &bounds[0]));
-    let kg = |car: &Car, task: &Task| -> f64 {
-        let mut drive = Drive::new(car, task.start);
-        let rows = steps.iter().map(|step| drive.step(step).0);
-        rows.map(|row| row.fuel_kg_s * row.dt_s).sum()
+    let (Some(task), Some(main)) = (tasks.first(), bounds.first()) else {
+        return Err(NoAnswer::NoCvt);
     };
-    let law_bound = |(k, (task, bound)): (usize, (&Task, &Bound))| {
-        let law = of.cars.get(k);
-        let with_line = law.and(fit.as_ref()).map(|fit| fit.line.on(task.car));
-        LawBound {
-            clamp: law.map_or("free", |car| car.law).to_owned(),
-            own_l_per_100km: law.map(|_| litres(kg(task.car, task))),
-            line_l_per_100km: with_line.map(|car| litres(kg(&car, task))),
-            least_l_per_100km: litres(bound.fuel_kg),
-            tolerance_l_per_100km: litres(bound.tolerance_kg),
-            driven_l_per_100km: litres(bound.driven_kg),
-            gap_percent: 100.0 * bound.gap(),
-            grid: bound
-                .coarser
-                .iter()
-                .map(|(n, kg)| (*n, litres(*kg)))
-                .collect(),
-            temperatures: bound.temperatures.iter().map(|kg| litres(*kg)).collect(),
-        }
+    let litres = |kg: f64| {
+        let density = task.car.engine.fuel_density_kg_m3;
+        litres_per_100km(kg, density, trace.distance_m())
     };
-    let main = &bounds[0];
-    let mut found = Answer {
-        bounds: tasks
-            .iter()
-            .zip(&bounds)
-            .enumerate()
-            .map(law_bound)
-            .collect(),
-        least_speeds: main
-            .least_speeds
-            .iter()
+    let fit = of.line.then(|| fit_line(task, main));
+    let laws = (0..).zip(tasks.iter().zip(&bounds));
+    let laws = laws.map(|(k, (task, bound))| {
+        let law = of.cars.get(k).map(|car| car.law);
+        law_bound((law, fit.as_ref()), task, bound, &litres)
+    });
+    let laws: Vec<LawBound> = laws.collect();
+    let loose = laws.iter().filter(|law| law.gap_percent > 100.0 * TIGHT);
+    let mut failures: Vec<String> = loose.map(not_tight).collect();
+    let line = fit.map(|fit| of.proven(fit, main, &litres, (like, options)));
+    let line = line.transpose().map_err(NoAnswer::Line)?;
+    failures.extend(line.iter().filter(|line| !line.proven).map(|_| {
+        "line not proven: its file, read and driven, gives another fuel than the line".to_owned()
+    }));
+    let speeds = main.least_speeds.iter();
+    Ok(Answer {
+        bounds: laws,
+        least_speeds: speeds
             .map(|(w, kg)| (rpm(*w).round(), kg.map(litres)))
             .collect(),
         limits: main
@@ -208,39 +182,44 @@ pub fn answer(of: &Question, like: &str, options: &Options) -> Result<Answer, No
             .iter()
             .map(|(name, kg)| price(*name, *kg, main))
             .collect(),
-        line: None,
-        failures: Vec::new(),
+        line,
+        failures,
         path: main.rows.clone(),
+    })
+}
+
+fn not_tight(law: &LawBound) -> String {
+    format!(
+        "bound not tight: with the clamp `{}` the best path burns {:.2} % more than the bound",
+        law.clamp, law.gap_percent
+    )
+}
+
+/// The bound of a task as numbers, with the fuel of its car and of its car with the line; of a free clamp without a law.
+fn law_bound(
+    (law, fit): (Option<&str>, Option<&LineFit>),
+    task: &Task,
+    bound: &Bound,
+    litres: &impl Fn(f64) -> f64,
+) -> LawBound {
+    let kg = |car: &Car| -> f64 {
+        let mut drive = Drive::new(car, task.start);
+        let rows = task.steps.iter().map(|step| drive.step(step).0);
+        rows.map(|row| row.fuel_kg_s * row.dt_s).sum()
     };
-    for law in &found.bounds {
-        if law.gap_percent > 100.0 * TIGHT {
-            found.failures.push(format!(
-                "bound not tight: with the clamp `{}` the best path burns {:.2} % more than the bound",
-                law.clamp, law.gap_percent
-            ));
-        }
+    let lined = law.and(fit).map(|fit| fit.line.on(task.car));
+    let grid = bound.coarser.iter();
+    LawBound {
+        clamp: law.unwrap_or("free").to_owned(),
+        own_l_per_100km: law.map(|_| litres(kg(task.car))),
+        line_l_per_100km: lined.map(|car| litres(kg(&car))),
+        least_l_per_100km: litres(bound.fuel_kg),
+        tolerance_l_per_100km: litres(bound.tolerance_kg),
+        driven_l_per_100km: litres(bound.driven_kg),
+        gap_percent: 100.0 * bound.gap(),
+        grid: grid.map(|(n, kg)| (*n, litres(*kg))).collect(),
+        temperatures: bound.temperatures.iter().map(|kg| litres(*kg)).collect(),
     }
-    if let Some(fit) = fit {
-        let file = of.file(&fit.line, like);
-        let proven_kg = of.proof_kg(&file, options).map_err(NoAnswer::Line)?;
-        if (proven_kg / fit.fuel_kg - 1.0).abs() > 1e-9 {
-            let text =
-                "line not proven: its file, read and driven, gives another fuel than the line";
-            found.failures.push(text.to_owned());
-        }
-        let above = |kg: f64| 100.0 * (proven_kg / kg - 1.0);
-        found.line = Some(LineAnswer {
-            l_per_100km: litres(proven_kg),
-            above_least_percent: above(main.fuel_kg),
-            above_bound_percent: above(main.least_kg()),
-            slowest_rpm: rpm(fit.slowest_rad_s),
-            drives: fit.drives,
-            drive: fit.line.drive,
-            overrun: fit.line.overrun,
-            file,
-        });
-    }
-    Ok(found)
 }
 
 fn price(name: LimitName, without_kg: f64, bound: &Bound) -> LimitPrice {
@@ -251,6 +230,61 @@ fn price(name: LimitName, without_kg: f64, bound: &Bound) -> LimitPrice {
 }
 
 impl Question<'_> {
+    /// The tasks of all clamp laws, then that of a free clamp.
+    fn tasks<'a>(
+        &self,
+        cars: &'a [Car],
+        steps: &'a [Step],
+        least_speeds_rad_s: &'a [f64],
+    ) -> Vec<Task<'a>> {
+        let trace = self.cycle.trace_for(true);
+        let task = |(number, car): (usize, &'a Car), clamp: Clamp| {
+            let main = number == 0 && clamp == Clamp::Law;
+            Some(Task {
+                car,
+                cvt: super::cvt(car)?,
+                steps,
+                start: start_state(car, trace, &self.conditions),
+                clamp,
+                limits: self.limits(car),
+                grid: self.grid,
+                least_speeds_rad_s: if main { least_speeds_rad_s } else { &[] },
+                prices: if main { &LimitName::ALL } else { &[] },
+            })
+        };
+        let laws = cars.iter().enumerate();
+        let laws = laws.filter_map(|car| task(car, Clamp::Law));
+        let free = self.free.iter().filter_map(|(safety, slip)| {
+            let (safety, slip) = (*safety, *slip);
+            task((0, cars.first()?), Clamp::Free { safety, slip })
+        });
+        laws.chain(free).collect()
+    }
+
+    /// The line with the proof that its file is it.
+    fn proven(
+        &self,
+        fit: LineFit,
+        main: &Bound,
+        litres: &impl Fn(f64) -> f64,
+        (like, options): (&str, &Options),
+    ) -> Result<LineAnswer, Problems> {
+        let file = self.file(&fit.line, like);
+        let proven_kg = self.proof_kg(&file, options)?;
+        let above = |kg: f64| 100.0 * (proven_kg / kg - 1.0);
+        Ok(LineAnswer {
+            l_per_100km: litres(proven_kg),
+            above_least_percent: above(main.fuel_kg),
+            above_bound_percent: above(main.least_kg()),
+            proven: (proven_kg / fit.fuel_kg - 1.0).abs() <= PROVEN,
+            slowest_rpm: rpm(fit.slowest_rad_s),
+            drives: fit.drives,
+            drive: fit.line.drive,
+            overrun: fit.line.overrun,
+            file,
+        })
+    }
+
     fn limits(&self, car: &Car) -> Limits {
         let own = super::cvt(car).map(|cvt| (cvt.ratio.up_per_s, cvt.ratio.down_per_s));
         let (up_per_s, down_per_s) = self.rates_per_s.or(own).unwrap_or((0.0, 0.0));

@@ -7,7 +7,7 @@ use super::nodes::Scene;
 use super::program::{Controls, follow, solve};
 use super::reference::Reference;
 use super::stages::{Problem, Table};
-use super::{Limits, Solved, Task};
+use super::{Limits, Task};
 
 /// A limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +38,7 @@ impl LimitName {
     }
 
     /// Limits without this one, as far as the car allows.
-    fn dropped(self, limits: Limits) -> Limits {
+    pub(super) fn dropped(self, limits: Limits) -> Limits {
         match self {
             LimitName::LeastSpeed => Limits {
                 least_rad_s: 0.0,
@@ -85,11 +85,6 @@ pub struct Infeasible {
     pub each: Vec<(LimitName, Option<f64>)>,
     /// Two limits that would have to go together, where no single one is enough.
     pub both: Option<[LimitName; 2]>,
-}
-
-/// Least fuel without a limit, kg.
-pub(super) fn without(scene: &Scene, solved: &Solved, task: &Task, name: LimitName) -> Option<f64> {
-    solved.least_kg(scene, &solved.table, name.dropped(task.limits))
 }
 
 /// Which limits make a task infeasible, and where.

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | DP-12 | nodes of n_d(P/P_rated) and n_o(v) that burn least when driven by RC-11: from the means of the best path, each node moved up and down by 320, 160 ... 5 rpm while that burns less | derived: search by the model's own drive, one node at a time |
+//! | DP-12 | nodes of n_d(P/P_rated) and n_o(v) that burn least when driven by RC-13: from the means of the best path, each node moved up and down by 320, 160 ... 5 rpm while that burns less | derived: search by the model's own drive, one node at a time |
 //!
 //! A controller that looks at demand and speed knows nothing of what comes: what its best line burns more than the bound is the worth of looking ahead.
 
@@ -31,7 +31,7 @@ const BELOW: f64 = 0.96;
 const MISSED_KG_J: f64 = 4e-7;
 /// Fuel that a second at half the least speed counts for, kg.
 const SLOW_KG_S: f64 = 2e-3;
-/// Efficiency with which the route over the engine's best points is begun where the cycle asks for no such power.
+/// Efficiency with which the route over the engine's best points is begun where the cycle demands no such power.
 const ROUTE_EFFICIENCY: f64 = 0.85;
 
 /// A drive line and an overrun line, in the units of a vehicle file.
@@ -188,7 +188,7 @@ pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
     }
 }
 
-/// Means of the best path's engine speeds at the nodes, in whole rpm; where the cycle asks for no such power, the engine's best points.
+/// Means of the best path's engine speeds at the nodes, in whole rpm; where the cycle demands no such power, the engine's best points.
 fn means(task: &Task, bound: &Bound) -> Line {
     let rated_w = task.car.engine.rated_w;
     let chosen = || {

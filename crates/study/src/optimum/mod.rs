@@ -38,8 +38,8 @@ pub use line::{Line, LineFit, fit_line};
 use cvtcycle_model::cycle::Step;
 use cvtcycle_model::drive::{Car, Row, State};
 use cvtcycle_model::thermal::NODES;
-use cvtcycle_model::transmission::cvt::Cvt;
-use cvtcycle_model::transmission::{Hold, Transmission};
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 use rayon::prelude::*;
 
 use self::nodes::Scene;
@@ -84,8 +84,10 @@ pub enum Clamp {
 /// What is to be driven.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
-    /// The car, with a CVT.
+    /// The car.
     pub car: &'a Car,
+    /// Its CVT.
+    pub cvt: &'a Cvt,
     /// The steps of the trace.
     pub steps: &'a [Step],
     /// State before the first.
@@ -164,72 +166,60 @@ struct Solved {
 ///
 /// # Errors
 /// The limits cannot be held.
-///
-/// # Panics
-/// Never for a car with a CVT.
 pub fn bound(task: &Task) -> Result<Bound, Box<Infeasible>> {
-    let cvt = cvt(task.car).expect("a car with a CVT");
-    let scene = Scene::new(task.car, cvt, task.steps, task.clamp);
-    let along = |solved: &Solved| {
-        Reference::drive(task.car, task.steps, task.start, |k, state| {
-            let hold = solved.holds[k];
-            Some(match solved.chosen[k] {
-                true => scene.locked(k, state, hold),
-                false => hold,
-            })
-        })
-    };
-    // The temperatures settle on half of the grid.
-    let half = task.grid / 2 + 1;
-    let mut driven = Reference::drive(task.car, task.steps, task.start, |_, _| None);
-    let (mut temperatures, mut fuel_kg) = (Vec::new(), f64::INFINITY);
-    loop {
-        let solved = Solved::new(&scene, task, driven, half)?;
-        driven = along(&solved);
-        temperatures.push(solved.fuel_kg);
-        let moved = [driven.fuel_kg() / fuel_kg, change(&temperatures)];
-        fuel_kg = driven.fuel_kg();
-        let settled = moved.iter().all(|ratio| (ratio - 1.0).abs() < SETTLED);
-        if settled || temperatures.len() >= MOST_TEMPERATURES {
-            break;
-        }
-    }
-    let solved = Solved::new(&scene, task, driven, task.grid)?;
-    let driven = along(&solved);
-    let coarser: Vec<(usize, f64)> = STRIDES
-        .into_par_iter()
-        .map(|stride| {
-            let table = solved.table.coarser(stride);
-            let fuel_kg = solved.least_kg(&scene, &table, task.limits);
-            (table.grid.len(), fuel_kg.unwrap_or(f64::INFINITY))
-        })
-        .collect();
+    let scene = Scene::new(task.car, task.cvt, task.steps, task.clamp);
+    let (reference, temperatures) = settled(&scene, task)?;
+    let solved = Solved::new(&scene, task, reference, task.grid)?;
+    let driven = solved.drive(&scene, task);
+    let coarser = STRIDES.into_par_iter().map(|stride| {
+        let table = solved.table.coarser(stride);
+        let fuel_kg = solved.least_kg(&scene, &table, task.limits);
+        (table.grid.len(), fuel_kg.unwrap_or(f64::INFINITY))
+    });
+    let coarser: Vec<(usize, f64)> = coarser.collect();
     let grid_kg = coarser.last().map_or(0.0, |c| (c.1 - solved.fuel_kg).abs());
-    let last_kg = temperatures.last().copied().unwrap_or(f64::NAN);
-    let settled_kg = ((change(&temperatures) - 1.0) * last_kg).abs();
-    let kinds = |name: LimitName| Some((name, limits::without(&scene, &solved, task, name)?));
+    let settled_kg = (change(&temperatures) - 1.0).abs() * solved.fuel_kg;
+    let at = |least_rad_s: &f64| {
+        let limits = Limits {
+            least_rad_s: *least_rad_s,
+            ..task.limits
+        };
+        (*least_rad_s, solved.least_kg(&scene, &solved.table, limits))
+    };
+    let without = |name: &LimitName| {
+        let limits = name.dropped(task.limits);
+        Some((*name, solved.least_kg(&scene, &solved.table, limits)?))
+    };
     Ok(Bound {
         fuel_kg: solved.fuel_kg,
         tolerance_kg: grid_kg + settled_kg, // DP-11
         driven_kg: driven.fuel_kg(),
-        least_speeds: task
-            .least_speeds_rad_s
-            .par_iter()
-            .map(|least_rad_s| {
-                let limits = Limits {
-                    least_rad_s: *least_rad_s,
-                    ..task.limits
-                };
-                (*least_rad_s, solved.least_kg(&scene, &solved.table, limits))
-            })
-            .collect(),
-        without: task.prices.par_iter().copied().filter_map(kinds).collect(),
+        least_speeds: task.least_speeds_rad_s.par_iter().map(at).collect(),
+        without: task.prices.par_iter().filter_map(without).collect(),
         coarser,
         temperatures,
         rows: driven.rows,
         holds: driven.holds,
         chosen: solved.chosen,
     })
+}
+
+/// The best path's drive in its own temperatures, and the least fuel in each set of temperatures on the way; on half of the grid.
+fn settled(scene: &Scene, task: &Task) -> Result<(Reference, Vec<f64>), Box<Infeasible>> {
+    let half = task.grid / 2 + 1;
+    let mut driven = Reference::drive(task.car, task.steps, task.start, |_, _| None);
+    let (mut least, mut fuel_kg) = (Vec::new(), f64::INFINITY);
+    loop {
+        let solved = Solved::new(scene, task, driven, half)?;
+        driven = solved.drive(scene, task);
+        least.push(solved.fuel_kg);
+        let moved = [driven.fuel_kg() / fuel_kg, change(&least)];
+        fuel_kg = driven.fuel_kg();
+        let settled = moved.iter().all(|ratio| (ratio - 1.0).abs() < SETTLED);
+        if settled || least.len() >= MOST_TEMPERATURES {
+            return Ok((driven, least));
+        }
+    }
 }
 
 /// The last of a list over the one before it; infinite for a single one.
@@ -248,7 +238,6 @@ impl Solved {
         grid: usize,
     ) -> Result<Self, Box<Infeasible>> {
         let worth = reference.worth_kg_j(task.car, task.steps);
-
         let table = Table::new(scene, &reference, grid);
         let problem = Problem::new(scene, &table, &reference, &worth, task.limits);
         let Some(path) = least_path(&problem) else {
@@ -269,6 +258,17 @@ impl Solved {
             holds,
             chosen,
             reference,
+        })
+    }
+
+    /// The path, driven in its own temperatures.
+    fn drive(&self, scene: &Scene, task: &Task) -> Reference {
+        Reference::drive(task.car, task.steps, task.start, |k, state| {
+            let hold = self.holds[k];
+            Some(match self.chosen[k] {
+                true => scene.locked(k, state, hold),
+                false => hold,
+            })
         })
     }
 

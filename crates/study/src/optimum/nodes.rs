@@ -10,10 +10,9 @@ use cvtcycle_model::engine::{EngineAtTemperature, Running};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES};
-use cvtcycle_model::transmission::Hold;
-use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 use cvtcycle_model::transmission::cvt::variator::BeltAtRatio;
+use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 
 use super::Clamp;
 use super::program::Place;

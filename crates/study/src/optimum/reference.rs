@@ -8,7 +8,7 @@
 use cvtcycle_model::cycle::Step;
 use cvtcycle_model::drive::{Car, Drive, Row, State};
 use cvtcycle_model::thermal::NODES;
-use cvtcycle_model::transmission::Hold;
+use cvtcycle_model::transmission::cvt::Hold;
 
 /// Rise of a node for the differences of DP-7, K.
 const RISE_K: f64 = 5.0;

@@ -9,7 +9,7 @@ use cvtcycle_model::drive::{Drive, State};
 use cvtcycle_model::engine::EngineAtTemperature;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES};
-use cvtcycle_model::transmission::Hold;
+use cvtcycle_model::transmission::cvt::Hold;
 use rayon::prelude::*;
 
 use super::Limits;

@@ -314,7 +314,6 @@ fn begin(car: &Car, wheel_rad_s: f64, power_w: f64) -> TransmissionState {
         oil: &car.oil,
         heat: &heat,
         gear: None,
-        hold: None,
         dt_s: 1.0,
         engine_off: false,
     })

@@ -1,10 +1,10 @@
-//! Ratio control RC-1 to RC-8, RC-10, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
+//! Ratio control RC-1 to RC-8, RC-10, RC-11, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
 
 use super::same;
 use cvtcycle_model::math::Curve;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle_model::transmission::cvt::controller::{
-    ClampSignals, MapLaw, OperatingLine, RatioControl, RatioDemand,
+    ClampSignals, ColdRise, MapLaw, OperatingLine, RatioControl, RatioDemand,
 };
 
 fn control() -> RatioControl {
@@ -22,6 +22,7 @@ fn control() -> RatioControl {
         rate_speed_rad_s: 100.0,
         hysteresis: 0.05,
         filter_s: 0.0,
+        cold: ColdRise::NONE,
         line: None,
     }
 }
@@ -33,6 +34,7 @@ fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
         power_w: power_share * 80e3,
         share: power_share,
         full_load_rad_s: 0.0,
+        cold_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,
@@ -78,7 +80,7 @@ fn val_target_by_hand() {
     same(route(0.0, 350.0), 150.0);
 }
 
-/// RC-11: each line in place of the gentle targets, linear between its rows and held at its ends, above the clutch's speed; RC-3 and RC-8 go on.
+/// RC-13: each line in place of the gentle targets, linear between its rows and held at its ends, above the clutch's speed; RC-3 and RC-8 go on.
 #[test]
 fn val_lines_by_hand() {
     let curve = |points: &[(f64, f64)]| Some(Curve::new(points).unwrap());
@@ -341,6 +343,50 @@ fn val_clamp_map_by_hand() {
         force_log: 0.0,
     };
     same(odd.pressure_pa(&s), 1.25 * 20e5);
+}
+
+/// RC-11: in full up to `from`, linear to nothing at `to`, by coolant or sump; added to the target under power, none without, and never above
+/// RC-8.
+#[test]
+fn val_cold_line_by_hand() {
+    let cold = ColdRise {
+        rise_rad_s: 70.0,
+        from_k: 270.0,
+        to_k: 320.0,
+        by_sump: false,
+    };
+    for (coolant, rise) in [
+        (250.0, 70.0),
+        (270.0, 70.0),
+        (295.0, 35.0),
+        (320.0, 0.0),
+        (370.0, 0.0),
+    ] {
+        same(cold.at(coolant, 250.0), rise);
+        let by_sump = ColdRise {
+            by_sump: true,
+            ..cold
+        };
+        same(by_sump.at(370.0, coolant), rise);
+    }
+    same(ColdRise::NONE.at(200.0, 200.0), 0.0);
+    let c = control();
+    let target = |share: f64, cold_rad_s: f64| {
+        c.target_rad_s(&RatioDemand {
+            cold_rad_s,
+            ..demand(share, 100.0, 1.0)
+        })
+    };
+    for (share, part) in [
+        (-0.2, 0.0),
+        (0.0, 0.0),
+        (0.005, 0.5),
+        (0.01, 1.0),
+        (0.2, 1.0),
+    ] {
+        same(target(share, 35.0), target(share, 0.0) + 35.0 * part);
+    }
+    same(target(0.2, 1e4), c.highest_rad_s);
 }
 
 /// LC-1, LC-2, LC-3, LC-5 in each regime.

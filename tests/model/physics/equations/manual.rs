@@ -92,7 +92,6 @@ fn solve(car: &Car, s: &Step) -> (StepOutput, TransmissionState) {
         oil: &car.oil,
         heat: &heat,
         gear: s.command,
-        hold: None,
         dt_s: s.dt_s,
         engine_off: s.engine_off,
     };

@@ -102,7 +102,7 @@ fn val_pressure_that_a_flow_keeps_up_by_hand() {
     );
 }
 
-/// IS-1, CD-1, CD-2 at the reference viscosity, warmer and colder.
+/// IS-1, CD-1 to CD-3 at the reference viscosity, warmer and colder.
 #[test]
 fn val_shafts_by_hand() {
     let shaft = ShaftDrag {
@@ -118,6 +118,8 @@ fn val_shafts_by_hand() {
         peak_rad_s: None,
         clearance_m: 0.3e-3,
         oil_share: 1.0,
+        set_nm: 0.0,
+        set_nm_s: 0.0,
     };
     same(NU_REFERENCE_M2_S, 11e-6);
     for ratio in [0.6, 1.0, 3.0, 40.0f64] {
@@ -139,6 +141,16 @@ fn val_shafts_by_hand() {
             };
             let rise = 2.0 * w / 420.0 / (1.0 + (w / 168.0) * (w / 168.0));
             same(wide.torque_nm(power(0.55), w), film_nm(0.5) * rise);
+            let set = ClutchDrag {
+                set_nm: 0.3,
+                set_nm_s: 4e-4,
+                ..wide
+            };
+            let bearings_nm = 0.3 + 4e-4 * ratio.powf(0.55) * w;
+            same(
+                set.torque_nm(power(0.55), w),
+                film_nm(0.5) * rise + bearings_nm,
+            );
         }
     }
 }

@@ -38,7 +38,6 @@ fn shifted(
         oil: &car.oil,
         heat: &heat,
         gear: None::<GearCommand>,
-        hold: None,
         dt_s: 0.5,
         engine_off: false,
     };
@@ -68,6 +67,7 @@ fn shifted(
             &engine,
             wheel.power_w / cvt.ratio.route_efficiency,
         ),
+        cold_rad_s: 0.0,
         ratio_before: from,
         flow_down_per_s: free / down,
         flow_up_per_s: free / up,
@@ -227,7 +227,6 @@ fn after(
         oil: &b.car.oil,
         heat: &heat,
         gear: None,
-        hold: None,
         dt_s,
         engine_off: false,
     };
@@ -324,7 +323,6 @@ fn an_engine_at_rest_turns_nothing() {
         oil: &car.oil,
         heat: &heat,
         gear: None,
-        hold: None,
         dt_s: 1.0,
         engine_off: true,
     };

@@ -194,7 +194,7 @@ fn ranges_in_words() {
 }
 
 /// Key, value, SI value worked out by hand, unit as shown.
-const EXPECTED: [(&str, f64, f64, &str); 64] = [
+const EXPECTED: [(&str, f64, f64, &str); 66] = [
     (
         "fall_per_1000_rpm",
         0.2,
@@ -243,6 +243,13 @@ const EXPECTED: [(&str, f64, f64, &str); 64] = [
     ("speed_kmh", 36.0, 10.0, "km/h"),
     ("load_w", 200.0, 200.0, "W"),
     ("rated_kw", 75.0, 75_000.0, "kW"),
+    ("store_wh", 20.0, 72_000.0, "Wh"),
+    (
+        "first_rpm_per_kmh",
+        100.0,
+        37.699_111_843_077_52,
+        "rpm/(km/h)",
+    ),
     ("conductance_w_k", 12.0, 12.0, "W/K"),
     ("capacity_j_k", 900.0, 900.0, "J/K"),
     ("capacity_kj_k", 20.0, 20_000.0, "kJ/K"),

@@ -2,7 +2,7 @@
 
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle_model::transmission::cvt::controller::{
-    ClampSignals, MapLaw, RatioControl, RatioDemand,
+    ClampSignals, ColdRise, MapLaw, RatioControl, RatioDemand,
 };
 use cvtcycle_model::transmission::cvt::pump::{ETA_REFERENCE_PA_S, Pump, PumpKind};
 use cvtcycle_model::transmission::cvt::shaft_drag::ShaftDrag;
@@ -337,6 +337,7 @@ fn control() -> RatioControl {
         rate_speed_rad_s: 1000.0 * RPM,
         hysteresis: 0.05,
         filter_s: 0.0,
+        cold: ColdRise::NONE,
         line: None,
     }
 }
@@ -348,6 +349,7 @@ fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
         power_w: power,
         share: power / 82e3,
         full_load_rad_s: 0.0,
+        cold_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,
         flow_up_per_s: 9.0,

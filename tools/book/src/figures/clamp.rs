@@ -23,6 +23,7 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
         power_w,
         share,
         full_load_rad_s: cvt.full_load_route.at(power_w / cvt.ratio.route_efficiency),
+        cold_rad_s: 0.0,
         ratio_before: cvt.ratio.low,
         flow_down_per_s: f64::INFINITY,
         flow_up_per_s: f64::INFINITY,

@@ -10,8 +10,12 @@
 //! | NC-7 | units by their definitions | source |
 //! | NC-9 | stroke of four cylinders of equal bore and stroke | ASSUMED |
 //!
-//! `units` reads numbers with their units, `rules` makes the values, this module the file.
+//! `units` reads numbers with their units, `rules` makes the values, `full_load` the line of full load, this module the file; `answers`
+//! reads the numbers from a file, `questions` says what may be asked for.
 
+mod answers;
+mod full_load;
+mod questions;
 mod rules;
 mod units;
 
@@ -20,7 +24,8 @@ use std::path::Path;
 
 use super::{Disk, Kind, Options, Setup, read};
 use crate::problem::near::suggest;
-use crate::{Problem, Problems};
+use crate::{Place, Problem, Problems};
+pub use questions::{Question, mistake, questions};
 use rules::Line;
 
 /// Catalogue numbers by the names of their options, as texts.
@@ -38,6 +43,8 @@ pub struct Answers {
     pub gearbox: Option<String>,
     /// The numbers.
     pub numbers: BTreeMap<&'static str, String>,
+    /// Places of those that come from a file ([`Answers::add_file`]).
+    pub places: BTreeMap<&'static str, Place>,
 }
 
 /// A vehicle file.
@@ -91,8 +98,10 @@ pub const NUMBERS: [(&str, &str); 21] = [
     ("engine-oil", "engine oil, by name or path"),
 ];
 
-/// Classes that are taken where nothing is said.
-const USUAL: [&str; 2] = ["compact_2020", "box_cvt_clutch"];
+/// Classes of body and box that are taken where nothing is said.
+pub const USUAL: [&str; 2] = ["compact_2020", "box_cvt_clutch"];
+/// Numbers that no class has for a car: only a car that it is like has them.
+const REQUIRED: [&str; 2] = ["displacement", "power"];
 /// Keys of inherited values that move the fuel most.
 const OF_WEIGHT: [&str; 14] = [
     "road_load.mass_kg",
@@ -116,13 +125,18 @@ const OF_WEIGHT: [&str; 14] = [
 /// # Errors
 /// All numbers that are none or do not fit each other; a problem's key is the name of its option.
 pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
+    made(answers).map_err(|found| {
+        found.map(|problem| match answers.places.get(problem.key.as_str()) {
+            Some(place) => problem.at(place.clone()),
+            None => problem,
+        })
+    })
+}
+
+fn made(answers: &Answers) -> Result<NewCar, Problems> {
     let mut problems = Problems::new();
-    let parents = problems.take(parents(answers));
-    let missing = ["displacement", "power"]
-        .into_iter()
-        .filter(|name| answers.like.is_none() && !answers.numbers.contains_key(name));
-    for name in missing {
-        let problem = Problem::missing(format!("the {name} of the engine is missing")).key(name);
+    for name in REQUIRED.iter().filter(|name| is_missing(answers, name)) {
+        let problem = Problem::missing(format!("the {name} of the engine is missing")).key(*name);
         problems.push(
             problem
                 .names_key()
@@ -130,20 +144,18 @@ pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
                 .hint("a class has none that is this car's; only a car that it is like has"),
         );
     }
-    let Some(parents) = parents.filter(|_| problems.is_empty()) else {
+    let Some(base) = problems.take(Base::of(answers)) else {
         return Err(problems);
     };
-    let like = parents.iter().map(|name| format!("{name:?}"));
-    let like = like.collect::<Vec<_>>().join(", ");
-    // What the rules take from the class, the car without a value of its own has.
-    let bare = head("", &like, false);
-    let base = car(answers, &bare)?;
-    let lines = rules::lines(answers, &base)?;
+    let lines = problems.take(rules::lines(answers, &base.car));
+    let Some(lines) = lines.filter(|_| problems.is_empty()) else {
+        return Err(problems);
+    };
     let title = toml::Value::String(answers.title.clone()).to_string();
     let own = lines.iter().filter(|line| line.table() == VEHICLE);
     let own: String = own.map(Line::text).collect();
     let title = format!("title = {title}\n{own}");
-    let mut text = head(&title, &like, base.transmission().is_cvt());
+    let mut text = head(&title, &base.like, base.car.transmission().is_cvt());
     text += &tables(&lines);
     let setup = car(answers, &text)?;
     text += &of_weight(&setup);
@@ -152,6 +164,29 @@ pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
         text,
         setup,
     })
+}
+
+/// Whether a number that a class cannot have is missing.
+fn is_missing(answers: &Answers, name: &str) -> bool {
+    REQUIRED.contains(&name) && answers.like.is_none() && !answers.numbers.contains_key(name)
+}
+
+/// What the car inherits from.
+struct Base {
+    /// Items of `like`.
+    like: String,
+    /// The car without a value of its own.
+    car: Setup,
+}
+
+impl Base {
+    fn of(answers: &Answers) -> Result<Base, Problems> {
+        let parents = parents(answers)?;
+        let like = parents.iter().map(|name| format!("{name:?}"));
+        let like = like.collect::<Vec<_>>().join(", ");
+        let car = car(answers, &head("", &like, false))?;
+        Ok(Base { like, car })
+    }
 }
 
 /// The car of a text that is to be the file.

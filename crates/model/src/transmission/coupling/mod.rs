@@ -5,30 +5,48 @@
 
 mod friction_clutch;
 mod partial_loss;
+mod torque_converter;
 
 pub use friction_clutch::FrictionClutch;
 pub(super) use partial_loss::PartialLoss;
+pub use torque_converter::{LockUp, TorqueConverter};
 
 use self::friction_clutch::FrictionClutchKeys;
+use self::torque_converter::TorqueConverterKeys;
 use crate::keys::{Choice, Key, Values, spec};
 use crate::math::{clamp, larger, ramp, smaller};
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Row of the key `launch`, which every box has.
-pub(super) const LAUNCH: spec::Spec = spec::or_word(
+const CLUTCH: Choice = Choice::new(
     "friction_clutch",
-    spec::options(&[Choice::new(
-        "friction_clutch",
-        "friction clutch, wet or dry",
-        FrictionClutchKeys::TABLE,
-    )]),
+    "friction clutch, wet or dry",
+    FrictionClutchKeys::TABLE,
 );
+
+const CONVERTER: Choice = Choice::new(
+    "torque_converter",
+    "hydrodynamic torque converter with lock-up clutch",
+    TorqueConverterKeys::TABLE,
+);
+
+/// Row of the key `launch` of a CVT.
+pub(super) const LAUNCH: spec::Spec = launch(&[CLUTCH, CONVERTER]);
+
+/// Row of the key `launch` of a manual box, whose clutch the driver opens.
+pub(super) const MANUAL_LAUNCH: spec::Spec = launch(&[CLUTCH]);
+
+const fn launch(choices: &'static [Choice]) -> spec::Spec {
+    spec::or_word("friction_clutch", spec::options(choices))
+}
 
 /// The coupling of a box; `creep_nm` is the default of a clutch's creep torque.
 pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Arc<dyn Coupling> {
-    let (_, own) = s.choose(key);
-    Arc::new(FrictionClutch::from_values(&own, creep_nm))
+    let (kind, own) = s.choose(key);
+    match kind {
+        "torque_converter" => Arc::new(TorqueConverter::from_values(&own)),
+        _ => Arc::new(FrictionClutch::from_values(&own, creep_nm)),
+    }
 }
 
 /// What the coupling is to pass on.
@@ -67,6 +85,62 @@ pub struct EngineSide {
     pub loss_w: f64,
 }
 
+/// What a coupling that locks by command looks at before a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LockSignals {
+    /// Mean road speed of the step, m/s.
+    pub speed_m_s: f64,
+    /// Oil in the sump, K.
+    pub sump_k: f64,
+    /// Speed of the box's input shaft, rad/s.
+    pub output_rad_s: f64,
+    /// Idle speed of the engine, rad/s.
+    pub idle_rad_s: f64,
+}
+
+/// How a coupling holds engine and box together in a step, decided before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// True where it had locked, or locks by command.
+    pub coupled: bool,
+    /// Output speed from which it stays locked, rad/s; infinite where it is open.
+    pub locked_from_rad_s: f64,
+    /// Speed by which the engine is faster where it is locked, rad/s.
+    pub slip_rad_s: f64,
+}
+
+impl Hold {
+    /// Not locked.
+    pub const OPEN: Hold = Hold {
+        coupled: false,
+        locked_from_rad_s: f64::INFINITY,
+        slip_rad_s: 0.0,
+    };
+}
+
+/// The speeds around a coupling, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turning {
+    /// The box's input shaft.
+    pub output_rad_s: f64,
+    /// The engine.
+    pub engine_rad_s: f64,
+    /// The idling engine.
+    pub idle_rad_s: f64,
+    /// True where the coupling is locked.
+    pub locked: bool,
+}
+
+/// 1 where the engine is no faster than the box, falling to 0 at 2 % more: a slipping coupling whose engine is faster cannot take torque from
+/// the box; faded, so that a solve sees no step.
+fn together(at: &Turning) -> f64 {
+    if at.engine_rad_s > at.output_rad_s {
+        1.0 - ramp(at.engine_rad_s / at.output_rad_s, 1.0, 1.02)
+    } else {
+        1.0
+    }
+}
+
 /// A coupling between engine and box.
 pub trait Coupling: Debug + Send + Sync {
     /// Engine speed in steady state for a torque into the box, rad/s.
@@ -79,6 +153,29 @@ pub trait Coupling: Debug + Send + Sync {
 
     /// Output speed from which a locked coupling stays locked, rad/s; infinite for one that never locks.
     fn locked_from_rad_s(&self, idle_rad_s: f64) -> f64;
+
+    /// True for a coupling that locks by command. Any other has locked once engine and box turn together, and the box stays in low until then.
+    fn by_command(&self) -> bool {
+        false
+    }
+
+    /// How it holds engine and box together in a step; `past`: it had locked before.
+    fn hold(&self, now: &LockSignals, past: bool) -> Hold {
+        if past {
+            Hold {
+                coupled: true,
+                locked_from_rad_s: self.locked_from_rad_s(now.idle_rad_s),
+                slip_rad_s: 0.0,
+            }
+        } else {
+            Hold::OPEN
+        }
+    }
+
+    /// The engine's side where the coupling is locked, with the slip of [`Coupling::hold`].
+    fn locked_side(&self, output_nm: f64, output_rad_s: f64, _slip_rad_s: f64) -> EngineSide {
+        self.engine_side(output_nm, output_rad_s, output_rad_s)
+    }
 
     /// The engine's side for a torque into the box at known speeds; `output_nm` over its torque is the torque ratio.
     fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide;
@@ -93,23 +190,12 @@ pub trait Coupling: Debug + Send + Sync {
     fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64;
 
     /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
-    fn min_output_nm(
-        &self,
-        output_rad_s: f64,
-        engine_rad_s: f64,
-        idle_rad_s: f64,
-        absorbed_nm: f64,
-    ) -> f64 {
-        if output_rad_s < idle_rad_s {
-            return self.creep_nm(output_rad_s, idle_rad_s);
+    fn min_output_nm(&self, at: &Turning, absorbed_nm: f64) -> f64 {
+        if at.output_rad_s < at.idle_rad_s {
+            return self.creep_nm(at.output_rad_s, at.idle_rad_s);
         }
-        // A slipping clutch whose engine is faster cannot take torque from the box; faded in, so that a solve sees no step.
-        let together = if engine_rad_s > output_rad_s {
-            1.0 - ramp(engine_rad_s / output_rad_s, 1.0, 1.02)
-        } else {
-            1.0
-        };
-        -together * self.overrun_share(output_rad_s, idle_rad_s) * absorbed_nm
+        let share = self.overrun_share(at.output_rad_s, at.idle_rad_s);
+        -together(at) * share * absorbed_nm
     }
 
     /// Factor on its loss (LC-6).

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | LC-6 | P_loss' = f P_loss, T_e' = T_e - (1 - f) P_loss/w_e, speeds and torques at the box as before; for f > 1 full load passes on less | derived: power balance of a coupling that loses a part; f = 0 passes power on at any ratio of speeds |
 
-use super::{Coupling, CouplingLoad, EngineSide};
+use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning};
 use std::sync::Arc;
 
 /// A coupling whose loss is multiplied by a factor.
@@ -23,6 +23,15 @@ impl PartialLoss {
             inner
         }
     }
+
+    /// The engine's side with a part of the loss.
+    fn part(&self, side: EngineSide) -> EngineSide {
+        EngineSide {
+            engine_nm: side.engine_nm - (1.0 - self.factor) * side.loss_w / side.engine_rad_s, // LC-6
+            loss_w: self.factor * side.loss_w, // LC-6
+            ..side
+        }
+    }
 }
 
 impl Coupling for PartialLoss {
@@ -38,15 +47,22 @@ impl Coupling for PartialLoss {
         self.inner.locked_from_rad_s(idle_rad_s)
     }
 
+    fn by_command(&self) -> bool {
+        self.inner.by_command()
+    }
+
+    fn hold(&self, now: &LockSignals, past: bool) -> Hold {
+        self.inner.hold(now, past)
+    }
+
+    fn locked_side(&self, output_nm: f64, output_rad_s: f64, slip_rad_s: f64) -> EngineSide {
+        let inner = &self.inner;
+        self.part(inner.locked_side(output_nm, output_rad_s, slip_rad_s))
+    }
+
     fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide {
-        let side = self
-            .inner
-            .engine_side(output_nm, output_rad_s, engine_rad_s);
-        EngineSide {
-            engine_nm: side.engine_nm - (1.0 - self.factor) * side.loss_w / engine_rad_s, // LC-6
-            loss_w: self.factor * side.loss_w,                                            // LC-6
-            ..side
-        }
+        let inner = &self.inner;
+        self.part(inner.engine_side(output_nm, output_rad_s, engine_rad_s))
     }
 
     /// A coupling without loss does not pass on more at full load; one with more loss passes on less, in proportion.
@@ -70,15 +86,8 @@ impl Coupling for PartialLoss {
         self.inner.overrun_share(output_rad_s, idle_rad_s)
     }
 
-    fn min_output_nm(
-        &self,
-        output_rad_s: f64,
-        engine_rad_s: f64,
-        idle_rad_s: f64,
-        absorbed_nm: f64,
-    ) -> f64 {
-        self.inner
-            .min_output_nm(output_rad_s, engine_rad_s, idle_rad_s, absorbed_nm)
+    fn min_output_nm(&self, at: &Turning, absorbed_nm: f64) -> f64 {
+        self.inner.min_output_nm(at, absorbed_nm)
     }
 
     fn loss_factor(&self) -> f64 {

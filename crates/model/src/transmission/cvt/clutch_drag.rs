@@ -1,9 +1,10 @@
-//! Drag of the open reverse clutch.
+//! Drag of the forward-reverse set: its open reverse clutch and its bearings.
 //!
 //! | label | statement | status |
 //! |---|---|---|
 //! | CD-1 | film between the plates: T_f = min(c (nu/nu_80)^m s_0/s, cap) | source: thesis 7.6 in form; fitted to 5.5.3; cap: 5.5.3 "approximately 0.5 Nm" below 25 degC |
 //! | CD-2 | speed: T = T_f 2x/(1 + (x/q)^2), x = n/n_p | ASSUMED: rise, rupture of the film, fall (Yuan et al.; Pointner-Gabriel et al., Lubricants 13 (2025) 27); n_p 2000 to 6000 rpm |
+//! | CD-3 | bearings and seals of the set behind its locked forward clutch: T_0 + c (nu/nu_80)^m w_p on top | ASSUMED: form of IS-1; T_0 0 to 1 Nm, 0 by default, where other parts hold it |
 //!
 //! nu_80 = 11 mm2/s is the viscosity and s_0 = 0.3 mm the clearance at which c holds; s clearance of a pair of plates, n speed of the
 //! primary, n_p speed of the largest drag with the normal oil feed, q feed over the normal one. Below n_p the film shears as Couette's
@@ -31,12 +32,23 @@ pub struct ClutchDrag {
     pub clearance_m: f64,
     /// Oil feed over the normal one.
     pub oil_share: f64,
+    /// Constant torque of the set's bearings, Nm.
+    pub set_nm: f64,
+    /// Their torque over speed at reference viscosity, Nm s.
+    pub set_nm_s: f64,
 }
 
 impl ClutchDrag {
-    /// Torque, Nm, with the power (nu/nu_80)^m known, at a speed of the primary, rad/s (CD-1, CD-2).
+    /// Torque, Nm, with the power (nu/nu_80)^m known, at a speed of the primary, rad/s (CD-1 to CD-3).
     #[inline]
     pub fn torque_nm(&self, power: f64, primary_rad_s: f64) -> f64 {
+        let set_nm = self.set_nm + self.set_nm_s * power * primary_rad_s; // CD-3
+        self.film_nm(power, primary_rad_s) + set_nm
+    }
+
+    /// Torque of the film between the plates, Nm (CD-1, CD-2).
+    #[inline]
+    fn film_nm(&self, power: f64, primary_rad_s: f64) -> f64 {
         let film_nm = self.drag_nm * power * (CLEARANCE_M / self.clearance_m);
         let film_nm = smaller(film_nm, self.cap_nm); // CD-1
         let Some(peak_rad_s) = self.peak_rad_s else {
@@ -57,6 +69,8 @@ keys! {
         peak_rpm: optional(number(200.0, 20_000.0)), "primary speed of the largest drag; absent: the same drag at every speed", ["CD-2"];
         clearance_mm: or(0.3, number(0.05, 3.0)), "clearance of a pair of plates", ["CD-1"];
         oil_share: or(1.0, number(0.05, 2.0)), "oil feed over the normal one", ["CD-2"];
+        set_nm: or(0.0, number(0.0, 20.0)), "constant torque of the bearings of the forward-reverse set", ["CD-3"];
+        set_nm_per_rpm: or(0.0, number(0.0, 0.05)), "their torque over speed at 11 mm2/s", ["CD-3"];
     }
 }
 
@@ -70,6 +84,8 @@ impl ClutchDrag {
             peak_rad_s: s.optional(&CLUTCH.peak_rpm),
             clearance_m: s.number(&CLUTCH.clearance_mm),
             oil_share: s.number(&CLUTCH.oil_share),
+            set_nm: s.number(&CLUTCH.set_nm),
+            set_nm_s: s.number(&CLUTCH.set_nm_per_rpm),
         }
     }
 }

@@ -144,6 +144,8 @@ pub(crate) struct PartTorques {
     pub belt_map: Option<f64>,
     pub clutch: f64,
     pub pump: f64,
+    /// Loss of the alternator for an electric pump.
+    pub alternator: f64,
     pub shaft: f64,
 }
 
@@ -157,12 +159,12 @@ impl PartTorques {
     /// Parts that turn with the engine, Nm at the flywheel.
     #[inline]
     pub fn engine_nm(&self) -> f64 {
-        self.pump + self.shaft
+        self.pump + self.shaft + self.alternator
     }
 
     /// Torque at the flywheel with that of the coupling, Nm.
     pub fn flywheel_nm(&self, coupling_nm: f64) -> f64 {
-        coupling_nm + self.pump + self.shaft
+        coupling_nm + self.pump + self.shaft + self.alternator
     }
 
     /// Gives every loss torque with its component and shaft.
@@ -392,6 +394,7 @@ impl<'a> Driveline<'a> {
             state.torque_nm = self.loss_nm(Component::Pump, at, inside, || state.torque_nm);
         }
         torques.pump = state.torque_nm;
+        torques.alternator = state.alternator_share * state.torque_nm; // EP-2
         torques.shaft = self.loss_nm(Component::InputShaft, at, inside, || {
             let drag = &self.cvt.shaft_drag;
             drag.torque_nm(self.viscosity.shaft, engine_rad_s)

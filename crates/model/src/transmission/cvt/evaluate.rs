@@ -11,7 +11,7 @@ use super::variator::BeltLoad;
 use crate::math::{clamp, larger};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::clamp_cause::ClampCause;
-use crate::transmission::coupling::{CouplingLoad, EngineSide, Reach};
+use crate::transmission::coupling::{CouplingLoad, EngineSide, Hold, Reach, Turning};
 use crate::transmission::gear_train::TurningTrain;
 use crate::transmission::step::StepInput;
 
@@ -39,9 +39,8 @@ pub(super) struct Step<'a, P> {
     pub clamp: &'a ClampLaw,
     /// Secondary pressure before the step, Pa.
     pub pressure_before_pa: f64,
-    pub coupled: bool,
-    /// Primary speed from which the coupling stays locked; infinite while it has not locked yet.
-    pub locked_from_rad_s: f64,
+    /// How the coupling holds engine and primary together.
+    pub hold: Hold,
 }
 
 /// Unknowns of the solve.
@@ -204,22 +203,25 @@ impl<P: PrimeMover> Step<'_, P> {
             &mut inside_maps,
         );
         let spin_nm = torques.engine_nm();
+        let turning = self.turning(primary_rad_s, engine_rad_s);
         let wanted_nm = match limit {
             Limit::None => primary_nm,
-            Limit::EngineDrag => self.min_primary_nm(primary_rad_s, engine_rad_s, spin_nm),
-            Limit::FullLoad => self.max_primary_nm(primary_rad_s, engine_rad_s, spin_nm),
+            Limit::EngineDrag => self.min_primary_nm(&turning, spin_nm),
+            Limit::FullLoad => self.max_primary_nm(&turning, spin_nm),
         };
         let flywheel_nm = own.engine_nm + spin_nm; // CV-2, CV-6
         let (wanted_flywheel_nm, next_engine_rad_s) = if limit == Limit::None {
             (flywheel_nm, engine_rad_s)
         } else {
-            let side = cvt
-                .coupling
-                .engine_side(wanted_nm, primary_rad_s, engine_rad_s);
-            let next = if locked {
-                engine_rad_s
+            let coupling = &cvt.coupling;
+            let (side, next) = if locked {
+                let slip_rad_s = self.hold.slip_rad_s;
+                let side = coupling.locked_side(wanted_nm, primary_rad_s, slip_rad_s);
+                (side, engine_rad_s)
             } else {
-                self.free_engine(wanted_nm, primary_rad_s).engine_rad_s
+                let side = coupling.engine_side(wanted_nm, primary_rad_s, engine_rad_s);
+                let free = self.free_engine(wanted_nm, primary_rad_s);
+                (side, free.engine_rad_s)
             };
             (side.engine_nm + spin_nm, next)
         };
@@ -273,15 +275,14 @@ impl<P: PrimeMover> Step<'_, P> {
         locked: bool,
     ) -> EngineSide {
         let coupling = &self.line.cvt.coupling;
-        if !locked && limit == Limit::None {
+        if locked {
+            return coupling.locked_side(primary_nm, primary_rad_s, self.hold.slip_rad_s);
+        }
+        if limit == Limit::None {
             return self.free_engine(primary_nm, primary_rad_s); // at once: nothing before it feels the engine's speed
         }
-        let least = if locked {
-            primary_rad_s
-        } else {
-            coupling.min_engine_rad_s(primary_rad_s)
-        };
-        let engine_rad_s = if !locked && g.engine_rad_s > least {
+        let least = coupling.min_engine_rad_s(primary_rad_s);
+        let engine_rad_s = if g.engine_rad_s > least {
             g.engine_rad_s
         } else {
             least
@@ -292,7 +293,7 @@ impl<P: PrimeMover> Step<'_, P> {
     /// True where the coupling holds engine and primary together (LC-5).
     #[inline]
     pub(super) fn locked(&self, primary_rad_s: f64) -> bool {
-        primary_rad_s >= self.locked_from_rad_s
+        primary_rad_s >= self.hold.locked_from_rad_s
     }
 
     /// Engine over a slipping coupling, within the speeds that its inertia allows.
@@ -301,40 +302,36 @@ impl<P: PrimeMover> Step<'_, P> {
             output_nm: primary_nm,
             output_rad_s: primary_rad_s,
             idle_rad_s: self.input.engine.idle_rad_s(),
-            coupled: self.coupled,
+            coupled: self.hold.coupled,
         };
         self.line.cvt.coupling.solve(&load, &self.reach)
     }
 
-    /// Least primary torque that engine and coupling leave to the belt, Nm, with pump and shaft taking `spin_nm` (CV-3).
-    pub(super) fn min_primary_nm(
-        &self,
-        primary_rad_s: f64,
-        engine_rad_s: f64,
-        spin_nm: f64,
-    ) -> f64 {
-        let engine = self.input.engine;
-        self.line.cvt.coupling.min_output_nm(
-            primary_rad_s,
+    /// The speeds around the coupling.
+    pub(super) fn turning(&self, primary_rad_s: f64, engine_rad_s: f64) -> Turning {
+        Turning {
+            output_rad_s: primary_rad_s,
             engine_rad_s,
-            engine.idle_rad_s(),
-            engine.drag_nm(engine_rad_s) + engine.accessories_nm(engine_rad_s) + spin_nm,
-        )
+            idle_rad_s: self.input.engine.idle_rad_s(),
+            locked: self.locked(primary_rad_s),
+        }
+    }
+
+    /// Least primary torque that engine and coupling leave to the belt, Nm, with pump and shaft taking `spin_nm` (CV-3).
+    pub(super) fn min_primary_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
+        let (engine, w) = (self.input.engine, at.engine_rad_s);
+        let absorbed_nm = engine.drag_nm(w) + engine.accessories_nm(w) + spin_nm;
+        self.line.cvt.coupling.min_output_nm(at, absorbed_nm)
     }
 
     /// Largest primary torque at full load, Nm (CV-4).
-    pub(super) fn max_primary_nm(
-        &self,
-        primary_rad_s: f64,
-        engine_rad_s: f64,
-        spin_nm: f64,
-    ) -> f64 {
-        let engine = self.input.engine;
-        let engine_nm =
-            engine.full_load_nm(engine_rad_s) - engine.accessories_nm(engine_rad_s) - spin_nm;
-        self.line
-            .cvt
-            .coupling
-            .output_nm(engine_nm, primary_rad_s, engine_rad_s)
+    pub(super) fn max_primary_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
+        let (engine, w) = (self.input.engine, at.engine_rad_s);
+        let engine_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - spin_nm;
+        if at.locked {
+            return engine_nm;
+        }
+        let coupling = &self.line.cvt.coupling;
+        coupling.output_nm(engine_nm, at.output_rad_s, w)
     }
 }

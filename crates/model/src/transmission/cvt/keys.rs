@@ -34,7 +34,7 @@ keys! {
         final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         final_drive_first_ratio: number(0.3, 6.0), "share of that ratio in the stage at the secondary", ["FD-1"];
         clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
-        launch: LAUNCH, "launch device: a wet or dry friction clutch";
+        launch: LAUNCH, "launch device: a friction clutch, or a torque converter";
         belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys", ["SI-3"];
     }
 

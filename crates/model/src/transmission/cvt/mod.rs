@@ -52,6 +52,7 @@ use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::maps::LossMap;
 use crate::math::{Curve, exp, larger, ln};
 use crate::prime_mover::PrimeMover;
+use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
 
 /// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
@@ -136,6 +137,17 @@ pub struct CvtState {
     pub warm_start: WarmStart,
     /// What the ratio control keeps of the step before.
     pub shifting: Shifting,
+    /// What the next step is held at, if it is.
+    pub hold: Option<Hold>,
+}
+
+/// What is imposed on a CVT in a step, in place of its controller (RC-12).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Belt ratio at the end of the step; the one before at rest.
+    pub ratio: f64,
+    /// Clamp law; that of the box without one.
+    pub clamp: Option<ClampLaw>,
 }
 
 /// What the ratio control keeps of the step before.
@@ -154,6 +166,7 @@ impl CvtState {
             belt,
             warm_start: WarmStart::default(),
             shifting: Shifting::default(),
+            hold: None,
         }
     }
 }
@@ -226,6 +239,7 @@ impl Cvt {
                 input.engine,
                 input.wheel.power_w / self.ratio.route_efficiency,
             ),
+            cold_rad_s: (self.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
             flow_up_per_s: 0.0,

@@ -5,11 +5,12 @@ use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers};
 use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
-use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
+use super::{Cvt, Hold, NU_REFERENCE_M2_S, Shifting};
 use crate::fluid::{FilmPowers, OilState};
 use crate::math::{exp_each, larger, ln, ln_each, pair};
 use crate::prime_mover::PrimeMover;
-use crate::thermal::{BELT, SUMP};
+use crate::thermal::{BELT, COOLANT, SUMP};
+use crate::transmission::coupling::LockSignals;
 use crate::transmission::step::{DrivelineState, StepInput};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
@@ -22,6 +23,9 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
         cvt.primary_piston_m2 * travel * primary,
     )
 }
+
+/// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
+pub(super) type Before<'a> = (&'a Geometry, Shifting, &'a Option<Hold>);
 
 /// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
 struct Route {
@@ -47,7 +51,7 @@ fn shift<P: PrimeMover>(
     cvt: &Cvt,
     input: &StepInput<P>,
     past: &DrivelineState,
-    (before, kept): (&Geometry, Shifting),
+    (before, kept, held): Before,
     route: Route,
 ) -> Shift {
     let share = cvt.ratio.filtered_share(
@@ -67,7 +71,7 @@ fn shift<P: PrimeMover>(
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
     let drawn = route
         .pump
-        .drawn_m3_s(cvt.pump.displacement_m3_rad * past.engine_rad_s);
+        .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
@@ -76,15 +80,16 @@ fn shift<P: PrimeMover>(
         power_w: input.wheel.power_w,
         share,
         full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
+        cold_rad_s: (cvt.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
-        coupled: past.coupled,
+        coupled: past.coupled || cvt.coupling.by_command(),
         last_direction: route.last_direction,
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
-    let (ratio, change, held) = match &input.hold {
+    let (ratio, change, short) = match held {
         Some(hold) => (hold.ratio, ln(hold.ratio / before.ratio), false), // RC-12
         None => cvt.ratio.step(&demand),
     };
@@ -97,7 +102,7 @@ fn shift<P: PrimeMover>(
         ratio,
         rate_per_s: change / input.dt_s,
         flow_m3_s: volume / input.dt_s,
-        held,
+        held: short,
         kept: Shifting {
             direction: direction_after(change, kept.direction),
             share,
@@ -174,17 +179,12 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     cvt: &'a Cvt,
     input: &'a StepInput<'a, P>,
     past: &DrivelineState,
-    before: (&Geometry, Shifting),
+    before: Before<'a>,
     belt: &'a mut BeltAtRatio,
     efficiency: f64,
 ) -> Step<'a, P> {
     let (oil, friction) = (input.oil, &input.oil.friction);
     let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
-    let locked_from_rad_s = if past.coupled {
-        cvt.coupling.locked_from_rad_s(input.engine.idle_rad_s())
-    } else {
-        f64::INFINITY
-    };
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
     let sump = OilState {
         kinematic_m2_s: nu_sump,
@@ -208,6 +208,12 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     }
     let at = &*belt;
     let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
+    let signals = LockSignals {
+        speed_m_s: input.wheel.speed_m_s,
+        sump_k,
+        output_rad_s: shift.ratio * secondary_rad_s,
+        idle_rad_s: input.engine.idle_rad_s(),
+    };
     let sliding = cvt
         .belt
         .sliding_m_s(shift.ratio, shift.ratio * secondary_rad_s);
@@ -252,13 +258,12 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         shift_held: shift.held,
         shifting: shift.kept,
         reach: input.reach(past.engine_rad_s, 0.0),
-        clamp: input
-            .hold
+        clamp: before
+            .2
             .as_ref()
             .and_then(|hold| hold.clamp.as_ref())
             .unwrap_or(&cvt.clamp),
         pressure_before_pa: past.secondary_pa,
-        coupled: past.coupled,
-        locked_from_rad_s,
+        hold: cvt.coupling.hold(&signals, past.coupled),
     }
 }

@@ -1,4 +1,4 @@
-//! The oil pump, driven at engine speed.
+//! The oil pump, driven at engine speed or by a motor.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -8,6 +8,7 @@
 //! | PU-4 | dual cavity and variable: only the share of D that the need requires works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
 //! | PU-6 | p <= (drawn flow - lubrication - shift flow)/(leakage eta_r/eta), at least 0.1 bar | derived: a circuit holds the pressure that its flow keeps up; 0.1 bar keeps the solve finite |
 //! | PU-5 | drawn flow = V/(1 + (V/V_max)^4)^(1/4), V_max = p_i/(k eta/eta_r) | derived: laminar drop k eta V in strainer and suction line, bounded by the air's pressure; k and p_i = 0.7 bar ASSUMED |
+//! | EP-2 | electric: T_e = P/w, P = (p + line drop) V/eta_p, V the need of PU-2 and PU-3 up to that of the fastest motor; besides P (1/eta_a - 1) is lost in the alternator | derived; eta_p 0.4 to 0.75 ASSUMED; eta_a source: alternators 0.5 to 0.6, 48 V machines 0.8 |
 //!
 //! D displacement per radian m3/rad, p pump outlet pressure Pa, w rad/s, V flow of the displacement that draws. Valid for p >= 0, w >= 0.
 //!
@@ -36,6 +37,19 @@ pub enum PumpKind {
         /// Smallest share of the displacement.
         least: f64,
     },
+    /// Driven by a motor, whose power comes from the alternator.
+    Electric(ElectricPump),
+}
+
+/// Motor and alternator of an electric pump.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElectricPump {
+    /// Hydraulic over electric power.
+    pub efficiency: f64,
+    /// Electric over shaft power of the alternator.
+    pub alternator: f64,
+    /// Largest speed, rad/s.
+    pub fastest_rad_s: f64,
 }
 
 /// The checked pump.
@@ -110,8 +124,10 @@ impl PumpAtTemperature {
 /// State of the pump at one operating point.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PumpState {
-    /// Torque at the pump shaft, Nm.
+    /// Torque at the pump shaft, Nm; of an electric pump, that of its power at the engine's.
     pub torque_nm: f64,
+    /// Torque that the alternator loses for it, over that torque.
+    pub alternator_share: f64,
     /// Theoretical flow, m3/s.
     pub flow_m3_s: f64,
     /// Flow drawn by the displacement that works against pressure, m3/s.
@@ -121,6 +137,30 @@ pub struct PumpState {
 }
 
 impl Pump {
+    /// Flow of the whole displacement with an engine at a speed, m3/s.
+    #[inline]
+    pub fn full_flow_m3_s(&self, engine_rad_s: f64) -> f64 {
+        let speed_rad_s = match &self.kind {
+            PumpKind::Electric(electric) => electric.fastest_rad_s,
+            _ => engine_rad_s,
+        };
+        self.displacement_m3_rad * speed_rad_s
+    }
+
+    /// An electric pump at an engine's speed (EP-2).
+    fn electric(&self, of: &ElectricPump, most_m3_s: f64, at: (f64, f64, f64)) -> PumpState {
+        let (speed_rad_s, secondary_pa, need_m3_s) = at;
+        let working_m3_s = smaller(need_m3_s, most_m3_s);
+        let electric_w = (secondary_pa + self.line_drop_pa) * working_m3_s / of.efficiency; // EP-2
+        PumpState {
+            torque_nm: electric_w / speed_rad_s,
+            alternator_share: 1.0 / of.alternator - 1.0,
+            flow_m3_s: working_m3_s,
+            working_m3_s,
+            flow_limited: need_m3_s > most_m3_s,
+        }
+    }
+
     /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
     pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
         self.with_factor(eta_pa_s, 1.0).need_m3_s(secondary_pa)
@@ -134,7 +174,7 @@ impl Pump {
         speed_rad_s: f64,
         shift_flow_m3_s: f64,
     ) -> f64 {
-        let drawn = now.drawn_m3_s(self.displacement_m3_rad * speed_rad_s);
+        let drawn = now.drawn_m3_s(self.full_flow_m3_s(speed_rad_s));
         let spare = drawn - now.lubrication_m3_s - shift_flow_m3_s;
         if spare > LEAST_PA * now.leakage_m3_s_pa {
             spare / now.leakage_m3_s_pa
@@ -172,7 +212,7 @@ impl Pump {
             1.0
         };
         match self.kind {
-            PumpKind::Fixed => 1.0,
+            PumpKind::Fixed | PumpKind::Electric(_) => 1.0,
             PumpKind::DualCavity { share } => {
                 share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share)
             } // PU-4
@@ -189,8 +229,11 @@ impl Pump {
         secondary_pa: f64,
         need_m3_s: f64,
     ) -> PumpState {
-        let flow = self.displacement_m3_rad * speed_rad_s;
+        let flow = self.full_flow_m3_s(speed_rad_s);
         let drawn = now.drawn_m3_s(flow);
+        if let PumpKind::Electric(of) = &self.kind {
+            return self.electric(of, drawn, (speed_rad_s, secondary_pa, need_m3_s));
+        }
         let (share, working) = if self.kind == PumpKind::Fixed {
             (1.0, drawn)
         } else {
@@ -209,6 +252,7 @@ impl Pump {
             + self.constant_nm; // PU-1
         PumpState {
             torque_nm: torque,
+            alternator_share: 0.0,
             flow_m3_s: flow,
             working_m3_s: working,
             flow_limited: need_m3_s > drawn,
@@ -223,7 +267,8 @@ keys! {
             Choice::word("fixed", "the whole displacement works"),
             Choice::new("dual_cavity", "one of two cavities can idle", DualCavityKeys::TABLE),
             Choice::new("variable", "the displacement follows the demand", VariableKeys::TABLE),
-        ])), "fixed, dual_cavity or variable displacement", ["PU-4"];
+            Choice::new("electric", "a motor drives it as fast as the demand is", ElectricKeys::TABLE),
+        ])), "fixed, dual_cavity or variable displacement, or an electric pump", ["PU-4", "EP-2"];
         displacement_cc_rev: number(0.5, 100.0), "displacement", ["PU-1"];
         friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f", ["PU-1"];
         viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v", ["PU-1"];
@@ -247,6 +292,13 @@ keys! {
     VARIABLE: VariableKeys = "variable" [] {
         least_share: or(0.25, number(0.05, 1.0)), "smallest share of the displacement", ["PU-4"];
     }
+
+    /// Keys of `[transmission.cvt.pump.kind.electric]`.
+    ELECTRIC: ElectricKeys = "electric" [] {
+        efficiency: or(0.6, above(0.05, 1.0)), "hydraulic over electric power", ["EP-2"];
+        alternator_efficiency: or(0.6, above(0.05, 1.0)), "electric over shaft power of the alternator that feeds it", ["EP-2"];
+        fastest_rpm: or(3000.0, number(300.0, 10_000.0)), "largest speed of its motor", ["EP-2"];
+    }
 }
 
 impl Pump {
@@ -260,6 +312,11 @@ impl Pump {
             "variable" => PumpKind::Variable {
                 least: k.number(&VARIABLE.least_share),
             },
+            "electric" => PumpKind::Electric(ElectricPump {
+                efficiency: k.number(&ELECTRIC.efficiency),
+                alternator: k.number(&ELECTRIC.alternator_efficiency),
+                fastest_rad_s: k.number(&ELECTRIC.fastest_rpm),
+            }),
             _ => PumpKind::Fixed,
         };
         Pump {

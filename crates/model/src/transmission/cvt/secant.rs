@@ -9,6 +9,8 @@ const SECANT_FROM_PA: f64 = 200.0;
 const SECANT_FROM_NM: f64 = 0.02;
 /// Largest slope of the pressure's fixed point that is believed: above it the step would overshoot.
 const MAX_GAIN: f64 = 0.06;
+/// The same over an open torque converter, whose engine speed the pressure moves through the torque that passes.
+const MAX_GAIN_OPEN: f64 = 0.8;
 
 /// Largest relative change of slip per relative change of pressure that is believed.
 const MAX_SLIP_GAIN: f64 = 2.0;
@@ -128,13 +130,19 @@ impl Default for Slopes {
 impl Slopes {
     /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it.
     #[inline]
-    pub(super) fn update(&mut self, before: &Guess, before_next_pa: f64, now: &Point) {
+    pub(super) fn update(
+        &mut self,
+        (before, before_next_pa): (&Guess, f64),
+        now: &Point,
+        open: bool,
+    ) {
+        let most_gain = if open { MAX_GAIN_OPEN } else { MAX_GAIN };
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
         if step_pa.abs() > SECANT_FROM_PA {
             self.pressure = clamp(
                 (now.next_pressure_pa - before_next_pa) / step_pa,
-                -MAX_GAIN,
-                MAX_GAIN,
+                -most_gain,
+                most_gain,
             );
             if now.guess.output_nm.to_bits() == before.output_nm.to_bits() {
                 let most = MAX_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;

@@ -33,10 +33,11 @@ impl<P: PrimeMover> Step<'_, P> {
         if above_idle && p.primary_nm >= 0.0 && p.throttle < 1.0 {
             return Limit::None; // CV-3 is below zero here, CV-4 above
         }
-        let (w, spin_nm) = (p.guess.engine_rad_s, p.torques.engine_nm());
-        if p.primary_nm < self.min_primary_nm(p.primary_rad_s, w, spin_nm) - margin_nm {
+        let at = self.turning(p.primary_rad_s, p.guess.engine_rad_s);
+        let spin_nm = p.torques.engine_nm();
+        if p.primary_nm < self.min_primary_nm(&at, spin_nm) - margin_nm {
             Limit::EngineDrag
-        } else if p.primary_nm > self.max_primary_nm(p.primary_rad_s, w, spin_nm) + margin_nm {
+        } else if p.primary_nm > self.max_primary_nm(&at, spin_nm) + margin_nm {
             Limit::FullLoad
         } else {
             Limit::None
@@ -129,7 +130,8 @@ impl<P: PrimeMover> Step<'_, P> {
             count += 1;
             work.residual = point.moved();
             if let Some((before, before_next_pa)) = &last {
-                work.slopes.update(before, *before_next_pa, point);
+                let open = !point.locked && self.line.cvt.coupling.by_command();
+                work.slopes.update((before, *before_next_pa), point, open);
             }
             let scale = larger(point.full_load_nm, 1.0);
             let damped = count > DAMPED_FROM;
@@ -265,6 +267,7 @@ pub(super) fn solve<P: PrimeMover>(
         belt,
         warm_start,
         shifting,
+        hold,
     } = own;
     let before = belt.geometry;
     if input.engine_off {
@@ -275,7 +278,14 @@ pub(super) fn solve<P: PrimeMover>(
     work.slopes = warm_start.slopes;
     let mut tried_ratio = f64::NAN;
     loop {
-        let step = prepare(cvt, input, past, (&before, *shifting), belt, efficiency);
+        let step = prepare(
+            cvt,
+            input,
+            past,
+            (&before, *shifting, hold),
+            belt,
+            efficiency,
+        );
         if step.secondary_rad_s <= 0.0 {
             *shifting = step.shifting;
             return standstill(&step, past, warm_start);
@@ -283,7 +293,7 @@ pub(super) fn solve<P: PrimeMover>(
         let ratio = step.line.at.geometry.ratio;
         let again = ratio.to_bits() == tried_ratio.to_bits();
         let last = again || efficiency <= MIN_ROUTE_EFFICIENCY;
-        let full_load_wanted = last || input.hold.is_some();
+        let full_load_wanted = last || hold.is_some();
         let Some(limit) = step.limited(warm_start, full_load_wanted, &mut work) else {
             tried_ratio = ratio;
             efficiency = step.kick_down(efficiency, &work.point);

@@ -113,6 +113,7 @@ pub(super) fn standstill<P: PrimeMover>(
         iterations: at.evaluations,
         ..StepOutput::at_rest()
     };
+    output.alternator_w = at.torques.alternator * w;
     output.add_loss(Component::LaunchClutch, side.loss_w);
     add_part_losses(&mut output, &at.torques, (w, 0.0, 0.0));
     let flags = &mut output.flags;
@@ -193,6 +194,7 @@ pub(super) fn finish<P: PrimeMover>(
     };
     add_part_losses(&mut output, &p.torques, (we, wp, step.secondary_rad_s));
     output.add_loss(Component::LaunchClutch, p.coupling_w);
+    output.alternator_w = p.torques.alternator * we;
     if outcome.limit == Limit::None {
         output.output_w = step.input.wheel.power_w;
     } else {
@@ -204,7 +206,8 @@ pub(super) fn finish<P: PrimeMover>(
         .trend
         .push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
     remember(past, &output, false);
-    past.coupled = p.locked || we <= wp * (1.0 + 1e-4);
+    let turns_together = we <= wp * (1.0 + 1e-4);
+    past.coupled = p.locked || (turns_together && !step.line.cvt.coupling.by_command());
     output
 }
 
@@ -230,13 +233,18 @@ fn solve_flags<P: PrimeMover>(
         belt.capacity_nm < p.torques.secondary.abs(),
     );
     flags.set(Flags::FLOW_LIMITED, p.flow_limited || step.shift_held);
+    let by_command = step.line.cvt.coupling.by_command();
+    // A lock-up clutch that closes slips until the engine has come down.
+    let closes = p.locked && !past.coupled && past.engine_rad_s > wp;
     flags.set(
         Flags::CLUTCH_SLIPPING,
-        we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0,
+        (we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0) || closes,
     );
+    flags.set(Flags::LOCKUP_OPEN, by_command && !p.locked);
+    let below_idle = wp < step.input.engine.idle_rad_s();
     flags.set(
         Flags::CLUTCH_OPEN,
-        outcome.limit == Limit::EngineDrag && wp < step.input.engine.idle_rad_s(),
+        outcome.limit == Limit::EngineDrag && below_idle && !by_command,
     );
     flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
     flags.set(Flags::NOT_CONVERGED, !converged(outcome.residual));

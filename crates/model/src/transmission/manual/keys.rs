@@ -2,7 +2,7 @@
 
 use super::{Manual, ShiftSpeeds};
 use crate::keys::{Key, Kind, Values, keys};
-use crate::transmission::coupling::{self, LAUNCH};
+use crate::transmission::coupling::{self, MANUAL_LAUNCH};
 use crate::transmission::gear_train::{GearKeys, GearParts};
 use crate::transmission::{components, loss_factor};
 
@@ -16,7 +16,7 @@ keys! {
         upshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift up where a cycle has no gears", ["MB-5"];
         downshift_kmh: list(1.0, 300.0, 1, 9), "vehicle speeds to shift down", ["MB-5"];
         neutral_share: number(0.0, 1.0), "share of the losses in top gear that turns in neutral";
-        launch: LAUNCH, "launch device: a wet or dry friction clutch";
+        launch: MANUAL_LAUNCH, "launch device: a wet or dry friction clutch";
     }
 
     /// Keys of `[transmission.manual.maps]`.

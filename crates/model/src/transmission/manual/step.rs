@@ -8,7 +8,7 @@ use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
-use crate::transmission::coupling::CouplingLoad;
+use crate::transmission::coupling::{CouplingLoad, Turning};
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
 /// The box in a step, in its oil.
@@ -126,10 +126,13 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let w = speed.end_rad_s;
         let accessories_nm = engine.accessories_nm(w);
         let absorbed_nm = engine.drag_nm(w) + accessories_nm;
-        let least = self
-            .manual
-            .coupling
-            .min_output_nm(input, w, engine.idle_rad_s(), absorbed_nm);
+        let turning = Turning {
+            output_rad_s: input,
+            engine_rad_s: w,
+            idle_rad_s: engine.idle_rad_s(),
+            locked: false,
+        };
+        let least = self.manual.coupling.min_output_nm(&turning, absorbed_nm);
         let mut full_load_nm = engine.full_load_nm(w);
         let most_at = |w: f64| {
             // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.

@@ -4,8 +4,8 @@
 //! |---|---|---|
 //! | RC-1 | target speed: 1700 rpm at 15 % power, + g (P/P_max - 15 %) above it | 1700 rpm source: thesis 1.1.2, Fig 1-6; 15 % and rise ASSUMED |
 //! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
-//! | RC-11 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
-//! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-11 and PC-1 to PC-4 | derived: definition |
+//! | RC-13 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
+//! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-13 and PC-1 to PC-4 | derived: definition |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
@@ -13,12 +13,13 @@
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
+//! | RC-11 | cold: target + r clip((T_to - T)/(T_to - T_from), 0, 1) u_1, T of coolant or sump, u_1 rising from 0 without power to 1 at 1 % of rated power | ASSUMED: r 300 to 1000 rpm, gone by 40 to 60 degC coolant in modern cars; none in overrun |
 //! | RC-5 | and <= free pump flow / (A 2 tan th \|dR/d ln I\|) | derived: thesis 9.1 |
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
-use crate::keys::{Bound, Values, curve, keys};
-use crate::math::{Curve, clamp, exp, larger, ln, smaller};
+use crate::keys::{Bound, Choice, Values, curve, keys};
+use crate::math::{Curve, clamp, exp, larger, ln, ramp, smaller};
 
 /// The checked controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,9 +52,11 @@ pub struct RatioControl {
     pub filter_s: f64,
     /// Lines in place of gentle driving, if there are any.
     pub line: Option<Box<OperatingLine>>,
+    /// What a cold car adds to the target.
+    pub cold: ColdRise,
 }
 
-/// Target speeds in place of RC-1 and RC-2 (RC-11).
+/// Target speeds in place of RC-1 and RC-2 (RC-13).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OperatingLine {
     /// Engine speed over the share of rated power asked for, rad/s.
@@ -71,7 +74,37 @@ impl OperatingLine {
             (&self.overrun, d.speed_m_s)
         };
         let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
-        line.as_ref().map(|line| larger(line.at(x), locked_rad_s)) // RC-11
+        line.as_ref().map(|line| larger(line.at(x), locked_rad_s)) // RC-13
+    }
+}
+
+/// What a cold car adds to the target of engine speed (RC-11).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ColdRise {
+    /// Rise in full, rad/s.
+    pub rise_rad_s: f64,
+    /// Temperature up to which it is in full, K.
+    pub from_k: f64,
+    /// Temperature from which there is none, K.
+    pub to_k: f64,
+    /// True where the sump's temperature counts, false for the coolant's.
+    pub by_sump: bool,
+}
+
+impl ColdRise {
+    /// None.
+    pub const NONE: ColdRise = ColdRise {
+        rise_rad_s: 0.0,
+        from_k: 0.0,
+        to_k: 1.0,
+        by_sump: false,
+    };
+
+    /// The rise at the temperatures of coolant and sump, K, rad/s.
+    #[inline]
+    pub fn at(&self, coolant_k: f64, sump_k: f64) -> f64 {
+        let temp_k = if self.by_sump { sump_k } else { coolant_k };
+        self.rise_rad_s * (1.0 - ramp(temp_k, self.from_k, self.to_k)) // RC-11
     }
 }
 
@@ -88,6 +121,8 @@ pub struct RatioDemand {
     pub share: f64,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: f64,
+    /// What a cold car adds to the target, rad/s.
+    pub cold_rad_s: f64,
     /// Ratio before the step.
     pub ratio_before: f64,
     /// Limit from pump flow towards low, 1/s.
@@ -105,10 +140,13 @@ pub struct RatioDemand {
 }
 
 impl RatioControl {
-    /// Target primary speed, rad/s (RC-1 to RC-3, RC-11).
+    /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let line = self.line.as_ref().and_then(|line| line.target_rad_s(d));
         let mut speed = line.unwrap_or_else(|| self.gentle_target_rad_s(d.share));
+        if d.cold_rad_s > 0.0 {
+            speed += d.cold_rad_s * clamp(d.share / LEAST_GENTLE_SHARE, 0.0, 1.0); // RC-11
+        }
         if d.power_w > 0.0 && d.full_load_rad_s > speed {
             speed = d.full_load_rad_s; // RC-3
         }
@@ -198,10 +236,10 @@ impl RatioControl {
 /// Primary speed over idle speed up to which the ratio turns round at once: the car pulls away and stops in low (RC-10).
 pub const FREE_OVER_IDLE: f64 = 1.2;
 
-/// Least target of a line over the speed from which a locked clutch stays so: slip in overrun takes less from it (RC-11).
+/// Least target of a line over the speed from which a locked clutch stays so: slip in overrun takes less from it (RC-13).
 const ABOVE_LOCK: f64 = 1.006;
 
-/// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2).
+/// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2, RC-11).
 const LEAST_GENTLE_SHARE: f64 = 0.01;
 
 /// Change of ln I that counts as one (RC-10).
@@ -233,8 +271,15 @@ keys! {
         rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold", ["RC-4"];
         hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round", ["RC-10"];
         filter_s: or(1.0, number(0.0, 10.0)), "time constant of the demand in gentle driving", ["RC-9"];
-        drive_line: optional(rows(&[("power_percent", Bound::closed(0.0, 200.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target over demand in place of gentle_rpm and rise_rpm: rows [share of rated power %, engine speed rpm]", ["RC-11"];
-        overrun_line: optional(rows(&[("speed_kmh", Bound::closed(0.0, 400.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target without power and in overrun in place of overrun_rpm: rows [road speed km/h, engine speed rpm]", ["RC-11"];
+        drive_line: optional(rows(&[("power_percent", Bound::closed(0.0, 200.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target over demand in place of gentle_rpm and rise_rpm: rows [share of rated power %, engine speed rpm]", ["RC-13"];
+        overrun_line: optional(rows(&[("speed_kmh", Bound::closed(0.0, 400.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target without power and in overrun in place of overrun_rpm: rows [road speed km/h, engine speed rpm]", ["RC-13"];
+        cold_rise_rpm: or(0.0, number(0.0, 2000.0)), "rise of engine speed in a cold car", ["RC-11"];
+        cold_from_degc: or(0.0, number(-60.0, 110.0)), "temperature up to which that is in full", ["RC-11"];
+        cold_to_degc: or(50.0, number(-50.0, 120.0)), "temperature from which there is none of it", ["RC-11"];
+        cold_by: words(&[
+            Choice::word("coolant", "the temperature is that of the coolant"),
+            Choice::word("sump", "the temperature is that of the transmission oil"),
+        ], "coolant"), "whose temperature that is", ["RC-11"];
     }
 }
 
@@ -270,7 +315,21 @@ impl RatioControl {
             hysteresis: s.number(&RATIO.hysteresis),
             filter_s: s.number(&RATIO.filter_s),
             line: line(s),
+            cold: ColdRise {
+                rise_rad_s: s.number(&RATIO.cold_rise_rpm),
+                from_k: s.number(&RATIO.cold_from_degc),
+                to_k: s.number(&RATIO.cold_to_degc),
+                by_sump: s.word(&RATIO.cold_by) == "sump",
+            },
         };
+        if control.cold.to_k <= control.cold.from_k {
+            s.complain(
+                RATIO.cold_to_degc.name,
+                "above cold_from_degc",
+                "the line of a cold car would end before it is in full",
+                "raise it or lower `cold_from_degc`",
+            );
+        }
         if control.low <= control.high {
             s.complain(
                 "low",

@@ -1,0 +1,108 @@
+//! Start-stop in a step of a drive: what the engine does, and what store and starter give for it.
+
+use super::Car;
+use super::row::Input;
+use crate::cycle::{GearCommand, Step, Trace};
+use crate::engine::start_stop::{Command, Conditions, Electric, StartStopState};
+use crate::engine::{Burn, StartStop};
+use crate::math::larger;
+use crate::thermal::{COOLANT, Heat, SUMP};
+use crate::transmission::component::Component;
+use crate::transmission::{StepOutput, Transmission, TransmissionState};
+
+/// Start-stop of a car in a step.
+pub(super) struct Stopping<'a> {
+    on: &'a StartStop,
+    command: Command,
+}
+
+impl<'a> Stopping<'a> {
+    /// What the engine of a car with start-stop does in a step of a trace.
+    pub fn new(
+        car: &'a Car,
+        trace: Option<&Trace>,
+        gear: Option<GearCommand>,
+        step: &Step,
+        heat: &Heat,
+        past: &mut StartStopState,
+    ) -> Option<Self> {
+        let on = car.engine.start_stop.as_ref()?;
+        if step.engine_off {
+            let drawn_j = past.drawn_j;
+            *past = StartStopState {
+                drawn_j,
+                ..StartStopState::default()
+            };
+            return None;
+        }
+        let from_s = step.time_s - step.dt_s;
+        let now = Conditions {
+            coolant_k: heat.node_k[COOLANT],
+            sump_k: car.transmission.is_cvt().then_some(heat.node_k[SUMP]),
+            ambient_k: car.ambient_k,
+            speed_m_s: larger(step.start_speed_m_s, step.end_speed_m_s),
+            rest_s: trace.map_or(f64::INFINITY, |trace| trace.rest_s(step.interval, from_s)),
+            neutral: gear.is_none_or(|gear| gear == GearCommand::Neutral),
+            dt_s: step.dt_s,
+        };
+        let command = on.command(&now, past);
+        Some(Stopping { on, command })
+    }
+
+    /// Whether the engine is at rest.
+    pub fn stopped(&self) -> bool {
+        self.command == Command::Stop
+    }
+
+    /// Power at the alternator's shaft that is to charge the store, W.
+    pub fn charging_w(&self, past: &StartStopState, dt_s: f64) -> f64 {
+        if self.command == Command::Run {
+            self.on.charging_w(past, dt_s)
+        } else {
+            0.0
+        }
+    }
+
+    /// What store, starter and alternator do in the step; a stopped CVT has its pressure and its electric pump.
+    pub fn electric(
+        &self,
+        input: &Input,
+        (car, transmission): (&Car, &TransmissionState),
+        output: &mut StepOutput,
+        past: &mut StartStopState,
+    ) -> Electric {
+        let (on, engine) = (self.on, input.engine);
+        let electric = match self.command {
+            Command::Stop => {
+                let pump_w = match &car.transmission {
+                    Transmission::Cvt(cvt) => {
+                        let before_pa = transmission.driveline.secondary_pa;
+                        output.secondary_pa = on.held_pa(before_pa, past.stopped_s);
+                        let sump_k = input.heat.node_k[SUMP];
+                        let eta_pa_s =
+                            input.oil.kinematic_m2_s(sump_k) * input.oil.density_kg_m3(sump_k);
+                        on.pump_w(cvt.pump.steady_need_m3_s(on.pump_pa, eta_pa_s))
+                    }
+                    Transmission::Manual(_) => 0.0,
+                };
+                output.loss_w[Component::Pump] += pump_w;
+                Electric::stopped(on, engine.engine, pump_w)
+            }
+            Command::Start => {
+                Electric::starting(on, engine, input.heat.node_k[COOLANT], input.dt_s)
+            }
+            Command::Run => Electric::charging(on, engine, output.engine_rad_s),
+        };
+        past.drawn_j = electric.drawn_j(past.drawn_j, input.dt_s);
+        electric
+    }
+}
+
+/// Adds to what the engine burns the fuel of a start, and the heat of cranking.
+pub(super) fn add_start(burn: &mut Burn, electric: &Electric, heating_value_j_kg: f64) {
+    let start_w = electric.start_kg_s * heating_value_j_kg;
+    burn.fuel_kg_s += electric.start_kg_s;
+    burn.fuel_w += start_w;
+    burn.exhaust_w += start_w; // SS-3, as EN-9
+    burn.to_coolant_w += electric.crank_w; // SS-4
+}

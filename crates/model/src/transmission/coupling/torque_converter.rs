@@ -1,0 +1,442 @@
+//! A hydrodynamic torque converter with a lock-up clutch.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | TC-1 | T_e = lambda(nu) w_e2, T_t = k(nu) T_e at nu = w_t/w_e from 0 to 1, lambda and k linear between the rows of a table, lambda(1) = 0 | source: form of ISO/DIN capacity tables; table of a 4L60E (ADVISOR, TX_AUTO4_4L60E), lambda made to fall, sized by the key; warm fluid |
+//! | TC-2 | driving: y = T_t/w_t2 = k lambda/nu2 falls strictly with nu; in a piece k = a + b nu, lambda = c + d nu: a c w_e2 + (a d + b c) w_t w_e + b d w_t2 = T_t, the larger root; w_e >= idle | derived: TC-1 solved for the engine |
+//! | TC-3 | creep: T_t = k(nu) lambda(nu) w_idle2 at nu = w_t/w_idle, none from nu = 1; at rest times the share that neutral idle leaves | derived: TC-1 at idle |
+//! | TC-4 | loss = T_e w_e - T_t w_t, never negative for k nu <= 1; all of it heats the sump | derived: power balance |
+//! | TC-5 | T_e = T_t/k(nu) at the speeds in force; TC-1 holds for the engine's speed as far as its inertia lets it get there | ASSUMED, as LC-1 |
+//! | TC-6 | overrun, open: \|T\| = c lambda(r) w_t2 at r = w_e/w_t, k = 1; at least T_t = -min(absorbed, c lambda(w_idle/w_t) w_t2) | ASSUMED: the table mirrored; c 0.7 to 1.5 (1.4 is printed at nu 1.09) |
+//! | TC-7 | lock-up: closes above v_on and T_on and 1.1 n_least, n_least the larger of n_open and idle; opens below v_off, T_on - 3 K or n_least; once a step, from the state before it | temperature source: Honda Civic and Volvo XC70 service data, 20 degC; speeds and widths ASSUMED |
+//! | TC-8 | slip lock-up: w_e - w_t = dn clip(T_t/10 Nm, 0, 1), up to a temperature of the sump; T_e = T_t | source: Volvo XC70 2009: 50 rpm at 20 to 120 degC; ramp ASSUMED |
+//!
+//! w_e, w_t are the speeds of pump wheel (engine) and turbine (box). Laminar effects of fluid below 40 degC are left out. An engine that is
+//! slower than the turbine it drives, or faster than the one that drives it, can only be so by inertia: power passes unchanged, as in CV-6.
+
+use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
+use crate::keys::{Bound, Quantity, Values, keys};
+use crate::math::{clamp, larger, smaller};
+
+/// Torque ratio and capacity of the original at a speed ratio: [nu, k, lambda/lambda(0)].
+const TABLE: [[f64; 3]; 29] = table();
+
+/// Speed of the pump wheel for 100 Nm, rpm, and torque ratio at the speed ratios 0 to 0.1 by 0.01, then by 0.05 (ADVISOR).
+const ORIGINAL: [(f64, f64); 29] = [
+    (1444.0, 2.0),
+    (1444.0, 1.99), // printed 1443: lambda is made to fall
+    (1446.0, 1.98),
+    (1448.0, 1.96),
+    (1450.0, 1.95),
+    (1453.0, 1.94),
+    (1456.0, 1.93),
+    (1459.0, 1.92),
+    (1461.0, 1.91),
+    (1464.0, 1.89),
+    (1466.0, 1.88),
+    (1480.0, 1.83),
+    (1494.0, 1.77),
+    (1509.0, 1.72),
+    (1525.0, 1.66),
+    (1549.0, 1.60),
+    (1574.0, 1.55),
+    (1604.0, 1.49),
+    (1637.0, 1.43),
+    (1678.0, 1.38),
+    (1722.0, 1.32),
+    (1775.0, 1.26),
+    (1833.0, 1.21),
+    (1899.0, 1.15),
+    (1973.0, 1.10),
+    (2107.0, 1.04),
+    (2272.0, 1.0),
+    (3044.0, 1.0),
+    (f64::INFINITY, 1.0), // printed 3045: torque passes through zero at equal speeds
+];
+
+const fn table() -> [[f64; 3]; 29] {
+    let mut rows = [[0.0; 3]; 29];
+    let mut i = 0;
+    while i < 29 {
+        let (rpm, k) = ORIGINAL[i];
+        let share = ORIGINAL[0].0 / rpm;
+        let nu = if i <= 10 {
+            i as f64 / 100.0
+        } else {
+            (i as f64 - 8.0) / 20.0
+        };
+        rows[i] = [nu, k, share * share];
+        i += 1;
+    }
+    rows
+}
+
+/// One row of the table.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Row {
+    /// Speed ratio.
+    nu: f64,
+    /// Torque ratio.
+    k: f64,
+    /// Capacity, Nm s2.
+    lambda: f64,
+    /// k lambda/nu2, Nm s2 (TC-2).
+    pull: f64,
+    /// Capacity in overrun, which never rises, Nm s2 (TC-6).
+    coast: f64,
+}
+
+/// When the lock-up clutch closes, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LockUp {
+    /// Road speed above which it closes, m/s.
+    pub from_m_s: f64,
+    /// Road speed below which it opens, m/s.
+    pub until_m_s: f64,
+    /// Temperature of the sump above which it closes, K.
+    pub from_k: f64,
+    /// Speed of the turbine below which it opens, rad/s.
+    pub open_rad_s: f64,
+    /// Slip of a lock-up clutch that does not close in full, rad/s.
+    pub slip_rad_s: f64,
+    /// Temperature of the sump up to which it slips, K.
+    pub slip_until_k: f64,
+}
+
+/// The checked torque converter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TorqueConverter {
+    rows: Vec<Row>,
+    neutral_idle: f64,
+    lockup: Option<LockUp>,
+}
+
+/// Speed of the turbine from which the lock-up clutch closes, over that below which it opens (TC-7).
+const CLOSES_OVER_OPEN: f64 = 1.1;
+/// Fall of the sump's temperature with which it opens again, K (TC-7).
+const COOLER_K: f64 = 3.0;
+/// Torque from which it slips in full, Nm (TC-8).
+const SLIP_FROM_NM: f64 = 10.0;
+
+impl TorqueConverter {
+    /// A converter of a capacity at stall, Nm s2, by a table [nu, k, lambda/lambda(0)] from 0 to 1, with a factor on its capacity in overrun.
+    pub fn new(
+        capacity_nm_s2: f64,
+        table: &[[f64; 3]],
+        coast_factor: f64,
+        neutral_idle: f64,
+        lockup: Option<LockUp>,
+    ) -> Self {
+        let mut rows: Vec<Row> = table
+            .iter()
+            .map(|[nu, k, share]| {
+                let lambda = share * capacity_nm_s2;
+                Row {
+                    nu: *nu,
+                    k: *k,
+                    lambda,
+                    pull: k * lambda / (nu * nu),
+                    coast: coast_factor * lambda,
+                }
+            })
+            .collect();
+        for i in (1..rows.len()).rev() {
+            rows[i - 1].coast = larger(rows[i].coast, rows[i - 1].coast);
+        }
+        TorqueConverter {
+            rows,
+            neutral_idle,
+            lockup,
+        }
+    }
+
+    /// The rows at the ends of the piece that begins with the last row for which `before` holds, the first one at least.
+    #[inline]
+    fn piece(&self, before: impl Fn(&Row) -> bool) -> (&Row, &Row) {
+        let inner = &self.rows[1..self.rows.len() - 1];
+        let first = inner.partition_point(before);
+        (&self.rows[first], &self.rows[first + 1])
+    }
+
+    /// Torque ratio and capacity, Nm s2, at a speed ratio from 0 to 1.
+    #[inline]
+    fn at(&self, nu: f64) -> (f64, f64) {
+        let (from, to) = self.piece(|row| row.nu <= nu);
+        let share = (nu - from.nu) / (to.nu - from.nu);
+        (
+            from.k + share * (to.k - from.k),
+            from.lambda + share * (to.lambda - from.lambda),
+        ) // TC-1
+    }
+
+    /// Speed of the engine that drives a turbine with a torque, rad/s (TC-2).
+    #[inline]
+    fn driving_rad_s(&self, turbine_nm: f64, turbine_rad_s: f64) -> f64 {
+        let square = turbine_rad_s * turbine_rad_s;
+        let (from, to) = self.piece(|row| row.pull * square > turbine_nm);
+        let per_nu = 1.0 / (to.nu - from.nu);
+        let (b, d) = ((to.k - from.k) * per_nu, (to.lambda - from.lambda) * per_nu);
+        let (a, c) = (from.k - b * from.nu, from.lambda - d * from.nu);
+        let linear = -(a * d + b * c) * turbine_rad_s;
+        let rest = larger(
+            linear * linear + 4.0 * a * c * (turbine_nm - b * d * square),
+            0.0,
+        );
+        (linear + rest.sqrt()) / (2.0 * a * c) // TC-2
+    }
+
+    /// Speed of an engine that takes a torque from the turbine, rad/s (TC-6).
+    #[inline]
+    fn coasting_rad_s(&self, drag_nm: f64, turbine_rad_s: f64) -> f64 {
+        let square = turbine_rad_s * turbine_rad_s;
+        if self.rows[0].coast * square <= drag_nm {
+            return 0.0; // no engine at rest takes more
+        }
+        let (from, to) = self.piece(|row| row.coast * square > drag_nm);
+        let share = (from.coast * square - drag_nm) / ((from.coast - to.coast) * square);
+        (from.nu + share * (to.nu - from.nu)) * turbine_rad_s // TC-6
+    }
+
+    /// Largest torque that an idling engine's pump wheel takes from the turbine, Nm (TC-6).
+    fn coast_at_idle_nm(&self, turbine_rad_s: f64, idle_rad_s: f64) -> f64 {
+        let r = idle_rad_s / turbine_rad_s;
+        let (from, to) = self.piece(|row| row.nu <= r);
+        let share = (r - from.nu) / (to.nu - from.nu);
+        (from.coast + share * (to.coast - from.coast)) * turbine_rad_s * turbine_rad_s
+    }
+}
+
+impl Coupling for TorqueConverter {
+    #[inline]
+    fn engine_rad_s(&self, load: &CouplingLoad) -> f64 {
+        let wanted = if load.output_nm > 0.0 {
+            self.driving_rad_s(load.output_nm, load.output_rad_s)
+        } else {
+            self.coasting_rad_s(-load.output_nm, load.output_rad_s)
+        };
+        larger(wanted, load.idle_rad_s)
+    }
+
+    /// The engine may be slower than the turbine that drives it.
+    fn min_engine_rad_s(&self, _output_rad_s: f64) -> f64 {
+        0.0
+    }
+
+    fn locked_from_rad_s(&self, idle_rad_s: f64) -> f64 {
+        self.lockup.map_or(f64::INFINITY, |lockup| {
+            larger(lockup.open_rad_s, idle_rad_s)
+        })
+    }
+
+    fn by_command(&self) -> bool {
+        true
+    }
+
+    fn hold(&self, now: &LockSignals, past: bool) -> Hold {
+        let Some(lockup) = &self.lockup else {
+            return Hold::OPEN;
+        };
+        let least_rad_s = self.locked_from_rad_s(now.idle_rad_s);
+        let (speed_m_s, sump_k, turbine_rad_s) = if past {
+            (lockup.until_m_s, lockup.from_k - COOLER_K, least_rad_s)
+        } else {
+            let turbine_rad_s = CLOSES_OVER_OPEN * least_rad_s;
+            (lockup.from_m_s, lockup.from_k, turbine_rad_s)
+        };
+        let closes =
+            now.speed_m_s > speed_m_s && now.sump_k > sump_k && now.output_rad_s > turbine_rad_s; // TC-7
+        if !closes {
+            return Hold::OPEN;
+        }
+        Hold {
+            coupled: true,
+            locked_from_rad_s: 0.0,
+            slip_rad_s: if now.sump_k <= lockup.slip_until_k {
+                lockup.slip_rad_s
+            } else {
+                0.0
+            },
+        }
+    }
+
+    fn locked_side(&self, output_nm: f64, output_rad_s: f64, slip_rad_s: f64) -> EngineSide {
+        let slip_rad_s = slip_rad_s * clamp(output_nm / SLIP_FROM_NM, 0.0, 1.0); // TC-8
+        EngineSide {
+            engine_nm: output_nm,
+            engine_rad_s: output_rad_s + slip_rad_s,
+            loss_w: output_nm * slip_rad_s,
+        }
+    }
+
+    #[inline]
+    fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide {
+        let engine_nm = if output_nm >= 0.0 && engine_rad_s >= output_rad_s {
+            output_nm / self.at(output_rad_s / engine_rad_s).0 // TC-5
+        } else if output_nm < 0.0 && engine_rad_s <= output_rad_s {
+            output_nm // TC-6
+        } else {
+            return EngineSide {
+                engine_nm: output_nm * output_rad_s / engine_rad_s,
+                engine_rad_s,
+                loss_w: 0.0,
+            };
+        };
+        EngineSide {
+            engine_nm,
+            engine_rad_s,
+            loss_w: larger(engine_nm * engine_rad_s - output_nm * output_rad_s, 0.0), // TC-4
+        }
+    }
+
+    #[inline]
+    fn output_nm(&self, engine_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> f64 {
+        if engine_nm < 0.0 {
+            engine_nm
+        } else if engine_rad_s >= output_rad_s {
+            engine_nm * self.at(output_rad_s / engine_rad_s).0 // TC-1
+        } else {
+            engine_nm * engine_rad_s / output_rad_s
+        }
+    }
+
+    fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
+        let nu = output_rad_s / idle_rad_s;
+        if nu >= 1.0 {
+            return 0.0;
+        }
+        let (k, lambda) = self.at(nu);
+        let share = if output_rad_s > 0.0 {
+            1.0
+        } else {
+            self.neutral_idle
+        };
+        share * k * lambda * idle_rad_s * idle_rad_s // TC-3
+    }
+
+    fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
+        if output_rad_s > idle_rad_s { 1.0 } else { 0.0 }
+    }
+
+    fn min_output_nm(&self, at: &Turning, absorbed_nm: f64) -> f64 {
+        if at.locked {
+            return -absorbed_nm;
+        }
+        if at.output_rad_s < at.idle_rad_s {
+            return self.creep_nm(at.output_rad_s, at.idle_rad_s);
+        }
+        let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
+        -together(at) * smaller(absorbed_nm, carried_nm) // TC-6
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.launch.torque_converter]`.
+    TORQUE_CONVERTER: TorqueConverterKeys = "torque_converter" [LockUpKeys::TABLE] {
+        capacity_nm: number(5.0, 300.0), "engine torque at stall and 1000 rpm", ["TC-1"];
+        table: optional(rows(&[("speed_ratio", Bound::closed(0.0, 1.0)), ("torque_ratio", Bound::closed(0.8, 4.0)), ("capacity_share", Bound::closed(0.0, 3.0))])), "rows [speed ratio, torque ratio, capacity over that at stall] from 0 to 1; absent: those of a 4L60E", ["TC-1"];
+        coast_factor: or(1.0, number(0.3, 3.0)), "capacity in overrun over that of the mirrored table", ["TC-6"];
+        neutral_idle: or(1.0, number(0.0, 1.0)), "share of creep that is left at rest; 1 without neutral idle", ["TC-3"];
+    }
+
+    /// Keys of `[transmission.cvt.launch.torque_converter.lockup]`.
+    LOCK_UP: LockUpKeys = "lockup" [] {
+        enabled: flag(true), "whether the lock-up clutch ever closes", ["TC-7"];
+        from_kmh: or(15.0, number(0.0, 200.0)), "road speed above which it closes", ["TC-7"];
+        until_kmh: or(10.0, number(0.0, 200.0)), "road speed below which it opens", ["TC-7"];
+        from_degc: or(20.0, number(-60.0, 120.0)), "temperature of the sump above which it closes", ["TC-7"];
+        open_rpm: or(900.0, number(0.0, 3000.0)), "turbine speed below which it opens, idle speed at least", ["TC-7"];
+        slip_rpm: or(0.0, number(0.0, 300.0)), "slip of a lock-up clutch that does not close in full", ["TC-8"];
+        slip_until_degc: or(120.0, number(-60.0, 150.0)), "temperature of the sump up to which it slips", ["TC-8"];
+    }
+}
+
+impl TorqueConverter {
+    /// A converter from the values of its keys.
+    pub(super) fn from_values<V: Values>(s: &V) -> Self {
+        // Given at 1000 rpm.
+        let per_square = Quantity::of("_rpm").to_si(1000.0).powi(2);
+        let capacity_nm_s2 = s.number(&TORQUE_CONVERTER.capacity_nm) / per_square;
+        let own = s.rows(&TORQUE_CONVERTER.table).unwrap_or_default();
+        let own: Vec<[f64; 3]> = own.iter().map(|row| [row[0], row[1], row[2]]).collect();
+        let fits = own.is_empty() || check_table(s, &own);
+        let table = if own.is_empty() || !fits {
+            &TABLE[..]
+        } else {
+            &own
+        };
+        TorqueConverter::new(
+            capacity_nm_s2,
+            table,
+            s.number(&TORQUE_CONVERTER.coast_factor),
+            s.number(&TORQUE_CONVERTER.neutral_idle),
+            LockUp::from_values(&s.table("lockup")),
+        )
+    }
+}
+
+/// True for a table that TC-2 and TC-4 allow; else the first problem is reported.
+fn check_table<V: Values>(s: &V, table: &[[f64; 3]]) -> bool {
+    let (first, last) = (table[0], table[table.len() - 1]);
+    let pull = |[nu, k, share]: &[f64; 3]| k * share / (nu * nu);
+    let is = |x: f64, y: f64| (x - y).abs() <= 1e-9;
+    let [problem, hint] = if table.len() < 4 {
+        [
+            "the table has less than 4 rows",
+            "give rows from stall to equal speeds",
+        ]
+    } else if !is(first[0], 0.0) || !is(first[2], 1.0) {
+        [
+            "the first row is not that of the stall",
+            "begin with [0, torque ratio at stall, 1]; `capacity_nm` is the capacity there",
+        ]
+    } else if !is(last[0], 1.0) || !is(last[1], 1.0) || !is(last[2], 0.0) {
+        [
+            "the last row is not that of equal speeds",
+            "end with [1, 1, 0]: at equal speeds no torque passes",
+        ]
+    } else if table.windows(2).any(|w| w[0][0] >= w[1][0]) {
+        [
+            "the speed ratio does not rise from row to row",
+            "sort the rows and remove doubled ones",
+        ]
+    } else if table.iter().any(|[nu, k, _]| k * nu > 1.0 + 1e-9) {
+        [
+            "speed ratio times torque ratio, the efficiency, is above 1",
+            "check the torque ratios next to equal speeds",
+        ]
+    } else if table[1..].windows(2).any(|w| pull(&w[0]) <= pull(&w[1])) {
+        [
+            "torque ratio times capacity over the square of the speed ratio does not fall",
+            "an engine could turn at two speeds for one torque: check the capacities",
+        ]
+    } else {
+        return true;
+    };
+    let allowed = "rows [speed ratio, torque ratio, capacity share] from [0, k, 1] to [1, 1, 0]";
+    s.complain(TORQUE_CONVERTER.table.name, allowed, problem, hint);
+    false
+}
+
+impl LockUp {
+    /// The lock-up clutch, if it ever closes.
+    fn from_values<V: Values>(s: &V) -> Option<Self> {
+        let enabled = s.flag(&LOCK_UP.enabled);
+        let lockup = LockUp {
+            from_m_s: s.number(&LOCK_UP.from_kmh),
+            until_m_s: s.number(&LOCK_UP.until_kmh),
+            from_k: s.number(&LOCK_UP.from_degc),
+            open_rad_s: s.number(&LOCK_UP.open_rpm),
+            slip_rad_s: s.number(&LOCK_UP.slip_rpm),
+            slip_until_k: s.number(&LOCK_UP.slip_until_degc),
+        };
+        if lockup.until_m_s > lockup.from_m_s {
+            s.complain(
+                LOCK_UP.until_kmh.name,
+                "at most from_kmh",
+                "the lock-up clutch would open at the speed at which it closes",
+                "lower it or raise `from_kmh`",
+            );
+        }
+        enabled.then_some(lockup)
+    }
+}

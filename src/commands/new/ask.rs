@@ -1,0 +1,94 @@
+//! Questions for catalogue numbers, one by one.
+
+use std::io::{self, BufRead, Write};
+
+use cvtcycle::config::setup::Kind;
+use cvtcycle::config::setup::new_car::{Answers, USUAL, mistake, questions};
+use cvtcycle::config::{Problem, Problems};
+
+use crate::args::problems::{did_you_mean, problem};
+
+/// Reads class and box, then each number that is not given, a question before each. An empty line takes what is in brackets; the end of the input
+/// leaves the rest as it is.
+///
+/// # Errors
+/// A class or car that is none, or an input or output that fails.
+pub fn ask(
+    answers: &mut Answers,
+    input: &mut impl BufRead,
+    output: &mut impl Write,
+) -> Result<(), Problems> {
+    let failed = |error: io::Error| {
+        let message = format!("the questions could not be asked: {error}");
+        problem("--ask", &message, "give the numbers as options")
+    };
+    if answers.like.is_none() {
+        for (is_box, usual) in [false, true].into_iter().zip(USUAL) {
+            let slot = if is_box {
+                &mut answers.gearbox
+            } else {
+                &mut answers.class
+            };
+            if slot.is_none() {
+                let known = Kind::Class.names();
+                let known: Vec<&str> = known
+                    .into_iter()
+                    .filter(|name| name.starts_with("box_") == is_box)
+                    .collect();
+                let kind = if is_box { "box" } else { "class" };
+                let prompt = format!("{kind}: {} [{usual}]", known.join(", "));
+                let check = |word: &str| match known.contains(&word) {
+                    true => None,
+                    false => Some(
+                        Problem::unknown_name(format!("there is no {kind} named `{word}`"))
+                            .hint(did_you_mean(word, &known)),
+                    ),
+                };
+                *slot = answer(&prompt, true, check, input, output).map_err(failed)?;
+            }
+        }
+    }
+    for question in questions(answers)? {
+        let usual = question.usual.as_deref().unwrap_or("needed");
+        let prompt = format!("{}: {} [{usual}]", question.name, question.meaning);
+        let check = |text: &str| mistake(answers, question.name, text);
+        let found = answer(&prompt, question.usual.is_some(), check, input, output);
+        if let Some(text) = found.map_err(failed)? {
+            answers.numbers.insert(question.name, text);
+        }
+    }
+    Ok(())
+}
+
+/// The answer to a question; none for an empty line, or at the end of the input.
+fn answer(
+    prompt: &str,
+    may_be_empty: bool,
+    check: impl Fn(&str) -> Option<Problem>,
+    input: &mut impl BufRead,
+    output: &mut impl Write,
+) -> io::Result<Option<String>> {
+    loop {
+        write!(output, "{prompt}: ")?;
+        output.flush()?;
+        let mut line = String::new();
+        // A longer line is no number.
+        if io::Read::take(&mut *input, 1000).read_line(&mut line)? == 0 {
+            writeln!(output)?;
+            return Ok(None);
+        }
+        let text = line.trim();
+        if text.is_empty() && may_be_empty {
+            return Ok(None);
+        }
+        match check(text) {
+            _ if text.is_empty() => {}
+            None => return Ok(Some(text.to_owned())),
+            Some(found) => {
+                let parts = [found.message, found.allowed, found.hint].into_iter();
+                let parts: Vec<String> = parts.filter(|part| !part.is_empty()).collect();
+                writeln!(output, "  {}", parts.join("; "))?;
+            }
+        }
+    }
+}
