@@ -10,6 +10,7 @@ use cvtcycle_model::engine::{EngineAtTemperature, Running};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES};
+use cvtcycle_model::transmission::cvt::WarmStart;
 use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 use cvtcycle_model::transmission::cvt::variator::BeltAtRatio;
 use cvtcycle_model::transmission::cvt::{Cvt, Hold};
@@ -26,6 +27,8 @@ const HALVINGS: usize = 2;
 const SEARCHED: usize = 4;
 /// Share of fuel by which a higher pressure has to be better.
 const CLEARLY: f64 = 1e-6;
+/// Residual of a solve that does for the fuel of a step.
+const SOLVED: f64 = 1e-3;
 /// Engine speed over that from which the coupling stays locked, so that other temperatures do not open it.
 const LOCKED: f64 = 1.005;
 
@@ -302,9 +305,20 @@ impl<'a> Scene<'a> {
         let step = &self.steps[k];
         let primary_rad_s = ratio * self.secondary_rad_s[k];
         let mut before = self.locked_at(&reference.before[k], ratio, primary_rad_s);
-        let one = |before: State| {
+        let held = |before: State| {
             let mut drive = Drive::new(self.car, before);
             drive.step_held(step, &Hold { ratio, clamp }).0
+        };
+        // The solve begins where the reference ended, which may be far from this ratio.
+        let one = |mut before: State| {
+            let row = held(before);
+            if !row.flags.contains(Flags::NOT_CONVERGED) {
+                return row;
+            }
+            if let Some(own) = before.transmission.as_mut().and_then(|t| t.cvt.as_mut()) {
+                own.warm_start = WarmStart::default();
+            }
+            held(before)
         };
         before.running.speed_rad_s = 0.0; // nothing cut
         let fired = one(before);
@@ -319,7 +333,7 @@ impl<'a> Scene<'a> {
         let coupling = &self.cvt.coupling;
         let own_drag_nm = engine.own_drag_nm(w);
         let unlocked = Flags(Flags::CLUTCH_SLIPPING.0 | Flags::CLUTCH_OPEN.0);
-        let broken = Flags(Flags::NOT_CONVERGED.0 | Flags::GROSS_SLIP.0 | unlocked.0);
+        let broken = Flags(Flags::GROSS_SLIP.0 | unlocked.0);
         let accessories_nm = engine.accessories_nm(w);
         let locked_rad_s = LOCKED * coupling.locked_from_rad_s(engine.idle_rad_s());
         let node = Node {
@@ -336,7 +350,9 @@ impl<'a> Scene<'a> {
                 false => 0.0,
             },
             locked_rad_s,
-            ok: !fired.flags.any(broken) && w <= engine.max_rad_s(),
+            ok: !fired.flags.any(broken)
+                && w <= engine.max_rad_s()
+                && fired.solve_residual.max(cut.solve_residual) <= SOLVED,
         };
         (node, fired)
     }

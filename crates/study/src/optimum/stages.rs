@@ -230,17 +230,28 @@ fn driven(by_law: &[Driven], from: Place) -> Driven {
     (fuel_kg_s, heat_w)
 }
 
+/// A grid with the highest ratio that counts as low, so that a launch from it is not taken for one that cannot be made (DP-6).
+fn with_low(grid: &[f64]) -> Vec<f64> {
+    let mut grid = grid.to_vec();
+    let last = grid.len() - 1;
+    let near = grid[last] + 0.99 * IN_LOW.ln();
+    if grid[last - 1] < near {
+        grid.insert(last, near);
+    }
+    grid
+}
+
 /// Which ratios a step may have.
 fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k: usize) -> Stage {
     let grid = &table.grid;
     let by_law = |from_low: bool| Stage {
-        x: grid.clone(),
+        x: with_low(grid),
         nodes: Vec::new(),
         by_law: Vec::new(),
         from_low,
     };
     let row = &reference.rows[k];
-    let stood = k == 0 || scene.secondary_rad_s[k - 1] <= 0.0;
+    let stood = k > 0 && scene.secondary_rad_s[k - 1] <= 0.0;
     let rolls = scene.secondary_rad_s[k] > 0.0;
     let from_low = stood && rolls && !row.flags.contains(Flags::LAUNCH_NOT_IN_LOW);
     let Some(nodes) = &table.nodes[k] else {
