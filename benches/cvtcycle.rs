@@ -309,7 +309,11 @@ fn least_fuel(bencher: Bencher, free: bool) {
         least_speeds_rad_s: &[],
         prices: &[],
     };
-    bencher.bench_local(|| optimum::bound(black_box(&task)).map(|bound| bound.fuel_kg).ok());
+    bencher.bench_local(|| {
+        optimum::bound(black_box(&task))
+            .map(|bound| bound.fuel_kg)
+            .ok()
+    });
 }
 
 #[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]

@@ -170,7 +170,7 @@ pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
                 drives += 2;
                 let other = if up.0 < down.0 { up } else { down };
                 if other.0 < best {
-                    (best, line) = other;
+                    (best, line) = other; // DP-12
                 }
             }
             if best >= before {

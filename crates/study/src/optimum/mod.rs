@@ -193,7 +193,7 @@ pub fn bound(task: &Task) -> Result<Bound, Box<Infeasible>> {
     Ok(Bound {
         fuel_kg: solved.fuel_kg,
         tolerance_kg: grid_kg + settled_kg, // DP-11
-        driven_kg: driven.fuel_kg(),
+        driven_kg: driven.fuel_kg(),        // DP-10
         least_speeds: task.least_speeds_rad_s.par_iter().map(at).collect(),
         without: task.prices.par_iter().filter_map(without).collect(),
         coarser,

@@ -234,7 +234,7 @@ impl<'a> Scene<'a> {
             _ => a,
         };
         let tried = SAFETIES.map(at);
-        let mut best = tried.into_iter().reduce(better).unwrap_or(tried[0]);
+        let mut best = tried.into_iter().reduce(better).unwrap_or(tried[0]); // DP-4
         let mut step = SAFETIES[1] / SAFETIES[0];
         for _ in 0..HALVINGS {
             step = step.sqrt();
