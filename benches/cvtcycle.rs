@@ -25,6 +25,7 @@ use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
 use cvtcycle::output::summary::{Driven, Settings, run_summary};
 use cvtcycle::output::{EnergyTerms, Row};
 use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
+use cvtcycle::study::levers::{Combine, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Rows;
@@ -400,6 +401,36 @@ fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
         .unwrap();
     bencher.counter(ItemsCount::new(512_usize)).bench_local(|| {
         pool.install(|| {
+            study
+                .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
+                .map_err(|p| p.message)
+        })
+    });
+}
+
+/// The built-in levers of a CVT, each with 256 draws in two cars over ECE15+EUDC, read and driven on two threads.
+#[divan::bench(sample_count = 1, sample_size = 1)]
+fn levers(bencher: Bencher) {
+    let request = LeverRequest {
+        levers: LeverFile::open("cvt").unwrap().levers,
+        vehicles: vec!["rover_216_cvt".to_owned(); 2],
+        ambients_degc: vec![25.0],
+        cycle: "ece15_eudc".to_owned(),
+        start: "soak".to_owned(),
+        dt_s: 1.0,
+        engine_oil: None,
+        draws: Some((Plan::open("uncertainty_rover").unwrap(), 256, 1)),
+        combine: Combine::Automatic,
+        heard_rpm: 1300.0,
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(2)
+        .build()
+        .unwrap();
+    bencher.bench_local(|| {
+        pool.install(|| {
+            let study =
+                prepare(&request).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
             study
                 .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
                 .map_err(|p| p.message)

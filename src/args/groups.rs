@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, Kind, Options, Setup, TWIN, baseline_of};
 use cvtcycle::config::{Bound, Problem, Problems, cycle};
@@ -11,6 +12,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::StartWord;
+use cvtcycle::study::statistics::Confidence;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
 use super::{Names, count, cycles, names_of, number, one_of};
@@ -128,6 +130,48 @@ fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
 
+/// Which columns of a cycle's file are meant.
+#[derive(Args, Clone, Debug)]
+pub struct ColumnsArgs {
+    /// Columns of the cycle's file that are meant, such as time=Time_ADC:s,speed=VehSpd:mph; all others are passed over. For a file
+    /// without names the columns in their order: time:s,speed:mph
+    #[arg(long, value_name = "LIST")]
+    pub columns: Option<String>,
+}
+
+impl ColumnsArgs {
+    /// The columns; those that the file names itself if none are given, or after a problem.
+    pub fn get(&self, problems: &mut Problems) -> Columns {
+        let columns = self.columns.as_deref().map(Columns::parse);
+        problems
+            .take(columns.transpose())
+            .flatten()
+            .unwrap_or_default()
+    }
+}
+
+/// How sure intervals are.
+#[derive(Args, Clone, Debug)]
+pub struct ConfidenceArgs {
+    /// Confidence of all intervals, and share of the draws between the two ends that are printed of an output, 0.5 to 0.999
+    /// [default: 0.95 of intervals, 0.9 of the draws]
+    #[arg(long, value_name = "P", allow_hyphen_values = true)]
+    confidence: Option<String>,
+}
+
+/// Allowed confidence.
+const CONFIDENCE: Bound = Bound::closed(0.5, 0.999);
+
+impl ConfidenceArgs {
+    /// The confidence; the default with a problem if it is none.
+    pub fn get(&self, problems: &mut Problems) -> Confidence {
+        let given = self.confidence.as_ref();
+        let level = given.map(|text| number("--confidence", text, CONFIDENCE, ""));
+        let level = level.and_then(|level| problems.take(level));
+        level.map_or_else(Confidence::default, Confidence::of)
+    }
+}
+
 /// The cycle, and the vehicles that are compared on it.
 #[derive(Args, Clone, Debug)]
 pub struct ComparisonArgs {
@@ -147,8 +191,9 @@ pub struct ComparisonArgs {
 
 impl ComparisonArgs {
     /// Reads the cycle.
-    pub fn cycle(&self, problems: &mut Problems) -> Option<Cycle> {
-        problems.take(cycle::find(&self.cycle))
+    pub fn cycle(&self, columns: &ColumnsArgs, problems: &mut Problems) -> Option<Cycle> {
+        let columns = columns.get(problems);
+        problems.take(cycle::open(&self.cycle, &columns))
     }
 
     /// Names of the baselines: those given, else those of the file of the vehicle.

@@ -1,4 +1,4 @@
-//! Detects the kind of a named input or of a file: vehicle, lubricant, cycle, rig, calibration or study.
+//! Detects the kind of a named input or of a file: vehicle, lubricant, cycle, rig, calibration, study or levers.
 
 use std::path::Path;
 
@@ -25,13 +25,15 @@ pub enum InputKind {
     Calibration,
     /// Plan of a study.
     Study,
+    /// Changes of a car's design.
+    Levers,
 }
 
 /// A kind, its name, and the names of its embedded inputs.
 type KindRow = (InputKind, &'static str, fn() -> Vec<&'static str>);
 
 /// All kinds.
-const KINDS: [KindRow; 7] = [
+const KINDS: [KindRow; 8] = [
     (InputKind::Vehicle, "vehicle", || Kind::Vehicle.names()),
     (InputKind::Class, "class", || Kind::Class.names()),
     (InputKind::Lubricant, "lubricant", || {
@@ -42,6 +44,7 @@ const KINDS: [KindRow; 7] = [
         Kind::Calibration.names()
     }),
     (InputKind::Study, "study", || Kind::Plan.names()),
+    (InputKind::Levers, "levers", || Kind::Levers.names()),
     (InputKind::Cycle, "cycle", cycles),
 ];
 
@@ -55,13 +58,14 @@ const LUBRICANT: [&str; 5] = [
     "density15_kg_m3",
     "friction",
 ];
-/// Beginnings of table headers that only a plan has: of a calibration, whose ends may be misspelt, or of a study.
-const PLANS: [(InputKind, &[&str]); 2] = [
+/// Beginnings of table headers that only a plan has, whose ends may be misspelt: of a calibration or of a study; or a lever file.
+const PLANS: [(InputKind, &[&str]); 3] = [
     (
         InputKind::Calibration,
         &["[calibra", "[[parameter", "[[data"],
     ),
     (InputKind::Study, &["[study", "[[factor"]),
+    (InputKind::Levers, &["[lever", "[[lever"]),
 ];
 
 impl InputKind {
@@ -96,7 +100,7 @@ impl InputKind {
             false => format!("./{word}"),
         };
         let kind = match extension(word).as_deref() {
-            Some("csv" | "tsv" | "txt") => {
+            Some("csv" | "tsv" | "txt" | "vdri") => {
                 bytes("FILE", word, bounded::TABLE).map(|_| InputKind::Cycle)
             }
             _ => InputKind::of_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),
@@ -141,10 +145,9 @@ impl InputKind {
         }
         let (tables, key) = (VEHICLE.join("], ["), LUBRICANT[0]);
         let hint = format!(
-            "a vehicle has [{tables}], a lubricant {key}, a cycle time_s, a calibration [calibration], a study [study]"
+            "a vehicle has [{tables}], a lubricant {key}, a cycle time_s, a calibration [calibration], a study [study], levers [[lever]]"
         );
-        let message =
-            "neither a vehicle, nor a lubricant, nor a cycle, nor a calibration, nor a study";
+        let message = "neither a vehicle, nor a lubricant, nor a cycle, nor a calibration, nor a study, nor levers";
         Err(problem(word, message, &hint).into())
     }
 }

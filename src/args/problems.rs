@@ -37,6 +37,8 @@ pub fn assigned(option: &str, text: &str, problem: Problem) -> Problem {
 /// Problems of arguments of the library under the option that gives them.
 pub fn cite(option: &str, found: impl Into<Problems>) -> Problems {
     found.into().map(|problem| match problem.place.input {
+        // It has an option of its own.
+        Input::Argument(Argument::Columns) => in_options(problem),
         Input::Argument(_) => problem.in_file(option).key(option),
         _ => problem,
     })
@@ -69,6 +71,7 @@ fn flag_of(setting: Setting) -> &'static str {
         Setting::Resume => "--resume",
         Setting::Added => "--with",
         Setting::Loosely => "--loosely",
+        Setting::Columns => "--columns",
     }
 }
 
@@ -81,6 +84,7 @@ fn option_of(argument: Argument) -> &'static str {
         Argument::Cycle => "--cycle",
         Argument::Plan | Argument::Calibration => "PLAN",
         Argument::Cover => "--cover",
+        Argument::Columns => "--columns",
         Argument::Output => "--out",
         Argument::File => "FILE",
     }

@@ -21,8 +21,8 @@ use super::{Execute, run, threads};
 use crate::args::problems::bad_value;
 use crate::args::ranges::values;
 use crate::args::{
-    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs,
-    VehicleArgs, names_of, number, one_of,
+    ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
+    ThreadArgs, VehicleArgs, names_of, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -59,6 +59,8 @@ pub struct AttributeArgs {
     car: VehicleArgs,
     #[command(flatten)]
     comparison: ComparisonArgs,
+    #[command(flatten)]
+    columns: ColumnsArgs,
     /// Ambient temperature, degC, -40 to 60: a number, a list or a range
     #[arg(
         long,
@@ -124,10 +126,11 @@ impl Execute for AttributeArgs {
     type Plan = AttributePlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<AttributePlan> {
-        let cycle = self.comparison.cycle(problems);
+        let cycle = self.comparison.cycle(&self.columns, problems);
         let formulation = self.formulation.get(problems);
         let comparison = (&self.comparison, Baselines::Named);
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
+        let cycle = vehicles::own_cycle(&self.comparison.cycle, cycle, &vehicles);
         let ambients = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
         let ambients_degc = problems.take(ambients);
         if let Some(many) = ambients_degc

@@ -3,18 +3,20 @@
 mod physics;
 
 use clap::Args;
+use cvtcycle::config::csv::Columns;
 use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
+use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{cite, in_options};
-use crate::args::{JsonArgs, Names, cycles};
+use crate::args::{ColumnsArgs, JsonArgs, Names, cycles};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 use physics::PhysicsPlan;
 
@@ -29,7 +31,7 @@ Prints `ok` for every file without problems, and all problems of the others with
 code is then 2. With --physics every vehicle is driven after a soak, and each law has a line: the step in which most of its bound is \
 used, by how much, and whether it holds; the exit code is 1 if one fails.")]
 pub struct CheckArgs {
-    /// Vehicle, lubricant, calibration or study (TOML), or cycle (CSV); detected from the contents of the file
+    /// Vehicle, lubricant, calibration, study or levers (TOML), or cycle (CSV); detected from the contents of the file
     #[arg(value_name = "FILE", required = true)]
     files: Vec<String>,
     /// Drive each vehicle, and check torques, forces, power and heat of every step by statics and energy, apart from the model
@@ -48,6 +50,8 @@ pub struct CheckArgs {
     )]
     ambient: String,
     #[command(flatten)]
+    columns: ColumnsArgs,
+    #[command(flatten)]
     output: JsonArgs,
 }
 
@@ -63,7 +67,11 @@ impl Execute for CheckArgs {
             return physics::plan(&self.files, drive, problems)
                 .map(|plan| CheckPlan::Physics(Box::new(plan)));
         }
-        let files = self.files.iter().map(|file| (file.clone(), check(file)));
+        let columns = self.columns.get(problems);
+        let files = self
+            .files
+            .iter()
+            .map(|file| (file.clone(), check(file, &columns)));
         Some(CheckPlan::Files(files.collect()))
     }
 
@@ -121,14 +129,18 @@ impl CheckArgs {
     }
 }
 
-fn check(file: &str) -> Checked {
+fn check(file: &str, columns: &Columns) -> Checked {
     let (kind, word) = InputKind::detect(file, true)?;
     let none = |()| Vec::new();
     let notes = match kind {
-        InputKind::Cycle => cycle::find(&word).map(drop).map(none),
+        InputKind::Cycle => cycle::open(&word, columns).map(|cycle| {
+            let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
+            read_as.into_iter().collect()
+        }),
         // Only embedded.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
+        InputKind::Levers => LeverFile::open(&word).map(drop).map(none),
         InputKind::Study => Plan::open(&word)
             .and_then(Study::prepare)
             .map(drop)

@@ -13,6 +13,7 @@ use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::equations::{Equation, by_label, equations, of_labels};
 use cvtcycle::study::execute::outputs::outputs;
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
+use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
 
@@ -279,11 +280,11 @@ fn matching_keys(word: &str, known: &'static [KeyInfo]) -> Vec<&'static KeyInfo>
         .unwrap_or_default()
 }
 
-/// Keys of the plans of studies and calibrations, and of validation files.
+/// Keys of the plans of studies and calibrations, of lever files and of validation files.
 fn plan_keys() -> &'static [KeyInfo] {
     static KEYS: OnceLock<Vec<KeyInfo>> = OnceLock::new();
     KEYS.get_or_init(|| {
-        let files = [PLAN, CALIBRATION, VALIDATION];
+        let files = [PLAN, LEVER_FILE, CALIBRATION, VALIDATION];
         files.iter().flat_map(catalogue::keys_of).collect()
     })
 }

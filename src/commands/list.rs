@@ -2,12 +2,15 @@
 
 use clap::{Args, ValueEnum};
 use cvtcycle::config::Problems;
+use cvtcycle::config::csv::UNITS;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::catalogue::{self, File};
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
 use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::keys::stem;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::TextColumns;
+use cvtcycle::study::levers::{Lever, LeverFile};
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -36,6 +39,10 @@ enum ListedKind {
     Classes,
     /// Transmission and engine oils
     Lubricants,
+    /// Columns of a cycle's file, with their names in files of other programs
+    Columns,
+    /// Changes of a car's design
+    Levers,
 }
 
 /// A list in both forms.
@@ -55,6 +62,8 @@ impl Execute for ListArgs {
             ListedKind::Vehicles => list_vehicles(problems),
             ListedKind::Classes => Some(list_classes()),
             ListedKind::Lubricants => list_lubricants(problems),
+            ListedKind::Columns => Some(list_columns()),
+            ListedKind::Levers => list_levers(problems),
         }
     }
 
@@ -77,16 +86,23 @@ fn list_cycles() -> Listing {
         same if same == fixed(km(c, false), 3) => String::new(),
         other => other,
     };
+    let aliases = |c: &Cycle| -> Vec<&'static str> {
+        let own = cycle::ALIASES.iter().filter(|(_, name)| *name == c.name);
+        own.map(|(alias, _)| *alias).collect()
+    };
     let columns = TextColumns::new()
         .left("name", |c: &Cycle| c.name.clone())
         .number("s", 0, |c| c.trace_for(false).duration_s())
         .number("km", 3, |c| km(c, false))
         .right("km (auto)", automatic)
         .number("max km/h", 1, kmh)
-        .left("title", |c| c.title.clone());
+        .left("title", |c| match aliases(c).join(", ") {
+            also if also.is_empty() => c.title.clone(),
+            also => format!("{} (also {also})", c.title),
+        });
     let json = |c: &Cycle| {
         json!({
-            "name": c.name, "title": c.title, "duration_s": c.trace_for(false).duration_s(),
+            "name": c.name, "aliases": aliases(c), "title": c.title, "duration_s": c.trace_for(false).duration_s(),
             "distance_km": km(c, false), "distance_automatic_km": km(c, true),
             "max_speed_kmh": kmh(c), "gears_prescribed": c.has_gears(),
         })
@@ -95,8 +111,8 @@ fn list_cycles() -> Listing {
         json: json!({ "cycles": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Cycles",
         table: columns.lines(&list),
-        note: "Also nedc (ece15_eudc), wltc or wltp (wltc_class3b), ftp (ftp75), la4 (udds), hwy (hwfet), 10-15; in any capitals.\n\
-            Also constant_V with V in km/h, such as constant_90, and any CSV file with time_s and speed_kmh.\n\
+        note: "Names in any capitals and with any signs between their words; wltc and wltp are the class of the car.\n\
+            Also constant_V with V in km/h, such as constant_90, and any file with time and speed: `cvtcycle list columns`.\n\
             Two distances: a manual car drives the trace with gear-change plateaux, an automatic car the one without.\n",
     }
 }
@@ -160,6 +176,35 @@ fn list_classes() -> Listing {
     }
 }
 
+fn list_levers(problems: &mut Problems) -> Option<Listing> {
+    let read = |name: &'static str| {
+        let levers = problems.take(LeverFile::open(name))?.levers.into_iter();
+        Some(levers.map(|lever| (name, lever)).collect::<Vec<_>>())
+    };
+    let files = Kind::Levers.names().into_iter().map(read);
+    let files: Vec<_> = files.collect::<Option<_>>()?;
+    let list: Vec<(&str, Lever)> = files.into_iter().flatten().collect();
+    let group = |lever: &Lever| lever.group.clone().unwrap_or_default();
+    let columns = TextColumns::new()
+        .left("file", |(file, _): &(&str, Lever)| *file)
+        .left("name", |(_, lever)| lever.name.clone())
+        .left("group", move |(_, lever)| group(lever))
+        .left("title", |(_, lever)| lever.title.clone());
+    let json = |(file, lever): &(&str, Lever)| {
+        json!({
+            "file": file, "name": lever.name, "title": lever.title, "set": lever.set, "lubricant": lever.lubricant,
+            "engine_oil": lever.engine_oil, "group": lever.group, "combine": lever.combine, "needs": lever.needs,
+            "status": lever.status, "source": lever.source,
+        })
+    };
+    Some(Listing {
+        json: json!({ "levers": list.iter().map(json).collect::<Vec<_>>() }),
+        heading: "Levers",
+        table: columns.lines(&list),
+        note: "`cvtcycle levers` drives them next to the car as it is; it takes your own TOML file as well.\n",
+    })
+}
+
 fn list_lubricants(problems: &mut Problems) -> Option<Listing> {
     let read = |name: &'static str| {
         let (oil, _) = problems.take(setup::load_lubricant(name))?;
@@ -187,4 +232,37 @@ fn list_lubricants(problems: &mut Problems) -> Option<Listing> {
         table: columns.lines(&list),
         note: "Kinematic viscosities in mm2/s at -10, 40 and 100 degC, density in kg/m3 at 15 degC.\n",
     })
+}
+
+/// A column of a cycle's file: its name, whole names elsewhere, and other words for it.
+type ColumnNames = (String, Vec<&'static str>, Vec<&'static str>);
+
+fn list_columns() -> Listing {
+    let foreign = cycle::FOREIGN;
+    let of = |list: &[(&'static str, &'static str)], wanted: &str| -> Vec<&'static str> {
+        let own = list.iter().filter(|(_, name)| *name == wanted);
+        own.map(|(written, _)| *written).collect()
+    };
+    let names = |name: String| -> ColumnNames {
+        let (headings, words) = (of(foreign.headings, &name), of(foreign.words, stem(&name)));
+        (name, headings, words)
+    };
+    let list: Vec<ColumnNames> = cycle::columns().into_iter().map(names).collect();
+    let columns = TextColumns::new()
+        .left("column", |(name, ..): &ColumnNames| name.clone())
+        .left("in other programs", |(_, headings, _)| headings.join(", "))
+        .left("other words, with their unit", |(.., words)| {
+            words.join(", ")
+        });
+    let units = UNITS
+        .iter()
+        .map(|(written, unit)| json!({ "written": written, "unit": unit }));
+    let json = |(name, headings, words): &ColumnNames| json!({ "name": name, "headings": headings, "words": words });
+    Listing {
+        json: json!({ "columns": list.iter().map(json).collect::<Vec<_>>(), "units": units.collect::<Vec<_>>() }),
+        heading: "Columns of a cycle's file",
+        table: columns.lines(&list),
+        note: "A unit is in the name (speed_kmh), in brackets or behind a comma (\"Speed (km/h)\", \"Time, s\"), or in a row of units below the names.\n\
+            Commas, semicolons or tabs separate; decimal commas with the last two. --columns time=Time_ADC:s,speed=VehSpd:mph reads any other table.\n",
+    }
 }

@@ -5,7 +5,9 @@ mod belt;
 mod calibrate;
 mod check;
 mod compare;
+mod convert;
 mod explain;
+mod levers;
 mod list;
 mod losses;
 mod new;
@@ -67,6 +69,8 @@ enum Command {
     Attribute(Box<attribute::AttributeArgs>),
     /// Compute the least fuel that any controller of ratio and clamp can burn, and the best operating line
     Optimum(Box<optimum::OptimumArgs>),
+    /// Drive changes of a design next to the car as it is: what each saves, how sure that is, and what it does besides
+    Levers(Box<levers::LeversArgs>),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
@@ -85,7 +89,9 @@ enum Command {
     Belt(Box<belt::BeltArgs>),
     /// Write a vehicle file from catalogue numbers
     New(Box<new::NewArgs>),
-    /// List the built-in cycles, vehicles, classes or lubricants
+    /// Convert a drive cycle from one form of file to another: EPA, FASTSim, VECTO, a logger's table
+    Convert(convert::ConvertArgs),
+    /// List the built-in cycles, vehicles, classes, lubricants or levers
     List(list::ListArgs),
     /// Show all values of a vehicle or lubricant with status and source, or a cycle
     Show(show::ShowArgs),
@@ -131,6 +137,7 @@ impl Cli {
             Command::Run(args) => args.execute(terminal),
             Command::Attribute(args) => args.execute(terminal),
             Command::Optimum(args) => args.execute(terminal),
+            Command::Levers(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
             Command::Compare(args) => args.execute(terminal),
@@ -139,6 +146,7 @@ impl Cli {
             Command::Rig(args) => args.execute(terminal),
             Command::Losses(args) => args.execute(terminal),
             Command::Belt(args) => args.execute(terminal),
+            Command::Convert(args) => args.execute(terminal),
             Command::New(args) => args.execute(terminal),
             Command::List(args) => args.execute(terminal),
             Command::Show(args) => args.execute(terminal),

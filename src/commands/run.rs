@@ -16,12 +16,13 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, attribute};
+use cvtcycle::study::words;
 
 use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, threads};
 use crate::args::{
-    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of,
-    number, one_of,
+    ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
+    VehicleArgs, names_of, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use files::{TraceFormat, When};
@@ -45,6 +46,8 @@ pub struct RunArgs {
     car: VehicleArgs,
     #[command(flatten)]
     comparison: ComparisonArgs,
+    #[command(flatten)]
+    columns: ColumnsArgs,
     /// Ambient temperature, degC, -40 to 60
     #[arg(
         long,
@@ -96,10 +99,11 @@ impl Execute for RunArgs {
     type Plan = RunPlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<RunPlan> {
-        let cycle = self.comparison.cycle(problems);
+        let cycle = self.comparison.cycle(&self.columns, problems);
         let formulation = self.formulation.get(problems);
         let comparison = (&self.comparison, Baselines::OfFile);
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
+        let cycle = vehicles::own_cycle(&self.comparison.cycle, cycle, &vehicles);
         let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
         let (start, dt_s) = self.drive.get(problems);
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
@@ -169,6 +173,7 @@ impl Execute for RunArgs {
             };
             run.price = Some(attribute(&of, run));
         }
+        words::run::assess(&mut summary, cycle, &driven);
         let mut record = None;
         if out.is_some() {
             let inputs = files::record(vehicles, cycle, &conditions, plan.sensitivity)?;

@@ -8,6 +8,7 @@ use cvtcycle::model::keys::Table;
 use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::equations::equations;
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
+use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
 
 use super::Cli;
@@ -113,6 +114,8 @@ enum SchemaKind {
     Validation,
     /// Plan of a study
     Plan,
+    /// Changes of a car's design
+    Levers,
 }
 
 impl SchemaKind {
@@ -125,6 +128,7 @@ impl SchemaKind {
             SchemaKind::Calibration => ("calibration", CALIBRATION),
             SchemaKind::Validation => ("validation", VALIDATION),
             SchemaKind::Plan => ("plan", PLAN),
+            SchemaKind::Levers => ("levers", LEVER_FILE),
         }
     }
 }

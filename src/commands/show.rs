@@ -1,19 +1,19 @@
 //! `show`: all values of a vehicle, lubricant or rig with status and source, or the phases of a cycle.
 
 use clap::{Args, ValueEnum};
-use cvtcycle::config::cycle::{self, Cycle};
+use cvtcycle::config::cycle::{self, Cycle, Format};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
 use cvtcycle::output::number::{fixed, signed};
-use cvtcycle::output::table::{TextColumns, TextTable, distinct};
+use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
 use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{bad_value, cite};
-use crate::args::{JsonArgs, Names, cycles};
+use crate::args::{ColumnsArgs, JsonArgs, Names, cycles};
 use crate::print::colour::Paint;
 use crate::print::{CommandOutput, CommandResult, Terminal, sections};
 
@@ -27,7 +27,8 @@ Examples:
   cvtcycle show rover_216_cvt --status assumed
   cvtcycle show compact_2020
   cvtcycle show dexron_iii
-  cvtcycle show ece15_eudc")]
+  cvtcycle show ece15_eudc
+  cvtcycle show wltc_class2 --csv > wltc2.csv")]
 pub struct ShowArgs {
     /// Vehicle, class, lubricant, rig or cycle: a name or a file
     #[arg(value_name = "NAME|FILE", value_parser = Names(|| [Kind::Vehicle.names(), Kind::Class.names(), Kind::Lubricant.names(), Kind::Rig.names(), cycles()].concat()), hide_possible_values = true)]
@@ -35,6 +36,11 @@ pub struct ShowArgs {
     /// Only values of this status; repeatable
     #[arg(long, value_enum, value_name = "STATUS")]
     status: Vec<Status>,
+    /// Print a cycle as a table: the trace that a manual car drives, with its gears
+    #[arg(long, conflicts_with = "json")]
+    csv: bool,
+    #[command(flatten)]
+    columns: ColumnsArgs,
     #[command(flatten)]
     output: JsonArgs,
 }
@@ -109,7 +115,8 @@ impl Execute for ShowArgs {
         let by_name = |found: Problems| cite("NAME", found);
         let (title, mut keys) = match kind {
             InputKind::Cycle => {
-                let cycle = problems.take(cycle::find(&word).map_err(by_name))?;
+                let columns = self.columns.get(problems);
+                let cycle = problems.take(cycle::open(&word, &columns).map_err(by_name))?;
                 return Some(Shown::Cycle(Box::new(cycle)));
             }
             InputKind::Vehicle => {
@@ -126,19 +133,28 @@ impl Execute for ShowArgs {
                 (oil.title, keys)
             }
             InputKind::Class | InputKind::Rig => embedded(&word),
-            InputKind::Calibration | InputKind::Study => {
+            InputKind::Calibration | InputKind::Study | InputKind::Levers => {
                 let (plan, instead) = match kind {
-                    InputKind::Calibration => ("a calibration", "name the vehicle that it fits"),
-                    _ => ("a study", "name the vehicle that it varies"),
+                    InputKind::Calibration => {
+                        ("the plan of a calibration", "name the vehicle that it fits")
+                    }
+                    InputKind::Study => ("the plan of a study", "name the vehicle that it varies"),
+                    _ => ("a file of levers", "name a vehicle that can have them"),
                 };
-                let message =
-                    format!("`{word}` is the plan of {plan}, which has no values of a vehicle");
+                let message = format!("`{word}` is {plan}, which has no values of a vehicle");
                 let hint = format!("{instead}; `cvtcycle check` reads a plan");
                 let allowed = "a vehicle, lubricant, cycle or rig";
                 problems.add(bad_value("NAME", &word, allowed, &message, &hint));
                 return None;
             }
         };
+        if self.csv {
+            let message = format!("`{word}` is no cycle");
+            let allowed = "a cycle of `cvtcycle list cycles`, or the path of its file";
+            let hint = "leave out --csv: it prints the speed of a cycle over time";
+            problems.add(bad_value("--csv", "", allowed, &message, hint));
+            return None;
+        }
         let status: Vec<String> = self.status.iter().map(|status| status.word()).collect();
         keys.retain(|info| status.is_empty() || status.contains(&info.status));
         Some(Shown::Keys(kind, title, keys))
@@ -147,6 +163,10 @@ impl Execute for ShowArgs {
     fn run(&self, shown: Shown, terminal: Terminal) -> CommandResult {
         let paint = terminal.stdout;
         match (shown, self.output.json) {
+            (Shown::Cycle(cycle), _) if self.csv => {
+                let written = cycle::write(&cycle, &cycle.manual, Format::Csv);
+                Ok(CommandOutput::text(written.text))
+            }
             (Shown::Cycle(cycle), true) => CommandOutput::json(&cycle_json(&self.name, &cycle)),
             (Shown::Cycle(cycle), false) => Ok(CommandOutput::text(cycle_text(&cycle, paint))),
             (Shown::Keys(kind, title, keys), true) => {
@@ -256,6 +276,7 @@ fn cycle_json(name: &str, cycle: &Cycle) -> Value {
         "name": name, "kind": "cycle", "title": cycle.title, "duration_s": manual.duration_s(),
         "distance_km": manual.distance_m() / 1e3, "distance_automatic_km": automatic.distance_m() / 1e3,
         "max_speed_kmh": manual.max_speed_m_s() * 3.6, "gears_prescribed": cycle.has_gears(), "phases": phases,
+        "read_as": cycle.read_as,
     })
 }
 
@@ -279,6 +300,12 @@ fn cycle_text(cycle: &Cycle, paint: Paint) -> String {
     let mean = fixed(manual.distance_m() / manual.duration_s() * 3.6, 1);
     let mut text = format!(
         "{name}  {title}\n\n{table}\nduration {duration} s, highest speed {highest} km/h, mean {mean} km/h; gears {gears}\n"
+    );
+    text.extend(
+        cycle
+            .read_as
+            .iter()
+            .map(|words| wrapped(words, "read as: ")),
     );
     let more = manual.distance_m() - automatic.distance_m();
     if more.abs() > 0.5 {

@@ -1,24 +1,28 @@
 //! `study`: many runs.
 
 mod ambient;
-mod execution;
+pub mod execution;
 mod export;
+pub mod levers;
 mod tables;
 
-use std::path::PathBuf;
+use std::path::{self, PathBuf};
 
 use clap::{Args, Subcommand};
-use cvtcycle::config::setup::Kind;
+use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
-use cvtcycle::study::Study;
+use cvtcycle::study::execute::relative;
 use cvtcycle::study::plan::{Design, MAX_SAMPLES, Plan};
+use cvtcycle::study::statistics::Confidence;
+use cvtcycle::study::{Study, StudyManifest, store};
 
 use super::{Execute, threads};
 use crate::args::problems::{bad_value, problem};
-use crate::args::{Names, OutputArgs, count_if_given};
+use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given};
 use crate::print::{CommandResult, Terminal};
-use execution::{StudyRunArgs, results};
+use execution::{Says, StudyRunArgs};
+use levers::LeverResults;
 
 /// Arguments of `study`.
 #[derive(Args, Clone, Debug)]
@@ -28,7 +32,8 @@ use execution::{StudyRunArgs, results};
 Examples:
   cvtcycle study ambient
   cvtcycle study ambient --out ambient_study
-  cvtcycle study uncertainty_rover --samples 64
+  cvtcycle study uncertainty_rover --samples 64 --confidence 0.8
+  cvtcycle study uncertainty_rover --samples 64 --vehicle mycar.toml --baseline twin
   cvtcycle study my_plan.toml --out my_study
   cvtcycle study my_plan.toml --out my_study --resume
   cvtcycle study show my_study
@@ -72,6 +77,12 @@ struct StudyPlanArgs {
     /// Plan: name of a built-in plan, or a TOML file
     #[arg(value_name = "NAME|PLAN.toml", value_parser = Names(|| Kind::Plan.names()), hide_possible_values = true)]
     plan: Option<String>,
+    /// Another vehicle than that of the plan, whose ranges are then taken relative to the values of its own cars
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
+    vehicle: Option<String>,
+    /// Vehicle to compare the other one with; repeatable; `twin` for the same car with a manual box, `none` for no comparison [default: baselines of the vehicle file]
+    #[arg(long, value_name = "NAME|FILE.toml|twin|none", requires = "vehicle", value_parser = Names(|| [Kind::Vehicle.names(), vec!["twin", "none"]].concat()), hide_possible_values = true)]
+    baseline: Vec<String>,
     /// Number of samples, for designs that draw samples [default: from the plan]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     samples: Option<String>,
@@ -100,11 +111,36 @@ impl Execute for StudyPlanArgs {
         let seed = count("--seed", &self.seed, 0..=u64::MAX);
         let mut plan = problems.take(Plan::open(word))?;
         plan.design = problems.take(changed(&plan.design, samples, seed))?;
+        if let Some(vehicle) = &self.vehicle {
+            plan = self.of_vehicle(plan, vehicle, problems)?;
+        }
         self.run.prepare(plan, problems)
     }
 
     fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
-        self.run.run(&study, terminal)
+        self.run.run::<StudyResults>(&study, terminal)
+    }
+}
+
+impl StudyPlanArgs {
+    /// The plan for another vehicle.
+    fn of_vehicle(&self, plan: Plan, vehicle: &str, problems: &mut Problems) -> Option<Plan> {
+        let (mut plan, _) = problems.take(relative(plan))?;
+        // Paths of the command line begin at the current folder, those of a plan at its own.
+        let word = |word: &String| match is_path(word) {
+            true => path::absolute(word)
+                .map_or_else(|_| word.clone(), |path| path.display().to_string()),
+            false => word.clone(),
+        };
+        let named = self
+            .baseline
+            .iter()
+            .filter(|name| *name != "none")
+            .map(word);
+        plan.base.baselines = (!self.baseline.is_empty()).then(|| named.collect());
+        plan.base.vehicle = word(&vehicle.to_owned());
+        plan.title = format!("{}: {vehicle}", plan.title);
+        Some(plan)
     }
 }
 
@@ -143,19 +179,37 @@ struct StudyShowArgs {
     #[arg(value_name = "DIR")]
     dir: PathBuf,
     #[command(flatten)]
+    confidence: ConfidenceArgs,
+    #[command(flatten)]
     output: OutputArgs,
 }
 
 impl Execute for StudyShowArgs {
-    type Plan = StudyResults;
+    type Plan = (StudyManifest, store::Study, Confidence);
 
-    fn plan(&self, problems: &mut Problems) -> Option<StudyResults> {
+    fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         problems.take(threads::begin(None));
-        problems.take(StudyResults::open(&self.dir))
+        let confidence = self.confidence.get(problems);
+        let (outline, store) = problems.take(StudyResults::stored(&self.dir))?;
+        Some((outline, store, confidence))
     }
 
-    fn run(&self, study: StudyResults, terminal: Terminal) -> CommandResult {
-        let tables = || tables::tables(&study, terminal.stdout);
-        Ok(results(&study)?.output(&self.output, tables))
+    fn run(&self, (outline, store, confidence): Self::Plan, terminal: Terminal) -> CommandResult {
+        match outline.levers {
+            Some(_) => self.show::<LeverResults>((outline, store, confidence), terminal),
+            None => self.show::<StudyResults>((outline, store, confidence), terminal),
+        }
+    }
+}
+
+impl StudyShowArgs {
+    fn show<S: Says>(
+        &self,
+        (outline, store, confidence): (StudyManifest, store::Study, Confidence),
+        terminal: Terminal,
+    ) -> CommandResult {
+        let study = S::of(outline, store, confidence)?;
+        let tables = || study.tables(terminal.stdout);
+        Ok(study.results()?.output(&self.output, tables))
     }
 }

@@ -1,7 +1,7 @@
 //! The vehicles that are driven: the subject with its overrides, then the baselines.
 
 use cvtcycle::config::bounded;
-use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -111,6 +111,15 @@ pub fn load(
         });
     }
     vehicles
+}
+
+/// The cycle of a word for the subject, whose class chooses among the WLTC.
+pub fn own_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
+    let cycle = cycle?;
+    Some(match vehicles.first() {
+        Some(subject) => cycle::for_car(word, cycle, &subject.setup),
+        None => cycle,
+    })
 }
 
 /// Checks the fluids by themselves, where the vehicle cannot be read.

@@ -5,6 +5,7 @@ use std::fs::read_to_string;
 use std::path::{Component, Path, PathBuf};
 
 use assert_cmd::Command;
+use cvtcycle::output::number::signed;
 use serde_json::Value;
 
 fn root() -> &'static Path {
@@ -157,7 +158,7 @@ fn val_the_effects_of_changes_are_those_of_the_program() {
             let change = row[0].split('`').nth(1).unwrap();
             let option = change.split_once(' ').unwrap_or(("--set", change));
             let changed = fuel(&run(&[&conditions[..], &[option.0, option.1]].concat()), 0);
-            let effect = format!("{:+.1} %", 100.0 * (changed / shipped - 1.0));
+            let effect = format!("{} %", signed(100.0 * (changed / shipped - 1.0), 1));
             assert_eq!(row[column], effect, "{change} at {ambient} degC");
         }
     }

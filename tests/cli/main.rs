@@ -15,3 +15,4 @@ mod commands;
 mod documents;
 mod faults;
 mod limits;
+mod results_page;

@@ -3,7 +3,8 @@
 //! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
 //! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
 
-use cvtcycle::config::cycle;
+use cvtcycle::config::csv::Columns;
+use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader, render};
 use cvtcycle::output::History;
@@ -11,17 +12,19 @@ use cvtcycle::report::cover::Cover;
 use cvtcycle::study::Study;
 use cvtcycle::study::check;
 use cvtcycle::study::fit;
+use cvtcycle::study::levers::{Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::plan::Plan;
 
 use super::calibration;
 
 /// Kinds of bad files.
-pub const KINDS: [&str; 15] = [
+pub const KINDS: [&str; 16] = [
     "vehicle",
     "like",
     "lubricant",
     "rig",
     "plan",
+    "levers",
     "rows",
     "cover",
     "cycle",
@@ -57,14 +60,50 @@ pub fn message(kind: &str, case: &str) -> String {
         "rig" => rig(case, &String::from_utf8(bytes).unwrap()),
         "lubricant" => setup::load_lubricant(case).err(),
         "plan" => Plan::open(case).and_then(Study::prepare).err(),
+        "levers" => levers(case).err(),
         "rows" => rows(case, &bytes),
         "cover" => Cover::read(case).err(),
-        "cycle" => cycle::read_csv(case, &bytes).err(),
+        "cycle" => cycle(case, &bytes).err(),
         "map" => map(case, name),
         "trace" => History::read_csv(case, &bytes).err(),
         _ => unreachable!("{kind}"),
     };
     render(&problems.unwrap_or_default(), false)
+}
+
+/// A comment `# --columns LIST` in the first line gives the columns.
+fn cycle(case: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
+    let text = String::from_utf8_lossy(bytes);
+    let list = text
+        .lines()
+        .next()
+        .and_then(|line| line.strip_prefix("# --columns "));
+    let columns = list.map(Columns::parse).transpose()?.unwrap_or_default();
+    cycle::read_columns(case, bytes, &columns)
+}
+
+/// The levers of a file in the Rover, without draws.
+fn levers(case: &str) -> Result<Study, Problems> {
+    let named = |lever| Lever {
+        is_named: true,
+        ..lever
+    };
+    prepare(&LeverRequest {
+        levers: LeverFile::open(case)?
+            .levers
+            .into_iter()
+            .map(named)
+            .collect(),
+        vehicles: vec!["rover_216_cvt".to_owned()],
+        ambients_degc: vec![25.0],
+        cycle: "constant_50".to_owned(),
+        start: "soak".to_owned(),
+        dt_s: 1.0,
+        engine_oil: None,
+        draws: None,
+        combine: Combine::None,
+        heard_rpm: 1300.0,
+    })
 }
 
 fn rows(case: &str, bytes: &[u8]) -> Option<Problems> {

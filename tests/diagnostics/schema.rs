@@ -9,6 +9,7 @@ use cvtcycle::model::keys::Table;
 use cvtcycle::study::check::keys::VALIDATION;
 use cvtcycle::study::check::{COMMON, embedded_rows};
 use cvtcycle::study::fit::plan::keys::CALIBRATION;
+use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
 use serde_json::{Value, json};
 
@@ -121,6 +122,7 @@ fn the_shipped_files_are_valid() {
         (Kind::Rig, files::RIG),
         (Kind::Calibration, CALIBRATION),
         (Kind::Plan, PLAN),
+        (Kind::Levers, LEVER_FILE),
     ] {
         for (name, text) in kind.embedded() {
             assert_eq!(checked(&keys, text), [] as [&str; 0], "{name}");

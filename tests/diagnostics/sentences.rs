@@ -37,6 +37,11 @@ const OUTSIDE: &[(&str, &str)] = &[
         "study::check::judge",
         "found by computing only: tests/results/validate.rs",
     ),
+    (
+        "study::levers::combine",
+        "names given to options: tests/studies/levers.rs",
+    ),
+    ("study::levers::answer", "tables that the program wrote"),
     ("study::store", "files that the program wrote"),
 ];
 
@@ -131,6 +136,22 @@ const EXCUSED: &[(&str, &str)] = &[
         "the reader of maps reports it before, with the line",
     ),
     ("give fewer values", "the reader of plans reports it before"),
+    (
+        "the plan varies `{}`",
+        "a plan with levers: tests/studies/levers.rs",
+    ),
+    (
+        "levers are driven under conditions",
+        "a plan with levers: tests/studies/levers.rs",
+    ),
+    (
+        "`{}` can have none of the levers",
+        "levers that the program carries: tests/studies/levers.rs",
+    ),
+    (
+        "name a lever file for such a car",
+        "levers that the program carries: tests/studies/levers.rs",
+    ),
 ];
 
 /// What makes a complaint of the texts within its brackets.

@@ -26,7 +26,7 @@ pub mod setup;
 pub use cvtcycle_model::keys::Bound;
 use cvtcycle_model::keys::Quantity;
 pub use document::Document;
-pub use document::overrides::{KeyPath, Override, Target};
+pub use document::overrides::{Acts, KeyPath, Override, Target};
 pub use document::patched::PatchedDocument;
 pub use document::syntax::decode;
 pub use files::{bounded, embedded};

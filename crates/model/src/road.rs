@@ -197,6 +197,8 @@ pub struct RoadLoadInput {
     pub altitude_m: f64,
     /// Factor on the coefficients.
     pub load_factor: f64,
+    /// The part of the mass that is payload, kg.
+    pub payload_kg: f64,
     /// Tyres.
     pub tyre: Tyre,
 }

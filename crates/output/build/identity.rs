@@ -9,9 +9,10 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 /// What counts, below the root of the workspace: a file, or a folder with all files in it.
-pub const INPUTS: [&str; 19] = [
+pub const INPUTS: [&str; 22] = [
     "Cargo.lock",
     "calibrations",
+    "classes",
     "crates/config/Cargo.toml",
     "crates/config/src",
     "crates/model/Cargo.toml",
@@ -24,6 +25,8 @@ pub const INPUTS: [&str; 19] = [
     "crates/study/Cargo.toml",
     "crates/study/src",
     "cycles",
+    "intervals",
+    "levers",
     "lubricants",
     "plans",
     "rigs",

@@ -5,11 +5,13 @@
 
 mod alike;
 mod failure;
+mod known;
 mod price;
 mod run;
 
 pub use alike::{Difference, differences, words as likeness};
 pub use failure::{Deficit, Failure};
+pub use known::{Contradiction, DrawnDifference};
 pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
 pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
 
@@ -32,6 +34,9 @@ pub struct Summary {
     pub manifest: Manifest,
     /// Name of the cycle.
     pub cycle: String,
+    /// How the cycle's file was read, where it was not written as the program's own are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub read_as: Option<String>,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
     /// `soak`, `warm`, or the temperature of all nodes in degC.
@@ -42,6 +47,9 @@ pub struct Summary {
     pub runs: Vec<RunSummary>,
     /// The subject against each baseline.
     pub comparison: Vec<Comparison>,
+    /// Published numbers that this run contradicts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub contradicted: Vec<Contradiction>,
 }
 
 /// Start as the user wrote it.
@@ -84,6 +92,9 @@ pub struct Comparison {
     /// What differs besides the transmission and its oil: nothing where the comparison is like for like.
     #[serde(default)]
     pub differences: Vec<Difference>,
+    /// The difference over the draws of a plan of uncertainty; none of a case that was not drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interval: Option<DrawnDifference>,
 }
 
 /// A car that has been driven.
@@ -148,11 +159,13 @@ pub fn summarise(
     Summary {
         manifest: Manifest::new(SCHEMA),
         cycle: cycle.name.clone(),
+        read_as: cycle.read_as.clone(),
         ambient_degc,
         start,
         settings,
         runs,
         comparison,
+        contradicted: Vec::new(),
     }
 }
 
@@ -179,6 +192,7 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
         phases_percent: phases.collect(),
         likeness: String::new(),
         differences: Vec::new(),
+        interval: None,
     }
 }
 

@@ -15,6 +15,7 @@ use cvtcycle_output::record::{self, Record};
 use cvtcycle_output::summary::{SCHEMA, Summary};
 use cvtcycle_study::answer::ambient::{WarmUp, warm_ups};
 use cvtcycle_study::execute::manifest::TRACES;
+use cvtcycle_study::statistics::Confidence;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
 
@@ -73,7 +74,16 @@ impl StudyResults {
     ///
     /// # Errors
     /// A directory that is no study, a manifest or a part that cannot be read.
-    pub fn open(path: &Path) -> Result<Self, Problem> {
+    pub fn open(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
+        let (outline, store) = Self::stored(path)?;
+        Self::of(outline, store, confidence)
+    }
+
+    /// Opens without an answer.
+    ///
+    /// # Errors
+    /// A directory that is no study, or a manifest that cannot be read.
+    pub fn stored(path: &Path) -> Result<(StudyManifest, store::Study), Problem> {
         let store = store::Study::open(path)?;
         let text = String::from_utf8_lossy(&store.plan()?).into_owned();
         let file = path.join("plan.toml").display().to_string();
@@ -85,16 +95,20 @@ impl StudyResults {
                 hint,
             )
         })?;
-        Self::of(outline, store)
+        Ok((outline, store))
     }
 
     /// Answers from the parts that are there.
     ///
     /// # Errors
     /// A part that cannot be read.
-    pub fn of(outline: StudyManifest, store: store::Study) -> Result<Self, Problem> {
+    pub fn of(
+        outline: StudyManifest,
+        store: store::Study,
+        confidence: Confidence,
+    ) -> Result<Self, Problem> {
         let frame = StudyTable::new(&outline, &store)?;
-        let answer = answer(&frame)?;
+        let answer = answer(&frame, confidence)?;
         let traced = store.layout().tables.iter().any(|table| table == TRACES);
         let warm_ups = match &answer.matrix {
             Some(matrix) if traced => warm_ups(&frame, matrix).unwrap_or_default(),
@@ -144,7 +158,10 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
     settle(path)?;
     if is_study(path) {
-        return Ok(ResultDir::Study(Box::new(StudyResults::open(path)?)));
+        return Ok(ResultDir::Study(Box::new(StudyResults::open(
+            path,
+            Confidence::default(),
+        )?)));
     }
     let file = path.join(SUMMARY);
     if !file.exists() {
@@ -184,7 +201,9 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
 /// Adds the study or the validation of a directory; one that is not required may hold something else.
 fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem> {
     if is_study(dir) {
-        found.studies.push(StudyResults::open(dir)?);
+        found
+            .studies
+            .push(StudyResults::open(dir, Confidence::default())?);
         return Ok(());
     }
     settle(dir)?;

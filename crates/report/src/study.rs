@@ -9,7 +9,7 @@ use super::study_answers::answers;
 use super::study_pictures::study_pictures;
 use cvtcycle_config::Problem;
 use cvtcycle_study::answer::ambient::Matrix;
-use cvtcycle_study::plan::Design;
+use cvtcycle_study::statistics::of_hundred;
 
 /// The study as a section of a report.
 ///
@@ -61,15 +61,27 @@ fn details(study: &StudyResults) -> Result<Section, Problem> {
 }
 
 fn caption(name: &str, study: &StudyResults) -> String {
-    let of = &study.answer.title;
+    let (of, level) = (&study.answer.title, study.answer.confidence.percent());
     match name.split('_').next().unwrap_or_default() {
-        "distribution" => format!("How the output is distributed over the samples of \u{201c}{of}\u{201d}."),
-        "sobol" => "Share of the variance that each factor explains, alone and with its interactions, with 95 % intervals.".to_owned(),
-        "convergence" => "The same indices from growing parts of the samples: whether there are enough of them.".to_owned(),
-        "tornado" => "What each factor does by itself, from its low to its high value.".to_owned(),
-        "ranks" => "Rank correlation of the output with each factor, with 95 % intervals.".to_owned(),
+        "distribution" => {
+            format!("How the output is distributed over the samples of \u{201c}{of}\u{201d}.")
+        }
+        "sobol" => format!(
+            "Share of the variance that each factor explains, alone and with its interactions, with {level} % intervals."
+        ),
+        "convergence" => {
+            "The same indices from growing parts of the samples: whether there are enough of them."
+                .to_owned()
+        }
+        "tornado" => "What each factor does by itself, level by level.".to_owned(),
+        "ranks" => {
+            format!("Rank correlation of the output with each factor, with {level} % intervals.")
+        }
         "effects" => "Mean output at each level of each factor.".to_owned(),
-        "ambient" if name.contains("penalty") => "Fuel of the subject over that of each baseline, against ambient temperature.".to_owned(),
+        "ambient" if name.contains("penalty") => {
+            "Fuel of the subject over that of each baseline, against ambient temperature."
+                .to_owned()
+        }
         "ambient" => "Fuel against ambient temperature, whole cycle and phases.".to_owned(),
         "warm" => "Oil temperatures over the cycle at each ambient temperature.".to_owned(),
         _ => format!("{} of \u{201c}{of}\u{201d}.", words(name)),
@@ -87,6 +99,9 @@ fn extent(study: &StudyResults) -> String {
         outline.cars.join(", ")
     );
     let bad = answer.runs.failed + answer.runs.not_run;
+    for note in &answer.notes {
+        text += &format!(" Note: {note}.");
+    }
     if bad > 0 {
         let reasons = answer.runs.reasons.iter().take(3);
         let reasons: Vec<String> = reasons
@@ -149,25 +164,34 @@ fn by_case(
     table
 }
 
+/// Moments and quantiles of draws; of points that are no sample the ends, and where they are.
 fn outputs(study: &StudyResults) -> ReportTable {
-    // Of one factor at a time the base would count many times in everything but the extremes.
-    let one_by_one = matches!(study.outline.plan.design, Design::OneAtATime { .. });
-    let names: &[&str] = if one_by_one {
-        &["runs", "least", "most"]
-    } else {
-        &["runs", "mean", "standard deviation", "5 %", "95 %"]
+    let ends = study.answer.confidence.ends();
+    let [low, high] = ends.map(|p| format!("{} %", of_hundred(p)));
+    let sampled = study.outline.plan.design.is_sampled();
+    let names = match sampled {
+        true => ["runs", "mean", "standard deviation", &low, &high],
+        false => ["runs", "least", "at", "most", "at that"],
     };
-    let columns = names.iter().map(|name| (*name, ""));
+    let columns = names.iter().map(|name| (name.to_string(), ""));
     let mut table = ReportTable::of_numbers("Outputs", "Output", columns);
     for output in &study.answer.outputs {
-        let (s, name) = (&output.summary, output_name(&output.output));
-        let numbers = if one_by_one {
-            vec![s.min, s.max]
-        } else {
-            vec![s.mean, s.sd, s.quantile(0.05), s.quantile(0.95)]
-        };
-        let numbers = numbers.into_iter().map(|x| grouped(x, 3));
-        let cells = [s.n.to_string()].into_iter().chain(numbers);
+        let mut cells = vec![output.counts()[0].to_string()];
+        if let Some(s) = &output.summary {
+            let numbers = [s.mean, s.sd, s.quantile(ends[0]), s.quantile(ends[1])];
+            cells.extend(numbers.map(|x| grouped(x, 3)));
+        }
+        if let Some(range) = &output.range {
+            let [least, most] =
+                [range.least, range.largest].map(|x| grouped(x.unwrap_or(f64::NAN), 3));
+            cells.extend([
+                least,
+                range.least_at.clone(),
+                most,
+                range.largest_at.clone(),
+            ]);
+        }
+        let name = output_name(&output.output);
         table.named(format!("{name}, {} [{}]", output.car, output.unit), cells);
     }
     table

@@ -10,7 +10,7 @@ use cvtcycle_config::Problem;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{OutputAnswer, described_numbers};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
-use cvtcycle_study::statistics::Groups;
+use cvtcycle_study::statistics::{Confidence, Groups};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 
 /// Every picture that the answer has something for, each under a name that can be a file's: of a matrix of ambient temperatures fuel,
@@ -62,11 +62,11 @@ fn of_outputs(answer: &Answer, frame: &StudyTable) -> Result<Vec<(String, Pictur
         let same = |other: &&&OutputAnswer| other.output == output.output;
         if outline.plan.design.is_sampled() && !pictured[..k].iter().any(|other| same(&other)) {
             let same: Vec<&&OutputAnswer> = pictured.iter().filter(same).collect();
-            let picture = distribution(frame, &same)?;
+            let picture = distribution(frame, &same, answer.confidence)?;
             list.push((format!("distribution_{}", output.output), picture));
         }
         let name = |kind: &str| format!("{kind}_{}_{}", output.output, output.car);
-        let own = of_output(output, outline).into_iter();
+        let own = of_output(output, outline, answer.confidence).into_iter();
         list.extend(own.map(|(kind, picture)| (name(kind), picture)));
     }
     Ok(list)
@@ -88,7 +88,11 @@ fn named(output: &OutputAnswer, outline: &StudyManifest) -> String {
     }
 }
 
-fn distribution(frame: &StudyTable, outputs: &[&&OutputAnswer]) -> Result<Picture, Problem> {
+fn distribution(
+    frame: &StudyTable,
+    outputs: &[&&OutputAnswer],
+    confidence: Confidence,
+) -> Result<Picture, Problem> {
     let outline = frame.outline;
     let mut values = Vec::new();
     for output in outputs {
@@ -116,6 +120,7 @@ fn distribution(frame: &StudyTable, outputs: &[&&OutputAnswer]) -> Result<Pictur
         output: &title,
         unit,
         subject: &outline.title,
+        confidence,
     };
     Ok(distribution_plot(&shown, &series, excess))
 }
@@ -130,12 +135,17 @@ fn tail(output: &str) -> String {
     })
 }
 
-fn of_output(output: &OutputAnswer, outline: &StudyManifest) -> Vec<(&'static str, Picture)> {
+fn of_output(
+    output: &OutputAnswer,
+    outline: &StudyManifest,
+    confidence: Confidence,
+) -> Vec<(&'static str, Picture)> {
     let name = named(output, outline);
     let shown = Shown {
         output: &name,
         unit: &output.unit,
         subject: &outline.title,
+        confidence,
     };
     let factors = outline.plan.factors.iter();
     let names: Vec<String> = factors.map(|factor| factor.name.clone()).collect();

@@ -12,8 +12,10 @@
 //! | `store` | tables of columns; parts and results on disk, whole or absent; reading and exporting them |
 //! | `statistics` | pure functions: description, Sobol indices, tornado, ranks |
 //! | `answer` | what the study says, from its table by car and point |
+//! | `words` | results in sentences, with what is known of how sure they are and which published number they contradict |
 //! | `attribute` | what each loss costs: the car driven again without it |
 //! | `optimum` | the least fuel that any controller of ratio and clamp can burn, and the operating line near it |
+//! | `levers` | changes of a design, each next to the car as it is, with the same draws |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `points` | the belt at points of a table |
 //! | `check` | comparison with published values |
@@ -25,6 +27,7 @@ pub mod attribute;
 pub mod check;
 pub mod fit;
 pub mod optimum;
+pub mod levers;
 pub mod points;
 pub mod sensitivity;
 pub mod design;
@@ -33,6 +36,7 @@ pub mod execute;
 pub mod plan;
 pub mod statistics;
 pub mod store;
+pub mod words;
 
 pub use answer::{Answer, StudyTable, TableSource, answer};
 pub use execute::{End, PartWriter, Study, StudyCar, StudyManifest};

@@ -13,6 +13,12 @@ use crate::print::sections;
 /// All prices for people.
 pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint: Paint) -> String {
     let mut text = format!("{}  {}\n", paint.heading(&cycle.name), cycle.title);
+    text.extend(
+        cycle
+            .read_as
+            .iter()
+            .map(|words| wrapped(words, "read as: ")),
+    );
     text += &match summary.factor {
         factor if factor > 0.0 => {
             format!("fuel saved with {} times each loss\n", plain(factor))

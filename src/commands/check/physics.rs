@@ -49,8 +49,10 @@ pub fn plan(
 pub fn run(plan: &PhysicsPlan, form: JsonArgs, terminal: Terminal) -> CommandResult {
     let ambient_k = plan.ambient_degc + ZERO_DEGC_K;
     let vehicles = plan.vehicles.iter();
-    let found =
-        vehicles.map(|(word, setup)| (word, check_physics(setup, &plan.cycle, ambient_k, STEP_S)));
+    let found = vehicles.map(|(word, setup)| {
+        let cycle = cycle::for_car(&plan.cycle_name, plan.cycle.clone(), setup);
+        (word, check_physics(setup, &cycle, ambient_k, STEP_S))
+    });
     let found: Vec<(&String, Vec<Finding>)> = found.collect();
     let holds = |finding: &Finding| verdict(finding) != FAILS;
     let ending = match found.iter().all(|(_, findings)| findings.iter().all(holds)) {

@@ -5,7 +5,7 @@ use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 use cvtcycle::output::summary::{Comparison, RunSummary, Saving, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, WIDTH, wrapped};
-use cvtcycle::study::attribute::answer;
+use cvtcycle::study::words::run::sentences;
 
 use crate::print::colour::Paint;
 use crate::print::sections;
@@ -41,6 +41,12 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     let mut text = format!(
         "{name}  {title}\nambient {ambient} degC, {start}\nsteps of {dt} s, belt model {belt}\n"
     );
+    text.extend(
+        cycle
+            .read_as
+            .iter()
+            .map(|words| wrapped(words, "read as: ")),
+    );
     for (option, list) in [("--set", &settings.set), ("--set-all", &settings.set_all)] {
         text.extend(list.iter().map(|set| format!("{option} {set}\n")));
     }
@@ -55,24 +61,13 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
 
 /// What the run says of the subject, in sentences.
 fn answers(summary: &Summary) -> String {
-    let run = summary.runs.first();
-    let fuel = run.and_then(RunSummary::headline_fuel);
-    let Some((run, fuel)) = run.zip(fuel) else {
-        return String::new();
-    };
-    let against = summary.comparison.iter().filter_map(|c| {
-        let percent = c.fuel_percent?;
-        let word = if percent < 0.0 { "less" } else { "more" };
-        Some(format!(
-            ", {} % {word} than {}",
-            fixed(percent.abs(), 1),
-            c.baseline
-        ))
-    });
-    let against: String = against.collect();
-    let fuel = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
-    let lines = std::iter::once(fuel).chain(answer(run));
-    "\n".to_owned() + &lines.map(|line| wrapped(&line, "")).collect::<String>()
+    let lines = sentences(summary);
+    let lines: String = lines.iter().map(|line| wrapped(line, "")).collect();
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("\n{lines}")
+    }
 }
 
 /// A table with one column for each vehicle.

@@ -10,6 +10,7 @@ use crate::args::problems::overrides;
 use crate::args::{ComparisonArgs, VehicleArgs};
 use crate::commands::Execute;
 use crate::print::{CommandResult, Terminal};
+use cvtcycle::report::results::StudyResults;
 
 /// Arguments of `study ambient`.
 #[derive(Args, Clone, Debug)]
@@ -73,7 +74,7 @@ impl Execute for StudyAmbientArgs {
     }
 
     fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
-        self.run.run(&study, terminal)
+        self.run.run::<StudyResults>(&study, terminal)
     }
 }
 

@@ -9,14 +9,16 @@ use cvtcycle::report::results::StudyResults;
 use cvtcycle::report::study_pictures::study_pictures;
 use cvtcycle::study::execute::DirWriter;
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::store::StudyDir;
+use cvtcycle::study::statistics::Confidence;
+use cvtcycle::study::store::{self, StudyDir};
 use cvtcycle::study::{End, Study, StudyManifest};
 use tempfile::TempDir;
 
 use super::super::threads;
 use super::tables;
 use crate::args::problems::{bad_value, problem};
-use crate::args::{OutArgs, OutputArgs, ThreadArgs};
+use crate::args::{ConfidenceArgs, OutArgs, OutputArgs, ThreadArgs};
+use crate::print::colour::Paint;
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
@@ -41,6 +43,8 @@ pub struct StudyRunArgs {
     )]
     format: PartFormat,
     #[command(flatten)]
+    confidence: ConfidenceArgs,
+    #[command(flatten)]
     threads: ThreadArgs,
     /// Run a study of more runs than `most_runs` of the plan
     #[arg(long)]
@@ -63,13 +67,18 @@ impl StudyRunArgs {
     pub fn begin(&self, problems: &mut Problems) {
         handle_interrupts();
         self.out.path(problems);
+        self.confidence.get(problems);
         let threads = self.threads.given(problems);
         problems.take(threads::begin(threads));
     }
 
     /// Reads the vehicles of a plan, and checks the number of runs.
     pub fn prepare(&self, plan: Plan, problems: &mut Problems) -> Option<Study> {
-        let study = problems.take(Study::prepare(plan))?;
+        self.confirmed(problems.take(Study::prepare(plan))?, problems)
+    }
+
+    /// Checks the number of runs of a study.
+    pub fn confirmed(&self, study: Study, problems: &mut Problems) -> Option<Study> {
         let (runs, max) = (study.runs(), study.plan.most_runs);
         if runs > max && !self.yes {
             let (points, cars) = (study.points, study.cars.len());
@@ -84,16 +93,16 @@ impl StudyRunArgs {
         Some(study)
     }
 
-    /// Runs a study, writes its files and returns its results.
-    pub fn run(&self, study: &Study, terminal: Terminal) -> CommandResult {
-        let results = self.results(study, terminal);
+    /// Runs a study, writes its files and returns what it says.
+    pub fn run<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
+        let results = self.results::<S>(study, terminal);
         results.map_err(|problems| match self.out.out {
             Some(_) => problems,
             None => problems.map(of_nothing_kept),
         })
     }
 
-    fn results(&self, study: &Study, terminal: Terminal) -> CommandResult {
+    fn results<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
         // Without --out the parts are written to a directory that is deleted afterwards.
         let temporary = match &self.out.out {
             Some(_) => None,
@@ -105,13 +114,15 @@ impl StudyRunArgs {
         if self.compute(study, &dir)? == End::Stopped {
             return Ok(self.stopped(study, &dir));
         }
-        let found = StudyResults::of(StudyManifest::of(study), dir.study()?)?;
+        // Checked when the study began.
+        let confidence = self.confidence.get(&mut Problems::default());
+        let found = S::of(StudyManifest::of(study), dir.study()?, confidence)?;
         let list = match &self.out.out {
-            Some(_) => tables::written(dir.path(), &dir.finish(&files(&found)?)?),
+            Some(_) => tables::written(dir.path(), &dir.finish(&found.files()?)?),
             None => String::new(),
         };
-        let tables = || tables::tables(&found, terminal.stdout) + &list;
-        Ok(results(&found)?.output(&self.output, tables))
+        let tables = || found.tables(terminal.stdout) + &list;
+        Ok(found.results()?.output(&self.output, tables))
     }
 
     fn dir(&self, study: &Study, path: &Path) -> Result<StudyDir, Problem> {
@@ -157,6 +168,58 @@ impl StudyRunArgs {
     }
 }
 
+/// What a study says, from the parts that are there.
+pub trait Says: Sized {
+    /// Answers.
+    fn of(
+        outline: StudyManifest,
+        store: store::Study,
+        confidence: Confidence,
+    ) -> Result<Self, Problem>;
+
+    /// For other programs, with a line for failed runs.
+    fn results(&self) -> Result<Results, Problems>;
+
+    /// Files of a finished study: numbers and figures.
+    fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Problems>;
+
+    /// For people.
+    fn tables(&self, paint: Paint) -> String;
+}
+
+impl Says for StudyResults {
+    fn of(
+        outline: StudyManifest,
+        store: store::Study,
+        confidence: Confidence,
+    ) -> Result<Self, Problem> {
+        StudyResults::of(outline, store, confidence)
+    }
+
+    fn results(&self) -> Result<Results, Problems> {
+        let failures = tables::failures(&self.answer.runs);
+        let json = json_text(&self.answer)?;
+        Ok(Results::new(json, failures, WrittenFiles::default()))
+    }
+
+    fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+        let statistics = json_text(&self.answer)?.into_bytes();
+        let mut files = vec![("statistics.json".to_owned(), statistics)];
+        let own = cvtcycle::study::answer::tables(&self.answer, &self.outline);
+        files.extend(own);
+        let pictures = study_pictures(&self.answer, &self.frame()?, &self.warm_ups)?;
+        let svg = pictures
+            .into_iter()
+            .map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes()));
+        files.extend(svg);
+        Ok(files)
+    }
+
+    fn tables(&self, paint: Paint) -> String {
+        tables::tables(self, paint)
+    }
+}
+
 /// A problem of a directory that is deleted: nothing in it can be continued or replaced.
 fn of_nothing_kept(problem: Problem) -> Problem {
     if problem.settings.is_empty() {
@@ -172,24 +235,4 @@ fn temporary_dir() -> Result<TempDir, Problems> {
         let message = format!("cannot create a temporary directory: {error}");
         problem("--out", &message, "name a directory with --out").into()
     })
-}
-
-/// Results of a study, finished or partial.
-pub fn results(study: &StudyResults) -> Result<Results, Problems> {
-    let failures = tables::failures(&study.answer);
-    let json = json_text(&study.answer)?;
-    Ok(Results::new(json, failures, WrittenFiles::default()))
-}
-
-/// Files of a finished study: numbers and figures.
-fn files(study: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-    let statistics = json_text(&study.answer)?.into_bytes();
-    let mut files = vec![("statistics.json".to_owned(), statistics)];
-    files.extend(cvtcycle::study::answer::tables(
-        &study.answer,
-        &study.outline,
-    ));
-    let pictures = study_pictures(&study.answer, &study.frame()?, &study.warm_ups)?.into_iter();
-    files.extend(pictures.map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes())));
-    Ok(files)
 }

@@ -3,23 +3,25 @@
 use std::path::{Path, PathBuf};
 
 use cvtcycle::report::results::StudyResults;
-use cvtcycle::report::study_answers::{Measure, ranked};
 use cvtcycle::study::answer::ambient::Matrix;
-use cvtcycle::study::answer::{Comparison, OutputAnswer};
+use cvtcycle::study::answer::{Ended, Information, LeastOf, OutputAnswer};
 use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{
-    Estimate, FactorIndices, Group, Groups, SobolIndices, Tornado, TornadoBar, TornadoEnd,
+    Confidence, Estimate, FactorIndices, Group, Groups, SobolIndices, Summary, Tornado, of_hundred,
 };
+use cvtcycle::study::words::study::sentences;
 use cvtcycle::study::{Answer, StudyManifest};
 
 use crate::print::colour::Paint;
 use crate::print::sections;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
-use cvtcycle::output::table::{TextColumns, TextTable};
+use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
 
 /// Number of factors that are listed for an output.
 const MAX_FACTORS: usize = 10;
+/// Number of factors above chance that are listed.
+const MAX_CAUSES: usize = 5;
 /// Number of reasons of failed runs that are listed.
 const MAX_REASONS: usize = 5;
 /// Rows and columns of a matrix that fit on a page.
@@ -28,19 +30,21 @@ const MATRIX: [usize; 2] = [40, 10];
 /// All results of a study for people.
 pub fn tables(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
-    let text = head(study, paint);
+    let said: String = sentences(answer, outline)
+        .iter()
+        .map(|line| wrapped(line, ""))
+        .collect();
+    let text = head(study, paint) + if said.is_empty() { "" } else { "\n" } + &said;
     if let Some(matrix) = &answer.matrix {
         return text + &matrix_tables(matrix, paint);
     }
-    let sampled = outline.plan.design.is_sampled();
-    let of = answer.comparisons.iter();
-    let comparison: String = of.clone().map(|of| compared(of, answer, sampled)).collect();
-    let strongest: String = of.filter_map(|of| strongest(of, answer, outline)).collect();
-    let body = [
-        ("Comparison", comparison + &strongest),
-        ("Outputs", outputs(answer)),
-    ];
-    text + &sections(body, paint) + &factors(answer, outline, paint)
+    let outputs = sections([("Outputs", outputs(answer))], paint);
+    let factors = factors(answer, outline, paint);
+    // Where the points are no sample, what the levels give is the answer.
+    match outline.plan.design.is_sampled() {
+        true => text + &outputs + &factors,
+        false => text + &factors + &outputs,
+    }
 }
 
 /// Start and ambient temperature of a row, by index.
@@ -120,6 +124,7 @@ fn head(study: &StudyResults, paint: Paint) -> String {
             "{bad} runs are left out ({failed} failed a check, {not_run} could not be run)\n"
         );
     }
+    text.extend(answer.notes.iter().map(|note| wrapped(note, "note: ")));
     text
 }
 
@@ -141,48 +146,6 @@ fn design(outline: &StudyManifest) -> String {
     format!("{factors}, {design}")
 }
 
-/// Share of the pairs in which the subject uses more fuel, and the difference. For a grid the share describes its own points only.
-fn compared(of: &Comparison, answer: &Answer, sampled: bool) -> String {
-    let subject = answer.cars.first().map_or("the subject", String::as_str);
-    let (s, worse, baseline) = (&of.excess_percent, &of.worse, &of.baseline);
-    if worse.n == 0 {
-        return format!("{subject} compared with {baseline}: no pair of good runs\n");
-    }
-    let (k, n, mean) = (worse.k, worse.n, signed(s.mean, 2));
-    if !sampled {
-        let [low, high] = [s.min, s.max].map(|x| signed(x, 1));
-        return format!(
-            "{subject} uses more fuel than {baseline} at {k} of {n} points; the difference is {low} to {high} %, {mean} % on average.\n"
-        );
-    }
-    let percent = |x: f64| fixed(100.0 * x, if n >= 1000 { 1 } else { 0 });
-    let (share, [low, high]) = (percent(worse.share), worse.interval95.map(percent));
-    let [q5, q95, median] = [0.05, 0.95, 0.5].map(|p| signed(s.quantile(p), 1));
-    let sd = fixed(s.sd, 2);
-    format!(
-        "{subject} uses more fuel than {baseline} in {k} of {n} pairs: {share} % (95 % interval {low} to {high} %).\n\
-         The difference is {mean} % on average, sd {sd}; 90 % of the pairs are between {q5} and {q95} %, the median is {median} %.\n"
-    )
-}
-
-/// Factors with the largest effect on the difference to a baseline.
-fn strongest(of: &Comparison, answer: &Answer, outline: &StudyManifest) -> Option<String> {
-    let mut outputs = answer.outputs.iter();
-    let output = outputs.find(|o| o.output == EXCESS && o.car == of.baseline)?;
-    let (measure, ranked) = ranked(output, outline)?;
-    let name = |(name, x): &(String, f64)| format!("{name} ({})", fixed(*x, 2));
-    let first: Vec<String> = ranked.iter().take(3).map(name).collect();
-    let measure = match measure {
-        Measure::Variance => "share of the variance, with interactions",
-        Measure::Swing => "swing, points",
-        Measure::Rank => "rank correlation",
-    };
-    let (baseline, first) = (&of.baseline, first.join(", "));
-    Some(format!(
-        "Largest effects on the difference to {baseline}: {first} [{measure}].\n"
-    ))
-}
-
 fn outputs(answer: &Answer) -> String {
     // Name and unit are shown once for all vehicles.
     let first = |o: &OutputAnswer, text: &str| {
@@ -193,18 +156,48 @@ fn outputs(answer: &Answer) -> String {
             false => String::new(),
         }
     };
+    if answer.outputs.iter().any(|o| o.range.is_some()) {
+        return ranges(answer, first);
+    }
+    let of = |o: &OutputAnswer, number: &dyn Fn(&Summary) -> f64| o.summary.as_ref().map(number);
+    let [low, high] = answer.confidence.ends();
+    let [low_head, high_head] = [low, high].map(|p| format!("{} %", of_hundred(p)));
     TextColumns::new()
         .left("output", |o: &OutputAnswer| first(o, &o.output))
         .left("unit", |o| first(o, &o.unit))
         .left("car", |o| o.car.clone())
-        .right("n", |o| o.summary.n.to_string())
-        .number("mean", 3, |o| o.summary.mean)
-        .number("sd", 3, |o| o.summary.sd)
-        .number("5 %", 3, |o| o.summary.quantile(0.05))
-        .number("95 %", 3, |o| o.summary.quantile(0.95))
+        .right("n", |o| o.counts()[0].to_string())
+        .number("mean", 3, |o| of(o, &|s| s.mean))
+        .number("sd", 3, |o| of(o, &|s| s.sd))
+        .number(low_head, 3, |o| of(o, &|s| s.quantile(low)))
+        .number(high_head, 3, |o| of(o, &|s| s.quantile(high)))
         .table(&answer.outputs)
         .indented()
         .text()
+}
+
+/// The ends of each output with the levels there, a line each.
+fn ranges(answer: &Answer, first: impl Fn(&OutputAnswer, &str) -> String) -> String {
+    let mut table = TextTable::new("llrlrl").indented();
+    table.row(["output", "car", "n", "", "value", "at"]);
+    for output in &answer.outputs {
+        let Some(range) = &output.range else { continue };
+        let value = |x: Option<f64>| fixed(x, 3);
+        table.row([
+            first(output, &output.output),
+            output.car.clone(),
+            range.n.to_string(),
+            if range.is_one() { "" } else { "least" }.to_owned(),
+            value(range.least),
+            range.least_at.clone(),
+        ]);
+        if !range.is_one() {
+            let largest = ["", "", "", "largest"].map(str::to_owned);
+            let rest = [value(range.largest), range.largest_at.clone()];
+            table.row(largest.into_iter().chain(rest));
+        }
+    }
+    table.text()
 }
 
 /// Factors of the first output of the subject, and of the difference to each baseline.
@@ -216,20 +209,24 @@ fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
     let is_shown = |o: &&OutputAnswer| o.output == EXCESS || is_first(o);
     let section = |o: &OutputAnswer| {
         let heading = format!("Effects on {} ({}), {}", o.output, o.unit, o.car);
-        (heading, effects(o, outline))
+        (heading, effects(o, outline, answer.confidence))
     };
     sections(answer.outputs.iter().filter(is_shown).map(section), paint)
 }
 
-fn effects(output: &OutputAnswer, outline: &StudyManifest) -> String {
+fn effects(output: &OutputAnswer, outline: &StudyManifest, confidence: Confidence) -> String {
+    let known = output.information.as_ref();
+    let known = known.map_or_else(String::new, |of| information(of, confidence, &output.unit));
     match (output.sobol.last(), &output.tornado) {
-        (Some(indices), _) => sobol(output, outline, indices),
+        (Some(indices), _) => sobol(outline, indices, confidence) + &known,
         (None, Some(of)) => tornado(of),
-        (None, None) => grid(output) + &rank(output) + &levels(output),
+        // A matrix has all that the means of its rows and columns have.
+        (None, None) if output.matrix.is_some() => grid(output),
+        (None, None) => known + &rank(output) + &levels(output),
     }
 }
 
-/// The matrix of a grid of two factors, its smallest number marked.
+/// The matrix of a grid of two factors, its smallest numbers marked.
 fn grid(output: &OutputAnswer) -> String {
     let Some(matrix) = &output.matrix else {
         return String::new();
@@ -246,34 +243,74 @@ fn grid(output: &OutputAnswer) -> String {
             .into_iter()
             .chain(columns),
     );
-    let least = matrix.least();
     for (i, (name, row)) in matrix.rows.iter().zip(&matrix.cells).enumerate() {
         let cell = |(k, x): (usize, &Option<f64>)| {
-            let mark = if least == Some((i, k)) { "*" } else { "" };
+            let mark = if matrix.least.contains(&[i, k]) {
+                "*"
+            } else {
+                ""
+            };
             format!("{mark}{}", fixed(*x, 3))
         };
         let cells = row.iter().enumerate().map(cell);
         table.row([name.clone()].into_iter().chain(cells));
     }
-    table.text() + "  * least\n"
+    let of = match matrix.least_of {
+        LeastOf::All => "",
+        LeastOf::Row => " of its row",
+        LeastOf::Column => " of its column",
+    };
+    format!("{}  * least{of}\n", table.text())
 }
 
+/// Every level of each factor, the widest swing first.
 fn tornado(tornado: &Tornado) -> String {
-    let label = |end: &Option<TornadoEnd>| match end {
-        Some(end) => end.label.clone(),
-        None => NONE.to_owned(),
-    };
-    let effect = |end: &Option<TornadoEnd>| signed(end.as_ref().map(|end| end.effect), 3);
-    let table = TextColumns::new()
-        .left("factor", |bar: &TornadoBar| bar.name.clone())
-        .right("low", |bar| label(&bar.low))
-        .right("effect", |bar| effect(&bar.low))
-        .right("high", |bar| label(&bar.high))
-        .right("effect", |bar| effect(&bar.high))
-        .number("swing", 3, |bar| bar.swing)
-        .table(&tornado.bars);
+    let mut table = TextTable::new("llrrr").indented();
+    table.row(["factor", "level", "value", "effect", "swing"]);
+    for bar in &tornado.bars {
+        for (k, level) in bar.entries.iter().enumerate() {
+            let [name, swing] = match k {
+                0 => [bar.name.clone(), fixed(bar.swing, 3)],
+                _ => [String::new(), String::new()],
+            };
+            let (value, effect) = (fixed(level.output, 3), signed(level.effect, 3));
+            table.row([name, level.label.clone(), value, effect, swing]);
+        }
+    }
     let base = fixed(tornado.base, 3);
-    format!("  base {base}\n{}", table.indented().text())
+    format!("  base {base}\n{}", table.text())
+}
+
+/// What knowing a factor would leave of the spread: the factors above chance, and how many are not.
+fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
+    let mut table = TextTable::new("lrrl").indented();
+    let left = format!("sd left, {unit}");
+    table.row(["if this were known", "% of variance", &left, "next test"]);
+    let causes: Vec<_> = of.causes().take(MAX_CAUSES).collect();
+    for factor in &causes {
+        let (share, left) = (
+            fixed(100.0 * factor.share.value, 0),
+            fixed(factor.sd_left.value, 3),
+        );
+        table.row([factor.name.clone(), share, left, factor.test.clone()]);
+    }
+    let rest = of.factors.len() - causes.len();
+    let (percent, level) = (fixed(100.0 * of.noise, 1), confidence.percent());
+    let noise = format!(
+        "by groups of draws the largest of as many idle factors stays below {percent} % of the variance in {level} of 100 cases"
+    );
+    let [sd, head] = [fixed(of.sd, 3), wrapped(&noise, "  ")];
+    let more = match (causes.len(), rest) {
+        (_, 0) => String::new(),
+        (0, n) => format!("  none of {n} factors is above chance\n"),
+        (_, n) => format!("  {n} others: each less, or no more than chance gives\n"),
+    };
+    let rows = if causes.is_empty() {
+        String::new()
+    } else {
+        table.text()
+    };
+    format!("  sd now {sd} {unit}\n{rows}{more}{head}")
 }
 
 fn rank(output: &OutputAnswer) -> String {
@@ -284,7 +321,7 @@ fn rank(output: &OutputAnswer) -> String {
     let mut list: Vec<(&String, &Estimate)> =
         factors.map(|(name, f)| (name, &f.spearman)).collect();
     list.sort_by(|a, b| b.1.value.abs().total_cmp(&a.1.value.abs()));
-    let end = |e: &Estimate, k: usize| signed(e.interval95.map(|ends| ends[k]), 2);
+    let end = |e: &Estimate, k: usize| signed(e.interval.map(|ends| ends[k]), 2);
     TextColumns::new()
         .left("factor", |(name, _): &(&String, &Estimate)| (*name).clone())
         .right("rank correlation", |(_, e)| signed(e.value, 2))
@@ -310,30 +347,31 @@ fn levels(output: &OutputAnswer) -> String {
     output.levels.iter().map(table).collect()
 }
 
-fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices) -> String {
-    let Some((_, ranked)) = ranked(output, outline) else {
+fn sobol(outline: &StudyManifest, indices: &SobolIndices, confidence: Confidence) -> String {
+    let head = format!("{} % interval", confidence.percent());
+    let factors = outline.plan.factors.iter().zip(&indices.factors);
+    let known = factors.filter(|(_, of)| of.total.value.is_finite());
+    let mut ranked: Vec<(String, &FactorIndices)> = known
+        .map(|(factor, of)| (factor.name.clone(), of))
+        .collect();
+    ranked.sort_by(|a, b| b.1.total.value.abs().total_cmp(&a.1.total.value.abs()));
+    if ranked.is_empty() {
         return "  the output does not vary\n".to_owned();
-    };
-    let span = |e: &Estimate| match e.interval95 {
+    }
+    let span = |e: &Estimate| match e.interval {
         Some([a, b]) => format!("{} .. {}", fixed(a, 3), fixed(b, 3)),
         None => NONE.to_owned(),
     };
-    let of_factor = |(name, _): &(String, f64)| {
-        let mut factors = outline.plan.factors.iter();
-        let place = factors.position(|factor| factor.name == *name)?;
-        Some((name.clone(), &indices.factors[place]))
-    };
-    let first = ranked.iter().take(MAX_FACTORS);
-    let rows: Vec<(String, &FactorIndices)> = first.filter_map(of_factor).collect();
+    let rows = &ranked[..ranked.len().min(MAX_FACTORS)];
     let mut text = TextColumns::new()
         .left("factor", |(name, _): &(String, &FactorIndices)| {
             name.clone()
         })
         .number("first order", 3, |(_, f)| f.first.value)
-        .right("95 % interval", |(_, f)| span(&f.first))
+        .right(&head, |(_, f)| span(&f.first))
         .number("total", 3, |(_, f)| f.total.value)
-        .right("95 % interval", |(_, f)| span(&f.total))
-        .table(&rows)
+        .right(&head, |(_, f)| span(&f.total))
+        .table(rows)
         .indented()
         .text();
     let rest = ranked.len().saturating_sub(MAX_FACTORS);
@@ -345,8 +383,7 @@ fn sobol(output: &OutputAnswer, outline: &StudyManifest, indices: &SobolIndices)
 }
 
 /// Failed runs with their reasons, as one message; none if all are good.
-pub fn failures(answer: &Answer) -> Vec<String> {
-    let runs = &answer.runs;
+pub fn failures(runs: &Ended) -> Vec<String> {
     let bad = runs.failed + runs.not_run;
     if bad == 0 {
         return Vec::new();

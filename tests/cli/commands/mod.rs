@@ -4,12 +4,15 @@
 mod attribute;
 mod optimum;
 mod compare;
+mod cycles;
 mod inputs;
+mod levers;
 mod named;
 mod new;
 mod run;
 mod study;
 mod streams;
+mod words;
 
 use std::fs;
 use std::path::Path;

@@ -55,3 +55,65 @@ fn a_grid_of_two_factors_prints_its_matrix() {
     assert!(file.starts_with("output,unit,car,row_factor,row,column_factor,column,value\n"));
     assert_eq!((file.lines().count() - 1) % 35, 0);
 }
+
+/// Truth: two runs by hand at one temperature. The answer of the shipped plan is one matrix, with the least of each temperature marked, and it
+/// says that no friction of the oils was known.
+#[test]
+fn the_plan_of_three_fluids_is_one_matrix() {
+    let output = run(&["study", "fluids_by_ambient", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let matrix = &found["outputs"][0]["matrix"];
+    assert_eq!(found["outputs"][0]["output"], "subject_excess_percent");
+    let words = |name: &str| -> Vec<&str> {
+        let list = matrix[name].as_array().unwrap();
+        list.iter().map(|word| word.as_str().unwrap()).collect()
+    };
+    assert_eq!(
+        words("columns"),
+        ["cvtf_ezl799_class", "dexron_ii", "dexron_iii"]
+    );
+    let ambients = words("rows");
+    assert!(ambients.len() == 8 && ambients[0].starts_with("-30") && ambients[7].starts_with("40"));
+    assert_eq!(matrix["least_of"], "row");
+    assert_eq!(matrix["least"].as_array().unwrap().len(), 8);
+    let fuel = |oil: &[&str]| {
+        let words = [
+            &[
+                "run",
+                "--ambient",
+                "-20",
+                "--baseline",
+                "none",
+                "--price",
+                "never",
+                "--json",
+            ],
+            oil,
+        ];
+        json(&words.concat())["runs"][0]["fuel_l_per_100km"]
+            .as_f64()
+            .unwrap()
+    };
+    let by_hand = 100.0 * (fuel(&["--lubricant", "dexron_iii"]) / fuel(&[]) - 1.0);
+    let cell = matrix["cells"][1][2].as_f64().unwrap();
+    assert!((cell - by_hand).abs() < 1e-9, "{cell} {by_hand}");
+    // Its own oil against itself.
+    assert!(
+        matrix["cells"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|row| row[0].as_f64() == Some(0.0))
+    );
+    let note = found["notes"][0].as_str().unwrap();
+    assert!(
+        note.contains("has the friction of the vehicle's own one"),
+        "{note}"
+    );
+    let shown = stdout(&run(&["study", "fluids_by_ambient"]));
+    assert!(
+        shown.contains("* least of its row") && shown.contains("note: oil: "),
+        "{shown}"
+    );
+}

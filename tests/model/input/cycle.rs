@@ -136,15 +136,19 @@ fn each_bad_value_is_named_with_its_place() {
 
 #[test]
 fn files_that_are_no_table_are_named() {
-    let cases: [(&[u8], &str); 13] = [
+    let cases: [(&[u8], &str); 14] = [
         (b"", "empty"),
         (b"\xef\xbb\xbf\r\n \n", "empty"),
         (b"time_s,speed_kmh\n0,0\0\n", "zero byte in line 2"),
         (b"time_s,speed_kmh\n0,\xff\n", "not UTF-8 text: line 2"),
         (b"\xff\xfet\0", "UTF-16"),
         (
-            b"time_s;speed_kmh\n0;0,5\n1;1,5\n",
-            "this file uses ; - save it with commas",
+            b"time_s;speed_kmh\n0;13,889\n1;13,889\n",
+            "in two ways: 13.889, or 13889",
+        ),
+        (
+            b"time_s;speed_kmh\n0;0,5\n1;1.5\n",
+            "this number and 0,5 in line 2 do not write their decimals alike",
         ),
         (b"time_s,speed_kmh\n", "no rows"),
         (b"time_s,speed_kmh\n0,0\n", "one row only"),

@@ -168,7 +168,7 @@ fn fields(text: &str, columns: usize) -> Result<Vec<(&str, usize)>, Problems> {
     let header = names.join(",");
     let line = |text| Line { number: 1, text };
     let mut problems = Collector::new("f.csv");
-    let mut table = Table::open(line(&header), &schema, &mut problems).unwrap();
+    let mut table = Table::open(line(&header), std::iter::empty(), &schema, &mut problems).unwrap();
     let row = table.row(line(text), &mut problems);
     let field = |field: &Field| (&text[field.start..field.end], field.start);
     let fields = row.fields().iter().map(field).collect();

@@ -7,6 +7,7 @@ mod loose;
 
 mod choices;
 mod cycle;
+mod dialects;
 mod files;
 mod like;
 mod new_car;
@@ -15,3 +16,4 @@ mod problems;
 mod reading;
 mod setup;
 mod twin;
+mod written;

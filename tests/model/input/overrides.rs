@@ -3,7 +3,7 @@
 
 use crate::loose::Loose;
 use crate::reading::{HEAD, belt, document, only, with};
-use cvtcycle_config::{Bound, KeyPath, Override, PatchedDocument, Reader};
+use cvtcycle_config::{Bound, KeyPath, Override, PatchedDocument, ProblemKind, Reader};
 use cvtcycle_model::keys::{Key, Kind, Presence, spec};
 
 #[test]
@@ -29,6 +29,62 @@ fn the_last_assignment_of_a_key_counts() {
     let key = "transmission.cvt.belt.band_offset_mm";
     let (si, _) = belt(&with("", &[&format!("{key}=2"), &format!("{key}=4")]));
     assert!((si - 0.004).abs() < 1e-15);
+}
+
+/// Truth: the value of the file times the factor, or and the difference, one after the other; that of the key's default where the file has none.
+#[test]
+fn a_relative_assignment_changes_the_value_in_force() {
+    let key = "transmission.cvt.belt.band_offset_mm";
+    let text = format!("{HEAD}band_offset_mm = {{ value = 3.0, status = \"source\" }}");
+    let of = |sets: &[&str]| {
+        let sets: Vec<String> = sets.iter().map(|set| format!("{key}{set}")).collect();
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        belt(&with(&text, &sets)).0
+    };
+    assert!((of(&["*=0.5"]) - 1.5e-3).abs() < 1e-15);
+    assert!((of(&[" += -1"]) - 2e-3).abs() < 1e-15);
+    assert!((of(&["*=2", "+=1"]) - 7e-3).abs() < 1e-15);
+    assert!((of(&["=2", "*=2"]) - 4e-3).abs() < 1e-15);
+    let problem = only(belt(&with(&text, &[&format!("{key}*=10")])).1);
+    assert_eq!(
+        (problem.kind, problem.value.as_str()),
+        (ProblemKind::OutOfRange, "30")
+    );
+    assert_eq!(problem.place.assignment(), Some(&*format!("{key}*=10")));
+    let unknown = only(belt(&with(&text, &["transmission.cvt.belt.band_ofset_mm*=2"])).1);
+    assert_eq!(unknown.kind, ProblemKind::UnknownKey);
+}
+
+#[test]
+fn a_relative_assignment_needs_a_number_to_change() {
+    let mut document =
+        document("title = \"a\"\nlist = [1, 2.5]\nroad_load.mass_kg = { value = 1000 }");
+    let put = |document: &mut cvtcycle_config::Document, text: &str| {
+        document.set(&text.parse::<Override>().unwrap())
+    };
+    put(&mut document, "list*=2").unwrap();
+    put(&mut document, "road_load.mass_kg+=-100").unwrap();
+    let reader = Reader::new(&document);
+    let row = Key::new("list", spec::list(0.0, 10.0, 1, 5), "numbers");
+    assert_eq!(
+        cvtcycle_model::keys::Values::numbers(&reader.root(), &row),
+        [2.0, 5.0]
+    );
+    let text = put(&mut document, "title*=2").unwrap_err();
+    assert_eq!(
+        (text.kind, text.key.as_str()),
+        (ProblemKind::WrongType, "title")
+    );
+    let none = put(&mut document, "engine.displacement_cc*=2").unwrap_err();
+    assert_eq!(none.kind, ProblemKind::Missing);
+    assert!(none.hint.contains("engine.displacement_cc=VALUE"));
+    for bad in ["a*=b", "a+=true", "a*=inf"] {
+        assert_eq!(
+            bad.parse::<Override>().unwrap_err().kind,
+            ProblemKind::Syntax,
+            "{bad}"
+        );
+    }
 }
 
 #[test]

@@ -19,6 +19,7 @@ mod dead_inputs;
 mod electric_pump;
 mod equations;
 mod held;
+mod gtr15;
 mod loss_factor;
 mod maps;
 mod metamorphic;

@@ -1,4 +1,8 @@
 //! Start-stop: its decisions and energies by hand, and cars that drive with it.
+#![allow(
+    clippy::float_cmp,
+    reason = "numbers that are handed on are promised exactly"
+)]
 
 use crate::common::{Keep, ZERO, at, car, cycle, larger};
 use cvtcycle_config::cycle::Cycle;

@@ -1,4 +1,8 @@
 //! The torque converter: its law once more by hand, energy, continuity, lock-up, and cars that drive over it.
+#![allow(
+    clippy::float_cmp,
+    reason = "numbers that are handed on are promised exactly"
+)]
 
 use crate::common::bench_step::{Bench, Setting};
 use crate::common::{Keep, RPM, ZERO, at, car, cycle, larger, soak_rows};

@@ -6,8 +6,8 @@ use cvtcycle::report::charts::study::{
     rank_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle::study::statistics::{
-    Blocks, Bootstrap, Groups, TornadoInput, group_means, rank_sensitivity, sobol_convergence,
-    sobol_indices, tornado,
+    Blocks, Bootstrap, Confidence, Groups, TornadoInput, group_means, rank_sensitivity,
+    sobol_convergence, sobol_indices, tornado,
 };
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -38,12 +38,14 @@ fn shown(scale: f64) -> Shown<'static> {
             output: "Gear-box oil temperature at the end of a very long cycle with several phases",
             unit: "kg/s",
             subject: LONG,
+            ..Shown::default()
         }
     } else {
         Shown {
             output: "Fuel, total",
             unit: "L/100 km",
             subject: "rover_cvt, 1024 samples",
+            ..Shown::default()
         }
     }
 }
@@ -93,6 +95,7 @@ fn sobol(factors: usize, samples: usize, scale: f64) -> Vec<(String, Picture)> {
         Bootstrap {
             resamples: 100,
             seed: 1,
+            ..Bootstrap::default()
         },
     );
     let (indices, steps) = (
@@ -127,7 +130,7 @@ fn ranks(factors: usize, scale: f64) -> (String, Picture) {
         rank_plot(
             &shown(scale),
             &names(factors),
-            &rank_sensitivity(&inputs, &output),
+            &rank_sensitivity(&inputs, &output, Confidence::default()),
         ),
     )
 }
@@ -194,7 +197,7 @@ fn effects(factors: usize, scale: f64) -> (String, Picture) {
                 scale * (7.0 + 0.5 * weight(i) * ((r % labels.len()) as f64 - 1.0) + 0.3 * u)
             })
             .collect();
-        group_means(&rows, &y)
+        group_means(&rows, &y, (!i.is_multiple_of(3)).then(Confidence::default))
     };
     let (names, groups): (Vec<String>, Vec<Groups>) =
         (names(factors), (0..factors).map(group).collect());
@@ -309,6 +312,7 @@ fn odd() -> Vec<(String, Picture)> {
             Bootstrap {
                 resamples: 20,
                 seed: 1,
+                ..Bootstrap::default()
             },
         );
         let (indices, steps) = (
@@ -323,10 +327,10 @@ fn odd() -> Vec<(String, Picture)> {
             format!("convergence {name}"),
             convergence_plot(&shown, &names, &steps),
         ));
-        let ranks = rank_sensitivity(&[column, column, column], column);
+        let ranks = rank_sensitivity(&[column, column, column], column, Confidence::default());
         plots.push((format!("ranks {name}"), rank_plot(&shown, &names, &ranks)));
         let words = vec!["a"; column.len()];
-        let groups = group_means(&words, column);
+        let groups = group_means(&words, column, Some(Confidence::default()));
         let factor = EffectFactor {
             name: "x",
             unit: "",

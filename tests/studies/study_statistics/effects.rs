@@ -1,5 +1,6 @@
 //! Ranks, groups and tornados.
 
+use super::USUAL;
 use cvtcycle::study::statistics::{Estimate, TornadoInput, group_means, rank_sensitivity, tornado};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
@@ -25,7 +26,7 @@ fn columns() -> Vec<Vec<f64>> {
 #[test]
 fn val_ranks_as_in_scipy() {
     let c = columns();
-    let found = rank_sensitivity(&[&c[0], &c[1], &c[4]], &c[2]);
+    let found = rank_sensitivity(&[&c[0], &c[1], &c[4]], &c[2], USUAL);
     let truth = [
         (
             0.4681928029426349,
@@ -47,7 +48,7 @@ fn val_ranks_as_in_scipy() {
         (found.r_squared - 0.4001677084398163).abs() < 1e-10 && found.n == 64 && found.missing == 0
     );
     for (factor, (rho, b, [low, high])) in found.factors.iter().zip(truth) {
-        let [l, h] = factor.regression.interval95.unwrap();
+        let [l, h] = factor.regression.interval.unwrap();
         for (found, truth) in [
             (factor.spearman.value, rho),
             (factor.regression.value, b),
@@ -58,7 +59,7 @@ fn val_ranks_as_in_scipy() {
         }
     }
     // By hand: atanh 0.46819 = 0.50772; sqrt((1 + 0.21920 / 2) / 61) = 0.134872; 1.96 of it 0.264344; tanh of both ends.
-    let [low, high] = found.factors[0].spearman.interval95.unwrap();
+    let [low, high] = found.factors[0].spearman.interval.unwrap();
     assert!(
         (low - 0.2387).abs() < 2e-4 && (high - 0.6480).abs() < 2e-4,
         "{low} {high}"
@@ -72,17 +73,17 @@ fn ranks_see_the_order_alone() {
     let flat = vec![1.0; 50];
     let falling: Vec<f64> = y.iter().map(|y| -y).collect();
     for (y, sign) in [(&y, 1.0), (&falling, -1.0)] {
-        let found = rank_sensitivity(&[&x, &flat], y);
+        let found = rank_sensitivity(&[&x, &flat], y, USUAL);
         assert!(
             (found.factors[0].spearman.value - sign).abs() < 1e-12
                 && (found.r_squared - 1.0).abs() < 1e-12
         );
         assert!((found.factors[0].regression.value - sign).abs() < 1e-12);
-        let [low, high] = found.factors[0].spearman.interval95.unwrap();
+        let [low, high] = found.factors[0].spearman.interval.unwrap();
         assert!(low <= sign && sign <= high && high <= 1.0 && low >= -1.0);
         assert!(
             found.factors[1].spearman.value.is_nan()
-                && found.factors[1].regression.interval95.is_none()
+                && found.factors[1].regression.interval.is_none()
         );
     }
 }
@@ -91,31 +92,31 @@ fn ranks_see_the_order_alone() {
 fn gaps_twins_and_too_few_rows() {
     let x: Vec<f64> = (0..40).map(|i| f64::from((i * 17) % 40)).collect();
     let mut y: Vec<f64> = (0..40).map(|i| f64::from((i * 23) % 40)).collect();
-    let twins = rank_sensitivity(&[&x, &x], &y);
+    let twins = rank_sensitivity(&[&x, &x], &y, USUAL);
     assert!(twins.r_squared.is_nan() && twins.factors[0].regression.value.is_nan());
     assert!(twins.factors[0].spearman.value.is_finite());
-    let whole = rank_sensitivity(&[&x[..39]], &y[..39]);
+    let whole = rank_sensitivity(&[&x[..39]], &y[..39], USUAL);
     y[39] = f64::NAN;
-    let gap = rank_sensitivity(&[&x], &y);
+    let gap = rank_sensitivity(&[&x], &y, USUAL);
     assert_eq!((gap.n, gap.missing), (39, 1));
     assert_eq!(whole.factors, gap.factors);
-    let short = rank_sensitivity(&[&x[..30]], &y[..39]);
+    let short = rank_sensitivity(&[&x[..30]], &y[..39], USUAL);
     assert_eq!((short.n, short.missing), (30, 9));
-    let few = rank_sensitivity(&[&[1.0, 2.0], &[2.0, 1.0]], &[1.0, 2.0]);
+    let few = rank_sensitivity(&[&[1.0, 2.0], &[2.0, 1.0]], &[1.0, 2.0], USUAL);
     assert!(
         few.r_squared.is_nan()
-            && few.factors[0].spearman.interval95.is_none()
+            && few.factors[0].spearman.interval.is_none()
             && (few.factors[0].spearman.value - 1.0).abs() < 1e-12
     );
-    assert!(rank_sensitivity(&[], &[1.0]).factors.is_empty());
-    let constant = rank_sensitivity(&[&x], &[3.0; 40]);
+    assert!(rank_sensitivity(&[], &[1.0], USUAL).factors.is_empty());
+    let constant = rank_sensitivity(&[&x], &[3.0; 40], USUAL);
     assert!(constant.factors[0].spearman.value.is_nan() && constant.r_squared.is_nan());
 }
 
 fn holds(estimate: &Estimate, truth: f64) -> usize {
     usize::from(
         estimate
-            .interval95
+            .interval
             .is_some_and(|[low, high]| low <= truth && truth <= high),
     )
 }
@@ -138,7 +139,7 @@ fn val_intervals_of_rank_correlations_hold_the_truth_in_about_95_of_100() {
             .iter()
             .map(|x| r * x + (1.0 - r * r).sqrt() * normal())
             .collect();
-        let found = rank_sensitivity(&[&x, &z], &y);
+        let found = rank_sensitivity(&[&x, &z], &y, USUAL);
         hits[0] += holds(&found.factors[0].spearman, truth);
         hits[1] += holds(&found.factors[1].spearman, 0.0);
         hits[2] += holds(&found.factors[1].regression, 0.0);
@@ -151,7 +152,7 @@ fn val_intervals_of_rank_correlations_hold_the_truth_in_about_95_of_100() {
 #[test]
 fn means_of_words_and_of_a_grid() {
     let words = ["b", "a", "b", "a", "c"];
-    let found = group_means(&words, &[3.0, 1.0, 5.0, f64::NAN, f64::NAN]);
+    let found = group_means(&words, &[3.0, 1.0, 5.0, f64::NAN, f64::NAN], Some(USUAL));
     let shape: Vec<_> = found
         .groups
         .iter()
@@ -163,8 +164,8 @@ fn means_of_words_and_of_a_grid() {
         (4.0, 1.0, 3.0)
     );
     // t(1) = 12.706, sd = sqrt 2: 12.706 either way.
-    assert!((found.groups[0].mean_interval95.unwrap()[1] - 16.7062).abs() < 1e-4);
-    assert!(found.groups[1].mean_interval95.is_none() && found.groups[2].mean.is_nan());
+    assert!((found.groups[0].mean_interval.unwrap()[1] - 16.7062).abs() < 1e-4);
+    assert!(found.groups[1].mean_interval.is_none() && found.groups[2].mean.is_nan());
     // By hand: mean 3, all squares 8, between 2 (4 - 3)^2 + (1 - 3)^2 = 6.
     assert!((found.eta_squared - 0.75).abs() < 1e-12);
 
@@ -178,6 +179,7 @@ fn means_of_words_and_of_a_grid() {
                 .map(|g| [g.0, g.1][f].to_string())
                 .collect::<Vec<_>>(),
             &y,
+            None,
         )
     });
     let means = |g: &cvtcycle::study::statistics::Groups| {
@@ -188,9 +190,13 @@ fn means_of_words_and_of_a_grid() {
             && (first.range - 4.0).abs() < 1e-12
     );
     assert!((means(&second)[2] - means(&second)[0] - 4.0).abs() < 1e-12);
+    // No sample: ends, but neither a deviation nor an interval.
+    let ends =
+        |g: &cvtcycle::study::statistics::Group| (g.min, g.max, g.sd.is_nan(), g.mean_interval);
+    assert_eq!(ends(&first.groups[1]), (2.0, 6.0, true, None));
     assert!((first.eta_squared + second.eta_squared - 1.0).abs() < 1e-12);
-    assert!(group_means(&words, &[0.1; 5]).eta_squared.is_nan());
-    assert!(group_means(&words[..1], &[1.0]).range.is_nan());
+    assert!(group_means(&words, &[0.1; 5], None).eta_squared.is_nan());
+    assert!(group_means(&words[..1], &[1.0], None).range.is_nan());
 }
 
 fn factor(name: &str, entries: &[(&str, f64)]) -> TornadoInput {
@@ -231,6 +237,17 @@ fn a_tornado_is_sorted_by_what_each_factor_moves() {
     };
     let some = |label: &str, effect: f64| Some((label.to_owned(), effect));
     assert_eq!(ends("list"), (some("b", -0.2), some("d", 0.9), 1));
+    // Every level is kept, in the order of the plan; one of them is no end.
+    let list = &found.bars[0];
+    let levels: Vec<_> = list
+        .entries
+        .iter()
+        .map(|e| (e.label.as_str(), e.output))
+        .collect();
+    assert_eq!(levels[..2], [("a", 7.0), ("b", 6.8)]);
+    assert!(levels[2].0 == "c" && levels[2].1.is_nan() && levels[3] == ("d", 7.9));
+    let between: Vec<_> = list.between().map(|e| e.label.as_str()).collect();
+    assert_eq!(between, ["a"]);
     // Two values stay low and high, whichever way the output goes.
     assert_eq!(ends("small"), (some("0.1", 0.1), some("0.2", -0.1), 0));
     assert_eq!(ends("one side"), (some("cold", 0.5), some("hot", 0.25), 0));

@@ -9,13 +9,20 @@
 mod describe;
 mod drawn;
 mod effects;
+mod information;
 mod pictures;
 mod sobol;
 
-use cvtcycle::study::statistics::Blocks;
+use cvtcycle::study::statistics::{Blocks, Confidence};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
+
+/// The confidence of every table of statistics.
+pub const USUAL: Confidence = Confidence {
+    intervals: 0.95,
+    draws: 0.9,
+};
 
 /// A function of points of the unit cube.
 pub type Function = Box<dyn Fn(&[f64]) -> f64>;

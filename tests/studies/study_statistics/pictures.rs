@@ -263,7 +263,7 @@ fn what_is_cut_is_still_in_the_file() {
 fn estimate(value: f64, half: f64) -> Estimate {
     Estimate {
         value,
-        interval95: Some([value - half, value + half]),
+        interval: Some([value - half, value + half]),
     }
 }
 
@@ -355,6 +355,7 @@ fn a_tornado_says_where_low_and_high_lead() {
         output: "Fuel",
         unit: "L/100 km",
         subject: "a study",
+        ..Shown::default()
     };
     let Picture { svg, table } = tornado_plot(&shown, &found);
     let document = Document::parse(&svg).unwrap();
@@ -443,6 +444,7 @@ fn lone(values: &[f64]) -> Picture {
         output: "Fuel, total",
         unit: "L/100 km",
         subject: "a study",
+        ..Shown::default()
     };
     distribution_plot(&shown, &series, true)
 }

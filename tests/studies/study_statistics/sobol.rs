@@ -7,7 +7,7 @@ use super::{Known, Outputs, additive, ishigami, sobol_g};
 
 fn holds(estimate: &Estimate, truth: f64) -> bool {
     estimate
-        .interval95
+        .interval
         .is_some_and(|[low, high]| low <= truth + 1e-12 && truth - 1e-12 <= high)
 }
 
@@ -22,6 +22,7 @@ fn val_known_functions_lie_in_the_intervals_of_a_sobol_sequence() {
                 Bootstrap {
                     resamples: 300,
                     seed: 5,
+                    ..Bootstrap::default()
                 },
             );
             assert_eq!(
@@ -69,6 +70,7 @@ fn coverage(known: &Known, samples: usize, seeds: u64) -> Vec<(String, usize)> {
             Bootstrap {
                 resamples: 400,
                 seed,
+                ..Bootstrap::default()
             },
         );
         for (i, factor) in found.factors.iter().enumerate() {
@@ -166,13 +168,14 @@ fn indices_do_not_know_the_unit_or_the_zero_of_an_output() {
     let quick = Bootstrap {
         resamples: 50,
         seed: 2,
+        ..Bootstrap::default()
     };
     let (one, two) = (
         sobol_indices(&outputs.blocks(), quick),
         sobol_indices(&other.blocks(), quick),
     );
     let near = |a: Estimate, b: Estimate| {
-        let (p, q) = (a.interval95.unwrap(), b.interval95.unwrap());
+        let (p, q) = (a.interval.unwrap(), b.interval.unwrap());
         [a.value - b.value, p[0] - q[0], p[1] - q[1]]
             .iter()
             .all(|d| d.abs() < 1e-9)
@@ -200,7 +203,7 @@ fn a_constant_has_no_indices_and_neither_has_its_rounding() {
         );
         assert!(found.factors.iter().all(|f| f.first.value.is_nan()
             && f.total.value.is_nan()
-            && f.first.interval95.is_none()));
+            && f.first.interval.is_none()));
         assert_eq!(
             (found.samples, found.variance, found.resamples),
             (64, 0.0, 0)
@@ -237,6 +240,7 @@ fn a_resample_without_variance_is_left_out_and_counted() {
         Bootstrap {
             resamples: 900,
             seed: 8,
+            ..Bootstrap::default()
         },
     );
     // Binomial(900, (5/6)^6): mean 301.4, standard deviation 14.2.
@@ -248,7 +252,7 @@ fn a_resample_without_variance_is_left_out_and_counted() {
     assert!(
         found.factors[0]
             .total
-            .interval95
+            .interval
             .unwrap()
             .iter()
             .all(|t| t.is_finite())
@@ -304,8 +308,8 @@ fn intervals_follow_the_seed_and_not_the_threads() {
     let other = on(1, 5);
     assert_eq!(one.factors[0].total.value, other.factors[0].total.value);
     assert_ne!(
-        one.factors[0].total.interval95,
-        other.factors[0].total.interval95
+        one.factors[0].total.interval,
+        other.factors[0].total.interval
     );
 }
 
@@ -318,6 +322,7 @@ fn intervals_narrow_with_the_root_of_the_samples() {
         Bootstrap {
             resamples: 400,
             seed: 1,
+            ..Bootstrap::default()
         },
     );
     assert_eq!(
@@ -328,7 +333,7 @@ fn intervals_narrow_with_the_root_of_the_samples() {
         let width = |k: usize| {
             steps[k].factors[i]
                 .total
-                .interval95
+                .interval
                 .map(|[low, high]| high - low)
                 .unwrap()
         };
@@ -342,7 +347,8 @@ fn intervals_narrow_with_the_root_of_the_samples() {
             &outputs.blocks(),
             Bootstrap {
                 resamples: 400,
-                seed: 1
+                seed: 1,
+                ..Bootstrap::default()
             }
         )
     );

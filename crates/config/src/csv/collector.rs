@@ -1,6 +1,6 @@
 //! Collects the problems of a CSV file with their places.
 
-use super::text::{Field, decode, empty, split};
+use super::text::{Delimiter, Field, decode, empty, split};
 use crate::problem::source::shortened;
 use crate::{Input, Place, Problem, Problems};
 
@@ -9,7 +9,7 @@ const MAX_SHOWN: usize = 50;
 /// A longer line is no row of a table, but another file.
 pub(super) const MAX_LINE_LEN: usize = 1 << 20;
 /// No table has as many columns; each unknown one is compared with all known ones.
-const MAX_COLUMNS: usize = 1000;
+pub(super) const MAX_COLUMNS: usize = 1000;
 // a longer line would only fill the screen
 const MAX_SHOWN_LEN: usize = 500;
 const MAX_VALUE_LEN: usize = 60;
@@ -39,6 +39,12 @@ impl<'t> Line<'t> {
     #[must_use]
     pub fn text_of(&self, field: Field) -> &'t str {
         self.text.get(field.start..field.end).unwrap_or_default()
+    }
+
+    /// Whether it is neither blank nor a comment, which begins with `#`.
+    pub(super) fn has_content(&self) -> bool {
+        let text = self.text.trim_start();
+        !text.is_empty() && !text.starts_with('#')
     }
 
     /// Column of the first character of a field, counted from 1, and its number of characters, at least 1.
@@ -77,17 +83,17 @@ impl<'f> Collector<'f> {
         }
     }
 
-    /// The lines that are not blank; none where the bytes are no text or a line is too long for a table, which is reported.
+    /// The lines that are neither blank nor a comment; none where the bytes are no text or a line is too long for a table, which is reported.
     pub fn lines<'t>(
         &mut self,
         bytes: &'t [u8],
-    ) -> Option<impl Iterator<Item = Line<'t>> + use<'t>> {
+    ) -> Option<impl Iterator<Item = Line<'t>> + Clone + use<'t>> {
         match decode(bytes).and_then(no_long_line) {
             Ok(text) => Some(
                 (1..)
                     .zip(text.lines())
                     .map(|(number, text)| Line { number, text })
-                    .filter(|line| !line.text.trim().is_empty()),
+                    .filter(Line::has_content),
             ),
             Err(complaint) => {
                 self.file(complaint);
@@ -108,31 +114,10 @@ impl<'f> Collector<'f> {
         self.list.is_empty()
     }
 
-    /// True if commas and no other characters separate the column names.
-    fn is_table(&mut self, line: Line<'_>) -> bool {
-        let count = |separator| line.text.matches(separator).count();
-        for (separator, name) in [(';', ";"), ('\t', "tabs")] {
-            if count(separator) > count(',') {
-                let message = format!("this file uses {name} - save it with commas");
-                let hint = "and with decimal points: 12.5 and not 12,5";
-                self.line(line, "", || {
-                    Problem::syntax(message)
-                        .allowed("commas between the columns")
-                        .hint(hint)
-                });
-                return false;
-            }
-        }
-        true
-    }
-
-    /// The column names of the first line; none where the lines below it cannot be understood, which is reported.
-    pub(super) fn names(&mut self, line: Line<'_>) -> Option<Vec<Field>> {
-        if !self.is_table(line) {
-            return None;
-        }
+    /// The column names of a line; none where the lines below it cannot be understood, which is reported.
+    pub(super) fn names(&mut self, line: Line<'_>, delimiter: Delimiter) -> Option<Vec<Field>> {
         let mut fields = Vec::new();
-        match split(line.text, &mut fields) {
+        match split(line.text, delimiter.sign(), &mut fields) {
             Ok(()) if fields.len() > MAX_COLUMNS => {
                 let message = format!("this line has {} column names", fields.len());
                 let hint = "keep the columns that are needed, with a row for every point";
@@ -152,27 +137,20 @@ impl<'f> Collector<'f> {
     }
 
     /// Splits a row into as many fields as there are column names; false after reporting that it has others.
-    pub(super) fn split(&mut self, line: Line<'_>, wanted: usize, fields: &mut Vec<Field>) -> bool {
-        if let Err(start) = split(line.text, fields) {
+    pub(super) fn split(
+        &mut self,
+        line: Line<'_>,
+        delimiter: Delimiter,
+        wanted: usize,
+        fields: &mut Vec<Field>,
+    ) -> bool {
+        if let Err(start) = split(line.text, delimiter.sign(), fields) {
             self.open_quote(line, start);
             return false;
         }
         let found = fields.len();
         if found != wanted {
-            self.line(line, "", || {
-                let hint = if found > wanted {
-                    "are there decimal commas? write 12.5 and not 12,5"
-                } else {
-                    "an empty value keeps its comma; was the file cut off?"
-                };
-                let message = format!(
-                    "this row has {found} {}",
-                    if found == 1 { "value" } else { "values" }
-                );
-                Problem::syntax(message)
-                    .allowed(format!("{wanted}, as the line of column names has"))
-                    .hint(hint)
-            });
+            self.line(line, "", || other_count(delimiter, found, wanted));
         }
         found == wanted
     }
@@ -260,6 +238,31 @@ impl<'f> Collector<'f> {
         }
         self.list
     }
+}
+
+/// A row has `found` values in place of `wanted` ones.
+fn other_count(delimiter: Delimiter, found: usize, wanted: usize) -> Problem {
+    let commas = delimiter == Delimiter::Comma;
+    let message = match found {
+        1 => "this row has 1 value".to_owned(),
+        // Every value may have a decimal comma, or none.
+        _ if commas && found == 2 * wanted => format!(
+            "this row has {found} values, or {wanted} with decimal commas: it can be read in two ways"
+        ),
+        _ => format!("this row has {found} values"),
+    };
+    let sign = delimiter.word();
+    let hint = match found > wanted {
+        true if commas => {
+            "are there decimal commas? write 12.5 and not 12,5, or put semicolons between the columns"
+                .to_owned()
+        }
+        true => format!("a {sign} within a value needs double quotes around it"),
+        false => format!("an empty value keeps its {sign}; was the file cut off?"),
+    };
+    Problem::syntax(message)
+        .allowed(format!("{wanted}, as the line of column names has"))
+        .hint(hint)
 }
 
 fn no_long_line(text: &str) -> Result<&str, Problem> {

@@ -2,9 +2,10 @@
 
 use std::borrow::Cow;
 
-use super::collector::{Collector, Line};
-use super::text::Field;
-use crate::{Bound, Problem, near, suggestion, unit_of};
+use super::dialect::with_point;
+use super::heading::{Foreign, bare};
+use super::named::Columns;
+use crate::{Bound, Problem, Setting, suggestion, unit_of};
 
 /// What the cells of a column hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +31,8 @@ pub struct Column {
     pub group: &'static str,
     /// True if the table has to have the column, or another one of its group.
     pub required: bool,
+    /// Columns, or names of another program, with one of which a table needs no [`Column::required`] one.
+    pub unless: &'static [&'static str],
     /// True if a cell may be empty.
     pub may_be_empty: bool,
     /// Accepted cells in words, in place of the range.
@@ -46,6 +49,7 @@ impl Column {
             cells,
             group: "",
             required: false,
+            unless: &[],
             may_be_empty: false,
             allowed: "",
             hint: "",
@@ -63,6 +67,15 @@ impl Column {
         Column {
             required: true,
             ..self
+        }
+    }
+
+    /// The table has to have it, or one of these columns or names of another program.
+    #[must_use]
+    pub fn required_unless(self, unless: &'static [&'static str]) -> Self {
+        Column {
+            unless,
+            ..self.required()
         }
     }
 
@@ -93,12 +106,12 @@ impl Column {
         Column { hint, ..self }
     }
 
-    fn is_same(&self, other: &Column) -> bool {
+    pub(super) fn is_same(&self, other: &Column) -> bool {
         self.name == other.name || !self.group.is_empty() && self.group == other.group
     }
 
-    /// The number in a cell.
-    pub(super) fn parse(&self, text: &str) -> Result<f64, Problem> {
+    /// The number in a cell, with a decimal comma or a decimal point.
+    pub(super) fn parse(&self, text: &str, decimal_comma: bool) -> Result<f64, Problem> {
         let (range, whole) = match self.cells {
             Cells::Number(range) => (range, false),
             Cells::Whole(range) => (range, true),
@@ -110,26 +123,39 @@ impl Column {
         } else {
             "fill the gap or remove the row"
         };
-        let problem = match text.parse::<f64>() {
+        let number = match decimal_comma && text.contains(',') {
+            true if text.contains('.') => None,
+            true => with_point(text).parse::<f64>().ok(),
+            // A point in one of them may be a sign between thousands.
+            false if decimal_comma && text.contains('.') => None,
+            false => text.parse::<f64>().ok(),
+        };
+        let problem = match number {
             // turns -0 into 0
-            Ok(x) if range.contains(x) && is_whole(x) => return Ok(x + 0.0),
-            Ok(x) if x.is_nan() => Problem::wrong_type("this is not a number").hint(gap),
-            Ok(x) if x.is_infinite() => {
+            Some(x) if range.contains(x) && is_whole(x) => return Ok(x + 0.0),
+            Some(x) if x.is_nan() => Problem::wrong_type("this is not a number").hint(gap),
+            Some(x) if x.is_infinite() => {
                 Problem::out_of_range("this is not a finite number").hint(gap)
             }
-            Ok(x) if !is_whole(x) => {
+            Some(x) if !is_whole(x) => {
                 Problem::wrong_type("this is not a whole number").hint("write it without decimals")
             }
-            Ok(_) => Problem::out_of_range("this value is out of range").hint(
+            Some(_) => Problem::out_of_range("this value is out of range").hint(
                 match unit_of(&self.name) {
                     "-" => "",
                     _ => "the unit is in the column's name",
                 },
             ),
-            Err(_) if text.is_empty() => Problem::missing("the value is missing").hint(gap),
-            Err(_) if text.contains(',') => Problem::wrong_type("this is not a number")
-                .hint("write a decimal point: 12.5 and not 12,5"),
-            Err(_) => Problem::wrong_type("this is not a number")
+            None if text.is_empty() => Problem::missing("the value is missing").hint(gap),
+            None if decimal_comma && text.contains('.') => Problem::wrong_type(
+                "this is not a number",
+            )
+            .hint("the file has decimal commas: write 12,5, without a sign between thousands"),
+            None if !decimal_comma && text.contains(',') => {
+                Problem::wrong_type("this is not a number")
+                    .hint("write a decimal point: 12.5 and not 12,5")
+            }
+            None => Problem::wrong_type("this is not a number")
                 .hint("write the bare number; the unit is in the column's name"),
         };
         let allowed = match (self.allowed, whole) {
@@ -159,6 +185,10 @@ pub struct Schema {
     pub max_values: usize,
     /// The rows in words.
     pub rows: &'static str,
+    /// Names of the columns in the tables of other programs.
+    pub foreign: Foreign,
+    /// Which column is which, as the user says; none: the names say so themselves. With `None` the user cannot say so.
+    pub named: Option<Columns>,
 }
 
 impl Default for Schema {
@@ -170,126 +200,26 @@ impl Default for Schema {
             max_rows: (usize::MAX, ""),
             max_values: usize::MAX,
             rows: "at least one row",
+            foreign: Foreign::default(),
+            named: None,
         }
     }
 }
 
 impl Schema {
-    /// The columns of a file, as indices of the schema, in the order of the file, and the fields of their names; `None` for a column that
-    /// is not known. Without a value where the rows cannot be understood.
-    pub(super) fn header(
-        &self,
-        line: Line<'_>,
-        problems: &mut Collector<'_>,
-    ) -> Option<(Vec<Option<usize>>, Vec<Field>)> {
-        let fields = problems.names(line)?;
-        if fields
-            .iter()
-            .all(|f| line.text_of(*f).parse::<f64>().is_ok())
-        {
-            problems.line(line, "", || {
-                let example: Vec<&str> = self.firsts().filter(|c| c.required).map(name).collect();
-                Problem::missing("the first line has numbers and no column names").hint(format!(
-                    "put the names above the numbers, for example {}",
-                    example.join(",")
-                ))
-            });
-            return None;
-        }
-        let mut found = Vec::with_capacity(fields.len());
-        let mut meant = Vec::new();
-        for &field in &fields {
-            let index = self.column(line, field, &found, &mut meant, problems);
-            found.push(index);
-        }
-        if let Some((title, hint)) = self.lenient
-            && found.iter().all(Option::is_none)
-        {
-            problems.line(line, "", || {
-                Problem::missing(format!("this is no {title}: it has none of its columns"))
-                    .allowed(self.all())
-                    .hint(hint)
-            });
-            return None;
-        }
-        self.require(line, &found, &meant, problems);
-        Some((found, fields))
-    }
-
-    fn column<'s>(
-        &'s self,
-        line: Line<'_>,
-        field: Field,
-        found: &[Option<usize>],
-        meant: &mut Vec<&'s str>,
-        problems: &mut Collector<'_>,
-    ) -> Option<usize> {
-        let text = line.text_of(field);
-        let Some(index) = self.columns.iter().position(|known| known.name == text) else {
-            if self.lenient.is_none() {
-                let close = near(text, self.read().map(name));
-                problems.value(line, field, text, || self.unknown(text, &close));
-                meant.extend(close);
-            }
-            return None;
-        };
-        let own = &self.columns[index];
-        let known = found.iter().flatten().map(|k| &self.columns[*k]);
-        let Some(first) = known.into_iter().find(|other| other.is_same(own)) else {
-            return Some(index);
-        };
-        problems.value(line, field, text, || {
-            if first.name == own.name {
-                Problem::duplicate("duplicate column").allowed("each column once")
-            } else {
-                Problem::conflict(format!("{text} and {} say the same thing", first.name))
-                    .names_key()
-                    .allowed("one of them")
-            }
-            .hint("remove one of them")
-        });
-        None
-    }
-
-    /// Reports missing columns, but not those that an unknown name may have meant.
-    fn require(
-        &self,
-        line: Line<'_>,
-        found: &[Option<usize>],
-        meant: &[&str],
-        problems: &mut Collector<'_>,
-    ) {
-        for own in self.firsts() {
-            let same = || self.columns.iter().filter(|other| other.is_same(own));
-            let is_there = found
-                .iter()
-                .flatten()
-                .any(|k| self.columns[*k].is_same(own));
-            if own.required && !is_there && !same().any(|c| meant.contains(&name(c))) {
-                problems.line(line, &own.name, || {
-                    let names: Vec<&str> = same().map(name).collect();
-                    Problem::missing(format!("the column {} is missing", names.join(" or ")))
-                        .names_key()
-                        .allowed(self.all())
-                        .hint("add it; the unit is in the name")
-                });
-            }
-        }
-    }
-
     /// The first column of every group, and those of none.
-    fn firsts(&self) -> impl Iterator<Item = &Column> {
+    pub(super) fn firsts(&self) -> impl Iterator<Item = &Column> {
         let columns = self.columns.iter().enumerate();
         let is_first = |k: usize, own: &Column| !self.columns[..k].iter().any(|c| c.is_same(own));
         columns.filter_map(move |(k, own)| is_first(k, own).then_some(own))
     }
 
-    fn read(&self) -> impl Iterator<Item = &Column> {
+    pub(super) fn read(&self) -> impl Iterator<Item = &Column> {
         self.columns.iter().filter(|c| c.cells != Cells::Ignored)
     }
 
     /// The names of all columns that are read, or words for them.
-    fn all(&self) -> String {
+    pub(super) fn all(&self) -> String {
         if self.names.is_empty() {
             self.read().map(name).collect::<Vec<_>>().join(", ")
         } else {
@@ -297,22 +227,28 @@ impl Schema {
         }
     }
 
-    fn unknown(&self, text: &str, close: &[&str]) -> Problem {
-        let without_unit: Vec<&str> = self
-            .read()
-            .map(name)
-            .filter(|full| {
-                full.strip_prefix(text)
-                    .is_some_and(|unit| unit.starts_with('_'))
-            })
-            .collect();
+    /// A name that is none of the columns'.
+    pub(super) fn unknown(&self, text: &str, close: &[&str]) -> Problem {
+        let word = self.foreign.own_word(bare(text));
+        let is_unit = |full: &&str| {
+            full.strip_prefix(&*word)
+                .is_some_and(|unit| unit.starts_with('_'))
+        };
+        let without_unit: Vec<&str> = self.read().map(name).filter(is_unit).collect();
         match without_unit.as_slice() {
             _ if text.is_empty() => Problem::missing("this column has no name")
                 .allowed(self.all())
                 .hint("remove the comma or name the column"),
-            [] => Problem::unknown_key("there is no such column")
-                .allowed(self.all())
-                .hint(suggestion(close).unwrap_or_else(|| "remove it or rename it".to_owned())),
+            [] => {
+                let problem = Problem::unknown_key("there is no such column").allowed(self.all());
+                match suggestion(close) {
+                    Some(question) => problem.hint(question),
+                    None if self.named.is_some() => problem
+                        .hint("remove it, rename it, or say which columns are meant")
+                        .settings(&[Setting::Columns]),
+                    None => problem.hint("remove it or rename it"),
+                }
+            }
             [full] => Problem::unknown_key("this column has no unit")
                 .allowed(*full)
                 .hint(format!("if it is in that unit, name it {full}")),
@@ -323,6 +259,7 @@ impl Schema {
     }
 }
 
-fn name(column: &Column) -> &str {
+/// The name of a column.
+pub(super) fn name(column: &Column) -> &str {
     &column.name
 }

@@ -1,6 +1,7 @@
 //! Rows of a table against its schema.
 
 use super::collector::{Cell, Collector, Line};
+use super::header::Header;
 use super::schema::{Cells, Column, Schema};
 use super::text::Field;
 use crate::Problem;
@@ -22,8 +23,7 @@ pub enum Value {
 #[derive(Debug)]
 pub struct Table<'s> {
     schema: &'s Schema,
-    /// Index in the schema of each column of the file.
-    columns: Vec<Option<usize>>,
+    header: Header,
     /// Column of the file of each column of the schema.
     positions: Vec<Option<usize>>,
     fields: Vec<Field>,
@@ -31,27 +31,41 @@ pub struct Table<'s> {
 }
 
 impl<'s> Table<'s> {
-    /// Reads the line of column names; none where the rows cannot be understood without them.
-    pub fn open(
-        line: Line<'_>,
+    /// Reads the line of column names, with those below it, from which the signs between columns and decimals are found; none where the
+    /// rows cannot be understood. [`Table::head_lines`] of the lines are no rows.
+    pub fn open<'t>(
+        names: Line<'t>,
+        below: impl Iterator<Item = Line<'t>> + Clone,
         schema: &'s Schema,
         problems: &mut Collector<'_>,
     ) -> Option<Table<'s>> {
-        let (columns, fields) = schema.header(line, problems)?;
+        let mut header = schema.header(names, below, problems)?;
+        let columns = &header.columns;
         let position = |index| columns.iter().position(|known| *known == Some(index));
         Some(Table {
             schema,
             positions: (0..schema.columns.len()).map(position).collect(),
             values: vec![Value::Bad; columns.len()],
-            columns,
-            fields,
+            fields: std::mem::take(&mut header.fields),
+            header,
         })
+    }
+
+    /// Number of lines above the first row, without blank ones and comments.
+    pub fn head_lines(&self) -> usize {
+        self.header.lines
+    }
+
+    /// How the table was read, in words, where it is not written as the program's own are: its separators, a row of units, names of
+    /// other programs.
+    pub fn read_as(&self) -> Option<&str> {
+        self.header.read_as.as_deref()
     }
 
     /// The columns of the file in its order; `None` for one that is not known.
     pub fn columns(&self) -> impl Iterator<Item = Option<&'s Column>> {
         let column = |index: &Option<usize>| index.map(|index| &self.schema.columns[index]);
-        self.columns.iter().map(column)
+        self.header.columns.iter().map(column)
     }
 
     /// The fields of the line that was read last.
@@ -67,7 +81,7 @@ impl<'s> Table<'s> {
     /// The column of a group that the file has, as index of the schema.
     pub fn of_group(&self, group: &str) -> Option<usize> {
         let is_in = |index: &usize| self.schema.columns[*index].group == group;
-        self.columns.iter().flatten().copied().find(is_in)
+        self.header.columns.iter().flatten().copied().find(is_in)
     }
 
     /// Name of a column of the schema.
@@ -78,12 +92,14 @@ impl<'s> Table<'s> {
     /// Reads a row. After a problem of the whole line every value is bad.
     pub fn row<'a, 't>(&'a mut self, line: Line<'t>, problems: &mut Collector<'_>) -> Row<'a, 't> {
         self.values.fill(Value::Bad);
-        if problems.split(line, self.columns.len(), &mut self.fields) {
+        let (count, delimiter) = (self.values.len(), self.header.delimiter);
+        if problems.split(line, delimiter, count, &mut self.fields) {
             for (at, value) in self.values.iter_mut().enumerate() {
-                *value = match self.columns[at] {
+                *value = match self.header.columns[at] {
                     Some(index) => {
                         let column = &self.schema.columns[index];
-                        read_cell(line, self.fields[at], column, problems)
+                        let cell = (line, self.fields[at]);
+                        read_cell(cell, column, self.header.decimal_comma, problems)
                     }
                     None => Value::Word,
                 };
@@ -95,7 +111,12 @@ impl<'s> Table<'s> {
     }
 }
 
-fn read_cell(line: Line<'_>, field: Field, column: &Column, problems: &mut Collector<'_>) -> Value {
+fn read_cell(
+    (line, field): (Line<'_>, Field),
+    column: &Column,
+    decimal_comma: bool,
+    problems: &mut Collector<'_>,
+) -> Value {
     let text = line.text_of(field);
     let found = match column.cells {
         Cells::Ignored => return Value::Word,
@@ -112,7 +133,7 @@ fn read_cell(line: Line<'_>, field: Field, column: &Column, problems: &mut Colle
                 column.hint
             })),
         Cells::Word => return Value::Word,
-        Cells::Number(_) | Cells::Whole(_) => column.parse(text),
+        Cells::Number(_) | Cells::Whole(_) => column.parse(text, decimal_comma),
     };
     found.map_or_else(
         |problem| {
@@ -219,13 +240,14 @@ pub fn read<'s, 't>(
     mut take: impl FnMut(&Row<'_, 't>, &mut Collector<'_>) -> bool,
 ) -> Option<Table<'s>> {
     let mut lines = problems.lines(bytes)?;
+    let rows = lines.clone();
     let header = lines.next()?;
-    let mut table = Table::open(header, schema, problems)?;
+    let mut table = Table::open(header, lines, schema, problems)?;
     check(&table, header, problems);
     let (max_rows, hint) = schema.max_rows;
     let mut count = 0;
-    for line in lines {
-        if count == max_rows || (count + 1) * table.columns.len() > schema.max_values {
+    for line in rows.skip(table.head_lines()) {
+        if count == max_rows || (count + 1) * table.values.len() > schema.max_values {
             problems.line(line, "", || {
                 if count == max_rows {
                     Problem::too_large("the file has too many rows")

@@ -81,33 +81,62 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
     bytes.iter().take(at).filter(|&&byte| byte == b'\n').count() + 1
 }
 
-/// Splits a line at its commas. A field in double quotes may hold commas; a quote in it is written twice
+/// What separates the columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Delimiter {
+    Comma,
+    Semicolon,
+    Tab,
+}
+
+impl Delimiter {
+    pub(super) const ALL: [Delimiter; 3] = [Delimiter::Comma, Delimiter::Semicolon, Delimiter::Tab];
+
+    pub(super) fn sign(self) -> char {
+        match self {
+            Delimiter::Comma => ',',
+            Delimiter::Semicolon => ';',
+            Delimiter::Tab => '\t',
+        }
+    }
+
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Delimiter::Comma => "comma",
+            Delimiter::Semicolon => "semicolon",
+            Delimiter::Tab => "tab",
+        }
+    }
+}
+
+/// Splits a line at a sign, such as a comma. A field in double quotes may hold that sign; a quote in it is written twice
 /// and stays so.
 ///
 /// # Errors
 /// The byte of a quote that is not closed, or after which something follows.
-pub fn split(line: &str, fields: &mut Vec<Field>) -> Result<(), usize> {
+pub fn split(line: &str, sign: char, fields: &mut Vec<Field>) -> Result<(), usize> {
+    let is_blank = |c: char| c.is_whitespace() && c != sign;
     fields.clear();
     let mut at = 0;
     loop {
         let rest = &line[at..];
-        let blanks = rest.len() - rest.trim_start().len();
+        let blanks = rest.len() - rest.trim_start_matches(is_blank).len();
         let end = if rest[blanks..].starts_with('"') {
             let start = at + blanks + 1;
             let close = closing_quote(line, start).ok_or(start - 1)?;
             fields.push(Field { start, end: close });
             let after = &line[close + 1..];
-            let comma = after.find(',').unwrap_or(after.len());
-            if !after[..comma].trim().is_empty() {
+            let next = after.find(sign).unwrap_or(after.len());
+            if !after[..next].trim().is_empty() {
                 return Err(start - 1);
             }
-            close + 1 + comma
+            close + 1 + next
         } else {
-            let comma = rest.find(',').unwrap_or(rest.len());
-            let start = at + blanks.min(comma);
-            let end = start + rest[..comma].trim().len();
+            let next = rest.find(sign).unwrap_or(rest.len());
+            let start = at + blanks.min(next);
+            let end = start + rest[..next].trim().len();
             fields.push(Field { start, end });
-            at + comma
+            at + next
         };
         if end >= line.len() {
             return Ok(());

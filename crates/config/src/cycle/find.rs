@@ -1,9 +1,11 @@
 //! A cycle by its name, a constant speed (as the older fuel figures at 90 and 120 km/h, 80/1268/EEC, have it), or a file of the user.
 
-use super::{Cycle, Interval, Trace, Weighting, embedded, names, read_csv};
+use super::{Cycle, Interval, Trace, Weighting, embedded, names, read_columns};
+use crate::csv::Columns;
 use crate::files::bounded::{self, Limit};
 use crate::files::embedded::is_path;
 use crate::{Argument, Problem, Problems, near, suggestion};
+use cvtcycle_model::drive::Vehicle;
 
 /// Other names of the cycles, without capitals and the signs between words: what people call them, and what it is here.
 pub const ALIASES: [(&str, &str); 21] = [
@@ -33,10 +35,6 @@ pub const ALIASES: [(&str, &str); 21] = [
 /// The name of a cycle that a word means: itself, in other capitals and signs, or one of [`ALIASES`].
 #[must_use]
 pub fn name_of(word: &str) -> Option<&'static str> {
-    let bare = |word: &str| {
-        let letters = word.chars().filter(|c| !" -_.".contains(*c));
-        letters.collect::<String>().to_lowercase()
-    };
     let wanted = bare(word);
     let alias = ALIASES.iter().find(|(alias, _)| *alias == wanted);
     let names = || names().iter().copied();
@@ -58,14 +56,72 @@ pub fn name_of(word: &str) -> Option<&'static str> {
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn find(word: &str) -> Result<Cycle, Problems> {
+    open(word, &Columns::default())
+}
+
+/// As [`find`], with the columns of the file that are meant; if there are any, all others are passed over.
+///
+/// # Errors
+/// As there; columns with a cycle that is no file.
+pub fn open(word: &str, columns: &Columns) -> Result<Cycle, Problems> {
+    let named = find_named(word)?;
+    if named.is_some() && !columns.is_empty() {
+        let problem =
+            Problem::conflict(format!("`{word}` is no file whose columns could be named"));
+        let problem = problem
+            .at(Argument::Columns)
+            .allowed("columns of a CSV file");
+        return Err(problem.hint("leave them out").into());
+    }
+    match named {
+        Some(cycle) => Ok(cycle),
+        None => read_columns(
+            word,
+            &bytes(Argument::Cycle, word, bounded::TABLE)?,
+            columns,
+        ),
+    }
+}
+
+/// The cycle of a word for a car: `wltc` and `wltp` are the WLTC of the car's class (CY-2), and the title says why; any other cycle is as
+/// it is.
+#[must_use]
+pub fn for_car(word: &str, cycle: Cycle, car: &Vehicle) -> Cycle {
+    if !["wltc", "wltp"].contains(&bare(word).as_str()) {
+        return cycle;
+    }
+    let class = car.wltc();
+    let Some(own) = embedded(class.cycle) else {
+        return cycle;
+    };
+    let reaches = match (class.cycle, class.reaches_120_kmh) {
+        ("wltc_class1" | "wltc_class2", _) => "",
+        (_, true) => " and reaches 120 km/h",
+        (_, false) => " and does not reach 120 km/h",
+    };
+    let title = format!(
+        "{}: the car has {:.1} W/kg{reaches}",
+        own.title, class.w_per_kg
+    );
+    Cycle { title, ..own }
+}
+
+/// A word without capitals and the signs between words.
+fn bare(word: &str) -> String {
+    let letters = word.chars().filter(|c| !" -_.".contains(*c));
+    letters.collect::<String>().to_lowercase()
+}
+
+/// A cycle that is no file; none for a path.
+fn find_named(word: &str) -> Result<Option<Cycle>, Problems> {
     if let Some(constant) = constant_speed(word).filter(|_| !is_csv(word)) {
-        return constant.map_err(Problems::from);
+        return constant.map(Some).map_err(Problems::from);
     }
     if let Some(found) = name_of(word).and_then(embedded) {
-        return Ok(found);
+        return Ok(Some(found));
     }
     if is_path(word) {
-        return read_csv(word, &bytes(Argument::Cycle, word, bounded::TABLE)?);
+        return Ok(None);
     }
     let aliases = ALIASES.iter().map(|(alias, _)| *alias);
     let near = near(word, names().iter().copied().chain(aliases));
@@ -167,6 +223,8 @@ fn cycle(name: &str, text: &str, kmh: f64) -> Cycle {
         weighting: Weighting::None,
         manual: Trace::without_gears(vec![interval]),
         automatic: None,
+        read_as: None,
+        is_wltc: false,
     }
 }
 

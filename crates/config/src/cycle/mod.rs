@@ -4,14 +4,18 @@
 //! |---|---|
 //! | `embedded` | the regulations' cycles that the program carries |
 //! | `find` | a cycle by name or path, `constant_90` and other constant speeds |
-//! | `read` | a CSV file to a checked cycle; `row` has its columns and checks its rows |
+//! | `read` | a CSV file to a checked cycle; `row` has its columns, those of other programs too, and checks its rows |
+//! | `write` | a cycle as a file, of another program too |
 
 mod embedded;
 mod find;
 mod read;
 mod row;
+mod write;
 
 pub use cvtcycle_model::cycle::*;
 pub use embedded::{embedded, names};
-pub use find::{ALIASES, CONSTANT, bytes, constant_speed, find, is_csv, name_of};
-pub use read::read_csv;
+pub use find::{ALIASES, CONSTANT, bytes, constant_speed, find, for_car, is_csv, name_of, open};
+pub use read::{read_columns, read_csv};
+pub use row::{FOREIGN, columns};
+pub use write::{Format, Written, write};

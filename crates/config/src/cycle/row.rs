@@ -1,7 +1,7 @@
 //! Rows of a cycle table: their columns, and one line checked.
 
 use super::gears::Note;
-use crate::csv::{self, Cells, Collector, Column, Schema, Table};
+use crate::csv::{self, Cells, Collector, Column, Columns, Foreign, Schema, Table};
 use crate::{Bound, Problem, readable};
 
 /// Index of the column of times.
@@ -14,6 +14,12 @@ pub(super) const GEARS: [usize; 3] = [6, 7, 8];
 pub(super) const NOTE: usize = 9;
 /// Index of the column of the engine's state.
 const ENGINE_OFF: usize = 12;
+/// Index of the column of distances, which takes the place of times.
+pub(super) const DISTANCE: usize = 14;
+/// Index of the column of times at rest in a table over distance.
+const STOP: usize = 15;
+/// Name of the speed in a VECTO file, whose rows are a second apart where it has neither time nor distance.
+pub(super) const VECTO_SPEED: &str = "<v>";
 /// Group of the columns of speed.
 const SPEED: &str = "speed";
 /// Group of the columns of road grade.
@@ -24,7 +30,41 @@ const STEEPEST: f64 = 0.35;
 /// Highest gear of each of [`GEARS`].
 const HIGHEST: [u8; 3] = [10, 5, 6];
 
-pub(super) fn schema() -> Schema {
+/// Columns of EPA's, FASTSim's and VECTO's cycles, and what people call them.
+pub const FOREIGN: Foreign = Foreign {
+    headings: &[
+        ("cycSecs", "time_s"),
+        ("cycMps", "speed_m_s"),
+        ("cycGrade", "grade"),
+        ("cycRoadType", ""),
+        ("road_type", ""),
+        ("<t>", "time_s"),
+        ("<s>", "distance_m"),
+        (VECTO_SPEED, "speed_kmh"),
+        ("<grad>", "grade_percent"),
+        ("<stop>", "stop_s"),
+        ("<gear>", "gear"),
+        // Auxiliaries, wind, engine speed and measured values.
+        ("<*", ""),
+    ],
+    lines: &[("Test Time, secs Target Speed, mph", "time:s,speed:mph")],
+    words: &[
+        ("t", "time"),
+        ("test_time", "time"),
+        ("elapsed_time", "time"),
+        ("v", "speed"),
+        ("velocity", "speed"),
+        ("vehicle_speed", "speed"),
+        ("target_speed", "speed"),
+        ("s", "distance"),
+        ("grad", "grade"),
+        ("gradient", "grade"),
+        ("slope", "grade"),
+        ("road_grade", "grade"),
+    ],
+};
+
+pub(super) fn schema(columns: &Columns) -> Schema {
     let speed = |name| Column::number(name, Bound::any()).required().group(SPEED);
     let speed = |name| speed(name).allowed("a speed from 0 to 300 km/h");
     let gear = |name, k: usize| {
@@ -41,7 +81,7 @@ pub(super) fn schema() -> Schema {
     Schema {
         columns: vec![
             Column::number("time_s", Bound::any())
-                .required()
+                .required_unless(&["distance_m", VECTO_SPEED])
                 .allowed("a time in s"),
             speed("speed_kmh"),
             speed("speed_km_h"),
@@ -61,11 +101,27 @@ pub(super) fn schema() -> Schema {
                 .allowed("0 (engine on) or 1 (engine off)")
                 .hint("write 1 only where the driver stops the engine"),
             Column::new("operation", Cells::Ignored),
+            Column::number("distance_m", Bound::any()).allowed("a distance in m"),
+            Column::number("stop_s", Bound::closed(0.0, MAX_INTERVAL_S))
+                .hint("is it in s? a longer rest has rows of its own"),
         ],
         max_rows: (2_000_000, "thin it out"),
         rows: "at least two rows",
+        foreign: FOREIGN,
+        named: Some(columns.clone()),
         ..Schema::default()
     }
+}
+
+/// Names of the columns that a cycle's file may have.
+#[must_use]
+pub fn columns() -> Vec<String> {
+    let schema = schema(&Columns::default());
+    let read = schema
+        .columns
+        .iter()
+        .filter(|column| column.cells != Cells::Ignored);
+    read.map(|column| column.name.to_string()).collect()
 }
 
 /// Highest gear that every gear column of the file can name.
@@ -94,12 +150,16 @@ const MAX_PHASES: usize = 200;
 const MAX_ACCEL_M_S2: f64 = 12.0;
 /// A longer gap is a lost recording.
 const MAX_INTERVAL_S: f64 = 3600.0;
-const MAX_DURATION_S: f64 = 1e6;
+pub(super) const MAX_DURATION_S: f64 = 1e6;
 
 /// The values of a row, in SI. What a column does not give, or gives badly, is at its default.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Row {
     pub(super) time_s: Option<f64>,
+    /// From the first row, in a table over distance.
+    pub(super) distance_m: Option<f64>,
+    /// Time at rest, in a table over distance.
+    pub(super) stop_s: f64,
     pub(super) speed_m_s: Option<f64>,
     pub(super) phase: u16,
     pub(super) grade: f64,
@@ -109,13 +169,34 @@ pub(super) struct Row {
     pub(super) note: Note,
 }
 
+/// What the rows of a table are in order of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Over {
+    Time,
+    Distance,
+    /// A second from row to row.
+    Seconds,
+}
+
+impl Over {
+    /// Time goes before distance, as in VECTO.
+    pub(super) fn of(table: &Table<'_>) -> Over {
+        match (table.has(TIME), table.has(DISTANCE)) {
+            (true, _) => Over::Time,
+            (false, true) => Over::Distance,
+            (false, false) => Over::Seconds,
+        }
+    }
+}
+
 /// Rows that were read.
 pub(super) struct Rows<'p> {
     /// Names of the phases.
     pub(super) phases: &'p mut Vec<String>,
     /// They form a trace only if there are no problems.
     pub(super) rows: Vec<Row>,
-    first_time_s: Option<f64>,
+    /// Time or distance of the first row, which becomes 0.
+    first: Option<f64>,
     too_long: bool,
     /// Number of phases before the last row.
     phases_before: usize,
@@ -127,7 +208,7 @@ impl<'p> Rows<'p> {
             phases_before: phases.len(),
             phases,
             rows: Vec::new(),
-            first_time_s: None,
+            first: None,
             too_long: false,
         }
     }
@@ -139,15 +220,20 @@ impl<'p> Rows<'p> {
 
     pub(super) fn add(&mut self, cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) {
         self.phases_before = self.phases.len();
-        let time_s = cells.number(TIME);
-        let first_s = self.first_time_s.or(time_s);
-        self.first_time_s = first_s;
-        let whole = |column| cells.number(column).unwrap_or_default() as u8;
         let table = cells.table();
+        let over = Over::of(table);
+        let at = match over {
+            Over::Time => cells.number(TIME),
+            Over::Distance => cells.number(DISTANCE),
+            Over::Seconds => Some(self.rows.len() as f64),
+        };
+        self.first = self.first.or(at);
+        let at = at.zip(self.first).map(|(at, first)| at - first);
+        let whole = |column| cells.number(column).unwrap_or_default() as u8;
         let row = Row {
-            time_s: time_s
-                .zip(first_s)
-                .map(|(time_s, first_s)| time_s - first_s),
+            time_s: at.filter(|_| over != Over::Distance),
+            distance_m: at.filter(|_| over == Over::Distance),
+            stop_s: cells.number(STOP).unwrap_or_default(),
             speed_m_s: speed_m_s(cells, problems),
             phase: self.phase(cells, problems),
             grade: table.of_group(GRADE).map_or(0.0, |column| {
@@ -161,7 +247,9 @@ impl<'p> Rows<'p> {
         check_note(&row, cells, problems);
         // Neighbours are compared one to the next, so that one bad row does not condemn all that follow.
         let before = self.rows.last().copied().unwrap_or_default();
-        if let Some(dt_s) = self.check_time(&row, &before, cells, problems) {
+        if over == Over::Distance {
+            check_distance(&row, self.rows.last(), cells, problems);
+        } else if let Some(dt_s) = self.check_time(&row, &before, cells, problems) {
             check_jump(&row, &before, dt_s, cells, problems);
         }
         check_engine_off(&row, &before, cells, problems);
@@ -216,6 +304,46 @@ impl<'p> Rows<'p> {
         };
         cells.report(TIME, problems, problem);
         None
+    }
+}
+
+/// Checks a row of a table over distance against the one above.
+fn check_distance(
+    row: &Row,
+    before: Option<&Row>,
+    cells: &csv::Row<'_, '_>,
+    problems: &mut Collector<'_>,
+) {
+    let rises = |before: &Row| {
+        let pair = row.distance_m.zip(before.distance_m);
+        pair.is_none_or(|(now, before)| now > before)
+    };
+    if !before.is_none_or(rises) {
+        let problem = Problem::conflict("the distance does not rise")
+            .allowed("more than in the row above")
+            .hint("sort the rows by distance and remove doubled ones");
+        cells.report(DISTANCE, problems, problem);
+    }
+    // Of the row above: the last one of a table may end at rest without a time.
+    let at_rest = before.filter(|before| before.speed_m_s.is_some_and(|v| v <= 0.0));
+    if at_rest.is_some_and(|before| before.stop_s <= 0.0) {
+        let problem =
+            Problem::missing("the car comes to rest in the row above without a time at rest")
+                .allowed("a stop_s above 0 in each row with speed 0 but the last one")
+                .hint("give the seconds that the car is at rest");
+        cells.report(STOP, problems, problem);
+    }
+    if row.stop_s > 0.0 && row.speed_m_s.is_some_and(|v| v > 0.0) {
+        let problem = Problem::conflict("this row has a time at rest and a speed")
+            .allowed("0 where the speed is above 0")
+            .hint("set the speed of the row to 0 where the car stops");
+        cells.report(STOP, problems, problem);
+    }
+    if at_rest.is_some() && row.speed_m_s.is_some_and(|v| v <= 0.0) {
+        let problem = Problem::conflict("the car cannot drive from rest to rest")
+            .allowed("a speed above 0 between two stops")
+            .hint("the speed of a row is the target up to the next one");
+        cells.report(DISTANCE, problems, problem);
     }
 }
 

@@ -1,4 +1,5 @@
-//! Overrides: values put over those of the files. The text `KEY=VALUE` is parsed once.
+//! Overrides: values put over those of the files, or what is done with them: `KEY=VALUE`, `KEY*=FACTOR`, `KEY+=DIFFERENCE`. The text is
+//! parsed once; a relative one has its value when it meets a document.
 use std::collections::HashMap;
 use std::fmt;
 use std::str::FromStr;
@@ -7,11 +8,11 @@ use std::sync::{Arc, OnceLock};
 use serde::{Serialize, Serializer};
 use toml::de::DeValue;
 
-use crate::document::{Node, Span, Value, convert};
+use crate::document::{Document, Node, Span, Value, convert};
 use crate::problem::place::Input;
 use crate::problem::{Problem, Problems};
 use cvtcycle_model::files;
-use cvtcycle_model::keys::{Key, Table};
+use cvtcycle_model::keys::{Key, Presence, Table};
 
 /// Dotted key, taken apart.
 pub type KeyPath = Arc<[Box<str>]>;
@@ -58,6 +59,39 @@ impl Target {
     }
 }
 
+/// What a number does with the value of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Acts {
+    /// It is the value.
+    Value,
+    /// It multiplies the value.
+    Scale,
+    /// It is added to the value.
+    Offset,
+}
+
+impl Acts {
+    /// What a number makes of a value.
+    #[must_use]
+    pub fn resolved(self, base: f64, number: f64) -> f64 {
+        match self {
+            Acts::Value => number,
+            Acts::Scale => base * number,
+            Acts::Offset => base + number,
+        }
+    }
+
+    /// The sign of an assignment that does it, and the way to give the key a value.
+    const fn sign(self) -> &'static str {
+        match self {
+            Acts::Value => "=",
+            Acts::Scale => "*=",
+            Acts::Offset => "+=",
+        }
+    }
+}
+
 /// A value put over that of a file.
 ///
 /// ```
@@ -72,6 +106,7 @@ pub struct Override {
     /// `KEY=VALUE` as given.
     text: String,
     key: String,
+    acts: Acts,
     target: Target,
     path: KeyPath,
     row: Option<&'static Key<'static>>,
@@ -86,7 +121,8 @@ impl Override {
     /// # Errors
     /// The key has an empty or too many names, or the value is empty.
     pub fn new(key: &str, value: &str) -> Result<Override, Problem> {
-        Override::read(&format!("{key}={value}"), key.trim(), value.trim())
+        let text = format!("{key}={value}");
+        Override::read(&text, key.trim(), Acts::Value, value.trim())
     }
 
     /// Sets a key to a number in the key's unit.
@@ -100,7 +136,7 @@ impl Override {
         };
         Override::of(
             format!("{key}={text}"),
-            key.trim(),
+            (key.trim(), Acts::Value),
             &text,
             Value::of(number),
         )
@@ -117,7 +153,7 @@ impl Override {
         problems.finish().map(|()| all)
     }
 
-    fn read(text: &str, key: &str, value: &str) -> Result<Override, Problem> {
+    fn read(text: &str, key: &str, acts: Acts, value: &str) -> Result<Override, Problem> {
         let names = key.split('.');
         if names.clone().any(|name| name.trim().is_empty()) || names.count() > MAX_DEPTH {
             return Err(no_override(text, key, format!("`{key}` is no key")));
@@ -125,18 +161,21 @@ impl Override {
         if value.is_empty() {
             return Err(no_override(text, key, format!("no value for `{key}`")));
         }
-        let parsed = match DeValue::parse(value) {
-            Ok(parsed) => convert(parsed.get_ref()),
-            Err(_) => Value::Text(value.to_owned()),
-        };
-        Ok(Override::of(text.to_owned(), key, value, parsed))
+        let parsed = convert_text(value);
+        let is_finite = number_of(&parsed).is_some_and(f64::is_finite);
+        if acts != Acts::Value && !is_finite {
+            let message = format!("`{value}` after `{}` is no number", acts.sign());
+            return Err(no_override(text, key, message));
+        }
+        Ok(Override::of(text.to_owned(), (key, acts), value, parsed))
     }
 
-    fn of(text: String, key: &str, value_text: &str, value: Value) -> Override {
+    fn of(text: String, (key, acts): (&str, Acts), value_text: &str, value: Value) -> Override {
         let (target, own) = Target::of(key);
         Override {
             text,
             key: key.to_owned(),
+            acts,
             target,
             path: path_of(own),
             row: row(key),
@@ -151,10 +190,82 @@ impl Override {
         &self.key
     }
 
+    /// What its value does with that of the file.
+    #[must_use]
+    pub fn acts(&self) -> Acts {
+        self.acts
+    }
+
     /// The file that it goes to.
     #[must_use]
     pub fn target(&self) -> Target {
         self.target
+    }
+
+    /// The number that it makes of the value of a file, in the key's own unit, or of the default where there is none; none where it has
+    /// neither, or is no number.
+    #[must_use]
+    pub fn number_over(&self, base: Option<f64>) -> Option<f64> {
+        let default = match self.row.map(|row| row.presence) {
+            Some(Presence::Number(x)) => Some(x),
+            Some(Presence::Integer(n)) => Some(n as f64),
+            _ => None,
+        };
+        let number = number_of(&self.value)?;
+        match self.acts {
+            Acts::Value => Some(number),
+            acts => Some(acts.resolved(base.or(default)?, number)),
+        }
+    }
+
+    /// The override with the value that it makes of that of a document, each number of a list by itself.
+    ///
+    /// # Errors
+    /// There is no value, or it is no number.
+    pub(crate) fn over(&self, document: &Document) -> Result<Override, Problem> {
+        if self.acts == Acts::Value {
+            return Ok(self.clone());
+        }
+        let path: Vec<&str> = self.path.iter().map(|name| &**name).collect();
+        let node = document.root.node(&path).map(Node::inner);
+        let number = |node: &Node| self.number_over(Some(number_of(&node.value)?));
+        let value_text = match node.map(|node| (node, &node.value)) {
+            Some((_, Value::List(items))) => {
+                let numbers: Option<Vec<f64>> = items.iter().map(number).collect();
+                format!("{:?}", numbers.ok_or_else(|| self.no_number())?)
+            }
+            Some((node, _)) => number(node).ok_or_else(|| self.no_number())?.to_string(),
+            // For the reading to say that there is no such key.
+            None if self.row.is_none() => self.value_text.clone(),
+            None => {
+                let number = self.number_over(None);
+                number.ok_or_else(|| self.no_value())?.to_string()
+            }
+        };
+        Ok(Override {
+            acts: Acts::Value,
+            value: convert_text(&value_text),
+            value_text,
+            ..self.clone()
+        })
+    }
+
+    fn no_number(&self) -> Problem {
+        let (key, sign) = (&self.key, self.acts.sign());
+        Problem::wrong_type(format!("`{key}` is no number that `{sign}` could change"))
+            .at(self.input())
+            .key(key.as_str())
+            .names_key()
+            .hint(format!("give it a value with {key}=VALUE"))
+    }
+
+    fn no_value(&self) -> Problem {
+        let (key, sign) = (&self.key, self.acts.sign());
+        Problem::missing(format!("`{key}` has no value that `{sign}` could change"))
+            .at(self.input())
+            .key(key.as_str())
+            .names_key()
+            .hint(format!("give it a value with {key}=VALUE"))
     }
 
     /// Text of the value.
@@ -193,6 +304,22 @@ impl Override {
         node.each_span(&|span| (span.source, span.is_override) = (source, true));
         node
     }
+}
+
+fn number_of(value: &Value) -> Option<f64> {
+    match value {
+        Value::Integer(n) => Some(*n as f64),
+        Value::Float(x) => Some(*x),
+        _ => None,
+    }
+}
+
+/// The value of a text, which is TOML, or else text without quotes.
+fn convert_text(text: &str) -> Value {
+    DeValue::parse(text).map_or_else(
+        |_| Value::Text(text.to_owned()),
+        |parsed| convert(parsed.get_ref()),
+    )
 }
 
 /// The names of a dotted key.
@@ -243,12 +370,17 @@ fn no_override(text: &str, key: &str, message: String) -> Problem {
 impl FromStr for Override {
     type Err = Problem;
 
-    /// Parses `KEY=VALUE`.
+    /// Parses `KEY=VALUE`, `KEY*=FACTOR` or `KEY+=DIFFERENCE`.
     fn from_str(text: &str) -> Result<Override, Problem> {
         let (key, value) = text
             .split_once('=')
             .ok_or_else(|| no_override(text, "", "no `=` in the assignment".to_owned()))?;
-        Override::read(text, key.trim(), value.trim())
+        let relative = [('*', Acts::Scale), ('+', Acts::Offset)];
+        let relative = relative
+            .into_iter()
+            .find_map(|(sign, acts)| Some((key.strip_suffix(sign)?, acts)));
+        let (key, acts) = relative.unwrap_or((key, Acts::Value));
+        Override::read(text, key.trim(), acts, value.trim())
     }
 }
 

@@ -177,8 +177,9 @@ impl Document {
     /// Puts in one override, whose key is one of this document.
     ///
     /// # Errors
-    /// Its path leads through a value.
+    /// Its path leads through a value, or it changes a value that there is not.
     pub fn set(&mut self, by: &Override) -> Result<(), Problem> {
+        let by = &by.over(self)?;
         let path = by.path();
         insert(&mut self.root, path, by.node(self.sources.len())).map_err(|depth| {
             let (value, path) = (path[..=depth].join("."), path.join("."));

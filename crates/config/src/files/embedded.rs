@@ -29,7 +29,9 @@ embedded! {
     /// Measured maps.
     maps: "vehicles/maps" ".csv" ["si_1900_bsfc"];
     /// Plans of studies.
-    plans: "plans" ".toml" ["oil_at_minus_10" "pump_and_offset" "uncertainty_rover"];
+    plans: "plans" ".toml" ["fluids_by_ambient" "oil_at_minus_10" "pump_and_offset" "uncertainty_rover"];
+    /// Changes of a car's design.
+    levers: "levers" ".toml" ["cvt" "manual"];
     /// Plans of calibrations.
     calibrations: "calibrations" ".toml" ["rover_216_transmission" "rover_216_warm_up"];
     /// Tolerances and sources that all files with published values may use.

@@ -77,6 +77,8 @@ pub enum Setting {
     Added,
     /// Runs that were not driven alike are compared.
     Loosely,
+    /// The columns of a table that are meant.
+    Columns,
 }
 
 /// One problem of an input.

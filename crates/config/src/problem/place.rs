@@ -36,6 +36,8 @@ pub enum Argument {
     Cover,
     /// Any other file that is read.
     File,
+    /// The columns of a table that are meant.
+    Columns,
     /// What is written.
     Output,
 }
@@ -53,6 +55,7 @@ impl Argument {
             Argument::Calibration => "calibration",
             Argument::Cover => "cover",
             Argument::File => "file",
+            Argument::Columns => "columns",
             Argument::Output => "output",
         }
     }

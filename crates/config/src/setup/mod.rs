@@ -102,6 +102,8 @@ pub enum Kind {
     Rig,
     /// The plan of a study.
     Plan,
+    /// Changes of a car's design.
+    Levers,
     /// The plan of a calibration.
     Calibration,
 }
@@ -116,6 +118,7 @@ impl Kind {
             Kind::Lubricant => embedded::lubricants(),
             Kind::Rig => embedded::rigs(),
             Kind::Plan => embedded::plans(),
+            Kind::Levers => embedded::levers(),
             Kind::Calibration => embedded::calibrations(),
         }
     }
@@ -133,7 +136,7 @@ impl Kind {
             Kind::Lubricant => Argument::Lubricant,
             Kind::Plan => Argument::Plan,
             Kind::Calibration => Argument::Calibration,
-            Kind::Class | Kind::Rig => Argument::File,
+            Kind::Class | Kind::Rig | Kind::Levers => Argument::File,
         }
     }
 
@@ -144,6 +147,7 @@ impl Kind {
             Kind::Lubricant => "lubricant",
             Kind::Rig => "rig",
             Kind::Plan => "plan",
+            Kind::Levers => "lever file",
             Kind::Calibration => "calibration",
         }
     }

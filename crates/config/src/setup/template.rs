@@ -60,6 +60,12 @@ impl ParameterRef {
     pub fn allowed(&self) -> &str {
         &self.allowed
     }
+
+    /// Whether the unchanged files have the key: not one of an option that they do not choose.
+    #[must_use]
+    pub fn is_active(&self) -> bool {
+        !self.inactive
+    }
 }
 
 impl VehicleTemplate {
@@ -94,6 +100,12 @@ impl VehicleTemplate {
             .collect();
         let inputs = Arc::new(inputs);
         Ok((VehicleTemplate { inputs, keys }, setup))
+    }
+
+    /// Whether the unchanged files have the key.
+    #[must_use]
+    pub fn has(&self, key: &str) -> bool {
+        self.keys.contains_key(key.trim())
     }
 
     /// Finds a number by its dotted key (`lubricant.` and `engine_oil.` for the fluids). The files may leave it at its default; it may

@@ -19,7 +19,8 @@ pub enum GearCommand {
 }
 
 impl GearCommand {
-    fn gear(self) -> u8 {
+    /// The gear, 0 for none.
+    pub fn gear(self) -> u8 {
         match self {
             Self::Neutral => 0,
             Self::Declutched(gear) | Self::InGear(gear) | Self::Change(gear) => gear,

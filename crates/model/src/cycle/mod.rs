@@ -2,7 +2,9 @@
 //!
 //! SI units throughout: kilometres per hour and percent end where a table is read.
 
+pub mod distance;
 pub mod gears;
+pub mod gtr15;
 mod trace;
 
 pub use gears::{GearColumns, GearCommand};
@@ -41,6 +43,10 @@ pub struct Cycle {
     pub manual: Trace,
     /// What an automatic or a CVT drives; the manual trace if none.
     pub automatic: Option<Trace>,
+    /// How its file was read, where it was not written as the program's own are: separators, names and units of other programs.
+    pub read_as: Option<String>,
+    /// Whether it is a WLTC with a speed a second, where the gears of a manual car follow UN GTR 15.
+    pub is_wltc: bool,
 }
 
 impl Cycle {
@@ -103,6 +109,8 @@ impl Cycle {
             weighting: Weighting::None,
             manual: Trace::without_gears(intervals),
             automatic: None,
+            read_as: None,
+            is_wltc: false,
         })
     }
 

@@ -2,6 +2,7 @@
 
 mod balance;
 mod car;
+mod gears;
 mod physics;
 mod row;
 mod run;
@@ -13,6 +14,7 @@ mod vehicle;
 
 pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;
+pub use gears::{CarTrace, WltcClass};
 pub use physics::{Finding, Law, PhysicsCheck, check_physics};
 pub use row::{HIGHEST_K, Row};
 pub use run::{

@@ -3,7 +3,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | PX-1 | T_p - T_s/I = (1 - 1/I)(d F_1 + t sum F_i) + wedge + penetration, F_i = -s (mu_b (1-u_i)(1 - (i-1)/n) beta Tm + V_i), V_i the film's force | derived: moments about the centres of both pulleys; slip is not in them |
+//! | PX-1 | T_p - T_s/I = (1 - 1/I)(d F_1 + t sum F_i) + wedge + penetration, F_i = -s (k_i mu_b (1-u_i)(1 - (i-1)/n) beta Tm + V_i), V_i the film's force, k_1 that of the shoulders | derived: moments about the centres of both pulleys; slip is not in them |
 //! | PX-2 | one F_1 and Tm = A + \|C_x\|/2, C_x = T_s/R_s - F_1, on both pulleys: what bands and film lose over their levers, step and mean tension | derived: a belt of two strands has one step of tension |
 //! | PX-3 | burnt fuel <= charge eta_v rho_0 V w/(4 pi) LHV/14.6, eta_v 1.05 or what the full-load line needs | derived: the air in the cylinders; 14.6 stoichiometric, 1.05 ASSUMED of an engine without charger |
 //! | PX-4 | rotating energy, the sum of its changes, = J w2/2 at the end of every step; less only where the engine gives full load and more is wanted | derived |
@@ -200,8 +200,8 @@ pub fn check_physics(
     let car = &vehicle.car(ambient_k);
     let start = State::at(ambient_k);
     let mut check = PhysicsCheck::new(car, &start);
-    let trace = cycle.trace_for(car.transmission.is_cvt());
-    simulate(car, trace, max_dt_s, start, &mut check);
+    let trace = vehicle.trace(cycle).trace;
+    simulate(car, &trace, max_dt_s, start, &mut check);
     check.findings().to_vec()
 }
 
@@ -303,6 +303,7 @@ impl<'a> PhysicsCheck<'a> {
         let [inner_m, outer_m] = [belt.band_offset_m, others_m(belt)];
         let [inner, outer] = load.band.film_share.map(|share| 1.0 - share);
         let boundary_n = load.band.mu * forces.least_rad * forces.mean_n;
+        let inner = belt.shoulder_friction * inner;
         let band_nm = turns * boundary_n * (inner * inner_m + outer * outer_m);
         let others = belt.band_thickness_m * (belt.band_count - 1.0);
         let film_nm = turns * (shear_n[0] * inner_m + shear_n[1] * others);
@@ -523,7 +524,8 @@ impl Forces {
         let bare_n = belt.tan_wedge * pressed + (belt.mass_kg_m - belt.band_mass_kg_m) * v * v;
         let direction = -(ln(at.geometry.ratio) / belt.unity_width).tanh();
         let least_rad = smaller(wraps[0], wraps[1]);
-        let grip = load.band.mu * (1.0 - load.band.film_share[0]) * least_rad;
+        let shoulder_mu = belt.shoulder_friction * load.band.mu;
+        let grip = shoulder_mu * (1.0 - load.band.film_share[0]) * least_rad;
         let net_n = load.output_torque_nm / radii.radius_m[1];
         let mut forces = Forces {
             mean_n: bare_n,

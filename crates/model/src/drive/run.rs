@@ -1,13 +1,12 @@
 //! One car through one cycle: start state, drive, totals, rows on request.
 
 use crate::cycle::{Cycle, Trace};
-use crate::drive::{Car, Recorder, State, Vehicle, simulate};
+use crate::drive::{CarTrace, Recorder, State, Vehicle, simulate};
 use crate::drive::{EnergyTerms, Row, Totals};
 use crate::engine::StartStop;
 use crate::math::larger;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::Heat;
-use crate::transmission::Transmission;
 
 /// Temperatures at the start of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -114,10 +113,9 @@ pub fn drive_into(
     give: Option<&mut RowSink>,
 ) -> Outcome {
     let car = &vehicle.car(conditions.ambient_k);
-    let trace = cycle.trace_for(car.transmission.is_cvt());
-    let gear_schedule = gear_schedule(car, trace);
-    let cut = car.engine.start_stop.map(|on| cut_at_stops(trace, &on));
-    let trace = cut.as_ref().unwrap_or(trace);
+    let CarTrace { trace, schedule } = vehicle.trace(cycle);
+    let cut = car.engine.start_stop.map(|on| cut_at_stops(&trace, &on));
+    let trace = cut.as_ref().unwrap_or(&trace);
     let start = start_state(car, trace, conditions);
     let mut totals = Totals::new(cycle.phases.len());
     let end = match give {
@@ -138,7 +136,7 @@ pub fn drive_into(
         totals,
         rows: Vec::new(),
         end: end.heat,
-        gear_schedule,
+        gear_schedule: schedule,
     }
 }
 
@@ -170,19 +168,6 @@ fn cut_at_stops(trace: &Trace, on: &StartStop) -> Trace {
     };
     let at_s: Vec<f64> = trace.rests_s().into_iter().flat_map(ends).collect();
     trace.cut(&at_s)
-}
-
-fn gear_schedule(car: &Car, trace: &Trace) -> &'static str {
-    match &car.transmission {
-        Transmission::Cvt(_) => "",
-        Transmission::Manual(m) if trace.gears(m.overall.len()).is_some() => {
-            "gears prescribed by the cycle"
-        }
-        Transmission::Manual(_) if trace.has_gears() => {
-            "shift speeds of the vehicle file: the cycle's gear column does not fit this box"
-        }
-        Transmission::Manual(_) => "shift speeds of the vehicle file",
-    }
 }
 
 /// An engine's fuel map on a grid.

@@ -104,7 +104,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity
     }
 }
 
-const UNITS: [Quantity; 62] = [
+const UNITS: [Quantity; 63] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -149,6 +149,7 @@ const UNITS: [Quantity; 62] = [
     unit("_rad", "rad", 1.0),
     unit("_m_s", "m/s", 1.0),
     unit("_kmh", "km/h", 1.0 / 3.6),
+    unit("_mph", "mph", 1609.344 / 3600.0),
     unit("_w", "W", 1.0),
     unit("_kw", "kW", 1e3),
     unit("_wh", "Wh", 3600.0),

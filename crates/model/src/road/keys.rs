@@ -110,6 +110,7 @@ impl RoadLoadInput {
             rolling_per_k: s.number(&ROAD_LOAD.rolling_per_k),
             altitude_m,
             load_factor: s.number(&ROAD_LOAD.load_factor),
+            payload_kg: payload,
             tyre: Tyre::from_values(&s.table("tyre"), mass_kg),
         }
     }

@@ -8,6 +8,7 @@ use super::{Car, conditions_line, cycle_title, energy};
 use cvtcycle_output::Component;
 use cvtcycle_output::summary::{Comparison, RunSummary, Summary};
 use cvtcycle_study::attribute;
+use cvtcycle_study::words::run::{contradictions, intervals};
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("answer", "Answer");
@@ -16,7 +17,10 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     section
         .blocks
         .push(Block::Lead(lead(summary, brief(&cycle))));
-    for line in checks(summary) {
+    for line in checks(summary)
+        .into_iter()
+        .chain(said(&contradictions(summary)))
+    {
         section.alert(line);
     }
     for line in &found.missing {
@@ -35,8 +39,10 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
         if let Some(text) = own.unfinished() {
             section.alert(format!("{text}; what it says here is of these."));
         }
+        let title = &own.answer.title;
         let answers = study_answers::answers(own).into_iter();
-        section.blocks.extend(answers.map(Block::Text));
+        let named = answers.map(|line| format!("Study \u{201c}{title}\u{201d}: {line}"));
+        section.blocks.extend(named.map(Block::Text));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
         section.text(price);
@@ -49,6 +55,14 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     section.heading("What to doubt");
     section.blocks.push(Block::List(doubts(found, cars)));
     section
+}
+
+/// Sentences of the program as print has them.
+fn said(lines: &[String]) -> Vec<String> {
+    lines
+        .iter()
+        .map(|line| study_answers::typeset(line))
+        .collect()
 }
 
 /// The title of a cycle up to its details: "NEDC" of "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)".
@@ -258,8 +272,11 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
             && study_answers::other_case(study, &found.summary).is_none()
     };
     let none = "There is no study of uncertainty of this case: the difference has no interval.";
+    let known = said(&intervals(&found.summary));
+    let is_known = !known.is_empty();
+    list.extend(known);
     list.extend(match found.studies.iter().find(has_interval) {
-        None => Some(none.to_owned()),
+        None => (!is_known).then(|| none.to_owned()),
         Some(study) => {
             let unfinished = study.unfinished();
             unfinished.map(|text| format!("Its interval is preliminary: {text}."))

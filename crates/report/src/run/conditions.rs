@@ -22,6 +22,9 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
         fact("Longest step", format!("{} s", settings.dt_s)),
         fact("Belt model", settings.formulation.clone()),
     ];
+    if let Some(words) = &summary.read_as {
+        facts.insert(1, fact("Read as", words.clone()));
+    }
     for (option, list) in [
         ("Set for the subject", &settings.set),
         ("Set for all cars", &settings.set_all),

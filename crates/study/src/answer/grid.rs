@@ -16,7 +16,27 @@ pub struct GridMatrix {
     pub columns: Vec<String>,
     /// Numbers by row and column; none of a run that gave none.
     pub cells: Vec<Vec<Option<f64>>>,
+    /// Of what each of the smallest numbers is the smallest.
+    pub least_of: LeastOf,
+    /// Row and column of the smallest numbers.
+    pub least: Vec<[usize; 2]>,
 }
+
+/// Of what a number is the smallest. A condition such as the ambient temperature is not chosen: at each of its levels the other factor has a
+/// smallest number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LeastOf {
+    /// All cells.
+    All,
+    /// A row.
+    Row,
+    /// A column.
+    Column,
+}
+
+/// Factors that are conditions.
+const CONDITIONS: [&str; 3] = ["ambient_degc", "start", "cycle"];
 
 impl GridMatrix {
     /// The matrix of a plan with two factors from the numbers of its points; none for another plan.
@@ -34,18 +54,38 @@ impl GridMatrix {
         };
         let (rows, columns) = (names(0, &first.unit), names(1, &second.unit));
         let factors = [first.name.clone(), second.name.clone()];
-        Some(folded(factors, &rows, columns, numbers))
+        let condition = |key: &str| CONDITIONS.contains(&key);
+        let least_of = match (condition(&first.key), condition(&second.key)) {
+            (true, false) => LeastOf::Row,
+            (false, true) => LeastOf::Column,
+            _ => LeastOf::All,
+        };
+        Some(folded(factors, &rows, columns, numbers).with_least(least_of))
     }
 
-    /// Place of the smallest number, row and column.
-    pub fn least(&self) -> Option<(usize, usize)> {
-        let rows = self.cells.iter().enumerate();
-        let cells = rows.flat_map(|(i, row)| {
-            let row = row.iter().enumerate();
-            row.filter_map(move |(k, x)| Some(((i, k), (*x)?)))
-        });
-        let least = cells.min_by(|(_, a), (_, b)| a.total_cmp(b));
-        least.map(|(place, _)| place)
+    /// Finds the smallest numbers.
+    fn with_least(mut self, least_of: LeastOf) -> Self {
+        let (high, wide) = (self.rows.len(), self.columns.len());
+        let all = (0..high).flat_map(|i| (0..wide).map(move |k| [i, k]));
+        let groups = match least_of {
+            LeastOf::All => 1,
+            LeastOf::Row => high,
+            LeastOf::Column => wide,
+        };
+        let number = |[i, k]: [usize; 2]| self.cells.get(i).and_then(|row| *row.get(k)?);
+        let least = |group: usize| {
+            let of_group = |place: &[usize; 2]| match least_of {
+                LeastOf::All => true,
+                LeastOf::Row => place[0] == group,
+                LeastOf::Column => place[1] == group,
+            };
+            let own = all.clone().filter(of_group);
+            let known = own.filter_map(|place| Some((place, number(place)?)));
+            let least = known.min_by(|a, b| a.1.total_cmp(&b.1));
+            least.map(|(place, _)| place)
+        };
+        (self.least_of, self.least) = (least_of, (0..groups).filter_map(least).collect());
+        self
     }
 }
 
@@ -69,6 +109,8 @@ fn folded(
         rows: rows.iter().step_by(width).cloned().collect(),
         columns,
         cells: cells.collect(),
+        least_of: LeastOf::All,
+        least: Vec::new(),
     }
 }
 
@@ -88,6 +130,10 @@ mod tests {
         assert_eq!(matrix.columns, ["1 mm", "2 mm", "3 mm"]);
         assert_eq!(matrix.cells[0], [Some(5.0), Some(6.0), Some(7.0)]);
         assert_eq!(matrix.cells[1], [Some(4.5), None, Some(8.0)]);
-        assert_eq!(matrix.least(), Some((1, 0)));
+        let least = |of| matrix.clone().with_least(of).least;
+        assert_eq!(least(LeastOf::All), [[1, 0]]);
+        assert_eq!(least(LeastOf::Row), [[0, 0], [1, 0]]);
+        // A cell without a number is never the smallest.
+        assert_eq!(least(LeastOf::Column), [[1, 0], [0, 1], [0, 2]]);
     }
 }

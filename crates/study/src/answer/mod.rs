@@ -2,10 +2,14 @@
 
 pub mod ambient;
 mod grid;
+mod information;
+mod range;
 mod study_table;
 mod tables;
 
-pub use grid::GridMatrix;
+pub use grid::{GridMatrix, LeastOf};
+pub use information::{Information, KnownFactor};
+pub use range::Range;
 pub use study_table::{StudyTable, TableSource};
 pub use tables::tables;
 
@@ -18,12 +22,15 @@ use crate::design::{Role, saltelli_role};
 use crate::execute::outputs::EXCESS;
 use crate::plan::{Design, Factor, FactorValue, Plan};
 use crate::statistics::{
-    Blocks, Bootstrap, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
+    Blocks, Bootstrap, Confidence, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
     TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
 };
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
-use study_table::Status;
+pub(crate) use study_table::Status;
+
+/// Version of an [`Answer`] as JSON. 2: intervals of any confidence under one name, ends in place of moments where the points are no sample.
+const SCHEMA: u32 = 2;
 
 /// What a study says.
 #[derive(Clone, Debug, Serialize)]
@@ -34,6 +41,9 @@ pub struct Answer {
     pub title: String,
     /// The question; may be empty.
     pub question: String,
+    /// What the results do not show, a sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// Points of the design.
     pub points: u64,
     /// Points whose runs are there.
@@ -44,6 +54,8 @@ pub struct Answer {
     pub runs: Ended,
     /// Samples that are described: of a Saltelli design A and B alone.
     pub described: &'static str,
+    /// Of all intervals.
+    pub confidence: Confidence,
     /// The subject against each baseline.
     pub comparisons: Vec<Comparison>,
     /// Each analysed output of each car.
@@ -53,7 +65,7 @@ pub struct Answer {
     pub matrix: Option<Matrix>,
 }
 
-/// How the runs ended.
+/// How the runs of a study ended.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Ended {
     /// Fine.
@@ -73,8 +85,10 @@ pub struct Ended {
 pub struct Comparison {
     /// Name of the baseline.
     pub baseline: String,
-    /// Excess of the subject's fuel, per cent.
-    pub excess_percent: Summary,
+    /// Excess of the subject's fuel, per cent, over draws.
+    pub excess_percent: Option<Summary>,
+    /// Its ends, where the points are no sample.
+    pub excess_range: Option<Range>,
     /// Pairs in which the subject uses more.
     pub worse: Share,
 }
@@ -88,11 +102,16 @@ pub struct OutputAnswer {
     pub unit: String,
     /// Car; for an excess the baseline.
     pub car: String,
-    /// Description.
-    pub summary: Summary,
+    /// Description of draws; none where the points are no sample.
+    pub summary: Option<Summary>,
+    /// Ends of points that are no sample.
+    pub range: Option<Range>,
     /// Sobol indices of growing numbers of samples, the last of all; of a Saltelli design.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sobol: Vec<SobolIndices>,
+    /// What knowing each factor would leave of the spread; of designs that sample.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub information: Option<Information>,
     /// Of a one-at-a-time design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tornado: Option<Tornado>,
@@ -105,6 +124,15 @@ pub struct OutputAnswer {
     /// Of a grid of two factors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matrix: Option<GridMatrix>,
+}
+
+impl OutputAnswer {
+    /// Numbers of values and of points without one.
+    pub fn counts(&self) -> [u64; 2] {
+        let of_draws = self.summary.as_ref().map(|s| [s.n, s.missing]);
+        let counts = of_draws.or(self.range.as_ref().map(|r| [r.n, r.missing]));
+        counts.unwrap_or_default().map(|n| n as u64)
+    }
 }
 
 /// Rank correlations with the factors that are drawn numbers.
@@ -124,6 +152,7 @@ pub struct Ranked {
 ///
 /// use cvtcycle_config::{Problem, Problems};
 /// use cvtcycle_study::plan::Plan;
+/// use cvtcycle_study::statistics::Confidence;
 /// use cvtcycle_study::store::{Rows, Values};
 /// use cvtcycle_study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource, answer};
 ///
@@ -158,23 +187,26 @@ pub struct Ranked {
 /// let table = Memory(&study, Mutex::default());
 /// study.execute(&BTreeSet::new(), &table, &NoProgress)?;
 /// let manifest = StudyManifest::of(&study);
-/// let answer = answer(&StudyTable::new(&manifest, &table)?)?;
-/// assert_eq!((answer.points, answer.runs.ok, answer.outputs[0].summary.n), (2, 2, 2));
+/// let answer = answer(&StudyTable::new(&manifest, &table)?, Confidence::default())?;
+/// let fuel = answer.outputs[0].range.as_ref().expect("a grid is no sample");
+/// assert_eq!((answer.points, answer.runs.ok, fuel.n, fuel.least_at.as_str()), (2, 2, 2, "ambient_degc 25 °C"));
 /// # Ok::<(), Problems>(())
 /// ```
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
+pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Problem> {
     let outline = frame.outline;
+    let sample = outline.plan.design.is_sampled().then_some(confidence);
     let cars = 0..outline.cars.len();
     let rows = described(frame);
     let compare = |car: usize| -> Result<Comparison, Problem> {
         let excess = pick(&frame.numbers(EXCESS, car)?, &rows);
         Ok(Comparison {
             baseline: outline.cars[car].clone(),
-            worse: Share::above_zero(&excess),
-            excess_percent: Summary::of(&excess),
+            worse: Share::above_zero(&excess, sample),
+            excess_percent: sample.map(|confidence| Summary::of(&excess, confidence)),
+            excess_range: Range::of(&outline.plan, &excess),
         })
     };
     let mut outputs = Vec::new();
@@ -182,14 +214,15 @@ pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
         // The subject has no excess over itself.
         let first = usize::from(named.0.starts_with("subject_excess_"));
         for car in cars.clone().skip(first) {
-            outputs.push(output(frame, &rows, named, car)?);
+            outputs.push(output(frame, &rows, named, car, confidence)?);
         }
     }
     let is_done = |status: &Status| *status != Status::Missing;
     Ok(Answer {
-        schema: crate::execute::manifest::SCHEMA,
+        schema: SCHEMA,
         title: outline.title.clone(),
         question: outline.question.clone(),
+        notes: outline.notes.clone(),
         points: outline.points,
         points_done: frame.status(0).filter(is_done).count() as u64,
         cars: outline.cars.clone(),
@@ -198,6 +231,7 @@ pub fn answer(frame: &StudyTable) -> Result<Answer, Problem> {
             true => "samples A and B",
             false => "all points",
         },
+        confidence,
         comparisons: cars.skip(1).map(compare).collect::<Result<_, _>>()?,
         outputs,
         matrix: matrix(frame)?,
@@ -239,7 +273,7 @@ fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
         .collect()
 }
 
-fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
+pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
     for car in 0..frame.outline.cars.len() {
@@ -309,30 +343,42 @@ fn output(
     rows: &[bool],
     (name, unit): &(String, String),
     car: usize,
+    confidence: Confidence,
 ) -> Result<OutputAnswer, Problem> {
     let plan = &frame.outline.plan;
+    let sample = plan.design.is_sampled().then_some(confidence);
     let found = frame.numbers(name, car)?;
     let mut answer = OutputAnswer {
         output: name.clone(),
         unit: unit.clone(),
         car: frame.outline.cars[car].clone(),
-        summary: Summary::of(&pick(&found, rows)),
+        summary: sample.map(|confidence| Summary::of(&pick(&found, rows), confidence)),
+        range: Range::of(plan, &found),
         sobol: Vec::new(),
+        information: None,
         tornado: None,
         rank: None,
         levels: Vec::new(),
         matrix: GridMatrix::of(plan, &found),
     };
     match plan.design {
-        Design::Saltelli { .. } => answer.sobol = sobol(&found, plan.factors.len()),
+        Design::Saltelli { .. } => {
+            answer.sobol = sobol(&found, plan.factors.len(), confidence);
+            let last = answer.sobol.last();
+            answer.information =
+                last.and_then(|of| Information::of_indices(plan, &found, of, confidence));
+        }
         Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &found)),
         _ => {
             let as_words =
                 |f: &usize| plan.design == Design::Grid || !plan.factors[*f].values.are_numbers();
             let (levels, drawn): (Vec<usize>, Vec<usize>) =
                 (0..plan.factors.len()).partition(as_words);
-            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found));
-            let groups = |f| group_means(&words(plan, f, found.len()), &found);
+            let summary = answer.summary.as_ref();
+            answer.information = summary
+                .and_then(|summary| Information::of_draws(plan, &found, summary, confidence));
+            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found, confidence));
+            let groups = |f| group_means(&words(plan, f, found.len()), &found, sample);
             let levels = levels.into_iter();
             answer.levels = levels
                 .map(|f| (plan.factors[f].name.clone(), groups(f)))
@@ -342,7 +388,7 @@ fn output(
     Ok(answer)
 }
 
-fn ranked(plan: &Plan, drawn: &[usize], found: &[f64]) -> Ranked {
+fn ranked(plan: &Plan, drawn: &[usize], found: &[f64], confidence: Confidence) -> Ranked {
     let points = found.len().min(MAX_RANKED);
     let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(plan, f, points)).collect();
     let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
@@ -351,12 +397,12 @@ fn ranked(plan: &Plan, drawn: &[usize], found: &[f64]) -> Ranked {
             .iter()
             .map(|&f| plan.factors[f].name.clone())
             .collect(),
-        of: rank_sensitivity(&columns, &found[..points]),
+        of: rank_sensitivity(&columns, &found[..points], confidence),
     }
 }
 
 /// Splits the points of a Saltelli design into its blocks.
-fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
+fn sobol(numbers: &[f64], factors: usize, confidence: Confidence) -> Vec<SobolIndices> {
     let width = factors + 2;
     let column = |k: usize| numbers.iter().skip(k).step_by(width).copied().collect();
     let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
@@ -365,7 +411,11 @@ fn sobol(numbers: &[f64], factors: usize) -> Vec<SobolIndices> {
         b: &columns[1],
         ab: columns[2..].iter().map(Vec::as_slice).collect(),
     };
-    sobol_convergence(&blocks, Bootstrap::default())
+    let bootstrap = Bootstrap {
+        confidence,
+        ..Bootstrap::default()
+    };
+    sobol_convergence(&blocks, bootstrap)
 }
 
 /// Point 0 is the base; the others follow factor by factor.

@@ -172,6 +172,35 @@ impl<'a> StudyTable<'a> {
         self.of_car(name, car, f64::NAN, cells)
     }
 
+    /// Numbers of all cars at each point, by name and car; NaN where its run was not ok. Reads each part once.
+    ///
+    /// # Errors
+    /// A part that cannot be read.
+    pub fn by_car(&self, names: &[&str]) -> Result<Vec<Vec<Vec<f64>>>, Problem> {
+        let cars = self.outline.cars.len();
+        let mut all = vec![vec![vec![f64::NAN; self.points()]; cars]; names.len()];
+        let per_part = usize::try_from(self.outline.points_per_part).unwrap_or(usize::MAX);
+        for part in self.source.parts() {
+            let first = usize::try_from(part)
+                .unwrap_or(usize::MAX)
+                .saturating_mul(per_part);
+            let columns = self.source.columns(part, names)?;
+            for (into, values) in all.iter_mut().zip(columns) {
+                let Values::Number(cells) = values else {
+                    continue;
+                };
+                for (k, cell) in cells.into_iter().enumerate() {
+                    let point = first + k / cars;
+                    let is_ok = self.status.get(point * cars + k % cars) == Some(&Status::Ok);
+                    if let Some(into) = into[k % cars].get_mut(point).filter(|_| is_ok) {
+                        *into = cell;
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+
     /// A word of a car at each point; empty where there is none.
     ///
     /// # Errors

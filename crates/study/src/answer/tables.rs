@@ -3,24 +3,29 @@
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, csv_bytes};
 
-use super::{Answer, GridMatrix, OutputAnswer, Ranked};
+use super::{Answer, GridMatrix, Information, KnownFactor, OutputAnswer, Range, Ranked};
 use crate::execute::manifest::StudyManifest;
 use crate::statistics::{
-    Estimate, FactorIndices, Group, QUANTILES, RankFactor, SobolIndices, Tornado, TornadoBar,
-    TornadoEnd,
+    Confidence, Estimate, FactorIndices, Group, RankFactor, SobolIndices, Spread, Tornado,
+    TornadoBar, TornadoEnd,
 };
 
 /// Name and contents of every table that has rows. Numbers read back to the same `f64`; a missing one is an empty cell.
 pub fn tables(answer: &Answer, outline: &StudyManifest) -> Vec<(String, Vec<u8>)> {
     let outputs: Vec<&OutputAnswer> = answer.outputs.iter().collect();
     let sobol_rows = sobol_rows(answer, outline);
+    let of = answer.confidence;
     let files = [
-        ("statistics.csv", csv_bytes(&statistics(), &outputs)),
-        ("sobol_indices.csv", csv_bytes(&sobol(), &sobol_rows)),
+        ("statistics.csv", csv_bytes(&statistics(of), &outputs)),
+        ("sobol_indices.csv", csv_bytes(&sobol(of), &sobol_rows)),
+        (
+            "information.csv",
+            csv_bytes(&information(of), &information_rows(answer)),
+        ),
         ("tornado.csv", csv_bytes(&tornado(), &tornado_rows(answer))),
         (
             "rank_correlation.csv",
-            csv_bytes(&ranks(), &rank_rows(answer)),
+            csv_bytes(&ranks(of), &rank_rows(answer)),
         ),
         (
             "main_effects.csv",
@@ -57,33 +62,59 @@ fn end(interval: Option<[f64; 2]>, end: usize) -> Option<f64> {
     interval.map(|ends| ends[end])
 }
 
+/// Names of the two ends of an interval, with its confidence: `mean_low95` and `mean_high95`.
+fn ends(name: &str, confidence: Confidence) -> [String; 2] {
+    let level = confidence.percent();
+    ["low", "high"].map(|end| format!("{name}_{end}{level}"))
+}
+
 /// An estimate and both ends of its interval.
 fn estimate<R>(
     name: &str,
+    confidence: Confidence,
     get: impl Fn(&R) -> &Estimate + Copy + Send + Sync + 'static,
 ) -> Vec<Column<R>> {
+    let [low, high] = ends(name, confidence);
     columns! { R;
         number name.to_owned(), "", "", r => get(r).value;
-        optional format!("{name}_low95"), "", "", r => end(get(r).interval95, 0);
-        optional format!("{name}_high95"), "", "", r => end(get(r).interval95, 1);
+        optional low, "", "", r => end(get(r).interval, 0);
+        optional high, "", "", r => end(get(r).interval, 1);
     }
 }
 
-fn statistics<'a>() -> Vec<Column<&'a OutputAnswer>> {
+/// Moments and quantiles of draws, ends of what is no sample.
+fn statistics<'a>(confidence: Confidence) -> Vec<Column<&'a OutputAnswer>> {
     let mut list = of_output_in_unit(|o: &&'a OutputAnswer| o);
+    let [low, high] = ends("mean", confidence);
+    fn spread(o: &OutputAnswer, of: fn(&Spread) -> f64) -> Option<f64> {
+        o.summary.as_ref().map(|s| of(&s.spread))
+    }
+    fn mean(o: &OutputAnswer, k: usize) -> Option<f64> {
+        end(o.summary.as_ref()?.mean_interval, k)
+    }
+    fn range(o: &OutputAnswer, of: fn(&Range) -> Option<f64>) -> Option<f64> {
+        o.range.as_ref().and_then(of)
+    }
+    fn at(o: &OutputAnswer, of: fn(&Range) -> &String) -> String {
+        o.range
+            .as_ref()
+            .map_or_else(String::new, |range| of(range).clone())
+    }
     list.extend(columns! { &'a OutputAnswer;
-        count "n", "", "", o => o.summary.n as u64;
-        count "missing", "", "", o => o.summary.missing as u64;
-        number "mean", "", "", o => o.summary.mean;
-        optional "mean_low95", "", "", o => end(o.summary.mean_interval95, 0);
-        optional "mean_high95", "", "", o => end(o.summary.mean_interval95, 1);
-        number "sd", "", "", o => o.summary.sd;
-        number "min", "", "", o => o.summary.min;
-        number "max", "", "", o => o.summary.max;
+        count "n", "", "", o => o.counts()[0];
+        count "missing", "", "", o => o.counts()[1];
+        optional "mean", "", "", o => spread(o, |s| s.mean);
+        optional low, "", "", o => mean(o, 0);
+        optional high, "", "", o => mean(o, 1);
+        optional "sd", "", "", o => spread(o, |s| s.sd);
+        optional "min", "", "", o => spread(o, |s| s.min).or(range(o, |r| r.least));
+        optional "max", "", "", o => spread(o, |s| s.max).or(range(o, |r| r.largest));
+        text "min_at", "", "", o => at(o, |r| &r.least_at);
+        text "max_at", "", "", o => at(o, |r| &r.largest_at);
     });
-    list.extend(QUANTILES.iter().map(|p| {
-        let quantile = |o: &&OutputAnswer| o.summary.quantile(*p);
-        Column::number(format!("quantile_{p}"), "", "", quantile)
+    list.extend(confidence.quantiles().into_iter().map(|p| {
+        let quantile = move |o: &&OutputAnswer| o.summary.as_ref().map(|s| s.quantile(p));
+        Column::optional(format!("quantile_{p}"), "", "", quantile)
     }));
     list
 }
@@ -106,14 +137,48 @@ fn sobol_rows<'a>(answer: &'a Answer, outline: &'a StudyManifest) -> Vec<SobolRo
     rows
 }
 
-fn sobol<'a>() -> Vec<Column<SobolRow<'a>>> {
+fn sobol<'a>(confidence: Confidence) -> Vec<Column<SobolRow<'a>>> {
     let mut list = of_output(|r: &SobolRow<'a>| r.0);
     list.extend(columns! { SobolRow<'a>;
         count "samples", "", "", r => r.1.samples as u64;
         text "factor", "", "", r => r.2.to_owned();
     });
-    list.extend(estimate("first", |r: &SobolRow| &r.3.first));
-    list.extend(estimate("total", |r: &SobolRow| &r.3.total));
+    list.extend(estimate("first", confidence, |r: &SobolRow| &r.3.first));
+    list.extend(estimate("total", confidence, |r: &SobolRow| &r.3.total));
+    list
+}
+
+/// Output, what is worth knowing of it, and a factor.
+type InformationRow<'a> = (&'a OutputAnswer, &'a Information, &'a KnownFactor);
+
+fn information_rows(answer: &Answer) -> Vec<InformationRow<'_>> {
+    let mut rows = Vec::new();
+    for output in &answer.outputs {
+        if let Some(of) = &output.information {
+            rows.extend(of.factors.iter().map(|factor| (output, of, factor)));
+        }
+    }
+    rows
+}
+
+fn information<'a>(confidence: Confidence) -> Vec<Column<InformationRow<'a>>> {
+    let mut list = of_output_in_unit(|r: &InformationRow<'a>| r.0);
+    list.extend(columns! { InformationRow<'a>;
+        count "n", "", "", r => r.1.n as u64;
+        number "sd", "", "", r => r.1.sd;
+        number "noise", "", "", r => r.1.noise;
+        text "factor", "", "", r => r.2.name.clone();
+    });
+    list.extend(estimate("share", confidence, |r: &InformationRow| {
+        &r.2.share
+    }));
+    list.extend(estimate("sd_left", confidence, |r: &InformationRow| {
+        &r.2.sd_left
+    }));
+    list.extend(columns! { InformationRow<'a>;
+        text "above_chance", "", "", r => r.2.above_chance.to_string();
+        text "next_test", "", "", r => r.2.test.clone();
+    });
     list
 }
 
@@ -143,33 +208,47 @@ fn matrix<'a>() -> Vec<Column<MatrixRow<'a>>> {
     list
 }
 
-type TornadoRow<'a> = (&'a OutputAnswer, &'a Tornado, &'a TornadoBar);
+/// Output, its tornado, factor and level.
+type TornadoRow<'a> = (
+    &'a OutputAnswer,
+    &'a Tornado,
+    &'a TornadoBar,
+    &'a TornadoEnd,
+);
 
 fn tornado_rows(answer: &Answer) -> Vec<TornadoRow<'_>> {
-    let with = answer
-        .outputs
-        .iter()
-        .filter_map(|output| Some((output, output.tornado.as_ref()?)));
-    with.flat_map(|(output, tornado)| tornado.bars.iter().map(move |bar| (output, tornado, bar)))
-        .collect()
+    let mut rows = Vec::new();
+    for output in &answer.outputs {
+        if let Some(tornado) = &output.tornado {
+            for bar in &tornado.bars {
+                rows.extend(
+                    bar.entries
+                        .iter()
+                        .map(|entry| (output, tornado, bar, entry)),
+                );
+            }
+        }
+    }
+    rows
 }
 
 fn tornado<'a>() -> Vec<Column<TornadoRow<'a>>> {
-    fn label(end: &Option<TornadoEnd>) -> String {
-        end.as_ref()
-            .map_or_else(String::new, |end| end.label.clone())
-    }
-    fn output(end: &Option<TornadoEnd>) -> Option<f64> {
-        end.as_ref().map(|end| end.output)
+    /// Which end of the bar the level is.
+    fn end((_, _, bar, level): &TornadoRow) -> &'static str {
+        match (&bar.low, &bar.high) {
+            (Some(low), _) if low == *level => "low",
+            (_, Some(high)) if high == *level => "high",
+            _ => "",
+        }
     }
     let mut list = of_output_in_unit(|r: &TornadoRow<'a>| r.0);
     list.extend(columns! { TornadoRow<'a>;
         number "base", "", "", r => r.1.base;
         text "factor", "", "", r => r.2.name.clone();
-        text "low", "", "", r => label(&r.2.low);
-        optional "output_at_low", "", "", r => output(&r.2.low);
-        text "high", "", "", r => label(&r.2.high);
-        optional "output_at_high", "", "", r => output(&r.2.high);
+        text "level", "", "", r => r.3.label.clone();
+        number "value", "", "", r => r.3.output;
+        number "effect", "", "", r => r.3.effect;
+        text "end", "", "", r => end(r).to_owned();
         number "swing", "", "", r => r.2.swing;
     });
     list
@@ -189,15 +268,19 @@ fn rank_rows(answer: &Answer) -> Vec<RankRow<'_>> {
     rows
 }
 
-fn ranks<'a>() -> Vec<Column<RankRow<'a>>> {
+fn ranks<'a>(confidence: Confidence) -> Vec<Column<RankRow<'a>>> {
     let mut list = of_output(|r: &RankRow<'a>| r.0);
     list.extend(columns! { RankRow<'a>;
         count "n", "", "", r => r.1.of.n as u64;
         number "r_squared", "", "", r => r.1.of.r_squared;
         text "factor", "", "", r => r.2.to_owned();
     });
-    list.extend(estimate("spearman", |r: &RankRow| &r.3.spearman));
-    list.extend(estimate("regression", |r: &RankRow| &r.3.regression));
+    list.extend(estimate("spearman", confidence, |r: &RankRow| {
+        &r.3.spearman
+    }));
+    list.extend(estimate("regression", confidence, |r: &RankRow| {
+        &r.3.regression
+    }));
     list
 }
 

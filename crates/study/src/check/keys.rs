@@ -40,7 +40,10 @@ keys! {
 
 keys! {
     /// Keys of `[[row]]`.
-    ROW: RowKeys = "row" [CauseKeys::TABLE.repeated(Repeat::Optional)] {
+    ROW: RowKeys = "row" [
+        CauseKeys::TABLE.repeated(Repeat::Optional),
+        AboutKeys::TABLE.repeated(Repeat::Optional),
+    ] {
         id: text(), "identifier, unique over all files";
         chapter: text(), "chapter of the thesis, or a word for the user's own rows";
         mechanism: words(&MECHANISM_CHOICES, "user"), "page of the book";
@@ -73,6 +76,18 @@ keys! {
         what: text(), "what the number is";
         unit: or_word("-", text()), "its unit";
         compute: text(), "how it is computed";
+    }
+}
+
+keys! {
+    /// Keys of the `about` of a row: the run whose headline it is.
+    ABOUT: AboutKeys = "about" [] {
+        subject: text(), "vehicle of the run";
+        baseline: optional(text()), "vehicle that its fuel is compared with; without it the row is the fuel itself";
+        cycle: text(), "cycle of the run";
+        ambient_degc: within(AMBIENT), "ambient temperature of the run";
+        start: words(&STARTS, "soak"), "temperatures at its start";
+        phase: optional(text()), "group of phases; the whole cycle if absent";
     }
 }
 

@@ -14,6 +14,7 @@
 //! | `judge` | the vehicle that is validated, and verdicts of the rows |
 //! | `rule` | the rule from computed and printed to a verdict |
 //! | `report` | JSON, CSV, Markdown |
+//! | `published` | rows that are the headline of a run |
 //! | `power` | which change of the cars flips the verdict of a row |
 
 pub(crate) mod checks;
@@ -21,6 +22,7 @@ pub mod expr;
 pub mod judge;
 pub mod keys;
 pub mod power;
+mod published;
 pub mod report;
 mod read;
 pub(crate) mod rows;
@@ -37,7 +39,8 @@ pub use expr::Computed;
 pub use judge::{CandidateVehicle, HeldOut, Judged, Report, judge};
 pub use keys::MECHANISMS;
 pub use power::{Perturbations, PowerReport, RowPower, Strength};
+pub use published::published;
 pub use read::read;
 pub use report::{computed_text, csv, json, markdown, notes_line, unit_text};
-pub use rows::{Cause, RowFile, Tolerance, ValidationRow};
+pub use rows::{About, Cause, RowFile, Tolerance, ValidationRow};
 pub use rule::{Fleet, Group, Printed, Verdict};

@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 
 use super::checks::{FileNames, complete, expression, printed};
-use super::keys::{CAUSE, FILE, ROW, TOLERANCE};
-use super::rows::{Cause, RowFile, Tolerance, ValidationRow};
+use super::keys::{ABOUT, CAUSE, FILE, ROW, TOLERANCE};
+use super::rows::{About, Cause, RowFile, Tolerance, ValidationRow};
 use super::rule::{Group, Printed, Verdict};
 use super::source::{self, Source};
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
 use cvtcycle_config::setup::catalogue;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
+use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::Values;
 
 /// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
@@ -185,6 +186,7 @@ impl Head<'_> {
             fitted_to: self.fitted(s),
             remark: text(&ROW.remark),
             cause: self.cause(s),
+            about: about(s),
             id,
             chapter,
             mechanism,
@@ -275,6 +277,19 @@ impl Head<'_> {
             compute: expression(&s, "compute", &text, &self.names)?,
         })
     }
+}
+
+/// The run that a row is about, if it says so.
+fn about(row: &Section) -> Option<About> {
+    let s = row.table("about");
+    s.exists().then(|| About {
+        subject: Values::text(&s, &ABOUT.subject),
+        baseline: s.optional_text(&ABOUT.baseline),
+        cycle: Values::text(&s, &ABOUT.cycle),
+        ambient_degc: s.number(&ABOUT.ambient_degc) - ZERO_DEGC_K,
+        start: s.word(&ABOUT.start).to_owned(),
+        phase: s.optional_text(&ABOUT.phase),
+    })
 }
 
 /// Widths of a tolerance below and above what is printed, in the unit of the row.

@@ -1,7 +1,7 @@
 //! Validation files as read: tolerances, sources and rows.
 
-use super::expr::Expr;
-use super::rule::{Group, Printed, Verdict};
+use super::expr::{Computed, Expr};
+use super::rule::{Group, Printed, Verdict, verdict};
 use super::source::Source;
 use cvtcycle_config::Place;
 
@@ -29,6 +29,23 @@ pub struct Cause {
     pub unit: String,
     /// How it is computed.
     pub compute: Expr,
+}
+
+/// The run whose headline a row is: its fuel over that of a baseline, or its fuel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct About {
+    /// Vehicle.
+    pub subject: String,
+    /// Vehicle that its fuel is compared with; none for the fuel itself.
+    pub baseline: Option<String>,
+    /// Name of the cycle.
+    pub cycle: String,
+    /// Ambient temperature, degC.
+    pub ambient_degc: f64,
+    /// `soak` or `warm`.
+    pub start: String,
+    /// Group of phases; none for the whole cycle.
+    pub phase: Option<String>,
 }
 
 /// One row.
@@ -64,6 +81,8 @@ pub struct ValidationRow {
     pub data: String,
     /// Parameters that were fitted to this number.
     pub fitted_to: Vec<String>,
+    /// The run whose headline it is.
+    pub about: Option<About>,
     /// Recorded verdict.
     pub recorded: Option<Verdict>,
     /// Why it differs or cannot be compared.
@@ -86,6 +105,22 @@ impl ValidationRow {
             && self.fitted_to.is_empty()
             && self.kind != "C"
             && self.recorded != Some(Verdict::Identity)
+    }
+}
+
+impl ValidationRow {
+    /// Whether a number is another one than the row has, by the rule of its verdict.
+    #[must_use]
+    pub fn contradicts(&self, computed: f64) -> bool {
+        let verdict = |printed| {
+            verdict(
+                &Computed::Number(computed),
+                printed,
+                self.tolerance_widths,
+                false,
+            )
+        };
+        self.printed.map(verdict) == Some(Verdict::Differs)
     }
 }
 

@@ -1,12 +1,17 @@
 //! The cars of a study, and how each factor reaches each of them.
+//!
+//! They are those of the plan, subject and baselines, or [`Column`]s: vehicles with changes of their own. All cars of a point have the same
+//! draw, so that two columns of one vehicle differ by their changes alone.
 
 use std::sync::{Arc, OnceLock};
 
-use crate::plan::{Acts, Base, Cars, Factor, FactorValue, Plan};
+use crate::plan::{Acts, Base, Cars, Factor, FactorValue, Plan, RUN_OPTIONS};
 use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, is_twin};
-use cvtcycle_config::{Override, Problem, ProblemKind, Problems};
+use cvtcycle_config::{Bound, Override, Problem, ProblemKind, Problems};
+use cvtcycle_model::keys::Kind;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
+use cvtcycle_output::provenance::car_sha256;
 
 /// Largest number of combinations of words of a car: each keeps its documents in memory.
 pub const MAX_VARIANTS: usize = 4096;
@@ -44,15 +49,41 @@ pub(super) struct CarVariant {
     pub setup: Setup,
 }
 
+/// A car that the plan does not name: a vehicle with changes of its own.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Name in the table, unique within the study.
+    pub name: String,
+    /// What it is in the study, a word.
+    pub role: String,
+    /// Name or path of its file.
+    pub word: String,
+    /// Whether it is varied as the subject of the plan is, and not as its baselines are.
+    pub is_subject: bool,
+    /// Its ambient temperature, degC.
+    pub ambient_degc: f64,
+    /// Its changes: overrides and fluids. A relative one acts on what the draw has made of the value.
+    pub options: Options,
+    /// Factors that do not act on it.
+    pub left_out: Vec<usize>,
+}
+
 /// A car of a study.
 pub struct StudyCar {
     /// Name in the table, unique within the study.
     pub name: Arc<str>,
-    /// `subject` or `baseline`.
+    /// `subject` or `baseline`, or that of a column.
     pub role: Arc<str>,
     /// Name or path of its file.
     pub word: String,
+    /// Ambient temperature of its own, degC.
+    pub ambient_degc: Option<f64>,
+    /// Factors that would act on it, but for a key that it does not have.
+    pub missing: Vec<usize>,
     pub(super) bindings: Vec<Binding>,
+    /// Of each factor what is done with its value afterwards.
+    then: Vec<Vec<Override>>,
+    clip: bool,
     options: Options,
     variants: Vec<OnceLock<Result<CarVariant, Problems>>>,
 }
@@ -61,30 +92,137 @@ impl StudyCar {
     /// A car of the plan.
     ///
     /// # Errors
-    /// A problem at the factor with which the words have more than [`MAX_VARIANTS`] combinations.
-    pub(super) fn new(name: &str, word: &str, subject: bool, plan: &Plan) -> Result<Self, Problem> {
-        let mut stride = 1_usize;
-        let mut bindings = Vec::with_capacity(plan.factors.len());
-        for factor in &plan.factors {
-            bindings.push(binding(factor, subject, stride));
-            if matches!(bindings.last(), Some(Binding::Words { .. })) {
-                stride = stride.saturating_mul(words(factor).len() + 1);
-            }
-            if stride > MAX_VARIANTS {
-                return Err(too_many(factor));
-            }
-        }
-        Ok(StudyCar {
+    /// A problem at the factor with which the words have more than [`MAX_VARIANTS`] combinations; of a plan that skips what is missing the
+    /// problems of the car as well.
+    pub(super) fn new(
+        name: &str,
+        word: &str,
+        subject: bool,
+        plan: &Plan,
+    ) -> Result<Self, Problems> {
+        let options = match is_twin(word) {
+            true => options(&plan.base, true).of_twin(NamedBy::File),
+            false => options(&plan.base, subject),
+        };
+        let car = StudyCar {
             name: name.into(),
             role: if subject { "subject" } else { "baseline" }.into(),
             word: word.to_owned(),
-            bindings,
-            options: match is_twin(word) {
-                true => options(&plan.base, true).of_twin(NamedBy::File),
-                false => options(&plan.base, subject),
-            },
-            variants: (0..stride).map(|_| OnceLock::new()).collect(),
-        })
+            ambient_degc: None,
+            missing: Vec::new(),
+            bindings: Vec::new(),
+            then: vec![Vec::new(); plan.factors.len()],
+            clip: plan.clip,
+            options,
+            variants: Vec::new(),
+        };
+        car.bound(plan, subject, &[])
+    }
+
+    /// A column of a study of this plan.
+    ///
+    /// # Errors
+    /// As those of a car.
+    pub(super) fn of_column(column: &Column, plan: &Plan) -> Result<Self, Problems> {
+        let acts_on = |factor: &Factor, by: &Override| {
+            by.acts() != Acts::Value
+                && by.key() == factor.key
+                && matches!(binding(factor, column.is_subject, 1), Binding::Number(_))
+        };
+        let mut then = vec![Vec::new(); plan.factors.len()];
+        let mut options = column.options.clone();
+        options.set.retain(|by| {
+            let mut factors = (0..plan.factors.len()).filter(|f| !column.left_out.contains(f));
+            let factor = factors.find(|f| acts_on(&plan.factors[*f], by));
+            factor.is_none_or(|f| {
+                then[f].push(by.clone());
+                false
+            })
+        });
+        let car = StudyCar {
+            name: column.name.as_str().into(),
+            role: column.role.as_str().into(),
+            word: column.word.clone(),
+            ambient_degc: Some(column.ambient_degc),
+            missing: Vec::new(),
+            bindings: Vec::new(),
+            then,
+            clip: plan.clip,
+            options,
+            variants: Vec::new(),
+        };
+        car.bound(plan, column.is_subject, &column.left_out)
+    }
+
+    /// With the way in which each factor reaches it.
+    fn bound(mut self, plan: &Plan, subject: bool, left_out: &[usize]) -> Result<Self, Problems> {
+        let template = match plan.skip_missing {
+            true => Some(VehicleTemplate::load(&self.word, &self.options)?.0),
+            false => None,
+        };
+        let mut stride = 1_usize;
+        for (index, factor) in plan.factors.iter().enumerate() {
+            let mut binding = match left_out.contains(&index) {
+                true => Binding::Not,
+                false => binding(factor, subject, stride),
+            };
+            let acts = binding != Binding::Not;
+            if let Some(template) = template.as_ref().filter(|_| acts)
+                && self.is_missing(factor, template)
+            {
+                binding = Binding::Not;
+                self.missing.push(index);
+            }
+            self.bindings.push(binding);
+            if matches!(binding, Binding::Words { .. }) {
+                stride = stride.saturating_mul(words(factor).len() + 1);
+            }
+            if stride > MAX_VARIANTS {
+                return Err(too_many(factor).into());
+            }
+        }
+        self.variants = (0..stride).map(|_| OnceLock::new()).collect();
+        Ok(self)
+    }
+
+    /// Whether the key of a factor is none of the car's: unknown, of an option that is not chosen, or without a value to act on.
+    fn is_missing(&self, factor: &Factor, template: &VehicleTemplate) -> bool {
+        if RUN_OPTIONS.contains(&factor.key.as_str()) {
+            return false;
+        }
+        if factor.values.are_numbers() {
+            let slot = template.slot(&factor.key);
+            let is_there = |slot: &ParameterRef| slot.is_active() && !slot.base().is_nan();
+            return !slot.is_ok_and(|slot| is_there(&slot));
+        }
+        // A twin has keys that no word can be set for: they follow from its car.
+        let word = words(factor).into_iter().next();
+        let set = word.and_then(|word| Override::new(&factor.key, &word).ok());
+        let mut options = self.options.clone();
+        options.set.extend(set);
+        !template.has(&factor.key) || VehicleTemplate::load(&self.word, &options).is_err()
+    }
+
+    /// What a number of a factor makes of the value of the car's file, before it is held in the range of its key.
+    pub(super) fn drawn(&self, factor: usize, acts: Acts, base: f64, number: f64) -> f64 {
+        let change = |x: f64, by: &Override| by.number_over(Some(x)).unwrap_or(x);
+        let then = &self.then[factor];
+        then.iter().fold(acts.resolved(base, number), change)
+    }
+
+    /// As [`StudyCar::drawn`], held in the range of the key where the plan says so.
+    pub(super) fn resolved(
+        &self,
+        (index, factor): (usize, &Factor),
+        acts: Acts,
+        base: f64,
+        number: f64,
+    ) -> f64 {
+        let value = self.drawn(index, acts, base, number);
+        match bound_of(factor).filter(|_| self.clip) {
+            Some(bound) => clipped(value, bound),
+            None => value,
+        }
     }
 
     /// The weight of a factor's value in the index of the variant; 0 for what is no word of this car.
@@ -93,6 +231,12 @@ impl StudyCar {
             (Binding::Words { stride }, Some(value)) => of.entry_of(value) * stride,
             _ => 0,
         }
+    }
+
+    /// Hash of the car as its files have it; empty of a car that cannot be read.
+    pub fn sha256(&self, factors: &[Factor]) -> String {
+        let variant = self.variant(0, factors);
+        variant.map_or_else(|_| String::new(), |variant| car_sha256(&variant.setup))
     }
 
     /// A variant, made when it is first asked for; its problems if its words do not go together.
@@ -193,6 +337,29 @@ fn options(base: &Base, subject: bool) -> Options {
         set: base.set_all.iter().chain(own).cloned().collect(),
         formulation: base.formulation,
         named_by: NamedBy::File,
+    }
+}
+
+/// Range of the numbers of a factor's key, in its unit.
+pub(super) fn bound_of(factor: &Factor) -> Option<Bound> {
+    match Override::number(&factor.key, 0.0).row()?.kind {
+        Kind::Number(bound) => Some(bound),
+        _ => None,
+    }
+}
+
+/// The nearest value of a range; an end that is not in it is passed by.
+fn clipped(value: f64, bound: Bound) -> f64 {
+    let low = match bound.includes_low() {
+        true => bound.low(),
+        false => bound.low().next_up(),
+    };
+    if value < low {
+        low
+    } else if value > bound.high() {
+        bound.high()
+    } else {
+        value
     }
 }
 

@@ -24,7 +24,7 @@ impl Study {
             kind: Some("study".to_owned()),
             ..Manifest::new(SCHEMA)
         };
-        let rest = json!({
+        let mut rest = json!({
             "title": plan.title,
             "question": plan.question,
             "plan_sha256": hash(plan.text.as_bytes()),
@@ -42,6 +42,12 @@ impl Study {
             "trace_columns": columns(&self.trace_columns),
             "cars": self.cars.iter().map(|car| self.car_values(car)).collect::<Vec<_>>(),
         });
+        if !self.notes.is_empty() {
+            rest["notes"] = json!(self.notes);
+        }
+        if let Some(levers) = &self.levers {
+            rest["levers"] = levers.clone();
+        }
         let value = manifest.of_run(&rest).with(&rest);
         let text = serde_json::to_string_pretty(&value).unwrap_or_default();
         text + "\n"
@@ -105,10 +111,14 @@ fn factor(factor: &Factor) -> Value {
         FactorValues::List(list) => list.iter().map(entry).collect(),
         FactorValues::Distribution(distribution) => json!(format!("{distribution:?}")),
     };
-    json!({
+    let mut value = json!({
         "key": factor.key, "name": factor.name, "unit": factor.unit, "cars": factor.cars, "acts": factor.acts, "values": values,
         "status": factor.status, "source": factor.source,
-    })
+    });
+    if !factor.test.is_empty() {
+        value["test"] = json!(factor.test);
+    }
+    value
 }
 
 fn entry(value: &FactorValue) -> Value {
@@ -129,6 +139,8 @@ pub struct StudyManifest {
     pub cars: Vec<String>,
     /// Phase groups.
     pub phases: Vec<String>,
+    /// What the results do not show, a sentence each.
+    pub notes: Vec<String>,
     /// Names and units of the numbers that are analysed.
     pub analysed: Vec<(String, String)>,
     /// Names and units of the columns of the table of runs.
@@ -139,6 +151,8 @@ pub struct StudyManifest {
     pub points_per_part: u64,
     /// Factors and design.
     pub plan: Plan,
+    /// What its columns are, where they are changes of cars.
+    pub levers: Option<Value>,
 }
 
 /// The entries of `study.json` that are read.
@@ -148,6 +162,8 @@ struct Stored {
     manifest: Manifest,
     title: String,
     question: String,
+    #[serde(default)]
+    notes: Vec<String>,
     design: Design,
     points: u64,
     points_per_part: u64,
@@ -155,6 +171,8 @@ struct Stored {
     phases: Vec<String>,
     columns: Vec<StoredColumn>,
     cars: Vec<StoredCar>,
+    #[serde(default)]
+    levers: Option<Value>,
 }
 
 #[derive(Deserialize)]
@@ -176,6 +194,7 @@ impl StudyManifest {
         StudyManifest {
             title: study.plan.title.clone(),
             question: study.plan.question.clone(),
+            notes: study.notes.clone(),
             cars: study.cars.iter().map(|car| car.name.to_string()).collect(),
             phases: study.phases.clone(),
             analysed: analysed(&study.analysed(), &columns),
@@ -183,6 +202,7 @@ impl StudyManifest {
             points: study.points,
             points_per_part: study.points_per_part(),
             plan: study.plan.clone(),
+            levers: study.levers.clone(),
         }
     }
 
@@ -216,6 +236,7 @@ impl StudyManifest {
         Ok(StudyManifest {
             title: stored.title,
             question: stored.question,
+            notes: stored.notes,
             cars: stored.cars.into_iter().map(|car| car.name).collect(),
             phases: stored.phases,
             analysed: analysed(&stored.analyse, &columns),
@@ -223,6 +244,7 @@ impl StudyManifest {
             points,
             points_per_part,
             plan,
+            levers: stored.levers,
         })
     }
 

@@ -7,14 +7,18 @@
 mod cars;
 pub mod manifest;
 pub mod outputs;
+mod notes;
 mod point;
 mod preflight;
 mod prepare;
+mod relative;
 mod rows;
+pub mod side_effects;
 
-pub use cars::StudyCar;
+pub use cars::{Column, StudyCar};
 pub use manifest::StudyManifest;
-pub use prepare::Study;
+pub use prepare::{Columns, Study};
+pub use relative::relative;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;

@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::cars::{Binding, StudyCar};
-use super::preflight::resolved;
+use super::cars::{Binding, StudyCar, bound_of};
 use super::prepare::Study;
 use super::rows::{PointRun, Status, Traces};
+use super::side_effects::SideEffects;
 use crate::plan::{Acts, Factor, FactorValue, Plan};
 use cvtcycle_config::Problem;
+use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
 use cvtcycle_model::drive::{Conditions, Row, Start, drive_into};
@@ -54,12 +55,50 @@ impl Study {
                 values: &values,
             };
             let (run, summary) = at.run(worker, subject.as_ref(), traces.as_deref_mut());
-            if index == 0 {
+            if index == 0 && self.sides.is_none() {
                 subject = summary;
             }
             runs.push(run);
         }
         runs
+    }
+}
+
+impl Study {
+    /// A number of each car at the first point, with whether its run is fine; NaN where there is none.
+    pub(crate) fn first_point(&self, output: &str) -> Vec<(f64, bool)> {
+        let at = self.outputs.iter().position(|column| column.name == output);
+        let runs = self.point(0, &mut Worker::default(), None);
+        let number = |run: PointRun| {
+            let number = at.and_then(|at| run.numbers.get(at).copied());
+            (number.unwrap_or(f64::NAN), run.status == Status::Ok)
+        };
+        runs.into_iter().map(number).collect()
+    }
+
+    /// Factors of a car with draws outside the range of their keys, and their numbers of such draws.
+    pub(crate) fn held(&self, car: &StudyCar) -> Vec<(usize, usize)> {
+        let Plan {
+            factors, design, ..
+        } = &self.plan;
+        let Ok(variant) = car.variant(0, factors) else {
+            return Vec::new();
+        };
+        let count = |(f, factor): (usize, &Factor)| {
+            let (Binding::Number(acts), Some(slot), Some(bound)) =
+                (car.bindings[f], &variant.slots[f], bound_of(factor))
+            else {
+                return None;
+            };
+            let draws = (0..self.points).filter_map(|point| {
+                let value = factor.value(design.level(factors, point, f))?;
+                value.number()
+            });
+            let outside = |x: &f64| !bound.contains(car.drawn(f, acts, slot.base(), *x));
+            let held = draws.filter(outside).count();
+            (held > 0).then_some((f, held))
+        };
+        factors.iter().enumerate().filter_map(count).collect()
     }
 }
 
@@ -79,18 +118,19 @@ impl CarAtPoint<'_> {
                 let run = PointRun {
                     status: Status::NotRun(reason),
                     factors,
-                    numbers: vec![f64::NAN; outputs.len()],
+                    numbers: vec![f64::NAN; self.study.numbers()],
                 };
                 return (run, None);
             }
         };
         let conditions = self.conditions();
-        let outcome = match traces {
-            Some(traces) => {
-                let mut push = |rows: &[Row]| traces.push(cycle, rows);
+        let mut sides = self.study.sides.map(SideEffects::new);
+        let outcome = match (traces, &mut sides) {
+            (None, None) => drive_into(&setup, cycle, &conditions, None),
+            (traces, sides) => {
+                let mut push = watched(cycle, traces, sides.as_mut());
                 drive_into(&setup, cycle, &conditions, Some(&mut push))
             }
-            None => drive_into(&setup, cycle, &conditions, None),
         };
         let formulation = self.option("formulation").map(FactorValue::to_string);
         let settings = Settings {
@@ -107,10 +147,9 @@ impl CarAtPoint<'_> {
         let excess = subject.map(|subject| compare(subject, &summary));
         let status = status(&summary);
         let row = (summary, excess);
-        let numbers = outputs
-            .iter()
-            .map(|column| column.number_of(&row))
-            .collect();
+        let numbers = outputs.iter().map(|column| column.number_of(&row));
+        let extra = sides.iter().flat_map(SideEffects::numbers);
+        let numbers = numbers.chain(extra).collect();
         let run = PointRun {
             status,
             factors,
@@ -159,15 +198,21 @@ impl CarAtPoint<'_> {
     fn resolve(&self, f: usize, base: Option<f64>) -> Option<FactorValue> {
         let value = self.values[f].as_ref();
         let own = &self.study.plan.base;
-        let number = |acts, base: f64| match value {
-            Some(FactorValue::Number(x)) => FactorValue::Number(resolved(acts, base, *x)),
+        let factor = (f, &self.study.plan.factors[f]);
+        let number = |acts: Acts, base: f64| match value {
+            Some(FactorValue::Number(x)) => {
+                FactorValue::Number(self.car.resolved(factor, acts, base, *x))
+            }
             Some(word) => word.clone(),
             None => FactorValue::Number(base),
         };
         match self.car.bindings[f] {
             Binding::Not => None,
             Binding::Number(acts) => base.map(|base| number(acts, base)),
-            Binding::Ambient => Some(number(Acts::Value, own.ambient_degc)),
+            Binding::Ambient => {
+                let ambient_degc = self.car.ambient_degc.unwrap_or(own.ambient_degc);
+                Some(number(Acts::Value, ambient_degc))
+            }
             Binding::Step => Some(number(Acts::Value, own.dt_s)),
             Binding::Start | Binding::Cycle | Binding::Words { .. } => {
                 value.cloned().or_else(|| self.own_word(f))
@@ -233,11 +278,28 @@ impl CarAtPoint<'_> {
             Some(FactorValue::Word(word)) => start(word),
             None => start(&base.start),
         };
+        let ambient_degc = self.car.ambient_degc.unwrap_or(base.ambient_degc);
         Conditions {
-            ambient_k: number("ambient_degc", base.ambient_degc) + ZERO_DEGC_K,
+            ambient_k: number("ambient_degc", ambient_degc) + ZERO_DEGC_K,
             start,
             max_dt_s: number("dt_s", base.dt_s),
             keep_rows: false,
+        }
+    }
+}
+
+/// Hands the rows of a run on to whatever is kept of them.
+fn watched<'a>(
+    cycle: &'a Cycle,
+    mut traces: Option<&'a mut Traces>,
+    mut sides: Option<&'a mut SideEffects>,
+) -> impl FnMut(&[Row]) {
+    move |rows| {
+        if let Some(traces) = &mut traces {
+            traces.push(cycle, rows);
+        }
+        if let Some(sides) = &mut sides {
+            sides.see(rows);
         }
     }
 }

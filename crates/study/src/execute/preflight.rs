@@ -9,27 +9,20 @@ pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mu
     let factor = &plan.factors[index];
     for car in cars {
         match car.bindings[index] {
+            // What is held in its range by itself is left to the points.
+            Binding::Number(_) if plan.clip => {}
             Binding::Number(acts) => numbers(plan, index, car, acts, problems),
             Binding::Words { stride } => variants(plan, index, car, stride, problems),
             Binding::Not | Binding::Ambient | Binding::Start | Binding::Cycle | Binding::Step => {}
         }
     }
     let is_not = |car: &StudyCar| car.bindings[index] == Binding::Not;
-    if cars.iter().all(is_not) && !cars.is_empty() {
+    if cars.iter().all(is_not) && !cars.is_empty() && !plan.skip_missing {
         let message = "the study has no baseline, so no car has this factor";
         let problem = Problem::conflict(message)
             .at(place(factor, None))
             .key(factor.key.as_str());
         problems.push(problem.hint("name baselines, or give `cars = \"subject\"`"));
-    }
-}
-
-/// What a number makes of the value of the car's file.
-pub(super) fn resolved(acts: Acts, base: f64, number: f64) -> f64 {
-    match acts {
-        Acts::Value => number,
-        Acts::Scale => base * number,
-        Acts::Offset => base + number,
     }
 }
 
@@ -49,7 +42,7 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
     };
     let mut bench = variant.blueprint.bench();
     for (entry, number) in extremes(plan, index) {
-        let value = resolved(acts, slot.base(), number);
+        let value = car.drawn(index, acts, slot.base(), number);
         bench.reset();
         bench.set(slot, value);
         if bench.build().is_ok() || goes_with_another(plan, index, car, variant, value) {
@@ -78,7 +71,7 @@ fn goes_with_another(
         extremes(plan, other).into_iter().any(|(_, number)| {
             bench.reset();
             bench.set(slot, value);
-            bench.set(partner, resolved(acts, partner.base(), number));
+            bench.set(partner, car.drawn(other, acts, partner.base(), number));
             bench.build().is_ok()
         })
     };

@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::cars::{StudyCar, words};
+use super::cars::{Column, StudyCar, words};
+use super::notes::notes;
 use super::outputs::{EXCESS, FUEL, Run, outputs, phase_excess, phase_fuel};
+use super::side_effects::SideEffects;
 use crate::plan::{Keep, Plan};
 use crate::store::{Head, Kind};
 use cvtcycle_config::ProblemKind::{self, TooLarge, UnknownName};
@@ -12,8 +14,9 @@ use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::{TWIN, baseline_of, is_path, name_of};
 use cvtcycle_config::{Argument, Input, Place, Problem, Problems, did_you_mean, unit_of};
 use cvtcycle_output::Component;
-use cvtcycle_output::table::Column;
+use cvtcycle_output::table::Column as OutputColumn;
 use cvtcycle_output::trace::{COLUMNS, TraceColumn};
+use serde_json::Value;
 
 /// A study, ready to run.
 pub struct Study {
@@ -31,10 +34,26 @@ pub struct Study {
     pub columns: Vec<Head>,
     /// Columns of the table of traces; empty if none are kept.
     pub trace_columns: Vec<Head>,
+    /// What its results do not show, a sentence each.
+    pub notes: Vec<String>,
     /// Factors of each column that holds the values of a key.
     pub(super) factor_columns: Vec<Vec<usize>>,
-    pub(super) outputs: Vec<Column<Run>>,
+    pub(super) outputs: Vec<OutputColumn<Run>>,
     pub(super) traces: Vec<&'static TraceColumn>,
+    /// Engine speed, rpm, below which load is heard and felt, where side effects are kept.
+    pub(super) sides: Option<f64>,
+    /// What the columns are, for the manifest; none where the cars are those of the plan.
+    pub(crate) levers: Option<Value>,
+}
+
+/// Cars in place of those of the plan.
+pub struct Columns {
+    /// In the order of the table.
+    pub list: Vec<Column>,
+    /// Engine speed below which load is heard and felt, rpm.
+    pub heard_rpm: f64,
+    /// What they are, for the manifest.
+    pub about: Value,
 }
 
 impl Study {
@@ -51,14 +70,25 @@ impl Study {
     /// # Errors
     /// All problems.
     pub fn prepare(plan: Plan) -> Result<Self, Problems> {
-        let path = is_path(&plan.file).then(|| Path::new(&plan.file));
-        let folder = path
-            .and_then(Path::parent)
-            .unwrap_or(Path::new(""))
-            .to_path_buf();
+        Study::with(plan, None)
+    }
+
+    /// A study of a plan's factors with columns in place of its cars, which it keeps side effects of.
+    ///
+    /// # Errors
+    /// All problems.
+    pub fn of_columns(plan: Plan, columns: Columns) -> Result<Self, Problems> {
+        Study::with(plan, Some(columns))
+    }
+
+    fn with(plan: Plan, columns: Option<Columns>) -> Result<Self, Problems> {
+        let folder = folder_of(&plan).to_path_buf();
         let mut problems = Problems::new();
-        let cars = cars(&plan, &folder, &mut problems);
-        let cycles = cycles(&plan, &folder, &mut problems);
+        let cars = match &columns {
+            Some(columns) => of_columns(&plan, &columns.list, &mut problems),
+            None => cars(&plan, &folder, &mut problems),
+        };
+        let cycles = cycles(&plan, &folder, &cars, &mut problems);
         let Some(points) = plan.design.points(&plan.factors) else {
             let message = "the design has more points than can be counted";
             problems.push(of_plan(
@@ -78,20 +108,36 @@ impl Study {
             problems.into_iter().for_each(|problem| unlike.add(problem));
             return Err(unlike);
         }
+        Study::of_cars(plan, points, columns, (cars, cycles))
+    }
+
+    /// A study of these cars and cycles.
+    fn of_cars(
+        plan: Plan,
+        points: u64,
+        columns: Option<Columns>,
+        (cars, cycles): (Vec<StudyCar>, Vec<Cycle>),
+    ) -> Result<Self, Problems> {
         let phases = phases(&cycles);
         let parts = parts(&cars, &plan);
         let outputs = outputs(&phases, &parts);
         unknown_analysed(&plan, &outputs).finish()?;
         let (factor_columns, heads) = factor_columns(&plan);
-        let columns = head_columns().into_iter().chain(heads);
+        let heads = head_columns().into_iter().chain(heads);
+        let sides = columns.as_ref().map(|columns| columns.heard_rpm);
+        let extra = sides.into_iter().flat_map(|_| SideEffects::heads());
         let traces = traces(&plan, &cars, &parts);
         let trace_heads = head_columns().into_iter().take(2);
         let study = Study {
             points,
+            notes: notes(&plan, &cars),
             cars,
             cycles,
             phases,
-            columns: columns.chain(outputs.iter().map(Column::head)).collect(),
+            columns: heads
+                .chain(outputs.iter().map(OutputColumn::head))
+                .chain(extra)
+                .collect(),
             trace_columns: match traces.as_slice() {
                 [] => Vec::new(),
                 traces => trace_heads
@@ -101,10 +147,17 @@ impl Study {
             factor_columns,
             outputs,
             traces,
+            sides,
+            levers: columns.map(|columns| columns.about),
             plan,
         };
         study.check_traces()?;
         Ok(study)
+    }
+
+    /// Numbers of a row of the table of runs.
+    pub(super) fn numbers(&self) -> usize {
+        self.outputs.len() + self.sides.map_or(0, |_| SideEffects::heads().count())
     }
 
     /// Number of runs.
@@ -120,7 +173,7 @@ impl Study {
         let of_phases = |name: fn(&str) -> String| self.phases.iter().map(move |phase| name(phase));
         let mut names = vec![FUEL.to_owned()];
         names.extend(of_phases(phase_fuel));
-        if self.cars.len() > 1 {
+        if self.cars.len() > 1 && self.sides.is_none() {
             names.push(EXCESS.to_owned());
             names.extend(of_phases(phase_excess));
         }
@@ -128,7 +181,7 @@ impl Study {
     }
 }
 
-fn unknown_analysed(plan: &Plan, outputs: &[Column<Run>]) -> Problems {
+fn unknown_analysed(plan: &Plan, outputs: &[OutputColumn<Run>]) -> Problems {
     let known = || outputs.iter().map(|column| &*column.name);
     let is_unknown = |name: &&String| known().all(|other| other != name.as_str());
     let problem = |name: &String| {
@@ -150,8 +203,14 @@ fn of_plan(kind: ProblemKind, plan: &Plan, key: &str, message: &str, hint: &str)
     Problem::new(kind, message).at(place).key(key).hint(hint)
 }
 
+/// The folder of a plan's file; the current one for a plan that is no file.
+pub(super) fn folder_of(plan: &Plan) -> &Path {
+    let path = is_path(&plan.file).then(|| Path::new(&plan.file));
+    path.and_then(Path::parent).unwrap_or(Path::new(""))
+}
+
 /// A file that the plan names, seen from the current directory.
-fn in_folder(folder: &Path, word: &str) -> String {
+pub(super) fn in_folder(folder: &Path, word: &str) -> String {
     match is_path(word) {
         true => folder.join(word).to_string_lossy().into_owned(),
         false => word.to_owned(),
@@ -165,7 +224,7 @@ fn cars(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<StudyCar> {
     let mut add = |word: &str, key: &str| {
         let name = unique(word, &cars);
         let car = StudyCar::new(&name, word, key == "vehicle", plan);
-        let baselines = car.map_err(Problems::from).and_then(|car| {
+        let baselines = car.and_then(|car| {
             let baselines = car.baselines(&plan.factors)?;
             cars.push(car);
             Ok(baselines)
@@ -186,6 +245,12 @@ fn cars(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<StudyCar> {
         add(&word(name), "baselines");
     }
     cars
+}
+
+/// The columns as cars.
+fn of_columns(plan: &Plan, columns: &[Column], problems: &mut Problems) -> Vec<StudyCar> {
+    let car = |column: &Column| problems.take(StudyCar::of_column(column, plan));
+    columns.iter().filter_map(car).collect()
 }
 
 /// A problem of what the plan names, with the place in the plan where it has no better one.
@@ -216,7 +281,12 @@ fn unique(word: &str, cars: &[StudyCar]) -> String {
 }
 
 /// The plan's cycle, then those of its factor.
-fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
+fn cycles(plan: &Plan, folder: &Path, cars: &[StudyCar], problems: &mut Problems) -> Vec<Cycle> {
+    let mut subjects = cars
+        .iter()
+        .take(1)
+        .flat_map(|car| car.setups(&plan.factors));
+    let subject = subjects.next();
     let factor = plan.factors.iter().find(|factor| factor.key == "cycle");
     let own = (Arc::from(plan.base.cycle.as_str()), plan.places.of("cycle"));
     let named = factor.into_iter().flat_map(|factor| {
@@ -225,6 +295,11 @@ fn cycles(plan: &Plan, folder: &Path, problems: &mut Problems) -> Vec<Cycle> {
     });
     let find = |(word, place): (Arc<str>, &Place)| {
         let found = cycle::find(&in_folder(folder, &word));
+        // The class of a WLTC is that of the subject.
+        let found = found.map(|cycle| match subject {
+            Some(car) => cycle::for_car(&word, cycle, car),
+            None => cycle,
+        });
         let of_plan = |problem: Problem| {
             // A problem within a file keeps its place there, with a line or without.
             if !problem.place.is_argument(Argument::Cycle) {

@@ -11,7 +11,7 @@ use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 use super::outcome::{Outcome, Parameter};
 use super::plan::{CalibrationPlan, problem, stem};
 use cvtcycle_config::setup::{Kind, NamedBy, is_path, text_of};
-use cvtcycle_config::{Override, ProblemKind, Problems, Target};
+use cvtcycle_config::{Acts, Override, ProblemKind, Problems, Target};
 
 /// Significant digits of a fitted value, far beyond its standard error.
 const DIGITS: usize = 7;
@@ -126,12 +126,15 @@ impl Job<'_> {
 
     /// Puts the value of an override of the plan.
     fn put_override(&self, document: &mut DocumentMut, by: &Override) {
-        let value = by.value().parse::<Value>();
-        let mut item = Item::Value(value.unwrap_or_else(|_| Value::from(by.value())));
-        make_absolute(&mut item, self.folder);
-        let Ok(value) = item.into_value() else { return };
         let (_, key) = Target::of(by.key());
         let path: Vec<&str> = key.split('.').map(str::trim).collect();
+        let value = match by.acts() {
+            Acts::Value => by.value().parse::<Value>().ok(),
+            _ => by.number_over(number_at(document, &path)).map(Value::from),
+        };
+        let mut item = Item::Value(value.unwrap_or_else(|| Value::from(by.value())));
+        make_absolute(&mut item, self.folder);
+        let Ok(value) = item.into_value() else { return };
         put(document, &path, value, "assumed", &self.set_by());
     }
 
@@ -153,13 +156,25 @@ fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
 }
 
-/// The text of a value, bare or in a table; empty where there is none.
-fn text_at(document: &DocumentMut, path: &[&str]) -> String {
+/// A value, bare or in a table.
+fn value_at<'d>(document: &'d DocumentMut, path: &[&str]) -> Option<&'d Item> {
     let item = path
         .iter()
-        .try_fold(document.as_item(), |item, part| item.get(part));
-    let inner = item.map(|item| item.get("value").unwrap_or(item));
-    inner.and_then(Item::as_str).unwrap_or_default().to_owned()
+        .try_fold(document.as_item(), |item, part| item.get(part))?;
+    Some(item.get("value").unwrap_or(item))
+}
+
+/// The text of a value; empty where there is none.
+fn text_at(document: &DocumentMut, path: &[&str]) -> String {
+    let text = value_at(document, path).and_then(Item::as_str);
+    text.unwrap_or_default().to_owned()
+}
+
+/// The number of a value.
+fn number_at(document: &DocumentMut, path: &[&str]) -> Option<f64> {
+    let item = value_at(document, path)?;
+    item.as_float()
+        .or_else(|| item.as_integer().map(|n| n as f64))
 }
 
 /// Puts a value with its status and source at a path, keeping the comments around it. A note of the old value does not hold any more.

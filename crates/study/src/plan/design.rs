@@ -1,9 +1,9 @@
 //! The design of a plan, and what concerns all its factors at once.
 
 use super::keys::{self, MAX_SAMPLES, ONE_AT_A_TIME, SAMPLE, STUDY};
-use super::{Cars, Design, Factor, FactorValues, Places, Plan};
+use super::{Acts, Cars, Design, Factor, FactorValues, Places, Plan};
 use cvtcycle_config::ProblemKind::{self, Conflict, Duplicate, Missing, OutOfRange, TooLarge};
-use cvtcycle_config::{Problem, Problems, Section, readable};
+use cvtcycle_config::{Override, Problem, Problems, Section, readable};
 use cvtcycle_model::keys::Values;
 
 /// Most samples of a Sobol sequence: the length of the tables behind it.
@@ -168,6 +168,39 @@ fn of_distribution(kind: ProblemKind, factor: &Factor, message: String, hint: &s
         .at(factor.places.of("distribution").clone())
         .key("distribution")
         .hint(hint)
+}
+
+/// Factors whose values would replace what the plan sets: of the same key, or of an option that another one is set in place of.
+pub(super) fn shadowed(plan: &Plan) -> Problems {
+    let mut problems = Problems::new();
+    for factor in &plan.factors {
+        let own = match factor.cars {
+            Cars::Baselines => &[],
+            Cars::Subject | Cars::All => &plan.base.set[..],
+        };
+        let is_replaced = |by: &&Override| match factor.key.strip_prefix(by.key()) {
+            Some("") => true,
+            Some(below) => {
+                let option = below
+                    .strip_prefix('.')
+                    .and_then(|way| way.split('.').next());
+                option.is_some_and(|option| option != by.value())
+            }
+            None => false,
+        };
+        let set = own.iter().chain(&plan.base.set_all);
+        let Some(by) = set.filter(|_| factor.acts == Acts::Value).find(is_replaced) else {
+            continue;
+        };
+        let (key, value) = (by.key(), by.value());
+        let message = format!(
+            "`{key}` is set to {value} and `{}` varied: the factor's values would replace it",
+            factor.key
+        );
+        let hint = "remove one of them, or give the factor acts = \"scale\"";
+        problems.push(of_factor(Conflict, factor, "key", message, hint));
+    }
+    problems
 }
 
 /// What only a whole plan shows: distributions of run options that leave their range, and factors of cars that do not exist.

@@ -13,7 +13,7 @@
 
 use statrs::distribution::{ContinuousCDF, Normal};
 
-use super::Distribution;
+use super::{Acts, Distribution};
 
 /// Halves of the intervals of Simpson's rule (PD-6): error below 1e-10 of the standard deviation.
 const INTERVALS: u32 = 4000;
@@ -21,6 +21,49 @@ const INTERVALS: u32 = 4000;
 const NEGLIGIBLE: f64 = 40.0;
 
 impl Distribution {
+    /// The same draws over a value: as factors on it, which is above zero, or as differences from it.
+    pub(crate) fn over(self, base: f64, acts: Acts) -> Self {
+        let of = |x: f64| match acts {
+            Acts::Value => x,
+            Acts::Scale => x / base,
+            Acts::Offset => x - base,
+        };
+        let scale = if acts == Acts::Scale { base } else { 1.0 };
+        match self {
+            Distribution::Normal { mean, sd } => Distribution::Normal {
+                mean: of(mean),
+                sd: sd / scale,
+            },
+            Distribution::TruncatedNormal {
+                mean,
+                sd,
+                low,
+                high,
+            } => Distribution::TruncatedNormal {
+                mean: of(mean),
+                sd: sd / scale,
+                low: of(low),
+                high: of(high),
+            },
+            Distribution::Uniform { low, high } => Distribution::Uniform {
+                low: of(low),
+                high: of(high),
+            },
+            Distribution::Triangular { low, mode, high } => Distribution::Triangular {
+                low: of(low),
+                mode: of(mode),
+                high: of(high),
+            },
+            Distribution::Lognormal {
+                median,
+                geometric_sd,
+            } => Distribution::Lognormal {
+                median: of(median),
+                geometric_sd,
+            },
+        }
+    }
+
     /// Value below which a share `u` of the distribution lies; `u` within 0 and 1, both ends excluded where the distribution is unbounded.
     pub fn inverse_cdf(&self, u: f64) -> f64 {
         match *self {

@@ -51,6 +51,7 @@ pub(super) fn read(document: &Document) -> Result<Factor, Problems> {
         values: values.unwrap_or(FactorValues::List(Vec::new())),
         status,
         source: Values::text_or(&s, &FACTOR.source, ""),
+        test: Values::text_or(&s, &FACTOR.test, ""),
         place: s.place("key"),
         places,
         key,
@@ -157,7 +158,7 @@ fn name(s: &Section, key: &str, cars: Cars) -> String {
 }
 
 /// Unit of its numbers.
-pub(super) fn unit(key: &str, acts: Acts) -> String {
+pub(crate) fn unit(key: &str, acts: Acts) -> String {
     let unit = quantity(key).unit();
     let unit = match acts {
         Acts::Scale => "-",

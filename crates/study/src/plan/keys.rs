@@ -35,6 +35,8 @@ keys! {
         keep: or_word("summary", either(KEEP)), "what is kept of each run";
         analyse: computed("the fuel columns", list_of(&Kind::Text, "a list of columns of the results")), "columns that are analysed";
         most_runs: integer(1, 10_000_000, 100_000), "number of runs above which a study has to be confirmed";
+        missing: words(MISSING, "refuse"), "what a factor does whose key a car does not have";
+        bounds: words(BOUNDS, "refuse"), "what becomes of a number outside the range of its key";
         design: options(DESIGNS), "which combinations are driven";
     }
 }
@@ -53,6 +55,16 @@ const KEEP: &[Kind] = &[
         Choice::word("everything", "all columns of the trace as well"),
     ]),
     Kind::List(&Kind::Text, "a list of columns of the trace"),
+];
+
+const MISSING: &[Choice] = &[
+    Choice::word("refuse", "the study does not begin"),
+    Choice::word("skip", "it does not act on that car"),
+];
+
+const BOUNDS: &[Choice] = &[
+    Choice::word("refuse", "the study does not begin"),
+    Choice::word("clip", "it is held at the end of the range"),
 ];
 
 const DESIGNS: &[Choice] = &[
@@ -109,6 +121,7 @@ keys! {
         distribution: optional(options(DISTRIBUTIONS)), "how the values are distributed";
         status: (Kind::Words(STATUSES), Presence::RequiredIf("with a distribution")), "how the values are known";
         source: optional(text()), "reason or reference for the values";
+        test: optional(text()), "the test that would tell the value, for people: what to measure next";
     }
 }
 
@@ -124,7 +137,7 @@ const ACTS: &[Choice] = &[
     Choice::word("offset", "it is added to the value"),
 ];
 
-const STATUSES: &[Choice] = &[
+pub(crate) const STATUSES: &[Choice] = &[
     Choice::word("source", "a reference states them"),
     Choice::word("derived", "computed from known values"),
     Choice::word("fitted", "fitted to measurements"),
@@ -208,7 +221,7 @@ fn vehicles() -> String {
     )
 }
 
-fn lubricants() -> String {
+pub(crate) fn lubricants() -> String {
     format!(
         "{}, or the path of a TOML file",
         File::Lubricant.names().join(", ")

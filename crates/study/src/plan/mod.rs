@@ -20,11 +20,13 @@ mod read;
 mod values;
 mod write;
 
+pub use cvtcycle_config::Acts;
 pub use cvtcycle_config::embedded::plans as embedded_plans;
 use cvtcycle_config::setup::{Kind, NamedBy, text_of};
 pub use design::{MAX_SOBOL_DIMENSIONS, MAX_SOBOL_SAMPLES};
-pub(crate) use keys::STUDY;
+pub(crate) use factor::unit;
 pub use keys::{MAX_SAMPLES, PLAN};
+pub(crate) use keys::{STATUSES, STUDY, lubricants};
 pub use places::Places;
 pub use write::Axis;
 
@@ -58,6 +60,10 @@ pub struct Plan {
     pub analyse: Vec<String>,
     /// Number of runs above which the user must agree.
     pub most_runs: u64,
+    /// A factor does not act on a car that does not have its key; else the study does not begin.
+    pub skip_missing: bool,
+    /// A number outside the range of its key is held at the end of the range; else the study does not begin.
+    pub clip: bool,
     /// Places of the keys of `[study]`; `design` is the place of the design's table.
     pub places: Places,
 }
@@ -109,6 +115,8 @@ pub struct Factor {
     pub status: String,
     /// Reason or reference for them.
     pub source: String,
+    /// The test that would tell the value, in words; may be empty.
+    pub test: String,
     /// Place of its key in the plan.
     pub place: Place,
     /// Places of its values: `values` and its items, `range`, `distribution` and `distribution.low` or the like.
@@ -136,18 +144,6 @@ pub enum Cars {
     Baselines,
     /// All cars with the same draw, as `--set-all`.
     All,
-}
-
-/// What a number does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Acts {
-    /// It is the value.
-    Value,
-    /// It multiplies the value of each car's own file.
-    Scale,
-    /// It is added to the value of each car's own file.
-    Offset,
 }
 
 /// A value of a factor, in the unit of its key.

@@ -32,6 +32,7 @@ pub(super) fn plan(file: &str, text: &str) -> Result<Plan, Problems> {
     }
     if problems.is_empty() {
         problems = design::reach(&plan);
+        problems.append(design::shadowed(&plan));
     }
     if problems.is_empty() {
         return Ok(plan);
@@ -59,6 +60,8 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
         keep: keep(&s, &mut places),
         analyse: names(&s, &STUDY.analyse, &mut places).unwrap_or_default(),
         most_runs: s.integer(&STUDY.most_runs).unsigned_abs(),
+        skip_missing: s.word(&STUDY.missing) == "skip",
+        clip: s.word(&STUDY.bounds) == "clip",
         places,
     };
     let problems = reader.finish().err().unwrap_or_default();

@@ -80,6 +80,8 @@ impl Plan {
             most_runs: default(&STUDY.most_runs)
                 .and_then(|runs| runs.number())
                 .map_or(0, |runs| runs as u64),
+            skip_missing: false,
+            clip: false,
             places,
         })
     }
@@ -100,6 +102,7 @@ fn factor(key: &str, name: &str, axis: Axis) -> Factor {
         values,
         status: String::new(),
         source: String::new(),
+        test: String::new(),
         places: Places::new(axis.place.clone()),
         place: axis.place,
     }

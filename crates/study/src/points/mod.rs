@@ -15,7 +15,7 @@ use std::io::BufRead;
 
 use columns::schema;
 use cvtcycle_config::Problems;
-use cvtcycle_config::csv::{Cells, Collector, Lines, Row, Table};
+use cvtcycle_config::csv::{Cells, Collector, Lines, Row};
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointStatus};
 use rows::{CASE_INDEX, Given};
@@ -116,14 +116,7 @@ pub fn read(file: &str, reader: impl BufRead, mut job: Job<'_>) -> Result<Done, 
         ignored: Vec::new(),
     };
     let (schema, mut lines) = (schema(), Lines::new(reader));
-    let table = match lines.next(&mut problems) {
-        Some(line) => Table::open(line, &schema, &mut problems),
-        None => {
-            problems.no_text();
-            None
-        }
-    };
-    let Some(mut table) = table else {
+    let Some(mut table) = lines.open(&schema, &mut problems) else {
         return Err(problems.finish());
     };
     let columns = table.columns().flatten();

@@ -14,10 +14,8 @@ use std::ops::Deref;
 
 use serde::Serialize;
 
-use super::intervals::{clopper_pearson, quantile_ranks, student_975};
-
-/// Probabilities of the quantiles of a summary.
-pub const QUANTILES: [f64; 7] = [0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975];
+use super::Confidence;
+use super::intervals::{clopper_pearson, quantile_ranks, student};
 
 /// An output in numbers; read through it, the fields of [`Spread`] are its own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,10 +23,10 @@ pub struct Summary {
     /// Number, mean, spread and ends.
     #[serde(flatten)]
     pub spread: Spread,
-    /// Quantiles at [`QUANTILES`].
+    /// Quantiles at [`Confidence::quantiles`].
     pub quantiles: Vec<Quantile>,
     /// Interval of the mean.
-    pub mean_interval95: Option<[f64; 2]>,
+    pub mean_interval: Option<[f64; 2]>,
 }
 
 impl Deref for Summary {
@@ -48,12 +46,12 @@ pub struct Quantile {
     pub value: f64,
     /// Interval of the quantile of the population, whatever the distribution: two values of the sample. `None` on a side on which the
     /// sample does not reach far enough to tell.
-    pub interval95: [Option<f64>; 2],
+    pub interval: [Option<f64>; 2],
 }
 
 impl Summary {
-    /// Describes a column.
-    pub fn of(values: &[f64]) -> Self {
+    /// Describes a sample.
+    pub fn of(values: &[f64], confidence: Confidence) -> Self {
         let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
         let spread = Spread::of(values.iter().copied());
         sorted.sort_unstable_by(f64::total_cmp);
@@ -62,17 +60,17 @@ impl Summary {
             Quantile {
                 p,
                 value: quantile_of_sorted(&sorted, p),
-                interval95: quantile_ranks(spread.n, p).map(value),
+                interval: quantile_ranks(spread.n, p, confidence.tail()).map(value),
             }
         };
         Summary {
-            quantiles: QUANTILES.map(quantile).to_vec(),
-            mean_interval95: spread.mean_interval95(),
+            quantiles: confidence.quantiles().into_iter().map(quantile).collect(),
+            mean_interval: spread.mean_interval(confidence),
             spread,
         }
     }
 
-    /// The quantile at one of [`QUANTILES`]; NaN at any other probability.
+    /// The quantile at one of the probabilities that it was made for; NaN at any other probability.
     pub fn quantile(&self, p: f64) -> f64 {
         let found = self.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9);
         found.map_or(f64::NAN, |q| q.value)
@@ -122,9 +120,9 @@ impl Spread {
     }
 
     /// Interval of the mean, for independent values.
-    pub(super) fn mean_interval95(&self) -> Option<[f64; 2]> {
+    pub(super) fn mean_interval(&self, confidence: Confidence) -> Option<[f64; 2]> {
         let count = self.n as f64;
-        let half = student_975(count - 1.0) * self.sd / count.sqrt(); // DS-2
+        let half = student(count - 1.0, confidence.tail()) * self.sd / count.sqrt(); // DS-2
         half.is_finite()
             .then_some([self.mean - half, self.mean + half])
     }
@@ -152,13 +150,13 @@ pub struct Share {
     pub missing: usize,
     /// k / n; NaN of none.
     pub share: f64,
-    /// Clopper and Pearson's interval of the probability.
-    pub interval95: [f64; 2],
+    /// Clopper and Pearson's interval of the probability; none of cases that are no sample.
+    pub interval: Option<[f64; 2]>,
 }
 
 impl Share {
-    /// The share of the values for which `holds`.
-    pub fn of(values: &[f64], holds: impl Fn(f64) -> bool) -> Self {
+    /// The share of the values for which `holds`. Without a confidence the values are no sample.
+    pub fn of(values: &[f64], confidence: Option<Confidence>, holds: impl Fn(f64) -> bool) -> Self {
         let known = || values.iter().filter(|x| x.is_finite());
         let n = known().count();
         let k = known().filter(|x| holds(**x)).count();
@@ -167,12 +165,12 @@ impl Share {
             n,
             missing: values.len() - n,
             share: k as f64 / n as f64,
-            interval95: clopper_pearson(k, n),
+            interval: confidence.map(|confidence| clopper_pearson(k, n, confidence.tail())),
         }
     }
 
     /// The share of the values above zero: of a difference, in how many pairs the first one has more. Equal ones are not more.
-    pub fn above_zero(values: &[f64]) -> Self {
-        Self::of(values, |x| x > 0.0)
+    pub fn above_zero(values: &[f64], confidence: Option<Confidence>) -> Self {
+        Self::of(values, confidence, |x| x > 0.0)
     }
 }

@@ -5,12 +5,13 @@
 //! | GR-1 | eta^2 = sum over levels of n_l (mean_l - mean)^2 / sum of (y - mean)^2 | source: Pearson's correlation ratio |
 //!
 //! In a grid with all combinations the mean at a level averages over all other factors evenly: its course is the main effect, and eta^2 the
-//! part of the grid's variance that it explains. There the rows are no random draws: read the spread (sd, min, max), not the interval.
+//! part of the grid's variance that it explains. There the rows are no random draws: a group has neither a deviation nor an interval, but ends (min, max).
 
 use std::ops::Deref;
 
 use serde::Serialize;
 
+use super::Confidence;
 use super::describe::Spread;
 
 /// The output at one level.
@@ -21,8 +22,8 @@ pub struct Group {
     /// The values there; read through the group, its fields are the group's own.
     #[serde(flatten)]
     pub spread: Spread,
-    /// Interval of the mean, for independent rows.
-    pub mean_interval95: Option<[f64; 2]>,
+    /// Interval of the mean; none where the rows are no sample.
+    pub mean_interval: Option<[f64; 2]>,
 }
 
 impl Deref for Group {
@@ -44,8 +45,13 @@ pub struct Groups {
     pub eta_squared: f64,
 }
 
-/// Groups an output by the levels of a factor, row by row; a row without a level counts for none.
-pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
+/// Groups an output by the levels of a factor, row by row; a row without a level counts for none. Without a confidence the rows are no
+/// sample.
+pub fn group_means<S: AsRef<str>>(
+    levels: &[S],
+    output: &[f64],
+    confidence: Option<Confidence>,
+) -> Groups {
     let mut names: Vec<&str> = Vec::new();
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for (level, y) in levels.iter().zip(output) {
@@ -63,8 +69,14 @@ pub fn group_means<S: AsRef<str>>(levels: &[S], output: &[f64]) -> Groups {
         let spread = Spread::of(values.iter().copied());
         Group {
             label: (*name).to_owned(),
-            mean_interval95: spread.mean_interval95(),
-            spread,
+            mean_interval: confidence.and_then(|confidence| spread.mean_interval(confidence)),
+            spread: match confidence {
+                Some(_) => spread,
+                None => Spread {
+                    sd: f64::NAN,
+                    ..spread
+                },
+            },
         }
     };
     let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();

@@ -1,18 +1,25 @@
 //! Statistics of studies: pure functions on columns of outputs.
 //!
-//! A value that is not finite means that there is none: it is left out *and counted*. Every interval is one of 95 %. What does not follow
-//! from the data (the spread of one value, the indices of a constant) is NaN, and `None` where an interval is meant; JSON shows both as
+//! A value that is not finite means that there is none: it is left out *and counted*. Intervals are of the [`Confidence`] that is asked
+//! for, 95 % by default, and only a sample has them. What does not follow from the data (the spread of one value, the indices of a constant) is NaN, and `None` where an interval is meant; JSON shows both as
 //! `null`. Nothing here depends on the number of threads.
 
+mod confidence;
 mod describe;
+mod enough;
 mod groups;
+mod information;
 mod intervals;
 mod rank;
 mod sobol;
 mod tornado;
 
-pub use describe::{QUANTILES, Quantile, Share, Spread, Summary, quantile_of_sorted};
+pub use confidence::{Confidence, of_hundred};
+pub use describe::{Quantile, Share, Spread, Summary, quantile_of_sorted};
+pub use enough::Enough;
 pub use groups::{Group, Groups, group_means};
+pub use information::{Column, Shares, sd_left, shares};
+pub use intervals::least_draws;
 pub use rank::{RankFactor, RankSensitivity, rank_sensitivity};
 pub use sobol::{Blocks, Bootstrap, FactorIndices, SobolIndices, sobol_convergence, sobol_indices};
 pub use tornado::{Tornado, TornadoBar, TornadoEnd, TornadoInput, tornado};
@@ -24,14 +31,14 @@ use serde::Serialize;
 pub struct Estimate {
     /// The estimate itself; NaN where it is not defined.
     pub value: f64,
-    /// Interval of 95 %, ascending; `None` where it is not defined.
-    pub interval95: Option<[f64; 2]>,
+    /// Interval, ascending; `None` where it is not defined.
+    pub interval: Option<[f64; 2]>,
 }
 
 impl Estimate {
     /// Neither a value nor an interval.
     pub const NONE: Estimate = Estimate {
         value: f64::NAN,
-        interval95: None,
+        interval: None,
     };
 }

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | RK-1 | rho_i = correlation of rank(x_i) and rank(y); equal values share the mean of their ranks | source: Spearman 1904 |
-//! | RK-2 | interval of rho: tanh(atanh(rho) -+ z sqrt((1 + rho^2 / 2) / (n - 3))), z = 1.96 | source: Fisher 1921; variance for ranks of Bonett and Wright 2000 |
+//! | RK-2 | interval of rho: tanh(atanh(rho) -+ z sqrt((1 + rho^2 / 2) / (n - 3))), z of IV-1, 1.96 of 95 % | source: Fisher 1921; variance for ranks of Bonett and Wright 2000 |
 //! | RK-3 | b = R^-1 rho, least squares on standardized ranks; R correlations of the ranks of the factors; R2 = b rho | source: Iman and Conover 1979 |
 //! | RK-4 | interval of b: b_i -+ t(n - d - 1) sqrt((1 - R2) (R^-1)_ii / (n - d - 1)) | source: linear least squares; for ranks an approximation, ASSUMED good enough |
 //!
@@ -16,8 +16,8 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::Estimate;
-use super::intervals::{NORMAL_975, student_975};
+use super::intervals::{normal, student};
+use super::{Confidence, Estimate};
 
 /// Largest inflation of a variance up to which factors are counted as independent.
 const MAX_INFLATION: f64 = 1e8;
@@ -45,7 +45,11 @@ pub struct RankSensitivity {
 }
 
 /// Rank correlation and rank regression of an output on factors that are numbers. Where a column is shorter, its values are missing.
-pub fn rank_sensitivity(factors: &[&[f64]], output: &[f64]) -> RankSensitivity {
+pub fn rank_sensitivity(
+    factors: &[&[f64]],
+    output: &[f64],
+    confidence: Confidence,
+) -> RankSensitivity {
     let columns = || factors.iter().chain([&output]);
     let all = columns().map(|x| x.len()).max().unwrap_or(0);
     let is_known = |i: usize| columns().all(|x| x.get(i).is_some_and(|x| x.is_finite()));
@@ -63,7 +67,7 @@ pub fn rank_sensitivity(factors: &[&[f64]], output: &[f64]) -> RankSensitivity {
     let varied: Vec<usize> = (0..x.len()).filter(|&i| !rho[i].is_nan()).collect();
     let columns: Vec<&Vec<f64>> = varied.iter().filter_map(|&i| x[i].as_ref()).collect();
     let with_output = DVector::from_iterator(varied.len(), varied.iter().map(|&i| rho[i]));
-    let (r_squared, found) = regression(&columns, &with_output, n)
+    let (r_squared, found) = regression(&columns, &with_output, n, confidence)
         .unwrap_or((f64::NAN, vec![Estimate::NONE; varied.len()]));
     let mut regression = vec![Estimate::NONE; x.len()];
     for (i, estimate) in varied.into_iter().zip(found) {
@@ -72,7 +76,7 @@ pub fn rank_sensitivity(factors: &[&[f64]], output: &[f64]) -> RankSensitivity {
     let factor = |(rho, regression)| RankFactor {
         spearman: Estimate {
             value: rho,
-            interval95: fisher(rho, n),
+            interval: fisher(rho, n, confidence),
         },
         regression,
     };
@@ -111,7 +115,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// R2 and coefficients with intervals; `None` where there are too few rows or the factors are not independent.
-fn regression(x: &[&Vec<f64>], rho: &DVector<f64>, n: usize) -> Option<(f64, Vec<Estimate>)> {
+fn regression(
+    x: &[&Vec<f64>],
+    rho: &DVector<f64>,
+    n: usize,
+    confidence: Confidence,
+) -> Option<(f64, Vec<Estimate>)> {
     let d = x.len();
     let freedom = n.checked_sub(d + 1).filter(|f| *f > 0 && d > 0)? as f64;
     let pair = |k: usize| dot(x[k / d], x[k % d]);
@@ -123,20 +132,21 @@ fn regression(x: &[&Vec<f64>], rho: &DVector<f64>, n: usize) -> Option<(f64, Vec
     }
     let b = &inverse * rho; // RK-3
     let r_squared = b.dot(rho).clamp(0.0, 1.0); // RK-3
+    let t = student(freedom, confidence.tail());
     let estimate = |i: usize| {
-        let half = student_975(freedom) * ((1.0 - r_squared) * inverse[(i, i)] / freedom).sqrt(); // RK-4
+        let half = t * ((1.0 - r_squared) * inverse[(i, i)] / freedom).sqrt(); // RK-4
         Estimate {
             value: b[i],
-            interval95: Some([b[i] - half, b[i] + half]),
+            interval: Some([b[i] - half, b[i] + half]),
         }
     };
     Some((r_squared, (0..d).map(estimate).collect()))
 }
 
-fn fisher(rho: f64, n: usize) -> Option<[f64; 2]> {
+fn fisher(rho: f64, n: usize, confidence: Confidence) -> Option<[f64; 2]> {
     if n < 4 || rho.is_nan() {
         return None;
     }
-    let half = NORMAL_975 * ((1.0 + 0.5 * rho * rho) / (n as f64 - 3.0)).sqrt();
+    let half = normal(confidence.tail()) * ((1.0 + 0.5 * rho * rho) / (n as f64 - 3.0)).sqrt();
     Some([-half, half].map(|shift| (rho.atanh() + shift).tanh())) // RK-2
 }

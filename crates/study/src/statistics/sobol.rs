@@ -6,7 +6,7 @@
 //! | SO-2 | V = mean(f^2) - mean(f)^2 over the 2 N outputs of A and B | source: Saltelli et al. 2010, doi 10.1016/j.cpc.2009.09.018 |
 //! | SO-3 | S_i = mean(f(B) (f(AB_i) - f(A))) / V | source: Saltelli et al. 2010, Table 2 (b) |
 //! | SO-4 | T_i = mean((f(A) - f(AB_i))^2) / (2 V) | source: Jansen 1999, doi 10.1016/S0010-4655(98)00154-4 |
-//! | SO-5 | interval: quantiles 0.025 and 0.975 (DS-3) of the indices of resamples, each N samples drawn with replacement, all d + 2 outputs of a sample together | source: Efron 1979; Archer, Saltelli and Sobol 1997 |
+//! | SO-5 | interval: quantiles a and 1 - a (DS-3; a of IV-1) of the indices of resamples, each N samples drawn with replacement, all d + 2 outputs of a sample together | source: Efron 1979; Archer, Saltelli and Sobol 1997 |
 //!
 //! A and B are independent designs of N samples; AB_i is A with the column of factor i from B. S_i is the share of the variance that goes
 //! with factor i alone, T_i the share that would be left if only factor i stayed unknown; T_i - S_i is what it does together with others.
@@ -25,9 +25,8 @@ use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::Estimate;
 use super::describe::quantile_of_sorted;
-use super::intervals::TAIL;
+use super::{Confidence, Estimate};
 
 /// Outputs of a Saltelli design, sample by sample. Where a column is shorter than others, its outputs are missing.
 #[derive(Clone, Debug, Default)]
@@ -41,12 +40,14 @@ pub struct Blocks<'a> {
 }
 
 /// How intervals are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bootstrap {
     /// Number of resamples.
     pub resamples: usize,
     /// Seed.
     pub seed: u64,
+    /// Confidence of the intervals.
+    pub confidence: Confidence,
 }
 
 impl Default for Bootstrap {
@@ -54,6 +55,7 @@ impl Default for Bootstrap {
         Bootstrap {
             resamples: 1000,
             seed: 1,
+            confidence: Confidence::default(),
         }
     }
 }
@@ -95,7 +97,7 @@ pub fn sobol_indices(blocks: &Blocks, bootstrap: Bootstrap) -> SobolIndices {
     let drawn: Vec<Indices> = resamples.filter_map(resample).collect();
     let estimate = |of: &(dyn Fn(&Indices) -> f64 + Sync)| Estimate {
         value: of(&point),
-        interval95: percentile(&drawn, of),
+        interval: percentile(&drawn, bootstrap.confidence, of),
     };
     let factor = |i: usize| FactorIndices {
         first: estimate(&|d| d.first[i]),
@@ -246,11 +248,16 @@ impl Table {
 }
 
 /// Interval of an index over the resamples (SO-5).
-fn percentile(drawn: &[Indices], of: &(dyn Fn(&Indices) -> f64 + Sync)) -> Option<[f64; 2]> {
+fn percentile(
+    drawn: &[Indices],
+    confidence: Confidence,
+    of: &(dyn Fn(&Indices) -> f64 + Sync),
+) -> Option<[f64; 2]> {
     if drawn.len() < 2 {
         return None;
     }
     let mut values: Vec<f64> = drawn.iter().map(of).collect();
     values.sort_unstable_by(f64::total_cmp);
-    Some([TAIL, 1.0 - TAIL].map(|p| quantile_of_sorted(&values, p)))
+    let tail = confidence.tail();
+    Some([tail, 1.0 - tail].map(|p| quantile_of_sorted(&values, p)))
 }

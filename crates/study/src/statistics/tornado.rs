@@ -5,7 +5,7 @@
 //! | TO-1 | effect = output - output of the base; swing = max(effects, 0) - min(effects, 0) | derived: length of the bar from the base |
 //!
 //! Two values of a factor are its low and its high end, in the order of the plan. Of more, the ends are those with the least and the largest
-//! output. Words are labels like any other.
+//! output. Words are labels like any other; every level is kept.
 
 use serde::Serialize;
 
@@ -40,10 +40,22 @@ pub struct TornadoBar {
     pub high: Option<TornadoEnd>,
     /// Width of the range that base and ends span; NaN if neither end has an output.
     pub swing: f64,
-    /// Number of values of the factor.
-    pub values: usize,
+    /// Every level, in the order of the plan; NaN where there is no output.
+    pub entries: Vec<TornadoEnd>,
     /// Number of them without an output.
     pub missing: usize,
+}
+
+impl TornadoBar {
+    /// Levels that are neither end of the bar, of those with an output.
+    pub fn between(&self) -> impl Iterator<Item = &TornadoEnd> {
+        let is_end = |entry: &TornadoEnd| [&self.low, &self.high].contains(&&Some(entry.clone()));
+        let known = |entry: &&TornadoEnd| entry.effect.is_finite();
+        self.entries
+            .iter()
+            .filter(known)
+            .filter(move |entry| !is_end(entry))
+    }
 }
 
 /// All factors, the widest swing first; those without an output last.
@@ -94,7 +106,7 @@ fn bar(base: f64, factor: &TornadoInput) -> TornadoBar {
         low,
         high,
         swing,
-        values: factor.entries.len(),
+        entries: factor.entries.iter().map(end).collect(),
         missing,
     }
 }

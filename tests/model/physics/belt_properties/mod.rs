@@ -66,6 +66,7 @@ pub fn thesis_belt(formulation: Formulation) -> Belt {
         unity_width: 0.015,
         blend_n: 120.0,
         slip_bound: 0.1,
+        shoulder_friction: 1.0,
         thrust_ratio: None,
         formulation,
     }

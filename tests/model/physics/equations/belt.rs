@@ -1,4 +1,4 @@
-//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-7, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
+//! Belt and pulleys in driving: GE-2, TE-1 to TE-7, BT-1 to BT-8, FI-1, SL-1 to SL-12, WE-1 to WE-4, PE-1, VA-1 to VA-3, pulley by pulley,
 //! one branch at a time, in each formulation (the golden tables hold the printed forms).
 
 use super::{near, same};
@@ -35,6 +35,7 @@ pub fn belt(formulation: Formulation) -> Belt {
         unity_width: 0.015,
         blend_n: 120.0,
         slip_bound: 0.1,
+        shoulder_friction: 1.0,
         thrust_ratio: None,
         formulation,
     }
@@ -158,7 +159,8 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     // The film carries a share of the innermost interface; the printed forms know none (LU-5, TE-7).
     let [inner, outer] = if smooth { l.band.film_share } else { [0.0; 2] };
     let shear_n = if smooth { l.film_n } else { [0.0; 2] };
-    let mu_step = l.band.mu * (1.0 - inner);
+    let coated = if smooth { b.shoulder_friction } else { 1.0 }; // BT-8
+    let mu_step = coated * l.band.mu * (1.0 - inner);
     let z = l.output_torque_nm / rs + s * (mu_step * a + shear_n[0]);
     let c = mu_step * grips / 2.0;
     let cx = if z >= 0.0 {
@@ -172,8 +174,8 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     same(cx, l.output_torque_nm / rs - dt); // TE-4
     let part = if smooth { s.abs() } else { 1.0 }; // BT-6
     let turns = part * (1.0 / ratio - 1.0).abs();
-    let slide =
-        turns / 2.0 * ((1.0 - inner) * d + (1.0 - outer) * b.band_thickness_m * (n - 1.0) / 2.0);
+    let others = (1.0 - outer) * b.band_thickness_m * (n - 1.0) / 2.0;
+    let slide = turns / 2.0 * (coated * (1.0 - inner) * d + others); // BT-8
     let scale = |own: f64| if chapter { 1.0 } else { bp.min(bs) / own }; // BT-4
     let band = [
         l.band.mu * qp * slide * scale(bp),
@@ -360,9 +362,11 @@ fn val_driving_belt_from_the_tables() {
         Formulation::AppendixC,
         Formulation::Chapter8,
     ] {
-        for offset in [3e-3, 12e-3] {
+        for (offset, coated) in [(3e-3, 1.0), (12e-3, 1.0), (3e-3, 0.65)] {
+            let smooth = formulation == Formulation::Smooth;
             let b = Belt {
                 band_offset_m: offset,
+                shoulder_friction: if smooth { coated } else { 1.0 },
                 ..belt(formulation)
             };
             for ratio in RATIOS {

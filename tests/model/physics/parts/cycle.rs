@@ -85,6 +85,8 @@ fn cycle(phases: &[&str]) -> Cycle {
         weighting: Weighting::None,
         manual: Trace::without_gears(Vec::new()),
         automatic: None,
+        read_as: None,
+        is_wltc: false,
     }
 }
 

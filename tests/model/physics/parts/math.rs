@@ -194,7 +194,7 @@ fn ranges_in_words() {
 }
 
 /// Key, value, SI value worked out by hand, unit as shown.
-const EXPECTED: [(&str, f64, f64, &str); 66] = [
+const EXPECTED: [(&str, f64, f64, &str); 67] = [
     (
         "fall_per_1000_rpm",
         0.2,
@@ -279,6 +279,7 @@ const EXPECTED: [(&str, f64, f64, &str); 66] = [
         "N m/rpm²",
     ),
     ("slip_percent", 2.5, 0.025, "%"),
+    ("speed_mph", 60.0, 26.8224, "mph"),
     // Names that end like a unit without being one of the pair `_unit`.
     ("nm", 1.0, 1.0, "-"),
     ("belts", 1.0, 1.0, "-"),

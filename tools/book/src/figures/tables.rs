@@ -79,9 +79,13 @@ fn index(source: &Path) -> Result<String, String> {
         "attribution",
         "cold",
         "optimum",
+        "cycles",
+        "levers",
         "physics_checks",
         "rigs",
+        "start_stop",
         "studies",
+        "torque_converter",
     ]) {
         let path = source.join(format!("{stem}.md"));
         let page =

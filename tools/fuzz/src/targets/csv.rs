@@ -3,7 +3,8 @@
 use std::sync::{Arc, OnceLock};
 
 use cvtcycle::config::bounded::ReadError;
-use cvtcycle::config::cycle::read_csv;
+use cvtcycle::config::csv::Columns;
+use cvtcycle::config::cycle::{Format, read_columns, read_csv, write};
 use cvtcycle::config::setup::{self, Files, Options, embedded_vehicles};
 use cvtcycle::config::{Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -24,11 +25,46 @@ fn checked<T>(answer: Result<T, Problems>) -> Option<T> {
         .ok()
 }
 
+/// A table of another program, over time or distance.
 pub fn cycle(data: &[u8]) {
+    drivable(data, &Columns::default());
+}
+
+/// The columns that are meant in the first line, and the table below it.
+pub fn logger(data: &[u8]) {
+    let (list, table) = match data.iter().position(|byte| *byte == b'\n') {
+        Some(end) => (&data[..end], &data[end + 1..]),
+        None => (data, &[][..]),
+    };
+    let columns = Columns::parse(&String::from_utf8_lossy(list)).map_err(Problems::from);
+    if let Some(columns) = checked(columns) {
+        drivable(table, &columns);
+    }
+}
+
+/// A cycle that was read can be driven, and is the same after it was written in any form and read again.
+fn drivable(data: &[u8], columns: &Columns) {
     within_memory(data.len(), || {
-        let Some(cycle) = checked(read_csv("fuzz.csv", data)) else {
+        let Some(cycle) = checked(read_columns("fuzz.csv", data, columns)) else {
             return;
         };
+        // The reader's limits are those of times in s and speeds in km/h; a number that is rounded beyond one of them is refused.
+        for (name, format) in Format::NAMES {
+            let text = write(&cycle, &cycle.manual, format).text;
+            let Ok(again) = read_csv("again.csv", text.as_bytes()) else {
+                continue;
+            };
+            let (own, other) = (&cycle.manual.intervals, &again.manual.intervals);
+            assert_eq!(own.len(), other.len(), "{name}");
+            for (a, b) in own.iter().zip(other) {
+                let is_near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (1.0 + a.abs());
+                assert!(is_near(a.end_s, b.end_s), "{name}: {a:?} {b:?}");
+                assert!(
+                    is_near(a.end_speed_m_s, b.end_speed_m_s),
+                    "{name}: {a:?} {b:?}"
+                );
+            }
+        }
         for automatic in [false, true] {
             let trace = cycle.trace_for(automatic);
             let (duration_s, distance_m) = (trace.duration_s(), trace.distance_m());

@@ -6,6 +6,7 @@
 //! | `rows`, `cover` | a file of rows, or of the cover of a report (TOML), likewise |
 //! | `expression` | an expression of rows, over two small tables |
 //! | `overrides` | assignments of `--set`, one a line |
+//! | `logger` | the columns of `--columns` in the first line, and the CSV file that they are of |
 //! | `cycle`, `map`, `points`, `measured`, `history` | a CSV file, after a byte that chooses the form where there are several |
 //! | `summary`, `inputs`, `study_manifest`, `checksums` | a file of results (JSON; a list of checksums), the manifest after a byte that chooses its plan |
 //! | `parquet` | a Parquet table up to its pages: edits of a small one, or the bytes themselves |
@@ -32,7 +33,7 @@ mod toml;
 pub type Target = fn(&[u8]);
 
 /// The targets by name.
-pub const TARGETS: [(&str, Target); 21] = [
+pub const TARGETS: [(&str, Target); 22] = [
     ("vehicle", toml::vehicle),
     ("lubricant", toml::lubricant),
     ("study_plan", toml::study_plan),
@@ -42,6 +43,7 @@ pub const TARGETS: [(&str, Target); 21] = [
     ("expression", expression::expression),
     ("overrides", toml::overrides),
     ("cycle", csv::cycle),
+    ("logger", csv::logger),
     ("map", csv::map),
     ("points", csv::points),
     ("measured", csv::measured),

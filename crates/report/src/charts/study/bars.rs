@@ -8,7 +8,7 @@ use crate::charts::engine::{
     Axis, Chart, Entry, Fill, INK, Label, Style, at, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::statistics::{Estimate, RankSensitivity, SobolIndices};
+use cvtcycle_study::statistics::{Confidence, Estimate, RankSensitivity, SobolIndices};
 
 /// A factor with its two measures.
 type FactorBars<'a> = (&'a str, [Estimate; 2]);
@@ -38,7 +38,8 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
             with_interval(&of.sum_first)
         ));
         notes.push(format!(
-            "Bars: estimates. Whiskers: intervals of 95 % from {} resamples.",
+            "Bars: estimates. Whiskers: intervals of {} % from {} resamples.",
+            shown.confidence.percent(),
             of.resamples
         ));
     }
@@ -70,7 +71,7 @@ pub fn rank_plot(shown: &Shown, names: &[String], of: &RankSensitivity) -> Pictu
         notes: vec![
             format!("{} rows{}", of.n, left_out(of.missing)),
             fit,
-            "Whiskers: intervals of 95 %".to_owned(),
+            format!("Whiskers: intervals of {} %", shown.confidence.percent()),
         ],
     };
     draw(rows.collect(), shown, texts)
@@ -79,7 +80,7 @@ pub fn rank_plot(shown: &Shown, names: &[String], of: &RankSensitivity) -> Pictu
 fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
     let size = |row: &FactorBars| row.1[texts.key].value.abs();
     by_size(&mut rows, size);
-    let table = table(&rows, &texts);
+    let table = table(&rows, &texts, shown.confidence);
     let mut notes = texts.notes.clone();
     if rows.len() > MAX_ROWS + 1 {
         let rest = rows.split_off(MAX_ROWS);
@@ -90,7 +91,7 @@ fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
         ));
     }
     let estimates = rows.iter().flat_map(|row| &row.1);
-    let ends = estimates.flat_map(|e| e.interval95.into_iter().flatten().chain([e.value, 0.0]));
+    let ends = estimates.flat_map(|e| e.interval.into_iter().flatten().chain([e.value, 0.0]));
     let left = rows_left(rows.iter().map(|row| row.0), 11.0);
     let x = Axis::round(texts.axis, ends, 8);
     let panel = rows_panel((left, 58.0), RIGHT, rows.len().max(2), ROW, x);
@@ -100,7 +101,7 @@ fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
         for (i, (estimate, top)) in estimates.iter().zip([-10.0, 0.0]).enumerate() {
             let style = Style::edged(Fill::nth(i, 2), 0.5).row(k);
             panel.bar(k, (0.0, estimate.value), (top, top + 10.0), style);
-            if let Some(interval) = estimate.interval95 {
+            if let Some(interval) = estimate.interval {
                 panel.whisker(k, interval, top + 5.0, k);
             }
         }
@@ -114,8 +115,9 @@ fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
         .picture(table)
 }
 
-fn table(rows: &[FactorBars], texts: &Texts) -> PictureTable {
-    let columns = texts.short.map(estimate_columns).concat();
+fn table(rows: &[FactorBars], texts: &Texts, confidence: Confidence) -> PictureTable {
+    let estimates = texts.short.map(|name| estimate_columns(name, confidence));
+    let columns = estimates.concat();
     let columns = [("Factor".to_owned(), "")].into_iter().chain(columns);
     let mut table = PictureTable::with_columns(columns).note(texts.notes.join(" "));
     for (name, estimates) in rows {
@@ -137,7 +139,7 @@ fn left_out(missing: usize) -> String {
 fn with_interval(estimate: &Estimate) -> String {
     let digits = |x: f64| value(x, 0.9);
     let own = digits(estimate.value);
-    match estimate.interval95 {
+    match estimate.interval {
         Some([low, high]) => format!("{own} ({} to {})", digits(low), digits(high)),
         None => own,
     }

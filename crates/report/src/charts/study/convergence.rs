@@ -5,7 +5,7 @@ use crate::charts::engine::{
     Axis, Chart, Entry, PLOT_LEFT, Panel, Rect, STROKES, Shape, Style, Symbol, ZERO, at,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::statistics::{Estimate, SobolIndices};
+use cvtcycle_study::statistics::{Confidence, Estimate, SobolIndices};
 
 /// Names of the factors, and their indices in that order at growing numbers of samples.
 type Steps<'a> = (&'a [String], &'a [SobolIndices]);
@@ -23,10 +23,10 @@ type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 /// those with the seven largest total indices.
 pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices]) -> Picture {
     let chosen = chosen((names, steps));
-    let mut notes = vec![
-        "Bands: intervals of 95 %. Those of few samples may leave the plot; the table has them."
-            .to_owned(),
-    ];
+    let level = shown.confidence.percent();
+    let mut notes = vec![format!(
+        "Bands: intervals of {level} %. Those of few samples may leave the plot; the table has them."
+    )];
     if chosen.len() < names.len() {
         let (some, all) = (chosen.len(), names.len());
         notes.push(format!(
@@ -52,13 +52,13 @@ pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices])
         .panels(panels)
         .legend(FOOT, lines)
         .notes(FOOT, notes)
-        .picture(table((names, steps)))
+        .picture(table((names, steps), shown.confidence))
 }
 
 /// A row for each number of samples and factor, in this order.
-fn table((names, steps): Steps) -> PictureTable {
+fn table((names, steps): Steps, confidence: Confidence) -> PictureTable {
     let mut table = PictureTable::new(&[("Samples", ""), ("Factor", "")]);
-    let estimates = ["First order", "Total"].map(estimate_columns);
+    let estimates = ["First order", "Total"].map(|name| estimate_columns(name, confidence));
     table.columns.extend(estimates.concat());
     for step in steps {
         for (i, name) in names.iter().enumerate() {
@@ -99,7 +99,7 @@ fn draw((names, steps): Steps, chosen: &[usize], title: &str, pick: Pick) -> Pan
     let last = steps.last().map_or(1.0, place_of);
     // The bands of few samples are so wide that nothing else would be seen: they may leave the plot.
     let seen = |(_, x, e): (usize, f64, Estimate)| {
-        let ends = e.interval95.filter(|_| x > last - SEEN);
+        let ends = e.interval.filter(|_| x > last - SEEN);
         ends.into_iter().flatten().chain([e.value, 0.0])
     };
     let all = chosen.iter().flat_map(|&i| estimates(i));
@@ -111,8 +111,7 @@ fn draw((names, steps): Steps, chosen: &[usize], title: &str, pick: Pick) -> Pan
     panel.no_data = steps.is_empty() || chosen.is_empty();
     let order = || chosen.iter().enumerate().rev();
     for (k, &i) in order() {
-        let ends =
-            |(_, x, e): (usize, f64, Estimate)| e.interval95.map(|[low, high]| (x, low, high));
+        let ends = |(_, x, e): (usize, f64, Estimate)| e.interval.map(|[low, high]| (x, low, high));
         let bounds: Vec<(f64, f64, f64)> = estimates(i).filter_map(ends).collect();
         if bounds.len() > 1 {
             let style = Style::colour(STROKES[k].colour).fill_opacity(0.14);

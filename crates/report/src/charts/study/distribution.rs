@@ -7,7 +7,7 @@ use crate::charts::engine::{
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::capital_first;
-use cvtcycle_study::statistics::{Share, Summary, quantile_of_sorted};
+use cvtcycle_study::statistics::{Confidence, Share, Summary, quantile_of_sorted};
 
 /// One car, or one pair of cars.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,7 @@ struct Drawn<'a> {
     sorted: Vec<f64>,
     summary: Summary,
     above: Share,
+    confidence: Confidence,
 }
 
 const TOP: f64 = 58.0;
@@ -37,17 +38,22 @@ const BINS: f64 = 100.0;
 const NEAREST: f64 = 1.6;
 /// Most series that the picture in words describes.
 const IN_WORDS: usize = 2;
-/// Quantiles with a mark.
-const MARKED: [f64; 3] = [0.05, 0.5, 0.95];
+/// Probabilities of the quantiles with a mark.
+fn marked(confidence: Confidence) -> [f64; 3] {
+    let [low, high] = confidence.ends();
+    [low, 0.5, high]
+}
 /// Dashed, so that it stays apart from the frame.
 const ZERO: Stroke = stroke(INK, 1.4, &[6.0, 2.0]);
 const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 
-/// Draws histogram and cumulative curve of each series over one axis, with the 5, 50 and 95 % quantiles marked; of more than seven the
-/// first seven. Of differences of pairs zero is marked and the share above it written.
+/// Draws histogram and cumulative curve of each series over one axis, with the median and the two ends of its confidence marked; of more
+/// than seven the first seven. Of differences of pairs zero is marked and the share above it written.
 pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences: bool) -> Picture {
     let series = all.iter().take(STROKES.len());
-    let series: Vec<Drawn> = series.map(prepare).collect();
+    let series: Vec<Drawn> = series
+        .map(|series| prepare(series, shown.confidence))
+        .collect();
     let edges = edges(&series, differences);
     let shares: Vec<Vec<f64>> = series.iter().map(|s| shares(s, &edges)).collect();
     let (headline, notes) = (
@@ -75,7 +81,7 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
         upper.label(Label::new(place, line).size(12.0).bold(true));
     }
     let rect = Rect::new(PLOT_LEFT, rect.bottom + GAP, WIDE, TALL);
-    let lower = cumulative(rect, x, &series);
+    let lower = cumulative((rect, x), &series, marked(shown.confidence));
     let names = series.iter().zip(STROKES);
     let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
     let zero = differences.then(|| Entry::line(ZERO, "No difference"));
@@ -125,15 +131,16 @@ fn table(
     table
 }
 
-fn prepare<'a>(series: &DistributionSeries<'a>) -> Drawn<'a> {
+fn prepare<'a>(series: &DistributionSeries<'a>, confidence: Confidence) -> Drawn<'a> {
     let values = series.values.iter().copied();
     let mut sorted: Vec<f64> = values.filter(|x| x.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     Drawn {
         name: series.name,
         sorted,
-        summary: Summary::of(series.values),
-        above: Share::above_zero(series.values),
+        summary: Summary::of(series.values, confidence),
+        above: Share::above_zero(series.values, Some(confidence)),
+        confidence,
     }
 }
 
@@ -211,10 +218,10 @@ fn histogram(
     panel
 }
 
-fn cumulative(rect: Rect, x: Axis, series: &[Drawn]) -> Panel {
+fn cumulative((rect, x): (Rect, Axis), series: &[Drawn], marked: [f64; 3]) -> Panel {
     let y = Axis::exact("Runs at or below [%]", 0.0, 104.0, 6);
     let mut panel = Panel::new(rect, x, y).over_table();
-    for p in MARKED {
+    for p in marked {
         panel.level(100.0 * p, GUIDE);
     }
     zero(&mut panel);
@@ -224,7 +231,7 @@ fn cumulative(rect: Rect, x: Axis, series: &[Drawn]) -> Panel {
     }
     let known = |(s, _): &(&Drawn, _)| !s.sorted.is_empty();
     for (s, stroke) in series.iter().zip(STROKES).filter(known) {
-        for p in MARKED {
+        for p in marked {
             let place = at(s.summary.quantile(p), 100.0 * p);
             let style = Symbol::white(stroke.colour).class("mark");
             panel.symbol(Symbol::CIRCLE, place, 3.4, style);
@@ -257,7 +264,7 @@ fn zero(panel: &mut Panel) {
 /// Of a lone series the marked quantiles run through both panels.
 fn quantile_lines(panel: &mut Panel, series: &[Drawn]) {
     if let [s] = series {
-        for p in MARKED {
+        for p in marked(s.confidence) {
             panel.upright(s.summary.quantile(p), GUIDE);
         }
     }
@@ -273,9 +280,9 @@ fn headline(series: &[Drawn], differences: bool) -> String {
 
 /// "934 of 1000 pairs: 93.4 % (91.7 to 94.9 %)".
 fn above(share: &Share) -> String {
-    let [low, high] = share.interval95.map(percent);
-    let (k, n, share) = (share.k, share.n, percent(share.share));
-    format!("{k} of {n} pairs: {share}\u{a0}% ({low} to {high}\u{a0}%)")
+    let (k, n, own) = (share.k, share.n, percent(share.share));
+    let [low, high] = share.interval.unwrap_or([0.0, 1.0]).map(percent);
+    format!("{k} of {n} pairs: {own}\u{a0}% ({low} to {high}\u{a0}%)")
 }
 
 fn notes(shown: &Shown, all: usize, series: &[Drawn], differences: bool) -> Vec<String> {
@@ -288,12 +295,13 @@ fn notes(shown: &Shown, all: usize, series: &[Drawn], differences: bool) -> Vec<
         if s.summary.n == 0 {
             return format!("{}: no values, {} missing.", s.name, s.summary.missing);
         }
-        let [low, median, high] = MARKED.map(|p| digits(s.summary.quantile(p)));
+        let [low, median, high] = marked(s.confidence).map(|p| digits(s.summary.quantile(p)));
         let mut text = format!(
-            "{}: median {median}{unit}, 90\u{a0}% within {low} to {high}",
-            s.name
+            "{}: median {median}{unit}, {}\u{a0}% within {low} to {high}",
+            s.name,
+            s.confidence.draws_percent()
         );
-        if let Some([low, high]) = s.summary.mean_interval95 {
+        if let Some([low, high]) = s.summary.mean_interval {
             let [mean, low, high] = [s.summary.mean, low, high].map(digits);
             text += &format!("; mean {mean} ({low} to {high})");
         }

@@ -1,4 +1,4 @@
-//! Main effects of a grid: the mean over everything else, level by level, a panel for each factor.
+//! Main effects: the mean over everything else, level by level, a panel for each factor.
 
 use super::{FOOT, RIGHT, Shown, by_size};
 use crate::charts::engine::{
@@ -33,7 +33,7 @@ const TITLE: f64 = 12.0;
 /// Most factors that are drawn: more do not fit on a page.
 const MAX_FACTORS: usize = 12;
 
-/// Draws the mean of the output at each level of each factor with its spread over all others, the factor with the largest effect first. All
+/// Draws the mean of the output at each level of each factor with its spread over all others (the deviation of draws, the ends of a grid), the factor with the largest effect first. All
 /// panels have one vertical axis, so that effects can be compared.
 pub fn effects_plot(shown: &Shown, factors: &[EffectFactor]) -> Picture {
     let mut factors: Vec<&EffectFactor> = factors.iter().collect();
@@ -45,7 +45,13 @@ pub fn effects_plot(shown: &Shown, factors: &[EffectFactor]) -> Picture {
         note += &format!(" {more} more factors in the table.");
         factors.truncate(MAX_FACTORS);
     }
-    let spread = Entry::fill(Fill::plain("#dfe3eb"), "Standard deviation");
+    let drawn = groups(&factors).any(|g| g.sd.is_finite());
+    let what = if drawn {
+        "Standard deviation"
+    } else {
+        "Least to largest"
+    };
+    let spread = Entry::fill(Fill::plain("#dfe3eb"), what);
     let title = format!("Main effects: {}", shown.output);
     Chart::new(title, shown.subject, PLOT_LEFT)
         .panels(panels(shown, &factors))
@@ -63,9 +69,8 @@ fn panels(shown: &Shown, factors: &[&EffectFactor]) -> Vec<Panel> {
     };
     let room = RIGHT - 8.0 - columns as f64 * LEFT - (columns - 1) as f64 * GAP;
     let wide = (room / columns as f64).min(WIDEST);
-    let ends = |g: &Group| [g.mean, g.mean - spread(g), g.mean + spread(g)];
-    let groups = factors.iter().flat_map(|f| &f.groups.groups);
-    let y = Axis::round(&shown.axis("Mean"), groups.flat_map(ends), 5);
+    let ends = |g: &Group| [g.mean, band(g)[0], band(g)[1]];
+    let y = Axis::round(&shown.axis("Mean"), groups(factors).flat_map(ends), 5);
     let (mut panels, mut top, mut table_row) = (Vec::new(), TOP, 0);
     for row in factors.chunks(columns) {
         let below = row.iter().map(|f| below(f, wide)).fold(BELOW, f64::max);
@@ -98,6 +103,8 @@ fn table(shown: &Shown, factors: &[&EffectFactor]) -> PictureTable {
         ("Level".to_owned(), ""),
         shown.column("Mean"),
         shown.column("Standard deviation"),
+        shown.column("Least"),
+        shown.column("Largest"),
         ("Runs".to_owned(), ""),
     ];
     let mut table = PictureTable::with_columns(columns);
@@ -108,8 +115,9 @@ fn table(shown: &Shown, factors: &[&EffectFactor]) -> PictureTable {
             let unit = unit_after(factor);
             let unit = if words(factor) { "" } else { &unit };
             let level = format!("{}{unit}", group.label);
-            let [mean, sd] = [group.mean, group.sd].map(|x| cell(x, step));
-            table.push([factor.name.to_owned(), level, mean, sd, group.n.to_string()]);
+            let numbers = [group.mean, group.sd, group.min, group.max].map(|x| cell(x, step));
+            let head = [factor.name.to_owned(), level].into_iter().chain(numbers);
+            table.push(head.chain([group.n.to_string()]));
         }
     }
     table
@@ -129,9 +137,17 @@ fn unit_after(factor: &EffectFactor) -> String {
     }
 }
 
-/// Half of the height of the band; nothing where there is a single value.
-fn spread(group: &Group) -> f64 {
-    if group.sd.is_finite() { group.sd } else { 0.0 }
+/// Ends of the band: a deviation either way, or the least and the largest value of what is no sample.
+fn band(group: &Group) -> [f64; 2] {
+    match group.sd.is_finite() {
+        true => [group.mean - group.sd, group.mean + group.sd],
+        false => [group.min, group.max],
+    }
+}
+
+fn groups<'a>(factors: &[&EffectFactor<'a>]) -> impl Iterator<Item = &'a Group> {
+    let groups = factors.iter().map(|f| f.groups.groups.iter());
+    groups.collect::<Vec<_>>().into_iter().flatten()
 }
 
 fn words(factor: &EffectFactor) -> bool {
@@ -193,12 +209,12 @@ fn draw(rect: Rect, factor: &EffectFactor, y: Axis, row: usize) -> Panel {
     if words || levels.len() < 2 {
         // A box of the spread at each word, for there is nothing between words.
         for (x, row, g) in &levels {
-            let low = at(*x, g.mean - spread(g)).shift(-5.0, 0.0);
-            let high = at(*x, g.mean + spread(g)).shift(5.0, 0.0);
+            let [low, high] = band(g);
+            let (low, high) = (at(*x, low).shift(-5.0, 0.0), at(*x, high).shift(5.0, 0.0));
             panel.rectangle(low, high, style.clone().row(*row));
         }
     } else {
-        let ends = |(x, _, g): &Level| (*x, g.mean - spread(g), g.mean + spread(g));
+        let ends = |(x, _, g): &Level| (*x, band(g)[0], band(g)[1]);
         let ends: Vec<_> = levels.iter().map(ends).collect();
         panel.add(Shape::between(&ends), style);
     }

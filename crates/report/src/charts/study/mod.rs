@@ -16,7 +16,7 @@ pub use tornado::tornado_plot;
 
 use super::engine::{PLOT_LEFT, Point, WIDTH, number, optional_cell, round_step};
 use crate::number::{sign, with_unit};
-use cvtcycle_study::statistics::Estimate;
+use cvtcycle_study::statistics::{Confidence, Estimate};
 
 /// Right edge of the plots, and their width, pixels.
 const RIGHT: f64 = WIDTH - 28.0;
@@ -32,7 +32,7 @@ const ROW: f64 = 27.0;
 const MAX_ROWS: usize = 30;
 
 /// What a picture shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shown<'a> {
     /// The output, as people name it: `Fuel, total`.
     pub output: &'a str,
@@ -40,6 +40,8 @@ pub struct Shown<'a> {
     pub unit: &'a str,
     /// The study: cars, cycle, number of runs.
     pub subject: &'a str,
+    /// Of all intervals.
+    pub confidence: Confidence,
 }
 
 impl Shown<'_> {
@@ -76,15 +78,16 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
 }
 
 /// Columns of an estimate of that name: the estimate and the two ends of its interval.
-fn estimate_columns(name: &str) -> [(String, &'static str); 3] {
-    let ends = [format!("{name}: 95 % from"), format!("{name}: to")];
+fn estimate_columns(name: &str, confidence: Confidence) -> [(String, &'static str); 3] {
+    let level = confidence.percent();
+    let ends = [format!("{name}: {level} % from"), format!("{name}: to")];
     let [from, to] = ends.map(|name| (name, ""));
     [(name.to_owned(), ""), from, to]
 }
 
 /// An estimate and the two ends of its interval as cells; empty without one.
 fn estimate_cells(of: &Estimate) -> [String; 3] {
-    let ends = of.interval95;
+    let ends = of.interval;
     let [from, to] = [0, 1].map(|k| ends.map(|ends| ends[k]));
     [Some(of.value), from, to].map(|x| optional_cell(x, 1e-3))
 }

@@ -2,7 +2,7 @@
 
 use super::{MARGIN, MAX_ROWS, RIGHT, ROW, Shown, WIDE_FOOT, value};
 use crate::charts::engine::{
-    Axis, Chart, Cut, Entry, Fill, INK, Label, Panel, Style, at, cell, range, round_step,
+    Axis, Chart, Cut, Entry, Fill, INK, Label, Panel, Style, Symbol, at, cell, range, round_step,
     row_middle, rows_left, rows_panel, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
@@ -10,6 +10,9 @@ use cvtcycle_study::statistics::{Tornado, TornadoBar, TornadoEnd};
 
 /// Size of the values at the ends of bars, and widest such value, pixels.
 const END: (f64, f64) = (11.0, 120.0);
+
+/// Mark of a level between the ends.
+const BETWEEN: Symbol = Symbol::CIRCLE;
 
 /// Draws the tornado: change of the output against the base, with the factor's values at the ends of its bar.
 pub fn tornado_plot(shown: &Shown, tornado: &Tornado) -> Picture {
@@ -21,6 +24,7 @@ pub fn tornado_plot(shown: &Shown, tornado: &Tornado) -> Picture {
     let (low, high) = range(effects.chain([0.0])).unwrap_or((0.0, 1.0));
     let left = rows_left(bars.iter().map(|bar| bar.name.as_str()), 11.0);
     let x = axis(shown, bars, (low, high), RIGHT - left);
+    let dots = bars.iter().any(|bar| bar.between().next().is_some());
     let panel = rows_panel((left, 58.0), RIGHT, bars.len().max(2), ROW, x);
     let mut panel = panel.no_data(bars.is_empty());
     for (k, bar) in bars.iter().enumerate() {
@@ -30,10 +34,14 @@ pub fn tornado_plot(shown: &Shown, tornado: &Tornado) -> Picture {
     panel.upright(0.0, stroke(INK, 1.0, &[]));
     let names = ["Low or first value", "High or second value"];
     let entry = |(k, name): (usize, &str)| Entry::fill(Fill::nth(k, 2), name);
+    let dots = dots.then(|| Entry::symbol(BETWEEN, Style::colour(INK), "Levels between"));
     let title = format!("One factor at a time: {}", shown.output);
     Chart::new(title, shown.subject, MARGIN)
         .panels([panel])
-        .legend(WIDE_FOOT, names.into_iter().enumerate().map(entry))
+        .legend(
+            WIDE_FOOT,
+            names.into_iter().enumerate().map(entry).chain(dots),
+        )
         .notes(WIDE_FOOT, notes(shown, tornado, bars, high - low))
         .picture(table(shown, tornado, high - low))
 }
@@ -47,7 +55,7 @@ fn notes(shown: &Shown, tornado: &Tornado, bars: &[TornadoBar], spread: f64) -> 
     ];
     let missing: usize = all.iter().map(|bar| bar.missing).sum();
     if missing > 0 {
-        let values: usize = all.iter().map(|bar| bar.values).sum();
+        let values: usize = all.iter().map(|bar| bar.entries.len()).sum();
         notes.push(format!(
             "Left out without an output: {missing} of {values} values."
         ));
@@ -77,6 +85,10 @@ fn draw(panel: &mut Panel, row: usize, bar: &TornadoBar) {
             panel.bar(row, (0.0, end.effect), place, style);
         }
     }
+    for level in bar.between() {
+        let style = Style::colour(INK).class("mark").row(row);
+        panel.symbol(BETWEEN, at(level.effect, row_middle(row)), 3.0, style);
+    }
     for (k, (end, place)) in both() {
         let Some(end) = end else { continue };
         let down = 0.5 * (place.0 + place.1) + 4.0;
@@ -96,8 +108,14 @@ fn table(shown: &Shown, tornado: &Tornado, spread: f64) -> PictureTable {
         shown.column("Change at it"),
         ("High or second value".to_owned(), ""),
         shown.column("Change at that"),
-        shown.column("Swing"),
     ];
+    let between = tornado
+        .bars
+        .iter()
+        .any(|bar| bar.between().next().is_some());
+    let levels = between.then(|| ("Changes at levels between".to_owned(), ""));
+    let columns = columns.into_iter().chain(levels);
+    let columns = columns.chain([shown.column("Swing")]);
     let note = format!(
         "Changes are against the base of {}{}.",
         value(tornado.base, spread),
@@ -113,7 +131,11 @@ fn table(shown: &Shown, tornado: &Tornado, spread: f64) -> PictureTable {
             cells.unwrap_or_default()
         };
         let ends = [end(&bar.low), end(&bar.high)].concat();
-        let cells = [bar.name.clone()].into_iter().chain(ends);
+        let levels = bar
+            .between()
+            .map(|e| format!("{}: {}", e.label, cell(e.effect, step)));
+        let levels = between.then(|| levels.collect::<Vec<_>>().join("; "));
+        let cells = [bar.name.clone()].into_iter().chain(ends).chain(levels);
         table.push(cells.chain([cell(bar.swing, step)]));
     }
     table

@@ -35,6 +35,10 @@ pub struct Prepared {
     pub slide_m: [f64; 2],
     /// Part of it that is not at the innermost interface, from 0 to 1.
     pub outer_part: f64,
+    /// Part of it that a coating of the shoulders takes away; 0 without one (BT-8).
+    pub coated_part: f64,
+    /// Smaller wrap times the friction factor of the shoulders, rad (TE-7, BT-8).
+    pub shoulder_rad: f64,
     /// Contact area of a film, m2 (FI-1).
     pub film_area_m2: f64,
     /// Levers of the films' forces, innermost interface and all others, m (FI-1).
@@ -80,6 +84,8 @@ impl Prepared {
             strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
             slide_m: bands::slide_m(belt, g, direction),
             outer_part: bands::outer_part(belt),
+            coated_part: bands::coated_part(belt),
+            shoulder_rad: least * belt.shoulder_friction, // BT-8
             film_area_m2: bands::film_area_m2(belt, g),
             film_levers_m: bands::film_levers_m(belt, g, direction),
             stop: belt

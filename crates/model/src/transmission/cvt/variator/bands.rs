@@ -7,6 +7,7 @@
 //! | BT-3 | torque loss of a pulley, at the primary: f mu_b Q \|1/I - 1\|/2 (d + t (n-1)/2) | derived: closed sum of thesis eq. 48, 49 |
 //! | BT-4 | f = min wrap / own wrap (App. C) or 1 (eq. 49) | source: the two disagree, see Formulation |
 //! | BT-6 | torque loss by the one force of TE-7, at the primary, all of it on the smaller wrap: \|s\| mu_b Tm beta \|1/I - 1\| ((1-u_1) d + (1-u_t) t (n-1)/2), beta the smaller wrap | derived: moments about both pulleys, T_p - T_s/I = \|1/I - 1\| (d F_1 + t sum F_i) |
+//! | BT-8 | friction at the innermost interface: k mu_b, k a factor for a coating of the shoulders; in BT-6 (1-u_1) d becomes k (1-u_1) d | derived: BT-6 with a friction of its own for F_1 |
 //! | BT-7 | `smooth`: the bands slide on the pulley of smaller wrap alone, by dv_1 = \|1/I - 1\| d w_p, and run with the other one, x = -0.5 in BT-5 | derived: one force on both pulleys, and the larger wrap could hold more of it |
 //! | BT-5 | travel on its neighbour in a belt revolution: d (L/2 (1/R_p + 1/R_s) - 2 pi) + x d L \|1/R_p - 1/R_s\|, t for d above band 1 | derived from thesis 8.3, App. C; x = 0 is the mean speed of the printed forms |
 //! | FI-1 | film shear: F_v,i = u_i eta dv_i A/h_i at each interface by FH-1 at F_v,i dv_i, A = B L of the smaller wrap, dv_i of BT-7; torque at the primary \|s\| \|1/I - 1\| (F_v,1 d + F_v,t t (n-1)) | derived: thesis eq. 52 with one force on both pulleys and LU-5, FI-2 |
@@ -56,6 +57,11 @@ pub fn outer_part(belt: &Belt) -> f64 {
     } else {
         0.0
     }
+}
+
+/// Part of the bands' sliding that a coating of the shoulders takes away (BT-8).
+pub fn coated_part(belt: &Belt) -> f64 {
+    (1.0 - belt.shoulder_friction) * (1.0 - outer_part(belt)) // BT-8
 }
 
 /// Contact area of a film, on the smaller wrap, m2 (FI-1).
@@ -136,7 +142,8 @@ pub fn band_loss_nm(at: &BeltAtRatio, t: &Tension, band: &BandFriction) -> [f64;
     let shoulder_n = [t.primary_shoulder_n, t.secondary_shoulder_n];
     let [inner, outer] = band.film_share;
     let lifted = inner + (outer - inner) * at.prepared.outer_part;
-    let mu = band.mu * (1.0 - lifted);
+    let coated = at.prepared.coated_part * (1.0 - inner);
+    let mu = band.mu * (1.0 - lifted - coated); // BT-8
     pair(|i| mu * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3, BT-6
 }
 

@@ -13,6 +13,7 @@ keys! {
         band_thickness_mm: number(0.05, 1.0), "thickness of a band", ["BT-1"];
         band_width_mm: number(1.0, 100.0), "width of both band packs", ["SL-1", "FI-1"];
         band_offset_mm: number(0.0, 20.0), "offset of band 1 above the rocking edge", ["BT-1"];
+        shoulder_friction_factor: or(1.0, number(0.05, 2.0)), "friction between shoulders and innermost band over that between bands: a coating", ["BT-8"];
         mass_kg: number(0.1, 10.0), "mass of the belt", ["TE-2"];
         bands_carry_themselves: flag(true), "whether the bands carry their own mass, so that the segments alone press on them", ["TE-8"];
         youngs_gpa: number(50.0, 500.0), "Young's modulus of bands and segments", ["SL-1"];
@@ -62,6 +63,7 @@ impl Belt {
             band_thickness_m: belt.number(&BELT.band_thickness_mm),
             band_width_m: belt.number(&BELT.band_width_mm),
             band_offset_m: belt.number(&BELT.band_offset_mm),
+            shoulder_friction: belt.number(&BELT.shoulder_friction_factor),
             mass_kg_m: mass_kg / length_m,
             band_mass_kg_m: 0.0,
             youngs_pa: belt.number(&BELT.youngs_gpa),
@@ -83,6 +85,15 @@ impl Belt {
                 "below `stop_from_ratio`",
                 "the primary rests on its stop at the larger ratio",
                 "low lies above ratio 1; equal ratios make the stop a step",
+            );
+        }
+        let is_coated = (made.shoulder_friction - 1.0).abs() > 0.0;
+        if is_coated && !formulation.by_statics() {
+            belt.complain(
+                "shoulder_friction_factor",
+                "1",
+                "the printed belt model has one friction for all bands",
+                "leave it out, or take the belt model `smooth`",
             );
         }
         made.with_band_mass(belt, mass_kg)

@@ -56,6 +56,8 @@ pub struct Belt {
     pub band_width_m: f64,
     /// Offset of the innermost band above the rocking edge, m.
     pub band_offset_m: f64,
+    /// Friction between shoulders and innermost band over that between bands (BT-8).
+    pub shoulder_friction: f64,
     /// Mass per length, kg/m.
     pub mass_kg_m: f64,
     /// Part of it in the bands, kg/m.

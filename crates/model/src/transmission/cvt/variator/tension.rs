@@ -7,7 +7,7 @@
 //! | TE-3 | dT = -s mu_b Q_p, s = -1 in low, +1 in high | source: thesis eq. 46, App. C |
 //! | TE-4 | C_x = T/R_s - dT | source: thesis eq. 42 |
 //! | TE-5 | TE-2 to TE-4 solved: A = 2 F_p tan th + m beta_p v2, Z = T/R_s + s mu_b A, c = mu_b beta_p / 2, C_x = Z/(1 - s c) for Z >= 0, Z/(1 + s c) below | derived |
-//! | TE-7 | one force on both pulleys: dT = -s (mu_1 beta Tm + F_v), mu_1 = mu_b (1 - u_1), beta the smaller wrap, F_v the film's force (FI-1), Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_1 beta A + F_v and c = mu_1 beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
+//! | TE-7 | one force on both pulleys: dT = -s (mu_1 beta Tm + F_v), mu_1 = k mu_b (1 - u_1), k that of a coating of the shoulders (BT-8), beta the smaller wrap, F_v the film's force (FI-1), Tm = A + \|C_x\|/2, A = F_p tan th/beta_p + F_s tan th/beta_s + m v2; C_x as TE-5 with mu_1 beta A + F_v and c = mu_1 beta/2 | derived: the belt has two strands, so its tension steps by the same force over both pulleys, and the smaller wrap limits it |
 //! | TE-8 | `smooth`: m is that of the segments, and the mean tension of the bands is Q/beta + m_b v2, m_b theirs | derived: free body of a segment, 2 F tan th + m_s beta v2 + \|C_x\| beta/2 = Q, and of a band element, T = Q/beta + m_b v2; the thesis and the printed forms have the whole belt press |
 //! | TE-6 | s = -tanh(ln I / eps) | ASSUMED smoothing: the printed switch at I = 1 is a jump |
 //!
@@ -16,7 +16,6 @@
 //! true for mu_b < 0.53; TE-7 mu_b beta / 2 < 1, true for mu_b < 0.64.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
-use crate::math::smaller;
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,9 +66,9 @@ fn bare_mean_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, centrifugal_n: f6
 
 /// Boundary friction of the innermost interface per mean tension: of the part that is not on a film, on the smaller wrap (TE-7).
 #[inline(always)]
-fn grip(g: &Geometry, load: &BeltLoad) -> f64 {
+fn grip(at: &BeltAtRatio, load: &BeltLoad) -> f64 {
     let dry = 1.0 - load.band.film_share[0];
-    load.band.mu * dry * smaller(g.primary_wrap_rad, g.secondary_wrap_rad)
+    load.band.mu * dry * at.prepared.shoulder_rad
 }
 
 impl Tension {
@@ -90,7 +89,7 @@ impl Tension {
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
         let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
         let mean = bare_mean_n(belt, at, load, centrifugal_n);
-        let (grip, film_n) = (grip(g, load), load.film_n[0]);
+        let (grip, film_n) = (grip(at, load), load.film_n[0]);
         let z =
             load.output_torque_nm * at.prepared.inv_secondary_radius + s * (grip * mean + film_n);
         let cx = compression_n(z, s * (0.5 * grip)); // TE-7
@@ -111,7 +110,7 @@ impl Tension {
         let (clamp_n, [centrifugal_n, _]) = forces_n(belt, at, load);
         let g = &at.geometry;
         let force_n = if belt.formulation.by_statics() {
-            grip(g, load) * bare_mean_n(belt, at, load, centrifugal_n) + load.film_n[0]
+            grip(at, load) * bare_mean_n(belt, at, load, centrifugal_n) + load.film_n[0]
         } else {
             load.band.mu * (2.0 * clamp_n[0] * belt.tan_wedge + g.primary_wrap_rad * centrifugal_n)
         };

@@ -1,0 +1,106 @@
+//! Columns as the user names them: which column of a logger's table is which quantity, in which unit. All others are passed over.
+
+use super::heading::unit_named;
+use super::text::split;
+use crate::{Argument, Problem};
+
+/// What an entry looks like.
+const FORM: &str = "QUANTITY=NAME:UNIT with a comma between columns, or QUANTITY:UNIT for each column of a file without names";
+
+/// The columns that are meant; all that have a name of the schema if there are none.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Columns(pub(super) Vec<Entry>);
+
+/// One column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Entry {
+    /// A quantity, such as `speed`, or a column of the schema.
+    pub quantity: String,
+    /// Its name in the file; none where the columns are given in their order.
+    pub name: Option<String>,
+    pub unit: Option<String>,
+}
+
+impl Columns {
+    /// Reads `speed=VehSpd:mph,time=Time_ADC:s`, or `time:s,speed:mph` for the columns of a file without names in their order. An entry
+    /// with a comma in it is put into double quotes.
+    ///
+    /// ```
+    /// use cvtcycle_config::csv::Columns;
+    /// assert!(Columns::parse("speed=VehSpd:mph,\"time=Time, secs\"").is_ok());
+    /// assert!(Columns::parse("speed").is_err());
+    /// ```
+    ///
+    /// # Errors
+    /// An entry of another form, a quantity that is given twice, or both forms at once.
+    pub fn parse(text: &str) -> Result<Columns, Problem> {
+        let mut fields = Vec::new();
+        let wrong = |message: String| {
+            let problem = Problem::syntax(message).at(Argument::Columns).value(text);
+            Err(problem
+                .allowed(FORM)
+                .hint("for example time=Time_ADC:s,speed=VehSpd:mph"))
+        };
+        if split(text, ',', &mut fields).is_err() {
+            return wrong("a quote is not closed".to_owned());
+        }
+        let mut list: Vec<Entry> = Vec::new();
+        for field in fields {
+            let own = text.get(field.start..field.end).unwrap_or_default();
+            let Some(entry) = Entry::parse(own) else {
+                return wrong(format!("`{own}` names no column"));
+            };
+            if list.iter().any(|other| other.quantity == entry.quantity) {
+                return wrong(format!("{} is given twice", entry.quantity));
+            }
+            list.push(entry);
+        }
+        let named = list.iter().filter(|entry| entry.name.is_some()).count();
+        if named > 0 && named < list.len() {
+            return wrong("some columns are named and some are not".to_owned());
+        }
+        Ok(Columns(list))
+    }
+
+    /// True where the names of the file say themselves what they are.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// True where the file has no line of names.
+    pub(super) fn are_in_order(&self) -> bool {
+        self.0.iter().any(|entry| entry.name.is_none())
+    }
+
+    /// Whether a name of the file is one of them.
+    pub(super) fn has(&self, text: &str) -> bool {
+        self.0
+            .iter()
+            .any(|entry| entry.name.as_deref() == Some(text))
+    }
+}
+
+impl Entry {
+    fn parse(text: &str) -> Option<Entry> {
+        let some = |text: &str| (!text.trim().is_empty()).then(|| text.trim().to_owned());
+        let Some((quantity, rest)) = text.split_once('=') else {
+            let (quantity, unit) = text.split_once(':')?;
+            return Some(Entry {
+                quantity: some(quantity)?,
+                name: None,
+                unit: Some(some(unit)?),
+            });
+        };
+        // A name may have a colon itself.
+        let (name, unit) = match rest.rsplit_once(':') {
+            Some((name, unit)) if unit_named(unit).is_some() => (name, some(unit)),
+            _ => (rest, None),
+        };
+        Some(Entry {
+            quantity: some(quantity)?,
+            name: Some(some(name)?),
+            unit,
+        })
+    }
+}

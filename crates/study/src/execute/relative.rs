@@ -1,0 +1,106 @@
+//! A plan made for its own cars, taken relative to their values, so that it serves any car.
+
+use super::prepare::{folder_of, in_folder};
+use crate::plan::{
+    Acts, Cars, Distribution, Factor, FactorValue, FactorValues, Plan, RUN_OPTIONS, unit,
+};
+use cvtcycle_config::setup::template::VehicleTemplate;
+use cvtcycle_config::setup::{NamedBy, Options, TWIN, baseline_of};
+use cvtcycle_config::{Problems, unit_of};
+
+/// Share of the largest value of a factor below which the value of its car is too near to zero to be a measure of it.
+const NEAR_ZERO: f64 = 0.1;
+
+/// The plan with factors and differences in place of values: of its subject, and of its first baseline for factors of the baselines.
+/// Temperatures, and values near or below zero, become differences, all others factors on the value of each car. A factor does not act on a car
+/// that does not have its key, and what leaves the range of a key is held at its end. Also whether the subject has a CVT.
+///
+/// # Errors
+/// The problems of its cars.
+pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
+    let folder = folder_of(&plan);
+    let options = |lubricant: &Option<String>| Options {
+        lubricant: lubricant.clone(),
+        engine_oil: plan.base.engine_oil.clone(),
+        named_by: NamedBy::File,
+        ..Options::default()
+    };
+    let word = in_folder(folder, &plan.base.vehicle);
+    let (subject, setup) = VehicleTemplate::load(&word, &options(&plan.base.lubricant))?;
+    let named = plan.base.baselines.as_ref().unwrap_or(&setup.baselines);
+    let baseline = named.first().map(|name| match plan.base.baselines {
+        Some(_) if name != TWIN => in_folder(folder, name),
+        _ => baseline_of(&word, name),
+    });
+    let baseline = match baseline {
+        Some(word) => Some(VehicleTemplate::load(&word, &options(&None))?.0),
+        None => None,
+    };
+    let of = |factor: &Factor| match factor.cars {
+        Cars::Baselines => baseline.as_ref(),
+        Cars::Subject | Cars::All => Some(&subject),
+    };
+    let over = |factor: &Factor| {
+        let slot = of(factor)?.slot(&factor.key).ok()?;
+        let is_known = slot.is_active() && slot.base().is_finite();
+        is_known.then(|| over(factor, slot.base()))
+    };
+    let is_value = |factor: &Factor| {
+        let is_option = RUN_OPTIONS.contains(&factor.key.as_str());
+        factor.acts == Acts::Value && factor.values.are_numbers() && !is_option
+    };
+    let factors = plan.factors.iter().map(|factor| match is_value(factor) {
+        true => over(factor).unwrap_or_else(|| factor.clone()),
+        false => factor.clone(),
+    });
+    let factors = factors.collect();
+    let relative = Plan {
+        factors,
+        skip_missing: true,
+        clip: true,
+        ..plan
+    };
+    Ok((relative, setup.transmission().is_cvt()))
+}
+
+/// A factor over the value of its car.
+fn over(factor: &Factor, base: f64) -> Factor {
+    let size = |x: f64| x.abs() * NEAR_ZERO;
+    let largest = match &factor.values {
+        FactorValues::List(list) => {
+            let numbers = list.iter().filter_map(FactorValue::number);
+            numbers.map(size).fold(0.0, f64::max)
+        }
+        FactorValues::Distribution(distribution) => {
+            let (low, high) = distribution.support();
+            let ends = [low, high].into_iter().filter(|x| x.is_finite());
+            ends.map(size).fold(0.0, f64::max)
+        }
+    };
+    let is_lognormal = matches!(
+        factor.values,
+        FactorValues::Distribution(Distribution::Lognormal { .. })
+    );
+    let near_zero = base <= largest;
+    let acts = match unit_of(&factor.key) == unit_of("_degc") || near_zero {
+        true if is_lognormal => Acts::Value,
+        true => Acts::Offset,
+        false => Acts::Scale,
+    };
+    let number = |value: &FactorValue| match (value, acts) {
+        (FactorValue::Number(x), Acts::Scale) => FactorValue::Number(x / base),
+        (FactorValue::Number(x), Acts::Offset) => FactorValue::Number(x - base),
+        (other, _) => other.clone(),
+    };
+    Factor {
+        acts,
+        unit: unit(&factor.key, acts),
+        values: match &factor.values {
+            FactorValues::List(list) => FactorValues::List(list.iter().map(number).collect()),
+            FactorValues::Distribution(distribution) => {
+                FactorValues::Distribution(distribution.over(base, acts))
+            }
+        },
+        ..factor.clone()
+    }
+}

@@ -1,0 +1,178 @@
+//! Spread of the difference between two shipped cars over the draws of a plan of uncertainty, drawn once for the usual cases.
+//!
+//! `intervals/penalty.csv` holds the results with the hashes of what they were made from; a row is used for a run of the same hashes only.
+//! `cargo run --release --example intervals` writes the file, a test draws a row of it again.
+
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_config::{Problem, Problems, embedded};
+use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
+use cvtcycle_output::summary::DrawnDifference;
+
+use crate::NoProgress;
+use crate::execute::outputs::EXCESS;
+use crate::execute::{PartWriter, Study};
+use crate::plan::{Design, Plan};
+use crate::statistics::{Confidence, Share, Summary};
+use crate::store::{Rows, Values};
+
+/// The file.
+const TABLE: &str = include_str!("../../../../intervals/penalty.csv");
+/// The plan that is drawn.
+const PLAN: &str = "uncertainty_rover";
+/// Number of draws, independent ones.
+const DRAWS: u64 = 256;
+/// Head of the file.
+const HEAD: &str = "cycle,ambient_degc,start,subject_sha256,baseline_sha256,cycle_sha256,plan_sha256,draws,more,percent_5,percent_50,percent_95";
+
+/// Two cars under the conditions of a run.
+pub struct Pair<'a> {
+    /// The cycle.
+    pub cycle: &'a Cycle,
+    /// Ambient temperature, degC.
+    pub ambient_degc: f64,
+    /// `soak` or `warm`.
+    pub start: &'a str,
+    /// Subject and baseline.
+    pub cars: [&'a Setup; 2],
+}
+
+/// Cycle, ambient temperature and start of the cases of the file.
+pub const CASES: [(&str, f64, &str); 8] = [
+    ("ece15_eudc", -30.0, "soak"),
+    ("ece15_eudc", -10.0, "soak"),
+    ("ece15_eudc", 0.0, "soak"),
+    ("ece15_eudc", 25.0, "soak"),
+    ("ece15_eudc", 25.0, "warm"),
+    ("ftp75", 24.0, "soak"),
+    ("wltc_class3b", 23.0, "soak"),
+    ("wltc_class3b", -7.0, "soak"),
+];
+
+/// What the file has for a case: cells of its row.
+fn row(pair: &Pair) -> Option<Vec<&'static str>> {
+    let rows = TABLE
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let mut of_case = rows.filter(|cells| {
+        let ambient = cells.get(1).and_then(|cell| cell.parse::<f64>().ok());
+        let near = ambient.is_some_and(|degc| (degc - pair.ambient_degc).abs() < 1e-9);
+        near && cells[0] == pair.cycle.name && cells.get(2) == Some(&pair.start)
+    });
+    // Hashes take longer than all else: only where a case has the names of this one.
+    let row = of_case.next()?;
+    let [subject, baseline] = pair.cars.map(car_sha256);
+    let hashes = [subject, baseline, cycle_sha256(pair.cycle), plan_sha256()];
+    let same = row
+        .get(3..7)
+        .is_some_and(|own| own.iter().eq(hashes.iter()));
+    same.then_some(row)
+}
+
+fn plan_sha256() -> String {
+    let text = embedded::plans().iter().find(|(name, _)| *name == PLAN);
+    text.map_or_else(String::new, |(_, text)| hash(text.as_bytes()))
+}
+
+/// What is known of the difference; none of a case that was not drawn, or with other cars, another cycle or another plan.
+pub fn known(pair: &Pair) -> Option<DrawnDifference> {
+    let cells = row(pair)?;
+    let count = |k: usize| cells.get(k)?.parse().ok();
+    let number = |k: usize| cells.get(k)?.parse().ok();
+    Some(DrawnDifference {
+        plan: PLAN.to_owned(),
+        draws: count(7)?,
+        more: count(8)?,
+        percent: [number(9)?, number(10)?, number(11)?],
+    })
+}
+
+/// Keeps the table of runs.
+#[derive(Default)]
+struct Memory(Mutex<Vec<(u64, Rows)>>);
+
+impl PartWriter for Memory {
+    fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
+        let mut parts = self
+            .0
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        parts.push((part, runs.clone()));
+        Ok(())
+    }
+}
+
+/// Draws a case: a line of the file.
+///
+/// # Errors
+/// Problems of the plan or of its cars.
+pub fn draw((cycle, ambient_degc, start): (&str, f64, &str)) -> Result<String, Problems> {
+    let mut plan = Plan::open(PLAN)?;
+    plan.design = Design::MonteCarlo {
+        samples: DRAWS,
+        seed: 1,
+    };
+    plan.base.cycle = cycle.to_owned();
+    plan.base.ambient_degc = ambient_degc;
+    plan.base.start = start.to_owned();
+    let study = Study::prepare(plan)?;
+    let memory = Memory::default();
+    study.execute(&BTreeSet::new(), &memory, &NoProgress)?;
+    let mut parts = memory
+        .0
+        .into_inner()
+        .unwrap_or_else(std::sync::PoisonError::into_inner);
+    parts.sort_by_key(|(part, _)| *part);
+    let excess = differences(&study, &parts);
+    let summary = Summary::of(&excess, Confidence::default());
+    let more = Share::above_zero(&excess, None);
+    let [subject, baseline] = [0, 1].map(|car| study.cars[car].sha256(&study.plan.factors));
+    let [low, median, high] = [0.05, 0.5, 0.95].map(|p| summary.quantile(p));
+    let (of_cycle, plan) = (cycle_sha256(&study.cycles[0]), plan_sha256());
+    let (n, more) = (more.n, more.k);
+    Ok(format!(
+        "{cycle},{ambient_degc},{start},{subject},{baseline},{of_cycle},{plan},{n},{more},{low:.3},{median:.3},{high:.3}\n"
+    ))
+}
+
+/// Excess of the subject over the baseline, draw by draw, of good pairs.
+fn differences(study: &Study, parts: &[(u64, Rows)]) -> Vec<f64> {
+    let column = |name: &str| study.columns.iter().position(|head| head.name == name);
+    let (Some(excess), Some(status)) = (column(EXCESS), column("status")) else {
+        return Vec::new();
+    };
+    let mut list = Vec::new();
+    for (_, rows) in parts {
+        let (Values::Number(excess), Values::Text(status)) =
+            (&rows.values[excess], &rows.values[status])
+        else {
+            continue;
+        };
+        let pairs = excess.chunks_exact(2).zip(status.chunks_exact(2));
+        let good = pairs.filter(|(_, status)| status.iter().all(|word| &**word == "ok"));
+        list.extend(good.map(|(excess, _)| excess[1]));
+    }
+    list
+}
+
+/// The whole file.
+///
+/// # Errors
+/// As [`draw`].
+pub fn file() -> Result<String, Problems> {
+    let mut text = HEAD.to_owned() + "\n";
+    for case in CASES {
+        text += &draw(case)?;
+    }
+    Ok(text)
+}
+
+/// The line of a case in the file that the program carries.
+pub fn line((cycle, ambient_degc, start): (&str, f64, &str)) -> Option<&'static str> {
+    let head = format!("{cycle},{ambient_degc},{start},");
+    TABLE.lines().find(|line| line.starts_with(&head))
+}

@@ -1,0 +1,171 @@
+//! What a run says of its subject: fuel, difference to each baseline with what is known of it, the price of its losses, and the published
+//! numbers that contradict it.
+
+use std::cell::OnceCell;
+
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::{Kind, Options, Setup, load};
+use cvtcycle_output::number::fixed;
+use cvtcycle_output::provenance::car_sha256;
+use cvtcycle_output::summary::{Comparison, Contradiction, Driven, RunSummary, StartWord, Summary};
+
+use super::intervals as drawn;
+use super::{against_print, between, decimals, more_or_less, of_difference, than};
+use crate::attribute::answer as price;
+use crate::check::{About, published};
+
+/// Distance of the ambient temperatures up to which a published number is one of this run, K.
+const NEAR_K: f64 = 5.0;
+
+/// Looks up how sure the differences of a run are, and which published numbers it contradicts. Both are only said of cars as they are shipped.
+pub fn assess(summary: &mut Summary, cycle: &Cycle, driven: &[Driven]) {
+    let usual = summary.settings.dt_s >= 1.0 && summary.settings.formulation == "smooth";
+    let names = driven.iter().map(|car| car.name);
+    let StartWord::Word(start) = summary.start.clone() else {
+        return;
+    };
+    if !usual
+        || !names
+            .clone()
+            .all(|name| Kind::Vehicle.names().contains(&name))
+    {
+        return;
+    }
+    summary.contradicted = contradicted(summary, &start, driven);
+    let ambient_degc = summary.ambient_degc;
+    let Some((subject, baselines)) = driven.split_first() else {
+        return;
+    };
+    for (comparison, baseline) in summary.comparison.iter_mut().zip(baselines) {
+        comparison.interval = drawn::known(&drawn::Pair {
+            cycle,
+            ambient_degc,
+            start: &start,
+            cars: [subject.setup, baseline.setup],
+        });
+    }
+}
+
+/// Whether a car is that of its file, unchanged.
+fn is_shipped(name: &str, setup: &Setup) -> bool {
+    load(name, &Options::default()).is_ok_and(|own| car_sha256(&own) == car_sha256(setup))
+}
+
+fn contradicted(summary: &Summary, start: &str, driven: &[Driven]) -> Vec<Contradiction> {
+    let Some(subject) = driven.first() else {
+        return Vec::new();
+    };
+    let rows = published(subject.name, &summary.cycle);
+    // A car is read again once at most, and only where a row is about it.
+    let shipped: Vec<OnceCell<bool>> = vec![OnceCell::new(); driven.len()];
+    let is_shipped = |k: usize| {
+        let car = &driven[k];
+        *shipped[k].get_or_init(|| is_shipped(car.name, car.setup))
+    };
+    let of_run = |about: &About| {
+        about.start == start && (about.ambient_degc - summary.ambient_degc).abs() <= NEAR_K
+    };
+    let found = rows.into_iter().filter_map(|row| {
+        let about = row.about.clone().filter(of_run)?;
+        let baseline = about.baseline.as_deref();
+        let other = match baseline {
+            None => None,
+            Some(name) => Some(driven.iter().skip(1).position(|car| car.name == name)?),
+        };
+        let computed = number(summary, &about, other)?;
+        let of_cars = || is_shipped(0) && other.is_none_or(|k| is_shipped(k + 1));
+        (row.contradicts(computed) && of_cars()).then(|| Contradiction {
+            row: row.id.clone(),
+            baseline: about.baseline.clone(),
+            phase: about.phase.clone(),
+            computed,
+            unit: row.unit.clone(),
+            printed: row.printed_text.clone(),
+            condition: row.condition.clone(),
+        })
+    });
+    found.collect()
+}
+
+/// The number of a run that a row is about.
+fn number(summary: &Summary, about: &About, baseline: Option<usize>) -> Option<f64> {
+    let run = summary.runs.first()?;
+    match (about.baseline.is_some(), &about.phase) {
+        (true, None) => summary.comparison.get(baseline?)?.fuel_percent,
+        (true, Some(phase)) => {
+            let comparison = summary.comparison.get(baseline?)?;
+            comparison.phases_percent.get(phase)
+        }
+        (false, None) => run.headline_fuel(),
+        (false, Some(phase)) => {
+            let mut phases = run.phases.iter();
+            phases.find(|of| of.name == *phase)?.fuel_l_per_100km
+        }
+    }
+}
+
+/// The first lines of a run, a sentence each.
+pub fn sentences(summary: &Summary) -> Vec<String> {
+    let run = summary.runs.first();
+    let Some((run, fuel)) = run.and_then(|run| run.headline_fuel().map(|fuel| (run, fuel))) else {
+        return Vec::new();
+    };
+    let against: String = summary.comparison.iter().filter_map(against).collect();
+    let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
+    let lines = [Some(first), price(run)].into_iter().flatten();
+    lines.chain(contradictions(summary)).collect()
+}
+
+/// The published numbers that a run contradicts, a sentence each.
+pub fn contradictions(summary: &Summary) -> Vec<String> {
+    let Some(run) = summary.runs.first() else {
+        return Vec::new();
+    };
+    let all = summary.contradicted.iter();
+    all.map(|of| contradiction(run, of)).collect()
+}
+
+/// How sure the differences to the baselines are, a sentence for each of which it is known.
+pub fn intervals(summary: &Summary) -> Vec<String> {
+    let drawn = summary.comparison.iter().filter_map(|comparison| {
+        let of = comparison.interval.as_ref()?;
+        let ends = between([of.percent[0], of.percent[2]], "%");
+        let (baseline, plan, draws, more) = (&comparison.baseline, &of.plan, of.draws, of.more);
+        Some(format!(
+            "Difference to {baseline} over {draws} draws of the plan {plan}: 90 % of them are {ends}; the subject uses more in {more}."
+        ))
+    });
+    drawn.collect()
+}
+
+/// ", 7 % more than the baseline (90 % of 256 draws: +2 to +12 %)".
+fn against(comparison: &Comparison) -> Option<String> {
+    let percent = comparison.fuel_percent?;
+    let baseline = &comparison.baseline;
+    let Some(drawn) = &comparison.interval else {
+        let compared = more_or_less(percent, 1);
+        let than = than(&compared);
+        return Some(format!(", {compared} {than} {baseline} (no interval)"));
+    };
+    let ends = [drawn.percent[0], drawn.percent[2]];
+    let compared = more_or_less(percent, decimals(ends));
+    let (than, ends) = (than(&compared), between(ends, "%"));
+    let (draws, more) = (drawn.draws, drawn.more);
+    Some(format!(
+        ", {compared} {than} {baseline} (90 % of {draws} draws: {ends}; more in {more})"
+    ))
+}
+
+/// A published number against that of the run.
+fn contradiction(run: &RunSummary, of: &Contradiction) -> String {
+    let computed = match &of.baseline {
+        Some(baseline) => of_difference(of.computed, baseline, of.phase.as_deref()),
+        None => {
+            let phase = of.phase.as_deref();
+            let phase = phase.map_or_else(String::new, |phase| format!(" in {phase}"));
+            let (car, unit) = (&run.vehicle, &of.unit);
+            format!("{} {unit} of {car}{phase}", fixed(of.computed, 2))
+        }
+    };
+    against_print(&computed, &of.printed, &of.condition, &of.row)
+}

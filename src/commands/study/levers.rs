@@ -1,0 +1,52 @@
+//! What a study of levers says: for `levers`, and for `study show`.
+
+mod tables;
+
+use cvtcycle::config::{Problem, Problems};
+use cvtcycle::study::levers::{LeverAnswer, csv, lever_answer};
+use cvtcycle::study::statistics::Confidence;
+use cvtcycle::study::{StudyManifest, StudyTable, store};
+
+use super::execution::Says;
+use super::tables::failures;
+use crate::print::colour::Paint;
+use crate::print::{Results, WrittenFiles, json_text};
+
+/// What a study of levers says.
+pub struct LeverResults {
+    answer: LeverAnswer,
+    parts: (usize, usize),
+}
+
+impl Says for LeverResults {
+    fn of(
+        outline: StudyManifest,
+        store: store::Study,
+        confidence: Confidence,
+    ) -> Result<Self, Problem> {
+        let answer = lever_answer(&StudyTable::new(&outline, &store)?, confidence)?;
+        store.unchanged()?;
+        let status = store.status();
+        Ok(LeverResults {
+            answer,
+            parts: (status.present, status.expected),
+        })
+    }
+
+    fn results(&self) -> Result<Results, Problems> {
+        let failures = failures(&self.answer.runs);
+        let json = json_text(&self.answer)?;
+        Ok(Results::new(json, failures, WrittenFiles::default()))
+    }
+
+    fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+        let json = json_text(&self.answer)?.into_bytes();
+        let csv = csv(&self.answer).map(|csv| ("levers.csv".to_owned(), csv));
+        let json = ("levers.json".to_owned(), json);
+        Ok(std::iter::once(json).chain(csv).collect())
+    }
+
+    fn tables(&self, paint: Paint) -> String {
+        tables::tables(&self.answer, self.parts, paint)
+    }
+}

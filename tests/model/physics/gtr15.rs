@@ -1,0 +1,273 @@
+//! Gears by UN GTR 15, Annex 2. The numbers are those of another program, written from the rule's text: it has the gears of all 85 cases without
+//! downscaling that are published with the regulation's reference program (152 329 s), as `examples/gtr15_reference.rs` finds for this one.
+
+use crate::common::car;
+use cvtcycle_config::cycle::{embedded, find, for_car};
+use cvtcycle_model::cycle::GearCommand;
+use cvtcycle_model::cycle::gtr15::{GtrGears, GtrVehicle, MakerLimits, SAFETY, gears};
+use cvtcycle_model::drive::{Conditions, Start, drive};
+use proptest::prelude::*;
+
+fn trace(name: &str) -> Vec<f64> {
+    let trace = embedded(name).unwrap().manual;
+    let ends = trace.intervals.iter().map(|i| i.end_speed_m_s * 3.6);
+    std::iter::once(0.0).chain(ends).collect()
+}
+
+/// rpm and Nm of full load, ratios, tyre radius in m, road load, test mass and idling speed.
+struct Data {
+    full_load: &'static [(f64, f64)],
+    ratios: &'static [f64],
+    radius_m: f64,
+    load: [f64; 3],
+    idle_rpm: f64,
+}
+
+/// A car with six gears and 2.0 l.
+const SIX: Data = Data {
+    full_load: &[
+        (600.0, 110.0),
+        (700.0, 120.0),
+        (1000.0, 140.0),
+        (1500.0, 158.0),
+        (2000.0, 168.0),
+        (2500.0, 173.0),
+        (3000.0, 178.0),
+        (3500.0, 183.0),
+        (4200.0, 187.0),
+        (5000.0, 184.0),
+        (5500.0, 180.0),
+        (6000.0, 178.0),
+        (6500.0, 173.4),
+        (6700.0, 165.0),
+    ],
+    ratios: &[14.950_41, 8.5384, 5.586_905, 4.199_415, 3.403_045, 2.816_03],
+    radius_m: 0.3095,
+    load: [82.25, 0.5545, 0.027_943],
+    idle_rpm: 650.0,
+};
+
+/// The Rover with five gears.
+const FIVE: Data = Data {
+    full_load: &[
+        (850.0, 100.0),
+        (1000.0, 105.0),
+        (1500.0, 118.0),
+        (2000.0, 130.0),
+        (2500.0, 139.0),
+        (3000.0, 145.0),
+        (3500.0, 145.0),
+        (4000.0, 144.5),
+        (4500.0, 144.0),
+        (5000.0, 141.5),
+        (5500.0, 137.0),
+        (6000.0, 130.5),
+        (6500.0, 115.0),
+    ],
+    ratios: &[13.45, 7.67, 5.25, 4.15, 3.33],
+    radius_m: 0.2832,
+    load: [6.4, 0.0, 0.0433],
+    idle_rpm: 850.0,
+};
+
+impl Data {
+    fn vehicle(&self, test_mass_kg: f64) -> GtrVehicle {
+        let wheel_rpm = 1000.0 / 60.0 / (2.0 * std::f64::consts::PI * self.radius_m);
+        let kw = |(n, nm): &(f64, f64)| [*n, n * std::f64::consts::PI / 30.0 * nm / 1000.0, 0.0];
+        GtrVehicle {
+            test_mass_kg,
+            load: self.load,
+            idle_rpm: self.idle_rpm,
+            full_load: self.full_load.iter().map(kw).collect(),
+            rpm_per_kmh: self.ratios.iter().map(|ratio| ratio * wheel_rpm).collect(),
+            safety: SAFETY,
+            maker: MakerLimits::default(),
+        }
+    }
+}
+
+/// Seconds in each gear from none, mean gear above 1 km/h, and the sum of second times gear.
+fn sums(found: &GtrGears, kmh: &[f64]) -> (Vec<usize>, f64, usize) {
+    let highest = usize::from(found.gear.iter().copied().max().unwrap());
+    let count = |gear: usize| {
+        found
+            .gear
+            .iter()
+            .filter(|own| usize::from(**own) == gear)
+            .count()
+    };
+    let moving: Vec<f64> = found
+        .gear
+        .iter()
+        .zip(kmh)
+        .filter(|(_, v)| **v >= 1.0)
+        .map(|(gear, _)| f64::from(*gear))
+        .collect();
+    let weighted = found
+        .gear
+        .iter()
+        .enumerate()
+        .map(|(t, gear)| t * usize::from(*gear));
+    let mean = moving.iter().sum::<f64>() / moving.len() as f64;
+    ((0..=highest).map(count).collect(), mean, weighted.sum())
+}
+
+/// Car, test mass in kg, cycle; seconds in each gear, mean gear in motion, sum of time and gear.
+type Case = (
+    &'static Data,
+    f64,
+    &'static str,
+    &'static [usize],
+    f64,
+    usize,
+);
+
+#[test]
+fn seconds_in_each_gear_are_those_of_the_other_program() {
+    let cases: [Case; 4] = [
+        (
+            &SIX,
+            1385.0,
+            "wltc_class3b",
+            &[257, 47, 419, 158, 139, 180, 601],
+            4.1072,
+            6_909_032,
+        ),
+        (
+            &SIX,
+            1461.0,
+            "wltc_class3b",
+            &[258, 47, 419, 158, 148, 176, 595],
+            4.0944,
+            6_880_014,
+        ),
+        (
+            &FIVE,
+            1130.0,
+            "wltc_class3b",
+            &[261, 55, 429, 131, 153, 772],
+            3.6945,
+            6_067_022,
+        ),
+        (
+            &FIVE,
+            1130.0,
+            "wltc_class2",
+            &[272, 81, 334, 115, 228, 771],
+            3.7462,
+            6_222_947,
+        ),
+    ];
+    for (data, mass_kg, cycle, seconds, mean, sum) in cases {
+        let kmh = trace(cycle);
+        let found = gears(&kmh, &data.vehicle(mass_kg));
+        let (own, own_mean, own_sum) = sums(&found, &kmh);
+        assert_eq!(
+            (own.as_slice(), own_sum),
+            (seconds, sum),
+            "{cycle}, {mass_kg} kg"
+        );
+        assert!((own_mean - mean).abs() < 5e-5, "{own_mean}");
+    }
+    let found = gears(&trace("wltc_class3b"), &SIX.vehicle(1385.0));
+    assert_eq!((found.n95_rpm, found.top), (6700.0, (5, 227.6)));
+    assert!((found.highest_rpm - 3829.5).abs() < 0.05);
+}
+
+#[test]
+fn a_manual_car_on_a_wltc_drives_these_gears_and_no_other_car_or_cycle_does() {
+    let conditions = Conditions {
+        ambient_k: 296.15,
+        start: Start::Soak,
+        max_dt_s: 1.0,
+        keep_rows: true,
+    };
+    let rover = car("rover_216_5mt", &[]);
+    let cycle = embedded("wltc_class3b").unwrap();
+    let outcome = drive(&rover, &cycle, &conditions);
+    assert_eq!(outcome.gear_schedule, "gears by UN GTR 15, Annex 2");
+    // What the box engages is what the procedure has, wherever the car drives in a gear without a change.
+    let expected =
+        gears(&trace("wltc_class3b"), &rover.gtr15().unwrap()).commands(&trace("wltc_class3b"));
+    for (row, command) in outcome.rows.iter().zip(&expected) {
+        if let GearCommand::InGear(gear) = command
+            && row.wheel_power_w > 0.0
+        {
+            assert!(
+                row.gear <= *gear,
+                "{} s: {} and {gear}",
+                row.time_s,
+                row.gear
+            );
+        }
+    }
+    for (name, schedule) in [
+        ("ece15_eudc", "gears prescribed by the cycle"),
+        ("udds", "shift speeds of the vehicle file"),
+    ] {
+        assert_eq!(rover.trace(&embedded(name).unwrap()).schedule, schedule);
+    }
+    let cvt = car("rover_216_cvt", &[]);
+    assert!(cvt.gtr15().is_none());
+    assert_eq!(cvt.trace(&cycle).schedule, "");
+}
+
+#[test]
+fn the_class_of_the_wltc_is_the_car_s() {
+    // UN GTR 15, Annex 1: above 34 W/kg class 3, above 22 W/kg class 2.
+    let mut rover = car("rover_216_5mt", &[]);
+    for (mass_kg, payload_kg, cycle) in [
+        (1130.0, 0.0, "wltc_class3b"),
+        (82e3 / 34.0 + 1.0, 0.0, "wltc_class2"),
+        (82e3 / 34.0 + 1.0, 100.0, "wltc_class3b"),
+        (82e3 / 22.0 + 1.0, 0.0, "wltc_class1"),
+    ] {
+        rover.vehicle.road_load.base.mass_kg = mass_kg;
+        rover.vehicle.road_load.payload_kg = payload_kg;
+        assert_eq!(rover.wltc().cycle, cycle, "{mass_kg} kg");
+    }
+    // 120 km/h against a wall of air.
+    rover.vehicle.road_load.base.mass_kg = 1130.0;
+    rover.vehicle.road_load.base.f2_n_per_m_s2 *= 5.0;
+    assert_eq!(rover.wltc().cycle, "wltc_class3a");
+    let own = for_car("WLTP", find("wltp").unwrap(), &rover);
+    assert_eq!(own.name, "wltc_class3a");
+    assert!(
+        own.title.ends_with("W/kg and does not reach 120 km/h"),
+        "{}",
+        own.title
+    );
+    assert_eq!(
+        for_car("wltc3b", find("wltc3b").unwrap(), &rover).name,
+        "wltc_class3b"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// The rules that hold whatever the car: none at rest but for the second before a start, no rise in a deceleration of more than two seconds, in
+    /// an acceleration no gear is skipped on the way up.
+    #[test]
+    fn the_rules_hold_for_any_car(mass_kg in 700.0..3000.0, first in 9.0..18.0, span in 3.2..6.5, count in 4_usize..8, torque in 0.5..2.0, class in 0_usize..4) {
+        let cycle = ["wltc_class1", "wltc_class2", "wltc_class3a", "wltc_class3b"][class];
+        let kmh = trace(cycle);
+        let mut vehicle = SIX.vehicle(mass_kg);
+        vehicle.full_load.iter_mut().for_each(|point| point[1] *= torque);
+        let step = f64::powf(span, 1.0 / (count as f64 - 1.0));
+        let wheel_rpm = 1000.0 / 60.0 / (2.0 * std::f64::consts::PI * 0.3);
+        vehicle.rpm_per_kmh = (0..count).map(|k| first / step.powi(k as i32) * wheel_rpm).collect();
+        let found = gears(&kmh, &vehicle);
+        let fall = |t: usize| kmh[t] >= 1.0 && kmh.get(t + 1).is_some_and(|next| *next < kmh[t] - 1e-3);
+        for (t, &speed_kmh) in kmh.iter().enumerate().take(kmh.len() - 1).skip(1) {
+            let (before, own) = (found.gear[t - 1], found.gear[t]);
+            prop_assert!(usize::from(own) <= count);
+            if speed_kmh < 1.0 {
+                prop_assert!(own <= 1, "{t}");
+            }
+            let falls_long = t >= 3 && (t - 3..=t + 1).all(fall);
+            prop_assert!(!(falls_long && before > 0 && own > before), "{t}: {before} to {own}");
+        }
+        prop_assert_eq!(found.commands(&kmh).len(), kmh.len());
+    }
+}

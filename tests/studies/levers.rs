@@ -1,0 +1,518 @@
+//! Changes of a design next to the car as it is. Truth: single cars read and driven by hand with the values of a draw, the plan itself, and
+//! the same study put together in another way.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Mutex;
+
+use cvtcycle::config::setup::{self, Kind, Options};
+use cvtcycle::config::{Override, Problem, Problems};
+use cvtcycle::model::drive::{Start, drive, litres_per_100km};
+use cvtcycle::output::table::Head;
+use cvtcycle::study::execute::relative;
+use cvtcycle::study::levers::{
+    Combine, Lever, LeverAnswer, LeverFile, LeverRequest, LeverRow, csv, lever_answer, prepare,
+};
+use cvtcycle::study::plan::{Factor, Level, Plan};
+use cvtcycle::study::statistics::Confidence;
+use cvtcycle::study::store::{Rows, Values};
+use cvtcycle::study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource};
+
+use crate::common::{at, cycle};
+
+const CVT: &str = "rover_216_cvt";
+const FUEL: &str = "headline_fuel_l_per_100km";
+
+/// The table of a study in memory.
+struct Table {
+    columns: Vec<Head>,
+    parts: BTreeMap<u64, Rows>,
+}
+
+#[derive(Default)]
+struct Shelf(Mutex<BTreeMap<u64, Rows>>);
+
+impl PartWriter for Shelf {
+    fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
+        self.0.lock().unwrap().insert(part, runs.clone());
+        Ok(())
+    }
+}
+
+impl TableSource for Table {
+    fn parts(&self) -> Vec<u64> {
+        self.parts.keys().copied().collect()
+    }
+
+    fn columns(&self, part: u64, names: &[&str]) -> Result<Vec<Values>, Problem> {
+        let column = |name: &&str| self.columns.iter().position(|head| head.name == *name);
+        let found = names.iter().map(|name| column(name).unwrap());
+        Ok(found.map(|k| self.parts[&part].values[k].clone()).collect())
+    }
+
+    fn traces(&self, _: u64, _: &[&str]) -> Result<Vec<Values>, Problem> {
+        Ok(Vec::new())
+    }
+}
+
+/// A study with its table and its answer.
+struct Done {
+    study: Study,
+    table: Table,
+    answer: LeverAnswer,
+}
+
+impl Done {
+    /// Numbers of a column of the table, by car and point.
+    fn of(&self, name: &str) -> Vec<Vec<f64>> {
+        let manifest = StudyManifest::of(&self.study);
+        let frame = StudyTable::new(&manifest, &self.table).unwrap();
+        frame.by_car(&[name]).unwrap().remove(0)
+    }
+
+    /// Index of a car by the end of its name.
+    fn car(&self, end: &str) -> usize {
+        let mut cars = self.study.cars.iter();
+        cars.position(|car| car.name.ends_with(end)).unwrap()
+    }
+
+    fn row(&self, name: &str) -> &LeverRow {
+        let mut rows = self.answer.blocks.iter().flat_map(|block| &block.rows);
+        rows.find(|row| row.of.name == name).unwrap()
+    }
+}
+
+fn run(request: &LeverRequest, threads: usize) -> Done {
+    let study = prepare(request).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let shelf = Shelf::default();
+    let execute = || study.execute(&BTreeSet::new(), &shelf, &NoProgress);
+    pool.build().unwrap().install(execute).unwrap();
+    let table = Table {
+        columns: study.columns.clone(),
+        parts: shelf.0.into_inner().unwrap(),
+    };
+    let manifest = StudyManifest::of(&study);
+    let answer = lever_answer(
+        &StudyTable::new(&manifest, &table).unwrap(),
+        Confidence::default(),
+    )
+    .unwrap();
+    Done {
+        study,
+        table,
+        answer,
+    }
+}
+
+fn levers(text: &str) -> Vec<Lever> {
+    let file = LeverFile::read("own.toml", text).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let named = |lever| Lever {
+        is_named: true,
+        ..lever
+    };
+    file.levers.into_iter().map(named).collect()
+}
+
+fn lever(name: &str, set: &[&str]) -> String {
+    format!("[[lever]]\nname = \"{name}\"\nset = {set:?}\n")
+}
+
+fn uncertainty() -> Plan {
+    Plan::open("uncertainty_rover").unwrap()
+}
+
+/// Some draws of the Rover through ECE15.
+fn request(text: &str, draws: u64) -> LeverRequest {
+    LeverRequest {
+        levers: levers(text),
+        vehicles: vec![CVT.to_owned()],
+        ambients_degc: vec![25.0],
+        cycle: "ece15".to_owned(),
+        start: "soak".to_owned(),
+        dt_s: 1.0,
+        engine_oil: None,
+        draws: (draws > 0).then(|| (uncertainty(), draws, 1)),
+        combine: Combine::None,
+        heard_rpm: 1300.0,
+    }
+}
+
+fn problems(text: &str, change: impl Fn(&mut LeverRequest)) -> Problems {
+    let mut request = request(text, 0);
+    change(&mut request);
+    prepare(&request).map(drop).unwrap_err()
+}
+
+/// The plan of the Rover is relative for any car, and for the Rover itself it stays what it is. Truth: the values of the plan.
+#[test]
+fn the_rovers_draws_are_those_of_its_plan() {
+    let plan = uncertainty();
+    let (over, of_cvt) = relative(plan.clone()).unwrap();
+    assert!(of_cvt && over.skip_missing && over.clip);
+    let base = |word: &str| {
+        let setup = setup::load(word, &Options::default()).unwrap();
+        let keys = setup.keys.into_iter();
+        keys.filter_map(|info| Some((info.key, info.value.parse::<f64>().ok()?)))
+            .collect::<BTreeMap<String, f64>>()
+    };
+    let (cvt, manual) = (base(CVT), base("rover_216_5mt"));
+    let mut changed = 0;
+    for (before, after) in plan.factors.iter().zip(&over.factors) {
+        let own = match format!("{:?}", before.cars).as_str() {
+            "Baselines" => &manual,
+            _ => &cvt,
+        };
+        let Some(base) = own.get(&before.key) else {
+            assert_eq!(before.values, after.values, "{}", before.key);
+            continue;
+        };
+        changed += usize::from(before.acts != after.acts);
+        let at = |factor: &Factor, share: f64| {
+            let value = factor.value(Level::Share(share)).unwrap();
+            factor.acts.resolved(*base, value.number().unwrap())
+        };
+        for share in [0.01, 0.3, 0.5, 0.77, 0.99] {
+            let (want, got) = (at(before, share), at(after, share));
+            let error = (want - got).abs();
+            assert!(
+                error <= 1e-12 * (1.0 + want.abs()),
+                "{}: {want} {got}",
+                before.key
+            );
+        }
+    }
+    assert!(changed > 70, "{changed}");
+}
+
+/// Truth: the car read by `setup::load` with the draw's values and the lever's words as overrides, and driven.
+#[test]
+fn a_draw_is_the_car_with_its_values() {
+    let text = lever("pump", &["transmission.cvt.pump.kind=variable"])
+        + &lever("line", &["transmission.cvt.ratio.gentle_rpm=1500"]);
+    let done = run(&request(&text, 6), 2);
+    let fuel = done.of(FUEL);
+    for (end, words) in [
+        ("/reference", vec![]),
+        ("/pump", vec!["transmission.cvt.pump.kind=variable"]),
+        ("/line", vec!["transmission.cvt.ratio.gentle_rpm=1500"]),
+    ] {
+        let car = done.car(end);
+        let point = 4;
+        let mut set: Vec<Override> = words.iter().map(|text| text.parse().unwrap()).collect();
+        for factor in &done.study.plan.factors {
+            let value = done.of(&factor.key)[car][point];
+            // Words are of the baselines alone.
+            let is_number = factor.values.are_numbers();
+            if is_number && value.is_finite() {
+                set.push(Override::number(&factor.key, value));
+            }
+        }
+        assert!(set.len() > 60, "{}", set.len());
+        let options = Options {
+            set,
+            ..Options::default()
+        };
+        let setup = setup::load(CVT, &options).unwrap();
+        let cycle = cycle("ece15");
+        let outcome = drive(&setup, &cycle, &at(25.0, Start::Soak));
+        let all = outcome.totals.total();
+        let density = setup.engine().fuel_density_kg_m3;
+        let by_hand = litres_per_100km(all.fuel_kg, density, all.distance_m);
+        assert_eq!(fuel[car][point].to_bits(), by_hand.to_bits(), "{end}");
+    }
+    let (own, reference) = (done.car("/pump"), done.car("/reference"));
+    let mut changes: Vec<f64> = (0..6)
+        .map(|k| 100.0 * (fuel[own][k] / fuel[reference][k] - 1.0))
+        .collect();
+    changes.sort_by(f64::total_cmp);
+    let row = done.row("pump");
+    let median = 0.5 * (changes[2] + changes[3]);
+    assert!((row.fuel_percent.value - median).abs() < 1e-12);
+    assert_eq!((row.saves.k, row.saves.n, row.failed), (6, 6, 0));
+    assert!(done.answer.enough.median && !done.answer.enough.ends);
+}
+
+/// Property: a value that a lever gives leaves its factor out, in its reference as well, and moves no other factor; a relative one acts
+/// on what was drawn.
+#[test]
+fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
+    let (line, pump) = (
+        "transmission.cvt.ratio.gentle_rpm",
+        "transmission.cvt.pump.displacement_cc_rev",
+    );
+    let text = lever("line", &[&format!("{line}=1500")])
+        + &lever("smaller", &[&format!("{pump}*=0.82")])
+        + &lever("less", &[&format!("{pump}+=-1")]);
+    let done = run(&request(&text, 4), 1);
+    let (reference, second) = (done.car("/reference"), done.car("/reference_2"));
+    let own = done.car("/line");
+    let drawn = done.of(line);
+    assert!(drawn[reference].iter().all(|x| x.is_finite()));
+    assert!(drawn[own].iter().chain(&drawn[second]).all(|x| x.is_nan()));
+    let drawn = done.of(pump);
+    assert!(drawn[own].iter().eq(&drawn[reference]) && drawn[second].iter().eq(&drawn[own]));
+    let of = |end: &str| drawn[done.car(end)].iter();
+    let draws = of("/reference").zip(of("/smaller").zip(of("/less")));
+    for (x, (smaller, less)) in draws {
+        assert_eq!(smaller.to_bits(), (x * 0.82).to_bits());
+        assert_eq!(less.to_bits(), (x - 1.0).to_bits());
+    }
+    let row = done.row("line");
+    assert_eq!(row.of.left_out.len(), 1);
+    assert_eq!(
+        done.study.cars[row.of.reference].name,
+        done.study.cars[second].name
+    );
+}
+
+/// Property: order, other levers and threads do not change what a lever saves, and a combination of one lever is that lever.
+#[test]
+fn a_lever_does_not_depend_on_others() {
+    let pump = lever("pump", &["transmission.cvt.pump.kind=variable"]);
+    let offset = lever("offset", &["transmission.cvt.belt.band_offset_mm+=-1"]);
+    let bits = |row: &LeverRow| {
+        let of = [row.fuel_percent, row.low_percent, row.high_percent];
+        of.map(|quantile| quantile.value.to_bits())
+    };
+    let mut both = request(&(pump.clone() + &offset), 8);
+    both.combine = Combine::Lists(vec![
+        vec!["pump".to_owned()],
+        vec!["offset".to_owned(), "pump".to_owned()],
+    ]);
+    let [one, four] = [1, 4].map(|threads| run(&both, threads));
+    assert_eq!(csv(&one.answer), csv(&four.answer));
+    let turned = run(&request(&(offset + &pump), 8), 2);
+    let alone = run(&request(&pump, 8), 2);
+    let of_pump = bits(alone.row("pump"));
+    assert_eq!(bits(one.row("pump")), of_pump);
+    assert_eq!(bits(turned.row("pump")), of_pump);
+    let single = one.answer.blocks[0]
+        .rows
+        .iter()
+        .filter(|row| row.is_combination());
+    let single: Vec<&LeverRow> = single.collect();
+    let of_one = single
+        .iter()
+        .find(|row| row.of.members == ["pump"])
+        .unwrap();
+    assert_eq!(bits(of_one), of_pump);
+    let together = single.iter().find(|row| row.of.members.len() == 2).unwrap();
+    let sum = one.row("offset").fuel_percent.value + alone.row("pump").fuel_percent.value;
+    assert!((together.sum_percent.unwrap() - sum).abs() < 1e-12);
+    assert!((together.fuel_percent.value - sum).abs() < 0.3);
+}
+
+/// Every built-in lever changes each car that it is for, and says where its size is from.
+#[test]
+fn built_in_levers_change_something() {
+    let mut count = 0;
+    for (name, text) in Kind::Levers.embedded() {
+        let file = LeverFile::read(name, text).unwrap();
+        let car = if *name == "manual" {
+            "rover_216_5mt"
+        } else {
+            CVT
+        };
+        let request = LeverRequest {
+            levers: file
+                .levers
+                .into_iter()
+                .map(|lever| Lever {
+                    is_named: true,
+                    ..lever
+                })
+                .collect(),
+            vehicles: vec![car.to_owned()],
+            combine: Combine::Automatic,
+            cycle: "ece15_eudc".to_owned(),
+            ..request(&lever("any", &["road_load.mass_kg*=0.9"]), 0)
+        };
+        assert!(request.levers.iter().all(|lever| !lever.source.is_empty()));
+        count += request.levers.len();
+        let done = run(&request, 2);
+        let still: Vec<&str> = done.answer.blocks[0]
+            .rows
+            .iter()
+            .filter(|row| row.fuel_percent.value.abs() <= 0.0)
+            .map(|row| row.of.name.as_str())
+            .collect();
+        assert!(still.is_empty(), "{still:?}");
+        assert!(done.answer.runs.failed + done.answer.runs.not_run == 0);
+        let together = done.answer.blocks[0].rows.last().unwrap();
+        assert!(together.is_combination());
+        // One of each group.
+        let group = |name: &String| {
+            request
+                .levers
+                .iter()
+                .find(|l| l.name == *name)?
+                .group
+                .clone()
+        };
+        let groups: Vec<String> = together.of.members.iter().filter_map(group).collect();
+        let distinct: BTreeSet<&String> = groups.iter().collect();
+        assert_eq!(groups.len(), distinct.len(), "{groups:?}");
+    }
+    assert_eq!(count, 25);
+}
+
+/// A file serves any car: what it cannot have of a built-in file is left out and named.
+#[test]
+fn another_car_has_the_levers_that_it_can() {
+    let (name, text) = Kind::Levers.embedded()[0];
+    let request = LeverRequest {
+        levers: LeverFile::read(name, text).unwrap().levers,
+        vehicles: vec![CVT.to_owned(), CVT.to_owned()],
+        draws: Some((uncertainty(), 2, 1)),
+        ambients_degc: vec![-10.0, 25.0],
+        ..request(&lever("any", &["road_load.mass_kg*=0.9"]), 0)
+    };
+    let study = prepare(&request).unwrap();
+    assert!(
+        study
+            .cars
+            .iter()
+            .any(|car| &*car.name == "rover_216_cvt_2/-10/variable_pump")
+    );
+    let other = LeverRequest {
+        vehicles: vec!["rover_216_5mt".to_owned()],
+        ..request
+    };
+    let refused = prepare(&other).map(drop).unwrap_err();
+    assert!(refused[0].message.contains("can have none of the levers"));
+}
+
+#[test]
+fn what_is_no_lever_is_refused() {
+    let message = |text: &str| problems(text, |_| {})[0].message.clone();
+    let none = message(&lever("a", &["road_load.mass_kg=1130"]));
+    assert_eq!(
+        none,
+        "lever a changes nothing: every value is that of the car"
+    );
+    let manual = message(&lever("a", &["transmission.manual.final_ratio*=0.9"]));
+    assert!(manual.contains("lever a: "), "{manual}");
+    let varies = problems(&lever("a", &["road_load.mass_kg*=0.9"]), |request| {
+        let text = "study.design = \"grid\"\n[[factor]]\nkey = \"ambient_degc\"\nvalues = [1, 2]\n";
+        request.draws = Some((Plan::read("p.toml", text).unwrap(), 4, 1));
+    });
+    assert_eq!(varies[0].message, "the plan varies `ambient_degc`");
+}
+
+#[test]
+fn combinations_that_do_not_go_together_are_refused() {
+    let clamp = "transmission.cvt.clamp";
+    let text = lever("law", &[&format!("{clamp}=torque_following")])
+        + &lever("map", &[&format!("{clamp}.map.base_bar*=0.9")])
+        + &lever("put", &["road_load.mass_kg=1000"])
+        + &lever("cut", &["road_load.mass_kg*=0.9"])
+        + &lever("cut_more", &["road_load.mass_kg*=0.8"]);
+    let refused = |list: &str| {
+        let list = list.split('+').map(str::to_owned).collect();
+        problems(&text, |request| {
+            request.combine = Combine::Lists(vec![Vec::clone(&list)]);
+        })
+    };
+    for (list, part) in [
+        (
+            "law+map",
+            "one removes `transmission.cvt.clamp.map.base_bar`",
+        ),
+        ("put+cut", "both change `road_load.mass_kg`"),
+        ("law+law", "`law` is named twice"),
+        ("law+mpa", "there is no lever named `mpa`"),
+    ] {
+        let problems = refused(list);
+        assert!(
+            problems[0].message.contains(part),
+            "{list}: {:?}",
+            problems[0]
+        );
+        assert_eq!(problems[0].key, "combine");
+    }
+    // Two factors on one value go together in any order.
+    let mut both = request(&text, 0);
+    both.combine = Combine::Lists(vec![vec!["cut".to_owned(), "cut_more".to_owned()]]);
+    let done = run(&both, 1);
+    let together = done.answer.blocks[0].rows.last().unwrap();
+    let single = done.row("cut_more");
+    assert!(together.fuel_percent.value < single.fuel_percent.value);
+    // And the automatic one takes the better of two that do not.
+    let automatic = LeverRequest {
+        combine: Combine::Automatic,
+        ..both
+    };
+    let done = run(&automatic, 1);
+    assert!(
+        done.answer
+            .notes
+            .iter()
+            .any(|note| note.contains("not in the combination"))
+    );
+}
+
+/// Property: a plan leaves out what a car does not have, and holds a draw in the range of its key, only where it says so.
+#[test]
+fn missing_keys_and_bounds_of_a_plan() {
+    let text = |head: &str, key: &str, low: f64, high: f64| {
+        format!(
+            "[study]\nbaselines = []\ncycle = \"constant_50\"\n{head}\n[study.design.latin_hypercube]\nsamples = 8\n[[factor]]\nkey = \"{key}\"\n\
+             acts = \"scale\"\nstatus = \"assumed\"\ndistribution.uniform = {{ low = {low}, high = {high} }}\n"
+        )
+    };
+    let study = |text: String| Plan::read("p.toml", &text).and_then(Study::prepare);
+    let manual = "transmission.manual.final_ratio";
+    assert!(study(text("", manual, 0.9, 1.1)).is_err());
+    let skipped = study(text("missing = \"skip\"", manual, 0.9, 1.1)).unwrap();
+    assert_eq!(skipped.cars[0].missing, [0]);
+    let offset = "transmission.cvt.belt.band_offset_mm";
+    assert!(study(text("", offset, 0.5, 20.0)).is_err());
+    let clipped = study(text("bounds = \"clip\"", offset, 0.5, 20.0)).unwrap();
+    let shelf = Shelf::default();
+    clipped
+        .execute(&BTreeSet::new(), &shelf, &NoProgress)
+        .unwrap();
+    let column = clipped
+        .columns
+        .iter()
+        .position(|head| head.name == offset)
+        .unwrap();
+    let parts = shelf.0.into_inner().unwrap();
+    let values = parts.values().flat_map(|rows| match &rows.values[column] {
+        Values::Number(cells) => cells.clone(),
+        _ => Vec::new(),
+    });
+    let values: Vec<f64> = values.collect();
+    let held = values.iter().filter(|x| (**x - 20.0).abs() <= 0.0).count();
+    assert!(held >= 4 && values.iter().all(|x| *x <= 20.0), "{values:?}");
+}
+
+#[test]
+fn a_factor_does_not_replace_what_a_plan_sets() {
+    let text = |set: &str, key: &str, acts: &str| {
+        format!(
+            "[study]\ndesign = \"grid\"\nset = [\"{set}\"]\n[[factor]]\nkey = \"{key}\"\nacts = \"{acts}\"\nvalues = [1, 1.1]\n"
+        )
+    };
+    let read = |text: String| Plan::read("p.toml", &text).map(drop);
+    let (mass, clamp) = ("road_load.mass_kg", "transmission.cvt.clamp");
+    let refused = read(text("road_load.mass_kg=1000", mass, "value")).unwrap_err();
+    assert!(
+        refused[0]
+            .message
+            .contains("`road_load.mass_kg` is set to 1000")
+    );
+    let map = format!("{clamp}.map.base_bar");
+    assert!(read(text(&format!("{clamp}=torque_following"), &map, "value")).is_err());
+    assert!(read(text(&format!("{clamp}=map"), &map, "value")).is_ok());
+    assert!(read(text("road_load.mass_kg=1000", mass, "scale")).is_ok());
+}
+
+/// The example of the page is a lever file, and a car can have it.
+#[test]
+fn the_example_of_the_page_is_a_lever_file() {
+    let page = include_str!("../../docs/book/src/levers.md");
+    let example = page.split("```toml\n").nth(1).unwrap();
+    let text = example.split("```").next().unwrap();
+    assert_eq!(levers(text)[0].name, "short_belt");
+}
