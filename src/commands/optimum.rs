@@ -5,7 +5,7 @@ mod tables;
 use clap::Args;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
-use cvtcycle::config::{Bound, Problem, Problems};
+use cvtcycle::config::{Bound, Problem, Problems, cycle};
 use cvtcycle::model::drive::{Conditions, Start};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
@@ -20,8 +20,8 @@ use serde::Serialize;
 use super::{Execute, threads, vehicles};
 use crate::args::problems::bad_value;
 use crate::args::{
-    DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs, count, cycles,
-    number,
+    ColumnsArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs,
+    count, cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -61,6 +61,8 @@ pub struct OptimumArgs {
     /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
     #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
     cycle: String,
+    #[command(flatten)]
+    columns: ColumnsArgs,
     /// Ambient temperature, degC, -40 to 60
     #[arg(
         long,
@@ -169,7 +171,8 @@ impl Execute for OptimumArgs {
     type Plan = OptimumPlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<OptimumPlan> {
-        let cycle = problems.take(cvtcycle::config::cycle::find(&self.cycle));
+        let columns = self.columns.get(problems);
+        let cycle = problems.take(cycle::open(&self.cycle, &columns));
         let formulation = self.formulation.get(problems);
         let options = self.car.options(formulation, problems);
         let setup = problems.take(setup::load(&self.car.vehicle, &options));
