@@ -42,8 +42,8 @@ fn near(a: f64, b: f64, scale: f64) -> bool {
 
 /// Whether the numbers of a car agree with each other: fuel with distance, and the terms of the ledger with the fuel.
 pub(crate) fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
-    let ledger = |name: &str| run.ledger_kj.get(name).unwrap_or(0.0);
-    let terms: f64 = TERMS.iter().map(|(name, ..)| ledger(name)).sum();
+    let term = |name: &str| run.term_kj(name).unwrap_or(0.0);
+    let terms: f64 = TERMS.iter().map(|(name, ..)| term(name)).sum();
     let litres = |fuel: f64| fuel * run.distance_km / 100.0;
     let fuel = run.fuel_l_per_100km;
     let fuel = fuel.is_none_or(|fuel| near(litres(fuel), run.fuel_l, run.fuel_l));
@@ -51,7 +51,7 @@ pub(crate) fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
     let mut failed = run.failed_checks.iter();
     let open = failed.any(|check| ["ledger_error", "not_finite"].contains(&check.as_str()));
     let closes = |kj: f64| near(kj, run.fuel_energy_kj, run.fuel_energy_kj);
-    if fuel && (open || (closes(terms) && closes(ledger("fuel")))) {
+    if fuel && (open || (closes(terms) && closes(term("fuel")))) {
         return Ok(());
     }
     let message = format!(

@@ -272,7 +272,7 @@ fn energies(summary: &Summary) -> String {
 }
 
 /// Terms of the power balance and their names in the table.
-const BALANCE: [(&str, &str); 7] = [
+const BALANCE: [(&str, &str); 8] = [
     ("wheels", "rolling and air (net)"),
     ("brake", "brakes"),
     ("losses", "transmission"),
@@ -280,14 +280,21 @@ const BALANCE: [(&str, &str); 7] = [
     ("engine_heat", "heat to the engine"),
     ("exhaust", "exhaust"),
     ("kinetic", "rotating parts"),
+    ("electric", "battery and starter"),
 ];
 
 fn balance(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
     for (term, name) in BALANCE {
-        let share = |run: &RunSummary| percent(run.ledger_kj.get(term), run.fuel_energy_kj, 1);
+        let share = |run: &RunSummary| percent(run.term_kj(term), run.fuel_energy_kj, 1);
         // A row of zeros is left out; the JSON has the unrounded numbers.
-        if term != "kinetic" || summary.runs.iter().any(|run| share(run) != "0.0") {
+        let may_be_left_out = ["kinetic", "electric"].contains(&term);
+        if !may_be_left_out
+            || summary
+                .runs
+                .iter()
+                .any(|run| !["0.0", "-0.0", "-"].contains(&&*share(run)))
+        {
             table.add(name, "% fuel", share);
         }
     }

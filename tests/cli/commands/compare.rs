@@ -128,3 +128,24 @@ fn runs_that_are_not_alike_are_refused() {
         "{message}"
     );
 }
+
+/// Conservation: with start-stop fuel also goes to the battery and the starter, so a report that leaves these out calls the files changed.
+#[test]
+fn runs_with_start_stop_are_reported_and_compared() {
+    let dir = tempfile::tempdir().unwrap();
+    let stops = ["--set", "engine.start_stop.delay_s=0.5"];
+    for (out, more) in [("plain", &[][..]), ("stops", &stops)] {
+        let words = "run --cycle ece15 --start 80 --baseline none --price never --out";
+        let words: Vec<&str> = words.split(' ').chain([out]).collect();
+        let output = run_in(dir.path(), &[&words[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let has_row = stdout(&output).contains("battery and starter");
+        assert_eq!(has_row, out == "stops", "{}", stdout(&output));
+    }
+    for words in [&["report", "stops"][..], &["compare", "plain", "stops"]] {
+        let output = run_in(dir.path(), words);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    }
+    let page = fs::read_to_string(dir.path().join("stops/report.html")).unwrap();
+    assert!(page.contains("Battery and starter"), "no row in the report");
+}

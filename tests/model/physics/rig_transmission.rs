@@ -204,6 +204,7 @@ fn the_interaction_follows_the_pressures() {
 /// the strip-down finds them, with the interaction in them, in the middle of the speeds.
 #[test]
 fn val_parts_as_the_strip_down_finds_them() {
+    let mut outside = Vec::new();
     for s in stripped(&[], &[])
         .iter()
         .filter(|s| (s.set.input_rad_s / RPM - 2500.0).abs() < 1.0)
@@ -220,16 +221,18 @@ fn val_parts_as_the_strip_down_finds_them() {
         assert!(clutch > 0.1 && clutch <= 0.7);
         let low = s.set.ratio > 1.0;
         let (most, band) = if low {
-            (1.0 + 0.15, 3.0..=5.2)
+            (1.0 + 0.15, 3.0..=5.0)
         } else {
             (3.0, 3.5..=8.5)
         };
-        assert!(
-            drive > 0.25 && drive < most && band.contains(&belt),
-            "{}",
-            place(s)
-        );
+        assert!(drive > 0.25 && drive < most, "{}", place(s));
+        if !band.contains(&belt) {
+            outside.push(place(s));
+        }
+        assert!(belt < 5.2 || !low, "{}", place(s));
     }
+    // Known: 5.17 Nm, by 0.17 Nm, since the law of bearings leaves less for the final drive in low (GT-1).
+    assert_eq!(outside, ["I 2.417 2500 rpm 95 degC"]);
 }
 
 // ---- Transients

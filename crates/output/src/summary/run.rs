@@ -145,6 +145,16 @@ impl RunSummary {
         self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)
     }
 
+    /// A term of the power ledger that fuel goes to, kJ. `electric` is what battery, starter and alternator keep: their losses, and what
+    /// is stored in the battery (0 without start-stop).
+    pub fn term_kj(&self, name: &str) -> Option<f64> {
+        let term = |name: &str| self.ledger_kj.get(name);
+        match name {
+            "electric" => Some(term("electric_loss")? - term("store")?),
+            name => term(name),
+        }
+    }
+
     /// Sum of the transmission's losses, kJ.
     pub fn transmission_loss_kj(&self) -> f64 {
         self.ledger_kj.get("losses").unwrap_or(0.0)

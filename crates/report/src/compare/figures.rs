@@ -23,8 +23,10 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
         some.then(|| DifferenceTerm::of(c, kj.map(|kj| kj.unwrap_or(0.0))))
     };
     let ledger = |(name, words, term): (&str, &str, Term)| {
-        let kj = cars.map(|car| car.run.ledger_kj.get(name).unwrap_or(0.0));
-        (term != Term::Transmission).then(|| DifferenceTerm::term(words, term, kj))
+        let kj = cars.map(|car| car.run.term_kj(name).unwrap_or(0.0));
+        let is_there = name != "electric" || kj.iter().any(|kj| kj.abs() > 0.0);
+        let is_shown = term != Term::Transmission && is_there;
+        is_shown.then(|| DifferenceTerm::term(words, term, kj))
     };
     let components = Component::ALL.into_iter().filter_map(component);
     let terms = TERMS.into_iter().filter_map(ledger);

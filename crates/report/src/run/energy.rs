@@ -7,13 +7,13 @@ use crate::charts::figures::{CarEnergy, TERMS, energy_flow, transmission_flow};
 
 /// A car's ledger as the figures want it, kJ.
 fn car_energy(car: &Car) -> CarEnergy {
-    let term = |name: &str| car.run.ledger_kj.get(name).unwrap_or(f64::NAN);
+    let term = |name: &str| car.run.term_kj(name).unwrap_or(f64::NAN);
     CarEnergy {
         subject: car.run.vehicle.clone(),
         fuel_kj: car.run.fuel_energy_kj,
         exhaust_kj: term("exhaust"),
         engine_heat_kj: term("engine_heat"),
-        accessories_kj: term("accessories"),
+        accessories_kj: term("accessories") + car.run.term_kj("electric").unwrap_or(0.0),
         kinetic_kj: term("kinetic"),
         losses_kj: car.losses_kj(),
         brake_kj: term("brake"),
@@ -23,7 +23,7 @@ fn car_energy(car: &Car) -> CarEnergy {
 
 /// What the fuel of the subject has more than that of a baseline, term by term.
 pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
-    let term = |car: &Car, name: &str| car.run.ledger_kj.get(name).unwrap_or(0.0);
+    let term = |car: &Car, name: &str| car.run.term_kj(name).unwrap_or(0.0);
     let fuel = subject.run.fuel_energy_kj - baseline.run.fuel_energy_kj;
     let part = |(name, words, _)| (words, term(subject, name) - term(baseline, name));
     let mut parts: Vec<(&str, f64)> = TERMS.into_iter().map(part).collect();
@@ -53,6 +53,12 @@ pub(super) fn section(cars: &[Car]) -> Section {
         "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
          + rotating parts + transmission + brakes + rolling and air. What the wheels gave back in overrun is set off against what they took.",
     );
+    let stops = |car: &Car| car.run.term_kj("electric").is_some_and(|kj| kj.abs() > 0.0);
+    if cars.iter().any(stops) {
+        section.text(
+            "Battery and starter: what the alternator, the battery and the starter lose, and what is stored in the battery. In the figures it is a part of the accessories.",
+        );
+    }
     section.table(balance(cars));
     for car in cars {
         let (name, energy) = (&car.run.vehicle, car_energy(car));
@@ -77,7 +83,11 @@ fn balance(cars: &[Car]) -> ReportTable {
         );
     };
     for (term, words, _) in TERMS {
-        add(words, &|car| car.run.ledger_kj.get(term));
+        let of = |car: &Car| car.run.term_kj(term);
+        let is_there = |car: &Car| of(car).is_some_and(|kj| kj.abs() > 0.0);
+        if term != "electric" || cars.iter().any(is_there) {
+            add(words, &of);
+        }
     }
     add("fuel", &|car| Some(car.run.fuel_energy_kj));
     table.emphasise(true);

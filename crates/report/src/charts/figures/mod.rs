@@ -96,12 +96,13 @@ impl Term {
     }
 }
 
-/// Terms of the power ledger with their names and what they are.
-pub(crate) const TERMS: [(&str, &str, Term); 7] = [
+/// Terms of the power ledger with their names and what they are; for [`RunSummary::term_kj`](cvtcycle_output::summary::RunSummary::term_kj).
+pub(crate) const TERMS: [(&str, &str, Term); 8] = [
     ("wheels", "rolling and air, net", Term::Wheels),
     ("brake", "brakes", Term::Brake),
     ("losses", "transmission", Term::Transmission),
     ("accessories", "accessories", Term::Accessories),
+    ("electric", "battery and starter", Term::Accessories),
     ("kinetic", "rotating parts", Term::Kinetic),
     ("engine_heat", "heat to the engine", Term::EngineHeat),
     ("exhaust", "exhaust", Term::Exhaust),
