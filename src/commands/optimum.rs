@@ -5,16 +5,19 @@ mod tables;
 use clap::Args;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
-use cvtcycle::config::{Bound, Problem, Problems, cycle};
+use cvtcycle::config::{Bound, Problems, cycle};
 use cvtcycle::model::drive::{Conditions, Start};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
 use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
+use cvtcycle::output::Row;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, StartWord};
-use cvtcycle::study::optimum::{self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question};
+use cvtcycle::study::optimum::{
+    self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question, Unheld,
+};
 use serde::Serialize;
 
 use super::{Execute, threads, vehicles};
@@ -193,7 +196,7 @@ impl Execute for OptimumArgs {
         let (numbers, start) = (numbers?, start?);
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
         Some(OptimumPlan {
-            cycle: cycle?,
+            cycle: cycle::for_car(&self.cycle, cycle?, &own),
             cars: self.laws(own, &options),
             options,
             conditions: conditions(&numbers, start.0),
@@ -226,7 +229,7 @@ impl Execute for OptimumArgs {
         };
         let answer = optimum::answer(&question, &self.like(), &plan.options);
         let answer = answer.map_err(|none| match none {
-            NoAnswer::Infeasible(why) => infeasible(&why, &n).into(),
+            NoAnswer::Infeasible(why) => infeasible(&why, self),
             NoAnswer::Line(problems) => problems,
             NoAnswer::NoCvt => {
                 let allowed = "a vehicle with a CVT";
@@ -375,53 +378,50 @@ fn law_of(setup: &Setup) -> &'static str {
     }
 }
 
-/// The limit that cannot be held, where, and how much of it can be.
-fn infeasible(why: &Infeasible, numbers: &Numbers) -> Problem {
-    let row = &why.row;
-    let place = format!(
+/// The limits that cannot be held, where, and how much of each can be.
+fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
+    if why.unheld.is_empty() {
+        let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
+        let hint = "another cycle, or a car that can follow it";
+        return bad_value("--cycle", &of.cycle, "", &message, hint).into();
+    }
+    let problem = |limit: &Unheld| {
+        let (option, value) = match limit.name {
+            LimitName::LeastSpeed => ("--least-rpm", &of.least_rpm),
+            LimitName::Reserve => ("--reserve", &of.reserve),
+            LimitName::ShiftRate => ("--vehicle", &of.car.vehicle),
+        };
+        let allowed = match (limit.name, limit.most) {
+            (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),
+            (LimitName::Reserve, Some(share)) => format!("at most {} %", floored(100.0 * share)),
+            _ => "faster shifts".to_owned(),
+        };
+        let instead = why.instead.iter().map(|other| match other {
+            LimitName::LeastSpeed => "a lower --least-rpm",
+            LimitName::Reserve => "a smaller --reserve",
+            LimitName::ShiftRate => "faster shifts (up_per_s, down_per_s)",
+        });
+        let instead: Vec<&str> = instead.collect();
+        let hint = match instead.is_empty() {
+            true => String::new(),
+            false => format!("{} would do as well", instead.join(" or ")),
+        };
+        let message = format!("no ratio holds this limit {}", place(&limit.row));
+        bad_value(option, value, &allowed, &message, &hint)
+    };
+    why.unheld.iter().map(problem).collect()
+}
+
+/// A number with one decimal, rounded down.
+fn floored(x: f64) -> String {
+    fixed((10.0 * x).floor() / 10.0, 1)
+}
+
+fn place(row: &Row) -> String {
+    format!(
         "at {} s ({} km/h, {} kW at the wheels)",
         fixed(row.time_s, 1),
         fixed(3.6 * row.speed_m_s, 1),
         fixed(row.wheel_power_w / 1e3, 1)
-    );
-    let value = |name: LimitName| match name {
-        LimitName::LeastSpeed => numbers.least_rpm.to_string(),
-        LimitName::Reserve => numbers.reserve_percent.to_string(),
-        LimitName::ShiftRate => String::new(),
-    };
-    let option = |name: LimitName| match name {
-        LimitName::LeastSpeed => "--least-rpm",
-        LimitName::Reserve => "--reserve",
-        LimitName::ShiftRate => "--vehicle",
-    };
-    let most = |name: LimitName, most: Option<f64>| match (name, most) {
-        (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),
-        (LimitName::Reserve, Some(share)) => format!("at most {} %", fixed(100.0 * share, 1)),
-        _ => "a faster shift".to_owned(),
-    };
-    match (why.each.first(), why.both) {
-        (Some((name, can)), _) => {
-            let others = why.each.iter().skip(1).map(|(name, _)| name.name());
-            let others: Vec<&str> = others.collect();
-            let hint = match others.is_empty() {
-                true => "relax it".to_owned(),
-                false => format!("or relax {}", others.join(" or ")),
-            };
-            let message = format!("no ratio holds this limit {place}");
-            let allowed = most(*name, *can);
-            bad_value(option(*name), &value(*name), &allowed, &message, &hint)
-        }
-        (None, Some([a, b])) => {
-            let message = format!(
-                "no ratio holds the limits {} and {} {place}",
-                a.name(),
-                b.name()
-            );
-            bad_value(option(a), &value(a), "", &message, "relax both")
-        }
-        (None, None) => {
-            let message = format!("no ratio lets the car follow the cycle {place}");
-            bad_value("--cycle", "", "", &message, "take a gentler cycle")
-        }
-    }
+    )
 }

@@ -5,9 +5,9 @@
 use crate::common::{ZERO, car, cycle};
 use cvtcycle_model::drive::{Drive, Row, State};
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Hold;
+use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 
 const CVT: &str = "rover_216_cvt";
 

@@ -1,7 +1,7 @@
 //! One car through one cycle: start state, drive, totals, rows on request.
 
 use crate::cycle::{Cycle, Trace};
-use crate::drive::{CarTrace, Recorder, State, Vehicle, simulate};
+use crate::drive::{Car, CarTrace, Recorder, State, Vehicle, simulate};
 use crate::drive::{EnergyTerms, Row, Totals};
 use crate::engine::StartStop;
 use crate::math::larger;

@@ -4,10 +4,9 @@ use cvtcycle_model::drive::Row;
 use cvtcycle_model::thermal::NODES;
 
 use super::nodes::Scene;
-use super::program::{Controls, follow, solve};
 use super::reference::Reference;
 use super::stages::{Problem, Table};
-use super::{Limits, Task};
+use super::{Limits, Task, least_path};
 
 /// A limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,16 +75,44 @@ impl LimitName {
     }
 }
 
+/// A limit that no controller holds.
+#[derive(Clone, Debug)]
+pub struct Unheld {
+    /// The limit.
+    pub name: LimitName,
+    /// Row of the step that cannot be driven, of the car as it is driven.
+    pub row: Row,
+    /// Largest value that can be held, SI, where the limit is a number.
+    pub most: Option<f64>,
+}
+
 /// Limits that no controller holds.
 #[derive(Clone, Debug)]
 pub struct Infeasible {
-    /// Row of the step that cannot be done, of the car as it is driven.
+    /// The fewest limits without which the rest can be held; none where no limit is the cause.
+    pub unheld: Vec<Unheld>,
+    /// Other limits each of which could go instead of a single one.
+    pub instead: Vec<LimitName>,
+    /// Row of the step that cannot be driven within all limits.
     pub row: Row,
-    /// Limits each of which alone would have to go, with the largest value that can be held, SI.
-    pub each: Vec<(LimitName, Option<f64>)>,
-    /// Two limits that would have to go together, where no single one is enough.
-    pub both: Option<[LimitName; 2]>,
 }
+
+/// Sets of limits, the smallest first.
+const SETS: [&[LimitName]; 7] = {
+    use LimitName::{LeastSpeed, Reserve, ShiftRate};
+    [
+        &[LeastSpeed],
+        &[Reserve],
+        &[ShiftRate],
+        &[LeastSpeed, Reserve],
+        &[LeastSpeed, ShiftRate],
+        &[Reserve, ShiftRate],
+        &[LeastSpeed, Reserve, ShiftRate],
+    ]
+};
+
+/// Halvings of the range in which the largest value of a limit is sought.
+const HALVINGS: usize = 10;
 
 /// Which limits make a task infeasible, and where.
 pub(super) fn infeasible(
@@ -97,41 +124,39 @@ pub(super) fn infeasible(
 ) -> Infeasible {
     let stage = |limits: Limits| {
         let problem = Problem::new(scene, table, reference, worth, limits);
-        match solve(&problem, Controls::WithEnds) {
-            Err(stage) => Some(stage),
-            Ok(values) if follow(&problem, Controls::WithEnds, &values).is_none() => Some(0),
-            Ok(_) => None,
-        }
+        least_path(&problem).err()
     };
-    let can = |limits: Limits| stage(limits).is_none();
+    let row = |limits: Limits| reference.rows[stage(limits).unwrap_or(0)];
+    let without = |names: &[LimitName]| {
+        let names = names.iter();
+        names.fold(task.limits, |limits, name| name.dropped(limits))
+    };
+    let can = |set: &&[LimitName]| stage(without(set)).is_none();
+    let set = SETS.into_iter().find(can).unwrap_or(&[]);
     let idle_rad_s = task.car.engine.idle_hot_rad_s;
-    let attainable = |name: LimitName| {
+    let unheld = |name: &LimitName| {
+        let others: Vec<_> = set.iter().copied().filter(|other| other != name).collect();
+        let limits = without(&others);
         let (mut good, mut bad) = (0.0, 1.0);
-        name.partly(task.limits, good, idle_rad_s)?;
-        for _ in 0..10 {
+        for _ in 0..HALVINGS {
             let middle = 0.5 * (good + bad);
-            let (limits, _) = name.partly(task.limits, middle, idle_rad_s)?;
-            if can(limits) {
-                good = middle;
-            } else {
-                bad = middle;
+            let held = |(limits, _)| stage(limits).is_none();
+            match name.partly(limits, middle, idle_rad_s).is_some_and(held) {
+                true => good = middle,
+                false => bad = middle,
             }
         }
-        name.partly(task.limits, good, idle_rad_s).map(|(_, x)| x)
+        Unheld {
+            name: *name,
+            row: row(limits),
+            most: name.partly(limits, good, idle_rad_s).map(|(_, most)| most),
+        }
     };
-    let each: Vec<_> = LimitName::ALL
-        .into_iter()
-        .filter(|name| can(name.dropped(task.limits)))
-        .map(|name| (name, attainable(name)))
-        .collect();
-    let pairs = [(0, 1), (0, 2), (1, 2)].map(|(a, b)| [LimitName::ALL[a], LimitName::ALL[b]]);
-    let both = pairs
-        .into_iter()
-        .filter(|_| each.is_empty())
-        .find(|[a, b]| can(b.dropped(a.dropped(task.limits))));
+    let single = SETS.into_iter().filter(|_| set.len() == 1);
+    let instead = single.filter(|other| other.len() == 1 && *other != set && can(other));
     Infeasible {
-        row: reference.rows[stage(task.limits).unwrap_or(0)],
-        each,
-        both,
+        unheld: set.iter().map(unheld).collect(),
+        instead: instead.map(|other| other[0]).collect(),
+        row: row(task.limits),
     }
 }

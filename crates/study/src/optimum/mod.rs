@@ -32,7 +32,7 @@ mod stages;
 pub use answer::{
     Answer, LawBound, LawCar, LimitPrice, LineAnswer, NoAnswer, Question, TIGHT, answer,
 };
-pub use limits::{Infeasible, LimitName};
+pub use limits::{Infeasible, LimitName, Unheld};
 pub use line::{Line, LineFit, fit_line};
 
 use cvtcycle_model::cycle::Step;
@@ -43,7 +43,7 @@ use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 use rayon::prelude::*;
 
 use self::nodes::Scene;
-use self::program::{Controls, Path, follow, solve};
+use self::program::{Controls, Path, least};
 use self::reference::Reference;
 use self::stages::{Problem, Table};
 
@@ -240,7 +240,7 @@ impl Solved {
         let worth = reference.worth_kg_j(task.car, task.steps);
         let table = Table::new(scene, &reference, grid);
         let problem = Problem::new(scene, &table, &reference, &worth, task.limits);
-        let Some(path) = least_path(&problem) else {
+        let Ok(path) = least_path(&problem) else {
             return Err(Box::new(limits::infeasible(
                 scene, &table, &reference, &worth, task,
             )));
@@ -275,12 +275,12 @@ impl Solved {
     /// Least fuel under other limits, kg, in the same temperatures but for the worth of what heat differs (DP-9); none where they cannot be held.
     fn least_kg(&self, scene: &Scene, table: &Table, limits: Limits) -> Option<f64> {
         let problem = Problem::new(scene, table, &self.reference, &self.worth, limits);
-        let path = least_path(&problem)?;
+        let path = least_path(&problem).ok()?;
         Some(path.total() + self.worth_kg) // DP-9
     }
 }
 
-fn least_path(problem: &Problem) -> Option<Path> {
-    let values = solve(problem, Controls::WithEnds).ok()?;
-    follow(problem, Controls::WithEnds, &values)
+/// The path with the least fuel; or the step that cannot be driven.
+fn least_path(problem: &Problem) -> Result<Path, usize> {
+    least(problem, Controls::WithEnds)
 }

@@ -88,7 +88,7 @@ pub enum Controls {
 }
 
 /// Least cost of what is left, after each stage at its nodes.
-pub struct Values(Vec<Vec<f64>>);
+struct Values(Vec<Vec<f64>>);
 
 /// A path with the least cost.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,7 +112,7 @@ impl Path {
 ///
 /// # Errors
 /// The stage.
-pub fn solve(of: &impl Stages, controls: Controls) -> Result<Values, usize> {
+fn solve(of: &impl Stages, controls: Controls) -> Result<Values, usize> {
     let last = of.count() - 1;
     let mut left = vec![Vec::new(); last + 1];
     left[last] = vec![0.0; of.nodes(last).len()];
@@ -133,8 +133,11 @@ pub fn solve(of: &impl Stages, controls: Controls) -> Result<Values, usize> {
     Ok(Values(left))
 }
 
-/// The best path from the start; none where the first stage has none.
-pub fn follow(of: &impl Stages, controls: Controls, values: &Values) -> Option<Path> {
+/// The best path from the start; or the stage that it cannot go on in.
+///
+/// # Errors
+/// The stage.
+fn follow(of: &impl Stages, controls: Controls, values: &Values) -> Result<Path, usize> {
     let mut path = Path {
         x: Vec::new(),
         places: Vec::new(),
@@ -143,13 +146,21 @@ pub fn follow(of: &impl Stages, controls: Controls, values: &Values) -> Option<P
     let (mut x, mut place) = (of.start(), None);
     for (stage, left) in values.0.iter().enumerate() {
         let from = of.from(stage, x, place);
-        let best = best(of, stage, x, &from, (controls, left))?;
+        let best = best(of, stage, x, &from, (controls, left)).ok_or(stage)?;
         (x, place) = (best.x, Some(best.place));
         path.x.push(best.x);
         path.places.push(best.place);
         path.cost.push(best.cost);
     }
-    Some(path)
+    Ok(path)
+}
+
+/// The path with the least cost; or the stage that cannot be done.
+///
+/// # Errors
+/// The stage.
+pub fn least(of: &impl Stages, controls: Controls) -> Result<Path, usize> {
+    follow(of, controls, &solve(of, controls)?)
 }
 
 /// A control with the least cost of a stage and of what is left after it.
@@ -241,10 +252,6 @@ mod tests {
         fn cost(&self, stage: usize, from: &f64, to: Place) -> f64 {
             (self.cost)(stage, *from, to.value(&self.nodes[stage]))
         }
-    }
-
-    fn least(of: &Toy, controls: Controls) -> Option<Path> {
-        follow(of, controls, &solve(of, controls).ok()?)
     }
 
     fn grid(count: usize, from: f64, to: f64) -> Vec<f64> {
