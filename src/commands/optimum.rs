@@ -21,7 +21,7 @@ use cvtcycle::study::optimum::{
 use serde::Serialize;
 
 use super::{Execute, threads, vehicles};
-use crate::args::problems::bad_value;
+use crate::args::problems::{bad_value, cite};
 use crate::args::{
     ColumnsArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs,
     count, cycles, number,
@@ -121,6 +121,15 @@ pub struct OptimumArgs {
     /// The car's own clamp law only
     #[arg(long)]
     own_clamp: bool,
+    /// Cycle on which the line is driven too (repeatable); `none` for none
+    #[arg(
+        long,
+        value_name = "NAME|FILE.csv",
+        default_values = ["wltc", "ftp75"],
+        value_parser = Names(cycles),
+        hide_possible_values = true
+    )]
+    prove: Vec<String>,
     /// No operating line
     #[arg(long)]
     no_line: bool,
@@ -135,6 +144,8 @@ pub struct OptimumArgs {
 /// Checked input.
 pub struct OptimumPlan {
     cycle: Cycle,
+    /// Other cycles for its line.
+    elsewhere: Vec<Cycle>,
     /// The car under its own clamp law, then under the others.
     cars: Vec<(&'static str, Setup)>,
     options: Options,
@@ -176,6 +187,7 @@ impl Execute for OptimumArgs {
     fn plan(&self, problems: &mut Problems) -> Option<OptimumPlan> {
         let columns = self.columns.get(problems);
         let cycle = problems.take(cycle::open(&self.cycle, &columns));
+        let elsewhere = self.elsewhere(problems);
         let formulation = self.formulation.get(problems);
         let options = self.car.options(formulation, problems);
         let setup = problems.take(setup::load(&self.car.vehicle, &options));
@@ -196,6 +208,10 @@ impl Execute for OptimumArgs {
         let (numbers, start) = (numbers?, start?);
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
         Some(OptimumPlan {
+            elsewhere: elsewhere
+                .into_iter()
+                .map(|(word, other)| cycle::for_car(&word, other, &own))
+                .collect(),
             cycle: cycle::for_car(&self.cycle, cycle?, &own),
             cars: self.laws(own, &options),
             options,
@@ -225,6 +241,7 @@ impl Execute for OptimumArgs {
             rates_per_s: None,
             grid: n.ratios,
             line: !self.no_line,
+            elsewhere: &plan.elsewhere,
             least_speeds_rpm: &LEAST_SPEEDS_RPM,
         };
         let answer = optimum::answer(&question, &self.like(), &plan.options);
@@ -267,6 +284,17 @@ fn conditions(numbers: &Numbers, start: Start) -> Conditions {
 }
 
 impl OptimumArgs {
+    /// Other cycles for the line, as they are named.
+    fn elsewhere(&self, problems: &mut Problems) -> Vec<(String, Cycle)> {
+        let others = |word: &&String| word.as_str() != "none" && **word != self.cycle;
+        let mut open = |word: &String| {
+            let found = cycle::find(word).map_err(|found| cite("--prove", found));
+            Some((word.clone(), problems.take(found)?))
+        };
+        let words = self.prove.iter().filter(others);
+        words.filter_map(&mut open).collect()
+    }
+
     fn numbers(&self, dt_s: Option<f64>, problems: &mut Problems) -> Option<Numbers> {
         let mut take = |option: &str, text: &str, range: Bound, suffix: &str| {
             problems.take(number(option, text, range, suffix))

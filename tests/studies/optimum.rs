@@ -214,14 +214,39 @@ fn a_limit_that_cannot_be_held_is_named_with_what_can() {
     let mut of = task(&own, &steps, 80.0);
     of.limits.reserve = 0.7;
     let why = bound(&of).expect_err("seven tenths of full load are too much");
-    let [(LimitName::Reserve, Some(most))] = why.each[..] else {
-        panic!("{:?}", why.each)
+    let [limit] = &why.unheld[..] else {
+        panic!("{why:?}")
     };
+    let most = limit.most.expect("a share");
+    assert_eq!(limit.name, LimitName::Reserve);
     assert!((0.1..0.7).contains(&most), "{most}");
-    assert!(why.row.wheel_power_w > 10e3);
+    assert!(limit.row.wheel_power_w > 10e3);
     // What is said to be possible is.
     of.limits.reserve = most;
     least(&of);
+}
+
+/// Two limits that cannot be held are both named, each with its own place and with what can be held of it.
+#[test]
+fn each_limit_that_cannot_be_held_has_its_place() {
+    let own = car(&[], 25.0);
+    let steps = steps(&embedded("ece15").unwrap(), 1.0);
+    let mut of = task(&own, &steps, 80.0);
+    of.limits.reserve = 0.9;
+    of.limits.up_per_s = 0.0;
+    of.limits.down_per_s = 0.0;
+    of.limits.least_rad_s = rad_s(4000.0);
+    let why = bound(&of).expect_err("no car does this");
+    let names: Vec<_> = why.unheld.iter().map(|limit| limit.name).collect();
+    assert!(names.len() > 1, "{why:?}");
+    for limit in &why.unheld {
+        let Some(most) = limit.most else { continue };
+        match limit.name {
+            LimitName::LeastSpeed => of.limits.least_rad_s = most,
+            LimitName::Reserve => of.limits.reserve = most,
+            LimitName::ShiftRate => {}
+        }
+    }
 }
 
 /// The same bytes on any number of threads.

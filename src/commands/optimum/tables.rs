@@ -31,6 +31,7 @@ pub fn text(of: &OptimumSummary, paint: Paint) -> String {
         ("What the limits cost", limits(of)),
         ("How sure the bound is", certainty(of)),
         ("Operating line", line(of)),
+        ("The line on other cycles, L/100 km", elsewhere(of)),
     ];
     head + &sections(parts, paint)
 }
@@ -47,7 +48,12 @@ fn sentence(of: &OptimumSummary) -> String {
     );
     if let Some(free) = of.answer.bounds.iter().find(|bound| bound.clamp == "free") {
         let least = free.least_l_per_100km - free.tolerance_l_per_100km;
-        text += &format!(", {} with any clamp", fixed(least, 3));
+        text += &format!(
+            ", {} with any clamp of a safety factor of {} and {} % slip",
+            fixed(least, 3),
+            plain(of.numbers.safety),
+            plain(of.numbers.max_slip_percent)
+        );
     }
     let above = |litres: f64| signed(100.0 * (litres / least - 1.0), 2);
     if let Some(litres) = own.own_l_per_100km {
@@ -59,7 +65,7 @@ fn sentence(of: &OptimumSummary) -> String {
     }
     if let Some(line) = &of.answer.line {
         text += &format!(
-            "; with its best line {}: {} %, which is what looking ahead is worth",
+            "; with its best line {}: {} %, at most the worth of looking ahead",
             fixed(line.l_per_100km, 3),
             signed(line.above_bound_percent, 2)
         );
@@ -146,6 +152,24 @@ fn line(of: &OptimumSummary) -> String {
         let [a, b] = cells(&line.drive, k);
         let [c, d] = cells(&line.overrun, k);
         table.row([a, b, c, d]);
+    }
+    table.text()
+}
+
+fn elsewhere(of: &OptimumSummary) -> String {
+    let cycles = of.answer.line.iter().flat_map(|line| &line.elsewhere);
+    let mut table = TextTable::new("lrrr");
+    for (number, other) in cycles.enumerate() {
+        if number == 0 {
+            table.row(["", "as it is", "line", "%"]);
+        }
+        let (own, line) = (other.own_l_per_100km, other.line_l_per_100km);
+        table.row([
+            other.cycle.clone(),
+            fixed(own, 3),
+            fixed(line, 3),
+            signed(100.0 * (line / own - 1.0), 2),
+        ]);
     }
     table.text()
 }

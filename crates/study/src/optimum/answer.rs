@@ -4,7 +4,9 @@ use cvtcycle_config::Problems;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Disk, Options, Setup, read};
 use cvtcycle_model::cycle::Step;
-use cvtcycle_model::drive::{Car, Conditions, Drive, Row, drive, litres_per_100km, start_state};
+use cvtcycle_model::drive::{
+    Car, Conditions, Drive, Row, Totals, drive, litres_per_100km, start_state,
+};
 use cvtcycle_model::keys::{rad_s, rpm};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -50,6 +52,8 @@ pub struct Question<'a> {
     pub line: bool,
     /// Other least engine speeds, rpm.
     pub least_speeds_rpm: &'a [f64],
+    /// Other cycles on which the line is driven.
+    pub elsewhere: &'a [Cycle],
 }
 
 /// The bound for one clamp law.
@@ -84,6 +88,17 @@ pub struct LimitPrice {
     pub percent: f64,
 }
 
+/// The line on a cycle that it is not made for.
+#[derive(Clone, Debug, Serialize)]
+pub struct Elsewhere {
+    /// Cycle.
+    pub cycle: String,
+    /// Fuel of the car as it is, L/100 km.
+    pub own_l_per_100km: f64,
+    /// Fuel with the line, L/100 km.
+    pub line_l_per_100km: f64,
+}
+
 /// The operating line.
 #[derive(Clone, Debug, Serialize)]
 pub struct LineAnswer {
@@ -103,6 +118,8 @@ pub struct LineAnswer {
     pub slowest_rpm: f64,
     /// Drives that the search took.
     pub drives: usize,
+    /// Fuel on other cycles.
+    pub elsewhere: Vec<Elsewhere>,
     /// The vehicle file.
     #[serde(skip)]
     pub file: String,
@@ -270,7 +287,8 @@ impl Question<'_> {
         (like, options): (&str, &Options),
     ) -> Result<LineAnswer, Problems> {
         let file = self.file(&fit.line, like);
-        let proven_kg = self.proof_kg(&file, options)?;
+        let setup = read("line.toml", &file, Box::new(Disk::default()), options)?;
+        let proven_kg = self.driven(&setup, self.cycle).total().fuel_kg;
         let above = |kg: f64| 100.0 * (proven_kg / kg - 1.0);
         Ok(LineAnswer {
             l_per_100km: litres(proven_kg),
@@ -279,6 +297,11 @@ impl Question<'_> {
             proven: (proven_kg / fit.fuel_kg - 1.0).abs() <= PROVEN,
             slowest_rpm: rpm(fit.slowest_rad_s),
             drives: fit.drives,
+            elsewhere: self
+                .elsewhere
+                .iter()
+                .map(|cycle| self.on(cycle, &setup))
+                .collect(),
             drive: fit.line.drive,
             overrun: fit.line.overrun,
             file,
@@ -312,14 +335,26 @@ impl Question<'_> {
         )
     }
 
-    /// Fuel of a file's car on the cycle, kg.
-    fn proof_kg(&self, file: &str, options: &Options) -> Result<f64, Problems> {
-        let setup = read("line.toml", file, Box::new(Disk::default()), options)?;
+    /// A car on a cycle.
+    fn driven(&self, car: &Setup, cycle: &Cycle) -> Totals {
         let conditions = Conditions {
             keep_rows: false,
             ..self.conditions
         };
-        let outcome = drive(&setup, self.cycle, &conditions);
-        Ok(outcome.totals.total().fuel_kg)
+        drive(car, cycle, &conditions).totals
+    }
+
+    /// The car as it is and with its line on another cycle.
+    fn on(&self, cycle: &Cycle, line: &Setup) -> Elsewhere {
+        let litres = |car: &Setup| {
+            let density = car.engine().fuel_density_kg_m3;
+            let kg = self.driven(car, cycle).total().fuel_kg;
+            litres_per_100km(kg, density, cycle.trace_for(true).distance_m())
+        };
+        Elsewhere {
+            cycle: cycle.name.clone(),
+            own_l_per_100km: litres(self.cars[0].setup),
+            line_l_per_100km: litres(line),
+        }
     }
 }

@@ -206,14 +206,22 @@ fn means(task: &Task, bound: &Bound) -> Line {
         .collect();
     let least_rpm = rpm(task.limits.least_rad_s).ceil();
     let route = |percent: f64| best_point_rpm(task, percent / 100.0 * rated_w / ROUTE_EFFICIENCY);
+    let mut overrun = at_nodes(&SPEEDS_KMH, &overrun, |_| None);
+    if overrun.is_empty() {
+        overrun.push((0.0, least_rpm));
+    }
     Line {
-        drive: at_nodes(&SHARES_PERCENT, &drive, route),
-        overrun: at_nodes(&SPEEDS_KMH, &overrun, |_| least_rpm),
+        drive: at_nodes(&SHARES_PERCENT, &drive, |percent| Some(route(percent))),
+        overrun,
     }
 }
 
-/// Means of points at nodes, each point shared between its two neighbours; `other` where there is none.
-fn at_nodes(nodes: &[f64], points: &[(f64, f64)], other: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+/// Means of points at nodes, each point shared between its two neighbours; `other` where there is none, and no node where that is none.
+fn at_nodes(
+    nodes: &[f64],
+    points: &[(f64, f64)],
+    other: impl Fn(f64) -> Option<f64>,
+) -> Vec<(f64, f64)> {
     let share = |k: usize, x: f64| {
         let below = k.checked_sub(1).map(|k| nodes[k]);
         let above = nodes.get(k + 1).copied();
@@ -230,12 +238,12 @@ fn at_nodes(nodes: &[f64], points: &[(f64, f64)], other: impl Fn(f64) -> f64) ->
             (sum + own * y, weight + own)
         });
         match sums.1 > 0.0 {
-            true => sums.0 / sums.1,
+            true => Some(sums.0 / sums.1),
             false => other(nodes[k]),
         }
     };
     (0..nodes.len())
-        .map(|k| (nodes[k], mean(k).round()))
+        .filter_map(|k| Some((nodes[k], mean(k)?.round())))
         .collect()
 }
 

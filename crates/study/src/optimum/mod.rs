@@ -30,7 +30,7 @@ mod reference;
 mod stages;
 
 pub use answer::{
-    Answer, LawBound, LawCar, LimitPrice, LineAnswer, NoAnswer, Question, TIGHT, answer,
+    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, NoAnswer, Question, TIGHT, answer,
 };
 pub use limits::{Infeasible, LimitName, Unheld};
 pub use line::{Line, LineFit, fit_line};
@@ -266,7 +266,7 @@ impl Solved {
         Reference::drive(task.car, task.steps, task.start, |k, state| {
             let hold = self.holds[k];
             Some(match self.chosen[k] {
-                true => scene.locked(k, state, hold),
+                true => scene.locked(k, state, hold, &task.limits),
                 false => hold,
             })
         })

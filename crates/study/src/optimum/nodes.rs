@@ -15,9 +15,9 @@ use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 use cvtcycle_model::transmission::cvt::variator::BeltAtRatio;
 use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 
-use super::Clamp;
 use super::program::Place;
 use super::reference::Reference;
+use super::{Clamp, Limits};
 
 /// Safety factors that are tried for a free clamp, over the least one.
 const SAFETIES: [f64; 5] = [1.0, 1.3, 1.7, 2.3, 3.4];
@@ -135,15 +135,35 @@ impl<'a> Scene<'a> {
         (0..self.steps.len()).map(&mut of).collect()
     }
 
-    /// A hold in the temperatures of a drive: no ratio in which the clutch would not stay locked (LC-5).
-    pub fn locked(&self, k: usize, state: &State, hold: Hold) -> Hold {
+    /// A chosen hold in the temperatures of a drive: no ratio in which the clutch would not stay locked (LC-5), none beyond the rates (RC-4),
+    /// and no other one before it has locked (RC-6).
+    pub fn locked(&self, k: usize, state: &State, hold: Hold, limits: &Limits) -> Hold {
+        let kept = state.transmission.as_ref();
+        let Some((coupled, before)) = kept.and_then(|kept| {
+            let belt = kept.cvt.as_ref().map(|cvt| cvt.belt.geometry.ratio);
+            Some((kept.driveline.coupled, belt?))
+        }) else {
+            return hold;
+        };
+        let (up, down) = self.reach(k, before.ln(), limits);
         let engine = self.engine(state, &self.steps[k], state.running.speed_rad_s);
         let locked_rad_s = LOCKED * self.cvt.coupling.locked_from_rad_s(engine.idle_rad_s());
         let least = locked_rad_s / self.secondary_rad_s[k];
-        Hold {
-            ratio: hold.ratio.max(least.min(self.cvt.ratio.low)),
-            ..hold
-        }
+        let ratio = match coupled {
+            true => hold.ratio.max(least).clamp(up.exp(), down.exp()),
+            false => hold.ratio.min(down.exp()).max(before),
+        };
+        Hold { ratio, ..hold }
+    }
+
+    /// Logarithms of the ratio between which a step can end that begins at `x` (RC-4).
+    pub fn reach(&self, k: usize, x: f64, limits: &Limits) -> (f64, f64) {
+        let (secondary, dt_s) = (self.secondary_rad_s[k], self.steps[k].dt_s);
+        let ratio = &self.cvt.ratio;
+        let pace = (x.exp() * secondary / ratio.rate_speed_rad_s).clamp(0.0, 1.0);
+        let down = (x + limits.down_per_s * pace * dt_s).min(ratio.low.ln());
+        let up = (x - limits.up_per_s * pace * dt_s).max(ratio.high.ln());
+        (up.min(x), down.max(x))
     }
 
     /// The engine in a step of a drive, after a speed before it.

@@ -317,19 +317,14 @@ impl<'a> Stages for Problem<'a> {
     }
 
     fn reach(&self, k: usize, x: f64) -> (f64, f64) {
-        let (secondary, dt_s) = (self.scene.secondary_rad_s[k], self.scene.steps[k].dt_s);
-        if secondary <= 0.0 || k == 0 {
+        if self.scene.secondary_rad_s[k] <= 0.0 || k == 0 {
             return (x, x);
         }
-        let ratio = &self.scene.cvt.ratio;
-        let pace = (x.exp() * secondary / ratio.rate_speed_rad_s).clamp(0.0, 1.0);
-        let low = self.scene.cvt.ratio.low.ln();
-        let down = (x + self.limits.down_per_s * pace * dt_s).min(low); // RC-4
-        if self.stages[k].nodes.is_empty() {
-            return (down, down); // DP-5
+        let (up, down) = self.scene.reach(k, x, &self.limits);
+        match self.chooses(k) {
+            true => (up, down),
+            false => (down, down), // DP-5
         }
-        let up = x - self.limits.up_per_s * pace * dt_s; // RC-4
-        (up, down)
     }
 
     fn from(&self, k: usize, x: f64, place: Option<Place>) -> From<'a> {
