@@ -207,12 +207,12 @@ impl Execute for OptimumArgs {
         let out = self.out.dir(problems);
         let (numbers, start) = (numbers?, start?);
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
+        let cycle = cycle::for_car(&self.cycle, cycle?, &own);
+        let others = elsewhere.into_iter();
+        let others = others.map(|(word, other)| cycle::for_car(&word, other, &own));
         Some(OptimumPlan {
-            elsewhere: elsewhere
-                .into_iter()
-                .map(|(word, other)| cycle::for_car(&word, other, &own))
-                .collect(),
-            cycle: cycle::for_car(&self.cycle, cycle?, &own),
+            elsewhere: others.filter(|other| other.name != cycle.name).collect(),
+            cycle,
             cars: self.laws(own, &options),
             options,
             conditions: conditions(&numbers, start.0),
@@ -286,7 +286,7 @@ fn conditions(numbers: &Numbers, start: Start) -> Conditions {
 impl OptimumArgs {
     /// Other cycles for the line, as they are named.
     fn elsewhere(&self, problems: &mut Problems) -> Vec<(String, Cycle)> {
-        let others = |word: &&String| word.as_str() != "none" && **word != self.cycle;
+        let others = |word: &&String| word.as_str() != "none";
         let mut open = |word: &String| {
             let found = cycle::find(word).map_err(|found| cite("--prove", found));
             Some((word.clone(), problems.take(found)?))

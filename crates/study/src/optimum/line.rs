@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | DP-12 | nodes of n_d(P/P_rated) and n_o(v) that burn least when driven by RC-13: from the means of the best path, each node moved up and down by 320, 160 ... 5 rpm while that burns less | derived: search by the model's own drive, one node at a time |
+//! | DP-12 | nodes of n_d(P/P_rated) and n_o(v) that burn least when driven by RC-13: from the means of the best path, each node moved up and down by 320, 160 ... 5 rpm while that burns less; n_d nowhere below 0.96 of itself at less demand | derived: search by the model's own drive, one node at a time |
 //!
 //! A controller that looks at demand and speed knows nothing of what comes: what its best line burns more than the bound is the worth of looking ahead.
 
@@ -95,11 +95,29 @@ impl Line {
         )
     }
 
-    fn node(&mut self, k: usize) -> &mut f64 {
-        match self.drive.len() {
-            count if k < count => &mut self.drive[k].1,
-            count => &mut self.overrun[k - count].1,
+    /// The line with a node moved by so many rpm, within limits; other nodes of the drive line go along as far as its order needs it.
+    fn moved(&self, k: usize, by: f64, limits: (f64, f64)) -> Line {
+        let mut line = self.clone();
+        let count = line.drive.len();
+        let node = match k < count {
+            true => &mut line.drive[k].1,
+            false => &mut line.overrun[k - count].1,
+        };
+        *node = (*node + by).clamp(limits.0, limits.1);
+        if k < count {
+            order(&mut line.drive, k);
         }
+        line
+    }
+}
+
+/// More demand, no slower an engine, but for slip: nodes after the given one are raised, those before it lowered, as far as that needs it.
+fn order(points: &mut [(f64, f64)], k: usize) {
+    for j in k + 1..points.len() {
+        points[j].1 = points[j].1.max((BELOW * points[j - 1].1).ceil());
+    }
+    for j in (0..k).rev() {
+        points[j].1 = points[j].1.min((points[j + 1].1 / BELOW).floor());
     }
 }
 
@@ -161,9 +179,7 @@ pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
             let before = best;
             for k in 0..count {
                 let moved = |by: f64| {
-                    let mut line = line.clone();
-                    let node = line.node(k);
-                    *node = (*node + by).clamp(least_rpm, most_rpm);
+                    let line = line.moved(k, by, (least_rpm, most_rpm));
                     (whole(&line), line)
                 };
                 let (up, down) = rayon::join(|| moved(step), || moved(-step));
@@ -210,10 +226,9 @@ fn means(task: &Task, bound: &Bound) -> Line {
     if overrun.is_empty() {
         overrun.push((0.0, least_rpm));
     }
-    Line {
-        drive: at_nodes(&SHARES_PERCENT, &drive, |percent| Some(route(percent))),
-        overrun,
-    }
+    let mut drive = at_nodes(&SHARES_PERCENT, &drive, |percent| Some(route(percent)));
+    order(&mut drive, 0);
+    Line { drive, overrun }
 }
 
 /// Means of points at nodes, each point shared between its two neighbours; `other` where there is none, and no node where that is none.
