@@ -90,7 +90,33 @@ fn bounds(of: &OptimumSummary) -> String {
             fixed(bound.tolerance_l_per_100km, 3),
         ]);
     }
-    table.text()
+    table.text() + &weaker(of)
+}
+
+/// Laws with which less can be burnt than with a free clamp, which has more safety.
+fn weaker(of: &OptimumSummary) -> String {
+    let bounds = &of.answer.bounds;
+    let Some(free) = bounds.iter().find(|bound| bound.clamp == "free") else {
+        return String::new();
+    };
+    let below = |bound: &&LawBound| {
+        bound.least_l_per_100km < free.least_l_per_100km - free.tolerance_l_per_100km
+    };
+    let laws = bounds
+        .iter()
+        .filter(below)
+        .map(|law| law.clamp.replace('_', " "));
+    let laws: Vec<String> = laws.collect();
+    let text = format!(
+        "`{}` clamps with a safety factor below {}, or with more slip than {} %, which a free clamp may not (--safety, --max-slip).",
+        laws.join("`, `"),
+        plain(of.numbers.safety),
+        plain(of.numbers.max_slip_percent)
+    );
+    match laws.is_empty() {
+        true => String::new(),
+        false => wrapped(&text, ""),
+    }
 }
 
 fn speeds(of: &OptimumSummary) -> String {

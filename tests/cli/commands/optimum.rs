@@ -10,7 +10,7 @@ const QUICK: [&str; 8] = [
 #[test]
 fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
     let dir = tempfile::tempdir().unwrap();
-    let words = [&QUICK[..], &["80", "--out", "best"]].concat();
+    let words = [&QUICK[..], &["80", "--out", "best", "--prove", "10-15"]].concat();
     let output = run_in(dir.path(), &words);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
@@ -23,6 +23,7 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
         "What the limits cost",
         "25 ratios",
         "Operating line",
+        "The line on other cycles",
         "rover_216_cvt_line.toml",
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
@@ -54,6 +55,10 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
     let run: Value = serde_json::from_str(&stdout(&run_in(dir.path(), &run))).unwrap();
     let burnt = run["runs"][0]["fuel_l_per_100km"].as_f64().unwrap();
     assert!((burnt / said - 1.0).abs() < 1e-12, "{burnt} {said}");
+    let elsewhere = summary["line"]["elsewhere"].as_array().unwrap();
+    assert_eq!(elsewhere.len(), 1, "{elsewhere:?}");
+    assert_eq!(elsewhere[0]["cycle"], "jp_10_15_mode");
+    assert!(elsewhere[0]["line_l_per_100km"].as_f64() > Some(3.0));
     let bounds = summary["bounds"].as_array().unwrap();
     let names: Vec<&str> = bounds
         .iter()
@@ -71,6 +76,14 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
         }
         assert!(number("gap_percent").unwrap() < 0.5);
     }
+    // The note is there where a law does with less safety what a free clamp may not.
+    let least = |k: usize, key: &str| bounds[k][key].as_f64().unwrap();
+    let free = least(3, "least_l_per_100km") - least(3, "tolerance_l_per_100km");
+    let below = least(2, "least_l_per_100km") < free;
+    assert_eq!(
+        text.contains("`slip limited` clamps with a safety factor below 1.3"),
+        below
+    );
     let path = file("path.csv");
     assert!(path.starts_with("time_s,speed_kmh,wheel_power_w,belt_ratio,engine_speed_rpm,"));
     assert_eq!(file("least_speed.csv").lines().count(), 6);
