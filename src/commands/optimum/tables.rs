@@ -56,18 +56,27 @@ fn sentence(of: &OptimumSummary) -> String {
         );
     }
     let above = |litres: f64| signed(100.0 * (litres / least - 1.0), 2);
+    let kept = |time_s: Option<f64>| match time_s {
+        Some(time_s) if time_s > 0.0 => " (not always within these limits)",
+        _ => "",
+    };
     if let Some(litres) = own.own_l_per_100km {
         text += &format!(
-            ". The car as it is burns {}: {} %",
+            ". The car as it is burns {}: {} %{}",
             fixed(litres, 3),
-            above(litres)
+            above(litres),
+            kept(own.own_outside_s)
         );
     }
     if let Some(line) = &of.answer.line {
         text += &format!(
-            "; with its best line {}: {} %, at most the worth of looking ahead",
+            "; with its best line {}: {} %{}",
             fixed(line.l_per_100km, 3),
-            signed(line.above_bound_percent, 2)
+            signed(line.above_bound_percent, 2),
+            match kept(own.line_outside_s) {
+                "" => ", at most the worth of looking ahead",
+                outside => outside,
+            }
         );
     }
     text + "."
@@ -90,7 +99,34 @@ fn bounds(of: &OptimumSummary) -> String {
             fixed(bound.tolerance_l_per_100km, 3),
         ]);
     }
-    table.text() + &weaker(of)
+    table.text() + &weaker(of) + &outside(of)
+}
+
+/// Cars that do not keep the limits all the time, so that they may burn less than the bound.
+fn outside(of: &OptimumSummary) -> String {
+    let seconds = |b: &LawBound, what: &str, time_s: Option<f64>| {
+        let time_s = time_s.filter(|time_s| *time_s > 0.0)?;
+        Some(format!(
+            "{} {what} {} s",
+            b.clamp.replace('_', " "),
+            fixed(time_s, 1)
+        ))
+    };
+    let bounds = of.answer.bounds.iter();
+    let each = bounds.flat_map(|b| {
+        [
+            seconds(b, "as it is", b.own_outside_s),
+            seconds(b, "with the line", b.line_outside_s),
+        ]
+    });
+    let each: Vec<String> = each.flatten().collect();
+    match each.is_empty() {
+        true => String::new(),
+        false => wrapped(
+            &format!("Time outside these limits: {}.", each.join(", ")),
+            "",
+        ),
+    }
 }
 
 /// Laws with which less can be burnt than with a free clamp, which has more safety.
@@ -205,7 +241,9 @@ fn bound_columns() -> Vec<Column<LawBound>> {
     columns! { LawBound;
         text "clamp", "", "clamp law, or free", b => Cow::Owned(b.clamp.clone());
         number "own_l_per_100km", "L/100 km", "fuel of the car with its own ratio control", b => or_nan(b.own_l_per_100km);
+        number "own_outside_s", "s", "time outside the limits of speed and reserve", b => or_nan(b.own_outside_s);
         number "line_l_per_100km", "L/100 km", "fuel of the car with the operating line", b => or_nan(b.line_l_per_100km);
+        number "line_outside_s", "s", "time outside the limits with the line", b => or_nan(b.line_outside_s);
         number "least_l_per_100km", "L/100 km", "least fuel", b => b.least_l_per_100km;
         number "tolerance_l_per_100km", "L/100 km", "tolerance of the least fuel", b => b.tolerance_l_per_100km;
         number "driven_l_per_100km", "L/100 km", "fuel of the best path as driven", b => b.driven_l_per_100km;

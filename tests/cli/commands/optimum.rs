@@ -136,3 +136,24 @@ fn a_limit_that_cannot_be_held_is_named_with_its_place() {
         "{message}"
     );
 }
+
+/// Two limits that cannot be held, each with its own place; a warm start, whose line begins where the car as it is begins.
+#[test]
+fn both_limits_are_named_and_a_warm_start_is_proven() {
+    let words = [
+        "--own-clamp",
+        "--no-line",
+        "--reserve",
+        "85",
+        "--least-rpm",
+        "4000",
+    ];
+    let message = refused(&[&QUICK[..], &["80"], &words].concat());
+    for part in ["--reserve", "--least-rpm", "at most", "2 problems"] {
+        assert!(message.contains(part), "{part} is not in\n{message}");
+    }
+    let output = run(&[&QUICK[..], &["warm", "--own-clamp", "--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let summary: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(summary["line"]["proven"], true);
+}

@@ -4,15 +4,13 @@ use cvtcycle_config::Problems;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Disk, Options, Setup, read};
 use cvtcycle_model::cycle::Step;
-use cvtcycle_model::drive::{
-    Car, Conditions, Drive, Row, Totals, drive, litres_per_100km, start_state,
-};
+use cvtcycle_model::drive::{Car, Conditions, Row, Totals, drive, litres_per_100km, start_state};
 use cvtcycle_model::keys::{rad_s, rpm};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::limits::{Infeasible, LimitName};
-use super::line::{Line, LineFit, fit_line};
+use super::line::{Line, LineFit, burnt, fit_line};
 use super::{Bound, Clamp, Limits, Task, bound};
 
 /// Gap between the driven path and the bound above which the bound is not tight.
@@ -63,8 +61,12 @@ pub struct LawBound {
     pub clamp: String,
     /// Fuel of the car with this law and its own ratio control, L/100 km; none for `free`.
     pub own_l_per_100km: Option<f64>,
-    /// With this law and the operating line.
+    /// Time in which that car keeps less engine speed or reserve than the limits want, with the clutch locked, s.
+    pub own_outside_s: Option<f64>,
+    /// Fuel with this law and the operating line, L/100 km.
     pub line_l_per_100km: Option<f64>,
+    /// Time outside the limits with the line, s.
+    pub line_outside_s: Option<f64>,
     /// Least fuel (DP-9).
     pub least_l_per_100km: f64,
     /// Tolerance (DP-11).
@@ -106,7 +108,7 @@ pub struct LineAnswer {
     pub drive: Vec<(f64, f64)>,
     /// Road speed, km/h; engine speed, rpm.
     pub overrun: Vec<(f64, f64)>,
-    /// Fuel of the car of the vehicle file, read and driven.
+    /// Fuel of the car of the vehicle file, read and driven from the state in which the car as it is begins.
     pub l_per_100km: f64,
     /// That above the least fuel with the same clamp law, per cent: what looking ahead is worth.
     pub above_least_percent: f64,
@@ -183,7 +185,7 @@ pub fn answer(of: &Question, like: &str, options: &Options) -> Result<Answer, No
     let laws: Vec<LawBound> = laws.collect();
     let loose = laws.iter().filter(|law| law.gap_percent > 100.0 * TIGHT);
     let mut failures: Vec<String> = loose.map(not_tight).collect();
-    let line = fit.map(|fit| of.proven(fit, main, &litres, (like, options)));
+    let line = fit.map(|fit| of.proven(fit, (task, main), &litres, (like, options)));
     let line = line.transpose().map_err(NoAnswer::Line)?;
     failures.extend(line.iter().filter(|line| !line.proven).map(|_| {
         "line not proven: its file, read and driven, gives another fuel than the line".to_owned()
@@ -219,17 +221,17 @@ fn law_bound(
     bound: &Bound,
     litres: &impl Fn(f64) -> f64,
 ) -> LawBound {
-    let kg = |car: &Car| -> f64 {
-        let mut drive = Drive::new(car, task.start);
-        let rows = task.steps.iter().map(|step| drive.step(step).0);
-        rows.map(|row| row.fuel_kg_s * row.dt_s).sum()
-    };
-    let lined = law.and(fit).map(|fit| fit.line.on(task.car));
+    let own = law.map(|_| burnt(task, &bound.chosen, task.car));
+    let lined = law
+        .and(fit)
+        .map(|fit| burnt(task, &bound.chosen, &fit.line.on(task.car)));
     let grid = bound.coarser.iter();
     LawBound {
         clamp: law.unwrap_or("free").to_owned(),
-        own_l_per_100km: law.map(|_| litres(kg(task.car))),
-        line_l_per_100km: lined.map(|car| litres(kg(&car))),
+        own_l_per_100km: own.as_ref().map(|own| litres(own.fuel_kg)),
+        own_outside_s: own.map(|own| own.outside_s),
+        line_l_per_100km: lined.as_ref().map(|lined| litres(lined.fuel_kg)),
+        line_outside_s: lined.map(|lined| lined.outside_s),
         least_l_per_100km: litres(bound.fuel_kg),
         tolerance_l_per_100km: litres(bound.tolerance_kg),
         driven_l_per_100km: litres(bound.driven_kg),
@@ -282,13 +284,14 @@ impl Question<'_> {
     fn proven(
         &self,
         fit: LineFit,
-        main: &Bound,
+        (task, main): (&Task, &Bound),
         litres: &impl Fn(f64) -> f64,
         (like, options): (&str, &Options),
     ) -> Result<LineAnswer, Problems> {
         let file = self.file(&fit.line, like);
         let setup = read("line.toml", &file, Box::new(Disk::default()), options)?;
-        let proven_kg = self.driven(&setup, self.cycle).total().fuel_kg;
+        let car = setup.car(self.conditions.ambient_k);
+        let proven_kg = burnt(task, &main.chosen, &car).fuel_kg;
         let above = |kg: f64| 100.0 * (proven_kg / kg - 1.0);
         Ok(LineAnswer {
             l_per_100km: litres(proven_kg),

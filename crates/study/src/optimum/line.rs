@@ -6,7 +6,7 @@
 //!
 //! A controller that looks at demand and speed knows nothing of what comes: what its best line burns more than the bound is the worth of looking ahead.
 
-use cvtcycle_model::drive::{Car, Drive, EnergyTerms, Recorder, Row};
+use cvtcycle_model::drive::{Car, Drive, Row};
 use cvtcycle_model::keys::{Quantity, rpm};
 use cvtcycle_model::math::Curve;
 use cvtcycle_model::prime_mover::PrimeMover;
@@ -29,8 +29,10 @@ const PASSES: usize = 4;
 const BELOW: f64 = 0.96;
 /// Fuel that a joule missing at the wheels counts for, kg/J: more than an engine needs for it.
 const MISSED_KG_J: f64 = 4e-7;
-/// Fuel that a second at half the least speed counts for, kg.
-const SLOW_KG_S: f64 = 2e-3;
+/// Fuel that a second at half the least speed, or with half of full load more than allowed, counts for, kg.
+const OUTSIDE_KG_S: f64 = 2e-3;
+/// Share of the least speed or of full load by which a limit is not kept.
+const OUTSIDE: f64 = 0.01;
 /// Efficiency with which the route over the engine's best points is begun where the cycle demands no such power.
 const ROUTE_EFFICIENCY: f64 = 0.85;
 
@@ -122,54 +124,52 @@ fn order(points: &mut [(f64, f64)], k: usize) {
 }
 
 /// Fuel of a drive, and what counts as fuel for what is not allowed.
-struct Burnt<'a> {
-    chosen: &'a [bool],
-    least_rad_s: f64,
-    step: usize,
-    fuel_kg: f64,
+pub struct Burnt {
+    /// Fuel, kg.
+    pub fuel_kg: f64,
+    /// The same with what counts as fuel, kg.
     counted_kg: f64,
-    slowest_rad_s: f64,
+    /// Slowest engine in a step that leaves a choice, rad/s.
+    pub slowest_rad_s: f64,
+    /// Time in such steps outside the limits of speed and reserve, s.
+    pub outside_s: f64,
 }
 
-impl Recorder for Burnt<'_> {
-    fn record(&mut self, row: &Row, _: &EnergyTerms) {
-        self.fuel_kg += row.fuel_kg_s * row.dt_s;
-        self.counted_kg += MISSED_KG_J * row.deficit_w * row.dt_s;
-        if self.chosen[self.step] {
-            self.slowest_rad_s = self.slowest_rad_s.min(row.engine_speed_rad_s);
-            let short = 1.0 - row.engine_speed_rad_s / self.least_rad_s;
-            self.counted_kg += SLOW_KG_S * short.max(0.0) * row.dt_s;
-        }
-        self.step += 1;
-    }
-}
-
-fn burnt<'a>(task: &Task, chosen: &'a [bool], line: &Line) -> Burnt<'a> {
-    let car = line.on(task.car);
-    let mut burnt = Burnt {
-        chosen,
-        least_rad_s: task.limits.least_rad_s,
-        step: 0,
+/// A car on the steps of a task by its own controller; limits count where a ratio is chosen.
+pub fn burnt(task: &Task, chosen: &[bool], car: &Car) -> Burnt {
+    let mut sum = Burnt {
         fuel_kg: 0.0,
         counted_kg: 0.0,
         slowest_rad_s: f64::INFINITY,
+        outside_s: 0.0,
     };
-    let mut drive = Drive::new(&car, task.start);
-    for step in task.steps {
-        let (row, terms) = drive.step(step);
-        burnt.record(&row, &terms);
+    let mut drive = Drive::new(car, task.start);
+    for (step, chosen) in task.steps.iter().zip(chosen) {
+        let row = drive.step(step).0;
+        let fuel_kg = row.fuel_kg_s * row.dt_s;
+        sum.fuel_kg += fuel_kg;
+        sum.counted_kg += fuel_kg + MISSED_KG_J * row.deficit_w * row.dt_s;
+        if *chosen {
+            sum.slowest_rad_s = sum.slowest_rad_s.min(row.engine_speed_rad_s);
+            let slow = 1.0 - row.engine_speed_rad_s / task.limits.least_rad_s;
+            let short = row.throttle - (1.0 - task.limits.reserve);
+            let missed = row.deficit_w > 0.0;
+            let outside = if missed { slow } else { slow.max(short) };
+            sum.counted_kg += OUTSIDE_KG_S * outside.max(0.0) * row.dt_s;
+            if outside > OUTSIDE {
+                sum.outside_s += row.dt_s;
+            }
+        }
     }
-    burnt
+    sum
 }
 
 /// The line that burns least, beginning at the means of the best path.
 pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
     let mut line = means(task, bound);
-    let whole = |line: &Line| {
-        let burnt = burnt(task, &bound.chosen, line);
-        burnt.fuel_kg + burnt.counted_kg
-    };
-    let first_kg = burnt(task, &bound.chosen, &line).fuel_kg;
+    let driven = |line: &Line| burnt(task, &bound.chosen, &line.on(task.car));
+    let whole = |line: &Line| driven(line).counted_kg;
+    let first_kg = driven(&line).fuel_kg;
     let (mut best, mut drives) = (whole(&line), 1);
     let least_rpm = (BELOW * rpm(task.limits.least_rad_s)).ceil();
     let most_rpm = rpm(task.car.engine.highest_rad_s).floor();
@@ -194,7 +194,7 @@ pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
             }
         }
     }
-    let burnt = burnt(task, &bound.chosen, &line);
+    let burnt = driven(&line);
     LineFit {
         line,
         fuel_kg: burnt.fuel_kg,
