@@ -78,16 +78,6 @@ impl<'a> Drive<'a> {
     /// Drives one step: its row and its energy terms.
     #[inline(always)]
     pub fn step(&mut self, step: &Step) -> (Row, EnergyTerms) {
-        self.step_by(step, None)
-    }
-
-    /// The same with a CVT that is held at a ratio and a clamp law: any controller drives some sequence of these (RC-12).
-    pub fn step_held(&mut self, step: &Step, hold: &Hold) -> (Row, EnergyTerms) {
-        self.step_by(step, Some(*hold))
-    }
-
-    #[inline(always)]
-    fn step_by(&mut self, step: &Step, hold: Option<Hold>) -> (Row, EnergyTerms) {
         let car = self.car;
         let State {
             heat,
@@ -134,9 +124,6 @@ impl<'a> Drive<'a> {
             Some(state) => state,
             none => none.insert(car.transmission.start(&input)),
         };
-        if let Some(own) = &mut transmission.cvt {
-            own.hold = hold;
-        }
         if kinetic_j.is_nan() {
             let w = transmission.driveline.engine_rad_s;
             let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
@@ -192,6 +179,16 @@ impl<'a> Drive<'a> {
             }
         };
         result
+    }
+
+    /// The same with a CVT that is held at a ratio and a clamp law: any controller drives some sequence of these (RC-12). The first step of a
+    /// drive, which begins the box, has nothing to hold.
+    pub fn step_held(&mut self, step: &Step, hold: &Hold) -> (Row, EnergyTerms) {
+        let transmission = self.state.transmission.as_mut();
+        if let Some(own) = transmission.and_then(|own| own.cvt.as_mut()) {
+            own.hold = Some(*hold);
+        }
+        self.step(step)
     }
 }
 

@@ -270,6 +270,7 @@ pub(super) fn solve<P: PrimeMover>(
         hold,
     } = own;
     let before = belt.geometry;
+    let hold = hold.take();
     if input.engine_off {
         return engine_off(input, before.ratio, past);
     }
@@ -282,7 +283,7 @@ pub(super) fn solve<P: PrimeMover>(
             cvt,
             input,
             past,
-            (&before, *shifting, hold),
+            (&before, *shifting, &hold),
             belt,
             efficiency,
         );
