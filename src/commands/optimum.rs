@@ -194,9 +194,11 @@ impl Execute for OptimumArgs {
         let hint = "a manual box has gears; `study` varies its shift speeds";
         self.car.need_cvt(setup.as_ref(), hint, problems);
         let (start, dt_s) = self.drive.get(problems);
-        let numbers = self.numbers(dt_s, problems);
-        if let (Some(setup), Some(numbers)) = (&setup, &numbers) {
-            self.check_least(setup, numbers.least_rpm, problems);
+        let least = number("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
+        let least = problems.take(least);
+        let numbers = self.numbers((dt_s, least), problems);
+        if let Some(setup) = &setup {
+            self.check_least(setup, least, problems);
             self.check_car(setup, problems);
         }
         if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
@@ -295,12 +297,15 @@ impl OptimumArgs {
         words.filter_map(&mut open).collect()
     }
 
-    fn numbers(&self, dt_s: Option<f64>, problems: &mut Problems) -> Option<Numbers> {
+    fn numbers(
+        &self,
+        (dt_s, least): (Option<f64>, Option<f64>),
+        problems: &mut Problems,
+    ) -> Option<Numbers> {
         let mut take = |option: &str, text: &str, range: Bound, suffix: &str| {
             problems.take(number(option, text, range, suffix))
         };
         let ambient = take("--ambient", &self.ambient, AMBIENT, "ambient_degc");
-        let least = take("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
         let reserve = take("--reserve", &self.reserve, RESERVE, "reserve_percent");
         let safety = take("--safety", &self.safety, SAFETY, "safety");
         let slip = take("--max-slip", &self.max_slip, SLIP, "slip_percent");
@@ -322,10 +327,10 @@ impl OptimumArgs {
         })
     }
 
-    fn check_least(&self, setup: &Setup, least_rpm: f64, problems: &mut Problems) {
+    fn check_least(&self, setup: &Setup, least_rpm: Option<f64>, problems: &mut Problems) {
         let engine = setup.engine();
         let [idle, peak] = [engine.idle_hot_rad_s, engine.peak_power_rad_s()].map(rpm);
-        if !(idle..=peak).contains(&least_rpm) {
+        if least_rpm.is_some_and(|least_rpm| !(idle..=peak).contains(&least_rpm)) {
             let allowed = format!("{} to {} rpm", fixed(idle, 0), fixed(peak, 0));
             let message = "the least engine speed is outside those in which the engine is driven";
             let hint = "above idle speed, up to that of greatest power";

@@ -3,7 +3,7 @@
 use super::*;
 
 const QUICK: [&str; 8] = [
-    "optimum", "--cycle", "ece15", "--grid", "25", "--dt", "0.5", "--start",
+    "optimum", "--cycle", "ece15", "--grid", "49", "--dt", "0.25", "--start",
 ];
 
 /// Truth: `run` with the vehicle file that `optimum` wrote burns what it says, and nothing driven is below the bound.
@@ -21,7 +21,7 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
         "torque following",
         "Least fuel by least engine speed",
         "What the limits cost",
-        "25 ratios",
+        "49 ratios",
         "Operating line",
         "The line on other cycles",
         "rover_216_cvt_line.toml",
@@ -41,7 +41,7 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
         "--cycle",
         "ece15",
         "--dt",
-        "0.5",
+        "0.25",
         "--start",
         "80",
         "--baseline",
@@ -146,7 +146,7 @@ fn both_limits_are_named_and_a_warm_start_is_proven() {
         "--reserve",
         "85",
         "--least-rpm",
-        "4000",
+        "5500",
     ];
     let message = refused(&[&QUICK[..], &["80"], &words].concat());
     for part in ["--reserve", "--least-rpm", "at most", "2 problems"] {

@@ -8,6 +8,7 @@
 use cvtcycle_model::drive::{Drive, State};
 use cvtcycle_model::engine::EngineAtTemperature;
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES};
 use cvtcycle_model::transmission::cvt::Hold;
 use rayon::prelude::*;
@@ -266,20 +267,25 @@ fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k:
     let most_w = row.deficit_w * 1.001 + 1.0;
     let allowed = |node: &Node| node.ok && fast(node) && node.deficit_w <= most_w;
     let mut own: Vec<(f64, Node)> = Vec::new();
-    // The place in which the engine has just its least speed, which is where most of the best paths run.
-    let slow = nodes.iter().rposition(|node| !fast(node));
-    if let Some(slow) = slow.filter(|slow| slow + 1 < nodes.len()) {
-        let (mut x, mut node) = (grid[slow + 1], nodes[slow + 1]);
+    // The places in which the engine has just its least speed, which is where most of the best paths run, and its greatest: with them no
+    // ratio is cut off from the next one by a distance of the grid that takes more than a step.
+    let between = |k_below: usize, w: f64| {
+        let (mut x, mut node) = (grid[k_below + 1], *nodes.get(k_below + 1)?);
         for _ in 0..3 {
-            x += (least / node.engine_rad_s).ln();
+            x += (w / node.engine_rad_s).ln();
             node = scene.node(reference, k, x.exp());
         }
-        if allowed(&node) && x > grid[slow] && x < grid[slow + 1] - 1e-9 {
-            own.push((x, node));
-        }
-    }
+        let inside = x > grid[k_below] + 1e-9 && x < grid[k_below + 1] - 1e-9;
+        (inside && allowed(&node)).then_some((x, node))
+    };
+    let slow = nodes.iter().rposition(|node| !fast(node));
+    own.extend(slow.and_then(|below| between(below, least)));
     let on_grid = grid.iter().copied().zip(nodes.iter().copied());
     own.extend(on_grid.filter(|(_, node)| allowed(node)));
+    let engine = scene.engine(&reference.before[k], &scene.steps[k], 0.0);
+    let most = engine.max_rad_s() * (1.0 - NEAR);
+    let below = nodes.partition_point(|node| node.engine_rad_s <= most);
+    own.extend(below.checked_sub(1).and_then(|below| between(below, most)));
     let (x, nodes): (Vec<f64>, Vec<Node>) = own.into_iter().unzip();
     if nodes.is_empty() {
         // Reported as a stage that cannot be done: one place, not allowed.
