@@ -26,6 +26,7 @@ use cvtcycle::output::summary::{Driven, Settings, run_summary};
 use cvtcycle::output::{EnergyTerms, Row};
 use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::study::levers::{Combine, LeverFile, LeverRequest, prepare};
+use cvtcycle::study::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Rows;
 use cvtcycle::study::{NoProgress, PartWriter, Study};
@@ -278,6 +279,41 @@ fn prices_of_the_main_job(bencher: Bencher, pairs: bool) {
             depth,
         };
         attribute(&of, &base)
+    });
+}
+
+/// The least fuel of the CVT on ECE15+EUDC in steps of a quarter of a second, under its own clamp law and under a free one.
+#[divan::bench(args = [false, true], sample_count = 3)]
+fn least_fuel(bencher: Bencher, free: bool) {
+    let (car, cycle) = (setup("rover_216_cvt").car(COLD_K), cycle("ece15_eudc"));
+    let steps: Vec<_> = cycle.trace_for(true).steps(0.25).collect();
+    let cvt = optimum::cvt(&car).unwrap();
+    let task = Task {
+        car: &car,
+        cvt,
+        steps: &steps,
+        start: State::at(COLD_K),
+        clamp: match free {
+            true => Clamp::Free {
+                safety: 1.3,
+                slip: 0.03,
+            },
+            false => Clamp::Law,
+        },
+        limits: Limits {
+            least_rad_s: 1100.0 * std::f64::consts::PI / 30.0,
+            reserve: 0.1,
+            up_per_s: cvt.ratio.up_per_s,
+            down_per_s: cvt.ratio.down_per_s,
+        },
+        grid: 97,
+        least_speeds_rad_s: &[],
+        prices: &[],
+    };
+    bencher.bench_local(|| {
+        optimum::bound(black_box(&task))
+            .map(|bound| bound.fuel_kg)
+            .ok()
     });
 }
 

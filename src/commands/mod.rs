@@ -11,6 +11,7 @@ mod levers;
 mod list;
 mod losses;
 mod new;
+mod optimum;
 mod report;
 mod rig;
 mod run;
@@ -66,6 +67,8 @@ enum Command {
     /// Compute the fuel that each loss of the transmission costs: the car driven again without it
     #[command(visible_alias = "price")]
     Attribute(Box<attribute::AttributeArgs>),
+    /// Compute the least fuel that any controller of ratio and clamp can burn, and the best operating line
+    Optimum(Box<optimum::OptimumArgs>),
     /// Drive changes of a design next to the car as it is: what each saves, how sure that is, and what it does besides
     Levers(Box<levers::LeversArgs>),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
@@ -133,6 +136,7 @@ impl Cli {
         match &self.command {
             Command::Run(args) => args.execute(terminal),
             Command::Attribute(args) => args.execute(terminal),
+            Command::Optimum(args) => args.execute(terminal),
             Command::Levers(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),

@@ -30,7 +30,14 @@ pub fn kept_steps(vehicles: &[RunVehicle], cycle: &Cycle, dt_s: f64) -> Result<(
         let is_cvt = car.setup.transmission().is_cvt();
         cycle.trace_for(is_cvt).step_count(dt_s)
     });
-    let steps = steps.fold(0, usize::saturating_add);
+    kept_count(steps.fold(0, usize::saturating_add), dt_s)
+}
+
+/// Whether so many steps are few enough to be kept.
+///
+/// # Errors
+/// A problem of `--dt`.
+pub fn kept_count(steps: usize, dt_s: f64) -> Result<(), Problem> {
     bounded::kept_steps(steps, dt_s)
         .map_err(|problem| problem.in_file("--dt").key("--dt").value(dt_s.to_string()))
 }

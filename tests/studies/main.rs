@@ -26,6 +26,7 @@ mod calibrate_solve;
 mod calibrate_tables;
 mod check_expressions;
 mod equations;
+mod optimum;
 mod levers;
 mod order_of_factors;
 mod parquet_readers;

@@ -283,6 +283,7 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
 fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
     cvt.ratio.target_rad_s(&RatioDemand {
         secondary_rad_s: 0.0,
+        speed_m_s: 0.0,
         power_w: share * rated_w,
         share,
         full_load_rad_s: cvt

@@ -14,6 +14,7 @@
 //! | `answer` | what the study says, from its table by car and point |
 //! | `words` | results in sentences, with what is known of how sure they are and which published number they contradict |
 //! | `attribute` | what each loss costs: the car driven again without it |
+//! | `optimum` | the least fuel that any controller of ratio and clamp can burn, and the operating line near it |
 //! | `levers` | changes of a design, each next to the car as it is, with the same draws |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `points` | the belt at points of a table |
@@ -25,6 +26,7 @@ pub mod answer;
 pub mod attribute;
 pub mod check;
 pub mod fit;
+pub mod optimum;
 pub mod levers;
 pub mod points;
 pub mod sensitivity;

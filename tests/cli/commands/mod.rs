@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod attribute;
+mod optimum;
 mod compare;
 mod cycles;
 mod inputs;

@@ -133,7 +133,7 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 27] = [
+const NEEDS: [(&str, &[&str], &str); 29] = [
     (
         "reverse_clutch.oil_share",
         &["transmission.cvt.reverse_clutch.peak_rpm=4000"],
@@ -194,6 +194,16 @@ const NEEDS: [(&str, &[&str], &str); 27] = [
         "ratio.rate_speed_rpm",
         &["transmission.cvt.ratio.rate_speed_rpm=2500"],
         "the shipped rates are full from 1000 rpm",
+    ),
+    (
+        "ratio.drive_line",
+        &["transmission.cvt.ratio.drive_line=[[0,1400],[100,4000]]"],
+        "the shipped cars have no line",
+    ),
+    (
+        "ratio.overrun_line",
+        &["transmission.cvt.ratio.overrun_line=[[0,1500],[120,2000]]"],
+        "the shipped cars have no line",
     ),
     (
         "ratio.cold_from_degc",

@@ -18,6 +18,7 @@ mod cycles;
 mod dead_inputs;
 mod electric_pump;
 mod equations;
+mod held;
 mod gtr15;
 mod loss_factor;
 mod maps;

@@ -1,7 +1,7 @@
 //! One car through one cycle: start state, drive, totals, rows on request.
 
 use crate::cycle::{Cycle, Trace};
-use crate::drive::{CarTrace, Recorder, State, Vehicle, simulate};
+use crate::drive::{Car, CarTrace, Recorder, State, Vehicle, simulate};
 use crate::drive::{EnergyTerms, Row, Totals};
 use crate::engine::StartStop;
 use crate::math::larger;
@@ -116,22 +116,7 @@ pub fn drive_into(
     let CarTrace { trace, schedule } = vehicle.trace(cycle);
     let cut = car.engine.start_stop.map(|on| cut_at_stops(&trace, &on));
     let trace = cut.as_ref().unwrap_or(&trace);
-    let start = match conditions.start {
-        Start::Soak => State::at(conditions.ambient_k),
-        Start::At(temp_k) => State::at(temp_k),
-        Start::Warm => simulate(
-            car,
-            trace,
-            conditions.max_dt_s,
-            State::at(conditions.ambient_k),
-            &mut NullRecorder,
-        ),
-    };
-    // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
-    let start = State {
-        transmission: None,
-        ..start
-    };
+    let start = start_state(car, trace, conditions);
     let mut totals = Totals::new(cycle.phases.len());
     let end = match give {
         Some(give) => {
@@ -152,6 +137,26 @@ pub fn drive_into(
         rows: Vec::new(),
         end: end.heat,
         gear_schedule: schedule,
+    }
+}
+
+/// The state in which a car begins a trace.
+pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
+    let start = match conditions.start {
+        Start::Soak => State::at(conditions.ambient_k),
+        Start::At(temp_k) => State::at(temp_k),
+        Start::Warm => simulate(
+            car,
+            trace,
+            conditions.max_dt_s,
+            State::at(conditions.ambient_k),
+            &mut NullRecorder,
+        ),
+    };
+    // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
+    State {
+        transmission: None,
+        ..start
     }
 }
 

@@ -18,6 +18,7 @@ use crate::math::{clamp, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
+use crate::transmission::cvt::Hold;
 use crate::transmission::{StepInput, StepOutput, Transmission};
 
 /// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
@@ -178,6 +179,16 @@ impl<'a> Drive<'a> {
             }
         };
         result
+    }
+
+    /// The same with a CVT that is held at a ratio and a clamp law: any controller drives some sequence of these (RC-12). The first step of a
+    /// drive, which begins the box, has nothing to hold.
+    pub fn step_held(&mut self, step: &Step, hold: &Hold) -> (Row, EnergyTerms) {
+        let transmission = self.state.transmission.as_mut();
+        if let Some(own) = transmission.and_then(|own| own.cvt.as_mut()) {
+            own.hold = Some(*hold);
+        }
+        self.step(step)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Ratio control RC-1 to RC-8, RC-10, RC-11, clamp map PC-1 and PC-2, launch clutch LC-1 to LC-5.
 
 use super::same;
+use cvtcycle_model::math::Curve;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, FrictionClutch};
 use cvtcycle_model::transmission::cvt::controller::{
-    ClampSignals, ColdRise, MapLaw, RatioControl, RatioDemand,
+    ClampSignals, ColdRise, MapLaw, OperatingLine, RatioControl, RatioDemand,
 };
 
 fn control() -> RatioControl {
@@ -22,12 +23,14 @@ fn control() -> RatioControl {
         hysteresis: 0.05,
         filter_s: 0.0,
         cold: ColdRise::NONE,
+        line: None,
     }
 }
 
 fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s,
+        speed_m_s: 10.0,
         power_w: power_share * 80e3,
         share: power_share,
         full_load_rad_s: 0.0,
@@ -59,7 +62,7 @@ fn val_target_by_hand() {
     }
     let steep = RatioControl {
         gentle_share: 0.0,
-        ..c
+        ..control()
     };
     for (share, want) in [(0.0, 150.0), (0.004, 162.0 + 420.0 * 0.004), (0.01, 184.2)] {
         same(steep.target_rad_s(&demand(share, 100.0, 1.0)), want);
@@ -75,6 +78,54 @@ fn val_target_by_hand() {
     same(route(0.2, 800.0), 600.0);
     same(route(-0.2, 350.0), 150.0);
     same(route(0.0, 350.0), 150.0);
+}
+
+/// RC-13: each line in place of the gentle targets, linear between its rows and held at its ends, above the clutch's speed; RC-3 and RC-8 go on.
+#[test]
+fn val_lines_by_hand() {
+    let curve = |points: &[(f64, f64)]| Some(Curve::new(points).unwrap());
+    let both = OperatingLine {
+        drive: curve(&[(0.0, 120.0), (0.1, 140.0), (0.5, 300.0)]),
+        overrun: curve(&[(5.0, 130.0), (25.0, 170.0)]),
+    };
+    let lined = |line: OperatingLine| RatioControl {
+        line: Some(Box::new(line)),
+        ..control()
+    };
+    let c = lined(both.clone());
+    for (share, want) in [(1e-9, 120.0), (0.05, 130.0), (0.3, 220.0), (0.9, 300.0)] {
+        let got = c.target_rad_s(&demand(share, 100.0, 1.0));
+        assert!((got - want).abs() < 1e-5, "{got} at {share}");
+    }
+    let at = |speed_m_s: f64, power_share: f64| RatioDemand {
+        speed_m_s,
+        ..demand(power_share, 100.0, 1.0)
+    };
+    for (speed, want) in [(1.0, 130.0), (15.0, 150.0), (40.0, 170.0)] {
+        same(c.target_rad_s(&at(speed, -0.1)), want);
+        same(c.target_rad_s(&at(speed, 0.0)), want);
+    }
+    // Without one of the lines RC-2 holds there.
+    let drive_only = lined(OperatingLine {
+        overrun: None,
+        ..both.clone()
+    });
+    same(drive_only.target_rad_s(&at(15.0, -0.1)), 150.0);
+    let overrun_only = lined(OperatingLine {
+        drive: None,
+        ..both
+    });
+    same(overrun_only.target_rad_s(&at(15.0, 0.075)), 165.0);
+    // A clutch that would slip below 160 rad/s, the full-load route, and the speed of greatest power.
+    let raised = |power_share: f64, full_load_rad_s: f64| RatioDemand {
+        free_up_to_rad_s: 160.0,
+        full_load_rad_s,
+        ..demand(power_share, 100.0, 1.0)
+    };
+    same(c.target_rad_s(&raised(0.05, 0.0)), 160.96);
+    same(c.target_rad_s(&raised(-0.05, 0.0)), 160.96);
+    same(c.target_rad_s(&raised(0.05, 450.0)), 450.0);
+    same(c.target_rad_s(&raised(0.05, 900.0)), 600.0);
 }
 
 /// RC-9: a first-order filter of any step, none at 0 s; RC-3 sees the demand itself, RC-1 and RC-2 what is left of it.
@@ -195,7 +246,7 @@ fn val_shift_by_hand() {
     // Towards high with a slow primary: 300 of 400 rad/s; and flow that holds a change between what it gives in a step and in a second.
     let slow = RatioControl {
         rate_speed_rad_s: 400.0,
-        ..c
+        ..control()
     };
     same(slow.step(&demand(0.15, 300.0, 1.0)).1, -0.35 * 0.75 * 0.5);
     check(

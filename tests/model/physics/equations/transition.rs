@@ -58,6 +58,7 @@ fn shifted(
     let (down, up) = volumes(cvt, from);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
+        speed_m_s: wheel.speed_m_s,
         power_w: wheel.power_w,
         // From nothing before, half a second of the filter (RC-9).
         share: wheel.power_w / car.engine.rated_w * (1.0 - (-0.5 / cvt.ratio.filter_s).exp()),

@@ -338,12 +338,14 @@ fn control() -> RatioControl {
         hysteresis: 0.05,
         filter_s: 0.0,
         cold: ColdRise::NONE,
+        line: None,
     }
 }
 
 fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s: secondary,
+        speed_m_s: 10.0,
         power_w: power,
         share: power / 82e3,
         full_load_rad_s: 0.0,

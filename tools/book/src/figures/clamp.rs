@@ -19,6 +19,7 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
     let power_w = share * rated_w;
     RatioDemand {
         secondary_rad_s: 0.0,
+        speed_m_s: 0.0,
         power_w,
         share,
         full_load_rad_s: cvt.full_load_route.at(power_w / cvt.ratio.route_efficiency),

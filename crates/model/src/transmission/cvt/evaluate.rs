@@ -5,6 +5,7 @@
 //! at once too.
 
 use super::Shifting;
+use super::controller::ClampLaw;
 use super::driveline::{Clamp, Driveline, PartTorques};
 use super::variator::BeltLoad;
 use crate::math::{clamp, larger};
@@ -34,6 +35,8 @@ pub(super) struct Step<'a, P> {
     pub shifting: Shifting,
     /// Engine speeds within reach.
     pub reach: Reach,
+    /// Clamp law in force.
+    pub clamp: &'a ClampLaw,
     /// Secondary pressure before the step, Pa.
     pub pressure_before_pa: f64,
     /// How the coupling holds engine and primary together.
@@ -227,7 +230,8 @@ impl<P: PrimeMover> Step<'_, P> {
         let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
         let secondary_nm = torques.secondary;
-        let (set_pa, clamp_cause) = cvt.pressure_pa(
+        let (set_pa, clamp_cause) = cvt.pressure_by(
+            self.clamp,
             &signals,
             line.at,
             || load(secondary_nm),

@@ -137,6 +137,17 @@ pub struct CvtState {
     pub warm_start: WarmStart,
     /// What the ratio control keeps of the step before.
     pub shifting: Shifting,
+    /// What the next step is held at, if it is.
+    pub hold: Option<Hold>,
+}
+
+/// What is imposed on a CVT in a step, in place of its controller (RC-12).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hold {
+    /// Belt ratio at the end of the step; the one before at rest.
+    pub ratio: f64,
+    /// Clamp law; that of the box without one.
+    pub clamp: Option<ClampLaw>,
 }
 
 /// What the ratio control keeps of the step before.
@@ -155,6 +166,7 @@ impl CvtState {
             belt,
             warm_start: WarmStart::default(),
             shifting: Shifting::default(),
+            hold: None,
         }
     }
 }
@@ -220,6 +232,7 @@ impl Cvt {
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
+            speed_m_s: input.wheel.speed_m_s,
             power_w: input.wheel.power_w,
             share,
             full_load_rad_s: self.full_load_rad_s(
@@ -264,7 +277,20 @@ impl Cvt {
         load: impl FnOnce() -> BeltLoad,
         secondary_rad_s: f64,
     ) -> (f64, ClampCause) {
-        let (wanted, cause) = match &self.clamp {
+        self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s)
+    }
+
+    /// The same by any law.
+    #[inline(always)]
+    fn pressure_by(
+        &self,
+        law: &ClampLaw,
+        signals: &ClampSignals,
+        at: &BeltAtRatio,
+        load: impl FnOnce() -> BeltLoad,
+        secondary_rad_s: f64,
+    ) -> (f64, ClampCause) {
+        let (wanted, cause) = match law {
             ClampLaw::Map(map) => (map.pressure_pa(signals), ClampCause::Law),
             law => Clamping {
                 cvt: self,

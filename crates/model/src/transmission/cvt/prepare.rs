@@ -5,9 +5,9 @@ use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers};
 use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
-use super::{Cvt, NU_REFERENCE_M2_S, Shifting};
+use super::{Cvt, Hold, NU_REFERENCE_M2_S, Shifting};
 use crate::fluid::{FilmPowers, OilState};
-use crate::math::{exp_each, larger, ln_each, pair};
+use crate::math::{exp_each, larger, ln, ln_each, pair};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, SUMP};
 use crate::transmission::coupling::LockSignals;
@@ -23,6 +23,9 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
         cvt.primary_piston_m2 * travel * primary,
     )
 }
+
+/// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
+pub(super) type Before<'a> = (&'a Geometry, Shifting, &'a Option<Hold>);
 
 /// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
 struct Route {
@@ -48,7 +51,7 @@ fn shift<P: PrimeMover>(
     cvt: &Cvt,
     input: &StepInput<P>,
     past: &DrivelineState,
-    (before, kept): (&Geometry, Shifting),
+    (before, kept, held): Before,
     route: Route,
 ) -> Shift {
     let share = cvt.ratio.filtered_share(
@@ -73,6 +76,7 @@ fn shift<P: PrimeMover>(
     let free = larger(free, 0.0);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * input.wheel.wheel_rad_s,
+        speed_m_s: input.wheel.speed_m_s,
         power_w: input.wheel.power_w,
         share,
         full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
@@ -85,7 +89,10 @@ fn shift<P: PrimeMover>(
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
-    let (ratio, change, held) = cvt.ratio.step(&demand);
+    let (ratio, change, short) = match held {
+        Some(hold) => (hold.ratio, ln(hold.ratio / before.ratio), false), // RC-12
+        None => cvt.ratio.step(&demand),
+    };
     let volume = if change > 0.0 {
         down_m3 * change
     } else {
@@ -95,7 +102,7 @@ fn shift<P: PrimeMover>(
         ratio,
         rate_per_s: change / input.dt_s,
         flow_m3_s: volume / input.dt_s,
-        held,
+        held: short,
         kept: Shifting {
             direction: direction_after(change, kept.direction),
             share,
@@ -172,7 +179,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     cvt: &'a Cvt,
     input: &'a StepInput<'a, P>,
     past: &DrivelineState,
-    before: (&Geometry, Shifting),
+    before: Before<'a>,
     belt: &'a mut BeltAtRatio,
     efficiency: f64,
 ) -> Step<'a, P> {
@@ -251,6 +258,11 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         shift_held: shift.held,
         shifting: shift.kept,
         reach: input.reach(past.engine_rad_s, 0.0),
+        clamp: before
+            .2
+            .as_ref()
+            .and_then(|hold| hold.clamp.as_ref())
+            .unwrap_or(&cvt.clamp),
         pressure_before_pa: past.secondary_pa,
         hold: cvt.coupling.hold(&signals, past.coupled),
     }

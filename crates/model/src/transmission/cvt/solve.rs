@@ -81,11 +81,12 @@ impl<P: PrimeMover> Step<'_, P> {
             output_torque_nm: output_nm,
             ..self.load
         };
-        let pressure_pa = match &self.line.cvt.clamp {
+        let pressure_pa = match self.clamp {
             ClampLaw::SlipLimited { .. } => self.pressure_before_pa,
             _ => {
                 let cvt = self.line.cvt;
-                cvt.pressure_pa(&signals, self.line.at, load, self.secondary_rad_s)
+                let speed = self.secondary_rad_s;
+                cvt.pressure_by(self.clamp, &signals, self.line.at, load, speed)
                     .0
             }
         };
@@ -266,8 +267,10 @@ pub(super) fn solve<P: PrimeMover>(
         belt,
         warm_start,
         shifting,
+        hold,
     } = own;
     let before = belt.geometry;
+    let hold = hold.take();
     if input.engine_off {
         return engine_off(input, before.ratio, past);
     }
@@ -276,14 +279,22 @@ pub(super) fn solve<P: PrimeMover>(
     work.slopes = warm_start.slopes;
     let mut tried_ratio = f64::NAN;
     loop {
-        let step = prepare(cvt, input, past, (&before, *shifting), belt, efficiency);
+        let step = prepare(
+            cvt,
+            input,
+            past,
+            (&before, *shifting, &hold),
+            belt,
+            efficiency,
+        );
         if step.secondary_rad_s <= 0.0 {
             *shifting = step.shifting;
             return standstill(&step, past, warm_start);
         }
         let ratio = step.line.at.geometry.ratio;
         let again = ratio.to_bits() == tried_ratio.to_bits();
-        let full_load_wanted = again || efficiency <= MIN_ROUTE_EFFICIENCY;
+        let last = again || efficiency <= MIN_ROUTE_EFFICIENCY;
+        let full_load_wanted = last || hold.is_some();
         let Some(limit) = step.limited(warm_start, full_load_wanted, &mut work) else {
             tried_ratio = ratio;
             efficiency = step.kick_down(efficiency, &work.point);

@@ -54,7 +54,8 @@ fn idling<P: PrimeMover>(
     };
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
-        let (set_pa, cause) = line.cvt.pressure_pa(&signals, line.at, load, 0.0);
+        let cvt = line.cvt;
+        let (set_pa, cause) = cvt.pressure_by(step.clamp, &signals, line.at, load, 0.0);
         at.clamp_cause = cause;
         (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, w, step.shift_flow_m3_s);
         let pump = line.turn_engine(

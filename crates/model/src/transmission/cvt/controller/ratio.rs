@@ -4,6 +4,8 @@
 //! |---|---|---|
 //! | RC-1 | target speed: 1700 rpm at 15 % power, + g (P/P_max - 15 %) above it | 1700 rpm source: thesis 1.1.2, Fig 1-6; 15 % and rise ASSUMED |
 //! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
+//! | RC-13 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
+//! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-13 and PC-1 to PC-4 | derived: definition |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
@@ -16,11 +18,11 @@
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
-use crate::keys::{Choice, Values, keys};
-use crate::math::{clamp, exp, larger, ln, ramp, smaller};
+use crate::keys::{Bound, Choice, Values, curve, keys};
+use crate::math::{Curve, clamp, exp, larger, ln, ramp, smaller};
 
 /// The checked controller.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct RatioControl {
     /// Lowest gear: largest belt ratio.
     pub low: f64,
@@ -48,8 +50,32 @@ pub struct RatioControl {
     pub hysteresis: f64,
     /// Time constant of the demand that gentle driving looks at, s; 0 without a filter.
     pub filter_s: f64,
+    /// Lines in place of gentle driving, if there are any.
+    pub line: Option<Box<OperatingLine>>,
     /// What a cold car adds to the target.
     pub cold: ColdRise,
+}
+
+/// Target speeds in place of RC-1 and RC-2 (RC-13).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OperatingLine {
+    /// Engine speed over the share of rated power asked for, rad/s.
+    pub drive: Option<Curve>,
+    /// Engine speed over road speed in m/s while no power is asked for, rad/s.
+    pub overrun: Option<Curve>,
+}
+
+impl OperatingLine {
+    /// The target at a demand, rad/s, where a line has it.
+    fn target_rad_s(&self, d: &RatioDemand) -> Option<f64> {
+        let (line, x) = if d.power_w > 0.0 {
+            (&self.drive, d.share)
+        } else {
+            (&self.overrun, d.speed_m_s)
+        };
+        let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
+        line.as_ref().map(|line| larger(line.at(x), locked_rad_s)) // RC-13
+    }
 }
 
 /// What a cold car adds to the target of engine speed (RC-11).
@@ -87,6 +113,8 @@ impl ColdRise {
 pub struct RatioDemand {
     /// Secondary speed, rad/s.
     pub secondary_rad_s: f64,
+    /// Road speed, m/s.
+    pub speed_m_s: f64,
     /// Wheel power asked for, W.
     pub power_w: f64,
     /// Share of rated power that RC-1 and RC-2 look at (RC-9).
@@ -112,9 +140,22 @@ pub struct RatioDemand {
 }
 
 impl RatioControl {
-    /// Target primary speed, rad/s (RC-1 to RC-3).
+    /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
-        let share = d.share;
+        let line = self.line.as_ref().and_then(|line| line.target_rad_s(d));
+        let mut speed = line.unwrap_or_else(|| self.gentle_target_rad_s(d.share));
+        if d.cold_rad_s > 0.0 {
+            speed += d.cold_rad_s * clamp(d.share / LEAST_GENTLE_SHARE, 0.0, 1.0); // RC-11
+        }
+        if d.power_w > 0.0 && d.full_load_rad_s > speed {
+            speed = d.full_load_rad_s; // RC-3
+        }
+        smaller(speed, self.highest_rad_s)
+    }
+
+    /// Target at a share of rated power, rad/s.
+    #[inline]
+    fn gentle_target_rad_s(&self, share: f64) -> f64 {
         let drive = clamp(
             share / larger(self.gentle_share, LEAST_GENTLE_SHARE),
             0.0,
@@ -124,13 +165,7 @@ impl RatioControl {
         if share > self.gentle_share {
             speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
         }
-        if d.cold_rad_s > 0.0 {
-            speed += d.cold_rad_s * clamp(share / LEAST_GENTLE_SHARE, 0.0, 1.0); // RC-11
-        }
-        if d.power_w > 0.0 && d.full_load_rad_s > speed {
-            speed = d.full_load_rad_s; // RC-3
-        }
-        smaller(speed, self.highest_rad_s)
+        speed
     }
 
     /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
@@ -201,6 +236,9 @@ impl RatioControl {
 /// Primary speed over idle speed up to which the ratio turns round at once: the car pulls away and stops in low (RC-10).
 pub const FREE_OVER_IDLE: f64 = 1.2;
 
+/// Least target of a line over the speed from which a locked clutch stays so: slip in overrun takes less from it (RC-13).
+const ABOVE_LOCK: f64 = 1.006;
+
 /// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2, RC-11).
 const LEAST_GENTLE_SHARE: f64 = 0.01;
 
@@ -233,6 +271,8 @@ keys! {
         rate_speed_rpm: number(500.0, 10_000.0), "primary speed from which the full rates hold", ["RC-4"];
         hysteresis: or(0.05, number(0.0, 0.5)), "change of ln I from which the ratio turns round", ["RC-10"];
         filter_s: or(1.0, number(0.0, 10.0)), "time constant of the demand in gentle driving", ["RC-9"];
+        drive_line: optional(rows(&[("power_percent", Bound::closed(0.0, 200.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target over demand in place of gentle_rpm and rise_rpm: rows [share of rated power %, engine speed rpm]", ["RC-13"];
+        overrun_line: optional(rows(&[("speed_kmh", Bound::closed(0.0, 400.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target without power and in overrun in place of overrun_rpm: rows [road speed km/h, engine speed rpm]", ["RC-13"];
         cold_rise_rpm: or(0.0, number(0.0, 2000.0)), "rise of engine speed in a cold car", ["RC-11"];
         cold_from_degc: or(0.0, number(-60.0, 110.0)), "temperature up to which that is in full", ["RC-11"];
         cold_to_degc: or(50.0, number(-50.0, 120.0)), "temperature from which there is none of it", ["RC-11"];
@@ -241,6 +281,19 @@ keys! {
             Choice::word("sump", "the temperature is that of the transmission oil"),
         ], "coolant"), "whose temperature that is", ["RC-11"];
     }
+}
+
+/// The lines that the file gives.
+fn line<V: Values>(s: &V) -> Option<Box<OperatingLine>> {
+    let own = |key| {
+        let rows = s.rows(key).filter(|rows| !rows.is_empty());
+        rows.map(|rows| curve(s, key, &rows))
+    };
+    let line = OperatingLine {
+        drive: own(&RATIO.drive_line),
+        overrun: own(&RATIO.overrun_line),
+    };
+    (line != OperatingLine::default()).then(|| Box::new(line))
 }
 
 impl RatioControl {
@@ -261,6 +314,7 @@ impl RatioControl {
             rate_speed_rad_s: s.number(&RATIO.rate_speed_rpm),
             hysteresis: s.number(&RATIO.hysteresis),
             filter_s: s.number(&RATIO.filter_s),
+            line: line(s),
             cold: ColdRise {
                 rise_rad_s: s.number(&RATIO.cold_rise_rpm),
                 from_k: s.number(&RATIO.cold_from_degc),

@@ -1,0 +1,460 @@
+//! `optimum`: the least fuel that any controller of ratio and clamp can burn, and the operating line near it.
+
+mod tables;
+
+use clap::Args;
+use cvtcycle::config::cycle::Cycle;
+use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
+use cvtcycle::config::{Bound, Problems, cycle};
+use cvtcycle::model::drive::{Conditions, Start};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::keys::rpm;
+use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
+use cvtcycle::output::Row;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::number::fixed;
+use cvtcycle::output::record::Manifest;
+use cvtcycle::output::summary::{SCHEMA, StartWord};
+use cvtcycle::study::optimum::{
+    self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question, Unheld,
+};
+use serde::Serialize;
+
+use super::{Execute, threads, vehicles};
+use crate::args::problems::{bad_value, cite};
+use crate::args::{
+    ColumnsArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs,
+    count, cycles, number,
+};
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
+
+/// Allowed least engine speed, rpm.
+const LEAST_RPM: Bound = Bound::closed(300.0, 8000.0);
+/// Allowed share of full load that is kept, per cent.
+const RESERVE: Bound = Bound::closed(0.0, 90.0);
+/// Allowed least safety factor.
+const SAFETY: Bound = Bound::closed(1.0, 10.0);
+/// Allowed largest slip, per cent.
+const SLIP: Bound = Bound::closed(0.1, 20.0);
+/// Fewest and most ratios of the grid.
+const GRID: std::ops::RangeInclusive<u64> = 13..=769;
+/// Least engine speeds for which the bound is printed, rpm.
+const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
+
+/// Arguments of `optimum`.
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.help("Write bound.csv, least_speed.csv, path.csv, the vehicle file with the line and summary.json into this directory")),
+    mut_arg("dt", |dt| dt.default_value("0.25")),
+    after_help = "\
+Examples:
+  cvtcycle optimum
+  cvtcycle optimum --ambient -10 --least-rpm 1200 --reserve 15 --out best
+  cvtcycle run --vehicle best/rover_216_cvt_line.toml
+  cvtcycle optimum --vehicle mycar.toml --cycle wltc_class3b --no-line
+
+Least fuel by dynamic programming over the ratio, and the clamping pressure where it is free, with the losses and temperatures of the model. \
+No controller of ratio and clamp within the limits burns less than the bound, which is the least fuel less its tolerance. The least engine \
+speed decides it, so it is given for several. The operating line is what a controller can do that sees demand and speed only: curves of a \
+vehicle file (drive_line, overrun_line), proven by driving that file. Steps of 0.25 s: knowing the next second is worth more with longer ones."
+)]
+pub struct OptimumArgs {
+    #[command(flatten)]
+    car: VehicleArgs,
+    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
+    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
+    cycle: String,
+    #[command(flatten)]
+    columns: ColumnsArgs,
+    /// Ambient temperature, degC, -40 to 60
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
+    ambient: String,
+    #[command(flatten)]
+    drive: DriveArgs,
+    #[command(flatten)]
+    formulation: FormulationArgs,
+    /// Least engine speed with the clutch locked, rpm
+    #[arg(
+        long,
+        value_name = "RPM",
+        default_value = "1100",
+        allow_hyphen_values = true
+    )]
+    least_rpm: String,
+    /// Torque that is kept in reserve, % of full load
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value = "10",
+        allow_hyphen_values = true
+    )]
+    reserve: String,
+    /// Least safety factor of a free clamp
+    #[arg(
+        long,
+        value_name = "X",
+        default_value = "1.3",
+        allow_hyphen_values = true
+    )]
+    safety: String,
+    /// Largest slip with a free clamp, %
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value = "3",
+        allow_hyphen_values = true
+    )]
+    max_slip: String,
+    /// Ratios of the grid: four times a number, and one
+    #[arg(
+        long,
+        value_name = "N",
+        default_value = "97",
+        allow_hyphen_values = true
+    )]
+    grid: String,
+    /// The car's own clamp law only
+    #[arg(long)]
+    own_clamp: bool,
+    /// Cycle on which the line is driven too (repeatable); `none` for none
+    #[arg(
+        long,
+        value_name = "NAME|FILE.csv",
+        default_values = ["wltc", "ftp75"],
+        value_parser = Names(cycles),
+        hide_possible_values = true
+    )]
+    prove: Vec<String>,
+    /// No operating line
+    #[arg(long)]
+    no_line: bool,
+    #[command(flatten)]
+    threads: ThreadArgs,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// Checked input.
+pub struct OptimumPlan {
+    cycle: Cycle,
+    /// Other cycles for its line.
+    elsewhere: Vec<Cycle>,
+    /// The car under its own clamp law, then under the others.
+    cars: Vec<(&'static str, Setup)>,
+    options: Options,
+    conditions: Conditions,
+    start: StartWord,
+    numbers: Numbers,
+    out: Option<OutputDir>,
+}
+
+/// Numbers of the question.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Numbers {
+    ambient_degc: f64,
+    dt_s: f64,
+    least_rpm: f64,
+    reserve_percent: f64,
+    safety: f64,
+    max_slip_percent: f64,
+    ratios: usize,
+}
+
+/// The object of `--json` and `summary.json`.
+#[derive(Debug, Serialize)]
+pub struct OptimumSummary {
+    #[serde(flatten)]
+    manifest: Manifest,
+    vehicle: String,
+    cycle: String,
+    start: StartWord,
+    #[serde(flatten)]
+    numbers: Numbers,
+    #[serde(flatten)]
+    answer: Answer,
+}
+
+impl Execute for OptimumArgs {
+    type Plan = OptimumPlan;
+
+    fn plan(&self, problems: &mut Problems) -> Option<OptimumPlan> {
+        let columns = self.columns.get(problems);
+        let cycle = problems.take(cycle::open(&self.cycle, &columns));
+        let elsewhere = self.elsewhere(problems);
+        let formulation = self.formulation.get(problems);
+        let options = self.car.options(formulation, problems);
+        let setup = problems.take(setup::load(&self.car.vehicle, &options));
+        let hint = "a manual box has gears; `study` varies its shift speeds";
+        self.car.need_cvt(setup.as_ref(), hint, problems);
+        let (start, dt_s) = self.drive.get(problems);
+        let least = number("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
+        let least = problems.take(least);
+        let numbers = self.numbers((dt_s, least), problems);
+        if let Some(setup) = &setup {
+            self.check_least(setup, least, problems);
+            self.check_car(setup, problems);
+        }
+        if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
+            self.check_cycle(cycle, dt_s, problems);
+        }
+        let given = self.threads.given(problems);
+        problems.take(threads::begin(given));
+        let out = self.out.dir(problems);
+        let (numbers, start) = (numbers?, start?);
+        let own = setup.filter(|setup| setup.transmission().is_cvt())?;
+        let cycle = cycle::for_car(&self.cycle, cycle?, &own);
+        let others = elsewhere.into_iter();
+        let others = others.map(|(word, other)| cycle::for_car(&word, other, &own));
+        Some(OptimumPlan {
+            elsewhere: others.filter(|other| other.name != cycle.name).collect(),
+            cycle,
+            cars: self.laws(own, &options),
+            options,
+            conditions: conditions(&numbers, start.0),
+            start: start.1,
+            numbers,
+            out,
+        })
+    }
+
+    fn run(&self, mut plan: OptimumPlan, terminal: Terminal) -> CommandResult {
+        let out = plan.out.take();
+        let cars: Vec<LawCar> = plan
+            .cars
+            .iter()
+            .map(|(law, setup)| LawCar { law, setup })
+            .collect();
+        let n = plan.numbers;
+        let free = (n.safety, n.max_slip_percent / 100.0);
+        let question = Question {
+            cars: &cars,
+            cycle: &plan.cycle,
+            conditions: plan.conditions,
+            least_rpm: n.least_rpm,
+            reserve: n.reserve_percent / 100.0,
+            free: (!self.own_clamp).then_some(free),
+            rates_per_s: None,
+            grid: n.ratios,
+            line: !self.no_line,
+            elsewhere: &plan.elsewhere,
+            least_speeds_rpm: &LEAST_SPEEDS_RPM,
+        };
+        let answer = optimum::answer(&question, &self.like(), &plan.options);
+        let answer = answer.map_err(|none| match none {
+            NoAnswer::Infeasible(why) => infeasible(&why, self),
+            NoAnswer::Line(problems) => problems,
+            NoAnswer::NoCvt => {
+                let allowed = "a vehicle with a CVT";
+                let message = "the vehicle has no CVT";
+                bad_value("--vehicle", &self.car.vehicle, allowed, message, "").into()
+            }
+        })?;
+        let summary = OptimumSummary {
+            manifest: Manifest::new(SCHEMA),
+            vehicle: plan.cars[0].1.name.clone(),
+            cycle: plan.cycle.name.clone(),
+            start: plan.start,
+            numbers: n,
+            answer,
+        };
+        let json = json_text(&summary)?;
+        let files = WrittenFiles::write(out, |dir| {
+            tables::write(dir, &summary)?;
+            dir.put("summary.json", &json)?;
+            Ok("")
+        })?;
+        let failures = summary.answer.failures.clone();
+        let results = Results::new(json, failures, files);
+        Ok(results.output(&self.output, || tables::text(&summary, terminal.stdout)))
+    }
+}
+
+fn conditions(numbers: &Numbers, start: Start) -> Conditions {
+    Conditions {
+        ambient_k: numbers.ambient_degc + ZERO_DEGC_K,
+        start,
+        max_dt_s: numbers.dt_s,
+        keep_rows: false,
+    }
+}
+
+impl OptimumArgs {
+    /// Other cycles for the line, as they are named.
+    fn elsewhere(&self, problems: &mut Problems) -> Vec<(String, Cycle)> {
+        let others = |word: &&String| word.as_str() != "none";
+        let mut open = |word: &String| {
+            let found = cycle::find(word).map_err(|found| cite("--prove", found));
+            Some((word.clone(), problems.take(found)?))
+        };
+        let words = self.prove.iter().filter(others);
+        words.filter_map(&mut open).collect()
+    }
+
+    fn numbers(
+        &self,
+        (dt_s, least): (Option<f64>, Option<f64>),
+        problems: &mut Problems,
+    ) -> Option<Numbers> {
+        let mut take = |option: &str, text: &str, range: Bound, suffix: &str| {
+            problems.take(number(option, text, range, suffix))
+        };
+        let ambient = take("--ambient", &self.ambient, AMBIENT, "ambient_degc");
+        let reserve = take("--reserve", &self.reserve, RESERVE, "reserve_percent");
+        let safety = take("--safety", &self.safety, SAFETY, "safety");
+        let slip = take("--max-slip", &self.max_slip, SLIP, "slip_percent");
+        let ratios = problems.take(count("--grid", &self.grid, GRID));
+        if ratios.is_some_and(|n| n % 4 != 1) {
+            let message = "the grid is compared with one of half and of a quarter of its ratios";
+            let allowed = "13, 17, 21 to 769";
+            let hint = "four times a number, and one: 49, 97, 193";
+            problems.add(bad_value("--grid", &self.grid, allowed, message, hint));
+        }
+        Some(Numbers {
+            ambient_degc: ambient?,
+            dt_s: dt_s?,
+            least_rpm: least?,
+            reserve_percent: reserve?,
+            safety: safety?,
+            max_slip_percent: slip?,
+            ratios: usize::try_from(ratios?).ok()?,
+        })
+    }
+
+    fn check_least(&self, setup: &Setup, least_rpm: Option<f64>, problems: &mut Problems) {
+        let engine = setup.engine();
+        let [idle, peak] = [engine.idle_hot_rad_s, engine.peak_power_rad_s()].map(rpm);
+        if least_rpm.is_some_and(|least_rpm| !(idle..=peak).contains(&least_rpm)) {
+            let allowed = format!("{} to {} rpm", fixed(idle, 0), fixed(peak, 0));
+            let message = "the least engine speed is outside those in which the engine is driven";
+            let hint = "above idle speed, up to that of greatest power";
+            problems.add(bad_value(
+                "--least-rpm",
+                &self.least_rpm,
+                &allowed,
+                message,
+                hint,
+            ));
+        }
+    }
+
+    /// Cars whose engine stops by itself, or whose launch device never locks, have other choices than a ratio.
+    fn check_car(&self, setup: &Setup, problems: &mut Problems) {
+        let engine = setup.engine();
+        let coupling = setup.transmission().coupling();
+        let from_rad_s = coupling.locked_from_rad_s(engine.idle_hot_rad_s);
+        let locks = from_rad_s.is_finite() && !coupling.by_command();
+        let why = match (engine.start_stop.is_some(), locks) {
+            (true, _) => "the engine of this car stops by itself, which the bound does not know",
+            (false, false) => "the launch device of this car is no clutch that locks by itself",
+            (false, true) => return,
+        };
+        let allowed = "a car with a clutch, without start-stop";
+        let hint = "`study` varies its values";
+        problems.add(bad_value(
+            "--vehicle",
+            &self.car.vehicle,
+            allowed,
+            why,
+            hint,
+        ));
+    }
+
+    fn check_cycle(&self, cycle: &Cycle, dt_s: f64, problems: &mut Problems) {
+        let trace = cycle.trace_for(true);
+        if trace.max_speed_m_s() <= 0.0 {
+            let message = "the car is at rest all the time: there is nothing to choose";
+            let allowed = "a cycle that is driven";
+            problems.add(bad_value("--cycle", &self.cycle, allowed, message, ""));
+        }
+        problems.take(vehicles::kept_count(trace.step_count(dt_s), dt_s));
+    }
+
+    /// The car under its own clamp law, then under each other one that its file has values for.
+    fn laws(&self, own: Setup, options: &Options) -> Vec<(&'static str, Setup)> {
+        let name = law_of(&own);
+        let mut cars = vec![(name, own)];
+        let others = ClampKeys::CHOICES.iter().map(|choice| choice.name);
+        for law in others.filter(|law| *law != name && !self.own_clamp) {
+            let set = format!("transmission.cvt.clamp={law}").parse();
+            let Ok(set) = set else { continue };
+            let mut options = options.clone();
+            options.set.push(set);
+            cars.extend(setup::load(&self.car.vehicle, &options).map(|car| (law, car)));
+        }
+        cars
+    }
+
+    /// The vehicle as the file of its line names it: a path is made absolute, since the file may be moved.
+    fn like(&self) -> String {
+        let word = &self.car.vehicle;
+        match word.ends_with(".toml") {
+            true => std::path::absolute(word)
+                .map_or_else(|_| word.clone(), |path| path.display().to_string()),
+            false => word.clone(),
+        }
+    }
+}
+
+fn law_of(setup: &Setup) -> &'static str {
+    let law = optimum::cvt(&setup.car(ZERO_DEGC_K)).map(|cvt| cvt.clamp);
+    match law {
+        Some(ClampLaw::TorqueFollowing { .. }) => "torque_following",
+        Some(ClampLaw::SlipLimited { .. }) => "slip_limited",
+        Some(ClampLaw::Map(_)) | None => "map",
+    }
+}
+
+/// The limits that cannot be held, where, and how much of each can be.
+fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
+    if why.unheld.is_empty() {
+        let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
+        let hint = "another cycle, or a car that can follow it";
+        return bad_value("--cycle", &of.cycle, "", &message, hint).into();
+    }
+    let problem = |limit: &Unheld| {
+        let (option, value) = match limit.name {
+            LimitName::LeastSpeed => ("--least-rpm", &of.least_rpm),
+            LimitName::Reserve => ("--reserve", &of.reserve),
+            LimitName::ShiftRate => ("--vehicle", &of.car.vehicle),
+        };
+        let allowed = match (limit.name, limit.most) {
+            (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),
+            (LimitName::Reserve, Some(share)) => format!("at most {} %", floored(100.0 * share)),
+            _ => "faster shifts".to_owned(),
+        };
+        let instead = why.instead.iter().map(|other| match other {
+            LimitName::LeastSpeed => "a lower --least-rpm",
+            LimitName::Reserve => "a smaller --reserve",
+            LimitName::ShiftRate => "faster shifts (up_per_s, down_per_s)",
+        });
+        let instead: Vec<&str> = instead.collect();
+        let hint = match instead.is_empty() {
+            true => String::new(),
+            false => format!("{} would do as well", instead.join(" or ")),
+        };
+        let message = format!("no ratio holds this limit {}", place(&limit.row));
+        bad_value(option, value, &allowed, &message, &hint)
+    };
+    why.unheld.iter().map(problem).collect()
+}
+
+/// A number with one decimal, rounded down.
+fn floored(x: f64) -> String {
+    fixed((10.0 * x).floor() / 10.0, 1)
+}
+
+fn place(row: &Row) -> String {
+    format!(
+        "at {} s ({} km/h, {} kW at the wheels)",
+        fixed(row.time_s, 1),
+        fixed(3.6 * row.speed_m_s, 1),
+        fixed(row.wheel_power_w / 1e3, 1)
+    )
+}

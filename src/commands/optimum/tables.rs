@@ -1,0 +1,296 @@
+//! The answer as text and files.
+
+use std::borrow::Cow;
+
+use cvtcycle::config::Problem;
+use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::keys::rpm;
+use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::number::{fixed, plain, signed};
+use cvtcycle::output::table::{Column, TextTable, wrapped, write_csv};
+use cvtcycle::output::{Row, columns};
+use cvtcycle::study::optimum::LawBound;
+
+use super::OptimumSummary;
+use crate::print::colour::Paint;
+use crate::print::sections;
+
+/// Everything for people.
+pub fn text(of: &OptimumSummary, paint: Paint) -> String {
+    let n = &of.numbers;
+    let head = format!(
+        "{}  {} at {} degC\n{}",
+        paint.heading(&of.vehicle),
+        of.cycle,
+        plain(n.ambient_degc),
+        wrapped(&sentence(of), "")
+    );
+    let parts = [
+        ("Fuel by clamp law, L/100 km", bounds(of)),
+        ("Least fuel by least engine speed", speeds(of)),
+        ("What the limits cost", limits(of)),
+        ("How sure the bound is", certainty(of)),
+        ("Operating line", line(of)),
+        ("The line on other cycles, L/100 km", elsewhere(of)),
+    ];
+    head + &sections(parts, paint)
+}
+
+/// The answer in words.
+fn sentence(of: &OptimumSummary) -> String {
+    let own = &of.answer.bounds[0];
+    let least = own.least_l_per_100km - own.tolerance_l_per_100km;
+    let mut text = format!(
+        "No controller of the ratio with the engine at {} rpm or more burns less than {} L/100 km with the clamp `{}`",
+        plain(of.numbers.least_rpm),
+        fixed(least, 3),
+        own.clamp
+    );
+    if let Some(free) = of.answer.bounds.iter().find(|bound| bound.clamp == "free") {
+        let least = free.least_l_per_100km - free.tolerance_l_per_100km;
+        text += &format!(
+            ", {} with any clamp of a safety factor of {} and {} % slip",
+            fixed(least, 3),
+            plain(of.numbers.safety),
+            plain(of.numbers.max_slip_percent)
+        );
+    }
+    let above = |litres: f64| signed(100.0 * (litres / least - 1.0), 2);
+    let kept = |time_s: Option<f64>| match time_s {
+        Some(time_s) if time_s > 0.0 => " (not always within these limits)",
+        _ => "",
+    };
+    if let Some(litres) = own.own_l_per_100km {
+        text += &format!(
+            ". The car as it is burns {}: {} %{}",
+            fixed(litres, 3),
+            above(litres),
+            kept(own.own_outside_s)
+        );
+    }
+    if let Some(line) = &of.answer.line {
+        text += &format!(
+            "; with its best line {}: {} %{}",
+            fixed(line.l_per_100km, 3),
+            signed(line.above_bound_percent, 2),
+            match kept(own.line_outside_s) {
+                "" => ", at most the worth of looking ahead",
+                outside => outside,
+            }
+        );
+    }
+    text + "."
+}
+
+fn bounds(of: &OptimumSummary) -> String {
+    let mut table = TextTable::new("lrrrrrr");
+    table.row(["clamp", "as it is", "%", "line", "%", "least", "tolerance"]);
+    for bound in &of.answer.bounds {
+        let above = |litres: Option<f64>| {
+            litres.map(|litres| 100.0 * (litres / bound.least_l_per_100km - 1.0))
+        };
+        table.row([
+            bound.clamp.replace('_', " "),
+            fixed(bound.own_l_per_100km, 3),
+            signed(above(bound.own_l_per_100km), 2),
+            fixed(bound.line_l_per_100km, 3),
+            signed(above(bound.line_l_per_100km), 2),
+            fixed(bound.least_l_per_100km, 3),
+            fixed(bound.tolerance_l_per_100km, 3),
+        ]);
+    }
+    table.text() + &weaker(of) + &outside(of)
+}
+
+/// Cars that do not keep the limits all the time, so that they may burn less than the bound.
+fn outside(of: &OptimumSummary) -> String {
+    let seconds = |b: &LawBound, what: &str, time_s: Option<f64>| {
+        let time_s = time_s.filter(|time_s| *time_s > 0.0)?;
+        Some(format!(
+            "{} {what} {} s",
+            b.clamp.replace('_', " "),
+            fixed(time_s, 1)
+        ))
+    };
+    let bounds = of.answer.bounds.iter();
+    let each = bounds.flat_map(|b| {
+        [
+            seconds(b, "as it is", b.own_outside_s),
+            seconds(b, "with the line", b.line_outside_s),
+        ]
+    });
+    let each: Vec<String> = each.flatten().collect();
+    match each.is_empty() {
+        true => String::new(),
+        false => wrapped(
+            &format!("Time outside these limits: {}.", each.join(", ")),
+            "",
+        ),
+    }
+}
+
+/// Laws with which less can be burnt than with a free clamp, which has more safety.
+fn weaker(of: &OptimumSummary) -> String {
+    let bounds = &of.answer.bounds;
+    let Some(free) = bounds.iter().find(|bound| bound.clamp == "free") else {
+        return String::new();
+    };
+    let below = |bound: &&LawBound| {
+        bound.least_l_per_100km < free.least_l_per_100km - free.tolerance_l_per_100km
+    };
+    let laws = bounds
+        .iter()
+        .filter(below)
+        .map(|law| law.clamp.replace('_', " "));
+    let laws: Vec<String> = laws.collect();
+    let text = format!(
+        "`{}` clamps with a safety factor below {}, or with more slip than {} %, which a free clamp may not (--safety, --max-slip).",
+        laws.join("`, `"),
+        plain(of.numbers.safety),
+        plain(of.numbers.max_slip_percent)
+    );
+    match laws.is_empty() {
+        true => String::new(),
+        false => wrapped(&text, ""),
+    }
+}
+
+fn speeds(of: &OptimumSummary) -> String {
+    let mut table = TextTable::new("rrr");
+    table.row(["rpm", "L/100 km", "%"]);
+    let own = of.answer.bounds[0].least_l_per_100km;
+    for (least_rpm, litres) in &of.answer.least_speeds {
+        let change = litres.map(|litres| 100.0 * (litres / own - 1.0));
+        let litres = litres.map_or("cannot be held".to_owned(), |litres| fixed(litres, 3));
+        table.row([fixed(*least_rpm, 0), litres, signed(change, 2)]);
+    }
+    table.text()
+}
+
+fn limits(of: &OptimumSummary) -> String {
+    let mut table = TextTable::new("lr");
+    if !of.answer.limits.is_empty() {
+        table.row(["", "% of the fuel"]);
+    }
+    for limit in &of.answer.limits {
+        table.row([limit.limit.replace('_', " "), fixed(limit.percent, 2)]);
+    }
+    table.text()
+}
+
+fn certainty(of: &OptimumSummary) -> String {
+    let own = &of.answer.bounds[0];
+    let mut table = TextTable::new("lr");
+    table.row(["", "L/100 km"]);
+    for (ratios, litres) in &own.grid {
+        table.row([format!("{ratios} ratios"), fixed(*litres, 4)]);
+    }
+    let ratios = of.numbers.ratios;
+    table.row([format!("{ratios} ratios"), fixed(own.least_l_per_100km, 4)]);
+    for (k, litres) in own.temperatures.iter().enumerate() {
+        table.row([
+            format!("temperatures {}, half the grid", k + 1),
+            fixed(*litres, 4),
+        ]);
+    }
+    table.row([
+        "best path, driven".to_owned(),
+        fixed(own.driven_l_per_100km, 4),
+    ]);
+    table.text()
+}
+
+fn line(of: &OptimumSummary) -> String {
+    let Some(line) = &of.answer.line else {
+        return String::new();
+    };
+    let mut table = TextTable::new("rrrr");
+    table.row(["% of rated power", "rpm", "overrun at km/h", "rpm"]);
+    let cells = |points: &[(f64, f64)], k: usize| match points.get(k) {
+        Some((x, n)) => [plain(*x), plain(*n)],
+        None => [String::new(), String::new()],
+    };
+    for k in 0..line.drive.len().max(line.overrun.len()) {
+        let [a, b] = cells(&line.drive, k);
+        let [c, d] = cells(&line.overrun, k);
+        table.row([a, b, c, d]);
+    }
+    table.text()
+}
+
+fn elsewhere(of: &OptimumSummary) -> String {
+    let cycles = of.answer.line.iter().flat_map(|line| &line.elsewhere);
+    let mut table = TextTable::new("lrrr");
+    for (number, other) in cycles.enumerate() {
+        if number == 0 {
+            table.row(["", "as it is", "line", "%"]);
+        }
+        let (own, line) = (other.own_l_per_100km, other.line_l_per_100km);
+        table.row([
+            other.cycle.clone(),
+            fixed(own, 3),
+            fixed(line, 3),
+            signed(100.0 * (line / own - 1.0), 2),
+        ]);
+    }
+    table.text()
+}
+
+fn bound_columns() -> Vec<Column<LawBound>> {
+    let or_nan = |x: Option<f64>| x.unwrap_or(f64::NAN);
+    columns! { LawBound;
+        text "clamp", "", "clamp law, or free", b => Cow::Owned(b.clamp.clone());
+        number "own_l_per_100km", "L/100 km", "fuel of the car with its own ratio control", b => or_nan(b.own_l_per_100km);
+        number "own_outside_s", "s", "time outside the limits of speed and reserve", b => or_nan(b.own_outside_s);
+        number "line_l_per_100km", "L/100 km", "fuel of the car with the operating line", b => or_nan(b.line_l_per_100km);
+        number "line_outside_s", "s", "time outside the limits with the line", b => or_nan(b.line_outside_s);
+        number "least_l_per_100km", "L/100 km", "least fuel", b => b.least_l_per_100km;
+        number "tolerance_l_per_100km", "L/100 km", "tolerance of the least fuel", b => b.tolerance_l_per_100km;
+        number "driven_l_per_100km", "L/100 km", "fuel of the best path as driven", b => b.driven_l_per_100km;
+        number "gap_percent", "%", "that over the least fuel less its tolerance", b => b.gap_percent;
+    }
+}
+
+fn speed_columns() -> Vec<Column<(f64, Option<f64>)>> {
+    columns! { (f64, Option<f64>);
+        number "least_rpm", "rpm", "least engine speed with the clutch locked", (n, _) => *n;
+        number "least_l_per_100km", "L/100 km", "least fuel; missing where no ratio holds the limits", (_, l) => l.unwrap_or(f64::NAN);
+    }
+}
+
+fn path_columns() -> Vec<Column<Row>> {
+    columns! { Row;
+        number "time_s", "s", "end of the step", r => r.time_s;
+        number "speed_kmh", "km/h", "road speed", r => 3.6 * r.speed_m_s;
+        number "wheel_power_w", "W", "power asked for at the wheels", r => r.wheel_power_w;
+        number "belt_ratio", "-", "belt ratio", r => r.belt_ratio;
+        number "engine_speed_rpm", "rpm", "engine speed", r => rpm(r.engine_speed_rad_s);
+        number "secondary_pressure_bar", "bar", "secondary pressure", r => 1e-5 * r.secondary_pressure_pa;
+        number "clamp_safety", "-", "torque capacity over torque", r => r.clamp_safety;
+        number "slip_percent", "%", "belt slip", r => 100.0 * r.slip;
+        number "fuel_g_s", "g/s", "fuel", r => 1e3 * r.fuel_kg_s;
+        number "coolant_degc", "degC", "coolant", r => r.coolant_k - ZERO_DEGC_K;
+        number "transmission_sump_degc", "degC", "transmission oil", r => r.sump_k - ZERO_DEGC_K;
+    }
+}
+
+/// Writes tables and the vehicle file of the line.
+///
+/// # Errors
+/// Problems of the directory.
+pub fn write(dir: &mut OutputDir, of: &OptimumSummary) -> Result<(), Problem> {
+    let answer = &of.answer;
+    dir.write("bound.csv", |out| {
+        write_csv(out, &bound_columns(), &answer.bounds, &[])
+    })?;
+    dir.write("least_speed.csv", |out| {
+        write_csv(out, &speed_columns(), &answer.least_speeds, &[])
+    })?;
+    dir.write("path.csv", |out| {
+        write_csv(out, &path_columns(), &answer.path, &[])
+    })?;
+    if let Some(line) = &answer.line {
+        dir.put(&format!("{}_line.toml", of.vehicle), &line.file)?;
+    }
+    Ok(())
+}
