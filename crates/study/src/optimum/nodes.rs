@@ -315,6 +315,23 @@ impl<'a> Scene<'a> {
         fuel_kg_s(node.fired_nm) + fuel_kg_s(node.cut_nm)
     }
 
+    /// A step from a state whose solve may have begun far from this ratio.
+    fn held(&self, k: usize, mut before: State, hold: &Hold) -> Row {
+        let one = |before: State| {
+            Drive::new(self.car, before)
+                .step_held(&self.steps[k], hold)
+                .0
+        };
+        let row = one(before);
+        if !row.flags.contains(Flags::NOT_CONVERGED) {
+            return row;
+        }
+        if let Some(own) = before.transmission.as_mut().and_then(|t| t.cvt.as_mut()) {
+            own.warm_start = WarmStart::default();
+        }
+        one(before)
+    }
+
     fn clamped(
         &self,
         reference: &Reference,
@@ -325,21 +342,7 @@ impl<'a> Scene<'a> {
         let step = &self.steps[k];
         let primary_rad_s = ratio * self.secondary_rad_s[k];
         let mut before = self.locked_at(&reference.before[k], ratio, primary_rad_s);
-        let held = |before: State| {
-            let mut drive = Drive::new(self.car, before);
-            drive.step_held(step, &Hold { ratio, clamp }).0
-        };
-        // The solve begins where the reference ended, which may be far from this ratio.
-        let one = |mut before: State| {
-            let row = held(before);
-            if !row.flags.contains(Flags::NOT_CONVERGED) {
-                return row;
-            }
-            if let Some(own) = before.transmission.as_mut().and_then(|t| t.cvt.as_mut()) {
-                own.warm_start = WarmStart::default();
-            }
-            held(before)
-        };
+        let one = |before: State| self.held(k, before, &Hold { ratio, clamp });
         before.running.speed_rad_s = 0.0; // nothing cut
         let fired = one(before);
         let cut = if fired.wheel_power_w < 0.0 {

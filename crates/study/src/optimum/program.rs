@@ -35,7 +35,7 @@ impl Place {
         })
     }
 
-    /// A quantity here from its values at the nodes, linear between them; infinite beside an infinite one (DP-6).
+    /// A quantity here from its values at the nodes, linear between them; infinite next to an infinite one (DP-6).
     pub fn value(&self, at_nodes: &[f64]) -> f64 {
         let here = at_nodes[self.node];
         if self.share <= 0.0 {

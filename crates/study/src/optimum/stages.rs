@@ -242,6 +242,16 @@ fn with_low(grid: &[f64]) -> Vec<f64> {
     grid
 }
 
+/// The one place of a stage that cannot be done, so that it is reported: not allowed at any torque.
+fn impossible(x: f64, node: Node) -> (Vec<f64>, Vec<Node>) {
+    let node = Node {
+        full_load_nm: f64::NEG_INFINITY,
+        deficit_w: 0.0,
+        ..node
+    };
+    (vec![x], vec![node])
+}
+
 /// Which ratios a step may have.
 fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k: usize) -> Stage {
     let grid = &table.grid;
@@ -258,7 +268,7 @@ fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k:
     let Some(nodes) = &table.nodes[k] else {
         return by_law(from_low);
     };
-    let last = nodes[nodes.len() - 1];
+    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
     let least = limits.least_rad_s.max(last.locked_rad_s);
     let fast = |node: &Node| node.engine_rad_s >= least * (1.0 - NEAR);
     if !fast(&last) {
@@ -270,7 +280,7 @@ fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k:
     // The places in which the engine has just its least speed, which is where most of the best paths run, and its greatest: with them no
     // ratio is cut off from the next one by a distance of the grid that takes more than a step.
     let between = |k_below: usize, w: f64| {
-        let (mut x, mut node) = (grid[k_below + 1], *nodes.get(k_below + 1)?);
+        let (mut x, mut node) = (*grid.get(k_below + 1)?, *nodes.get(k_below + 1)?);
         for _ in 0..3 {
             x += (w / node.engine_rad_s).ln();
             node = scene.node(reference, k, x.exp());
@@ -287,18 +297,10 @@ fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k:
     let below = nodes.partition_point(|node| node.engine_rad_s <= most);
     own.extend(below.checked_sub(1).and_then(|below| between(below, most)));
     let (x, nodes): (Vec<f64>, Vec<Node>) = own.into_iter().unzip();
-    if nodes.is_empty() {
-        // Reported as a stage that cannot be done: one place, not allowed.
-        return Stage {
-            x: vec![grid[0]],
-            nodes: vec![Node {
-                full_load_nm: f64::NEG_INFINITY,
-                ..table.nodes[k].as_ref().map_or(last, |nodes| nodes[0])
-            }],
-            by_law: Vec::new(),
-            from_low,
-        };
-    }
+    let (x, nodes) = match nodes.is_empty() {
+        true => impossible(grid[0], first),
+        false => (x, nodes),
+    };
     Stage {
         x,
         nodes,
