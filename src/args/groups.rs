@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::{self, Kind, Options, Setup, TWIN, baseline_of};
+use cvtcycle::config::setup::{self, AMBIENT, Kind, Options, Setup, TWIN, baseline_of};
 use cvtcycle::config::{Bound, Problem, Problems, cycle};
 use cvtcycle::model::drive::Start;
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -15,12 +15,14 @@ use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::statistics::Confidence;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
-use super::{Names, count, cycles, names_of, number, one_of};
+use super::{Names, count, cycles, names_of, number, one_of, ranges::values};
 
 /// Allowed temperature at the start, degC.
 const START: Bound = Bound::closed(-40.0, 130.0);
 /// Allowed length of a step, s.
 const STEP: Bound = Bound::closed(0.01, 10.0);
+/// Most ambient temperatures of one command: each whole degree that is allowed.
+const MOST_AMBIENTS: usize = 101;
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -106,6 +108,37 @@ impl DriveArgs {
     pub fn get(&self, problems: &mut Problems) -> (Option<(Start, StartWord)>, Option<f64>) {
         let start = problems.take(start(&self.start));
         (start, problems.take(number("--dt", &self.dt, STEP, "dt_s")))
+    }
+}
+
+/// Ambient temperatures of a command that drives the same at each.
+#[derive(Args, Clone, Debug)]
+pub struct AmbientsArgs {
+    /// Ambient temperature, degC, -40 to 60: a number, a list or a range
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
+    pub ambient: String,
+}
+
+impl AmbientsArgs {
+    /// The temperatures, degC.
+    pub fn get(&self, problems: &mut Problems) -> Option<Vec<f64>> {
+        let given = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
+        let degc = problems.take(given)?;
+        if degc.len() > MOST_AMBIENTS {
+            let allowed = format!("at most {MOST_AMBIENTS} temperatures");
+            let many = degc.len();
+            let message = format!("{many} ambient temperatures are too many for one command");
+            let hint = "take a larger step; `cvtcycle study` varies any value";
+            let problem = bad_value("--ambient", &self.ambient, &allowed, &message, hint);
+            problems.add(problem);
+            return None;
+        }
+        Some(degc)
     }
 }
 

@@ -6,8 +6,8 @@ pub mod problems;
 pub mod ranges;
 
 pub use groups::{
-    ColumnsArgs, ComparisonArgs, ConfidenceArgs, DriveArgs, FormulationArgs, JsonArgs, OutArgs,
-    OutputArgs, TableOutputArgs, ThreadArgs, VehicleArgs,
+    AmbientsArgs, ColumnsArgs, ComparisonArgs, ConfidenceArgs, DriveArgs, FormulationArgs,
+    JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs, VehicleArgs,
 };
 
 use std::ops::RangeInclusive;

@@ -5,7 +5,6 @@ mod tables;
 
 use clap::Args;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::AMBIENT;
 use cvtcycle::config::{Bound, Problems};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -19,17 +18,14 @@ use serde::Serialize;
 use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, run, threads};
 use crate::args::problems::bad_value;
-use crate::args::ranges::values;
 use crate::args::{
-    ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
-    ThreadArgs, VehicleArgs, names_of, number, one_of,
+    AmbientsArgs, ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs,
+    OutputArgs, ThreadArgs, VehicleArgs, names_of, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Allowed factor on a loss.
 const FACTOR: Bound = Bound::closed(0.0, 5.0);
-/// Most ambient temperatures of one command: each whole degree that is allowed.
-const MOST_AMBIENTS: usize = 101;
 /// Which pairs are given.
 const PAIRS: [(&str, Pairs); 3] = [
     ("large", Pairs::Large),
@@ -61,14 +57,8 @@ pub struct AttributeArgs {
     comparison: ComparisonArgs,
     #[command(flatten)]
     columns: ColumnsArgs,
-    /// Ambient temperature, degC, -40 to 60: a number, a list or a range
-    #[arg(
-        long,
-        value_name = "DEGC",
-        default_value = "25",
-        allow_hyphen_values = true
-    )]
-    ambient: String,
+    #[command(flatten)]
+    ambients: AmbientsArgs,
     #[command(flatten)]
     drive: DriveArgs,
     #[command(flatten)]
@@ -131,24 +121,7 @@ impl Execute for AttributeArgs {
         let comparison = (&self.comparison, Baselines::Named);
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
         let cycle = vehicles::own_cycle(&self.comparison.cycle, cycle, &vehicles);
-        let ambients = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
-        let ambients_degc = problems.take(ambients);
-        if let Some(many) = ambients_degc
-            .as_ref()
-            .map(Vec::len)
-            .filter(|n| *n > MOST_AMBIENTS)
-        {
-            let allowed = format!("at most {MOST_AMBIENTS} temperatures");
-            let message = format!("{many} ambient temperatures are too many for one command");
-            let hint = "take a larger step; `cvtcycle study` varies any value";
-            problems.add(bad_value(
-                "--ambient",
-                &self.ambient,
-                &allowed,
-                &message,
-                hint,
-            ));
-        }
+        let ambients_degc = self.ambients.get(problems);
         let (start, dt_s) = self.drive.get(problems);
         let factor = problems.take(number("--factor", &self.factor, FACTOR, "factor"));
         if factor.is_some_and(|factor| (factor - 1.0).abs() <= 0.0) {

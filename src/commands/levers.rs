@@ -2,7 +2,7 @@
 
 use clap::Args;
 use cvtcycle::config::cycle;
-use cvtcycle::config::setup::{AMBIENT, Kind};
+use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::Study;
@@ -13,8 +13,7 @@ use super::Execute;
 use super::study::execution::StudyRunArgs;
 use super::study::levers::LeverResults;
 use crate::args::problems::{bad_value, cite, did_you_mean, in_options};
-use crate::args::ranges::values;
-use crate::args::{DriveArgs, Names, count, cycles, number};
+use crate::args::{AmbientsArgs, DriveArgs, Names, count, cycles, number};
 use crate::print::{CommandResult, Terminal};
 
 /// Allowed speed below which a loaded engine is heard and felt, rpm.
@@ -49,14 +48,8 @@ pub struct LeversArgs {
     /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
     #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
     cycle: String,
-    /// Ambient temperature, degC, -40 to 60: a number, a list or a range
-    #[arg(
-        long,
-        value_name = "DEGC",
-        default_value = "25",
-        allow_hyphen_values = true
-    )]
-    ambient: String,
+    #[command(flatten)]
+    ambients: AmbientsArgs,
     #[command(flatten)]
     drive: DriveArgs,
     /// Engine oil of all vehicles
@@ -109,7 +102,7 @@ impl Execute for LeversArgs {
         self.run.begin(problems);
         let levers = self.levers(problems);
         let cycle = problems.take(cycle::find(&self.cycle));
-        let ambients = problems.take(values("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
+        let ambients = self.ambients.get(problems);
         let (start, dt_s) = self.drive.get(problems);
         let draws = self.draws(problems);
         let combine = self.combinations(problems);
@@ -136,7 +129,7 @@ impl Execute for LeversArgs {
             let (allowed, hint) = (format!("up to {MOST_COLUMNS}"), "take fewer temperatures");
             problems.add(bad_value(
                 "--ambient",
-                &self.ambient,
+                &self.ambients.ambient,
                 &allowed,
                 &message,
                 hint,

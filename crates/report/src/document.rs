@@ -260,7 +260,7 @@ impl Document {
 }
 
 /// A name without anything that leads elsewhere.
-fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     name.chars()
         .map(|c| if plain(c) { c } else { '_' })

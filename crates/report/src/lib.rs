@@ -7,6 +7,7 @@
 //! | `document` | sections, paragraphs, tables, figures: the content of a report, without its form |
 //! | `number` | numbers to text with their unit |
 //! | `run`, `compare`, `study`, `validation` | the sections on a run, two runs (and a table of any number), a study, a validation |
+//! | `study::levers` | the sections on a study of levers |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
 //! | `write` | the files of a report |

@@ -2,14 +2,17 @@
 
 use crate::charts::Picture;
 use crate::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
+use crate::charts::lever_strip;
 use crate::charts::study::{
     DistributionSeries, EffectFactor, Shown, convergence_plot, distribution_plot, effects_plot,
     rank_plot, sobol_plot, tornado_plot,
 };
+use crate::document::plain;
 use cvtcycle_config::Problem;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{OutputAnswer, described_numbers};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
+use cvtcycle_study::levers::LeverAnswer;
 use cvtcycle_study::statistics::{Confidence, Groups};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 
@@ -29,6 +32,14 @@ pub fn study_pictures(
     }
 }
 
+/// What the levers save, for each car at each ambient temperature, under names that can be a file's.
+pub fn lever_pictures(answer: &LeverAnswer) -> impl Iterator<Item = (String, Picture)> {
+    answer.blocks.iter().map(|block| {
+        let name = format!("levers_{}_{}", block.vehicle, block.ambient_degc);
+        (plain(&name), lever_strip(answer, block))
+    })
+}
+
 fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
     let mut list = vec![("ambient_fuel".to_owned(), ambient_fuel(matrix, title))];
     let penalty = ambient_penalty(matrix, title);
@@ -37,16 +48,8 @@ fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, 
         return list;
     }
     for (k, start) in matrix.starts.iter().enumerate() {
-        let plain = |c: char| {
-            if c.is_alphanumeric() || c == '-' {
-                c
-            } else {
-                '_'
-            }
-        };
-        let word: String = start.chars().map(plain).collect();
         let picture = warm_up(matrix, warm_ups, k, title);
-        list.push((format!("warm_up_{word}"), picture));
+        list.push((plain(&format!("warm_up_{start}")), picture));
     }
     list
 }

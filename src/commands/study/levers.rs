@@ -3,6 +3,7 @@
 mod tables;
 
 use cvtcycle::config::{Problem, Problems};
+use cvtcycle::report::study_pictures::lever_pictures;
 use cvtcycle::study::levers::{LeverAnswer, csv, lever_answer};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::{StudyManifest, StudyTable, store};
@@ -43,7 +44,9 @@ impl Says for LeverResults {
         let json = json_text(&self.answer)?.into_bytes();
         let csv = csv(&self.answer).map(|csv| ("levers.csv".to_owned(), csv));
         let json = ("levers.json".to_owned(), json);
-        Ok(std::iter::once(json).chain(csv).collect())
+        let svg = lever_pictures(&self.answer)
+            .map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes()));
+        Ok(std::iter::once(json).chain(csv).chain(svg).collect())
     }
 
     fn tables(&self, paint: Paint) -> String {

@@ -66,6 +66,57 @@ fn tables_and_files_of_levers() {
     assert_eq!(head(&stdout(&shown)), head(&text));
 }
 
+/// Truth: the numbers of `levers.json`. A report of levers, and one of a run that has them, say what they save.
+#[test]
+fn a_report_of_levers_says_what_they_save() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let done = |line: &str| {
+        let output = run_in(dir, &words(line));
+        assert_eq!(output.status.code(), Some(0), "{line}: {}", stderr(&output));
+    };
+    done(&format!("{FEW} --ambient -10,25 --out found"));
+    done("run --cycle ece15 --baseline none --price never --out car");
+    done("report found --format md --out levers.md");
+    done("report car --with found --format md --out car.md");
+    let json = fs::read(dir.join("found/levers.json")).unwrap();
+    let json: Value = serde_json::from_slice(&json).unwrap();
+    for file in ["levers.md", "car.md"] {
+        let text = fs::read_to_string(dir.join(file)).unwrap();
+        assert!(!text.contains("no pair of good runs"), "{file}: {text}");
+        for block in json["blocks"].as_array().unwrap() {
+            for row in block["rows"].as_array().unwrap() {
+                let median = row["fuel_percent"]["value"].as_f64().unwrap();
+                let cell = format!(
+                    "| {} | \u{2212}{:.2} |",
+                    row["title"].as_str().unwrap(),
+                    -median
+                );
+                let strong = cell.replace("| combination |", "| **combination** |");
+                let strong = strong.replace(
+                    &format!("\u{2212}{:.2}", -median),
+                    &format!("**\u{2212}{:.2}**", -median),
+                );
+                assert!(
+                    text.contains(&cell) || text.contains(&strong),
+                    "{cell}: {text}"
+                );
+            }
+        }
+    }
+    for (block, ambient) in [(0, "-10"), (1, "25")] {
+        let svg = format!("found/levers_rover_216_cvt_{ambient}.svg");
+        let svg = fs::read_to_string(dir.join(svg)).unwrap();
+        let best = &json["blocks"][block]["rows"][0]["fuel_percent"]["value"];
+        let title = format!(
+            "Variable pump saves most: {:.1} % of the fuel",
+            -best.as_f64().unwrap()
+        );
+        assert!(svg.contains(&title), "{title}");
+        assert!(svg.contains("8 of 8"));
+    }
+}
+
 /// Property: an interrupted study of levers resumes to the same bytes, on another number of threads.
 #[test]
 fn interrupted_levers_resume_to_the_same_bytes() {

@@ -356,7 +356,7 @@ fn the_store_is_filled_again() {
 fn steps_do_not_move_the_stops() {
     let ece = cycle("ece15_eudc");
     let (with, without) = (
-        stopping("rover_216_cvt", &["min_run_s=0"]),
+        stopping("rover_216_cvt", &["min_run_s=0", "lead_s=0.3"]),
         car("rover_216_cvt", &[]),
     );
     let hot = |setup: &Setup, dt_s: f64| {
@@ -499,10 +499,10 @@ fn a_cut_trace_is_the_same_trace() {
     let at_s: Vec<f64> = rests
         .iter()
         .map(|rest| rest.0 + 0.4)
-        .chain([f64::INFINITY])
+        .chain([20.5, f64::INFINITY]) // in first gear
         .collect();
     let cut = trace.cut(&at_s);
-    assert_eq!(cut.intervals.len(), trace.intervals.len() + rests.len());
+    assert_eq!(cut.intervals.len(), trace.intervals.len() + rests.len() + 1);
     assert!((cut.distance_m() / trace.distance_m() - 1.0).abs() < 1e-12);
     let ends: Vec<f64> = cut.intervals.iter().map(|i| i.end_s).collect();
     assert!(rests.iter().all(|rest| ends.contains(&(rest.0 + 0.4))));

@@ -49,7 +49,11 @@ impl Schema {
         }
         let mut given = self.named.clone().unwrap_or_default();
         if let Some(columns) = self.whole_line(line) {
-            (line, lines, given) = (below.next()?, lines + 1, columns);
+            let Some(row) = below.next() else {
+                problems.no_rows(self.rows);
+                return None;
+            };
+            (line, lines, given) = (row, lines + 1, columns);
         }
         let in_order = given.are_in_order();
         let delimiter = Delimiter::find(line, below.clone(), problems)?;

@@ -241,7 +241,10 @@ pub fn read<'s, 't>(
 ) -> Option<Table<'s>> {
     let mut lines = problems.lines(bytes)?;
     let rows = lines.clone();
-    let header = lines.next()?;
+    let Some(header) = lines.next() else {
+        problems.no_text();
+        return None;
+    };
     let mut table = Table::open(header, lines, schema, problems)?;
     check(&table, header, problems);
     let (max_rows, hint) = schema.max_rows;

@@ -17,12 +17,12 @@ macro_rules! embedded {
 
 embedded! {
     /// Vehicles.
-    vehicles: "vehicles" ".toml" ["c_segment_20_6mt" "mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
+    vehicles: "vehicles" ".toml" ["c_segment_20_6mt" "civic_20_6mt" "civic_20_cvt" "mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
     /// Classes of cars and boxes, which vehicle files inherit from.
     classes: "classes" ".toml" ["compact_1995" "compact_2020" "midsize_2020" "subcompact_2020" "suv_2020" "box_cvt_clutch" "box_cvt_converter" "box_manual_5" "box_manual_6"];
     /// Lubricants.
     lubricants: "lubricants" ".toml" [
-        "cvtf_ezl799_class" "dexron_ii" "dexron_iii" "gear_75w80" "engine_5w30" "engine_10w40"
+        "cvtf_ezl799_class" "dexron_ii" "dexron_iii" "gear_75w80" "engine_0w20" "engine_5w30" "engine_10w40"
     ];
     /// Conditions of the test rigs.
     rigs: "rigs" ".toml" ["rig_transmission"];
@@ -39,7 +39,7 @@ embedded! {
     /// Published values, in the order of the thesis, then those of other cars.
     rows: "validation" ".toml" [
         "chapter_1" "chapter_2" "chapter_3" "chapter_4" "chapter_5" "chapter_6" "chapter_7" "chapter_8" "chapter_9"
-        "appendix_c" "outside"
+        "appendix_c" "outside" "civic_20"
     ];
 }
 

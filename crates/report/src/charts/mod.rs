@@ -7,6 +7,7 @@ pub mod calibration;
 mod engine;
 pub mod figures;
 mod grids;
+mod levers;
 pub mod lines;
 mod loss_table;
 mod picture;
@@ -17,6 +18,7 @@ pub mod study;
 mod variator_curves;
 
 pub use engine::cell;
+pub use levers::lever_strip;
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use price::price_bars;

@@ -3,7 +3,8 @@
 //! | target | what the bytes are |
 //! |---|---|
 //! | `vehicle`, `lubricant`, `study_plan`, `calibration_plan` | a TOML file: the bytes themselves, or edits of a shipped file ([`edits`]) |
-//! | `rows`, `cover` | a file of rows, or of the cover of a report (TOML), likewise |
+//! | `rows`, `cover`, `levers` | a file of rows, of the cover of a report, or of levers (TOML), likewise |
+//! | `answers` | a file of answers (TOML), likewise, and the car that it makes |
 //! | `expression` | an expression of rows, over two small tables |
 //! | `overrides` | assignments of `--set`, one a line |
 //! | `logger` | the columns of `--columns` in the first line, and the CSV file that they are of |
@@ -33,13 +34,15 @@ mod toml;
 pub type Target = fn(&[u8]);
 
 /// The targets by name.
-pub const TARGETS: [(&str, Target); 22] = [
+pub const TARGETS: [(&str, Target); 24] = [
     ("vehicle", toml::vehicle),
     ("lubricant", toml::lubricant),
     ("study_plan", toml::study_plan),
     ("calibration_plan", toml::calibration_plan),
     ("rows", toml::rows),
     ("cover", toml::cover),
+    ("levers", toml::levers),
+    ("answers", toml::answers),
     ("expression", expression::expression),
     ("overrides", toml::overrides),
     ("cycle", csv::cycle),

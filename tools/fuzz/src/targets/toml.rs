@@ -2,11 +2,13 @@
 
 use std::sync::OnceLock;
 
+use cvtcycle::config::setup::new_car::{self, Answers};
 use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
 use cvtcycle::config::{Override, Problems, decode, render};
 use cvtcycle::report::cover::Cover;
 use cvtcycle::study::check::{self, COMMON, embedded_rows};
 use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
+use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::{Plan, embedded_plans};
 
 use super::{edits, within_memory};
@@ -17,6 +19,17 @@ const SHORT: usize = 4000;
 /// A cover with everything that it may hold.
 const COVER: &str = "title = \"Band offset\"\nsubtitle = \"Review 7\"\nauthor = \"A. Engineer\"\norganisation = \"Example\"\n\
     date = \"2026-11-21\"\nlogo = \"no/such.svg\"\nlogo_words = \"Example\"\n[remarks]\nanswer = \"First.\\nSecond.\"\nlosses = \"...\"\n";
+
+/// Two levers with everything that a lever file may hold.
+const LEVERS: &str = "[levers]\ntitle = \"Own\"\ntransmission = \"cvt\"\n[[lever]]\nname = \"lighter\"\ntitle = \"Less mass\"\n\
+    set = [\"road_load.mass_kg*=0.9\", \"engine.idle.hot_rpm+=50\"]\ngroup = \"mass\"\ncombine = false\nneeds = \"new body\"\n\
+    status = \"assumed\"\nsource = \"none\"\n[[lever]]\nname = \"oil\"\nlubricant = \"dexron_iii\"\nengine_oil = \"engine_10w40\"\n";
+
+/// Answers to all questions of a new car, most of which its class has as well.
+const ANSWERS: &str = "title = \"Own\"\nclass = \"compact_2020\"\nbox = \"box_cvt_clutch\"\nmass = \"3000lb\"\nf0 = 105\nf1 = \"0.4\"\n\
+    f2 = \"0.0189lbf/mph2\"\ntyre = \"215/55 R16\"\ndisplacement = \"1.8l\"\npower = \"104@6400\"\ntorque = \"172@3800-4400\"\nidle = 700\n\
+    highest = 6600\nfinal-drive = 5.36\nratio-low = \"2.48\"\nspan = 6.3\ncentre-distance = 168\npump = \"10\"\noil = 7\nfluid = \"dexron_iii\"\n\
+    engine-oil = \"engine_10w40\"\n";
 
 type Texts = OnceLock<Vec<&'static str>>;
 
@@ -95,6 +108,21 @@ pub fn cover(data: &[u8]) {
     static SHIPPED: [&str; 1] = [COVER];
     let text = edits::text(data, &SHIPPED);
     read(&text, |text| Cover::parse("fuzz.toml", text));
+}
+
+pub fn levers(data: &[u8]) {
+    let text = edits::text(data, &[LEVERS]);
+    read(&text, |text| LeverFile::read("fuzz.toml", text));
+}
+
+/// A file of answers, and the car that they make.
+pub fn answers(data: &[u8]) {
+    let text = edits::text(data, &[ANSWERS]);
+    read(&text, |text| {
+        let mut answers = Answers::default();
+        answers.add_file("fuzz.toml", text)?;
+        new_car::write(&answers)
+    });
 }
 
 /// Overrides of a shipped car: the first byte chooses it.

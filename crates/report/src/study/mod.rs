@@ -1,13 +1,18 @@
 //! The results of a study: as a section of a run's report, or as a report of its own.
 
+mod levers;
+
+use std::collections::BTreeSet;
+
 use serde_json::Value;
 
-use super::document::{Block, Document, ReportTable, Section};
-use super::number::{NONE, Quantity, degc, grouped, minus, phase, words};
-use super::results::StudyResults;
-use super::study_answers::answers;
-use super::study_pictures::study_pictures;
+use crate::document::{Block, Document, ReportTable, Section};
+use crate::number::{NONE, Quantity, degc, grouped, minus, phase, words};
+use crate::results::StudyResults;
+use crate::study_answers::answers;
+use crate::study_pictures::study_pictures;
 use cvtcycle_config::Problem;
+use cvtcycle_study::answer::Ended;
 use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::statistics::of_hundred;
 
@@ -16,6 +21,9 @@ use cvtcycle_study::statistics::of_hundred;
 /// # Errors
 /// A part that cannot be read.
 pub fn section(study: &StudyResults) -> Result<Section, Problem> {
+    if study.outline.levers.is_some() {
+        return levers::section(study);
+    }
     let mut section = details(study)?;
     let mut blocks = Vec::new();
     if !study.answer.question.is_empty() {
@@ -29,7 +37,7 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
 }
 
 /// A warning that parts of the study are missing.
-fn unfinished(study: &StudyResults, what: &str) -> Option<Block> {
+pub(super) fn unfinished(study: &StudyResults, what: &str) -> Option<Block> {
     let alert = |text| Block::Alert(format!("{text}; {what}."));
     study.unfinished().map(alert)
 }
@@ -98,21 +106,24 @@ fn extent(study: &StudyResults) -> String {
         outline.plan.factors.len(),
         outline.cars.join(", ")
     );
-    let bad = answer.runs.failed + answer.runs.not_run;
     for note in &answer.notes {
         text += &format!(" Note: {note}.");
     }
-    if bad > 0 {
-        let reasons = answer.runs.reasons.iter().take(3);
-        let reasons: Vec<String> = reasons
-            .map(|(reason, n)| format!("{n} \u{d7} {reason}"))
-            .collect();
-        text += &format!(
-            " {bad} runs have no good numbers and count in no statistics ({}).",
-            reasons.join(", ")
-        );
+    text + &ended_badly(&answer.runs)
+}
+
+/// How many runs have no good numbers, and why, after a sentence; empty if all have.
+pub(super) fn ended_badly(runs: &Ended) -> String {
+    let bad = runs.failed + runs.not_run;
+    if bad == 0 {
+        return String::new();
     }
-    text
+    let reasons = runs.reasons.iter().take(3);
+    let reasons: Vec<String> = reasons
+        .map(|(reason, n)| format!("{n} \u{d7} {reason}"))
+        .collect();
+    let reasons = reasons.join(", ");
+    format!(" {bad} runs have no good numbers and count in no statistics ({reasons}).")
 }
 
 fn tables(section: &mut Section, matrix: &Matrix) {
@@ -250,6 +261,9 @@ fn factors(study: &StudyResults) -> ReportTable {
 /// # Errors
 /// A part that cannot be read.
 pub fn document(study: &StudyResults) -> Result<Document, Problem> {
+    if study.outline.levers.is_some() {
+        return levers::document(study);
+    }
     let answer = &study.answer;
     let mut first = Section::new("answer", "Answer");
     if !answer.question.is_empty() {
@@ -284,7 +298,23 @@ fn text_of(value: &Value) -> String {
     }
 }
 
-fn conditions(study: &StudyResults) -> Section {
+/// Names of the cars and what the manifest says of them; of a study of levers the cars as they are.
+fn cars(study: &StudyResults) -> impl Iterator<Item = (String, &Value)> {
+    let levers = study.outline.levers.as_ref();
+    let mut seen = BTreeSet::new();
+    let cars = study.manifest["cars"].as_array().into_iter().flatten();
+    cars.enumerate().filter_map(move |(k, car)| {
+        let name = match levers {
+            Some(_) if car["role"] != "reference" => return None,
+            Some(levers) => text_of(&levers["columns"][k]["vehicle"]),
+            None => text_of(&car["name"]),
+        };
+        seen.insert(name.clone()).then_some((name, car))
+    })
+}
+
+/// What all runs have in common, and the cars.
+pub(super) fn conditions(study: &StudyResults) -> Section {
     let mut section = Section::new("conditions", "Conditions");
     let base = &study.manifest["base"];
     let names = [
@@ -300,7 +330,11 @@ fn conditions(study: &StudyResults) -> Section {
         ("dt_s", "Longest step [s]"),
         ("formulation", "Belt model"),
     ];
-    let known = names.iter().filter(|(key, _)| !base[*key].is_null());
+    // Levers are driven at several ambient temperatures, which their tables name.
+    let left_out = |key: &str| key == "ambient_degc" && study.outline.levers.is_some();
+    let known = names
+        .iter()
+        .filter(|(key, _)| !base[*key].is_null() && !left_out(key));
     let fact = |(key, name): &(&str, &str)| ((*name).to_owned(), text_of(&base[*key]));
     section.facts(known.map(fact).collect());
     let columns = [
@@ -311,15 +345,16 @@ fn conditions(study: &StudyResults) -> Section {
         "Engine oil",
     ];
     let mut table = ReportTable::of_words("Cars", &columns);
-    for car in study.manifest["cars"].as_array().into_iter().flatten() {
-        let keys = ["name", "role", "title", "lubricant", "engine_oil"];
-        table.row(keys.map(|key| text_of(&car[key])));
+    for (name, car) in cars(study) {
+        let keys = ["role", "title", "lubricant", "engine_oil"];
+        table.row(std::iter::once(name).chain(keys.map(|key| text_of(&car[key]))));
     }
     section.table(table);
     section
 }
 
-fn reproduce(study: &StudyResults) -> Section {
+/// What is needed to compute the study again.
+pub(super) fn reproduce(study: &StudyResults) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let manifest = &study.manifest;
     let design = &manifest["design"];
@@ -341,11 +376,11 @@ fn reproduce(study: &StudyResults) -> Section {
             facts.push((format!("Design, {key}"), text_of(&design[key])));
         }
     }
-    for (list, key) in [("cycles", "Cycle"), ("cars", "Car")] {
-        for one in manifest[list].as_array().into_iter().flatten() {
-            let name = format!("{key} {}, SHA-256", text_of(&one["name"]));
-            facts.push((name, text_of(&one["sha256"])));
-        }
+    let cycles = manifest["cycles"].as_array().into_iter().flatten();
+    let cycles = cycles.map(|one| (format!("Cycle {}", text_of(&one["name"])), one));
+    let cars = cars(study).map(|(name, one)| (format!("Car {name}"), one));
+    for (name, one) in cycles.chain(cars) {
+        facts.push((format!("{name}, SHA-256"), text_of(&one["sha256"])));
     }
     section.facts(facts);
     section

@@ -1,0 +1,124 @@
+//! What each lever of a car saves, as a strip of its draws.
+
+use super::engine::{
+    Axis, Chart, Entry, Fill, INK, Label, QUIET, Style, Symbol, WIDTH, at, optional_cell,
+    row_middle, rows_left, rows_panel, stroke,
+};
+use super::picture::{Picture, PictureTable};
+use crate::number::{capital_first, degc};
+use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
+
+/// Right edge of the plot with room for the counts, left edge of what lies below it, height of a row, pixels.
+const RIGHT: f64 = WIDTH - 96.0;
+const MARGIN: f64 = 12.0;
+const ROW: f64 = 22.0;
+/// Half of the height of the bar of a range, radius of its median, pixels.
+const HALF: f64 = 5.0;
+const RADIUS: f64 = 4.5;
+/// What the marks are.
+const MARKS: [&str; 2] = ["Lever", "Levers together"];
+
+/// For each lever of a car at one ambient temperature the range of its draws and their median; combinations last.
+pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
+    let rows = &block.rows;
+    let ends = rows.iter().flat_map(|row| {
+        let quantiles = [row.low_percent, row.fuel_percent, row.high_percent];
+        quantiles.map(|q| q.value)
+    });
+    let ends = ends.filter(|x| x.is_finite()).chain([0.0]);
+    let x = Axis::round("Change of the fuel [%]", ends, 8);
+    let left = rows_left(rows.iter().map(|row| row.of.title.as_str()), 11.0);
+    let panel = rows_panel((left, 58.0), RIGHT, rows.len().max(2), ROW, x);
+    let mut panel = panel.no_data(rows.is_empty());
+    for (k, row) in rows.iter().enumerate() {
+        let name = Label::new(at(0.0, 0.0), row.of.title.as_str());
+        panel.row_name(k, name.class("row").row(k));
+        let fill = Fill::nth(usize::from(row.is_combination()), 2);
+        if answer.plan.is_some() && row.n > 0 {
+            let style = Style::edged(fill.clone(), 0.5).row(k);
+            let range = (row.low_percent.value, row.high_percent.value);
+            panel.bar(k, range, (-HALF, HALF), style);
+        }
+        let middle = at(row.fuel_percent.value, row_middle(k));
+        panel.symbol(Symbol::CIRCLE, middle, RADIUS, Symbol::white(INK).row(k));
+        let count = at(f64::INFINITY, row_middle(k)).shift(8.0, 4.0);
+        panel.label(
+            Label::new(count, counted(answer, row))
+                .size(10.0)
+                .colour(QUIET),
+        );
+    }
+    panel.upright(0.0, stroke(INK, 1.0, &[]));
+    let kinds = if rows.iter().any(LeverRow::is_combination) {
+        2
+    } else {
+        1
+    };
+    let entry = |(k, name): (usize, &str)| Entry::fill(Fill::nth(k, 2), name);
+    let foot = (MARGIN, WIDTH - 2.0 * MARGIN);
+    let ambient = degc(block.ambient_degc);
+    let subject = format!("Against {} as it is, ambient {ambient}", block.vehicle);
+    let legend = MARKS.into_iter().take(kinds).enumerate().map(entry);
+    Chart::new(title(block), subject, MARGIN)
+        .panels([panel])
+        .legend(foot, legend)
+        .notes(foot, notes(answer))
+        .picture(table(answer, block))
+}
+
+/// The lever that saves most, in a sentence.
+fn title(block: &LeverBlock) -> String {
+    let mut single = block.rows.iter().filter(|row| !row.is_combination());
+    match single.find(|row| row.fuel_percent.value < 0.0) {
+        Some(best) => {
+            let (name, saved) = (capital_first(&best.of.title), -best.fuel_percent.value);
+            format!("{name} saves most: {saved:.1} % of the fuel")
+        }
+        None => "No lever saves fuel".to_owned(),
+    }
+}
+
+fn notes(answer: &LeverAnswer) -> Vec<String> {
+    if answer.plan.is_none() {
+        return vec!["Points: the car as its file has it, without draws.".to_owned()];
+    }
+    let (draws, done) = (answer.confidence.draws_percent(), answer.draws_done);
+    vec![format!(
+        "Bars: {draws} % of {done} paired draws. Points: medians. At the right: draws that save fuel, of those without a failed run."
+    )]
+}
+
+/// In how many draws a lever saves.
+fn counted(answer: &LeverAnswer, row: &LeverRow) -> String {
+    match answer.plan {
+        Some(_) if row.n == 0 => "no good run".to_owned(),
+        Some(_) => format!("{} of {}", row.saves.k, row.saves.n),
+        None if row.n == 0 => "no good run".to_owned(),
+        None => String::new(),
+    }
+}
+
+fn table(answer: &LeverAnswer, block: &LeverBlock) -> PictureTable {
+    let [low, high] = answer
+        .confidence
+        .ends()
+        .map(|p| format!("{:.0} % of the draws below", 100.0 * p));
+    let columns = [
+        ("Lever".to_owned(), ""),
+        ("Median".to_owned(), "%"),
+        (low, "%"),
+        (high, "%"),
+        ("Saves in".to_owned(), ""),
+    ];
+    let mut table = PictureTable::with_columns(columns);
+    for row in &block.rows {
+        let of = |value: f64| optional_cell(Some(value).filter(|x| x.is_finite()), 0.01);
+        let ends = match answer.plan {
+            Some(_) => [row.low_percent, row.high_percent].map(|q| of(q.value)),
+            None => [of(f64::NAN), of(f64::NAN)],
+        };
+        let cells = [row.of.title.clone(), of(row.fuel_percent.value)];
+        table.push(cells.into_iter().chain(ends).chain([counted(answer, row)]));
+    }
+    table
+}

@@ -1,0 +1,188 @@
+//! The results of a study of levers: as a section of a run's report, or as a report of its own.
+
+use cvtcycle_config::Problem;
+use cvtcycle_study::execute::side_effects::{FLOOR, LUGGING};
+use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
+
+use super::{conditions, ended_badly, reproduce, unfinished};
+use crate::document::{Block, Document, ReportTable, Section};
+use crate::number::{NONE, Quantity, degc, grouped};
+use crate::results::StudyResults;
+use crate::study_answers::typeset;
+use crate::study_pictures::lever_pictures;
+
+/// The levers as a section of a report.
+///
+/// # Errors
+/// A part that cannot be read.
+pub fn section(study: &StudyResults) -> Result<Section, Problem> {
+    let answer = answer_of(study)?;
+    let mut section = said(study, &answer, "levers", "Levers");
+    section.blocks.extend(details(&answer).blocks);
+    Ok(section)
+}
+
+/// The report of a study of levers.
+///
+/// # Errors
+/// A part that cannot be read.
+pub fn document(study: &StudyResults) -> Result<Document, Problem> {
+    let answer = answer_of(study)?;
+    let cars: Vec<&str> = named(&answer.blocks, |block| block.vehicle.as_str());
+    let sections = vec![
+        said(study, &answer, "answer", "Answer"),
+        details(&answer),
+        conditions(study),
+        reproduce(study),
+    ];
+    let ambients = named(&answer.blocks, |block| degc(block.ambient_degc)).join(", ");
+    Ok(Document {
+        title: format!("What is worth changing: {}", cars.join(", ")),
+        subtitle: format!("levers, each against the car as it is; ambient {ambients}"),
+        sections,
+        warnings: study.unfinished().into_iter().collect(),
+        ..Document::default()
+    })
+}
+
+fn answer_of(study: &StudyResults) -> Result<LeverAnswer, Problem> {
+    lever_answer(&study.frame()?, study.answer.confidence)
+}
+
+/// What the blocks have, each once, in their order.
+fn named<'b, T: PartialEq>(blocks: &'b [LeverBlock], of: impl Fn(&'b LeverBlock) -> T) -> Vec<T> {
+    let mut list = Vec::new();
+    for value in blocks.iter().map(of) {
+        if !list.contains(&value) {
+            list.push(value);
+        }
+    }
+    list
+}
+
+/// A car at an ambient temperature.
+fn case(block: &LeverBlock) -> String {
+    format!("{} at {}", block.vehicle, degc(block.ambient_degc))
+}
+
+/// The answer in sentences, and how many runs it is from.
+fn said(study: &StudyResults, answer: &LeverAnswer, id: &str, title: &str) -> Section {
+    let mut section = Section::new(id, title);
+    section
+        .blocks
+        .extend(unfinished(study, "what follows is what they say"));
+    for block in &answer.blocks {
+        section.heading(&case(block));
+        let words = answer_in_words(answer, block);
+        let words = words.iter().map(|line| typeset(line));
+        section.blocks.extend(words.map(Block::Text));
+    }
+    let runs = study.outline.points * study.outline.cars.len() as u64;
+    let from = match &answer.plan {
+        Some(plan) => format!("{} paired draws of {plan}, {runs} runs.", answer.draws),
+        None => format!("{runs} runs of the cars as their files have them, without draws."),
+    };
+    section.text(from + &ended_badly(&answer.runs));
+    let doubts = match answer.plan {
+        Some(_) => answer.enough.doubts(answer.confidence),
+        None => Vec::new(),
+    };
+    for note in doubts.iter().chain(&answer.notes) {
+        section.text(format!("Note: {}.", typeset(note)));
+    }
+    section
+}
+
+/// Pictures and tables.
+fn details(answer: &LeverAnswer) -> Section {
+    let mut section = Section::new("levers", "What each lever saves");
+    for (block, (name, picture)) in answer.blocks.iter().zip(lever_pictures(answer)) {
+        let caption = format!("Change of the fuel by each lever, {}.", case(block));
+        section.figure(name, caption, picture);
+        section.table(numbers(answer, block));
+    }
+    if let Some(block) = answer.blocks.first() {
+        section.folded(what_they_take(block));
+    }
+    section
+}
+
+fn numbers(answer: &LeverAnswer, block: &LeverBlock) -> ReportTable {
+    let [low, high] = answer
+        .confidence
+        .ends()
+        .map(|p| format!("{:.0} % below", 100.0 * p));
+    let columns = [
+        ("Fuel, median", "%"),
+        (low.as_str(), "%"),
+        (high.as_str(), "%"),
+        ("Saves in", ""),
+        ("Clamp safety", ""),
+        ("At a floor", "s"),
+        ("Short of flow", "s"),
+        ("Slow engine", "s"),
+    ];
+    let columns = columns.map(|(name, unit)| (name.to_owned(), unit));
+    let caption = format!("Levers, {}", case(block));
+    let mut table = ReportTable::of_numbers(&caption, "Lever", columns.into_iter());
+    for row in &block.rows {
+        let name = match row.failed {
+            0 => row.of.title.clone(),
+            failed => format!("{} (fails in {failed})", row.of.title),
+        };
+        match row.is_combination() {
+            true => table.strong(name, cells(answer, row)),
+            false => table.named(name, cells(answer, row)),
+        }
+    }
+    table.note = format!(
+        "Saves in: draws of those without a failed run. Worst of all draws: clamp safety; seconds with a floor of the pressure, with too little flow, and slow, that is \
+         below {:.0} rpm above half load with the clutch closed. Draws in which a lever fails a check are left out.",
+        answer.heard_rpm
+    );
+    table
+}
+
+fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
+    let drawn = answer.plan.is_some() && row.n > 0;
+    let of_draws = |x: f64| {
+        if drawn {
+            Quantity::Effect.bare_signed(x)
+        } else {
+            NONE.to_owned()
+        }
+    };
+    let saves = match drawn {
+        true => format!("{} of {}", row.saves.k, row.saves.n),
+        false => NONE.to_owned(),
+    };
+    let seconds = |name: &str| Quantity::Seconds.bare(row.worst(name));
+    vec![
+        Quantity::Effect.bare_signed(row.fuel_percent.value),
+        of_draws(row.low_percent.value),
+        of_draws(row.high_percent.value),
+        saves,
+        grouped(row.worst("min_clamp_safety"), 2),
+        seconds(FLOOR),
+        seconds("flow_limited_s"),
+        seconds(LUGGING),
+    ]
+}
+
+/// What each lever changes and takes, and how its size is known.
+fn what_they_take(block: &LeverBlock) -> ReportTable {
+    let heads = ["Lever", "Changes", "Needs", "Status", "Where from"];
+    let mut table = ReportTable::of_words("What the levers change and take", &heads);
+    for row in block.rows.iter().filter(|row| !row.is_combination()) {
+        let of = &row.of;
+        let words = [
+            &of.title,
+            &of.set.join(", "),
+            &of.needs,
+            &of.status,
+            &of.source,
+        ];
+        table.row(words.map(String::clone));
+    }
+    table
+}
