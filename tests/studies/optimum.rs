@@ -204,17 +204,20 @@ fn a_coarse_grid_with_short_steps_is_no_limit() {
     }
 }
 
-/// The best line comes near the bound, holds the least speed, and is better than any one speed.
+/// The best line is within 0.3 % of the bound on ECE15+EUDC, holds the least speed, and burns less than the car as it is.
 #[test]
 fn the_line_is_near_the_bound() {
-    let own = car(&["transmission.cvt.clamp=torque_following"], 25.0);
-    let steps = steps(&embedded("ece15").unwrap(), 0.25);
-    let of = task(&own, &steps, 80.0);
+    let own = car(&[], 25.0);
+    let steps = steps(&embedded("ece15_eudc").unwrap(), 0.25);
+    let of = Task {
+        grid: 97,
+        ..task(&own, &steps, 25.0)
+    };
     let found = least(&of);
     let fit = fit_line(&of, &found);
     assert!(fit.fuel_kg >= found.least_kg());
     assert!(
-        fit.fuel_kg < 1.01 * found.least_kg(),
+        fit.fuel_kg < 1.003 * found.least_kg(),
         "{} {}",
         fit.fuel_kg,
         found.least_kg()
@@ -246,7 +249,7 @@ fn a_limit_that_cannot_be_held_is_named_with_what_can() {
 #[test]
 fn each_limit_that_cannot_be_held_has_its_place() {
     let own = car(&[], 25.0);
-    let steps = steps(&embedded("ece15").unwrap(), 1.0);
+    let steps = steps(&embedded("ece15").unwrap(), 0.25);
     let mut of = task(&own, &steps, 80.0);
     of.limits.reserve = 0.85;
     of.limits.least_rad_s = rad_s(5500.0);
