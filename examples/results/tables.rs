@@ -1,24 +1,33 @@
 //! The tables of `docs/results.md`, between markers `<!-- NAME -->` and `<!-- end -->`.
 
+use std::collections::BTreeSet;
+
 use cvtcycle::config::Override;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::output::Component;
-use cvtcycle::output::number::{fixed, plain, signed};
+use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, attribute};
+use cvtcycle::study::execute::DirWriter;
+use cvtcycle::study::levers::{self, Combine, LeverFile, LeverRequest, LeverRow};
+use cvtcycle::study::plan::Plan;
+use cvtcycle::study::statistics::Confidence;
+use cvtcycle::study::store::StudyDir;
+use cvtcycle::study::{NoProgress, StudyManifest, StudyTable};
 
 /// A table by its name in the page.
 type Named = (&'static str, fn() -> Result<String, Problems>);
 
 /// All tables.
-const TABLES: [Named; 5] = [
+const TABLES: [Named; 6] = [
     ("ambient", ambient),
     ("price", price),
     ("changes", changes),
-    ("levers", levers),
+    ("levers", restated),
+    ("drawn", drawn),
     ("fluids", fluids),
 ];
 
@@ -340,7 +349,7 @@ const LEVERS: [(&str, &str, &[&str], &str); 6] = [
     ),
 ];
 
-fn levers() -> Result<String, Problems> {
+fn restated() -> Result<String, Problems> {
     let setup = load(CVT, &Options::default())?;
     let area = |key: &str| {
         let of = |info: &&cvtcycle::config::KeyInfo| info.key == key;
@@ -370,6 +379,52 @@ fn levers() -> Result<String, Problems> {
         ]);
     }
     Ok(markdown(&["lever", "0.1", "now", "what changed"], &rows))
+}
+
+/// What the built-in levers of a CVT save, over paired draws of the plan of uncertainty, cold and at 25 degC.
+fn drawn() -> Result<String, Problems> {
+    let request = LeverRequest {
+        levers: LeverFile::open("cvt")?.levers,
+        vehicles: vec![CVT.to_owned()],
+        ambients_degc: vec![-10.0, 25.0],
+        cycle: "ece15_eudc".to_owned(),
+        start: "soak".to_owned(),
+        dt_s: 1.0,
+        engine_oil: None,
+        draws: Some((Plan::open("uncertainty_rover")?, 72, 1)),
+        combine: Combine::Automatic,
+        heard_rpm: 1300.0,
+    };
+    let study = levers::prepare(&request)?;
+    let temporary = tempfile::tempdir().expect("a temporary directory");
+    let path = temporary.path().join("levers");
+    let (manifest, plan) = (study.manifest(false), study.plan.text.as_bytes());
+    let dir = StudyDir::create(&path, manifest.as_bytes(), plan, false)?;
+    study.execute(&BTreeSet::new(), &DirWriter::new(&study, &dir), &NoProgress)?;
+    let (outline, store) = (StudyManifest::of(&study), dir.study()?);
+    let frame = StudyTable::new(&outline, &store)?;
+    let answer = levers::lever_answer(&frame, Confidence::default())?;
+    let [cold, warm] = [0, 1].map(|k| &answer.blocks[k].rows);
+    let cells = |row: &LeverRow| {
+        let [median, low, high] = [row.fuel_percent, row.low_percent, row.high_percent]
+            .map(|quantile| signed(quantile.value, 2));
+        let saves = format!("{} of {}", row.saves.k, row.saves.n);
+        [format!("{median} % ({low} to {high})"), saves]
+    };
+    let row = |row: &LeverRow| {
+        let same = cold.iter().find(|other| other.of.name == row.of.name);
+        // The combination is that of each temperature.
+        let in_cold = same.map_or([NONE, NONE].map(str::to_owned), cells);
+        let name = format!("{} (`{}`)", row.of.title, row.of.name);
+        [name]
+            .into_iter()
+            .chain(in_cold)
+            .chain(cells(row))
+            .collect()
+    };
+    let rows: Vec<Vec<String>> = warm.iter().map(row).collect();
+    let head = ["lever", "-10 degC", "saves in", "25 degC", "saves in"];
+    Ok(markdown(&head, &rows))
 }
 
 /// Fuel with each oil over that with the car's own, by ambient temperature.

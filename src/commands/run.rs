@@ -45,7 +45,7 @@ Examples:
   cvtcycle run --cycle ece15_eudc --ambient -10
   cvtcycle run --cycle ftp75 --baseline none --set transmission.cvt.pump.displacement_cc_rev=8
   cvtcycle run --cycle constant_120 --start 90 --json
-  cvtcycle run --vehicle mycar.toml --baseline twin --draws 256
+  cvtcycle run --vehicle civic_20_cvt --baseline twin --draws 256
   cvtcycle run --ambient -10 --out cold_run
   cvtcycle run --out run2 --format parquet
 

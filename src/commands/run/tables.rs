@@ -345,6 +345,9 @@ fn notes(summary: &Summary) -> String {
             text += &format!("{name}: smallest clamp safety factor {safety}\n");
         }
     }
+    if summary.comparison.iter().any(|of| of.interval.is_none()) {
+        text += "a difference without an interval gets one from --draws 256\n";
+    }
     let worst = |of: fn(&RunSummary) -> Option<f64>| {
         let all: Option<Vec<f64>> = summary.runs.iter().map(of).collect();
         tiny(all.and_then(|all| all.into_iter().reduce(|a, b| if b > a { b } else { a })))

@@ -21,8 +21,8 @@ use crate::execute::side_effects::{FLOOR, LOCKED, LUGGING, RESERVE};
 use crate::statistics::{Confidence, Enough, Quantile, Share, Summary, quantile_of_sorted};
 use cvtcycle_config::{Problem, ProblemKind};
 
-/// Change of fuel, %, up to which two runs have the same fuel: rounding alone moves it so far.
-const EQUAL_PERCENT: f64 = 1e-6;
+/// Change of fuel, %, up to which a lever saves nothing: half of the last digit that is printed.
+const NOTHING_PERCENT: f64 = 0.005;
 
 /// Share of the draws above which failed ones make that a lever does not work in a car, or a car not in its draws.
 const MOST_FAILED: f64 = 0.5;
@@ -337,7 +337,7 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
         fuel_percent: quantile(0.5),
         low_percent: quantile(low),   // PV-2
         high_percent: quantile(high), // PV-2
-        saves: Share::of(&percent, Some(confidence), |x| x < -EQUAL_PERCENT), // PV-3
+        saves: Share::of(&percent, Some(confidence), |x| x < -NOTHING_PERCENT), // PV-3
         fuel_l_per_100km: differences(&numbers.fuel),
         co2_g_per_km: differences(&numbers.co2),
         sum_percent: None,

@@ -173,9 +173,7 @@ fn against(comparison: &Comparison) -> Option<String> {
     let Some(drawn) = &comparison.interval else {
         let compared = more_or_less(percent, 1);
         let than = than(&compared);
-        return Some(format!(
-            ", {compared} {than} {baseline} (no interval: --draws)"
-        ));
+        return Some(format!(", {compared} {than} {baseline} (no interval)"));
     };
     let ends = [drawn.percent[0], drawn.percent[2]];
     let compared = more_or_less(percent, decimals(ends));
