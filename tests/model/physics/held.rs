@@ -21,9 +21,12 @@ fn driven_and_held(
     let cycle = cycle("ece15");
     let steps: Vec<_> = cycle.trace_for(true).steps(1.0).collect();
     let mut drive = Drive::new(&own, State::at(ZERO + 25.0));
-    let rows: Vec<Row> = steps.iter().map(|step| drive.step(step).0).collect();
-    let mut drive = Drive::new(&other, State::at(ZERO + 25.0));
-    let held = steps.iter().zip(&rows).map(|(step, row)| {
+    // The first step begins the box and has nothing to hold: both drives have it in common.
+    drive.step(&steps[0]);
+    let begun = drive.state();
+    let rows: Vec<Row> = steps[1..].iter().map(|step| drive.step(step).0).collect();
+    let mut drive = Drive::new(&other, begun);
+    let held = steps[1..].iter().zip(&rows).map(|(step, row)| {
         let hold = Hold {
             ratio: row.belt_ratio,
             clamp,
