@@ -37,7 +37,7 @@ const SAFETY: Bound = Bound::closed(1.0, 10.0);
 /// Allowed largest slip, per cent.
 const SLIP: Bound = Bound::closed(0.1, 20.0);
 /// Fewest and most ratios of the grid.
-const GRID: std::ops::RangeInclusive<u64> = 13..=769;
+const GRID: std::ops::RangeInclusive<u64> = 49..=769;
 /// Least engine speeds for which the bound is printed, rpm.
 const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
 
@@ -312,7 +312,7 @@ impl OptimumArgs {
         let ratios = problems.take(count("--grid", &self.grid, GRID));
         if ratios.is_some_and(|n| n % 4 != 1) {
             let message = "the grid is compared with one of half and of a quarter of its ratios";
-            let allowed = "13, 17, 21 to 769";
+            let allowed = "49, 53, 57 to 769";
             let hint = "four times a number, and one: 49, 97, 193";
             problems.add(bad_value("--grid", &self.grid, allowed, message, hint));
         }

@@ -171,7 +171,8 @@ impl Execute for RunArgs {
         let draws = match (wanted, ambient, &start, dt_s) {
             (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
                 let base = self.base((degc, start, dt_s, formulation), &vehicles, problems);
-                base.and_then(|base| problems.take(prepare(base, n)))
+                let of_cvts = vehicles.iter().all(|car| car.setup.transmission().is_cvt());
+                base.and_then(|base| problems.take(prepare(base, n, of_cvts)))
             }
             _ => None,
         };

@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::number::degc;
 use super::results::StudyResults;
 use cvtcycle_output::summary::Summary;
+use cvtcycle_study::levers::{LeverBlock, answer_in_words, lever_answer};
 use cvtcycle_study::words::study::sentences;
 
 /// Differences between the cases of a study and of a run; none if they are the same.
@@ -25,10 +26,27 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
         differ("cycle", &cycles.join(", "), &run.cycle);
     }
     let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
-    let own = study.outline.cars.first().map_or("", String::as_str);
+    // Levers are driven in several cars and at several temperatures: one of each has to be that of the run.
+    let columns = study
+        .outline
+        .levers
+        .as_ref()
+        .map(|levers| &levers["columns"]);
+    let columns = columns
+        .and_then(Value::as_array)
+        .map_or(&[][..], Vec::as_slice);
+    let own = match columns.iter().find(|column| column["vehicle"] == subject) {
+        Some(_) => subject,
+        None => study.outline.cars.first().map_or("", String::as_str),
+    };
     differ("subject", own, subject);
+    let is_own = |degc: &f64| (degc - run.ambient_degc).abs() <= 1e-9;
+    let mut of_levers = columns
+        .iter()
+        .filter_map(|column| column["ambient_degc"].as_f64());
+    let has_own = of_levers.any(|degc| is_own(&degc));
     let ambient = base["ambient_degc"].as_f64();
-    let ambient = ambient.filter(|own| (own - run.ambient_degc).abs() > 1e-9);
+    let ambient = ambient.filter(|own| !is_own(own) && !has_own);
     if let Some(ambient) = ambient.filter(|_| free("ambient_degc")) {
         differ("ambient", &degc(ambient), &degc(run.ambient_degc));
     }
@@ -52,6 +70,25 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
 pub fn answers(study: &StudyResults) -> Vec<String> {
     let said = sentences(&study.answer, &study.outline);
     said.iter().map(|line| typeset(line)).collect()
+}
+
+/// The answer of a study of the case of a run in sentences; of levers that of its car and ambient temperature. Nothing where a part cannot be
+/// read, which the section of the study reports.
+pub fn answers_of_run(study: &StudyResults, run: &Summary) -> Vec<String> {
+    if study.outline.levers.is_none() {
+        return answers(study);
+    }
+    let frame = study.frame();
+    let Ok(answer) = frame.and_then(|frame| lever_answer(&frame, study.answer.confidence)) else {
+        return Vec::new();
+    };
+    let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
+    let is_own = |block: &&LeverBlock| {
+        block.vehicle == subject && (block.ambient_degc - run.ambient_degc).abs() <= 1e-9
+    };
+    let said = answer.blocks.iter().filter(is_own);
+    let said = said.flat_map(|block| answer_in_words(&answer, block));
+    said.map(|line| typeset(&line)).collect()
 }
 
 /// A sentence of the program as print has it: minus signs, degrees.

@@ -84,6 +84,7 @@ fn a_report_of_levers_says_what_they_save() {
     for file in ["levers.md", "car.md"] {
         let text = fs::read_to_string(dir.join(file)).unwrap();
         assert!(!text.contains("no pair of good runs"), "{file}: {text}");
+        assert!(!text.contains("of another case"), "{file}: {text}");
         for block in json["blocks"].as_array().unwrap() {
             for row in block["rows"].as_array().unwrap() {
                 let median = row["fuel_percent"]["value"].as_f64().unwrap();

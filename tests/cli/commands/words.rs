@@ -187,6 +187,33 @@ fn draws_of_a_run_give_the_known_interval() {
     }
 }
 
+/// Property: a car is never better than itself; against one with a smaller pump the draws agree.
+#[test]
+fn two_cvts_have_the_same_draw() {
+    let of = |more: &[&str]| {
+        let words = [
+            "run",
+            "--cycle",
+            "ece15",
+            "--baseline",
+            "rover_216_cvt",
+            "--draws",
+            "8",
+            "--price",
+            "never",
+        ];
+        json(&[&words[..], more, &["--json"]].concat())["comparison"][0]["interval"].clone()
+    };
+    let same = of(&[]);
+    assert!(
+        (0..3).all(|k| same["percent"][k].as_f64().unwrap().abs() < 1e-9),
+        "{same}"
+    );
+    let smaller = of(&["--set", "transmission.cvt.pump.displacement_cc_rev*=0.82"]);
+    let [low, high] = [0, 2].map(|k| smaller["percent"][k].as_f64().unwrap());
+    assert!(-1.5 < low && low < high && high < -0.2, "{smaller}");
+}
+
 /// Property: what the user sets for all cars of a factor is certain, and a list that would replace it too; what is set for the subject alone
 /// leaves the doubt about the others.
 #[test]
@@ -195,7 +222,7 @@ fn what_is_set_is_certain() {
         let mut base = Plan::open("uncertainty_rover").unwrap().base;
         base.set = Override::parse_all(set).unwrap();
         base.set_all = Override::parse_all(set_all).unwrap();
-        let study = prepare(base, 2).unwrap();
+        let study = prepare(base, 2, false).unwrap();
         let factors = study.plan.factors.iter();
         factors.map(|factor| factor.key.clone()).collect()
     };

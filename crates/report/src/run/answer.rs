@@ -40,7 +40,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
             section.alert(format!("{text}; what it says here is of these."));
         }
         let title = &own.answer.title;
-        let answers = study_answers::answers(own).into_iter();
+        let answers = study_answers::answers_of_run(own, summary).into_iter();
         let named = answers.map(|line| format!("Study \u{201c}{title}\u{201d}: {line}"));
         section.blocks.extend(named.map(Block::Text));
     }

@@ -297,8 +297,12 @@ impl<'a> Scene<'a> {
             if past == 0 {
                 return known[place];
             }
+            // The last ones may have no searched one after them.
+            let Some(next) = known.get(place + 1) else {
+                return self.node(reference, k, ratio(x));
+            };
             let share = past as f64 / SEARCHED as f64;
-            let safety = Node::between(&known[place], &known[place + 1], share).safety;
+            let safety = Node::between(&known[place], next, share).safety;
             let (node, row) = self.clamped(reference, k, ratio(x), Some(free_law(safety)));
             match row.slip.abs() <= slip {
                 true => Node { safety, ..node },

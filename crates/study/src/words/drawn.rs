@@ -19,13 +19,20 @@ pub const PLAN: &str = "uncertainty_rover";
 const SEED: u64 = 1;
 
 /// The draws of any cars: independent draws of the plan of uncertainty, its ranges taken relative to the values of its own cars. A value
-/// that the user has set for all cars of a factor is certain, and so is one that the factor would replace.
+/// that the user has set for all cars of a factor is certain, and so is one that the factor would replace. Where all cars have a CVT
+/// (`of_cvts`), what is uncertain of the subject is so of all, with the same draw, and what is so of manual cars alone is left out.
 ///
 /// # Errors
 /// Problems of the plan or of the cars.
-pub fn prepare(base: Base, samples: u64) -> Result<Study, Problems> {
+pub fn prepare(base: Base, samples: u64, of_cvts: bool) -> Result<Study, Problems> {
     let (mut plan, _) = relative(Plan::open(PLAN)?)?;
     plan.factors.retain(|factor| !is_fixed(factor, &base));
+    if of_cvts {
+        plan.factors.retain(|factor| factor.cars != Cars::Baselines);
+        plan.factors
+            .iter_mut()
+            .for_each(|factor| factor.cars = Cars::All);
+    }
     plan.design = Design::MonteCarlo {
         samples,
         seed: SEED,
