@@ -133,6 +133,7 @@ fn driveline_step(bencher: Bencher, name: &str) {
         gear: None,
         dt_s: 1.0,
         engine_off: false,
+        neutral_share: 0.0,
     };
     let mut state: TransmissionState = car.transmission.start(&around(0));
     let mut k = 0;
@@ -292,7 +293,9 @@ fn least_fuel(bencher: Bencher, free: bool) {
         car: &car,
         cvt,
         steps: &steps,
+        trace: cycle.trace_for(true),
         start: State::at(COLD_K),
+        warm: false,
         clamp: match free {
             true => Clamp::Free {
                 safety: 1.3,

@@ -24,7 +24,10 @@
     // The words of a title would come up as a second hint of the browser's own.
     const title = svg.querySelector(":scope > title");
     if (title) { svg.setAttribute("aria-label", title.textContent); title.remove(); }
-    const heads = [...table.tHead.rows[0].cells].map((cell) => [cell.firstChild ? cell.firstChild.textContent.trim() : "", (cell.querySelector(".unit") || { textContent: "" }).textContent.replace(/[[\]]/g, "")]);
+    const heads = [...table.tHead.rows[0].cells].map((cell) => {
+      const unit = (cell.querySelector(".unit") || { textContent: "" }).textContent;
+      return [cell.textContent.slice(0, cell.textContent.length - unit.length).trim(), unit.replace(/[[\]]/g, "")];
+    });
     const rows = [...table.tBodies[0].rows];
     const panels = [...svg.querySelectorAll("rect.plot[data-x0]")].map((rect) => ({
       left: rect.x.baseVal.value, top: rect.y.baseVal.value, wide: rect.width.baseVal.value, tall: rect.height.baseVal.value,

@@ -1,7 +1,22 @@
 //! Drive-cycle losses and fuel of cars with a pushing-metal-V-belt CVT, cold and warm.
 //!
 //! One crate for each layer; each uses only those before it in the order model, config, output, study, report. The features are
-//! `cli` (default), the program, and `studies`, the crates study and report.
+//! `cli` (default), the program, and `studies`, the crates study and report. The program is the function `program`, which the binary and
+//! the Python package call.
+
+#[cfg(feature = "cli")]
+mod args;
+#[cfg(feature = "cli")]
+mod commands;
+#[cfg(feature = "cli")]
+mod print;
+
+// The program is written as a user of the library.
+#[cfg(feature = "cli")]
+extern crate self as cvtcycle;
+
+#[cfg(feature = "cli")]
+pub use commands::program;
 
 pub use cvtcycle_config as config;
 pub use cvtcycle_model as model;

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::{self, AMBIENT, Kind, Options, Setup, TWIN, baseline_of};
+use cvtcycle::config::setup::{
+    self, AMBIENT, Kind, Options, START, STEP, Setup, TWIN, baseline_of,
+};
 use cvtcycle::config::{Bound, Problem, Problems, cycle};
 use cvtcycle::model::drive::Start;
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -17,10 +19,6 @@ use cvtcycle::study::statistics::Confidence;
 use super::problems::{bad_value, did_you_mean, overrides, problem};
 use super::{Names, count, cycles, names_of, number, one_of, ranges::values};
 
-/// Allowed temperature at the start, degC.
-const START: Bound = Bound::closed(-40.0, 130.0);
-/// Allowed length of a step, s.
-const STEP: Bound = Bound::closed(0.01, 10.0);
 /// Most ambient temperatures of one command: each whole degree that is allowed.
 const MOST_AMBIENTS: usize = 101;
 

@@ -12,7 +12,7 @@ use cvtcycle::report::charts::calibration::calibration_pictures;
 use cvtcycle::study::fit::outcome::Outcome;
 use cvtcycle::study::fit::outcome::tables as csv_tables;
 use cvtcycle::study::fit::plan::CalibrationPlan;
-use cvtcycle::study::fit::{calibrate, fitted, open};
+use cvtcycle::study::fit::{MAX_STARTS, calibrate, fitted, open};
 
 use super::{Execute, threads};
 use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, count_if_given};
@@ -22,9 +22,6 @@ use crate::print::{
 };
 
 /// Arguments of `calibrate`.
-/// Most starts of a search.
-const MAX_STARTS: u64 = 1000;
-
 #[derive(Args, Clone, Debug)]
 #[command(
     mut_arg("out", |out| out.help("Write the fitted files, tables, plots and calibration.json into this directory")),

@@ -7,6 +7,7 @@ use cvtcycle::config::csv::Columns;
 use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, bounded, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
+use cvtcycle::output::table::wrapped;
 use cvtcycle::study::Study;
 use cvtcycle::study::fit::open;
 use cvtcycle::study::levers::LeverFile;
@@ -115,7 +116,7 @@ impl CheckArgs {
         Ok(CommandOutput {
             stdout: ok
                 .map(|(file, (kind, notes))| {
-                    let notes = notes.iter().map(|note| format!("    {note}\n"));
+                    let notes = notes.iter().map(|note| wrapped(note, "    "));
                     format!("ok  {file} ({})\n", kind.word()) + &notes.collect::<String>()
                 })
                 .collect(),

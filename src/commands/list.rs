@@ -9,7 +9,7 @@ use cvtcycle::config::setup::{self, Kind, Options, Setup};
 use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::model::keys::stem;
 use cvtcycle::output::number::fixed;
-use cvtcycle::output::table::TextColumns;
+use cvtcycle::output::table::{TextColumns, paragraphs};
 use cvtcycle::study::levers::{Lever, LeverFile};
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
@@ -76,7 +76,7 @@ impl Execute for ListArgs {
             return CommandOutput::json(&list.json);
         }
         let heading = terminal.stdout.heading(list.heading);
-        let (table, note) = (list.table, list.note);
+        let (table, note) = (list.table, paragraphs(list.note));
         Ok(CommandOutput::text(format!("{heading}\n{table}\n{note}")))
     }
 }

@@ -71,7 +71,7 @@ pub struct LossesArgs {
     #[command(flatten)]
     formulation: FormulationArgs,
     /// Write the loss of one component as a map (CSV) that a vehicle file can use in place of the model: belt, pump,
-    /// input_shaft, clutch_drag, seal_ring, final_drive, or box of a manual gearbox. --torque is then that of the map: at the
+    /// input_shaft, clutch_drag, seal_ring, final_drive, or the whole box. --torque is then that of the map: at the
     /// secondary pulley (belt, final_drive) or at the input shaft (box)
     #[arg(long, value_name = "COMPONENT", value_parser = Names(|| names_of(&MapPart::NAMES)), hide_possible_values = true, conflicts_with_all = ["json", "format"])]
     as_map: Option<String>,

@@ -7,11 +7,13 @@ mod check;
 mod compare;
 mod convert;
 mod explain;
+mod label;
 mod levers;
 mod list;
 mod losses;
 mod new;
 mod optimum;
+mod program;
 mod report;
 mod rig;
 mod run;
@@ -21,6 +23,8 @@ mod study;
 mod threads;
 mod validate;
 mod vehicles;
+
+pub use program::program;
 
 use std::sync::LazyLock;
 
@@ -71,6 +75,8 @@ enum Command {
     Optimum(Box<optimum::OptimumArgs>),
     /// Drive changes of a design next to the car as it is: what each saves, how sure that is, and what it does besides
     Levers(Box<levers::LeversArgs>),
+    /// Compute the figures of a fuel label: US city and highway, by two formulas and five cycles, and WLTP at 14 and 23 degC
+    Label(label::LabelArgs),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
@@ -138,6 +144,7 @@ impl Cli {
             Command::Attribute(args) => args.execute(terminal),
             Command::Optimum(args) => args.execute(terminal),
             Command::Levers(args) => args.execute(terminal),
+            Command::Label(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
             Command::Compare(args) => args.execute(terminal),

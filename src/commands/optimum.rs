@@ -2,7 +2,10 @@
 
 mod tables;
 
+use std::path::Path;
+
 use clap::Args;
+use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
 use cvtcycle::config::{Bound, Problems, cycle};
@@ -16,7 +19,7 @@ use cvtcycle::output::number::fixed;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, StartWord};
 use cvtcycle::study::optimum::{
-    self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question, Unheld,
+    self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question, ReadFrom, Unheld,
 };
 use serde::Serialize;
 
@@ -56,7 +59,8 @@ Examples:
 Least fuel by dynamic programming over the ratio, and the clamping pressure where it is free, with the losses and temperatures of the model. \
 No controller of ratio and clamp within the limits burns less than the bound, which is the least fuel less its tolerance. The least engine \
 speed decides it, so it is given for several. The operating line is what a controller can do that sees demand and speed only: curves of a \
-vehicle file (drive_line, overrun_line), proven by driving that file. Steps of 0.25 s: knowing the next second is worth more with longer ones."
+vehicle file (drive_line, overrun_line), proven by driving that file. Steps of 0.25 s: knowing the next second is worth more with longer ones. \
+A torque converter locks up by its own law, start-stop by its own; the limits count while engine and box turn together."
 )]
 pub struct OptimumArgs {
     #[command(flatten)]
@@ -118,7 +122,7 @@ pub struct OptimumArgs {
         allow_hyphen_values = true
     )]
     grid: String,
-    /// The car's own clamp law only
+    /// The car's own clamp law only, and its own launch
     #[arg(long)]
     own_clamp: bool,
     /// Cycle on which the line is driven too (repeatable); `none` for none
@@ -186,8 +190,8 @@ impl Execute for OptimumArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<OptimumPlan> {
         let columns = self.columns.get(problems);
-        let cycle = problems.take(cycle::open(&self.cycle, &columns));
-        let elsewhere = self.elsewhere(problems);
+        let cycle = problems.take(self.own_cycle(&columns));
+        let elsewhere = self.elsewhere(&columns, problems);
         let formulation = self.formulation.get(problems);
         let options = self.car.options(formulation, problems);
         let setup = problems.take(setup::load(&self.car.vehicle, &options));
@@ -199,7 +203,6 @@ impl Execute for OptimumArgs {
         let numbers = self.numbers((dt_s, least), problems);
         if let Some(setup) = &setup {
             self.check_least(setup, least, problems);
-            self.check_car(setup, problems);
         }
         if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
             self.check_cycle(cycle, dt_s, problems);
@@ -244,9 +247,16 @@ impl Execute for OptimumArgs {
             grid: n.ratios,
             line: !self.no_line,
             elsewhere: &plan.elsewhere,
+            launch_at_idle: !self.own_clamp,
             least_speeds_rpm: &LEAST_SPEEDS_RPM,
         };
-        let answer = optimum::answer(&question, &self.like(), &plan.options);
+        let dir = self.out.out.as_deref();
+        let from = ReadFrom {
+            vehicle: &self.car.vehicle,
+            options: &plan.options,
+            named: &|word| named_from(dir, word),
+        };
+        let answer = optimum::answer(&question, &from);
         let answer = answer.map_err(|none| match none {
             NoAnswer::Infeasible(why) => infeasible(&why, self),
             NoAnswer::Line(problems) => problems,
@@ -286,11 +296,24 @@ fn conditions(numbers: &Numbers, start: Start) -> Conditions {
 }
 
 impl OptimumArgs {
-    /// Other cycles for the line, as they are named.
-    fn elsewhere(&self, problems: &mut Problems) -> Vec<(String, Cycle)> {
+    /// The cycle; columns may be those of a file of `--prove` alone.
+    fn own_cycle(&self, columns: &Columns) -> Result<Cycle, Problems> {
+        let is_file = |word: &String| word.ends_with(".csv");
+        match !is_file(&self.cycle) && self.prove.iter().any(is_file) {
+            true => cycle::find(&self.cycle),
+            false => cycle::open(&self.cycle, columns),
+        }
+    }
+
+    /// Other cycles for the line, as they are named; the columns are those of any of their files.
+    fn elsewhere(&self, columns: &Columns, problems: &mut Problems) -> Vec<(String, Cycle)> {
         let others = |word: &&String| word.as_str() != "none";
         let mut open = |word: &String| {
-            let found = cycle::find(word).map_err(|found| cite("--prove", found));
+            let found = match word.ends_with(".csv") {
+                true => cycle::open(word, columns),
+                false => cycle::find(word),
+            };
+            let found = found.map_err(|found| cite("--prove", found));
             Some((word.clone(), problems.take(found)?))
         };
         let words = self.prove.iter().filter(others);
@@ -344,28 +367,6 @@ impl OptimumArgs {
         }
     }
 
-    /// Cars whose engine stops by itself, or whose launch device never locks, have other choices than a ratio.
-    fn check_car(&self, setup: &Setup, problems: &mut Problems) {
-        let engine = setup.engine();
-        let coupling = setup.transmission().coupling();
-        let from_rad_s = coupling.locked_from_rad_s(engine.idle_hot_rad_s);
-        let locks = from_rad_s.is_finite() && !coupling.by_command();
-        let why = match (engine.start_stop.is_some(), locks) {
-            (true, _) => "the engine of this car stops by itself, which the bound does not know",
-            (false, false) => "the launch device of this car is no clutch that locks by itself",
-            (false, true) => return,
-        };
-        let allowed = "a car with a clutch, without start-stop";
-        let hint = "`study` varies its values";
-        problems.add(bad_value(
-            "--vehicle",
-            &self.car.vehicle,
-            allowed,
-            why,
-            hint,
-        ));
-    }
-
     fn check_cycle(&self, cycle: &Cycle, dt_s: f64, problems: &mut Problems) {
         let trace = cycle.trace_for(true);
         if trace.max_speed_m_s() <= 0.0 {
@@ -390,16 +391,26 @@ impl OptimumArgs {
         }
         cars
     }
+}
 
-    /// The vehicle as the file of its line names it: a path is made absolute, since the file may be moved.
-    fn like(&self) -> String {
-        let word = &self.car.vehicle;
-        match word.ends_with(".toml") {
-            true => std::path::absolute(word)
-                .map_or_else(|_| word.clone(), |path| path.display().to_string()),
-            false => word.clone(),
-        }
+/// How a file in a directory names what a name or a path from here means: a path is one from that directory.
+fn named_from(dir: Option<&Path>, word: &str) -> String {
+    let Some(dir) = dir.filter(|_| word.ends_with(".toml")) else {
+        return word.to_owned();
+    };
+    let [Ok(dir), Ok(file)] = [dir, Path::new(word)].map(std::path::absolute) else {
+        return word.to_owned();
+    };
+    let pairs = dir.components().zip(file.components());
+    let common = pairs.take_while(|(a, b)| a == b).count();
+    if common == 0 {
+        return file.display().to_string(); // on another drive
     }
+    let up = dir.components().skip(common).map(|_| "..");
+    let down = file.components().skip(common);
+    let down = down.map(|part| part.as_os_str().to_string_lossy().into_owned());
+    let all: Vec<String> = up.map(str::to_owned).chain(down).collect();
+    all.join("/")
 }
 
 fn law_of(setup: &Setup) -> &'static str {
@@ -407,6 +418,7 @@ fn law_of(setup: &Setup) -> &'static str {
     match law {
         Some(ClampLaw::TorqueFollowing { .. }) => "torque_following",
         Some(ClampLaw::SlipLimited { .. }) => "slip_limited",
+        Some(ClampLaw::Table) => "table",
         Some(ClampLaw::Map(_)) | None => "map",
     }
 }

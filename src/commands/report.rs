@@ -36,6 +36,9 @@ pub struct ReportArgs {
     /// Directory of a study or validation to include; repeatable
     #[arg(long, value_name = "DIR")]
     with: Vec<PathBuf>,
+    /// Every figure and table, not the body of twelve pages alone
+    #[arg(long)]
+    full: bool,
     /// Title, logo, author and remarks of the report (docs/report.md)
     #[arg(long, value_name = "FILE.toml")]
     cover: Option<String>,
@@ -71,7 +74,7 @@ impl Execute for ReportArgs {
                 .join(format!("report.{}", form.endings()[0])),
         };
         let target = problems.take(Target::new(&file, form, self.out.force));
-        Some((document?, target?))
+        Some((document?.shown(self.full), target?))
     }
 
     fn run(&self, (document, target): Self::Plan, _: Terminal) -> CommandResult {

@@ -16,11 +16,10 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, find_maps_left, name_run, summarise};
-use cvtcycle::study::attribute::{Attribution, Depth, attribute};
+use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run};
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
-use cvtcycle::study::words;
+use cvtcycle::study::run::{RunQuestion, summary};
 use cvtcycle::study::words::drawn::{differences, prepare};
 
 use super::vehicles::{self, Baselines, RunVehicle};
@@ -31,7 +30,8 @@ use crate::args::{
     VehicleArgs, count_if_given, names_of, number, one_of, word_of_plan,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
-use files::{TraceFormat, When};
+use cvtcycle::report::run_files::{self, TraceFormat};
+use files::When;
 
 /// Allowed number of draws.
 const DRAWS: RangeInclusive<u64> = 2..=100_000;
@@ -75,7 +75,8 @@ pub struct RunArgs {
     #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
     price: String,
     /// How sure the difference to each baseline is: drive all cars again with so many draws of the plan uncertainty_rover, its
-    /// ranges relative to the values of these cars. What --set gives is certain [default: only what is known of the shipped cars]
+    /// ranges relative to the values of these cars. What --set gives is certain; not with --columns [default: only what is known of
+    /// the shipped cars]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     draws: Option<String>,
     /// Fail (exit code 1) also where a model is used outside its validity, at gross slip or a clamp safety factor below 1,
@@ -87,8 +88,8 @@ pub struct RunArgs {
     /// Format of the traces: csv, parquet or both
     #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Names(|| names_of(&TraceFormat::NAMES)), hide_possible_values = true)]
     format: String,
-    /// Compute the effect of each value of each vehicle for the report: always, never, or auto (unless the cycle has more
-    /// than 20 000 steps)
+    /// Compute the effect of each value of each vehicle for the report of --out: always, never, or auto (unless the cycle has
+    /// more than 20 000 steps)
     #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
     sensitivity: String,
     #[command(flatten)]
@@ -223,22 +224,15 @@ impl Execute for RunArgs {
             set_all: self.comparison.set_all.clone(),
             strict: self.strict,
         };
-        let price = plan.price.wanted(cycle, plan.dt_s);
-        let start = plan.start.1;
-        let mut summary = summarise(cycle, plan.ambient_degc, start, settings.clone(), &driven);
-        find_maps_left(&mut summary, cycle, &conditions, &driven);
-        for (run, car) in summary.runs.iter_mut().zip(vehicles).filter(|_| price) {
-            let of = Attribution {
-                setup: &car.setup,
-                cycle,
-                conditions,
-                settings: &settings,
-                factor: 0.0,
-                depth: Depth::default(),
-            };
-            run.price = Some(attribute(&of, run));
-        }
-        words::run::assess(&mut summary, cycle, &driven);
+        let question = RunQuestion {
+            cycle,
+            conditions,
+            ambient_degc: plan.ambient_degc,
+            start: plan.start.1,
+            settings,
+            price: plan.price.wanted(cycle, plan.dt_s),
+        };
+        let mut summary = summary(&question, &driven);
         if let Some(study) = &plan.draws {
             let drawn = differences(study)?;
             for (comparison, drawn) in summary.comparison.iter_mut().zip(drawn) {
@@ -252,7 +246,7 @@ impl Execute for RunArgs {
         }
         let json = json_text(&summary)?;
         let files = WrittenFiles::write(out, |dir| {
-            files::write(dir, plan.format, &summary, cycle, &driven)?;
+            run_files::write(dir, plan.format, &summary, cycle, &driven)?;
             dir.put("summary.json", &json)?;
             // Last: it lists the others.
             if let Some(mut record) = record {

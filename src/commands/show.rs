@@ -8,6 +8,7 @@ use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
+use cvtcycle::study::explain::key_json;
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -64,14 +65,6 @@ enum Status {
     Like,
     /// Not in the file: default of the program
     Default,
-}
-
-/// A key as JSON.
-pub fn key_json(info: &KeyInfo) -> Value {
-    json!({
-        "key": info.key, "value": info.value, "unit": info.unit, "status": info.status, "source": info.source,
-        "note": info.note, "from": info.from, "allowed": info.allowed, "meaning": info.meaning(),
-    })
 }
 
 /// A row of the values of a key: its name, value, status, source and note. A longer value than `max_len` is in the last column.
@@ -252,7 +245,8 @@ fn counts(keys: &[KeyInfo]) -> String {
         (n > 0).then(|| format!("{n} {word}"))
     };
     let parts: Vec<String> = Status::value_variants().iter().filter_map(count).collect();
-    format!("\n{} keys: {}\n", keys.len(), parts.join(", "))
+    let sentence = format!("{} keys: {}", keys.len(), parts.join(", "));
+    format!("\n{}", wrapped(&sentence, ""))
 }
 
 /// Name of each phase, and its distances in km for a manual and for an automatic car.
@@ -298,9 +292,10 @@ fn cycle_text(cycle: &Cycle, paint: Paint) -> String {
     let duration = fixed(manual.duration_s(), 0);
     let highest = fixed(manual.max_speed_m_s() * 3.6, 1);
     let mean = fixed(manual.distance_m() / manual.duration_s() * 3.6, 1);
-    let mut text = format!(
-        "{name}  {title}\n\n{table}\nduration {duration} s, highest speed {highest} km/h, mean {mean} km/h; gears {gears}\n"
+    let facts = format!(
+        "duration {duration} s, highest speed {highest} km/h, mean {mean} km/h; gears {gears}"
     );
+    let mut text = format!("{name}  {title}\n\n{table}\n{}", wrapped(&facts, ""));
     text.extend(
         cycle
             .read_as

@@ -4,6 +4,8 @@ mod ambient;
 pub mod execution;
 mod export;
 pub mod levers;
+mod merge;
+mod share;
 mod tables;
 
 use std::path::PathBuf;
@@ -13,12 +15,12 @@ use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::execute::relative;
-use cvtcycle::study::plan::{Design, MAX_SAMPLES, Plan};
+use cvtcycle::study::plan::{MAX_SAMPLES, Plan};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::{Study, StudyManifest, store};
 
 use super::{Execute, threads};
-use crate::args::problems::{bad_value, problem};
+use crate::args::problems::problem;
 use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given, word_of_plan};
 use crate::print::{CommandResult, Terminal};
 use execution::{Says, StudyRunArgs};
@@ -36,6 +38,9 @@ Examples:
   cvtcycle study uncertainty_rover --samples 64 --vehicle mycar.toml --baseline twin
   cvtcycle study my_plan.toml --out my_study
   cvtcycle study my_plan.toml --out my_study --resume
+  cvtcycle study my_plan.toml --dry-run
+  cvtcycle study my_plan.toml --out s_3 --shard 3/100
+  cvtcycle study merge my_study s_*
   cvtcycle study show my_study
   cvtcycle study export my_study --out my_study.xlsx
 
@@ -57,6 +62,8 @@ enum StudyCommand {
     Show(StudyShowArgs),
     /// Write the table of all runs as one file: CSV, Parquet or Excel workbook
     Export(export::StudyExportArgs),
+    /// Put the shards of a study together, driven by other processes or machines
+    Merge(Box<merge::StudyMergeArgs>),
 }
 
 impl StudyArgs {
@@ -66,6 +73,7 @@ impl StudyArgs {
             Some(StudyCommand::Ambient(args)) => args.execute(terminal),
             Some(StudyCommand::Show(args)) => args.execute(terminal),
             Some(StudyCommand::Export(args)) => args.execute(terminal),
+            Some(StudyCommand::Merge(args)) => args.execute(terminal),
             None => self.plan.execute(terminal),
         }
     }
@@ -110,7 +118,8 @@ impl Execute for StudyPlanArgs {
         let samples = count("--samples", &self.samples, 2..=MAX_SAMPLES);
         let seed = count("--seed", &self.seed, 0..=u64::MAX);
         let mut plan = problems.take(Plan::open(word))?;
-        plan.design = problems.take(changed(&plan.design, samples, seed))?;
+        let changed = plan.design.changed(samples, seed);
+        plan.design = problems.take(changed.map_err(of_option))?;
         if let Some(vehicle) = &self.vehicle {
             plan = self.of_vehicle(plan, vehicle, problems)?;
         }
@@ -150,29 +159,10 @@ impl StudyPlanArgs {
     }
 }
 
-/// The design of the plan with the samples and the seed of the options.
-fn changed(design: &Design, samples: Option<u64>, seed: Option<u64>) -> Result<Design, Problem> {
-    let option = match (samples, seed) {
-        (None, None) => return Ok(*design),
-        (Some(_), _) => "--samples",
-        (None, Some(_)) => "--seed",
-    };
-    let (Some(range), Some(changed)) = (design.sample_range(), design.with(samples, seed)) else {
-        let message = "the design of the plan draws no samples";
-        let hint =
-            "--samples and --seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs";
-        return Err(problem(option, message, hint));
-    };
-    match samples {
-        Some(samples) if !range.contains(&samples) => {
-            let allowed = format!("{} to {}", range.start(), range.end());
-            let message = format!("{samples} samples are out of range for this design");
-            let hint = format!("the nearest allowed value is {}", range.end());
-            let value = samples.to_string();
-            Err(bad_value(option, &value, &allowed, &message, &hint))
-        }
-        _ => Ok(changed),
-    }
+/// The problem of a number that an option gives.
+fn of_option(found: Problem) -> Problem {
+    let option = format!("--{}", found.key);
+    found.in_file(option.as_str()).key(option)
 }
 
 /// Arguments of `study show`.

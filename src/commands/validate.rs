@@ -8,8 +8,8 @@ use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation::page;
 use cvtcycle::study::check::{
-    COMMON, CandidateVehicle, MECHANISMS, Perturbations, PowerReport, Report, RowFile,
-    ValidationRow, csv, embedded_rows, json, judge, markdown, read,
+    CandidateVehicle, MECHANISMS, Perturbations, PowerReport, Report, RowFile, ValidationRow, csv,
+    files, json, judge, markdown,
 };
 
 use super::{Execute, threads};
@@ -28,6 +28,7 @@ use crate::print::{
     after_help = "\
 Examples:
   cvtcycle validate
+  cvtcycle validate --all
   cvtcycle validate --chapter 5 --mechanism pump
   cvtcycle validate --held-out
   cvtcycle validate --set transmission.cvt.pump.displacement_cc_rev=12
@@ -56,6 +57,9 @@ pub struct ValidateArgs {
     /// Only rows that test the model: neither fitted to nor constants
     #[arg(long)]
     held_out: bool,
+    /// Print every row; without it, and without a choice of rows, those that differ or whose verdict moved
+    #[arg(long)]
+    all: bool,
     /// Change every number of the cars by itself and say which changes flip the verdict of each row
     #[arg(long)]
     power: bool,
@@ -118,11 +122,9 @@ impl Execute for ValidateArgs {
         }
         let form = problems.take(one_of("--format", &self.format, &FORMS));
         let texts = self.texts(problems);
-        let common = (embedded_name(COMMON.0), COMMON.1);
-        let files = problems
-            .take(read((&common.0, common.1), &texts))
-            .unwrap_or_default();
-        if !texts.is_empty() {
+        let files = texts.map(|own| problems.take(files(&own, !self.only_rows)));
+        let files = files.flatten().unwrap_or_default();
+        if !files.is_empty() {
             self.check_filters(&files, problems);
         }
         let out = self.out.dir(problems);
@@ -174,7 +176,7 @@ impl Execute for ValidateArgs {
             (ValidationForm::Table, power) => {
                 let tables = || match power {
                     Some(power) => tables::power(&report, power, terminal.stdout),
-                    None => tables::tables(&report, terminal.stdout),
+                    None => tables::tables(&report, self.rows_shown(), terminal.stdout),
                 };
                 return Ok(results.output(&self.output, tables));
             }
@@ -201,6 +203,18 @@ fn stopped() -> CommandOutput {
 }
 
 impl ValidateArgs {
+    /// Rows of the tables: all of what was chosen, of everything only those that need a look.
+    fn rows_shown(&self) -> tables::Shown {
+        let chosen = self.chapter.is_some()
+            || self.mechanism.is_some()
+            || self.held_out
+            || !self.rows.is_empty();
+        match self.all || chosen {
+            true => tables::Shown::All,
+            false => tables::Shown::Differing,
+        }
+    }
+
     /// What changes of the cars do to the rows; none if it was stopped.
     fn power_of(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
         let changes = Perturbations::of(files, &report.candidate);
@@ -218,20 +232,14 @@ impl ValidateArgs {
         self.car.need_cvt(vehicle.as_ref().ok(), hint, problems);
     }
 
-    /// Names and texts of all files of rows.
-    fn texts(&self, problems: &mut Problems) -> Vec<(String, String)> {
-        let embedded = embedded_rows().iter().filter(|_| !self.only_rows);
-        let embedded = embedded.map(|(name, text)| (embedded_name(name), (*text).to_owned()));
-        let mut texts: Vec<(String, String)> = embedded.collect();
-        let mut complete = true;
-        for path in &self.rows {
+    /// Names and texts of the user's files of rows; none if one of them cannot be read.
+    fn texts(&self, problems: &mut Problems) -> Option<Vec<(String, String)>> {
+        let read = |path: &String| {
             let text = bytes("--rows", path, bounded::TOML).and_then(|bytes| decode(path, &bytes));
-            match problems.take(text) {
-                Some(text) => texts.push((path.clone(), text)),
-                None => complete = false,
-            }
-        }
-        if complete { texts } else { Vec::new() }
+            problems.take(text).map(|text| (path.clone(), text))
+        };
+        let texts: Vec<_> = self.rows.iter().map(read).collect();
+        texts.into_iter().collect()
     }
 
     fn is_wanted(&self, row: &ValidationRow) -> bool {
@@ -272,10 +280,6 @@ impl ValidateArgs {
             problems.add(bad_value("--mechanism", name, &allowed, &message, &hint));
         }
     }
-}
-
-fn embedded_name(name: &str) -> String {
-    format!("embedded:{name}.toml")
 }
 
 fn html(report: &Report) -> Result<String, Problem> {

@@ -5,15 +5,21 @@ use std::ffi::OsString;
 use std::io::IsTerminal;
 
 use clap::{ColorChoice, ValueEnum};
+use cvtcycle::output::table::set_line_width;
+use terminal_size::{Width, terminal_size_of};
 
 /// Marks of styles within the program: code points that are no characters. [`Screen`](super::screen::Screen) turns them into what a terminal takes;
 /// one in the text of a file can make its line bold and nothing else.
 const HEADING: char = '\u{FDD0}';
 const BAD: char = '\u{FDD1}';
 pub const STYLE_END: char = '\u{FDD2}';
-const STYLES: [(char, &str); 3] = [
+const GOOD: char = '\u{FDD3}';
+const FAINT: char = '\u{FDD4}';
+const STYLES: [(char, &str); 5] = [
     (HEADING, "\u{1b}[1m"),
     (BAD, "\u{1b}[1;31m"),
+    (GOOD, "\u{1b}[32m"),
+    (FAINT, "\u{1b}[2m"),
     (STYLE_END, "\u{1b}[0m"),
 ];
 
@@ -44,8 +50,11 @@ pub fn choice(words: &[OsString]) -> ColorChoice {
 }
 
 impl Terminal {
-    /// Colours of both streams.
+    /// Colours of both streams; tables take the width of the terminal that shows standard output, where one does.
     pub fn new(choice: ColorChoice) -> Self {
+        if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
+            set_line_width(columns.into());
+        }
         // As no-color.org has it: set and not empty; the command line takes precedence.
         let declined = var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let dumb = var_os("TERM").is_some_and(|term| term == "dumb");
@@ -73,6 +82,16 @@ impl Paint {
     /// A heading.
     pub fn heading(self, text: &str) -> String {
         self.wrap(HEADING, text)
+    }
+
+    /// What agrees.
+    pub fn good(self, text: &str) -> String {
+        self.wrap(GOOD, text)
+    }
+
+    /// What says nothing either way.
+    pub fn faint(self, text: &str) -> String {
+        self.wrap(FAINT, text)
     }
 
     /// A failure.

@@ -6,10 +6,11 @@ mod screen;
 
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 use cvtcycle::config::{Problem, Problems, render};
+pub use cvtcycle::output::escape::json_text;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::table::wrapped;
 use serde::Serialize;
 
 use crate::args::problems::{in_options, problem};
@@ -134,9 +135,13 @@ impl Results {
     }
 }
 
+/// Number of files that are named after they were written; of more their number is printed.
+const MAX_NAMED: usize = 6;
+
 /// Files of a run, and those that an earlier run left in the same directory.
 #[derive(Debug, Default)]
 pub struct WrittenFiles {
+    dir: PathBuf,
     paths: Vec<PathBuf>,
     left_over: Vec<String>,
     note: &'static str,
@@ -155,6 +160,7 @@ impl WrittenFiles {
         let note = fill(&mut dir)?;
         let left_over = dir.left_over();
         Ok(WrittenFiles {
+            dir: dir.path().to_owned(),
             paths: dir.commit()?,
             left_over,
             note,
@@ -162,12 +168,18 @@ impl WrittenFiles {
     }
 
     fn list(&self) -> String {
-        if self.paths.is_empty() {
-            return String::new();
-        }
-        let line = |path: &PathBuf| format!("  {}\n", path.display());
-        let lines: String = self.paths.iter().map(line).collect();
-        format!("\nFiles written\n{lines}{}", self.note)
+        let dir = self.dir.display();
+        let names = self.paths.iter().map(|path| {
+            let name = path.strip_prefix(&self.dir).unwrap_or(path);
+            name.display().to_string()
+        });
+        let names: Vec<String> = names.collect();
+        let written = match names.len() {
+            0 => return String::new(),
+            1..=MAX_NAMED => wrapped(&names.join(", "), &format!("Files written in {dir}: ")),
+            count => format!("Files written in {dir}: {count}\n"),
+        };
+        format!("\n{written}{}", self.note)
     }
 
     fn left_over(&self) -> Option<String> {
@@ -182,19 +194,17 @@ pub fn sections<S: AsRef<str>>(
     paint: Paint,
 ) -> String {
     let shown = sections.into_iter().filter(|(_, body)| !body.is_empty());
-    let section =
-        |(title, body): (S, String)| format!("\n{}\n{body}", paint.heading(title.as_ref()));
+    let section = |(title, body): (S, String)| format!("\n{}{body}", bold(title.as_ref(), paint));
     shown.map(section).collect()
 }
 
-/// A value as indented JSON with a line end, hidden characters as `\uXXXX`.
-///
-/// # Errors
-/// A map whose keys are no text; no value of this program is one.
-pub fn json_text(value: &impl Serialize) -> Result<String, Problems> {
-    serde_json::to_string_pretty(value)
-        .map(|text| screen::escaped(text) + "\n")
-        .map_err(|error| problem("--json", &error.to_string(), "").into())
+/// A sentence in the style of a heading, wrapped to the width of a line.
+pub fn bold(sentence: &str, paint: Paint) -> String {
+    let lines = wrapped(sentence, "");
+    lines
+        .lines()
+        .map(|line| paint.heading(line) + "\n")
+        .collect()
 }
 
 /// Writes a long text in a form to standard output through `f` as it is made.
@@ -223,7 +233,7 @@ pub fn stream(
 }
 
 /// Prints the output of a command, or its problems, and returns the exit code.
-pub fn finish(result: CommandResult, terminal: Terminal) -> ExitCode {
+pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {
         problems: render(&problems.map(in_options), terminal.stderr.is_on()),
         ending: Ending::BadInput,
@@ -247,7 +257,7 @@ pub fn finish(result: CommandResult, terminal: Terminal) -> ExitCode {
         &output.stderr,
         terminal.stderr,
     ));
-    ExitCode::from(output.ending.code())
+    output.ending.code()
 }
 
 fn unwritten(error: &io::Error) -> Problem {

@@ -1,4 +1,5 @@
-//! Progress of a long computation on standard error: a bar on a terminal, a line every ten seconds elsewhere, nothing with --quiet.
+//! Progress of a long computation on standard error: a bar on a terminal; elsewhere a line after one second if the
+//! work is long, then every ten seconds; nothing with --quiet.
 
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
@@ -13,6 +14,10 @@ use super::Ending;
 
 /// Time between two lines where standard error is no terminal.
 const INTERVAL: Duration = Duration::from_secs(10);
+/// Time after which the first of them says how long the work will take, where that is known.
+const FIRST: Duration = Duration::from_secs(1);
+/// Time that must be left for that.
+const WORTH_A_LINE_S: f64 = 4.0;
 
 /// Set by Ctrl-C. SIGTERM ends the process at once, as a kill does: finished parts of a study stay.
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -30,8 +35,8 @@ pub struct Progress {
 enum Display {
     None,
     Bar(ProgressBar),
-    /// Time of the last line.
-    Lines(Mutex<Instant>),
+    /// Time of the last line, if there was one.
+    Lines(Mutex<Option<Instant>>),
 }
 
 impl Progress {
@@ -61,7 +66,7 @@ impl Progress {
             }
             Display::Bar(bar)
         } else {
-            Display::Lines(Mutex::new(Instant::now()))
+            Display::Lines(Mutex::new(None))
         };
         Progress {
             display,
@@ -88,8 +93,10 @@ impl Progress {
                 let Ok(mut last) = last.try_lock() else {
                     return;
                 };
-                if last.elapsed() >= INTERVAL {
-                    *last = Instant::now();
+                let waited = last.unwrap_or(self.begun).elapsed();
+                let is_first = last.is_none() && waited >= FIRST;
+                if waited >= INTERVAL || (is_first && self.left_s(done) >= Some(WORTH_A_LINE_S)) {
+                    *last = Some(Instant::now());
                     // If standard error cannot be written, no stream is left for a message.
                     drop(std::io::stderr().write_all(self.line(done).as_bytes()));
                 }
@@ -97,13 +104,19 @@ impl Progress {
         }
     }
 
+    /// Time that is left at the rate so far, s; none where the amount of work is unknown.
+    fn left_s(&self, done: u64) -> Option<f64> {
+        let rate = done as f64 / self.begun.elapsed().as_secs_f64();
+        self.total
+            .map(|total| total.saturating_sub(done) as f64 / rate)
+    }
+
     fn line(&self, done: u64) -> String {
         let (unit, seconds) = (self.unit, self.begun.elapsed().as_secs_f64());
-        let Some(total) = self.total else {
+        let (Some(total), Some(left)) = (self.total, self.left_s(done)) else {
             return format!("cvtcycle: {done} {unit}, {seconds:.0} s\n");
         };
         let rate = done as f64 / seconds;
-        let left = total.saturating_sub(done) as f64 / rate;
         format!("cvtcycle: {done} of {total} {unit}, {rate:.0} {unit}/s, {left:.0} s left\n")
     }
 }

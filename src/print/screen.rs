@@ -1,10 +1,11 @@
 //! Text on its way to a stream. What a file or the command line holds does nothing there but be read: each hidden character is shown as U+FFFD,
-//! or in JSON as `\uXXXX`. A stream has the same bytes whether a terminal reads it or not, but for the program's own styles.
+//! or in JSON as `\uXXXX`. A stream has the same bytes whether a terminal reads it or not, but for the program's own styles and for the width of a
+//! terminal, to which tables and sentences are wrapped.
 
-use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use cvtcycle::config::is_hidden;
+use cvtcycle::output::escape::push_escaped;
 
 use super::colour::{Paint, STYLE_END};
 
@@ -82,28 +83,6 @@ impl<W: Write> Write for Screen<W> {
     }
 }
 
-/// JSON with its hidden characters as `\uXXXX`: the same value.
-pub fn escaped(json: String) -> String {
-    if !json.contains(is_hidden) {
-        return json;
-    }
-    let mut text = String::with_capacity(json.len());
-    for c in json.chars() {
-        match is_hidden(c) {
-            true => push_escaped(&mut text, c),
-            false => text.push(c),
-        }
-    }
-    text
-}
-
-fn push_escaped(text: &mut String, c: char) {
-    for unit in c.encode_utf16(&mut [0; 2]) {
-        // Writing to a text does not fail.
-        let _ = write!(text, "\\u{unit:04x}");
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use clap::ColorChoice;
@@ -144,6 +123,5 @@ mod tests {
         );
         let json = "{\"a\":\"\u{7f}\u{202e}\"}\n";
         assert_eq!(through(Form::Json, json, 2), "{\"a\":\"\\u007f\\u202e\"}\n");
-        assert_eq!(escaped(json.to_owned()), "{\"a\":\"\\u007f\\u202e\"}\n");
     }
 }

@@ -112,6 +112,7 @@ impl Bench {
             gear: (!cvt).then_some(GearCommand::InGear(s.ratio as u8)),
             dt_s: 100.0, // long enough for any change of engine speed
             engine_off: false,
+            neutral_share: 0.0,
         };
         let mut state: TransmissionState = car.transmission.start(&around);
         if let Transmission::Cvt(cvt) = &car.transmission {

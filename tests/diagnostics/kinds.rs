@@ -138,13 +138,23 @@ fn points(case: &str) -> String {
 fn map(case: &str, name: &str) -> Option<Problems> {
     let (vehicle, key) = match name.split('_').next() {
         Some("bsfc") => ("rover_216_cvt", "engine.model.bsfc_map.file"),
+        Some("shift") => ("rover_216_cvt", "transmission.cvt.ratio.shift_map"),
+        Some("pressure") => ("rover_216_cvt", "transmission.cvt.clamp.table.file"),
+        Some("whole" | "scattered") => ("rover_216_cvt", "transmission.cvt.maps.box"),
         Some("box") => ("rover_216_5mt", "transmission.manual.maps.box"),
         _ => ("rover_216_cvt", "transmission.cvt.maps.belt"),
     };
     setup::load(
         vehicle,
         &Options {
-            set: vec![Override::new(key, case).unwrap()],
+            set: [
+                (key, case),
+                ("transmission.cvt.maps.box_points", "scattered"),
+            ]
+            .into_iter()
+            .take(if name.starts_with("scattered") { 2 } else { 1 })
+            .map(|(key, value)| Override::new(key, value).unwrap())
+            .collect(),
             ..Options::default()
         },
     )
@@ -162,6 +172,13 @@ fn vehicle(case: &str, text: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("car.toml");
     std::fs::write(&path, completed(text, own)).unwrap();
+    let tables = std::path::Path::new(case).with_file_name("tables");
+    std::fs::create_dir(folder.path().join("tables")).unwrap();
+    for entry in std::fs::read_dir(tables).unwrap() {
+        let entry = entry.unwrap();
+        let to = folder.path().join("tables").join(entry.file_name());
+        std::fs::copy(entry.path(), to).unwrap();
+    }
     let path = path.to_str().unwrap();
     let problems = setup::load(path, &Options::default())
         .err()

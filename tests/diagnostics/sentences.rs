@@ -30,12 +30,18 @@ const OUTSIDE: &[(&str, &str)] = &[
     ("cvtcycle", "options, words of the command line, output"),
     ("output::file", "output"),
     ("output::files", "output"),
+    ("python", "arguments of Python: crates/python/tests"),
     ("report::compare", "directories that the program wrote"),
     ("report::problems", "directories that the program wrote"),
     ("report::results", "directories that the program wrote"),
     (
         "study::check::judge",
         "found by computing only: tests/results/validate.rs",
+    ),
+    ("study::explain", "words given to options: tests/cli"),
+    (
+        "study::family",
+        "arguments of a call: crates/python/tests/test_family.py",
     ),
     (
         "study::levers::combine",
@@ -62,6 +68,22 @@ const PASSED_ON: [&str; 4] = [
 
 /// Sentences without a bad file: beginning of the sentence, and the reason.
 const EXCUSED: &[(&str, &str)] = &[
+    (
+        "the design of the plan draws no samples",
+        "names given to options: tests/cli",
+    ),
+    (
+        "samples and seed are for",
+        "names given to options: tests/cli",
+    ),
+    (
+        "{samples} samples are out of range for this design",
+        "names given to options: tests/cli",
+    ),
+    (
+        "the nearest allowed value is {}",
+        "names given to options: tests/cli",
+    ),
     (" The message is one sentence", "text of documentation"),
     (
         "problem is",

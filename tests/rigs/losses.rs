@@ -228,7 +228,10 @@ fn refusals() {
         (vec!["--speed", "0..4000:100"], "out of range"),
         (vec!["--ratio", "0.01"], "out of range"),
         (vec!["--as-map", "belts"], "did you mean `belt"),
-        (vec!["--as-map", "box"], "no component `box`"),
+        (
+            vec!["--as-map", "box", "--pressure", "10,20"],
+            "a map of the whole box has the pressure of the clamp law",
+        ),
         (
             vec!["--as-map", "belt", "--throttle", "0,1"],
             "no such axis",
@@ -292,7 +295,7 @@ fn output_directory() {
         assert!(
             text.contains("ratio 0.5")
                 && text.contains("Input speed [rpm]")
-                && text.contains("Loss [Nm]"),
+                && text.contains("Loss [N m]"),
             "{name}"
         );
     }
@@ -335,7 +338,7 @@ fn every_axis_can_be_drawn() {
         (
             "--torque",
             "20,60",
-            "Torque at the output shaft [Nm]",
+            "Torque at the output shaft [N m]",
             "output_torque_nm",
         ),
         (

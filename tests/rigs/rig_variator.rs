@@ -62,7 +62,7 @@ fn outputs() {
         "ratio 0.5, 1500 rpm",
         "78.8",
         "100 turns of the belt",
-        "curves.csv",
+        "Files written in",
     ] {
         assert!(table.contains(word), "{word}: {table}");
     }

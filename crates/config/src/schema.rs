@@ -6,7 +6,7 @@ use cvtcycle_model::files::{HEAD, HeadKeys};
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Repeat, Table};
 use serde_json::{Map, Value, json};
 
-use crate::reader::value::STATUSES;
+use crate::reader::value::{COLUMNS, STATUSES};
 
 /// The schema of a kind of file: its name in the title, and its keys.
 ///
@@ -116,12 +116,15 @@ fn entry(key: &Key<'_>, complete: bool) -> Value {
                 "value": bare,
                 "status": { "enum": STATUSES },
                 "source": text,
-                "note": text,
+                "note": text.clone(),
             },
             "required": ["value"],
             "additionalProperties": false,
         }),
     ];
+    if matches!(key.kind, Kind::Csv) {
+        forms[1]["properties"][COLUMNS] = text;
+    }
     if let Kind::Options(choices) = key.kind {
         forms.push(options(choices, complete));
     }
@@ -177,7 +180,7 @@ fn value(kind: &Kind<'_>) -> Value {
         Kind::Integer(low, i64::MAX) => json!({ "type": "integer", "minimum": low }),
         Kind::Integer(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Text | Kind::Name(_) => json!({ "type": "string" }),
+        Kind::Text | Kind::Csv | Kind::Name(_) => json!({ "type": "string" }),
         Kind::Words(choices) | Kind::Options(choices) => {
             json!({ "enum": choices.iter().map(|choice| choice.name).collect::<Vec<_>>() })
         }

@@ -16,6 +16,7 @@ keys! {
     /// Keys of `[vehicle]`.
     HEAD: HeadKeys = "vehicle" [] {
         title: computed("name of the file", text()), "name for people";
+        short: computed("name of the file", text()), "name in tables and figures, a word or two";
         like: (NAMES, Presence::Optional), "what gives the values that this file leaves out: vehicles by name or path, and classes as class:NAME; of several, the later takes precedence";
         baselines: (NAMES, Presence::Computed("none")), "names of the baseline vehicles; twin is the same car with a manual box";
         transmission_oil: text(), "name of the transmission oil";

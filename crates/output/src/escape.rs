@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use cvtcycle_config::visible;
+use cvtcycle_config::{Problem, Problems, is_hidden, visible};
+use serde::Serialize;
 
 /// Text that Markdown and the HTML in it take as it is: one line, nothing that ends a cell of a table or begins markup.
 ///
@@ -58,6 +59,32 @@ pub fn url_path(path: &[u8]) -> String {
         }
     }
     out
+}
+
+/// A value as indented JSON with a line end, hidden characters as `\uXXXX`.
+///
+/// # Errors
+/// A map whose keys are no text; no value of this program is one.
+pub fn json_text(value: &impl Serialize) -> Result<String, Problems> {
+    let json =
+        serde_json::to_string_pretty(value).map_err(|error| Problem::invalid(error.to_string()))?;
+    let mut text = String::with_capacity(json.len() + 1);
+    for c in json.chars() {
+        match is_hidden(c) {
+            true => push_escaped(&mut text, c),
+            false => text.push(c),
+        }
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+/// Appends a character as `\uXXXX`.
+pub fn push_escaped(text: &mut String, c: char) {
+    for unit in c.encode_utf16(&mut [0; 2]) {
+        // Writing to a text does not fail.
+        let _ = write!(text, "\\u{unit:04x}");
+    }
 }
 
 fn escaped(text: &str, put: impl Fn(char, &mut String)) -> String {

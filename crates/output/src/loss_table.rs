@@ -1,7 +1,7 @@
 //! Our losses in the form of the measured maps that a vehicle file can name: `[transmission.cvt.maps]`, `[transmission.manual.maps]`.
 //!
 //! The torque axis of such a map is the component's own: at the secondary pulley for the belt, behind it without the final drive's loss
-//! for the final drive, at the input shaft for a manual box. The other components of a CVT do not depend on torque.
+//! for the final drive, at the input shaft for a whole box. The other components of a CVT do not depend on torque.
 
 use std::io::{self, Write};
 
@@ -26,7 +26,7 @@ pub enum MapPart {
     SealRing,
     /// Final drive of the CVT.
     FinalDrive,
-    /// Whole manual box.
+    /// Whole box, of a CVT without its launch device.
     Box,
 }
 
@@ -42,7 +42,7 @@ impl MapPart {
         ("box", MapPart::Box),
     ];
 
-    /// Whether it is a part of a CVT; otherwise of a manual box.
+    /// Whether it is a part of a CVT alone.
     pub fn of_cvt(self) -> bool {
         self != MapPart::Box
     }
@@ -93,11 +93,24 @@ fn own_ratio(bench: &Bench, point: &BenchPoint) -> f64 {
     }
 }
 
-/// The point at which the box takes the point's torque at its input instead of giving it at its output.
+/// The point at which the box takes the point's torque at its input instead of giving it at its output. In a CVT the clamp law sees that torque over
+/// full load as throttle.
 fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
-    let (wanted_nm, overall) = (point.output_nm, own_ratio(bench, point));
+    let car = bench.car();
+    let (wanted_nm, own) = (point.output_nm, own_ratio(bench, point));
+    let (overall, throttle) = match car.transmission.is_cvt() {
+        true => {
+            let full_load_nm = car.engine.full_load.at(point.input_rad_s);
+            (
+                own * point.ratio,
+                (wanted_nm / full_load_nm).clamp(0.0, 1.0),
+            )
+        }
+        false => (own, point.throttle),
+    };
     let mut found = BenchPoint {
         output_nm: wanted_nm * overall,
+        throttle,
         ..*point
     };
     // The losses change by a few per cent of the torque, so that each pass leaves a few per cent of the error.
@@ -115,9 +128,9 @@ fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
 type MapPoint = ([f64; Axis::COUNT], f64);
 
 /// Columns of the map over a grid: its axes, then the loss.
-fn map_columns(part: MapPart, grid: &LossGrid) -> Vec<Column<MapPoint>> {
-    let ratio = if part.of_cvt() { "ratio" } else { "gear" };
-    let pressure = !grid.of(Axis::Pressure).is_empty();
+fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPoint>> {
+    let ratio = if is_cvt { "ratio" } else { "gear" };
+    let pressure = !grid.of(Axis::Pressure).is_empty() && part.of_cvt();
     let axes = [
         (Some(ratio), Axis::Ratio),
         (Some("input_speed_rpm"), Axis::Speed),
@@ -147,5 +160,6 @@ pub fn write_map(
         let asked = grid.at(index);
         (asked, part.loss_nm(bench, &bench_point(&asked)))
     });
-    write_csv(out, &map_columns(part, grid), rows, &[])
+    let is_cvt = bench.car().transmission.is_cvt();
+    write_csv(out, &map_columns(part, is_cvt, grid), rows, &[])
 }

@@ -5,8 +5,8 @@
 use std::io::{self, Write};
 
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::to_si;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
+use cvtcycle_config::{Bound, to_si};
+use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, solvable_ratios};
 use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 
@@ -57,6 +57,34 @@ impl Axis {
         Axis::Torque,
         Axis::Speed,
     ];
+
+    /// Range of its values, and the suffix of a key with its unit; ratios and gears depend on the transmission.
+    pub fn range(self) -> (Bound, &'static str) {
+        // Where the fluid models hold.
+        let temp = Bound::closed(-40.0, 160.0);
+        match self {
+            Axis::Ratio => (Bound::any(), ""),
+            Axis::Sump | Axis::Belt => (temp, "_degc"),
+            Axis::Throttle => (Bound::closed(0.0, 1.0), ""),
+            Axis::Pressure => (Bound::closed(0.0, 100.0), "_bar"),
+            Axis::Torque => (Bound::closed(-5000.0, 5000.0), "_nm"),
+            Axis::Speed => (Bound::open_low(0.0, 10_000.0), "_rpm"),
+        }
+    }
+
+    /// As [`Axis::range`], for a transmission: ratios at which the belt fits around both pulleys, or gears that there are.
+    pub fn range_in(self, transmission: &Transmission) -> (Bound, &'static str) {
+        match (self, transmission) {
+            (Axis::Ratio, Transmission::Cvt(cvt)) => {
+                let (low, high) = solvable_ratios(&cvt.belt);
+                (Bound::closed(low, high), "")
+            }
+            (Axis::Ratio, Transmission::Manual(manual)) => {
+                (Bound::closed(1.0, manual.overall.len() as f64), "")
+            }
+            _ => self.range(),
+        }
+    }
 
     /// Title of a plot's axis and heading of a table's column.
     fn names(self, cvt: bool) -> (&'static str, &'static str) {

@@ -6,7 +6,9 @@ use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
 };
 use cvtcycle_config::cycle::{Cycle, GearCommand, Weighting};
-use cvtcycle_config::setup::{Kind, Options, Setup, embedded_vehicles, is_path, load, text_of};
+use cvtcycle_config::setup::{
+    Kind, Options, Setup, embedded_vehicles, is_path, is_twin, load, text_of,
+};
 use cvtcycle_config::{KeyInfo, Problems, unit_of};
 use cvtcycle_model::drive::fuel_map;
 use cvtcycle_model::engine::FuelModel;
@@ -92,6 +94,13 @@ fn car_text(setup: &Setup) -> String {
     lines.sort_unstable();
     if let Transmission::Cvt(cvt) = setup.transmission() {
         lines.push(format!("formulation = {}\n", cvt.belt.formulation.name()));
+        if let Some(map) = &cvt.ratio.shift_map {
+            lines.push(format!("shift map = {:?}\n", map.points()));
+        }
+        if let Some(table) = &cvt.pressure_table {
+            let (axes, values) = (table.grid().axes(), table.grid().values());
+            lines.push(format!("pressure table = {axes:?} {values:?}\n"));
+        }
     }
     for (component, map) in setup.transmission().maps() {
         let (axes, values) = (map.grid().axes(), map.grid().values());
@@ -149,14 +158,14 @@ struct Reference {
     same: usize,
 }
 
-/// A shipped vehicle is held against itself, a file of the user against the shipped one with which it shares most values.
+/// A shipped vehicle is held against itself, a file of the user, or a twin, against the shipped one with which it shares most values.
 fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, Problems> {
     let plain = Options {
         formulation: options.formulation,
         ..Options::default()
     };
     let names = embedded_vehicles().iter().map(|(name, _)| *name);
-    let names = names.filter(|name| is_path(word) || *name == word);
+    let names = names.filter(|name| is_path(word) || is_twin(word) || *name == word);
     let mut best: Option<Reference> = None;
     for name in names {
         let shipped = load(name, &plain)?;
@@ -283,12 +292,14 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
 fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
     cvt.ratio.target_rad_s(&RatioDemand {
         secondary_rad_s: 0.0,
+        primary_rad_s: 0.0,
         speed_m_s: 0.0,
         power_w: share * rated_w,
         share,
         full_load_rad_s: cvt
             .full_load_route
             .at(share * rated_w / cvt.ratio.route_efficiency),
+        mapped_rad_s: None,
         cold_rad_s: 0.0,
         ratio_before: 1.0,
         flow_down_per_s: f64::INFINITY,

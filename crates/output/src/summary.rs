@@ -155,12 +155,19 @@ pub fn summarise(
 ) -> Summary {
     let roles = ["subject"].into_iter().chain(std::iter::repeat("baseline"));
     let runs = driven.iter().zip(roles);
-    let runs: Vec<RunSummary> = runs
+    let mut runs: Vec<RunSummary> = runs
         .map(|(car, role)| RunSummary {
             notes: notes(car.setup, driven[0].setup, ambient_degc),
             ..run_summary(cycle, role, &settings, car)
         })
         .collect();
+    // Two cars of one short name would be one in a table.
+    let shorts: Vec<String> = runs.iter().map(|run| run.short.clone()).collect();
+    for run in &mut runs {
+        if shorts.iter().filter(|short| **short == run.short).count() > 1 {
+            run.short.clone_from(&run.vehicle);
+        }
+    }
     let baselines = runs.iter().zip(driven).skip(1);
     let comparison = baselines
         .map(|(baseline, of)| {
@@ -183,6 +190,33 @@ pub fn summarise(
         runs,
         comparison,
         contradicted: Vec::new(),
+    }
+}
+
+impl Summary {
+    /// The same with the cars under their names in tables and figures, for words on it.
+    #[must_use]
+    pub fn labelled(&self) -> Self {
+        let mut of = self.clone();
+        let names: Vec<_> = self
+            .runs
+            .iter()
+            .map(|run| (&run.vehicle, run.label()))
+            .collect();
+        let label = |name: &mut String| {
+            if let Some((_, label)) = names.iter().find(|(vehicle, _)| *vehicle == name) {
+                *name = (*label).to_owned();
+            }
+        };
+        of.runs.iter_mut().for_each(|run| label(&mut run.vehicle));
+        of.comparison
+            .iter_mut()
+            .for_each(|of| label(&mut of.baseline));
+        let contradicted = of.contradicted.iter_mut();
+        contradicted
+            .filter_map(|of| of.baseline.as_mut())
+            .for_each(label);
+        of
     }
 }
 

@@ -20,7 +20,7 @@
 mod text;
 mod write;
 
-pub use text::{TextColumns, TextTable, WIDTH, cut, wrapped};
+pub use text::{TextColumns, TextTable, cut, line_width, paragraphs, set_line_width, wrapped};
 pub use write::{CsvWriter, csv_bytes, json_columns, json_row, json_rows, write_csv, write_json};
 
 use std::borrow::Cow;

@@ -11,6 +11,8 @@ pub struct Document {
     pub title: String,
     /// What it is about, one line.
     pub subtitle: String,
+    /// Cycle and conditions in a few words, for the head of each page.
+    pub running: String,
     /// Author, organisation, date, as the user wrote them.
     pub byline: Vec<String>,
     /// The user's logo as a data URI, with its words.
@@ -30,13 +32,19 @@ pub struct Section {
     pub title: String,
     /// Its parts.
     pub blocks: Vec<Block>,
+    /// What only a full report has besides.
+    pub more: Vec<Block>,
 }
 
 /// A part of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
+    /// The question that the document answers.
+    Question(String),
     /// A sentence that says what matters.
     Lead(String),
+    /// Boxes side by side, each with a head and its lines.
+    Boxes(Vec<(String, Vec<String>)>),
     /// A paragraph.
     Text(String),
     /// A paragraph that must not be missed.
@@ -108,6 +116,7 @@ impl Section {
             id: id.to_owned(),
             title: title.to_owned(),
             blocks: Vec::new(),
+            more: Vec::new(),
         }
     }
 
@@ -237,6 +246,17 @@ impl Figure {
 }
 
 impl Document {
+    /// The body alone, or all of it: sections without anything to show are left out.
+    #[must_use]
+    pub fn shown(mut self, full: bool) -> Self {
+        for section in &mut self.sections {
+            let more = std::mem::take(&mut section.more);
+            section.blocks.extend(more.into_iter().filter(|_| full));
+        }
+        self.sections.retain(|section| !section.blocks.is_empty());
+        self
+    }
+
     /// The figures, each with the name of its file, which is plain and no other figure has.
     pub fn figures(&self) -> impl Iterator<Item = (String, &Figure)> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);

@@ -10,6 +10,7 @@
 //! | `study::levers` | the sections on a study of levers |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
+//! | `run_files` | the files of a run, of which a report is made |
 //! | `write` | the files of a report |
 //! | `render` | the document as HTML or Markdown (templates in `reports/`) |
 //!
@@ -24,6 +25,7 @@ pub mod number;
 mod problems;
 pub mod render;
 mod run;
+pub mod run_files;
 mod study;
 pub mod study_answers;
 pub mod study_pictures;

@@ -141,7 +141,57 @@ pub(crate) fn minus(text: &str) -> String {
 
 /// A unit as it is written.
 pub(crate) fn sign(unit: &str) -> &str {
-    if unit == "degC" { "\u{b0}C" } else { unit }
+    match unit {
+        "degC" => "\u{b0}C",
+        "Nm" => "N\u{a0}m",
+        "Nms" => "N\u{a0}m\u{a0}s",
+        "L/100 km" => "L/100\u{a0}km",
+        unit => unit,
+    }
+}
+
+/// Units that stay on the line of their number.
+const UNITS: [&str; 12] = [
+    "%", "kJ", "MJ", "km", "s", "K", "W", "rpm", "bar", "mm", "g/km", "kJ/km",
+];
+
+/// A text of the program as print has it: units as `sign` writes them and on the line of their number, true minus signs, \u{b1}. What is typed
+/// into a terminal stays as it is: words in backticks, options with their value, settings.
+pub fn typeset(text: &str) -> String {
+    let mut out = String::with_capacity(text.len() + 8);
+    let (mut code, mut option) = (false, false);
+    for (k, word) in text.split(' ').enumerate() {
+        let ticks = word.matches('`').count();
+        let typed = code || option || ticks > 0 || word.contains('=') || word.starts_with("--");
+        code ^= ticks % 2 == 1;
+        option = word.starts_with("--");
+        let unit = word.trim_matches(|c: char| "[](),.;:".contains(c));
+        let written = if typed { unit } else { sign(unit) };
+        if k > 0 {
+            let is_unit = written != unit || UNITS.contains(&unit);
+            let counted = is_unit && !typed && out.ends_with(|c: char| c.is_ascii_digit());
+            out.push(if counted { SPACE } else { ' ' });
+        }
+        match written == unit {
+            true if typed => out += word,
+            true => with_signs(&mut out, word),
+            false => out += &word.replacen(unit, written, 1),
+        }
+    }
+    out
+}
+
+/// Adds a word with true minus signs before numbers, and \u{b1}.
+fn with_signs(out: &mut String, word: &str) {
+    let word = word.replace("+-", "\u{b1}");
+    let mut before = ' ';
+    let mut rest = word.chars().peekable();
+    while let Some(c) = rest.next() {
+        let sign = c == '-' && !before.is_alphanumeric() && before != '_';
+        let number = sign && rest.peek().is_some_and(char::is_ascii_digit);
+        out.push(if number { MINUS } else { c });
+        before = c;
+    }
 }
 
 /// "Torque [Nm]"; the name alone without a unit.
@@ -166,6 +216,14 @@ pub fn percent(part: impl Into<Option<f64>>, whole: f64) -> String {
 pub fn tiny(x: Option<f64>) -> String {
     let text = |_| number::tiny(x).replace('-', &MINUS.to_string());
     x.map_or_else(|| NONE.to_owned(), text)
+}
+
+/// "a, b and c".
+pub(crate) fn list_of(words: &[String]) -> String {
+    match words {
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        words => words.concat(),
+    }
 }
 
 /// A word of the program as people read it.

@@ -5,7 +5,8 @@ use std::fmt;
 use askama::Template;
 use askama::filters::Escaper;
 
-use super::document::{Block, Document};
+use super::document::{Block, Document, ReportTable};
+use super::number::typeset;
 use cvtcycle_config::visible;
 use cvtcycle_output::PROGRAM;
 
@@ -28,6 +29,8 @@ struct Text<'a> {
 }
 
 struct ShownSection<'a> {
+    /// Whether it is the first, a page of its own on paper.
+    first: bool,
     id: &'a str,
     title: &'a str,
     blocks: Vec<ShownBlock<'a>>,
@@ -111,8 +114,9 @@ fn sections<'a>(document: &'a Document) -> Vec<ShownSection<'a>> {
             file,
         }
     };
-    let sections = document.sections.iter();
-    let sections = sections.map(|of| ShownSection {
+    let sections = document.sections.iter().enumerate();
+    let sections = sections.map(|(k, of)| ShownSection {
+        first: k == 0,
         id: &of.id,
         title: &of.title,
         blocks: of.blocks.iter().map(&mut shown).collect(),
@@ -125,10 +129,97 @@ fn paragraphs(text: &str) -> impl Iterator<Item = &str> {
     text.lines().map(str::trim).filter(|line| !line.is_empty())
 }
 
+/// Height of a drawing up to which two of them fill a page of A4, pixels.
+const TWO_A_PAGE: f64 = 580.0;
+
+/// Whether a drawing is too tall for two on a page: made smaller its text could not be read.
+fn is_tall(svg: &str) -> bool {
+    let height = svg.split(" height=\"").nth(1);
+    let height = height.and_then(|rest| rest.split('"').next());
+    height
+        .and_then(|text| text.parse().ok())
+        .is_some_and(|height: f64| height > TWO_A_PAGE)
+}
+
 /// A drawing whose ids no other drawing of the page has.
 fn with_own_ids(svg: &str, number: &usize) -> String {
     svg.replace(" id=\"", &format!(" id=\"f{number}-"))
         .replace("url(#", &format!("url(#f{number}-"))
+}
+
+/// Letters from which on a key or a path may be broken at its joints.
+const LONG_KEY: usize = 12;
+/// Digits of a folded hash, and of a whole one.
+const HASH: (usize, usize) = (12, 64);
+
+/// Text of the program in HTML: typeset, escaped, broken between words and at the joints of keys only; hashes are folded or whole.
+fn flowing(text: &str, fold: bool) -> String {
+    let text = typeset(text);
+    let words = text.split(' ').map(|word| match is_hash(word) {
+        true if fold => format!(
+            "<span class=\"hash\" title=\"{word}\">{}\u{2026}</span>",
+            &word[..HASH.0]
+        ),
+        true => format!("<span class=\"hash\">{word}</span>"),
+        false => jointed(&escaped(word)),
+    });
+    coded(&words.collect::<Vec<_>>().join(" "))
+}
+
+/// What is typed into a terminal, marked in HTML: the text between each pair of backticks.
+fn coded(html: &str) -> String {
+    let mut out = String::with_capacity(html.len());
+    let mut rest = html;
+    while let Some((before, [code, after])) = rest
+        .split_once('`')
+        .and_then(|(before, rest)| Some((before, <[&str; 2]>::from(rest.split_once('`')?))))
+    {
+        out += &format!("{before}<code>{code}</code>");
+        rest = after;
+    }
+    out + rest
+}
+
+fn is_hash(word: &str) -> bool {
+    word.len() == HASH.1 && word.bytes().all(|b| b.is_ascii_hexdigit())
+}
+
+fn escaped(text: &str) -> String {
+    let mut out = String::new();
+    // A string takes every text.
+    let _ = Html.write_escaped_str(&mut out, text);
+    out
+}
+
+/// A key with places to break after its points, lines and strokes; any other word as it is.
+fn jointed(word: &str) -> String {
+    let joint = |c: char| "_./:=".contains(c);
+    let is_key = word.chars().count() >= LONG_KEY
+        && word.contains(joint)
+        && word.contains(|c: char| c.is_alphabetic());
+    if !is_key {
+        return word.to_owned();
+    }
+    let mut out = "<span class=\"key\">".to_owned();
+    let mut rest = word.chars().peekable();
+    while let Some(c) = rest.next() {
+        out.push(c);
+        if joint(c) && rest.peek().is_some_and(|next| next.is_alphanumeric()) {
+            out += "<wbr>";
+        }
+    }
+    out + "</span>"
+}
+
+/// Whether a table has hashes, which are folded in it.
+fn has_hashes(table: &ReportTable) -> bool {
+    let mut cells = table.rows.iter().flat_map(|row| &row.cells);
+    cells.any(|cell| is_hash(cell))
+}
+
+/// The hashes among facts.
+fn hashes_of(facts: &[(String, String)]) -> Vec<&(String, String)> {
+    facts.iter().filter(|(_, value)| is_hash(value)).collect()
 }
 
 /// Filters of the templates.
@@ -140,7 +231,42 @@ mod filters {
     /// Text that Markdown and HTML take as it is.
     #[askama::filter_fn]
     pub fn md(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
-        Ok(escape::markdown(&text.to_string()))
+        Ok(escape::markdown(&super::typeset(&text.to_string())))
+    }
+
+    /// Text as print has it, to be escaped.
+    #[askama::filter_fn]
+    pub fn typeset(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
+        Ok(super::typeset(&text.to_string()))
+    }
+
+    /// Text as HTML with places to break keys, hashes folded.
+    #[askama::filter_fn]
+    pub fn flow(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
+        Ok(super::flowing(&text.to_string(), true))
+    }
+
+    /// The same with whole hashes.
+    #[askama::filter_fn]
+    pub fn whole(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
+        Ok(super::flowing(&text.to_string(), false))
+    }
+
+    /// A unit as it is written.
+    #[askama::filter_fn]
+    pub fn unit(unit: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
+        Ok(crate::number::sign(&unit.to_string()).to_owned())
+    }
+
+    /// Text within the quotes of a style sheet.
+    #[askama::filter_fn]
+    pub fn css(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
+        let text = super::typeset(&text.to_string());
+        let code = |c: char| match c {
+            c if c.is_alphanumeric() || " ,.()".contains(c) => c.to_string(),
+            c => format!("\\{:x} ", u32::from(c)),
+        };
+        Ok(super::visible(&text).chars().map(code).collect())
     }
 
     /// The name of a file as part of an address.

@@ -1,5 +1,6 @@
 //! Reads a directory of results.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -79,6 +80,23 @@ impl StudyResults {
         Self::of(outline, store, confidence)
     }
 
+    /// As [`StudyResults::open`], with the names of cars that tables and figures of a report have.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn open_for_report(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
+        let (mut outline, store) = Self::stored(path)?;
+        for car in &mut outline.cars {
+            *car = label(store.manifest(), car);
+        }
+        Self::of(outline, store, confidence)
+    }
+
+    /// The name in tables and figures of a car.
+    pub fn label(&self, vehicle: &str) -> String {
+        label(&self.manifest, vehicle)
+    }
+
     /// Opens without an answer.
     ///
     /// # Errors
@@ -149,6 +167,22 @@ impl StudyResults {
     }
 }
 
+/// The name in tables and figures of a car of a study's manifest: its short one, unless two cars have that. Names of columns of levers begin
+/// with that of their car.
+fn label(manifest: &Value, vehicle: &str) -> String {
+    let cars = manifest["cars"].as_array().into_iter().flatten();
+    let named = |car: &Value| {
+        let name = car["name"].as_str()?.split('/').next()?.to_owned();
+        Some((name, car["short"].as_str()?.to_owned()))
+    };
+    let cars: BTreeSet<(String, String)> = cars.filter_map(named).collect();
+    let alone = |short: &&String| cars.iter().filter(|of| of.1 == **short).count() == 1;
+    let own = cars.iter().find(|(name, _)| name == vehicle);
+    let short = own.map(|(_, short)| short).filter(alone);
+    let short = short.filter(|short| !short.is_empty());
+    short.map_or(vehicle, String::as_str).to_owned()
+}
+
 /// Looks into a directory: a study, or a run with studies (`DIR/*/study.json`) and a validation (`DIR/*/summary.json` of `validate`)
 /// in subdirectories. `extra` names more such directories.
 ///
@@ -158,7 +192,7 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
     settle(path)?;
     if is_study(path) {
-        return Ok(ResultDir::Study(Box::new(StudyResults::open(
+        return Ok(ResultDir::Study(Box::new(StudyResults::open_for_report(
             path,
             Confidence::default(),
         )?)));
@@ -178,12 +212,17 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
         let problem = problem(path, message, hint);
         return Err(problem.settings(&[Setting::Added]).into());
     }
+    if is_optimum(&value) {
+        let hint = "its bound.csv, least_speed.csv and path.csv are its tables; drive the vehicle file with its line for a report";
+        let message = "this is the answer of `cvtcycle optimum`, which has no report";
+        return Err(problem(path, message, hint).into());
+    }
     let mut found = run(path, &file, value, &sum)?;
     let subdirectories = entries.flatten().map(|entry| entry.path());
     let mut subdirectories: Vec<PathBuf> = subdirectories.filter(|path| path.is_dir()).collect();
     subdirectories.sort();
     let mut problems = Problems::new();
-    let mut seen = std::collections::BTreeSet::new();
+    let mut seen = BTreeSet::new();
     let required = extra.iter().map(|dir| (dir, true));
     for (dir, required) in required.chain(subdirectories.iter().map(|dir| (dir, false))) {
         // One study may be named twice, and lie in the directory of the run as well.
@@ -203,17 +242,23 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
     if is_study(dir) {
         found
             .studies
-            .push(StudyResults::open(dir, Confidence::default())?);
+            .push(StudyResults::open_for_report(dir, Confidence::default())?);
         return Ok(());
     }
     settle(dir)?;
     let file = dir.join(SUMMARY);
     let found_file = file.exists().then(|| json(&file).ok()).flatten();
-    match found_file.map(|(value, _)| value).filter(is_validation) {
+    let found_value = found_file.map(|(value, _)| value);
+    let is_answer_of_optimum = found_value.as_ref().is_some_and(is_optimum);
+    match found_value.filter(is_validation) {
         Some(value) => found.validation = Some(value),
         None if required => {
             let hint = "name a directory that `cvtcycle study` or `cvtcycle validate` has written";
-            let message = format!("{} holds neither a study nor a validation", dir.display());
+            let what = match is_answer_of_optimum {
+                true => "holds the answer of `cvtcycle optimum`, which has no report",
+                false => "holds neither a study nor a validation",
+            };
+            let message = format!("{} {what}", dir.display());
             return Err(problem(dir, &message, hint));
         }
         None => {}
@@ -225,6 +270,11 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
 fn settle(dir: &Path) -> Result<(), Problem> {
     let settled = files::settle(dir);
     settled.map_err(|problem| problem.in_file(dir.display().to_string()))
+}
+
+/// True for the summary of `optimum`.
+fn is_optimum(value: &Value) -> bool {
+    value["bounds"].is_array() && value["least_speeds"].is_array()
 }
 
 fn is_validation(value: &Value) -> bool {

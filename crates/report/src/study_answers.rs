@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::number::degc;
 use super::results::StudyResults;
 use cvtcycle_output::summary::Summary;
-use cvtcycle_study::levers::{LeverBlock, answer_in_words, lever_answer};
+use cvtcycle_study::levers::{LeverAnswer, LeverBlock, answer_in_words, lever_answer};
 use cvtcycle_study::words::study::sentences;
 
 /// Differences between the cases of a study and of a run; none if they are the same.
@@ -37,7 +37,9 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
         .map_or(&[][..], Vec::as_slice);
     let own = match columns.iter().find(|column| column["vehicle"] == subject) {
         Some(_) => subject,
-        None => study.outline.cars.first().map_or("", String::as_str),
+        None => study.manifest["cars"][0]["name"]
+            .as_str()
+            .unwrap_or_default(),
     };
     differ("subject", own, subject);
     let is_own = |degc: &f64| (degc - run.ambient_degc).abs() <= 1e-9;
@@ -68,40 +70,32 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
 
 /// The answer of a study in sentences.
 pub fn answers(study: &StudyResults) -> Vec<String> {
-    let said = sentences(&study.answer, &study.outline);
-    said.iter().map(|line| typeset(line)).collect()
+    sentences(&study.answer, &study.outline)
 }
 
-/// The answer of a study of the case of a run in sentences; of levers that of its car and ambient temperature. Nothing where a part cannot be
-/// read, which the section of the study reports.
+/// The levers of the car and the ambient temperature of a run, under its name in tables and figures; none of any other study, and where a
+/// part cannot be read, which the section of the study reports.
+pub fn levers_of_run(study: &StudyResults, run: &Summary) -> Option<(LeverAnswer, LeverBlock)> {
+    study.outline.levers.as_ref()?;
+    if other_case(study, run).is_some() {
+        return None;
+    }
+    let mut answer = lever_answer(&study.frame().ok()?, study.answer.confidence).ok()?;
+    let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
+    let is_own = |block: &LeverBlock| {
+        block.vehicle == subject && (block.ambient_degc - run.ambient_degc).abs() <= 1e-9
+    };
+    let own = answer.blocks.iter().position(is_own)?;
+    let mut block = answer.blocks.swap_remove(own);
+    block.vehicle = study.label(&block.vehicle);
+    Some((answer, block))
+}
+
+/// The answer of a study of the case of a run in sentences; of levers that of its car and ambient temperature.
 pub fn answers_of_run(study: &StudyResults, run: &Summary) -> Vec<String> {
     if study.outline.levers.is_none() {
         return answers(study);
     }
-    let frame = study.frame();
-    let Ok(answer) = frame.and_then(|frame| lever_answer(&frame, study.answer.confidence)) else {
-        return Vec::new();
-    };
-    let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
-    let is_own = |block: &&LeverBlock| {
-        block.vehicle == subject && (block.ambient_degc - run.ambient_degc).abs() <= 1e-9
-    };
-    let said = answer.blocks.iter().filter(is_own);
-    let said = said.flat_map(|block| answer_in_words(&answer, block));
-    said.map(|line| typeset(&line)).collect()
-}
-
-/// A sentence of the program as print has it: minus signs, degrees.
-pub(crate) fn typeset(line: &str) -> String {
-    let line = line.replace(" degC", "\u{a0}\u{b0}C");
-    let mut text = String::with_capacity(line.len());
-    let mut before = ' ';
-    let mut rest = line.chars().peekable();
-    while let Some(c) = rest.next() {
-        let sign = c == '-' && !before.is_alphanumeric() && before != '_';
-        let number = sign && rest.peek().is_some_and(char::is_ascii_digit);
-        text.push(if number { '\u{2212}' } else { c });
-        before = c;
-    }
-    text
+    let own = levers_of_run(study, run);
+    own.map_or_else(Vec::new, |(answer, block)| answer_in_words(&answer, &block))
 }

@@ -8,9 +8,11 @@ use crate::charts::study::{
     rank_plot, sobol_plot, tornado_plot,
 };
 use crate::document::plain;
-use cvtcycle_config::Problem;
+use crate::results::StudyResults;
+use cvtcycle_config::{Problem, Problems};
+use cvtcycle_output::escape::json_text;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
-use cvtcycle_study::answer::{OutputAnswer, described_numbers};
+use cvtcycle_study::answer::{OutputAnswer, described_numbers, tables};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
 use cvtcycle_study::levers::LeverAnswer;
 use cvtcycle_study::statistics::{Confidence, Groups};
@@ -30,6 +32,22 @@ pub fn study_pictures(
         Some(matrix) => Ok(of_matrix(matrix, warm_ups, &frame.outline.title)),
         None => of_outputs(answer, frame),
     }
+}
+
+/// Numbers and figures of a study, by the names of their files.
+///
+/// # Errors
+/// A part of the study that cannot be read.
+pub fn study_files(found: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
+    let statistics = json_text(&found.answer)?.into_bytes();
+    let mut files = vec![("statistics.json".to_owned(), statistics)];
+    files.extend(tables(&found.answer, &found.outline));
+    let pictures = study_pictures(&found.answer, &found.frame()?, &found.warm_ups)?;
+    let svg = pictures
+        .into_iter()
+        .map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes()));
+    files.extend(svg);
+    Ok(files)
 }
 
 /// What the levers save, for each car at each ambient temperature, under names that can be a file's.

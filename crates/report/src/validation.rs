@@ -4,6 +4,7 @@
 use askama::Template;
 use serde_json::Value;
 
+use super::charts::decision::{CheckedNumber, agreement};
 use super::document::{ReportTable, Section};
 use cvtcycle_config::Override;
 use cvtcycle_output::table::distinct;
@@ -62,11 +63,66 @@ pub fn section(value: &Value) -> Section {
     };
     section.text(format!("Vehicle {}{with}, {}: {}. A number agrees when it lies within what is printed and the tolerance of the measurement; a row to which a parameter was fitted is called a fit, never an agreement.", text("vehicle"), text("program"), groups_in_words(value)));
     let rows = value["rows"].as_array().into_iter().flatten();
+    let numbers: Vec<CheckedNumber> = rows.clone().filter_map(checked).collect();
+    let subject = format!(
+        "Vehicle {}, by chapter of the thesis and file of other sources",
+        text("vehicle")
+    );
+    let caption = "Published numbers that nothing was fitted to against those of the program.";
+    section.figure("agreement", caption, agreement(&subject, &numbers));
     let differs = |row: &&Value| row["verdict"].as_str() == Some("differs");
     let (differing, others): (Vec<&Value>, Vec<&Value>) = rows.partition(differs);
-    section.table(table("Rows that differ", &differing, "Reason"));
-    section.folded(table("All other rows", &others, "Verdict"));
+    // First those on whole cars: what a report is about.
+    let (cars, parts): (Vec<&Value>, Vec<&Value>) = differing
+        .into_iter()
+        .partition(|row| row["mechanism"] == CAR);
+    let (near, rest) = cars.split_at(cars.len().min(SHOWN));
+    section.table(table("Rows on whole cars that differ", near, "Reason"));
+    let mut more = Section::default();
+    more.table(table(
+        "All other rows that differ",
+        &[rest, &parts].concat(),
+        "Reason",
+    ));
+    more.folded(table("Rows that do not differ", &others, "Verdict"));
+    section.more = more.blocks;
     section
+}
+
+/// Rows of a table in the body at most; the mechanism of rows on whole cars.
+const SHOWN: usize = 8;
+const CAR: &str = "vehicle";
+
+/// A number that nothing was fitted to, with its distance from what is published.
+fn checked(row: &Value) -> Option<CheckedNumber> {
+    let number = |key: &str| row[key].as_f64();
+    let [low, high] = [number("printed_low")?, number("printed_high")?];
+    let [from, to] = [number("computed_low")?, number("computed_high")?];
+    let held_out = row["held_out"].as_bool() == Some(true);
+    let width = |key: &str| number(key).filter(|width| *width > 1e-9);
+    let off = match (to > high, from < low) {
+        (true, _) => (to - high) / width("tolerance_above")?,
+        (false, true) => (from - low) / width("tolerance_below")?,
+        (false, false) => 0.0,
+    };
+    held_out.then(|| CheckedNumber {
+        part: match row["group"].as_str() {
+            Some("thesis") => chapter_title(row["chapter"].as_str().unwrap_or_default()),
+            _ => "other sources".to_owned(),
+        },
+        off,
+        agrees: row["verdict"].as_str() == Some("agrees"),
+    })
+}
+
+/// How many of the published numbers that can be compared differ, in a sentence.
+pub fn differing(value: &Value) -> String {
+    let count = |verdict: &str| value["counts"][verdict].as_u64().unwrap_or(0);
+    let all: u64 = ["agrees", "fit", "differs"].map(count).iter().sum();
+    format!(
+        "{} of {all} published numbers that can be compared differ.",
+        count("differs")
+    )
 }
 
 /// Rows with a last column, under the key of its name in small letters.

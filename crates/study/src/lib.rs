@@ -16,6 +16,10 @@
 //! | `attribute` | what each loss costs: the car driven again without it |
 //! | `optimum` | the least fuel that any controller of ratio and clamp can burn, and the operating line near it |
 //! | `levers` | changes of a design, each next to the car as it is, with the same draws |
+//! | `label` | figures of a fuel label, from the car's own tests |
+//! | `run` | the summary of a run with all that is said of it |
+//! | `family` | one car with other numbers, as a function of them |
+//! | `explain` | what a key, a column, a flag or an equation means |
 //! | `sensitivity` | every value of a car changed by itself |
 //! | `points` | the belt at points of a table |
 //! | `check` | comparison with published values |
@@ -26,13 +30,17 @@ pub mod answer;
 pub mod attribute;
 pub mod check;
 pub mod fit;
+pub mod label;
 pub mod optimum;
 pub mod levers;
 pub mod points;
+pub mod run;
 pub mod sensitivity;
 pub mod design;
 pub mod equations;
 pub mod execute;
+pub mod explain;
+pub mod family;
 pub mod plan;
 pub mod statistics;
 pub mod store;

@@ -51,7 +51,8 @@ fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> 
         StartWord::Word(word) => word.clone(),
         StartWord::Degc(degc) => format!("start at {} degC", plain(*degc)),
     };
-    let (ambient, fuel) = (plain(summary.ambient_degc), run.headline_fuel());
+    let ambient = plain(summary.ambient_degc);
+    let fuel = run.headline_fuel();
     let title = format!("{} at {ambient} degC, {start}", run.vehicle);
     let fuel_line = format!("{}: {} L/100 km.", run.vehicle, fixed(fuel, 2));
     let sentences = std::iter::once(fuel_line).chain(answer(run));
@@ -62,7 +63,7 @@ fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> 
             title,
             sentences.collect::<String>() + "\n" + &losses(price, run),
         ),
-        ("Pairs, % of the fuel".to_owned(), pairs(price, fuel)),
+        ("Pairs, % of the fuel".to_owned(), pairs(price, run)),
         ("Shared out over groups (Shapley)".to_owned(), groups(price)),
         (
             "By part of the cycle, L/100 km".to_owned(),
@@ -87,7 +88,7 @@ fn losses(price: &PriceSummary, run: &RunSummary) -> String {
     for (name, loss) in &price.losses {
         let alone = loss.alone.as_ref().and_then(|alone| alone.percent);
         table.row([
-            words(name),
+            run.loss_words(name),
             fixed(loss.loss_kj, 1),
             fixed(loss.energy_percent, 2),
             fixed(loss.saved.percent, 2),
@@ -116,7 +117,7 @@ fn losses(price: &PriceSummary, run: &RunSummary) -> String {
 }
 
 /// Both orders of each pair.
-fn pairs(price: &PriceSummary, fuel: Option<f64>) -> String {
+fn pairs(price: &PriceSummary, run: &RunSummary) -> String {
     let mut table = TextTable::new("llrrrrr");
     if !price.pairs.is_empty() {
         let less = match price.factor {
@@ -128,13 +129,13 @@ fn pairs(price: &PriceSummary, fuel: Option<f64>) -> String {
         table.row(head);
     }
     let percent = |litres: Option<f64>| {
-        let share = litres.zip(fuel);
+        let share = litres.zip(run.headline_fuel());
         fixed(share.map(|(litres, fuel)| 100.0 * litres / fuel), 2)
     };
     for pair in &price.pairs {
         table.row([
-            words(&pair.a),
-            words(&pair.b),
+            run.loss_words(&pair.a),
+            run.loss_words(&pair.b),
             signed(pair.interaction.percent, 2),
             percent(pair.a_with_b),
             percent(pair.a_without_b),
@@ -171,7 +172,7 @@ fn phases(price: &PriceSummary, run: &RunSummary) -> String {
     ];
     for (name, saving) in losses.chain(whole) {
         let cells = saving.phases.iter().map(|(_, litres)| fixed(litres, 3));
-        table.row([words(name)].into_iter().chain(cells));
+        table.row([run.loss_words(name)].into_iter().chain(cells));
     }
     table.text()
 }

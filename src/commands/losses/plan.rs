@@ -1,7 +1,7 @@
 //! Arguments of `losses` to a checked grid of operating points.
 
 use cvtcycle::config::{Bound, Problem, Problems};
-use cvtcycle::model::bench::{Bench, solvable_ratios};
+use cvtcycle::model::bench::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
@@ -13,18 +13,16 @@ use crate::args::one_of;
 use crate::args::problems::{bad_value, problem};
 use crate::args::ranges::{values, values_or_words};
 
-/// Option of an axis, its range, and the suffix of a key with its unit; ratios and gears depend on the vehicle.
-fn option_of(axis: Axis) -> (&'static str, Bound, &'static str) {
-    // Where the fluid models hold.
-    let temp = Bound::closed(-40.0, 160.0);
+/// Option of an axis.
+fn option_of(axis: Axis) -> &'static str {
     match axis {
-        Axis::Ratio => ("--ratio or --gear", Bound::any(), ""),
-        Axis::Sump => ("--temp", temp, "_degc"),
-        Axis::Belt => ("--belt-temp", temp, "_degc"),
-        Axis::Throttle => ("--throttle", Bound::closed(0.0, 1.0), ""),
-        Axis::Pressure => ("--pressure", Bound::closed(0.0, 100.0), "_bar"),
-        Axis::Torque => ("--torque", Bound::closed(-5000.0, 5000.0), "_nm"),
-        Axis::Speed => ("--speed", Bound::open_low(0.0, 10_000.0), "_rpm"),
+        Axis::Ratio => "--ratio or --gear",
+        Axis::Sump => "--temp",
+        Axis::Belt => "--belt-temp",
+        Axis::Throttle => "--throttle",
+        Axis::Pressure => "--pressure",
+        Axis::Torque => "--torque",
+        Axis::Speed => "--speed",
     }
 }
 
@@ -46,10 +44,10 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     if let Some(setup) = &setup {
         let ratios = match setup.transmission() {
             Transmission::Cvt(cvt) => {
-                let (low, high) = solvable_ratios(&cvt.belt);
+                let (range, _) = Axis::Ratio.range_in(setup.transmission());
                 let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
                 let text = args.ratio.as_deref().unwrap_or("low");
-                let ratios = values_or_words("--ratio", text, Bound::closed(low, high), "", &words);
+                let ratios = values_or_words("--ratio", text, range, "", &words);
                 let ratios = problems.take(ratios).unwrap_or_default();
                 check_cvt(args, formulation, &ratios, problems);
                 ratios
@@ -83,7 +81,7 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
 /// Axes that every transmission has.
 fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
     let mut fill = |axis: Axis, text: Option<&str>| {
-        let (option, range, suffix) = option_of(axis);
+        let (option, (range, suffix)) = (option_of(axis), axis.range());
         let found = text.and_then(|text| problems.take(values(option, text, range, suffix)));
         grid.values[axis as usize] = found.unwrap_or_default();
     };
@@ -167,11 +165,8 @@ fn check_map(
     problems: &mut Problems,
 ) {
     let word = args.as_map.as_deref().unwrap_or_default();
-    if part.of_cvt() != cvt {
-        let hint = match cvt {
-            true => "choose belt, pump, input_shaft, clutch_drag, seal_ring or final_drive",
-            false => "a manual gearbox has one map: --as-map box",
-        };
+    if part.of_cvt() && !cvt {
+        let hint = "a manual gearbox has one map: --as-map box";
         let message = format!("{} has no component `{word}`", args.car.vehicle);
         problems.add(problem("--as-map", &message, hint));
         return;
@@ -185,12 +180,18 @@ fn check_map(
         let count = grid.of(axis).len();
         if count > 1 {
             let message = format!("{count} values, but a map of `{word}` has no such axis");
-            problems.add(problem(option_of(axis).0, &message, hint));
+            problems.add(problem(option_of(axis), &message, hint));
         }
     };
     let pressures = "give the pressures instead: --pressure 10..40:5";
     single(Axis::Throttle, pressures);
     single(Axis::Belt, "give one value");
+    if part == MapPart::Box {
+        single(
+            Axis::Pressure,
+            "a map of the whole box has the pressure of the clamp law",
+        );
+    }
     if part.torque_column().is_none() {
         let hint = "the loss of this component does not depend on it";
         single(Axis::Torque, hint);
@@ -198,7 +199,7 @@ fn check_map(
 }
 
 fn too_many(grid: &LossGrid) -> Problem {
-    let count = |axis: Axis| format!("{} {}", option_of(axis).0, grid.of(axis).len());
+    let count = |axis: Axis| format!("{} {}", option_of(axis), grid.of(axis).len());
     let counts: Vec<String> = grid.varied().into_iter().map(count).collect();
     let counts = counts.join(", ");
     let hint = format!("use larger steps or several runs; values given: {counts}");

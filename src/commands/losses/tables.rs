@@ -3,7 +3,7 @@
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::losses::{Axis, LossRow, LossTable};
 use cvtcycle::output::number::{NONE, fixed, percent};
-use cvtcycle::output::table::{TextColumns, TextTable};
+use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
 
 use crate::print::colour::Paint;
 
@@ -33,7 +33,8 @@ fn one(losses: &LossTable, row: &LossRow) -> String {
         .number("W", 1, |(_, nm)| nm * w)
         .right("% of loss", |(_, nm)| percent(*nm, total, 1));
     let held = losses.held(&row.asked, &Axis::ALL);
-    format!("{held}\n\n{}\n{}", columns.text(&parts), state(losses, row))
+    let (held, table) = (wrapped(&held, ""), columns.text(&parts));
+    format!("{held}\n{table}\n{}", state(losses, row))
 }
 
 fn state(losses: &LossTable, row: &LossRow) -> String {

@@ -7,6 +7,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, plain, signed};
+use cvtcycle::output::summary::StartWord;
 use cvtcycle::output::table::{Column, TextTable, wrapped, write_csv};
 use cvtcycle::output::{Row, columns};
 use cvtcycle::study::optimum::LawBound;
@@ -39,7 +40,7 @@ pub fn text(of: &OptimumSummary, paint: Paint) -> String {
 /// The answer in words.
 fn sentence(of: &OptimumSummary) -> String {
     let own = &of.answer.bounds[0];
-    let least = own.least_l_per_100km - own.tolerance_l_per_100km;
+    let least = own.bound_l_per_100km;
     let mut text = format!(
         "No controller of the ratio with the engine at {} rpm or more burns less than {} L/100 km with the clamp `{}`",
         plain(of.numbers.least_rpm),
@@ -47,7 +48,7 @@ fn sentence(of: &OptimumSummary) -> String {
         own.clamp
     );
     if let Some(free) = of.answer.bounds.iter().find(|bound| bound.clamp == "free") {
-        let least = free.least_l_per_100km - free.tolerance_l_per_100km;
+        let least = free.bound_l_per_100km;
         text += &format!(
             ", {} with any clamp of a safety factor of {} and {} % slip",
             fixed(least, 3),
@@ -90,7 +91,7 @@ fn bounds(of: &OptimumSummary) -> String {
             litres.map(|litres| 100.0 * (litres / bound.least_l_per_100km - 1.0))
         };
         table.row([
-            bound.clamp.replace('_', " "),
+            name(bound),
             fixed(bound.own_l_per_100km, 3),
             signed(above(bound.own_l_per_100km), 2),
             fixed(bound.line_l_per_100km, 3),
@@ -99,18 +100,45 @@ fn bounds(of: &OptimumSummary) -> String {
             fixed(bound.tolerance_l_per_100km, 3),
         ]);
     }
-    table.text() + &weaker(of) + &outside(of)
+    table.text() + &weaker(of) + &idle(of) + &outside(of) + &warm(of)
+}
+
+/// Name of a bound: its clamp law, and its launch where it is another one.
+fn name(bound: &LawBound) -> String {
+    let clamp = bound.clamp.replace('_', " ");
+    match bound.launch {
+        "idle" => clamp + ", idle launch",
+        _ => clamp,
+    }
+}
+
+/// What an idle launch is.
+fn idle(of: &OptimumSummary) -> String {
+    match of.answer.bounds.iter().any(|bound| bound.launch == "idle") {
+        true => wrapped(
+            "`idle launch`: a clutch that carries any torque with the engine at idle speed (LC-7); that of the car needs its speed (LC-1).",
+            "",
+        ),
+        false => String::new(),
+    }
+}
+
+/// How warm drives begin.
+fn warm(of: &OptimumSummary) -> String {
+    match &of.start {
+        StartWord::Word(word) if word == "warm" => wrapped(
+            "Each car begins as warm as its own drive from a soak leaves it, as with `run --start warm`, and so do the paths of the bounds.",
+            "",
+        ),
+        _ => String::new(),
+    }
 }
 
 /// Cars that do not keep the limits all the time, so that they may burn less than the bound.
 fn outside(of: &OptimumSummary) -> String {
     let seconds = |b: &LawBound, what: &str, time_s: Option<f64>| {
         let time_s = time_s.filter(|time_s| *time_s > 0.0)?;
-        Some(format!(
-            "{} {what} {} s",
-            b.clamp.replace('_', " "),
-            fixed(time_s, 1)
-        ))
+        Some(format!("{} {what} {} s", name(b), fixed(time_s, 1)))
     };
     let bounds = of.answer.bounds.iter();
     let each = bounds.flat_map(|b| {
@@ -136,23 +164,20 @@ fn weaker(of: &OptimumSummary) -> String {
         return String::new();
     };
     let below = |bound: &&LawBound| {
-        bound.least_l_per_100km < free.least_l_per_100km - free.tolerance_l_per_100km
+        bound.launch == "law" && bound.bound_l_per_100km < free.bound_l_per_100km
     };
-    let laws = bounds
-        .iter()
-        .filter(below)
-        .map(|law| law.clamp.replace('_', " "));
-    let laws: Vec<String> = laws.collect();
-    let text = format!(
-        "`{}` clamps with a safety factor below {}, or with more slip than {} %, which a free clamp may not (--safety, --max-slip).",
-        laws.join("`, `"),
-        plain(of.numbers.safety),
-        plain(of.numbers.max_slip_percent)
-    );
-    match laws.is_empty() {
-        true => String::new(),
-        false => wrapped(&text, ""),
-    }
+    let laws = bounds.iter().filter(below).map(|law| {
+        let text = format!(
+            "`{}` clamps with a safety factor down to {} and up to {} % slip: a free clamp must have {} and {} % (--safety, --max-slip).",
+            name(law),
+            fixed(law.least_safety, 2),
+            fixed(law.most_slip_percent, 2),
+            plain(of.numbers.safety),
+            plain(of.numbers.max_slip_percent)
+        );
+        wrapped(&text, "")
+    });
+    laws.collect()
 }
 
 fn speeds(of: &OptimumSummary) -> String {
@@ -164,7 +189,22 @@ fn speeds(of: &OptimumSummary) -> String {
         let litres = litres.map_or("cannot be held".to_owned(), |litres| fixed(litres, 3));
         table.row([fixed(*least_rpm, 0), litres, signed(change, 2)]);
     }
-    table.text()
+    table.text() + &floor(of)
+}
+
+/// Where the coupling decides the least speed and not the limit.
+fn floor(of: &OptimumSummary) -> String {
+    let floor = of.answer.lock_floor.filter(|floor| floor.above_s > 0.0);
+    let Some(floor) = floor else {
+        return String::new();
+    };
+    let text = format!(
+        "The coupling stays locked from {} to {} rpm on, by the engine's idle speed (LC-5, TC-7): for {} s above --least-rpm, which decides nothing there.",
+        fixed(floor.least_rpm, 0),
+        fixed(floor.most_rpm, 0),
+        fixed(floor.above_s, 0)
+    );
+    wrapped(&text, "")
 }
 
 fn limits(of: &OptimumSummary) -> String {
@@ -215,15 +255,24 @@ fn line(of: &OptimumSummary) -> String {
         let [c, d] = cells(&line.overrun, k);
         table.row([a, b, c, d]);
     }
-    table.text()
+    let again = line.again.join(", ");
+    let again = match again.is_empty() {
+        true => String::new(),
+        false => wrapped(
+            &format!("The vehicle file has all but {again}: give it again with the file."),
+            "",
+        ),
+    };
+    table.text() + &again
 }
 
 fn elsewhere(of: &OptimumSummary) -> String {
     let cycles = of.answer.line.iter().flat_map(|line| &line.elsewhere);
-    let mut table = TextTable::new("lrrr");
+    let mut table = TextTable::new("lrrrr");
+    let slow = cycles.clone().any(|other| other.line_below_s > 0.0);
     for (number, other) in cycles.enumerate() {
         if number == 0 {
-            table.row(["", "as it is", "line", "%"]);
+            table.row(["", "as it is", "line", "%", "s below the least speed"]);
         }
         let (own, line) = (other.own_l_per_100km, other.line_l_per_100km);
         table.row([
@@ -231,21 +280,30 @@ fn elsewhere(of: &OptimumSummary) -> String {
             fixed(own, 3),
             fixed(line, 3),
             signed(100.0 * (line / own - 1.0), 2),
+            fixed(other.line_below_s, 1),
         ]);
     }
-    table.text()
+    let note = "Below the least speed by more than 1 %, with a lower ratio left: the line was not searched on these cycles.";
+    match slow {
+        true => table.text() + &wrapped(note, ""),
+        false => table.text(),
+    }
 }
 
 fn bound_columns() -> Vec<Column<LawBound>> {
     let or_nan = |x: Option<f64>| x.unwrap_or(f64::NAN);
     columns! { LawBound;
         text "clamp", "", "clamp law, or free", b => Cow::Owned(b.clamp.clone());
+        text "launch", "", "launch by the clutch's law, or at idle", b => Cow::Borrowed(b.launch);
         number "own_l_per_100km", "L/100 km", "fuel of the car with its own ratio control", b => or_nan(b.own_l_per_100km);
         number "own_outside_s", "s", "time outside the limits of speed and reserve", b => or_nan(b.own_outside_s);
         number "line_l_per_100km", "L/100 km", "fuel of the car with the operating line", b => or_nan(b.line_l_per_100km);
         number "line_outside_s", "s", "time outside the limits with the line", b => or_nan(b.line_outside_s);
         number "least_l_per_100km", "L/100 km", "least fuel", b => b.least_l_per_100km;
         number "tolerance_l_per_100km", "L/100 km", "tolerance of the least fuel", b => b.tolerance_l_per_100km;
+        number "bound_l_per_100km", "L/100 km", "the bound: least fuel less its tolerance", b => b.bound_l_per_100km;
+        number "least_safety", "-", "least safety factor on the best path, locked", b => b.least_safety;
+        number "most_slip_percent", "%", "largest slip there", b => b.most_slip_percent;
         number "driven_l_per_100km", "L/100 km", "fuel of the best path as driven", b => b.driven_l_per_100km;
         number "gap_percent", "%", "that over the least fuel less its tolerance", b => b.gap_percent;
     }

@@ -6,7 +6,7 @@ use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::model::bench::variator::RigFlags;
 use cvtcycle::output::number::{fixed, percent, plain};
-use cvtcycle::output::table::TextColumns;
+use cvtcycle::output::table::{TextColumns, wrapped};
 use cvtcycle::output::variator::{Curve, VariatorCurves};
 use cvtcycle::report::charts::variator_figures;
 
@@ -106,9 +106,10 @@ fn tables(found: &VariatorCurves, paint: Paint) -> String {
     for test in found.curves.chunk_by(Curve::is_same_test) {
         text += &one_test(test, paint);
     }
-    text + "\nbreak: breakpoint, where the compression between segments changes sign; capacity: torque capacity of the clamping\n\
-        forces; largest slip up to it and to the limits of the rig; primary, secondary: slip speeds at 3 % slip; linear: R2 of\n\
-        a straight line from the breakpoint to 3 %. The rig reads zero slip at zero torque: subtract the slip at 0 Nm to compare.\n"
+    let meaning = "break: breakpoint, where the compression between segments changes sign; capacity: torque capacity of the clamping \
+        forces; largest slip up to it and to the limits of the rig; primary, secondary: slip speeds at 3 % slip; linear: R2 of \
+        a straight line from the breakpoint to 3 %. The rig reads zero slip at zero torque: subtract the slip at 0 Nm to compare.";
+    text + "\n" + &wrapped(meaning, "")
 }
 
 fn one_test(test: &[Curve], paint: Paint) -> String {
@@ -127,7 +128,8 @@ fn one_test(test: &[Curve], paint: Paint) -> String {
         .number("secondary\nm/s", 3, |c| c.summary.three_percent_m_s[1])
         .number("linear\nR2", 3, |c| c.summary.measured_r2);
     let (heading, table) = (paint.heading(&test[0].test_name()), columns.text(test));
-    let mut text = format!("\n{heading}\n\n{table}\n  {}\n", resolution(&test[0]));
+    let resolution = wrapped(&resolution(&test[0]), "  ");
+    let mut text = format!("\n{heading}\n\n{table}\n{resolution}");
     let flagged = flags(test);
     if !flagged.is_empty() {
         text += &format!("  flagged points: {flagged}\n");

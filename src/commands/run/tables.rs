@@ -4,26 +4,30 @@ use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 use cvtcycle::output::summary::{Comparison, RunSummary, Saving, StartWord, Summary};
-use cvtcycle::output::table::{TextTable, WIDTH, wrapped};
+use cvtcycle::output::table::{TextTable, paragraphs, wrapped};
 use cvtcycle::study::words::run::sentences;
 
 use crate::print::colour::Paint;
-use crate::print::sections;
+use crate::print::{bold, sections};
 
 /// Widths of the two leading columns, which align the tables.
 const LEAD: [usize; 2] = [22, 8];
 
 /// All results for people.
 pub fn tables(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
-    let comparisons = summary.comparison.iter().map(|c| compared(summary, c));
+    let comparisons = summary.comparison.iter().map(compared);
+    let text = |title: &str, body: String| (title.to_owned(), body);
     let body = [
-        ("Fuel", fuel(summary) + &comparisons.collect::<String>()),
+        text("Fuel", fuel(summary) + &comparisons.collect::<String>()),
         losses(summary),
-        ("Where the fuel energy went", balance(summary)),
-        ("End temperatures", ends(summary)),
-        ("Time with", flags(summary)),
+        text("Where the fuel energy went", balance(summary)),
+        text("End temperatures", ends(summary)),
+        text("Time with", flags(summary)),
     ];
-    head(summary, cycle, paint) + &answers(summary) + &sections(body, paint) + &notes(summary)
+    answers(summary, paint)
+        + &head(summary, cycle, paint)
+        + &sections(body, paint)
+        + &notes(summary)
 }
 
 fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
@@ -59,14 +63,17 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     text + "\n" + &table.text()
 }
 
-/// What the run says of the subject, in sentences.
-fn answers(summary: &Summary) -> String {
-    let lines = sentences(summary);
-    let lines: String = lines.iter().map(|line| wrapped(line, "")).collect();
-    if lines.is_empty() {
-        lines
-    } else {
-        format!("\n{lines}")
+/// What the run says of the subject, in sentences; the first is the answer.
+fn answers(summary: &Summary, paint: Paint) -> String {
+    let sentences = sentences(summary);
+    let paragraphs = sentences.iter().enumerate().map(|(k, sentence)| match k {
+        0 => bold(sentence, paint),
+        _ => wrapped(sentence, ""),
+    });
+    let text: String = paragraphs.collect();
+    match text.is_empty() {
+        true => text,
+        false => text + "\n",
     }
 }
 
@@ -132,15 +139,11 @@ fn fuel(summary: &Summary) -> String {
     table.text(&LEAD)
 }
 
-/// "CVT uses 5.2 % more fuel than the baseline".
-fn compared(summary: &Summary, comparison: &Comparison) -> String {
-    let subject = summary.runs.first().map_or("", |run| &run.vehicle);
+/// Difference to a baseline by phase, and whether the two cars are alike.
+fn compared(comparison: &Comparison) -> String {
     let Some(difference) = comparison.fuel_percent else {
         return String::new();
     };
-    let word = if difference < 0.0 { "less" } else { "more" };
-    let (size, baseline) = (fixed(difference.abs(), 1), &comparison.baseline);
-    let mut line = format!("{subject} uses {size} % {word} fuel than {baseline}");
     let phases = comparison
         .phases_percent
         .iter()
@@ -148,15 +151,15 @@ fn compared(summary: &Summary, comparison: &Comparison) -> String {
     let parts: Vec<String> = phases
         .map(|(name, x)| format!("{name} {} %", signed(x, 1)))
         .collect();
-    if parts.len() > 1 {
-        let detail = format!("({})", parts.join(", "));
-        let fits = line.len() + detail.len() < usize::from(WIDTH);
-        line += &format!("{}{detail}", if fits { " " } else { "\n  " });
-    }
+    let whole = format!("{} %", signed(difference, 1));
+    let mut line = match parts.len() {
+        0 | 1 => whole,
+        _ => format!("{}, whole cycle {whole}", parts.join(", ")),
+    };
     if !comparison.likeness.is_empty() {
-        line += &format!("\n  {}", comparison.likeness);
+        line += &format!("; {}", comparison.likeness);
     }
-    line + "\n"
+    wrapped(&line, &format!("over {}: ", comparison.baseline))
 }
 
 /// Energy in kJ and as per cent of the fuel energy.
@@ -167,77 +170,91 @@ fn kj_and_share(kj: Option<f64>, run: &RunSummary) -> String {
     })
 }
 
-/// Energy, and fuel that would be saved without the loss; of baselines the fuel alone, so that three cars have room.
-fn priced(run: &RunSummary, kj: Option<f64>, saved: Option<&Saving>) -> String {
-    let percent_of_fuel = fixed(saved.and_then(|saved| saved.percent), 2);
-    if run.role != SUBJECT {
-        return percent_of_fuel;
-    }
-    let energy = percent(kj, run.fuel_energy_kj, 2);
-    let litres = fixed(saved.and_then(|saved| saved.l_per_100km), 3);
-    format!(
-        "{:>7} {energy:>8} {percent_of_fuel:>6} {litres:>8}",
-        fixed(kj, 1)
-    )
-}
-
 /// Role of the first car of a run.
 const SUBJECT: &str = "subject";
 
-fn losses(summary: &Summary) -> (&'static str, String) {
-    if summary.runs.iter().any(|run| run.price.is_none()) {
-        return ("Transmission losses", energies(summary));
+/// Cells of a row of prices: of the subject energy and fuel that would be saved, of baselines the share of the fuel alone.
+fn priced(run: &RunSummary, kj: Option<f64>, saved: Option<&Saving>) -> Vec<String> {
+    let percent_of_fuel = fixed(saved.and_then(|saved| saved.percent), 2);
+    if run.role != SUBJECT {
+        return vec![percent_of_fuel];
     }
-    let mut table = ByVehicle::new(summary);
-    table.add("", "", |run| match run.role == SUBJECT {
-        true => format!(
-            "{:>7} {:>8} {:>6} {:>8}",
-            "kJ", "% energy", "% fuel", "L/100 km"
-        ),
-        false => "% fuel".to_owned(),
+    vec![
+        fixed(kj, 1),
+        percent(kj, run.fuel_energy_kj, 2),
+        percent_of_fuel,
+        fixed(saved.and_then(|saved| saved.l_per_100km), 3),
+    ]
+}
+
+/// Cells of a row that has energy alone, for the subject.
+fn energy(run: &RunSummary, kj: Option<f64>) -> Vec<String> {
+    let blank = String::new;
+    match run.role == SUBJECT {
+        true => vec![
+            fixed(kj, 1),
+            percent(kj, run.fuel_energy_kj, 2),
+            blank(),
+            blank(),
+        ],
+        false => vec![blank()],
+    }
+}
+
+/// What the losses add up to, and what the parts do not.
+fn interaction(run: &RunSummary) -> Vec<String> {
+    let saved = run.price.as_ref().map(|price| &price.interaction);
+    let points = signed(saved.and_then(|saved| saved.percent), 2);
+    let litres = signed(saved.and_then(|saved| saved.l_per_100km), 3);
+    match run.role == SUBJECT {
+        true => vec![String::new(), String::new(), points, litres],
+        false => vec![points],
+    }
+}
+
+fn losses(summary: &Summary) -> (String, String) {
+    if summary.runs.iter().any(|run| run.price.is_none()) {
+        return ("Transmission losses".to_owned(), energies(summary));
+    }
+    let runs = &summary.runs;
+    let subject = runs.first().map_or("", |run| &run.vehicle);
+    let heads = runs.iter().flat_map(|run| match run.role == SUBJECT {
+        true => ["kJ", "% energy", "% fuel", "L/100 km"]
+            .map(str::to_owned)
+            .to_vec(),
+        false => vec![format!("% fuel {}", run.vehicle)],
     });
+    let heads: Vec<String> = heads.collect();
+    let mut table = TextTable::new(&("l".to_owned() + &"r".repeat(heads.len())));
+    table.row([String::new()].into_iter().chain(heads));
+    let mut add = |name: &str, cells: &dyn Fn(&RunSummary) -> Vec<String>| {
+        let cells = runs.iter().flat_map(cells);
+        table.row([name.replace('_', " ")].into_iter().chain(cells));
+    };
     for component in Component::ALL {
         let name = component.name();
         let has = |run: &RunSummary| run.loss_kj.iter().any(|(own, _)| own == name);
-        if summary.runs.iter().any(has) {
-            table.add(&name.replace('_', " "), "", |run| {
+        if runs.iter().any(has) {
+            add(&loss_words(summary, name), &|run| {
                 let price = run.price.as_ref().and_then(|price| price.losses.get(name));
                 match has(run) {
                     true => priced(run, run.loss_kj.get(name), price.map(|loss| &loss.saved)),
-                    false => String::new(),
+                    false => vec![String::new(); if run.role == SUBJECT { 4 } else { 1 }],
                 }
             });
         }
     }
-    let together = |run: &RunSummary| {
+    add("together", &|run| {
         let saved = run.price.as_ref().map(|price| &price.together);
         priced(run, Some(run.transmission_loss_kj()), saved)
-    };
-    table.add("together", "", together);
-    table.add("interaction", "", |run| {
-        let saved = run.price.as_ref().map(|price| &price.interaction);
-        let points = signed(saved.and_then(|saved| saved.percent), 2);
-        let litres = signed(saved.and_then(|saved| saved.l_per_100km), 3);
-        match run.role == SUBJECT {
-            true => format!("{points:>6} {litres:>8}"),
-            false => points,
-        }
     });
+    add("interaction", &interaction);
     for name in ["accessories", "brake"] {
-        table.add(name, "", |run| match run.role == SUBJECT {
-            true => {
-                let kj = run.loss_kj.get(name);
-                let energy = percent(kj, run.fuel_energy_kj, 2);
-                format!("{:>7} {energy:>8} {:>15}", fixed(kj, 1), "")
-            }
-            false => String::new(),
-        });
+        add(name, &|run| energy(run, run.loss_kj.get(name)));
     }
-    let text = table.text(&LEAD[..1]) + &price_notes(summary);
-    (
-        "Transmission losses: energy, and fuel saved if the loss were zero",
-        text,
-    )
+    let title =
+        format!("Transmission losses of {subject}: energy, and fuel saved if the loss were zero");
+    (title, table.text() + &price_notes(summary))
 }
 
 fn price_notes(summary: &Summary) -> String {
@@ -249,6 +266,19 @@ fn price_notes(summary: &Summary) -> String {
     priced.collect()
 }
 
+/// A loss as people write it; by the devices of all cars.
+fn loss_words(summary: &Summary, component: &str) -> String {
+    let mut names: Vec<String> = Vec::new();
+    for run in &summary.runs {
+        let name = run.loss_words(component);
+        let has = run.loss_kj.iter().any(|(own, _)| own == component);
+        if has && !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names.join(", ")
+}
+
 fn energies(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
     table.add("", "", |_| "kJ  % energy".into());
@@ -256,7 +286,7 @@ fn energies(summary: &Summary) -> String {
         let name = component.name();
         let has = |run: &RunSummary| run.loss_kj.iter().any(|(own, _)| own == name);
         if summary.runs.iter().any(has) {
-            table.add(&name.replace('_', " "), "", |run| match has(run) {
+            table.add(&loss_words(summary, name), "", |run| match has(run) {
                 true => kj_and_share(run.loss_kj.get(name), run),
                 false => String::new(),
             });
@@ -354,9 +384,10 @@ fn notes(summary: &Summary) -> String {
     };
     let step = worst(|run| run.ledger_error);
     let run = worst(|run| run.run_ledger_error);
-    text + &format!(
+    text += &format!(
         "relative error of the energy balances: {step} in the worst time step, {run} over the run\n"
-    )
+    );
+    paragraphs(&text)
 }
 
 /// One line for each failed check.

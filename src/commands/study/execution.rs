@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::Args;
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::results::StudyResults;
-use cvtcycle::report::study_pictures::study_pictures;
+use cvtcycle::report::study_pictures::study_files;
 use cvtcycle::study::execute::DirWriter;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::statistics::Confidence;
@@ -15,6 +15,7 @@ use cvtcycle::study::{End, Study, StudyManifest};
 use tempfile::TempDir;
 
 use super::super::threads;
+use super::share::{self, ShareArgs};
 use super::tables;
 use crate::args::problems::{bad_value, problem};
 use crate::args::{ConfidenceArgs, OutArgs, OutputArgs, ThreadArgs};
@@ -42,6 +43,8 @@ pub struct StudyRunArgs {
         requires = "out"
     )]
     format: PartFormat,
+    #[command(flatten)]
+    share: ShareArgs,
     #[command(flatten)]
     confidence: ConfidenceArgs,
     #[command(flatten)]
@@ -79,8 +82,9 @@ impl StudyRunArgs {
 
     /// Checks the number of runs of a study.
     pub fn confirmed(&self, study: Study, problems: &mut Problems) -> Option<Study> {
+        self.share.parts(&study, problems);
         let (runs, max) = (study.runs(), study.plan.most_runs);
-        if runs > max && !self.yes {
+        if runs > max && !self.yes && !self.share.dry_run {
             let (points, cars) = (study.points, study.cars.len());
             let message = format!(
                 "the study has {runs} runs ({points} points, {cars} vehicles), more than {max}"
@@ -103,6 +107,9 @@ impl StudyRunArgs {
     }
 
     fn results<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
+        if self.share.dry_run {
+            return share::estimate(study, &self.output);
+        }
         // Without --out the parts are written to a directory that is deleted afterwards.
         let temporary = match &self.out.out {
             Some(_) => None,
@@ -113,6 +120,9 @@ impl StudyRunArgs {
         let dir = self.dir(study, path.unwrap_or(Path::new("")))?;
         if self.compute(study, &dir)? == End::Stopped {
             return Ok(self.stopped(study, &dir));
+        }
+        if self.share.is_given() && !dir.is_complete() {
+            return share::driven(study, &dir, &self.output);
         }
         // Checked when the study began.
         let confidence = self.confidence.get(&mut Problems::default());
@@ -137,7 +147,9 @@ impl StudyRunArgs {
     /// Runs the parts that are missing in the directory.
     fn compute(&self, study: &Study, dir: &StudyDir) -> Result<End, Problems> {
         let missing = dir.missing().into_iter().map(|part| part as u64);
-        let missing: BTreeSet<u64> = missing.collect();
+        // Checked when the study began.
+        let wanted = self.share.parts(study, &mut Problems::default());
+        let missing: BTreeSet<u64> = missing.filter(|part| wanted.contains(part)).collect();
         let done = (0..study.parts())
             .filter(|part| !missing.contains(part))
             .collect();
@@ -203,16 +215,7 @@ impl Says for StudyResults {
     }
 
     fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Problems> {
-        let statistics = json_text(&self.answer)?.into_bytes();
-        let mut files = vec![("statistics.json".to_owned(), statistics)];
-        let own = cvtcycle::study::answer::tables(&self.answer, &self.outline);
-        files.extend(own);
-        let pictures = study_pictures(&self.answer, &self.frame()?, &self.warm_ups)?;
-        let svg = pictures
-            .into_iter()
-            .map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes()));
-        files.extend(svg);
-        Ok(files)
+        study_files(self)
     }
 
     fn tables(&self, paint: Paint) -> String {

@@ -50,7 +50,7 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
 /// Start and ambient temperature of a row, by index.
 type MatrixRow = (usize, usize);
 
-/// Fuel of each part of the cycle with the difference to the baselines, and end temperatures.
+/// Fuel of each part of the cycle with the difference to the baselines, and the end temperature of the transmission oil.
 fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
     let rows = |columns: &TextColumns<MatrixRow>| {
         let ambients = matrix.ambient_degc.len();
@@ -73,7 +73,8 @@ fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
         let title = format!("Fuel, {name}, L/100 km, and difference of the subject, %");
         (title, rows(&columns))
     });
-    let ends = matrix.ends.iter().map(|part| {
+    // The oil of the transmission is what the losses depend on; the files and the JSON object have the other temperatures.
+    let sump = matrix.ends.iter().take(1).map(|part| {
         let mut columns = lead(matrix);
         for (car, numbers) in matrix.cars.iter().zip(&part.degc) {
             columns = columns.number(car, 1, |row| cell(numbers, row));
@@ -81,7 +82,7 @@ fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
         let title = format!("End temperature, {}, degC", part.name);
         (title, rows(&columns))
     });
-    sections(fuel.chain(ends), paint)
+    sections(fuel.chain(sump), paint)
 }
 
 fn cell(numbers: &[Vec<f64>], (start, ambient): &MatrixRow) -> Option<f64> {
@@ -109,7 +110,10 @@ fn head(study: &StudyResults, paint: Paint) -> String {
     }
     let (points, cars) = (answer.points, outline.cars.join(", "));
     let (design, runs) = (design(outline), outline.points * outline.cars.len() as u64);
-    text += &format!("{design}; {points} points, {runs} runs of {cars}\n");
+    text += &wrapped(
+        &format!("{design}; {points} points, {runs} runs of {cars}"),
+        "",
+    );
     let (present, all) = study.parts();
     if present < all {
         let done = answer.points_done;

@@ -13,16 +13,33 @@ use crate::print::sections;
 /// Longest text of a value; longer ones are cut, and complete in the other forms.
 const MAX_VALUE_LEN: usize = 20;
 
-/// A table for each chapter with its notes, and counts at the end.
-pub fn tables(report: &Report, paint: Paint) -> String {
+/// Rows that the tables have.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Shown {
+    /// Every row.
+    All,
+    /// Rows that differ, or whose verdict is not the recorded one.
+    Differing,
+}
+
+/// Counts, and a table of each chapter with its notes.
+pub fn tables(report: &Report, shown: Shown, paint: Paint) -> String {
     let candidate = &report.candidate;
     let heading = paint.heading("Published values compared with the model");
     let mut text = format!("{heading}  {}\n", candidate.vehicle);
     text.extend(candidate.set.iter().map(|set| format!("--set {set}\n")));
     let chapters = distinct(report.rows.iter().map(|j| j.row.chapter.as_str()));
     let of_chapter = |name| {
-        let rows = report.rows.iter().filter(|j| j.row.chapter == name);
-        (chapter_title(name), chapter(&rows.collect::<Vec<_>>()))
+        let rows = report.rows.iter().filter(|j| {
+            let is_shown = shown == Shown::All || j.verdict == Verdict::Differs || j.moved;
+            j.row.chapter == name && is_shown
+        });
+        let rows: Vec<&Judged> = rows.collect();
+        let table = match rows.is_empty() {
+            true => String::new(),
+            false => chapter(&rows, paint),
+        };
+        (chapter_title(name), table)
     };
     let counts = report.groups().into_iter().flat_map(|group| {
         let name = group.word();
@@ -34,14 +51,53 @@ pub fn tables(report: &Report, paint: Paint) -> String {
             (held_out_title, held_out(report, group)),
         ]
     });
-    text + &sections(chapters.into_iter().map(of_chapter).chain(counts), paint)
+    let rest = match shown {
+        Shown::All => "",
+        Shown::Differing => "\nBelow: rows that differ or whose verdict moved (--all: every row)\n",
+    };
+    let counts = sections(counts, paint);
+    let rows = sections(chapters.into_iter().map(of_chapter), paint);
+    text + &counts + rest + &rows
 }
 
-fn chapter(rows: &[&Judged]) -> String {
+/// The verdicts of a table in their colours.
+fn painted(table: &str, paint: Paint) -> String {
+    let at = table.lines().next().and_then(|heads| heads.find(VERDICT));
+    let line = |line: &str| {
+        let (Some(lead), Some(rest)) = (
+            at.and_then(|at| line.get(..at)),
+            at.and_then(|at| line.get(at..)),
+        ) else {
+            return format!("{line}\n");
+        };
+        let verdict = Verdict::ALL.into_iter().find_map(|verdict| {
+            let after = rest.strip_prefix(verdict.word())?;
+            Some((verdict, after))
+        });
+        match verdict {
+            None => format!("{line}\n"),
+            Some((verdict, after)) => {
+                let word = verdict.word();
+                let word = match verdict {
+                    Verdict::Agrees => paint.good(word),
+                    Verdict::Differs => paint.bad(word),
+                    _ => paint.faint(word),
+                };
+                format!("{lead}{word}{after}\n")
+            }
+        }
+    };
+    table.lines().map(line).collect()
+}
+
+/// Heading of the column of verdicts.
+const VERDICT: &str = "verdict";
+
+fn chapter(rows: &[&Judged], paint: Paint) -> String {
     let mark = |judged: &Judged| if judged.moved { " !" } else { "" };
     let columns = TextColumns::new()
         .left("row", |j: &&Judged| j.row.id.clone())
-        .left("verdict", |j| format!("{}{}", j.verdict.word(), mark(j)))
+        .left(VERDICT, |j| format!("{}{}", j.verdict.word(), mark(j)))
         .left("printed", |j| cut(&j.row.printed_text, MAX_VALUE_LEN))
         .left("computed", |j| cut(&computed_text(j), MAX_VALUE_LEN))
         .left("unit", |j| unit_text(&j.row.unit))
@@ -59,7 +115,7 @@ fn chapter(rows: &[&Judged]) -> String {
             notes.row([&judged.row.id, &line]);
         }
     }
-    let (table, notes) = (columns.text(rows), notes.text());
+    let (table, notes) = (painted(&columns.text(rows), paint), notes.text());
     let between = if notes.is_empty() { "" } else { "\n" };
     table + between + &notes
 }

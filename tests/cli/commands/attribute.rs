@@ -62,7 +62,7 @@ fn tables_and_files_of_an_attribution() {
         "By part of the cycle",
         "by ambient temperature",
         "bearings and seals",
-        "attribution.csv",
+        "Files written in",
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }

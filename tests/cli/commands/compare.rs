@@ -142,7 +142,10 @@ fn runs_with_start_stop_are_reported_and_compared() {
         let has_row = stdout(&output).contains("battery and starter");
         assert_eq!(has_row, out == "stops", "{}", stdout(&output));
     }
-    for words in [&["report", "stops"][..], &["compare", "plain", "stops"]] {
+    for words in [
+        &["report", "stops", "--full"][..],
+        &["compare", "plain", "stops"],
+    ] {
         let output = run_in(dir.path(), words);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }

@@ -137,7 +137,7 @@ fn explain_knows_the_terms_of_the_field_and_the_summary() {
         );
     }
     // Every name of the table is explained.
-    let table = include_str!("../../../src/commands/explain/terms.txt");
+    let table = include_str!("../../../crates/study/src/explain/terms.txt");
     for line in table.lines() {
         let (terms, names) = line.split_once(':').unwrap();
         let term = terms.split(',').next().unwrap();
@@ -158,10 +158,8 @@ fn check_reports_every_file() {
     write("town.csv", b"time_s,speed_kmh\n0,0\n1,3\n2,0\n");
     let good = run_in(dir.path(), &["check", "car.toml", "oil.toml", "town.csv"]);
     assert_eq!(good.status.code(), Some(0), "{}", stderr(&good));
-    let doubt = format!(
-        "    doubt: baseline mondeo_20_5mt is {}\n",
-        "not like for like: mass +230 kg, rated power +14 kW, displacement +400 cm3 and 11 other values"
-    );
+    let doubt = "    doubt: baseline mondeo_20_5mt is not like for like: mass +230 kg, rated power +14 kW,\n    \
+        displacement +400 cm3 and 11 other values\n";
     assert_eq!(
         stdout(&good),
         format!("ok  car.toml (vehicle)\n{doubt}ok  oil.toml (lubricant)\nok  town.csv (cycle)\n")

@@ -4,10 +4,6 @@ use super::*;
 
 const FEW: &str = "levers --only variable_pump,offset_2mm --cycle ece15 --samples 8";
 
-fn words(text: &str) -> Vec<&str> {
-    text.split(' ').collect()
-}
-
 /// Bytes of the files of a folder, by name.
 fn files(dir: &Path) -> Vec<(String, Vec<u8>)> {
     let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
@@ -88,20 +84,20 @@ fn a_report_of_levers_says_what_they_save() {
         for block in json["blocks"].as_array().unwrap() {
             for row in block["rows"].as_array().unwrap() {
                 let median = row["fuel_percent"]["value"].as_f64().unwrap();
-                let cell = format!(
-                    "| {} | \u{2212}{:.2} |",
-                    row["title"].as_str().unwrap(),
-                    -median
-                );
-                let strong = cell.replace("| combination |", "| **combination** |");
-                let strong = strong.replace(
-                    &format!("\u{2212}{:.2}", -median),
-                    &format!("**\u{2212}{:.2}**", -median),
-                );
-                assert!(
-                    text.contains(&cell) || text.contains(&strong),
-                    "{cell}: {text}"
-                );
+                let title = row["title"].as_str().unwrap();
+                let rows = text
+                    .lines()
+                    .map(|line| line.replace("**", "").replace('\u{a0}', " "));
+                let cells = rows.filter_map(|line| {
+                    let cell = line.strip_prefix(&format!("| {title} | \u{2212}"))?;
+                    Some(cell.split(' ').next()?.to_owned())
+                });
+                // To the first digit of its interval.
+                let is_median = |cell: String| {
+                    let decimals = cell.split_once('.').map_or(0, |(_, after)| after.len());
+                    format!("{:.decimals$}", -median) == cell
+                };
+                assert!(cells.into_iter().any(is_median), "{title} {median}: {text}");
             }
         }
     }

@@ -6,12 +6,15 @@ mod optimum;
 mod compare;
 mod cycles;
 mod inputs;
+mod label;
 mod levers;
 mod named;
 mod new;
 mod run;
-mod study;
 mod streams;
+mod study;
+#[cfg(unix)]
+mod terminal;
 mod words;
 
 use std::fs;
@@ -33,6 +36,15 @@ fn run(words: &[&str]) -> Output {
 
 fn run_in(dir: &Path, words: &[&str]) -> Output {
     program().current_dir(dir).args(words).output().unwrap()
+}
+
+/// A text without its line ends, as it was before it was wrapped.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn words(text: &str) -> Vec<&str> {
+    text.split(' ').collect()
 }
 
 fn stdout(output: &Output) -> String {

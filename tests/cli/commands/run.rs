@@ -159,7 +159,7 @@ fn the_table_has_the_fuel_of_every_car() {
         "g/km",
         "10.937",
         "11.028",
-        "rover_216_cvt uses",
+        "over mondeo_20_5mt: ece15 -11.7 %",
     ] {
         assert!(text.contains(part), "{part} is not in\n{text}");
     }
@@ -544,5 +544,21 @@ fn command_lines_without_end_are_refused_in_a_moment() {
         let code = output.status.code();
         assert_eq!(code, Some(2), "{:.200}", stderr(&output));
         assert!(output.stdout.is_empty() && stderr(&output).len() < 1_000_000);
+    }
+}
+
+/// A run against its twin is written with its inputs: it was refused without a word where the car is a shipped one. Truth: the names of the cars.
+#[test]
+fn files_of_a_run_against_the_twin_of_a_shipped_car() {
+    let dir = tempfile::tempdir().unwrap();
+    let line =
+        "run --cycle ece15 --baseline twin --price never --sensitivity never --out out --quiet";
+    let output = run_in(dir.path(), &words(line));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let inputs = fs::read(dir.path().join("out/inputs.json")).unwrap();
+    let inputs: Value = serde_json::from_slice(&inputs).unwrap();
+    let names = ["rover_216_cvt", "rover_216_cvt_twin"];
+    for (car, name) in inputs["cars"].as_array().unwrap().iter().zip(names) {
+        assert_eq!(car["name"], name);
     }
 }

@@ -117,3 +117,82 @@ fn the_plan_of_three_fluids_is_one_matrix() {
         "{shown}"
     );
 }
+
+/// A plan of 64 points.
+const SHARED: &str = "[study]\ncycle = \"ece15\"\nbaselines = []\ndesign = \"grid\"\n[[factor]]\nkey = \"ambient_degc\"\n\
+    range = { from = -10, to = 53, step = 1 }\n";
+
+/// Property: shards put together are the study of one process, byte for byte; what is missing, doubled, foreign or damaged is named, and
+/// nothing is written then.
+#[test]
+fn shards_make_the_study_of_one_process() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name);
+    fs::write(at("plan.toml"), SHARED).unwrap();
+    let all = |line: &str| run_in(dir.path(), &words(line));
+    let good = |line: &str| assert_eq!(all(line).status.code(), Some(0), "{line}");
+    good("study plan.toml --out whole --quiet");
+    good("study plan.toml --out s_0 --shard 0/3 --quiet");
+    good("study plan.toml --out s_1 --shard 1/3 --quiet");
+    let refused = |line: &str, says: &[&str]| {
+        let output = all(line);
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        for words in says {
+            assert!(
+                stderr(&output).contains(words),
+                "{line}: {}",
+                stderr(&output)
+            );
+        }
+        assert!(!at("merged").exists(), "{line}");
+    };
+    refused(
+        "study merge merged s_0 s_1",
+        &["11 of 32 parts are in no shard: 21..32"],
+    );
+    good("study plan.toml --out s_2 --parts 21..32 --quiet");
+    refused(
+        "study merge merged s_0 s_1 s_2 s_0",
+        &["s_0 is named twice"],
+    );
+    refused("study merge merged s_0 s_1 s_2 nothing", &["nothing"]);
+    fs::write(at("other.toml"), SHARED.replace("ece15", "eudc")).unwrap();
+    good("study other.toml --out foreign --parts 0..1 --quiet");
+    refused(
+        "study merge merged s_0 s_1 s_2 foreign",
+        &["foreign", "another one", "cycle"],
+    );
+    let part = at("s_2/parts/runs_00030.parquet");
+    let bytes = fs::read(&part).unwrap();
+    fs::write(&part, &bytes[1..]).unwrap();
+    refused(
+        "study merge merged s_0 s_1 s_2",
+        &["part 30 in s_2 is damaged"],
+    );
+    fs::write(&part, bytes).unwrap();
+    good("study merge merged s_2 s_0 s_1 --quiet");
+    for folder in ["", "parts"] {
+        for entry in fs::read_dir(at("whole").join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_file() {
+                let own = at("merged").join(folder).join(path.file_name().unwrap());
+                assert!(
+                    fs::read(&path).unwrap() == fs::read(&own).unwrap(),
+                    "{own:?}"
+                );
+            }
+        }
+    }
+    for bad in ["--shard 3/3", "--shard x", "--parts 5..4", "--parts 0..33"] {
+        let line = format!("study plan.toml --out no {bad}");
+        assert_eq!(all(&line).status.code(), Some(2), "{line}");
+        assert!(!at("no").exists(), "{line}");
+    }
+    let output = all("study plan.toml --dry-run --json");
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (found["points"].as_u64(), found["parts"].as_u64()),
+        (Some(64), Some(32))
+    );
+    assert!(found["bytes"].as_u64() > Some(32 * 1000) && found["cpu_s"].as_f64() > Some(0.0));
+}

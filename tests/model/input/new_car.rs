@@ -3,6 +3,7 @@
 use cvtcycle_config::setup::new_car::{Answers, NewCar, write};
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
 use cvtcycle_config::{KeyInfo, Problems};
+use cvtcycle_model::keys::rad_s;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::variator::Geometry;
 
@@ -314,5 +315,153 @@ fn a_box_keeps_an_engine_that_cuts_late_above_its_cut() {
         let key = "transmission.cvt.ratio.overrun_rpm";
         assert!((number(&setup, key) - rpm).abs() < 1e-9, "{class}");
         assert_eq!(find(&setup, key).status, status, "{class}");
+    }
+}
+
+/// NC-2 of charged engines: between the plateau and the speed of rated power there is no more power than at its ends, and the line goes through both.
+#[test]
+fn the_full_load_line_holds_the_rated_power() {
+    for (displacement, torque, power, nm, [from, to], kw, rated_rpm) in [
+        (
+            "1.0l",
+            "200@1400-4500",
+            "92kW@6000",
+            200.0,
+            [1400.0, 4500.0],
+            92.0,
+            6000.0,
+        ),
+        (
+            "1.5l",
+            "250@1500-3500",
+            "110kW@6000",
+            250.0,
+            [1500.0, 3500.0],
+            110.0,
+            6000.0,
+        ),
+        (
+            "1.8l",
+            "172@4000",
+            "104kW@6400",
+            172.0,
+            [4000.0, 4000.0],
+            104.0,
+            6400.0,
+        ),
+    ] {
+        let numbers = [
+            ("displacement", displacement),
+            ("torque", torque),
+            ("power", power),
+        ];
+        let car = new("compact_2020", "box_cvt_clutch", &numbers).unwrap();
+        let line = &car.setup.engine().full_load;
+        let kw_at = |at_rpm: f64| line.at(rad_s(at_rpm)) * rad_s(at_rpm) / 1e3;
+        for at in [from, to] {
+            assert!((line.at(rad_s(at)) - nm).abs() < 0.06, "{torque} at {at}");
+        }
+        assert!((kw_at(rated_rpm) / kw - 1.0).abs() < 1e-3);
+        let most = kw.max(kw_at(to));
+        let mut before = f64::INFINITY;
+        for k in 0..200 {
+            let at = to + (rated_rpm - to) * f64::from(k) / 200.0;
+            assert!(
+                kw_at(at) < 1.002 * most,
+                "{torque}: {} kW at {at}",
+                kw_at(at)
+            );
+            let now = line.at(rad_s(at));
+            assert!(now <= before + 1e-9, "{torque}: rises at {at}");
+            before = now;
+        }
+        let doubts = car.setup.doubts();
+        assert!(
+            !doubts.iter().any(|doubt| doubt.contains("rated")),
+            "{doubts:?}"
+        );
+    }
+}
+
+/// A torque without a unit that is too small for the power in N m, and fits it in lb ft.
+#[test]
+fn a_torque_in_lb_ft_is_recognised() {
+    let refused = |torque: &str| {
+        let numbers = [
+            ("displacement", "2.0l"),
+            ("power", "118kW@6500"),
+            ("torque", torque),
+        ];
+        let found = new("compact_2020", "box_cvt_clutch", &numbers);
+        found.err().unwrap_or_else(|| panic!("{torque}"))[0]
+            .hint
+            .clone()
+    };
+    assert_eq!(
+        refused("138@4200"),
+        "is the torque in lb ft? then write 138lbft@4200"
+    );
+    assert!(refused("138Nm@4200").starts_with("check both"));
+    assert!(refused("20@4200").starts_with("check both"));
+}
+
+/// What other values of a car look like slips, each by one change.
+#[test]
+fn slips_across_keys_are_doubted() {
+    let doubts = |body: &str, gearbox: &str, numbers: &[(&'static str, &str)]| {
+        new(body, gearbox, numbers).unwrap().setup.doubts()
+    };
+    let diesel: &[(&'static str, &str)] = &[
+        ("displacement", "2.0l"),
+        ("torque", "340@1750-2500"),
+        ("power", "110kW@3800"),
+    ];
+    for (numbers, words) in [
+        (diesel, "spark-ignition"),
+        (&[("mass", "2400")], "is the mass in lb?"),
+        (&[("f2", "0.3")], "N per kg"),
+        (&[("idle", "400")], "idles at 400 rpm"),
+        (&[("wheel-radius", "600")], "roll on 600 mm"),
+        (&[("final-drive", "1.5")], "in the highest gear"),
+    ] {
+        let found = doubts("compact_2020", "box_cvt_clutch", numbers);
+        assert!(
+            found.iter().any(|doubt| doubt.contains(words)),
+            "{words}: {found:?}"
+        );
+        assert!(
+            !found.iter().any(|doubt| doubt.contains("lbf?")),
+            "{found:?}"
+        );
+    }
+    let changed = |name: &str, change: &str| {
+        let options = Options {
+            set: vec![change.parse().unwrap()],
+            ..Options::default()
+        };
+        load(name, &options).unwrap().doubts()
+    };
+    for (name, change, words) in [
+        (
+            "civic_20_cvt",
+            "transmission.cvt.pressure.cap_bar=8",
+            "the belt slips at full load",
+        ),
+        (
+            "rover_216_cvt",
+            "transmission.cvt.belt.length_m=0.575",
+            "runs down to a radius",
+        ),
+        (
+            "rover_216_5mt",
+            "road_load.wheel_radius_m=0.2",
+            "roll on 200 mm",
+        ),
+    ] {
+        let found = changed(name, change);
+        assert!(
+            found.iter().any(|doubt| doubt.contains(words)),
+            "{words}: {found:?}"
+        );
     }
 }

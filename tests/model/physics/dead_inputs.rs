@@ -133,7 +133,12 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 29] = [
+const NEEDS: [(&str, &[&str], &str); 30] = [
+    (
+        "driveline_f2_n_per_kmh2",
+        &["road_load.form.coefficients.driveline_f2_n_per_kmh2=0.001"],
+        "a part of f2, which is smaller than the smallest move from 0",
+    ),
     (
         "reverse_clutch.oil_share",
         &["transmission.cvt.reverse_clutch.peak_rpm=4000"],
@@ -304,8 +309,9 @@ const NEEDS: [(&str, &[&str], &str); 29] = [
 ];
 
 /// Keys that name things or have no physics: (end of the key, why).
-const WORDS: [(&str, &str); 7] = [
+const WORDS: [(&str, &str); 8] = [
     ("vehicle.title", "a name for people"),
+    ("vehicle.short", "a name in tables"),
     ("vehicle.baselines", "names"),
     (
         "vehicle.transmission_oil",

@@ -9,6 +9,7 @@
 
 mod bars;
 mod calibration;
+mod decision;
 mod difference;
 mod flow;
 mod lines;

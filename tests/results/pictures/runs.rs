@@ -236,7 +236,7 @@ fn axes_series_and_names_can_be_read_as_text() {
             "operating_points",
             &[
                 "Engine speed [rpm]",
-                "Engine torque [Nm]",
+                "Engine torque [N m]",
                 "Full load",
                 "Consumption [g/kWh]",
                 "255",

@@ -2,8 +2,8 @@
 
 use cvtcycle::report::charts::{Picture, PictureTable};
 use cvtcycle::report::cover::Cover;
-use cvtcycle::report::document::{Block, Document, Section};
-use cvtcycle::report::number::{NONE, Quantity, capital, degc, percent, phase, tiny};
+use cvtcycle::report::document::{Block, Document, ReportTable, Section};
+use cvtcycle::report::number::{NONE, Quantity, capital, degc, percent, phase, tiny, typeset};
 use cvtcycle::report::render::{html, markdown};
 
 fn document() -> Document {
@@ -159,4 +159,60 @@ fn a_number_keeps_its_unit_and_loses_a_rounded_sign() {
         (percent(1.0, 8.0), tiny(Some(3.2e-15)), capital("belt_band")),
         ("12.5".into(), "3e\u{2212}15".into(), "Belt band".into())
     );
+}
+
+/// ISO 80000-1: a space between number and unit, and between units that are multiplied; a minus is no hyphen.
+#[test]
+fn texts_have_one_style_of_units_and_signs() {
+    for (text, written) in [
+        (
+            "at -10 degC, +-2 Nm",
+            "at \u{2212}10\u{a0}\u{b0}C, \u{b1}2\u{a0}N\u{a0}m",
+        ),
+        ("7 % more, 3 km.", "7\u{a0}% more, 3\u{a0}km."),
+        ("Torque [Nm] and [degC]", "Torque [N\u{a0}m] and [\u{b0}C]"),
+        (
+            "-1 to 3, (-2), a-1, 2-3, x_-4",
+            "\u{2212}1 to 3, (\u{2212}2), a-1, 2-3, x_-4",
+        ),
+        // What is typed stays what it is.
+        (
+            "cvtcycle run --ambient -10 --out x",
+            "cvtcycle run --ambient -10 --out x",
+        ),
+        ("`run -10 degC` at -5", "`run -10 degC` at \u{2212}5"),
+        ("a.b_degc=-3 -3", "a.b_degc=-3 \u{2212}3"),
+    ] {
+        assert_eq!(typeset(text), written);
+        assert_eq!(typeset(&typeset(text)), written, "twice is once");
+    }
+}
+
+#[test]
+fn keys_break_at_their_joints_and_hashes_are_folded() {
+    let mut section = Section::new("one", "One");
+    let hash = "0123456789abcdef".repeat(4);
+    let mut table = ReportTable::of_words("Files", &["Key", "SHA-256"]);
+    table.row([
+        "transmission.cvt.belt.band_offset_mm".to_owned(),
+        hash.clone(),
+    ]);
+    section.table(table);
+    section.text("`cvtcycle explain` and 12.5 L/100 km of <a_very.long_name>");
+    let document = Document {
+        sections: vec![section],
+        ..Document::default()
+    };
+    let page = html(&document).unwrap_or_else(|e| unreachable!("{e}"));
+    assert!(page.contains("transmission.<wbr>cvt.<wbr>belt.<wbr>band_<wbr>offset_<wbr>mm"));
+    assert!(page.contains("<code>cvtcycle explain</code>"));
+    assert!(!page.contains("<a_") && page.contains(";a_<wbr>very.<wbr>long_<wbr>name"));
+    let shown = format!("title=\"{hash}\">0123456789ab\u{2026}</span>");
+    let whole = format!("<span class=\"hash\">{hash}</span>");
+    assert_eq!(
+        (page.matches(&shown).count(), page.matches(&whole).count()),
+        (1, 1)
+    );
+    let text = markdown(&document, "figures").unwrap_or_else(|e| unreachable!("{e}"));
+    assert!(text.contains(&hash), "whole where nothing can be opened");
 }

@@ -8,7 +8,7 @@ fn what_is_missing_is_said_and_the_rest_is_there() {
     run(&place, "cold", &[]);
     fs::remove_file(place.path().join("cold/trace_rover_216_cvt.csv")).unwrap();
     place.refused(
-        &["report", "cold"],
+        &["report", "cold", "--full"],
         1,
         &["trace of rover_216_cvt is not there"],
     );
@@ -20,7 +20,7 @@ fn what_is_missing_is_said_and_the_rest_is_there() {
     );
     fs::remove_file(place.path().join("cold/inputs.json")).unwrap();
     place.refused(
-        &["report", "cold", "--force"],
+        &["report", "cold", "--full", "--force"],
         1,
         &["inputs.json is not there"],
     );
@@ -265,7 +265,7 @@ fn a_study_of_another_case_stays_out_of_the_answer() {
     let answer = &words[..words.find("What to doubt").unwrap()];
     assert!(
         answer.contains("is of another case: cycle ece15 instead of eudc")
-            && !answer.contains("Fuel of rover_216_cvt over")
+            && !answer.contains("Fuel of CVT over")
     );
     assert!(words.contains("no study of uncertainty of this case"));
     assert_eq!(
@@ -277,10 +277,7 @@ fn a_study_of_another_case_stays_out_of_the_answer() {
         "named twice, shown once"
     );
     place.done(&["report", "cold"]);
-    assert!(
-        words_of(&place.text("cold/report.html"))
-            .contains("Fuel of rover_216_cvt over rover_216_5mt")
-    );
+    assert!(words_of(&place.text("cold/report.html")).contains("Fuel of CVT over 5-speed"));
     place.refused(
         &["report", "cold", "other", "--with", "cold/matrix"],
         2,

@@ -2,3 +2,5 @@
 
 pub mod figures;
 pub mod latex;
+pub mod pictures;
+mod sketch;

@@ -106,7 +106,8 @@ impl Column {
         Column { hint, ..self }
     }
 
-    pub(super) fn is_same(&self, other: &Column) -> bool {
+    /// Whether a table has just one of the two.
+    pub(crate) fn is_same(&self, other: &Column) -> bool {
         self.name == other.name || !self.group.is_empty() && self.group == other.group
     }
 

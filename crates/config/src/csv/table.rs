@@ -3,7 +3,7 @@
 use super::collector::{Cell, Collector, Line};
 use super::header::Header;
 use super::schema::{Cells, Column, Schema};
-use super::text::Field;
+use super::text::{Delimiter, Field, split};
 use crate::Problem;
 
 /// What was read from a cell.
@@ -228,6 +228,23 @@ impl<'a, 't> Row<'a, 't> {
             }
         }
     }
+}
+
+/// The names of the first line of a table that is in memory, whatever they are; none where it cannot be understood.
+pub fn first_names(bytes: &[u8]) -> Vec<String> {
+    let names = |mut lines: Box<dyn Iterator<Item = Line<'_>>>| {
+        let first = lines.next()?;
+        let below: Vec<Line<'_>> = lines.take(2).collect();
+        let delimiter = Delimiter::of(first, below.into_iter()).ok()?;
+        let mut fields = Vec::new();
+        split(first.text, delimiter.sign(), &mut fields).ok()?;
+        let text = |field: &Field| first.text_of(*field).to_owned();
+        Some(fields.iter().map(text).collect())
+    };
+    let lines = Collector::new("").lines(bytes);
+    lines
+        .and_then(|lines| names(Box::new(lines)))
+        .unwrap_or_default()
 }
 
 /// Reads a table that is in memory. `check` receives the line of column names; `take` receives every row and returns false to end the

@@ -151,6 +151,9 @@ fn parsed(entry: &Entry) -> Option<Cycle> {
     if weighting == Weighting::Ftp75 {
         stop_engine(&mut manual, &phases, "hot_soak");
     }
+    if US_CITY.contains(&entry.name) {
+        manual = manual.with_selector_s(US_CITY_SELECTOR_S);
+    }
     let (name, title) = (entry.name.to_owned(), entry.title.to_owned());
     Some(Cycle {
         name,
@@ -163,6 +166,11 @@ fn parsed(entry: &Entry) -> Option<Cycle> {
         is_wltc: entry.name.starts_with("wltc_class"),
     })
 }
+
+/// Cycles of the US city test, ...
+const US_CITY: [&str; 2] = ["udds", "ftp75"];
+/// ... and the time from a start of the engine until the selector is moved to drive, s (40 CFR 86.136-90).
+const US_CITY_SELECTOR_S: f64 = 15.0;
 
 fn entry(name: &str) -> Option<&'static Entry> {
     ENTRIES.iter().find(|entry| entry.name == name)

@@ -91,7 +91,7 @@ impl<'r> Section<'r> {
     /// The option that a word names.
     fn by_word(&self, key: &Key<'_>, node: &'r Node) -> Choice<'r> {
         let name = key.name;
-        let Lookup::Found(found) = self.unwrap(name, node) else {
+        let Lookup::Found(found) = self.unwrap(name, node, false) else {
             return Choice::Failed;
         };
         let Value::Text(word) = &found.node.value else {

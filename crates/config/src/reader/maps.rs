@@ -1,17 +1,21 @@
 //! Tables that vehicle files name: BSFC and loss maps.
 
 mod grid;
+mod wide;
 
+use self::grid::Rules;
 use std::borrow::Cow;
 use std::io::ErrorKind;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use crate::csv::{Column, Schema};
+use crate::csv::{Column, Columns, Foreign, Schema};
 use crate::files::bounded::ReadError;
 use crate::files::embedded;
 use crate::files::{Files, Made};
-use crate::problem::Problem;
+use crate::problem::place::Argument;
+use crate::problem::{Problem, Setting};
 use crate::reader::section::Section;
+use cvtcycle_model::keys::file_table::{FileColumn, FileRows, FileTable};
 use cvtcycle_model::keys::{Bound, Quantity};
 use cvtcycle_model::maps::{BsfcMap, LossMap};
 use cvtcycle_model::math::{GRID_AXES, Grid};
@@ -34,22 +38,50 @@ impl Table {
     }
 }
 
-fn read(
-    s: &Section,
-    key: &str,
-    file: &str,
+/// A file that a key names, with the columns that are meant, as the user says.
+pub(crate) struct Named<'s> {
+    file: String,
+    columns: &'s str,
+}
+
+impl<'s> From<(String, &'s str)> for Named<'s> {
+    fn from((file, columns): (String, &'s str)) -> Self {
+        Named { file, columns }
+    }
+}
+
+/// Rows that fill a grid.
+const GRID_RULES: Rules = Rules {
+    rises_with: None,
+    is_grid: true,
+};
+
+/// What a table has to be.
+struct Wanted {
     kind: &'static str,
     columns: Vec<Column>,
-) -> Option<Arc<Table>> {
+    rules: Rules,
+    foreign: Foreign,
+}
+
+fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<Table>> {
+    let file = named.file.as_str();
     if file.trim().is_empty() {
         let problem = Problem::missing("the name of the map is empty").allowed("a CSV file");
         s.report_at(key, problem.hint("name its file, or remove the key"));
         return None;
     }
+    let columns = match named.columns.is_empty() {
+        true => Ok(Columns::default()),
+        false => Columns::parse(named.columns),
+    };
+    let columns = columns.map_err(|problem| s.report_at(key, problem)).ok()?;
     let schema = Schema {
-        columns,
+        columns: wanted.columns,
         max_rows: grid::MAX_ROWS,
         rows: "a row for every point of the grid",
+        foreign: wanted.foreign,
+        named: Some(columns),
         ..Schema::default()
     };
     let own = embedded::text(embedded::maps(), file);
@@ -58,21 +90,18 @@ fn read(
         None => s.path_of_file(key, file),
     };
     let file = path.as_str();
+    let unreadable = |why: ReadError| {
+        let problem = Problem::unreadable(format!("cannot read `{file}`: {why}"))
+            .allowed(why.allowed("a readable CSV file"))
+            .hint(why.hint("the path is relative to the vehicle file"));
+        s.report_at(key, problem);
+    };
     let mut make = || {
         let bytes = match own {
             Some(text) => Cow::Borrowed(text.as_bytes()),
-            None => match bytes_of(s.reader.files, file) {
-                Ok(bytes) => Cow::Owned(bytes),
-                Err(why) => {
-                    let problem = Problem::unreadable(format!("cannot read `{file}`: {why}"))
-                        .allowed(why.allowed("a readable CSV file"))
-                        .hint(why.hint("the path is relative to the vehicle file"));
-                    s.report_at(key, problem);
-                    return None;
-                }
-            },
+            None => Cow::Owned(bytes_of(s.reader.files, file).map_err(unreadable).ok()?),
         };
-        match grid::read(file, &bytes, &schema) {
+        match grid::read(file, &bytes, &schema, wanted.rules) {
             Ok((columns, rows)) => Some(Arc::new(Table {
                 columns,
                 rows,
@@ -80,22 +109,90 @@ fn read(
                 bsfc: Mutex::default(),
             }) as Made),
             Err(problems) => {
-                let report = |problem| s.report_problem(problem);
+                let report = |problem| report(s, key, problem);
                 problems.into_iter().for_each(report);
                 None
             }
         }
     };
     let made = match s.reader.files {
-        Some(files) => files.made(kind, file, &mut make),
+        Some(files) => files.made(
+            wanted.kind,
+            &format!("{file}\n{}", named.columns),
+            &mut make,
+        ),
         None => make(),
     };
     made?.downcast().ok()
 }
 
+/// Reports a problem of a table; that of a column that the user names is one of the key.
+fn report(s: &Section, key: &str, problem: Problem) {
+    let hint = match problem.settings.contains(&Setting::Columns) {
+        true => format!("{}: {COLUMNS_HINT}", problem.hint),
+        false => problem.hint.clone(),
+    };
+    let problem = Problem {
+        settings: &[],
+        hint,
+        ..problem
+    };
+    match problem.place.is_argument(Argument::Columns) {
+        true => s.report_at(key, problem),
+        false => s.report_problem(problem),
+    }
+}
+
+/// How columns of a map are named.
+const COLUMNS_HINT: &str = "KEY = { value = \"FILE\", columns = \"QUANTITY=NAME:UNIT,...\" }";
+
 fn bytes_of(files: Option<&dyn Files>, file: &str) -> Result<Vec<u8>, ReadError> {
     let none = || ReadError::Unreadable(ErrorKind::NotFound.into());
     files.ok_or_else(none)?.read(file)
+}
+
+/// The rows of a table that a key names, in SI units; none after a problem.
+pub(crate) fn file_table(
+    s: &Section,
+    key: &str,
+    file: Named,
+    table: &'static FileTable,
+) -> Option<FileRows> {
+    let column = |own: &FileColumn| {
+        let column = Column::number(own.name, own.range).group(own.group);
+        match own.required {
+            true => column.required(),
+            false => column,
+        }
+    };
+    let wanted = Wanted {
+        kind: table.kind,
+        columns: table.columns.iter().map(column).collect(),
+        rules: Rules {
+            rises_with: table.rises_with,
+            is_grid: table.is_grid,
+        },
+        foreign: Foreign {
+            words: table.words,
+            ..Foreign::default()
+        },
+    };
+    let found = read(s, key, &file, wanted)?;
+    let columns: Vec<&'static str> = found
+        .columns
+        .iter()
+        .map(|k| table.columns[*k].name)
+        .collect();
+    let units: Vec<Quantity> = columns.iter().map(|name| Quantity::of(name)).collect();
+    let si = |row: &Vec<f64>| {
+        units
+            .iter()
+            .zip(row)
+            .map(|(unit, x)| unit.to_si(*x))
+            .collect()
+    };
+    let rows = found.rows.iter().map(si).collect();
+    Some(FileRows { columns, rows })
 }
 
 /// What helps with a BSFC map that does not hang together.
@@ -105,7 +202,7 @@ const GRID: &str = "give at least two speeds and two loads; more torque needs mo
 pub(crate) fn bsfc_map(
     s: &Section,
     key: &str,
-    file: &str,
+    file: Named,
     heating_value_j_kg: f64,
     displacement_m3: f64,
 ) -> Option<BsfcMap> {
@@ -116,7 +213,13 @@ pub(crate) fn bsfc_map(
         column("torque_nm", 0.1, 5000.0).group("load"),
         column("bsfc_g_kwh", 100.0, 3000.0),
     ];
-    let table = read(s, key, file, "bsfc", columns)?;
+    let wanted = Wanted {
+        kind: "bsfc",
+        columns,
+        rules: GRID_RULES,
+        foreign: Foreign::default(),
+    };
+    let table = read(s, key, &file, wanted)?;
     let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
     let mut made = table.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
@@ -162,7 +265,12 @@ pub const fn loss_map_axes(is_cvt: bool) -> [&'static str; GRID_AXES] {
 }
 
 /// A measured torque-loss map from CSV; `first` is the name of its first axis, `ratio` or `gear`.
-pub(crate) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) -> Option<LossMap> {
+pub(crate) fn loss_map(
+    s: &Section,
+    key: &str,
+    file: Named,
+    first: &'static str,
+) -> Option<LossMap> {
     let column = |name, (low, high)| Column::number(name, Bound::closed(low, high));
     let ranges = [
         (0.2, 12.0),
@@ -175,7 +283,13 @@ pub(crate) fn loss_map(s: &Section, key: &str, file: &str, first: &'static str) 
     let mut columns: Vec<Column> = axes.map(|(name, range)| column(name, range)).collect();
     columns.push(column("torque_loss_nm", (0.0, 1000.0)).required());
     let quantities: Vec<Quantity> = columns.iter().map(|c| Quantity::of(&c.name)).collect();
-    let table = read(s, key, file, first, columns)?;
+    let wanted = Wanted {
+        kind: first,
+        columns,
+        rules: GRID_RULES,
+        foreign: Foreign::default(),
+    };
+    let table = read(s, key, &file, wanted)?;
     if let Some(map) = table.loss.get() {
         return Some(map.clone());
     }

@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use crate::document::syntax::number_with_unit;
 use crate::document::units::{decimal_comma, number_hint};
-use crate::document::{Document, Node, Span, Table, Value};
+use crate::document::{Document, Entry, Node, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{did_you_mean, one_of, suggest};
 use crate::problem::place::Place;
@@ -15,7 +15,9 @@ use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 /// What a value's status may be in a file.
 pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 /// Fields of a value with its origin.
-const FIELDS: [&str; 4] = ["value", "status", "source", "note"];
+const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
+/// The one that only names of CSV files have: which of their columns is which.
+pub(crate) const COLUMNS: &str = "columns";
 
 /// Status and source of what an override gives.
 const SET: (&str, &str) = ("set", "command line");
@@ -148,6 +150,20 @@ impl<'r> Section<'r> {
         }
     }
 
+    /// The name of a CSV file and its columns as the user says; an error as of [`Section::read_text`].
+    pub(crate) fn read_csv_name(&self, key: &Key<'_>) -> Result<(String, &'r str), bool> {
+        let text = self.read_text(key)?;
+        let entry = self.table.and_then(|table| table.entries.get(key.name));
+        let Some(Value::Table(table)) = entry.map(|entry| &entry.node.value) else {
+            return Ok((text, ""));
+        };
+        let columns = table.entries.get(COLUMNS).map(|own| &own.node.value);
+        Ok(match columns {
+            Some(Value::Text(columns)) => (text, columns),
+            _ => (text, ""),
+        })
+    }
+
     /// A finite number within its range, in its own unit.
     pub(crate) fn check_number(
         &self,
@@ -184,7 +200,7 @@ impl<'r> Section<'r> {
         let Some(entry) = self.table.and_then(|table| table.entries.get(key.name)) else {
             return Lookup::Absent;
         };
-        self.unwrap(key.name, &entry.node)
+        self.unwrap(key.name, &entry.node, matches!(key.kind, Kind::Csv))
     }
 
     /// Counts a key as read and as known.
@@ -204,8 +220,8 @@ impl<'r> Section<'r> {
         });
     }
 
-    /// The value with its origin, from either of its two forms.
-    pub(crate) fn unwrap(&self, key: &str, node: &'r Node) -> Lookup<'r> {
+    /// The value with its origin, from either of its two forms; `is_csv` where it names a CSV file.
+    pub(crate) fn unwrap(&self, key: &str, node: &'r Node, is_csv: bool) -> Lookup<'r> {
         let mut found = Found::new(self.reader.document, node, "user");
         let Value::Table(table) = &node.value else {
             return Lookup::Found(found);
@@ -219,15 +235,16 @@ impl<'r> Section<'r> {
         };
         found.node = value;
         if !self.reader.is_check_only() {
-            let own = self.origin(key, table);
+            let own = self.origin(key, table, is_csv);
             let is_inherited = self.reader.document.parent(&node.span).is_some();
             found.add(own, is_inherited && found.status != "set");
         }
         Lookup::Found(found)
     }
 
-    /// Reads status, source and note of the value.
-    fn origin(&self, key: &str, table: &'r Table) -> Origin<'r> {
+    /// Reads status, source and note of the value, and the columns of a CSV file.
+    fn origin(&self, key: &str, table: &'r Table, is_csv: bool) -> Origin<'r> {
+        let fields = &FIELDS[..FIELDS.len() - usize::from(!is_csv)];
         let mut own = Origin::default();
         for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
             let text = match &entry.node.value {
@@ -236,22 +253,27 @@ impl<'r> Section<'r> {
             };
             match name.as_str() {
                 "status" => own.status = self.check_status(key, &entry.node, text),
-                "source" | "note" if !matches!(entry.node.value, Value::Text(_)) => {
+                COLUMNS if !is_csv => self.unknown_field(key, (name, entry), fields),
+                "source" | "note" | COLUMNS if !matches!(entry.node.value, Value::Text(_)) => {
                     self.wrong_type(&format!("{key}.{name}"), &entry.node, "text");
                 }
                 "source" => own.source = text,
                 "note" => own.note = text,
-                _ => {
-                    let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
-                    let problem = Problem::unknown_key(message)
-                        .names_key()
-                        .allowed(FIELDS.join(", "))
-                        .hint(suggest(name, &FIELDS));
-                    self.report(&entry.key, key, problem);
-                }
+                COLUMNS => {}
+                _ => self.unknown_field(key, (name, entry), fields),
             }
         }
         own
+    }
+
+    /// Reports an entry of a value with its origin that is none of its fields.
+    fn unknown_field(&self, key: &str, (name, entry): (&str, &Entry), fields: &[&str]) {
+        let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
+        let problem = Problem::unknown_key(message)
+            .names_key()
+            .allowed(fields.join(", "))
+            .hint(suggest(name, fields));
+        self.report(&entry.key, key, problem);
     }
 
     /// The status, where it is a known one.

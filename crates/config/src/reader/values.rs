@@ -4,6 +4,7 @@ use crate::problem::Problem;
 use crate::reader::maps;
 use crate::reader::section::Section;
 use crate::reader::value::{Lookup, default_option, options};
+use cvtcycle_model::keys::file_table::{FileRows, FileTable};
 use cvtcycle_model::keys::{Key, Kind, Presence, Values};
 use cvtcycle_model::maps::BsfcMap;
 use cvtcycle_model::maps::LossMap;
@@ -161,8 +162,20 @@ impl<'r> Values for Section<'r> {
     }
 
     fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap> {
-        let file = self.read_text(key).ok()?;
-        maps::loss_map(self, key.name, &file, first)
+        let file = self.read_csv_name(key).ok()?;
+        maps::loss_map(self, key.name, file.into(), first)
+    }
+
+    fn file_table(&self, key: &Key<'_>, table: &'static FileTable) -> Option<FileRows> {
+        match self.read_csv_name(key) {
+            Ok(file) => maps::file_table(self, key.name, file.into(), table),
+            Err(absent) => {
+                if absent && matches!(key.presence, Presence::Required) {
+                    self.report_missing(key);
+                }
+                None
+            }
+        }
     }
 
     fn bsfc_map(
@@ -171,14 +184,14 @@ impl<'r> Values for Section<'r> {
         heating_value_j_kg: f64,
         displacement_m3: f64,
     ) -> Option<BsfcMap> {
-        let file = self.read_text(key);
+        let file = self.read_csv_name(key);
         if file == Err(true) {
             self.report_missing(key);
         }
         maps::bsfc_map(
             self,
             key.name,
-            &file.ok()?,
+            file.ok()?.into(),
             heating_value_j_kg,
             displacement_m3,
         )

@@ -9,6 +9,9 @@ use super::Setup;
 use cvtcycle_model::keys::rpm;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
+use cvtcycle_model::transmission::cvt::variator::{
+    BeltAtRatio, BeltLoad, Geometry, belt_capacity_nm,
+};
 
 /// Least road load at 80 km/h over mass, N/kg.
 const LEAST_N_KG: f64 = 0.15;
@@ -20,6 +23,33 @@ const KW_PER_LITRE: RangeInclusive<f64> = 25.0..=150.0;
 const OF_RATED: RangeInclusive<f64> = 0.95..=1.05;
 /// Least span of the belt's ratio: those of 1987 have 5.
 const LEAST_SPAN: f64 = 4.0;
+/// Greatest one.
+const MOST_SPAN: f64 = 9.0;
+/// Greatest road load at 80 km/h over mass, N/kg: the mean of the classes and four standard deviations.
+const MOST_N_KG: f64 = 0.36;
+/// Keys of the road load.
+const COEFFICIENTS: [&str; 3] = [
+    "road_load.form.coefficients.f0_n",
+    "road_load.form.coefficients.f1_n_per_kmh",
+    "road_load.form.coefficients.f2_n_per_kmh2",
+];
+/// Highest torque over displacement, Nm/l.
+const NM_PER_LITRE: RangeInclusive<f64> = 60.0..=230.0;
+/// Torque over displacement above which, in Nm/l, and speed of the greatest power below which, in rpm, an engine is a diesel.
+const DIESEL: (f64, f64) = (110.0, 4500.0);
+/// Idle speeds of warm engines, rpm.
+const IDLE_RPM: RangeInclusive<f64> = 500.0..=1100.0;
+/// Dynamic radii of wheels, mm.
+const WHEEL_MM: RangeInclusive<f64> = 240.0..=400.0;
+/// Engine speeds at 100 km/h in the highest gear, rpm.
+const TOP_RPM: RangeInclusive<f64> = 1200.0..=4500.0;
+/// Stall speeds of torque converters, rpm.
+const STALL_RPM: RangeInclusive<f64> = 1500.0..=3200.0;
+/// Least running radius of a belt, m.
+const LEAST_RADIUS_M: f64 = 0.025;
+/// A warm box, K, and a slow belt, rad/s, at which its grip is looked at.
+const WARM_K: f64 = 353.15;
+const SLOW_RAD_S: f64 = 100.0;
 
 /// The doubts about a car, a sentence each.
 pub(super) fn doubts(setup: &Setup) -> Vec<String> {
@@ -28,21 +58,161 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
         of_mass(setup),
         of_size(setup),
         of_full_load(setup),
+        of_torque(setup),
+        of_idle(setup),
+        of_wheel(setup),
+        of_top_gear(setup),
+        of_stall(setup),
     ];
     let of_box = match setup.transmission() {
-        Transmission::Cvt(cvt) => [of_span(cvt), of_overrun(setup, cvt)],
-        Transmission::Manual(_) => [None, None],
+        Transmission::Cvt(cvt) => [
+            of_span(cvt),
+            of_overrun(setup, cvt),
+            of_radius(cvt),
+            of_grip(setup, cvt),
+        ],
+        Transmission::Manual(_) => [None, None, None, None],
     };
     all.into_iter().chain(of_box).flatten().collect()
+}
+
+/// Whether a value is that of a class or of another car.
+fn is_inherited(setup: &Setup, key: &str) -> bool {
+    let mut keys = setup.keys.iter();
+    keys.any(|info| info.key == key && ["class", "like"].contains(&info.status.as_str()))
 }
 
 fn of_road_load(setup: &Setup) -> Option<String> {
     let base = &setup.road_load.base;
     let v = 80.0 / 3.6;
     let force_n = base.f0_n + (base.f1_n_per_m_s + base.f2_n_per_m_s2 * v) * v;
-    (force_n < LEAST_N_KG * base.mass_kg).then(|| {
+    let per_kg = force_n / base.mass_kg;
+    let of_class = "of cars of the classes 0.22 to 0.28 N per kg";
+    if per_kg < LEAST_N_KG {
+        // Who gave no coefficient cannot have mistaken its unit.
+        let is_by_mass = COEFFICIENTS.iter().all(|key| is_inherited(setup, key));
+        return match (is_by_mass, base.mass_kg > MOST_KG) {
+            (true, true) => None,
+            (true, false) => Some(format!(
+                "the road load is {force_n:.0} N at 80 km/h for {:.0} kg, {of_class}: is the mass in lb?",
+                base.mass_kg
+            )),
+            (false, _) => Some(format!(
+                "the road load is {force_n:.0} N at 80 km/h, {of_class}: are the coefficients in lbf?"
+            )),
+        };
+    }
+    (per_kg > MOST_N_KG).then(|| {
         format!(
-            "the road load is {force_n:.0} N at 80 km/h, of cars of the classes 0.22 to 0.28 N per kg: are the coefficients in lbf?"
+            "the road load is {force_n:.0} N at 80 km/h, {per_kg:.2} N per kg, {of_class}: check coefficients and mass, and their units"
+        )
+    })
+}
+
+/// Highest torque over displacement, and what looks like a diesel: the engine of the program has a throttle and spark ignition.
+fn of_torque(setup: &Setup) -> Option<String> {
+    let engine = setup.engine();
+    let points = || engine.full_load.points();
+    let highest_nm = points().map(|(_, nm)| nm).fold(0.0, f64::max);
+    let per_litre = highest_nm / (engine.displacement_m3 * 1e3);
+    if !NM_PER_LITRE.contains(&per_litre) {
+        return Some(format!(
+            "the engine has {per_litre:.0} Nm per litre, engines 60 to 230: check displacement and torque, and their units"
+        ));
+    }
+    let at_most = points().max_by(|a, b| (a.0 * a.1).total_cmp(&(b.0 * b.1)));
+    let rated_rpm = at_most.map_or(f64::NAN, |(rad_s, _)| rpm(rad_s));
+    (per_litre > DIESEL.0 && rated_rpm < DIESEL.1).then(|| {
+        format!(
+            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine model is that of a spark-ignition engine, and its fuel would be wrong"
+        )
+    })
+}
+
+fn of_idle(setup: &Setup) -> Option<String> {
+    let idle_rpm = rpm(setup.engine().idle_hot_rad_s);
+    (!IDLE_RPM.contains(&idle_rpm)).then(|| {
+        format!("the warm engine idles at {idle_rpm:.0} rpm, engines of cars at 500 to 1100 rpm")
+    })
+}
+
+fn of_wheel(setup: &Setup) -> Option<String> {
+    let radius_mm = 1e3 * setup.road_load.base.wheel_radius_m;
+    (!WHEEL_MM.contains(&radius_mm)).then(|| {
+        format!("the wheels roll on {radius_mm:.0} mm, those of cars on 240 to 400 mm: is it the radius, in the unit of its key?")
+    })
+}
+
+fn of_top_gear(setup: &Setup) -> Option<String> {
+    let overall = match setup.transmission() {
+        Transmission::Cvt(cvt) => cvt.ratio.high * cvt.final_drive.ratio,
+        Transmission::Manual(manual) => *manual.overall.last()?,
+    };
+    let at_100_rpm = rpm(100.0 / 3.6 / setup.road_load.base.wheel_radius_m * overall);
+    (!TOP_RPM.contains(&at_100_rpm)).then(|| {
+        format!(
+            "in the highest gear the engine turns at {at_100_rpm:.0} rpm at 100 km/h, in cars at 1200 to 4500 rpm: check the final drive, the highest ratio and the wheels"
+        )
+    })
+}
+
+/// Speed at which full load holds the engine against a converter at rest.
+fn of_stall(setup: &Setup) -> Option<String> {
+    let coupling = setup.transmission().coupling();
+    if !coupling.by_command() {
+        return None; // a friction clutch has none
+    }
+    let engine = setup.engine();
+    let taken_nm = |speed: f64| {
+        let creep_nm = coupling.creep_nm(0.0, speed);
+        coupling.engine_side(creep_nm, 0.0, speed).engine_nm
+    };
+    let (mut low, mut high) = (engine.idle_hot_rad_s, 2.0 * engine.highest_rad_s);
+    // Without creep at idle speed the box is in neutral there, and says nothing of stall.
+    if taken_nm(high) <= 0.0 {
+        return None;
+    }
+    for _ in 0..50 {
+        let middle = 0.5 * (low + high);
+        match taken_nm(middle) < engine.full_load.at(middle) {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    let stall_rpm = rpm(low);
+    (!STALL_RPM.contains(&stall_rpm)).then(|| {
+        format!("full load stalls the converter at {stall_rpm:.0} rpm, those of cars at 1500 to 3200 rpm: check its capacity")
+    })
+}
+
+/// Least running radius of the belt at the ends of the ratio.
+fn of_radius(cvt: &Cvt) -> Option<String> {
+    let belt = &cvt.belt;
+    let at = |ratio: f64| Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
+    let least_m = (at(cvt.ratio.low).primary_radius_m).min(at(cvt.ratio.high).secondary_radius_m);
+    (least_m < LEAST_RADIUS_M).then(|| {
+        format!(
+            "the belt runs down to a radius of {:.1} mm, belts to 25 to 35 mm: check its length, the centre distance and the ratio limits",
+            1e3 * least_m
+        )
+    })
+}
+
+/// Highest torque of the engine in low against what the largest pressure grips.
+fn of_grip(setup: &Setup, cvt: &Cvt) -> Option<String> {
+    let oil = setup.car(WARM_K).oil;
+    let at = BeltAtRatio::new(&cvt.belt, cvt.ratio.low);
+    let load = BeltLoad {
+        secondary_clamp_n: cvt.secondary_clamp_n(cvt.cap_pa, 0.0),
+        ..BeltLoad::turning(&cvt.belt, &oil, WARM_K, cvt.ratio.low, SLOW_RAD_S)
+    };
+    let gripped_nm = belt_capacity_nm(&cvt.belt, &at, &load) / cvt.ratio.low;
+    let points = setup.engine().full_load.points();
+    let highest_nm = points.map(|(_, nm)| nm).fold(0.0, f64::max);
+    (gripped_nm < highest_nm).then(|| {
+        format!(
+            "the belt slips at full load: {:.0} bar grip {gripped_nm:.0} Nm of the engine in low, and it has {highest_nm:.0} Nm: check pressure.cap_bar and secondary_piston_cm2",
+            cvt.cap_pa / 1e5
         )
     })
 }
@@ -78,6 +248,12 @@ fn of_full_load(setup: &Setup) -> Option<String> {
 
 fn of_span(cvt: &Cvt) -> Option<String> {
     let (low, high) = (cvt.ratio.low, cvt.ratio.high);
+    if low > MOST_SPAN * high {
+        return Some(format!(
+            "the belt's ratio goes from {low} to {high}, a span of {:.2}; that of cars is up to 8: check both ends",
+            low / high
+        ));
+    }
     (low < LEAST_SPAN * high).then(|| {
         format!(
             "the belt's ratio goes from {low} to {high}, a span of {:.2}; that of cars is 5 and more: is one end that of the other?",

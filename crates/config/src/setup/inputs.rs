@@ -77,7 +77,7 @@ impl Inputs {
     }
 
     /// Of the car of a text, or of its twin.
-    fn of(
+    pub fn of(
         file: &str,
         text: &str,
         files: Box<dyn Files>,
@@ -208,7 +208,10 @@ impl Frame {
         };
         let root = vehicle.root();
         let Head {
-            title, baselines, ..
+            title,
+            short,
+            baselines,
+            ..
         } = head(&root, &self.name);
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
             Some(reader) => Ok(Lubricant::from_values(
@@ -229,6 +232,7 @@ impl Frame {
         Ok(Setup {
             name: self.name.clone(),
             title,
+            short,
             baselines,
             vehicle: Vehicle::new(car, road_load),
             keys: Vec::new(),
@@ -355,6 +359,7 @@ fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bo
 /// What the `[vehicle]` table says.
 pub(super) struct Head {
     title: String,
+    short: String,
     baselines: Vec<String>,
     fluid: String,
     engine_oil: String,
@@ -370,6 +375,7 @@ pub(super) fn head<V: Values>(root: &V, name: &str) -> Head {
     }
     Head {
         title: head.text_or(&HEAD.title, name),
+        short: head.text_or(&HEAD.short, &name.replace('_', " ")),
         baselines: head.texts(&HEAD.baselines),
         fluid: head.text(&HEAD.transmission_oil),
         engine_oil: head.text(&HEAD.engine_oil),

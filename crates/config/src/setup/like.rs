@@ -2,7 +2,7 @@
 //!
 //! The result is one document, in which each value keeps its place in the file that has it; everything after it (checks, `show`, studies)
 //! sees no difference. Tables are joined key by key. A value, a list and an option of a choice replace what is inherited as a whole, so that
-//! a car with another box or another engine model has no key of the former one. `title`, `baselines` and `like` itself are not inherited.
+//! a car with another box or another engine model has no key of the former one. `title`, `short`, `baselines` and `like` itself are not inherited.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -27,7 +27,12 @@ const MAX_DEPTH: usize = 8;
 /// Most files that one car inherits from, counted as often as they are named.
 const MAX_PARENTS: usize = 32;
 /// Names of the table of the file itself, which are not inherited.
-const OWN: [&str; 3] = [HEAD.title.name, HEAD.baselines.name, HEAD.like.name];
+const OWN: [&str; 4] = [
+    HEAD.title.name,
+    HEAD.short.name,
+    HEAD.baselines.name,
+    HEAD.like.name,
+];
 
 /// The document of the vehicle `file` with all that it inherits; the files that it names come from `files`.
 ///

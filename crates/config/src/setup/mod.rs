@@ -61,6 +61,8 @@ pub struct Setup {
     pub name: String,
     /// Name for people.
     pub title: String,
+    /// Name in tables and figures.
+    pub short: String,
     /// Names of its baselines.
     pub baselines: Vec<String>,
     /// The car before the ambient temperature is known.
@@ -338,6 +340,25 @@ pub fn read(
 ) -> Result<Setup, Problems> {
     inputs::Inputs::of_text(file, text, files, options)?.read()
 }
+
+/// As [`read`], for the twin of the vehicle: the same car with a manual box.
+///
+/// # Errors
+/// As there.
+pub fn read_twin(
+    file: &str,
+    text: &str,
+    files: Box<dyn Files>,
+    options: &Options,
+) -> Result<Setup, Problems> {
+    inputs::Inputs::of(file, text, files, options, true)?.read()
+}
+
+/// Range of the temperature of all parts at the start, degC.
+pub const START: Bound = Bound::closed(-40.0, 130.0);
+
+/// Range of the longest step, s.
+pub const STEP: Bound = Bound::closed(0.01, 10.0);
 
 /// Range of ambient temperatures, degC (test cell of the thesis widened).
 pub const AMBIENT: Bound = Bound::closed(-40.0, 60.0);

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::inputs::{Inputs, wrong_keys};
-use super::{Options, Setup};
+use super::{Files, Options, Setup};
 use crate::document::overrides::path_of;
 use crate::{
     Document, Input, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader,
@@ -84,7 +84,23 @@ impl VehicleTemplate {
     /// # Ok::<(), cvtcycle_config::Problems>(())
     /// ```
     pub fn load(word: &str, options: &Options) -> Result<(VehicleTemplate, Setup), Problems> {
-        let inputs = Inputs::gather(word, options)?;
+        VehicleTemplate::of(Inputs::gather(word, options)?)
+    }
+
+    /// As [`VehicleTemplate::load`], for a vehicle's text, as [`super::read`] takes it.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn read(
+        file: &str,
+        text: &str,
+        files: Box<dyn Files>,
+        options: &Options,
+    ) -> Result<(VehicleTemplate, Setup), Problems> {
+        VehicleTemplate::of(Inputs::of_text(file, text, files, options)?)
+    }
+
+    fn of(inputs: Inputs) -> Result<(VehicleTemplate, Setup), Problems> {
         let setup = inputs.read()?;
         let known = |info: &KeyInfo| KeyInfo {
             value: info.value.clone(),

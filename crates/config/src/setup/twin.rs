@@ -215,7 +215,7 @@ pub(super) fn twin(
     inner(
         &mut car.root,
         "vehicle",
-        &["title", "baselines", "like", "transmission_oil"],
+        &["title", "short", "baselines", "like", "transmission_oil"],
     );
     inner(&mut car.root, "thermal", &["transmission", "cooler"]);
     take(&mut twin, car); // TW-4

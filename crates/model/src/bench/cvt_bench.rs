@@ -180,7 +180,7 @@ impl OnBench<'_> {
         torques.for_each_loss(|component, shaft, torque_nm| {
             loss_nm[component] += match shaft {
                 Shaft::Engine | Shaft::Primary => torque_nm,
-                Shaft::Secondary => torque_nm * secondary_rad_s / w,
+                Shaft::Secondary | Shaft::Output => torque_nm * secondary_rad_s / w,
             };
         });
         if p.parts.belt {

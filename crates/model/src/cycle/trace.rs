@@ -168,6 +168,7 @@ pub struct Trace {
     /// Of every interval.
     motions: Vec<Motion>,
     gears: GearColumns,
+    selector_s: f64,
 }
 
 impl Trace {
@@ -182,7 +183,19 @@ impl Trace {
             motions: intervals.iter().map(Interval::motion).collect(),
             intervals,
             gears,
+            selector_s: 0.0,
         }
+    }
+
+    /// Time from a start of the engine until an automatic box is in drive, by the procedure of the cycle, s; 0 where it says nothing.
+    pub fn selector_s(&self) -> f64 {
+        self.selector_s
+    }
+
+    /// The same trace with a procedure that has an automatic box in drive some time after a start of the engine, s.
+    #[must_use]
+    pub fn with_selector_s(self, selector_s: f64) -> Self {
+        Trace { selector_s, ..self }
     }
 
     /// The prescribed gears, to be changed.
@@ -256,7 +269,7 @@ impl Trace {
             intervals.push(rest);
             from.push(number);
         }
-        Self::with_gears(intervals, self.gears.of(&from))
+        Self::with_gears(intervals, self.gears.of(&from)).with_selector_s(self.selector_s)
     }
 
     /// Duration, s.

@@ -19,7 +19,7 @@ pub use physics::{Finding, Law, PhysicsCheck, check_physics};
 pub use row::{HIGHEST_K, Row};
 pub use run::{
     Conditions, FuelMap, Outcome, RowSink, Start, co2_g_per_km, drive, drive_into, fuel_map,
-    litres_per_100km, start_state,
+    litres_per_100km, own_trace, start_state,
 };
 pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};

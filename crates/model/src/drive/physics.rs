@@ -18,7 +18,7 @@
 use super::{Car, EnergyTerms, Recorder, Row, State, Vehicle, simulate};
 use crate::cycle::Cycle;
 use crate::flags::Flags;
-use crate::fluid::BandFriction;
+use crate::fluid::{BandFriction, VALID_K};
 use crate::math::{larger, ln, pair, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat};
@@ -266,9 +266,11 @@ impl<'a> PhysicsCheck<'a> {
         let as_modelled = BELT_PARTS
             .iter()
             .all(|part| (factor[*part] - 1.0).abs() <= 0.0);
-        let modelled =
-            cvt.belt.formulation.by_statics() && !cvt.has_map(Component::BeltMap) && as_modelled;
-        if modelled && !row.flags.contains(Flags::NOT_CONVERGED) {
+        let is_map = cvt.has_map(Component::BeltMap) || cvt.has_map(Component::BoxMap);
+        let modelled = cvt.belt.formulation.by_statics() && !is_map && as_modelled;
+        // Outside the fluid's range friction is extrapolated: where friction times wrap exceeds 2, PX-2 has no solution.
+        let valid = VALID_K.contains(&self.before.node_k[BELT]);
+        if modelled && valid && !row.flags.contains(Flags::NOT_CONVERGED) {
             let load = BeltLoad {
                 output_torque_nm: row.secondary_nm,
                 secondary_clamp_n: row.secondary_pressure_pa * cvt.secondary_piston_m2
@@ -438,8 +440,11 @@ impl<'a> PhysicsCheck<'a> {
     }
 }
 
-/// Speed of the secondary by that of the road, rad/s.
+/// Speed of the secondary by that of the road, rad/s; with a clutch behind it by that of the engine.
 fn secondary_rad_s(car: &Car, cvt: &Cvt, row: &Row) -> f64 {
+    if cvt.launch_behind {
+        return row.engine_speed_rad_s * (1.0 - row.slip) / row.belt_ratio;
+    }
     cvt.final_drive.ratio * row.speed_m_s / car.road_load.wheel_radius_m
 }
 

@@ -1,5 +1,7 @@
 //! One car through one cycle: start state, drive, totals, rows on request.
 
+use std::borrow::Cow;
+
 use crate::cycle::{Cycle, Trace};
 use crate::drive::{Car, CarTrace, Recorder, State, Vehicle, simulate};
 use crate::drive::{EnergyTerms, Row, Totals};
@@ -114,8 +116,7 @@ pub fn drive_into(
 ) -> Outcome {
     let car = &vehicle.car(conditions.ambient_k);
     let CarTrace { trace, schedule } = vehicle.trace(cycle);
-    let cut = car.engine.start_stop.map(|on| cut_at_stops(&trace, &on));
-    let trace = cut.as_ref().unwrap_or(&trace);
+    let trace = &*own_trace(car, &trace);
     let start = start_state(car, trace, conditions);
     let mut totals = Totals::new(cycle.phases.len());
     let end = match give {
@@ -157,6 +158,14 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
     State {
         transmission: None,
         ..start
+    }
+}
+
+/// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop.
+pub fn own_trace<'a>(car: &Car, trace: &'a Trace) -> Cow<'a, Trace> {
+    match &car.engine.start_stop {
+        Some(on) => Cow::Owned(cut_at_stops(trace, on)),
+        None => Cow::Borrowed(trace),
     }
 }
 

@@ -19,7 +19,8 @@ use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
 use crate::transmission::cvt::Hold;
-use crate::transmission::{StepInput, StepOutput, Transmission};
+use crate::transmission::cvt::selector::SelectorSignals;
+use crate::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 
 /// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
 ///
@@ -118,6 +119,7 @@ impl<'a> Drive<'a> {
             gear,
             dt_s: step.dt_s,
             engine_off,
+            neutral_share: neutral_share(car, self.trace, running, transmission, step),
         };
         // Not `get_or_insert_with`, which is a call in every step.
         let transmission = match transmission {
@@ -189,6 +191,29 @@ impl<'a> Drive<'a> {
             own.hold = Some(*hold);
         }
         self.step(step)
+    }
+}
+
+/// Share of a step at rest that the box is in neutral (SE-1, SE-2).
+#[inline(always)]
+fn neutral_share(
+    car: &Car,
+    trace: Option<&Trace>,
+    running: &Running,
+    past: &Option<TransmissionState>,
+    step: &Step,
+) -> f64 {
+    if step.motion.speed_m_s > 0.0 {
+        return 0.0; // a car that moves is in drive
+    }
+    match &car.transmission {
+        Transmission::Cvt(cvt) => cvt.selector.neutral_share(&SelectorSignals {
+            procedure_s: trace.map_or(0.0, Trace::selector_s),
+            running_s: running.since_s,
+            rested_s: past.as_ref().map_or(0.0, |past| past.driveline.rested_s),
+            dt_s: step.dt_s,
+        }),
+        Transmission::Manual(_) => 0.0,
     }
 }
 

@@ -44,6 +44,7 @@ impl Kind<'_> {
             Kind::Integer(low, high) => format!("integer from {low} to {high}"),
             Kind::Flag => "true or false".to_owned(),
             Kind::Text => "text".to_owned(),
+            Kind::Csv => "the name of a CSV file".to_owned(),
             Kind::Words(choices) | Kind::Options(choices) => one_of(choices),
             Kind::Numbers(range, least, most) => {
                 format!("{}, each {}", count(*least, *most), each(range))

@@ -3,6 +3,7 @@
 //! A part of the model states its keys with `keys!`, one row each, and is built from [`Values`]. TOML
 //! reading, `explain`, JSON Schema, overrides, studies and fits use the same rows.
 mod allowed;
+pub mod file_table;
 mod quantity;
 mod range;
 pub mod spec;
@@ -11,6 +12,7 @@ pub use allowed::count;
 pub use quantity::{Quantity, RAD_S, RPM, ZERO_DEGC_K, rad_s, rpm, stem};
 pub use range::Bound;
 
+use self::file_table::{FileRows, FileTable};
 use crate::maps::{BsfcMap, LossMap};
 use crate::math::Curve;
 
@@ -42,6 +44,8 @@ pub enum Kind<'k> {
     Flag,
     /// Any text.
     Text,
+    /// The name of a CSV file, whose columns may be named.
+    Csv,
     /// One of some words.
     Words(&'k [Choice]),
     /// One of some tables.
@@ -279,6 +283,9 @@ pub trait Values: Sized {
 
     /// A measured loss map from the file that the key names; `first` is the name of its first axis.
     fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap>;
+
+    /// The rows of the CSV table that the key names; none where it is absent and may be, and after a problem.
+    fn file_table(&self, key: &Key<'_>, table: &'static FileTable) -> Option<FileRows>;
 
     /// A BSFC map from the file that the key names, for a heating value and a displacement; the
     /// caller gives it its friction.

@@ -20,6 +20,11 @@ pub const fn text() -> Spec {
     (Kind::Text, Presence::Required)
 }
 
+/// A required name of a CSV file.
+pub const fn csv() -> Spec {
+    (Kind::Csv, Presence::Required)
+}
+
 /// True or false, with a default.
 pub const fn flag(default: bool) -> Spec {
     (Kind::Flag, Presence::Flag(default))

@@ -5,6 +5,11 @@
 
 use crate::math::{Grid, larger};
 
+/// Most passes for the torque of a point behind the map.
+const MOST_PASSES: usize = 100;
+/// They end where the loss moves less, Nm.
+const STILL_NM: f64 = 1e-12;
+
 /// A measured torque-loss map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LossMap {
@@ -35,6 +40,28 @@ impl LossMap {
     /// The grid of the map.
     pub fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// A factor times the loss, Nm, at the input torque T for which T less that loss is the point's torque, and whether that input torque lies within
+    /// the map (MP-3, MP-4). By repetition: the loss changes by less than the torque does.
+    pub fn loss_behind_nm(&self, behind: &MapPoint, factor: f64) -> (f64, bool) {
+        let at = |loss_nm: f64| {
+            let torque_nm = behind.torque_nm + loss_nm;
+            let (loss_nm, inside) = self.loss_nm(&MapPoint {
+                torque_nm,
+                ..*behind
+            });
+            (factor * loss_nm, inside)
+        };
+        let mut answer = at(0.0);
+        for _ in 0..MOST_PASSES {
+            let before_nm = answer.0;
+            answer = at(before_nm); // MP-3, MP-4
+            if (answer.0 - before_nm).abs() <= STILL_NM {
+                break;
+            }
+        }
+        answer
     }
 
     /// Torque loss at the input shaft, Nm, never negative, and whether the point lies within the map.

@@ -69,24 +69,30 @@ impl Grid {
         let mut low = [0usize; GRID_AXES];
         let mut part = [0.0f64; GRID_AXES];
         let mut inside = true;
+        let (mut active, mut count) = ([0usize; GRID_AXES], 0);
         for k in 0..GRID_AXES {
             let axis = &self.axes[k];
             let last = axis.len() - 1;
             if last == 0 {
                 continue;
             }
+            active[count] = k;
+            count += 1;
             inside &= axis[0] <= x[k] && x[k] <= axis[last];
             low[k] = axis.partition_point(|&a| a <= x[k]).clamp(1, last) - 1;
             part[k] = ((x[k] - axis[low[k]]) / (axis[low[k] + 1] - axis[low[k]])).clamp(0.0, 1.0);
         }
         let mut sum = 0.0;
-        for corner in 0..1usize << GRID_AXES {
-            let (mut weight, mut index) = (1.0, 0);
-            for k in 0..GRID_AXES {
-                let upper = corner >> k & 1;
+        for corner in 0..1usize << count {
+            let mut weight = 1.0;
+            let mut place = low;
+            for (bit, &k) in active[..count].iter().enumerate() {
+                let upper = corner >> bit & 1;
                 weight *= if upper == 1 { part[k] } else { 1.0 - part[k] };
-                index = index * self.axes[k].len() + (low[k] + upper).min(self.axes[k].len() - 1);
+                place[k] += upper;
             }
+            let index = (self.axes.iter().zip(place))
+                .fold(0, |index, (axis, place)| index * axis.len() + place);
             if weight > 0.0 {
                 sum += weight * self.values[index];
             }

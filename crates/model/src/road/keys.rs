@@ -57,6 +57,9 @@ keys! {
         f0_n: number(0.0, 2000.0), "constant part", ["RL-1"];
         f1_n_per_kmh: or(0.0, number(-20.0, 50.0)), "part linear in speed; US targets have some below zero", ["RL-1"];
         f2_n_per_kmh2: number(0.0, 1.0), "part quadratic in speed, per (km/h)2", ["RL-1"];
+        driveline_f0_n: or(0.0, number(-200.0, 200.0)), "no-load drag of the box that f0 has in it, of a coast-down in neutral", ["RL-9"];
+        driveline_f1_n_per_kmh: or(0.0, number(-5.0, 5.0)), "the same of f1", ["RL-9"];
+        driveline_f2_n_per_kmh2: or(0.0, number(-0.05, 0.05)), "the same of f2", ["RL-9"];
     }
 
     /// Keys of `[road_load.form.body]`.
@@ -118,9 +121,10 @@ impl RoadLoadInput {
 
 fn coefficients<V: Values>(s: &V, form: &V) -> Forces {
     let (f0, f1, f2) = (
-        form.number(&COEFFICIENTS.f0_n),
-        form.number(&COEFFICIENTS.f1_n_per_kmh),
-        form.number(&COEFFICIENTS.f2_n_per_kmh2),
+        form.number(&COEFFICIENTS.f0_n) - form.number(&COEFFICIENTS.driveline_f0_n), // RL-9
+        form.number(&COEFFICIENTS.f1_n_per_kmh) - form.number(&COEFFICIENTS.driveline_f1_n_per_kmh), // RL-9
+        form.number(&COEFFICIENTS.f2_n_per_kmh2)
+            - form.number(&COEFFICIENTS.driveline_f2_n_per_kmh2), // RL-9
     );
     let force = |v: f64| f0 + (f1 + f2 * v) * v;
     let bend = clamp(-0.5 * f1 / larger(f2, f64::MIN_POSITIVE), 0.0, FASTEST_M_S);

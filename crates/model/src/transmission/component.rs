@@ -17,12 +17,12 @@ pub enum Part {
     BeltMap,
     /// Manual box, absent where a map replaces the box.
     Manual,
-    /// Manual box that is replaced by a measured map.
-    ManualMap,
+    /// Box of either kind that is replaced by a measured map.
+    BoxMap,
 }
 
 impl Part {
-    /// True for the components of a CVT without its coupling.
+    /// True for the components of a CVT alone, without its coupling.
     pub const fn is_cvt(self) -> bool {
         matches!(self, Part::Cvt | Part::Belt | Part::BeltMap)
     }
@@ -54,7 +54,7 @@ pub enum LossGroup {
     Belt,
     /// Final drive of a CVT.
     FinalDrive,
-    /// Teeth of a manual box, or its map.
+    /// Teeth of a manual box, or the map of a whole box.
     Gears,
     /// Bearings and seals of a manual box.
     BearingsAndSeals,
@@ -171,7 +171,7 @@ components! {
     Bearing: "bearing", "Bearing", Manual, Metal, BearingsAndSeals, Fill::Manual(2), None, "bearing loss of the manual box";
     Churning: "churning", "Churning", Manual, Sump, Churning, Fill::Manual(3), None, "churning loss of the manual box";
     Seal: "seal", "Seal", Manual, Metal, BearingsAndSeals, Fill::Manual(4), None, "seal loss of the manual box";
-    BoxMap: "box_map", "Box map", ManualMap, Sump, Gears, Fill::Manual(1), Some("box"), "loss of the whole manual box, from its measured map";
+    BoxMap: "box_map", "Box map", BoxMap, Sump, Gears, Fill::Manual(1), Some("box"), "loss of the whole box, from its measured map";
 }
 
 impl Component {

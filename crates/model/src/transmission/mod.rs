@@ -1,5 +1,6 @@
 //! From the wheels to the engine's flywheel: transmissions as the loop over a cycle sees them.
 
+pub mod box_map;
 pub mod clamp_cause;
 pub mod component;
 pub mod coupling;
@@ -79,7 +80,7 @@ impl Transmission {
             let map = match self {
                 Transmission::Cvt(cvt) => cvt.changes.as_ref()?.maps[component].as_ref(),
                 Transmission::Manual(manual) => {
-                    let own = component.part() == Part::ManualMap;
+                    let own = component.part() == Part::BoxMap;
                     manual.map.as_ref().filter(|_| own)
                 }
             };
@@ -89,11 +90,8 @@ impl Transmission {
 
     /// Loss components of the transmission, in the order of the power flow.
     pub fn components(&self) -> Vec<Component> {
-        let (cvt, mapped) = match self {
-            Transmission::Cvt(cvt) => (true, cvt.has_map(Component::BeltMap)),
-            Transmission::Manual(manual) => (false, manual.map.is_some()),
-        };
-        components(cvt, mapped)
+        let mapped = self.maps().map(|(component, _)| component.part());
+        components(self.is_cvt(), &mapped.collect::<Vec<_>>())
     }
 
     /// The coupling between engine and box.
@@ -124,17 +122,18 @@ impl Transmission {
     }
 }
 
-/// Loss components of a CVT or of a manual box, whose belt or box may be a measured map.
-fn components(cvt: bool, mapped: bool) -> Vec<Component> {
+/// Loss components of a CVT or of a manual box, of which the parts `mapped` are measured maps.
+fn components(cvt: bool, mapped: &[Part]) -> Vec<Component> {
+    let [belt, whole] = [Part::BeltMap, Part::BoxMap].map(|part| mapped.contains(&part));
     Component::ALL
         .into_iter()
         .filter(|component| match component.part() {
             Part::Coupling => true,
-            Part::Cvt => cvt,
-            Part::Belt => cvt && !mapped,
-            Part::BeltMap => cvt && mapped,
-            Part::Manual => !cvt && !mapped,
-            Part::ManualMap => !cvt && mapped,
+            Part::Cvt => cvt && !whole,
+            Part::Belt => cvt && !whole && !belt,
+            Part::BeltMap => cvt && !whole && belt,
+            Part::Manual => !cvt && !whole,
+            Part::BoxMap => whole,
         })
         .collect()
 }

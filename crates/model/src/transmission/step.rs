@@ -27,6 +27,8 @@ pub struct StepInput<'a, P> {
     pub dt_s: f64,
     /// True where the engine is switched off.
     pub engine_off: bool,
+    /// Share of a step at rest that an automatic box is in neutral, 0..1 (SE-3).
+    pub neutral_share: f64,
 }
 
 impl<P: PrimeMover> StepInput<'_, P> {
@@ -56,6 +58,8 @@ pub struct DrivelineState {
     pub coupled: bool,
     /// True where the car stood still.
     pub stood: bool,
+    /// Time that it has, s, with the engine running; kept by a CVT.
+    pub rested_s: f64,
 }
 
 /// What a driveline gives for a step, powers in W.

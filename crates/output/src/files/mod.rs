@@ -94,6 +94,11 @@ impl OutputDir {
         Ok(())
     }
 
+    /// The directory.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// SHA-256 of the files so far, by their names.
     pub fn sums(&self) -> &Sums {
         &self.sums

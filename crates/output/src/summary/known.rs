@@ -33,6 +33,9 @@ pub struct Contradiction {
     pub unit: String,
     /// The published text.
     pub printed: String,
+    /// The published numbers, from the smallest to the largest, in the same unit; none in files of an earlier version.
+    #[serde(default)]
+    pub between: Option<[f64; 2]>,
     /// At which condition it was found.
     pub condition: String,
 }

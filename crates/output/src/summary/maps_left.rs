@@ -67,7 +67,11 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
     let of_map = |((component, map), left): (&(Component, &LossMap), &Left)| {
         let (axis, side, _) = left.most()?;
         let values = map.grid().axes()[axis].as_slice();
-        let column = loss_map_axes(transmission.is_cvt())[axis];
+        let is_box = component.part() == Part::BoxMap;
+        let column = match (axis, is_box) {
+            (2, true) => "input_torque_nm",
+            _ => loss_map_axes(transmission.is_cvt())[axis],
+        };
         let end = [values.first(), values.last()][side].copied();
         is_left(left.any_s).then(|| MapLeft {
             file: file(driven, *component),
@@ -129,22 +133,19 @@ impl Left {
 
 /// Where a row reads the map of a component, in the order of its axes; none where the row does not know it.
 fn at(row: &Row, component: Component) -> [Option<f64>; GRID_AXES] {
-    let is_manual = component.part() == Part::ManualMap;
-    let of_engine = is_manual || [Component::Pump, Component::InputShaft].contains(&component);
+    let is_box = component.part() == Part::BoxMap;
+    let of_engine = is_box || [Component::Pump, Component::InputShaft].contains(&component);
     let couples = Flags(Flags::CLUTCH_SLIPPING.0 | Flags::CLUTCH_OPEN.0 | Flags::LOCKUP_OPEN.0);
     let is_known = of_engine || !row.flags.any(couples);
     let torque_nm = match component {
         Component::BeltMap => finite(row.secondary_nm),
         Component::FinalDrive => None,
-        _ if is_manual => finite(row.engine_torque_nm),
+        _ if is_box => finite(row.engine_torque_nm),
         _ => Some(0.0),
     };
-    let ratio = if is_manual {
-        Some(f64::from(row.gear)).filter(|gear| *gear > 0.0)
-    } else {
-        finite(row.belt_ratio)
-    };
-    let pressure_pa = if is_manual {
+    let gear = Some(f64::from(row.gear)).filter(|gear| *gear > 0.0);
+    let ratio = gear.or_else(|| finite(row.belt_ratio));
+    let pressure_pa = if is_box {
         Some(0.0)
     } else {
         finite(row.secondary_pressure_pa)

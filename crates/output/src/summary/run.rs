@@ -12,6 +12,7 @@ use cvtcycle_model::drive::{Outcome, co2_g_per_km, litres_per_100km};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::clamp_cause::ClampCause;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
@@ -32,6 +33,9 @@ pub struct RunSummary {
     pub vehicle: String,
     /// Name for people.
     pub title: String,
+    /// Name in tables and figures, unique within the run; empty in files of an earlier version.
+    #[serde(default)]
+    pub short: String,
     /// `subject` or `baseline`.
     pub role: String,
     /// `cvt` or `manual`.
@@ -40,6 +44,9 @@ pub struct RunSummary {
     pub lubricant: String,
     /// Engine oil.
     pub engine_oil: String,
+    /// Launch device where it is no clutch: `torque_converter`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub launch_device: Option<String>,
     /// Where a manual car's gears come from; null for a CVT.
     pub gear_schedule: Option<String>,
     /// Driven distance.
@@ -149,6 +156,14 @@ pub struct Solve {
 }
 
 impl RunSummary {
+    /// Its name in tables and figures.
+    pub fn label(&self) -> &str {
+        match self.short.as_str() {
+            "" => &self.vehicle,
+            short => short,
+        }
+    }
+
     /// Headline fuel of the car: weighted where the cycle is.
     pub fn headline_fuel(&self) -> Option<f64> {
         self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)
@@ -162,6 +177,13 @@ impl RunSummary {
             "electric" => Some(term("electric_loss")? - term("store")?),
             name => term(name),
         }
+    }
+
+    /// A loss of its transmission as people write it: the launch device has its own name.
+    pub fn loss_words(&self, component: &str) -> String {
+        let launch = component == Component::LaunchClutch.name();
+        let own = self.launch_device.as_deref().filter(|_| launch);
+        own.unwrap_or(component).replace('_', " ")
     }
 
     /// Sum of the transmission's losses, kJ.
@@ -233,10 +255,12 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let mut summary = RunSummary {
         vehicle: name.to_owned(),
         title: setup.title.clone(),
+        short: setup.short.clone(),
         role: role.to_owned(),
         transmission: if cvt { "cvt" } else { "manual" }.to_owned(),
         lubricant: oil.name.clone(),
         engine_oil: engine_oil.name.clone(),
+        launch_device: launch_device(setup.transmission()),
         gear_schedule: gear_schedule(driven),
         distance_km: all.distance_m / 1e3,
         duration_s: all.duration_s,
@@ -293,6 +317,12 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let names = summary.failures.iter().map(|failure| failure.check.clone());
     summary.failed_checks = names.collect();
     summary
+}
+
+/// The launch device of a transmission where it is no clutch.
+fn launch_device(of: &Transmission) -> Option<String> {
+    let coupling = of.coupling();
+    coupling.by_command().then(|| coupling.device().to_owned())
 }
 
 /// Where the gears come from; the shift speeds of a twin are in no file.

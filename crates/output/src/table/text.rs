@@ -1,14 +1,37 @@
-//! Tables for people: aligned columns without rules, for a terminal of 80 to 100 columns and for `grep`, or Markdown.
+//! Tables for people: aligned columns without rules, as wide as the lines of a terminal, and for `grep`, or Markdown.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use comfy_table::presets::NOTHING;
-use comfy_table::{Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
+use comfy_table::{Cell, CellAlignment, ColumnConstraint, Table, Width};
 
 use crate::number::fixed;
 
-/// Width of a table; the last column is wrapped beyond it.
-pub const WIDTH: u16 = 98;
+/// Columns of a line that no terminal shows.
+const LINE: usize = 100;
+/// Columns that a line can have: below, no table of numbers fits; above, the eye loses the line.
+const LINES: std::ops::RangeInclusive<usize> = 60..=140;
+/// Columns of the lines that are written from now on.
+static LINE_WIDTH: AtomicUsize = AtomicUsize::new(LINE);
 /// Blanks between two columns.
-const GAP: u16 = 2;
+const GAP: usize = 2;
+/// Blanks that an indented table has before each line.
+const INDENT: &str = "  ";
+/// Least number of columns of numbers of a table that may go on below itself.
+const FOLDED: usize = 3;
+
+/// Sets the width of all lines that follow, in columns; it is kept within 60 to 140. A program does it once, for its terminal; without it lines
+/// have 100 columns.
+pub fn set_line_width(columns: usize) {
+    let columns = columns.clamp(*LINES.start(), *LINES.end());
+    LINE_WIDTH.store(columns, Ordering::Relaxed);
+}
+
+/// Width of a line, columns.
+pub fn line_width() -> usize {
+    LINE_WIDTH.load(Ordering::Relaxed)
+}
 
 /// A table of texts, row by row.
 #[derive(Clone, Debug)]
@@ -17,7 +40,6 @@ pub struct TextTable {
     rows: Vec<Vec<String>>,
     indent: &'static str,
     min_widths: Vec<usize>,
-    width: u16,
 }
 
 impl TextTable {
@@ -36,7 +58,6 @@ impl TextTable {
             rows: Vec::new(),
             indent: "",
             min_widths: Vec::new(),
-            width: WIDTH,
         }
     }
 
@@ -44,7 +65,7 @@ impl TextTable {
     #[must_use]
     pub fn indented(self) -> Self {
         TextTable {
-            indent: "  ",
+            indent: INDENT,
             ..self
         }
     }
@@ -63,34 +84,81 @@ impl TextTable {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
-    /// The lines, for a terminal.
+    /// The lines, for a terminal. Where they have no room, words are wrapped in the widest columns, and a table of numbers goes on below itself;
+    /// no word and no number is cut, but keys and paths at their joints.
     pub fn text(&self) -> String {
+        self.text_in(line_width() - self.indent.len())
+    }
+
+    /// The lines; none if there is nothing below the headings.
+    fn unless_empty(&self) -> String {
+        match self.rows.len() {
+            0 | 1 => String::new(),
+            _ => self.text(),
+        }
+    }
+
+    /// The lines in a width.
+    fn text_in(&self, width: usize) -> String {
+        match self.fitting(width) {
+            Some(columns) => {
+                let first = self.part(0..columns).text_in(width);
+                let rest = self.part(columns..self.right.len()).text_in(width);
+                first + "\n" + &rest
+            }
+            None => self.lines(width),
+        }
+    }
+
+    /// Number of the leading columns that a width has room for; none if it has room for all, or the table is no table of numbers.
+    fn fitting(&self, width: usize) -> Option<usize> {
+        let numbers = self.right.iter().filter(|right| **right).count();
+        let mut end = 0;
+        let fits = (0..self.right.len()).take_while(|column| {
+            end += self.longest_word(*column) + if *column > 0 { GAP } else { 0 };
+            end <= width
+        });
+        // Of the first column and another one there is always some part.
+        let fitting = fits.count().max(2);
+        (numbers >= FOLDED && fitting < self.right.len()).then_some(fitting)
+    }
+
+    /// Some of the columns, after the first, which names the rows.
+    fn part(&self, columns: Range<usize>) -> TextTable {
+        let taken: Vec<usize> = [0]
+            .into_iter()
+            .chain(columns.start.max(1)..columns.end)
+            .collect();
+        let of = |cells: &Vec<String>| {
+            let cells = taken.iter().filter_map(|k| cells.get(*k).cloned());
+            cells.collect()
+        };
+        TextTable {
+            right: taken.iter().map(|k| self.right[*k]).collect(),
+            rows: self.rows.iter().map(of).collect(),
+            indent: self.indent,
+            min_widths: Vec::new(),
+        }
+    }
+
+    fn lines(&self, width: usize) -> String {
         let mut table = Table::new();
-        table.load_style(NOTHING).set_width(self.width);
-        table.set_content_arrangement(ContentArrangement::Dynamic);
+        table.load_style(NOTHING);
+        let last = self.right.len().saturating_sub(1);
+        let widths = self.widths(width - last * GAP);
         for row in &self.rows {
-            let cells = row
-                .iter()
-                .zip(&self.right)
-                .map(|(text, right)| match right {
-                    true => Cell::new(text).set_alignment(CellAlignment::Right),
-                    false => Cell::new(text).set_alignment(CellAlignment::Left),
-                });
+            let cells = row.iter().zip(&self.right).zip(&widths);
+            let cells = cells.map(|((text, right), width)| match right {
+                true => Cell::new(text).set_alignment(CellAlignment::Right),
+                false => Cell::new(folded(text, *width)).set_alignment(CellAlignment::Left),
+            });
             table.add_row(cells);
         }
-        let last = self.right.len().saturating_sub(1);
-        let content = table.column_max_content_widths();
-        for (k, column) in table.column_iter_mut().enumerate() {
-            column.set_padding((0, if k == last { 0 } else { GAP }));
-            if k < last {
-                let own = content.get(k).copied().unwrap_or(0);
-                let min = self
-                    .min_widths
-                    .get(k)
-                    .map_or(0, |min| u16::try_from(*min).unwrap_or(0));
-                let width = Width::Fixed(own.max(min) + GAP);
-                column.set_constraint(ColumnConstraint::Absolute(width));
-            }
+        for (k, (column, width)) in table.column_iter_mut().zip(widths).enumerate() {
+            let gap = if k == last { 0 } else { GAP };
+            column.set_padding((0, gap as u16));
+            let width = u16::try_from(width + gap).unwrap_or(u16::MAX);
+            column.set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
         }
         let lines = table.trim_fmt();
         let lines = lines.lines().map(str::trim_end);
@@ -98,20 +166,131 @@ impl TextTable {
             .map(|line| format!("{}{line}\n", self.indent))
             .collect()
     }
+
+    /// Widths of the columns: of their contents if there is room for them, else the widest are narrowed to one width, but no column below its
+    /// longest word.
+    fn widths(&self, room: usize) -> Vec<usize> {
+        let columns = 0..self.right.len();
+        let own: Vec<usize> = columns.map(|k| self.widest(k, characters)).collect();
+        let aligned = own.iter().enumerate().map(|(k, own)| {
+            let min = self.min_widths.get(k);
+            (*own).max(min.copied().unwrap_or(0))
+        });
+        let aligned: Vec<usize> = aligned.collect();
+        if aligned.iter().sum::<usize>() <= room {
+            return aligned;
+        }
+        let least: Vec<usize> = (0..own.len()).map(|k| self.longest_word(k)).collect();
+        let capped = |cap: usize| {
+            let narrowed = own.iter().zip(&least);
+            narrowed.map(move |(own, least)| (*own).min(cap.max(*least)))
+        };
+        let caps = (1..=room).rev();
+        let cap = caps
+            .into_iter()
+            .find(|cap| capped(*cap).sum::<usize>() <= room);
+        capped(cap.unwrap_or(1)).collect()
+    }
+
+    /// Characters that a column needs: those of its longest word; numbers with their units, below a heading on the right, are one word.
+    fn longest_word(&self, column: usize) -> usize {
+        let right = self.right.get(column).copied().unwrap_or(false);
+        let words = |text: &str| pieces(text).map(|(_, piece)| piece.chars().count()).max();
+        let head = self
+            .rows
+            .iter()
+            .take(1)
+            .filter_map(|row| words(row.get(column)?));
+        let head = head.max().unwrap_or(0);
+        let rest = match right {
+            true => self.widest_of(self.rows.iter().skip(1), column, characters),
+            false => self.widest(column, |text| words(text).unwrap_or(0)),
+        };
+        head.max(rest).max(1)
+    }
+
+    fn widest(&self, column: usize, of: impl Fn(&str) -> usize) -> usize {
+        self.widest_of(self.rows.iter(), column, of)
+    }
+
+    fn widest_of<'t>(
+        &self,
+        rows: impl Iterator<Item = &'t Vec<String>>,
+        column: usize,
+        of: impl Fn(&str) -> usize,
+    ) -> usize {
+        let cells = rows.filter_map(|row| row.get(column));
+        cells.map(|text| of(text)).max().unwrap_or(0)
+    }
+}
+
+/// Characters of the longest line of a text.
+fn characters(text: &str) -> usize {
+    let lines = text.lines().map(|line| line.chars().count());
+    lines.max().unwrap_or(0)
+}
+
+/// Length of a word from which on it may be parted at its joints: keys, paths, lists without blanks.
+const LONG_WORD: usize = 16;
+/// Ends of the parts of a long word.
+const JOINTS: [char; 5] = ['/', '_', ':', '.', ','];
+
+/// Words of a text, each with the blank before it, long ones in parts without one.
+fn pieces(text: &str) -> impl Iterator<Item = (&'static str, &str)> {
+    text.split_whitespace().flat_map(|word| {
+        let parts: Vec<&str> = match word.chars().count() > LONG_WORD {
+            true => word.split_inclusive(JOINTS).collect(),
+            false => vec![word],
+        };
+        let blanks = [" "].into_iter().chain(std::iter::repeat(""));
+        blanks.zip(parts)
+    })
+}
+
+/// A text in lines of a width; its own lines stay. It is unchanged where it fits.
+fn folded(text: &str, width: usize) -> String {
+    if characters(text) <= width {
+        return text.to_owned();
+    }
+    let fold = |line: &str| {
+        let mut lines = vec![String::new()];
+        for (blank, piece) in pieces(line) {
+            let used = lines.last().map_or(0, |line| line.chars().count());
+            match lines.last_mut() {
+                Some(line) if used == 0 => line.push_str(piece),
+                Some(line) if used + blank.len() + piece.chars().count() <= width => {
+                    line.push_str(blank);
+                    line.push_str(piece);
+                }
+                _ => lines.push(piece.to_owned()),
+            }
+        }
+        lines.join("\n")
+    };
+    let lines: Vec<String> = text.lines().map(fold).collect();
+    lines.join("\n")
 }
 
 /// A sentence wrapped to the width of the tables, with a mark before its first line.
 pub fn wrapped(sentence: &str, mark: &str) -> String {
     let blank = " ".repeat(mark.chars().count());
     let mut table = TextTable::new("l");
-    table.width -= u16::try_from(blank.len()).unwrap_or(0);
     table.row([sentence]);
-    let text = table.text();
+    let text = table.text_in(line_width() - blank.chars().count());
     let marks = [mark].into_iter().chain(std::iter::repeat(blank.as_str()));
     let lines = text.lines().zip(marks);
     lines
         .map(|(line, mark)| format!("{mark}{line}\n"))
         .collect()
+}
+
+/// Lines, each wrapped to the width of a line; what follows keeps its indentation.
+pub fn paragraphs(text: &str) -> String {
+    let wrap = |line: &str| {
+        let blank = line.len() - line.trim_start().len();
+        wrapped(&line[blank..], &line[..blank])
+    };
+    text.lines().map(wrap).collect()
 }
 
 /// A text cut to a number of characters.
@@ -203,11 +382,7 @@ impl<'a, T> TextColumns<'a, T> {
     where
         T: 't,
     {
-        let table = self.table(items);
-        match table.rows.len() {
-            0 | 1 => String::new(),
-            _ => table.text(),
-        }
+        self.table(items).unless_empty()
     }
 
     /// The same, indented.
@@ -215,7 +390,75 @@ impl<'a, T> TextColumns<'a, T> {
     where
         T: 't,
     {
-        let lines = self.lines(items);
-        lines.lines().map(|line| format!("  {line}\n")).collect()
+        self.table(items).indented().unless_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows() -> TextTable {
+        let mut table = TextTable::new("llrl");
+        table.row(["key", "meaning", "over rover_216_5mt", "source"]);
+        table.row([
+            "displacement_cc",
+            "volume that the pump moves in one revolution",
+            "8.57 cm³/rev",
+            "thesis, chapter 4",
+        ]);
+        table
+    }
+
+    /// Property: at any width the words are those of the widest table, in their order by column, and lines keep within the width if the longest
+    /// words do.
+    #[test]
+    fn no_width_cuts_a_word() {
+        let table = rows();
+        let words = |text: &str| {
+            let mut words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+            words.sort();
+            words
+        };
+        let whole = words(&table.text_in(400));
+        for width in 20..=140 {
+            let text = table.text_in(width);
+            assert_eq!(words(&text), whole, "{width}\n{text}");
+            // Longest words of the columns and the gaps between them: 15 + 2 + 10 + 2 + 13 + 2 + 8.
+            assert!(characters(&text) <= width.max(52), "{width}\n{text}");
+        }
+    }
+
+    /// Property: a table of numbers without room goes on below itself, each part with the first column, and keeps within the width.
+    #[test]
+    fn numbers_go_on_below() {
+        let mut table = TextTable::new("lrrrrr");
+        table.row(["bar", "break", "capacity", "primary", "secondary", "linear"]);
+        table.row(["15", "41.2", "143.8", "0.122", "0.069", "0.949"]);
+        let text = table.text_in(30);
+        assert_eq!(
+            text,
+            "bar  break  capacity  primary\n15    41.2     143.8    0.122\n\n\
+             bar  secondary  linear\n15       0.069   0.949\n"
+        );
+        assert!(!table.text_in(60).contains("\n\n"));
+    }
+
+    #[test]
+    fn long_names_part_at_their_joints() {
+        let text = "as in calibrations/rover_216_transmission.toml (fit)";
+        assert_eq!(
+            folded(text, 22),
+            "as in calibrations/\nrover_216_\ntransmission.toml\n(fit)"
+        );
+        assert_eq!(folded("no long name", 40), "no long name");
+    }
+
+    /// Numbers and their units are not parted, headings above them are.
+    #[test]
+    fn a_number_keeps_its_unit() {
+        let text = rows().text_in(60);
+        assert!(text.contains("8.57 cm³/rev"), "{text}");
+        assert!(!text.contains("over rover_216_5mt"), "{text}");
     }
 }

@@ -20,7 +20,23 @@ const MARKS: [&str; 2] = ["Lever", "Levers together"];
 
 /// For each lever of a car at one ambient temperature the range of its draws and their median; combinations last.
 pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
-    let rows = &block.rows;
+    strip(answer, block, &block.rows.iter().collect::<Vec<_>>())
+}
+
+/// The same of the levers that save most and work, at most so many, and of the combinations.
+pub fn foremost_levers(answer: &LeverAnswer, block: &LeverBlock, most: usize) -> Picture {
+    let (together, single): (Vec<_>, Vec<_>) =
+        block.rows.iter().partition(|row| row.is_combination());
+    let single = single.into_iter().filter(|row| saves(row)).take(most);
+    strip(answer, block, &single.chain(together).collect::<Vec<_>>())
+}
+
+/// Whether a lever works and saves fuel.
+pub fn saves(row: &LeverRow) -> bool {
+    !row.does_not_work() && row.fuel_percent.value < 0.0
+}
+
+fn strip(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Picture {
     let ends = rows.iter().flat_map(|row| {
         let quantiles = [row.low_percent, row.fuel_percent, row.high_percent];
         quantiles.map(|q| q.value)
@@ -33,7 +49,7 @@ pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
     for (k, row) in rows.iter().enumerate() {
         let name = Label::new(at(0.0, 0.0), row.of.title.as_str());
         panel.row_name(k, name.class("row").row(k));
-        let fill = Fill::nth(usize::from(row.is_combination()), 2);
+        let fill = Fill::car(usize::from(row.is_combination()));
         if answer.plan.is_some() && row.n > 0 {
             let style = Style::edged(fill.clone(), 0.5).row(k);
             let range = (row.low_percent.value, row.high_percent.value);
@@ -44,17 +60,17 @@ pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
         let count = at(f64::INFINITY, row_middle(k)).shift(8.0, 4.0);
         panel.label(
             Label::new(count, counted(answer, row))
-                .size(10.0)
+                .size(10.5)
                 .colour(QUIET),
         );
     }
     panel.upright(0.0, stroke(INK, 1.0, &[]));
-    let kinds = if rows.iter().any(LeverRow::is_combination) {
+    let kinds = if rows.iter().any(|row| row.is_combination()) {
         2
     } else {
         1
     };
-    let entry = |(k, name): (usize, &str)| Entry::fill(Fill::nth(k, 2), name);
+    let entry = |(k, name): (usize, &str)| Entry::fill(Fill::car(k), name);
     let foot = (MARGIN, WIDTH - 2.0 * MARGIN);
     let ambient = degc(block.ambient_degc);
     let subject = format!("Against {} as it is, ambient {ambient}", block.vehicle);
@@ -63,13 +79,13 @@ pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
         .panels([panel])
         .legend(foot, legend)
         .notes(foot, notes(answer))
-        .picture(table(answer, block))
+        .picture(table(answer, rows))
 }
 
 /// The lever that saves most, in a sentence.
 fn title(block: &LeverBlock) -> String {
     let mut single = block.rows.iter().filter(|row| !row.is_combination());
-    match single.find(|row| row.fuel_percent.value < 0.0) {
+    match single.find(|row| saves(row)) {
         Some(best) => {
             let (name, saved) = (capital_first(&best.of.title), -best.fuel_percent.value);
             format!("{name} saves most: {saved:.1} % of the fuel")
@@ -98,7 +114,7 @@ fn counted(answer: &LeverAnswer, row: &LeverRow) -> String {
     }
 }
 
-fn table(answer: &LeverAnswer, block: &LeverBlock) -> PictureTable {
+fn table(answer: &LeverAnswer, rows: &[&LeverRow]) -> PictureTable {
     let [low, high] = answer
         .confidence
         .ends()
@@ -111,7 +127,7 @@ fn table(answer: &LeverAnswer, block: &LeverBlock) -> PictureTable {
         ("Saves in".to_owned(), ""),
     ];
     let mut table = PictureTable::with_columns(columns);
-    for row in &block.rows {
+    for row in rows {
         let of = |value: f64| optional_cell(Some(value).filter(|x| x.is_finite()), 0.01);
         let ends = match answer.plan {
             Some(_) => [row.low_percent, row.high_percent].map(|q| of(q.value)),

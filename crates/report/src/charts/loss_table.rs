@@ -187,12 +187,12 @@ fn stack(plan: &LossTable, layout: &Layout) -> String {
             (Look::solid(k), xs.iter().copied().zip(losses).collect())
         };
         let layers = parts.iter().enumerate().map(layer).collect();
-        stack_layers(&mut panel, layers, parts.len());
+        stack_layers(&mut panel, layers, |k| Fill::component(parts[k]));
         panel
     };
     // Listed from the top, as they lie in the stack.
-    let entries = parts.iter().enumerate().rev();
-    let entries = entries.map(|(k, part)| Entry::fill(Fill::nth(k, parts.len()), part.title()));
+    let entries = parts.iter().rev();
+    let entries = entries.map(|part| Entry::fill(Fill::component(*part), part.title()));
     let edge = place(columns - 1).right;
     let side = Side {
         corner: (edge + 16.0, top),

@@ -4,6 +4,7 @@
 
 pub(crate) mod ambient;
 pub mod calibration;
+pub mod decision;
 mod engine;
 pub mod figures;
 mod grids;
@@ -18,7 +19,7 @@ pub mod study;
 mod variator_curves;
 
 pub use engine::cell;
-pub use levers::lever_strip;
+pub use levers::{foremost_levers, lever_strip, saves};
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use price::price_bars;

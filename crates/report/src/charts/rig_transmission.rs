@@ -7,6 +7,7 @@ use cvtcycle_model::bench::transmission::{
 };
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys;
+use cvtcycle_output::Component;
 use cvtcycle_output::rig::{given, oil_degc, rpm};
 
 /// File name and SVG text.
@@ -309,12 +310,13 @@ const STAGES: [(Stage, &str); 5] = [
     (Stage::PumpRemoved, "Pump removed: input shaft"),
 ];
 
-const PIECES: [(Piece, &str); 5] = [
-    (Piece::Pump, "Pump"),
-    (Piece::InputShaft, "Input shaft"),
-    (Piece::Clutch, "Reverse clutch"),
-    (Piece::Belt, "Belt"),
-    (Piece::FinalDrive, "Final drive"),
+/// Pieces of the strip-down with their names and the component whose colours they have.
+const PIECES: [(Piece, &str, Component); 5] = [
+    (Piece::Pump, "Pump", Component::Pump),
+    (Piece::InputShaft, "Input shaft", Component::InputShaft),
+    (Piece::Clutch, "Reverse clutch", Component::ClutchDrag),
+    (Piece::Belt, "Belt", Component::BeltBand),
+    (Piece::FinalDrive, "Final drive", Component::FinalDrive),
 ];
 
 /// Torque loss and pressure after each part was removed.
@@ -339,15 +341,16 @@ fn contributions(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
             |piece: Piece| sheet.line((ratio, degc), |_| true, |r| r.piece(piece).corrected_nm);
         let pieces = PIECES.into_iter().enumerate();
         pieces
-            .map(|(k, (piece, _))| (Look::solid(k), line(piece)))
+            .map(|(k, (piece, ..))| (Look::solid(k), line(piece)))
             .collect()
     };
     let mut panels = sheet.panels(lines);
     panels.iter_mut().for_each(|panel| panel.stacked = true);
-    let names = names(PIECES.into_iter().map(|(_, words)| words));
+    let names = names(PIECES.into_iter().map(|(_, words, _)| words));
     let title = "Contributions to the torque loss, from the strip-down";
     let mut chart = chart(title, panels, "From the strip-down", names);
     chart.same_y = true;
+    chart.parts = PIECES.into_iter().map(|(.., part)| part).collect();
     chart
 }
 
@@ -357,7 +360,7 @@ fn components(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
         look.dotted = true;
         (look, of)
     }
-    let of = |(piece, words): (Piece, &str)| {
+    let of = |(piece, words, _): (Piece, &str, Component)| {
         let mut series = sheet.by_temperature(ratio, |r| r.piece(piece).corrected_nm);
         let own = sheet.by_temperature(ratio, |r| r.piece(piece).true_nm);
         series.extend(own.into_iter().map(dotted));

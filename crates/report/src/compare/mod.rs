@@ -8,7 +8,7 @@ pub use many::{Comparison, Different, Side, compare, names};
 use figures::{difference, traces};
 
 use super::document::{Block, Document, ReportTable, Section};
-use super::number::{Quantity, phase, words};
+use super::number::{Quantity, capital_first, phase, sign, words};
 use super::problems::problem;
 use super::results::RunResults;
 use super::run::{Car, cars, change_table, conditions_line, cycle_title, hashes};
@@ -123,7 +123,8 @@ fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -
             .first()
             .is_some_and(|pair| pair.a.run.vehicle == pair.b.run.vehicle);
     if let Some(pair) = pairs.first() {
-        section.blocks.push(Block::Lead(lead(pair, names)));
+        let lead = only_change(pair) + &lead(pair, names);
+        section.blocks.push(Block::Lead(capital_first(&lead)));
         let [km_a, km_b] = [pair.a, pair.b].map(|car| car.run.distance_km);
         if ((km_b - km_a) / km_a).abs() > DISTANCE {
             let [km_a, km_b] = [km_a, km_b].map(|km| Quantity::Distance.text(km));
@@ -148,6 +149,25 @@ fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -
     section
 }
 
+/// The value that differs, where it is the only one, as the beginning of a sentence.
+fn only_change(subjects: &Pair) -> String {
+    let records = subjects.a.record.zip(subjects.b.record);
+    let changes = records.map_or_else(Vec::new, |(a, b)| changes(a, b));
+    match &changes[..] {
+        [of] if !of.here.is_empty() && !of.shipped.is_empty() => {
+            let unit = match sign(&of.unit) {
+                "-" | "" => String::new(),
+                unit => format!("\u{a0}{unit}"),
+            };
+            format!(
+                "With {} {}{unit} instead of {}{unit}: ",
+                of.key, of.here, of.shipped
+            )
+        }
+        _ => String::new(),
+    }
+}
+
 /// The fuel of both subjects, and the difference.
 fn lead(subjects: &Pair, [name_a, name_b]: &[String; 2]) -> String {
     let fuel = |car: &Car| car.run.headline_fuel().unwrap_or(f64::NAN);
@@ -155,7 +175,7 @@ fn lead(subjects: &Pair, [name_a, name_b]: &[String; 2]) -> String {
     let change = fuel_b - fuel_a;
     let percent = 100.0 * change / fuel_a;
     format!(
-        "The subject of {name_b} uses {}: {} or {} {} than that of {name_a} ({}).",
+        "the subject of {name_b} uses {}: {} or {} {} than that of {name_a} ({}).",
         Quantity::Fuel.text(fuel_b),
         Quantity::FuelShare.text(change.abs()),
         Quantity::Effect.text(percent.abs()),
@@ -207,7 +227,7 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
     let mut table = ReportTable::of_numbers("Fuel", "Car, phase", columns);
     for Pair { a, b } in pairs {
         let car = if a.run.vehicle == b.run.vehicle {
-            a.run.vehicle.clone()
+            a.run.label().to_owned()
         } else {
             format!("{} / {}", a.run.vehicle, b.run.vehicle)
         };

@@ -1,7 +1,7 @@
 //! Conditions: cycle, ambient, cars, fluids, and values that differ from the shipped files.
 
 use super::super::document::{ReportTable, Section};
-use super::super::number::{NONE, Quantity, degc, words};
+use super::super::number::{NONE, Quantity, degc, sign, words};
 use super::super::results::RunResults;
 use super::{Car, cycle_title, start_line};
 use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
@@ -35,11 +35,13 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     }
     section.facts(facts);
     section.table(table(cars));
-    let controllers = cars.iter().filter_map(|car| controller(car.record?));
+    let controllers = cars
+        .iter()
+        .filter_map(|car| controller(car.record?, car.run.label()));
     section.facts(controllers.collect());
     for car in cars {
         for note in &car.run.notes {
-            section.text(format!("{}: {note}.", car.run.vehicle));
+            section.text(format!("{}: {note}.", car.run.label()));
         }
         if let Some(record) = car.record {
             changes(&mut section, car, record);
@@ -64,7 +66,7 @@ fn table(cars: &[Car]) -> ReportTable {
         let schedule = run.gear_schedule.as_deref();
         let control = schedule.unwrap_or("ratio control of the vehicle file");
         table.row([
-            run.vehicle.clone(),
+            run.label().to_owned(),
             run.role.clone(),
             run.title.clone(),
             control.to_owned(),
@@ -77,7 +79,7 @@ fn table(cars: &[Car]) -> ReportTable {
 }
 
 /// The controller of a CVT: its clamp law and what sets its ratio.
-fn controller(record: &CarRecord) -> Option<(String, String)> {
+fn controller(record: &CarRecord, name: &str) -> Option<(String, String)> {
     const RATIO: &str = "transmission.cvt.ratio.";
     let mut values = record.values.iter();
     let law = values.find(|value| value.key == "transmission.cvt.clamp")?;
@@ -86,12 +88,12 @@ fn controller(record: &CarRecord) -> Option<(String, String)> {
         let name = words(name.trim_end_matches("_per_s"));
         Some(match value.unit.as_str() {
             "-" => format!("{name} {}", value.value),
-            unit => format!("{name} {}\u{a0}{unit}", value.value),
+            unit => format!("{name} {}\u{a0}{}", value.value, sign(unit)),
         })
     };
     let parts: Vec<String> = record.values.iter().filter_map(part).collect();
     let (law, ratio) = (words(&law.value), parts.join(", "));
-    let name = format!("Controller of {}", record.name);
+    let name = format!("Controller of {name}");
     Some((name, format!("clamp law {law}; ratio: {ratio}")))
 }
 
@@ -100,13 +102,14 @@ fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
     if record.changes.is_empty() {
         section.text(format!(
             "{} is the shipped vehicle {}, unchanged ({all} values).",
-            car.run.vehicle, record.reference
+            car.run.label(),
+            record.reference
         ));
         return;
     }
     let caption = format!(
         "{} against the shipped vehicle {}: {} values differ, {same} of {all} are the same",
-        car.run.vehicle,
+        car.run.label(),
         record.reference,
         record.changes.len()
     );
@@ -117,7 +120,7 @@ fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
         let caption = format!(
             "{} more values of {} that differ",
             rest.len(),
-            car.run.vehicle
+            car.run.label()
         );
         section.folded(change_table(&caption, rest, heads));
     }
@@ -128,7 +131,7 @@ pub(crate) fn change_table(caption: &str, changes: &[Change], names: [&str; 2]) 
     let mut table = ReportTable::of_words(caption, &["Key", "Unit", names[0], names[1]]);
     let cell = |text: &str| if text.is_empty() { NONE } else { text }.to_owned();
     for change in changes {
-        let (key, unit) = (change.key.clone(), change.unit.clone());
+        let (key, unit) = (change.key.clone(), sign(&change.unit).to_owned());
         table.row([key, unit, cell(&change.shipped), cell(&change.here)]);
     }
     table

@@ -1,15 +1,16 @@
 //! Energy balance, and the terms of a difference of fuel.
 
 use super::super::document::{ReportTable, Section};
-use super::super::number::{Quantity, percent};
+use super::super::number::{Quantity, grouped, percent, signed};
 use super::Car;
-use crate::charts::figures::{CarEnergy, TERMS, energy_flow, transmission_flow};
+use crate::charts::decision::PerKm;
+use crate::charts::figures::{CarEnergy, TERMS, Term, energy_flow, transmission_flow};
 
 /// A car's ledger as the figures want it, kJ.
 fn car_energy(car: &Car) -> CarEnergy {
     let term = |name: &str| car.run.term_kj(name).unwrap_or(f64::NAN);
     CarEnergy {
-        subject: car.run.vehicle.clone(),
+        subject: car.run.label().to_owned(),
         fuel_kj: car.run.fuel_energy_kj,
         exhaust_kj: term("exhaust"),
         engine_heat_kj: term("engine_heat"),
@@ -21,28 +22,37 @@ fn car_energy(car: &Car) -> CarEnergy {
     }
 }
 
-/// What the fuel of the subject has more than that of a baseline, term by term.
-pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
-    let term = |car: &Car, name: &str| car.run.term_kj(name).unwrap_or(0.0);
-    let fuel = subject.run.fuel_energy_kj - baseline.run.fuel_energy_kj;
-    let part = |(name, words, _)| (words, term(subject, name) - term(baseline, name));
-    let mut parts: Vec<(&str, f64)> = TERMS.into_iter().map(part).collect();
-    parts.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let large = parts.iter().filter(|(_, kj)| kj.abs() >= 0.5);
-    let text = |(words, kj): &(&str, f64)| format!("{words} {}", Quantity::Energy.signed(*kj));
-    let terms: Vec<String> = large.map(text).collect();
-    let [own, other] = [subject, baseline].map(|car| car.run.distance_km);
-    let mut drive = String::new();
-    if (own - other).abs() > 0.0005 {
-        let [own, other] = [own, other].map(|km| Quantity::Distance.text(km));
-        drive = format!(
-            " The two drive different distances ({own} and {other}), so distance is a part of it."
-        );
+/// Energies of two cars over their distance, kJ/km.
+pub(super) fn per_km(subject: &Car, baseline: &Car) -> PerKm {
+    let of = |car: &Car, kj: Option<f64>| kj.unwrap_or(0.0) / car.run.distance_km;
+    let term = |(name, words, term): (&str, &str, Term)| {
+        let [own, other] = [subject, baseline].map(|car| of(car, car.run.term_kj(name)));
+        (words.to_owned(), term, own - other)
+    };
+    PerKm {
+        names: [subject, baseline].map(|car| car.run.label().to_owned()),
+        fuel: [subject, baseline].map(|car| of(car, Some(car.run.fuel_energy_kj))),
+        terms: TERMS.into_iter().map(term).collect(),
     }
+}
+
+/// What the fuel of the subject has more than that of a baseline over a kilometre, term by term.
+pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
+    let of = per_km(subject, baseline);
+    let difference = of.fuel[0] - of.fuel[1];
+    let mut terms = of.terms;
+    terms.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
+    let kj = |x: f64| signed(grouped(x, 0), x);
+    let large = terms.iter().filter(|(.., x)| x.abs() >= 0.5);
+    let terms: Vec<String> = large
+        .map(|(name, _, x)| format!("{} {name}", kj(*x)))
+        .collect();
+    let more = if difference < 0.0 { "less" } else { "more" };
     format!(
-        "Against {} the fuel's energy differs by {}: {}.{drive}",
-        baseline.run.vehicle,
-        Quantity::Energy.signed(fuel),
+        "Per kilometre {} burns {} kJ {more} than {}: {}.",
+        subject.run.label(),
+        grouped(difference.abs(), 0),
+        baseline.run.label(),
         terms.join(", ")
     )
 }
@@ -51,7 +61,7 @@ pub(super) fn section(cars: &[Car]) -> Section {
     let mut section = Section::new("energy", "Energy from fuel to wheel");
     section.text(
         "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
-         + rotating parts + transmission + brakes + rolling and air. What the wheels gave back in overrun is set off against what they took.",
+         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun.",
     );
     let stops = |car: &Car| car.run.term_kj("electric").is_some_and(|kj| kj.abs() > 0.0);
     if cars.iter().any(stops) {
@@ -61,14 +71,14 @@ pub(super) fn section(cars: &[Car]) -> Section {
     }
     section.table(balance(cars));
     for car in cars {
-        let (name, energy) = (&car.run.vehicle, car_energy(car));
+        let (file, name, energy) = (&car.run.vehicle, car.run.label(), car_energy(car));
         section.heading(&car.run.title);
         let caption = format!("Energy of {name} from the fuel to the road.");
-        section.figure(format!("energy_flow_{name}"), caption, energy_flow(&energy));
+        section.figure(format!("energy_flow_{file}"), caption, energy_flow(&energy));
         let caption = format!(
             "The same, enlarged: from the flywheel of {name} through each part of the transmission to the wheels."
         );
-        let name = format!("transmission_flow_{name}");
+        let name = format!("transmission_flow_{file}");
         section.figure(name, caption, transmission_flow(&energy));
     }
     section
@@ -96,7 +106,7 @@ fn balance(cars: &[Car]) -> ReportTable {
 
 /// An empty table of energies of each car with their shares.
 pub(super) fn with_shares(caption: &str, first: &str, of: &str, cars: &[Car]) -> ReportTable {
-    let columns = |car: &Car| [(car.run.vehicle.clone(), "kJ"), (of.to_owned(), "%")];
+    let columns = |car: &Car| [(car.run.label().to_owned(), "kJ"), (of.to_owned(), "%")];
     ReportTable::of_numbers(caption, first, cars.iter().flat_map(columns))
 }
 

@@ -3,10 +3,11 @@
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, capital, phase as phase_name};
 use super::super::results::RunResults;
-use super::{Car, cars, energy};
+use super::answer::brief;
+use super::{Car, cars, conditions_line, cycle_title, energy};
+use crate::charts::decision::{Repeat, repeats, waterfall};
 use crate::charts::figures::{
-    CarLosses, GuideLine, LossTrace, PhaseLosses, Variogram, loss_by_component, loss_by_phase,
-    loss_by_temperature, variogram,
+    CarLosses, GuideLine, PhaseLosses, Variogram, loss_by_component, loss_by_phase, variogram,
 };
 use crate::charts::{
     PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure, price_bars,
@@ -15,6 +16,7 @@ use crate::charts::{
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
 use cvtcycle_model::keys::RPM;
+use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::FuelMapRecord;
@@ -46,65 +48,121 @@ pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
             fuel_bars(&plots),
         );
     }
-    vec![
-        energy,
-        losses_section(all),
-        warm_up(all),
-        drive(all),
-        engine(all),
-    ]
+    let details = [energy, warm_up(all), drive(all), engine(all)];
+    let folded = details.map(|mut section| {
+        section.more = std::mem::take(&mut section.blocks);
+        section
+    });
+    std::iter::once(losses_section(found, all))
+        .chain(folded)
+        .collect()
 }
 
 fn plot<'a>(car: &Car<'a>) -> Option<PlotRun<'a>> {
     let history = car.history?;
     let fuel_map = car.record.map(|record| fuel_map(&record.fuel_map));
     Some(PlotRun {
-        name: &car.run.vehicle,
+        name: car.run.label(),
         history,
         fuel_map,
         group_fuel: group_fuel(car.run),
     })
 }
 
-fn losses_section(all: &[Car]) -> Section {
-    let mut section = Section::new("losses", "Losses by component");
-    section.table(loss_table(all));
+/// What the losses cost and where they come from; by phase and over time in the full report.
+fn losses_section(found: &RunResults, all: &[Car]) -> Section {
+    let mut section = Section::new("losses", "Losses: what they cost, and where they are");
+    let cycle = cycle_title(&found.summary, found.record.as_ref());
+    let conditions = format!("{}, {}", brief(&cycle), conditions_line(&found.summary));
+    if let [subject, baseline, ..] = all {
+        let of = energy::per_km(subject, baseline);
+        let [own, other] = &of.names;
+        let caption = format!(
+            "Energy over distance from the fuel of {other} to that of {own}; the terms add up."
+        );
+        section.figure("waterfall", caption, waterfall(&of, &conditions));
+    }
     let cars = all.iter().map(|car| CarLosses {
-        name: car.run.vehicle.clone(),
+        name: car.run.label().to_owned(),
         losses_kj: car.losses_kj(),
     });
     let picture = loss_by_component(&cars.collect::<Vec<_>>());
     let caption = "Losses of each transmission over the whole cycle.";
     section.figure("loss_by_component", caption, picture);
-    for car in all.iter().filter(|car| car.run.price.is_some()) {
-        let name = &car.run.vehicle;
+    if let Some((subject, drives, part)) = all.first().and_then(natural_experiment) {
+        let caption = format!(
+            "{part} driven {} times by {subject} while the oil warms: nothing but the temperature changes.",
+            drives.len()
+        );
+        let of = format!("{subject}, {part} of {conditions}");
+        section.figure("repeats", caption, repeats(&of, &drives));
+    }
+    let mut more = Section::default();
+    for (k, car) in all.iter().filter(|car| car.run.price.is_some()).enumerate() {
+        let (file, name) = (&car.run.vehicle, car.run.label());
         let caption = format!(
             "What each loss of {name} costs: the car driven again without it. The prices need not add up to that of all together."
         );
-        section.figure(format!("price_{name}"), caption, price_bars(car.run, name));
+        let of = if k == 0 { &mut section } else { &mut more };
+        of.figure(format!("price_{file}"), caption, price_bars(car.run, name));
     }
+    section.table(loss_table(all));
     let traced: Vec<&Car> = all.iter().filter(|car| car.history.is_some()).collect();
     if !traced.is_empty() && all[0].run.phases.len() > 1 {
         let picture = loss_by_phase(&phase_losses(all, &traced));
         let caption = "Losses by phase of the cycle, for each kilometre driven in it.";
-        section.figure("loss_by_phase", caption, picture);
+        more.figure("loss_by_phase", caption, picture);
     }
     for car in traced {
-        let (Some(run), Some(history), name) = (plot(car), car.history, &car.run.vehicle) else {
-            continue;
-        };
-        section.heading(&car.run.title);
+        let Some(run) = plot(car) else { continue };
+        more.heading(&car.run.title);
+        let name = car.run.label();
         let about =
             format!("Loss power of {name} over time, averaged over stretches of the cycle.");
-        section.figure(format!("losses_{name}"), about, losses(&run));
-        let caption = format!(
-            "Mean loss power of {name} while it moved, against the temperature of its oil. Oil and phase of the cycle change together, so \
-             this is no clean sweep of temperature; the command cvtcycle losses draws one."
-        );
-        let picture = loss_by_temperature(&loss_trace(car, history));
-        section.figure(format!("loss_by_temperature_{name}"), caption, picture);
+        more.figure(format!("losses_{}", car.run.vehicle), about, losses(&run));
     }
+    section.more = more.blocks;
     section
+}
+
+/// A part of the cycle that a car drives again and again with the same speeds: its name, and what each drive loses.
+fn natural_experiment<'a>(car: &Car<'a>) -> Option<(&'a str, Vec<Repeat>, String)> {
+    let history = car.history?;
+    let rows = |phase: usize| (0..history.len()).filter(move |i| history.phase(*i) == phase);
+    let speeds = history.column("speed_kmh");
+    let trace = |phase: usize| {
+        rows(phase)
+            .filter_map(|i| speeds.get(i))
+            .collect::<Vec<_>>()
+    };
+    let names = history.phases();
+    let first = (0..names.len()).find(|k| {
+        let same = |other: &usize| other != k && trace(*other) == trace(*k);
+        (0..names.len()).any(|other| same(&other))
+    })?;
+    let same: Vec<usize> = (first..names.len())
+        .filter(|k| trace(*k) == trace(first))
+        .collect();
+    let oil = history.column("transmission_sump_degc");
+    let components = history.components();
+    let groups = distinct(components.iter().map(|c| c.group()));
+    let drive = |phase: &usize| {
+        let own: Vec<usize> = rows(*phase).collect();
+        let (begin, end) = (own.first()?, own.last()?);
+        let loss = |group: &LossGroup| {
+            let of = components.iter().filter(|c| c.group() == *group);
+            let at = |c, i: &usize| Some(loss_w(history, c).get(*i)? * history.dt_s().get(*i)?);
+            let joule = of.flat_map(|c| own.iter().filter_map(move |i| at(c, i)));
+            (*group, joule.filter(|x| x.is_finite()).sum::<f64>() / 1e3)
+        };
+        Some(Repeat {
+            oil_degc: [*oil.get(begin.saturating_sub(1))?, *oil.get(*end)?],
+            losses_kj: groups.iter().map(loss).collect(),
+        })
+    };
+    let drives: Vec<Repeat> = same.iter().filter_map(drive).collect();
+    let part = phase_name(&phase_group(&names[first]));
+    (drives.len() > 1).then(|| (car.run.label(), drives, part))
 }
 
 fn loss_table(all: &[Car]) -> ReportTable {
@@ -162,20 +220,11 @@ fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
     });
     PhaseLosses {
         subject: String::new(),
-        cars: traced.iter().map(|car| car.run.vehicle.clone()).collect(),
+        cars: traced
+            .iter()
+            .map(|car| car.run.label().to_owned())
+            .collect(),
         groups: groups.collect(),
-    }
-}
-
-fn loss_trace<'a>(car: &Car, history: &'a History) -> LossTrace<'a> {
-    let losses = history.components().into_iter();
-    let losses = losses.map(|c| (c, loss_w(history, &c)));
-    LossTrace {
-        subject: car.run.vehicle.clone(),
-        seconds: history.dt_s(),
-        sump_degc: history.column("transmission_sump_degc"),
-        speed_kmh: history.column("speed_kmh"),
-        losses_w: losses.collect(),
     }
 }
 
@@ -183,7 +232,7 @@ fn warm_up(all: &[Car]) -> Section {
     let mut section = Section::new("warm_up", "Warm-up");
     let columns = all
         .iter()
-        .map(|car| (car.run.vehicle.clone(), Quantity::Degc.unit()));
+        .map(|car| (car.run.label().to_owned(), Quantity::Degc.unit()));
     let mut table = ReportTable::of_numbers("Temperatures at the end", "Node", columns);
     let nodes = all.iter().flat_map(|car| car.run.end_degc.iter());
     for node in distinct(nodes.map(|(name, _)| name)) {
@@ -191,10 +240,15 @@ fn warm_up(all: &[Car]) -> Section {
         table.named(capital(node), ends.map(|degc| Quantity::Degc.bare(degc)));
     }
     section.table(table);
-    for run in all.iter().filter_map(plot) {
+    for car in all {
+        let Some(run) = plot(car) else { continue };
         let name = run.name;
         let caption = format!("Temperatures of {name} over the cycle.");
-        section.figure(format!("temperatures_{name}"), caption, temperatures(&run));
+        section.figure(
+            format!("temperatures_{}", car.run.vehicle),
+            caption,
+            temperatures(&run),
+        );
     }
     section
 }
@@ -206,12 +260,20 @@ fn drive(all: &[Car]) -> Section {
         let name = run.name;
         section.heading(&car.run.title);
         let caption = format!("Speed, ratio, engine speed and throttle of {name}.");
-        section.figure(format!("driveline_{name}"), caption, driveline(&run));
+        section.figure(
+            format!("driveline_{}", car.run.vehicle),
+            caption,
+            driveline(&run),
+        );
         if run.history.is_cvt() {
             let caption = format!(
-                "Pulley pressures, belt slip and clamping safety of {name}; safety is drawn up to four times its least value, for at low torque it has no end."
+                "Pulley pressures, belt slip and clamping safety of {name}; the axis of safety is clipped at four times its minimum; it is unbounded at low torque."
             );
-            section.figure(format!("pressure_{name}"), caption, pressure(&run));
+            section.figure(
+                format!("pressure_{}", car.run.vehicle),
+                caption,
+                pressure(&run),
+            );
         }
         let lines = car.record.map(|record| record.speed_lines.clone());
         let lines = lines.into_iter().flatten().map(|line| GuideLine {
@@ -232,20 +294,25 @@ fn drive(all: &[Car]) -> Section {
             ),
             false => format!("Where {name} ran, and the lines of its gears."),
         };
-        section.figure(format!("variogram_{name}"), caption, picture);
+        section.figure(format!("variogram_{}", car.run.vehicle), caption, picture);
     }
     section
 }
 
 fn engine(all: &[Car]) -> Section {
     let mut section = Section::new("engine", "Engine operating points");
-    for run in all.iter().filter_map(plot) {
+    for car in all {
+        let Some(run) = plot(car) else { continue };
         let name = run.name;
         let caption = format!(
             "Time that the engine of {name} spent at each speed and torque, on its fuel map when hot."
         );
         let picture = operating_points(&run);
-        section.figure(format!("operating_points_{name}"), caption, picture);
+        section.figure(
+            format!("operating_points_{}", car.run.vehicle),
+            caption,
+            picture,
+        );
     }
     section
 }

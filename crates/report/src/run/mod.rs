@@ -2,6 +2,7 @@
 
 mod answer;
 mod conditions;
+mod doubts;
 mod energy;
 mod figures;
 mod reproduce;
@@ -10,7 +11,7 @@ mod values;
 use super::document::{Document, Section};
 use super::number::{degc, words};
 use super::results::RunResults;
-use super::{study, validation};
+use super::{study, study_answers, validation};
 use cvtcycle_config::Problem;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
@@ -67,8 +68,17 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
         warnings: found.missing.clone(),
         ..Document::default()
     };
+    let cycle = cycle_title(&found.summary, found.record.as_ref());
+    document.running = format!(
+        "{}, {}",
+        answer::brief(&cycle),
+        degc(found.summary.ambient_degc)
+    );
+    let of_run = |study| study_answers::levers_of_run(study, &found.summary);
+    let options = found.studies.iter().find_map(of_run);
     let mut sections = vec![
-        answer::section(found, &cars),
+        answer::section(found, &cars, &options),
+        doubts::section(found, &cars),
         conditions::section(found, &cars),
     ];
     sections.extend(figures::sections(found, &cars));

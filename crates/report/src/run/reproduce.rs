@@ -23,13 +23,15 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     if let Some(record) = &found.record {
         section.table(hashes(record, "Inputs"));
     }
-    let columns = cars.iter().map(|car| (car.run.vehicle.clone(), ""));
+    let columns = cars.iter().map(|car| (car.run.label().to_owned(), ""));
     let mut table = ReportTable::of_numbers("Ledgers and solution", "", columns);
     for (name, of) in SOLUTION {
         table.named(name, cars.iter().map(|car| of(car.run)));
     }
-    section.table(table);
-    section.table(flags(cars));
+    let mut more = Section::default();
+    more.table(table);
+    more.table(flags(cars));
+    section.more = more.blocks;
     section
 }
 
@@ -70,7 +72,7 @@ pub fn hashes(record: &Record, caption: &str) -> ReportTable {
 }
 
 fn flags(cars: &[Car]) -> ReportTable {
-    let columns = cars.iter().map(|car| (car.run.vehicle.clone(), "s"));
+    let columns = cars.iter().map(|car| (car.run.label().to_owned(), "s"));
     let mut table = ReportTable::of_numbers("Time with each flag", "Flag", columns);
     for (name, _) in cars
         .first()

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 
 use super::super::document::{ReportTable, Section};
-use super::super::number::{NONE, Quantity};
+use super::super::number::{NONE, Quantity, sign};
 use super::super::results::RunResults;
 use super::Car;
-use cvtcycle_output::record::{CarRecord, Effect, Record, Sensitivity, ValueRecord};
+use cvtcycle_output::record::{CarRecord, Effect, Sensitivity, ValueRecord};
 
-/// Assumptions and fits shown before the rest is folded away.
-const SHOWN: usize = 20;
+/// Assumptions and fits of the subject in the body.
+const SHOWN: usize = 10;
 /// Effects below this, per cent of fuel, are written as 0.
 const SMALL_PERCENT: f64 = 0.005;
 
@@ -42,7 +42,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
     let mut section = Section::new("values", "Assumptions, and how much each matters");
     section.text(format!(
         "{} `cvtcycle assumptions` prints every value and equation of the shipped files with its source.",
-        count(record)
+        count(cars)
     ));
     match &record.sensitivity {
         Some(sensitivity) => {
@@ -54,9 +54,18 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
         }
         None => section.text("How much each value matters was not computed for this run."),
     }
-    for car in cars.iter().filter_map(|car| car.record) {
-        of_car(&mut section, car, record.sensitivity.as_ref());
+    let mut more = Section::default();
+    for (k, car) in cars.iter().enumerate() {
+        let Some(of) = car.record else { continue };
+        let body = if k == 0 { Some(&mut section) } else { None };
+        of_car(
+            body,
+            &mut more,
+            (of, car.run.label()),
+            record.sensitivity.as_ref(),
+        );
     }
+    section.more = more.blocks;
     Some(section)
 }
 
@@ -64,17 +73,20 @@ fn percent_text(x: f64) -> String {
     format!("{x}\u{a0}%")
 }
 
-fn count(record: &Record) -> String {
-    let one = |car: &CarRecord| {
+fn count(cars: &[Car]) -> String {
+    let one = |(car, name): (&CarRecord, &str)| {
         let mut by_status: BTreeMap<&str, usize> = BTreeMap::new();
         for value in car.values.iter().filter(|value| is_given(value)) {
             *by_status.entry(&value.status).or_default() += 1;
         }
         let list = by_status.iter().map(|(status, n)| format!("{n} {status}"));
         let list: Vec<String> = list.collect();
-        format!("{}: {}.", car.name, list.join(", "))
+        format!("{name}: {}.", list.join(", "))
     };
-    record.cars.iter().map(one).collect::<Vec<_>>().join(" ")
+    let known = cars
+        .iter()
+        .filter_map(|car| Some((car.record?, car.run.label())));
+    known.map(one).collect::<Vec<_>>().join(" ")
 }
 
 /// A value with its effect on fuel.
@@ -93,24 +105,32 @@ fn ranked<'a>(
     };
     let values = car.values.iter().filter(|value| wanted(value));
     let mut list: Vec<Ranked> = values.map(|value| (value, effect(value))).collect();
-    let size = |of: &Ranked| of.1.map_or(-1.0, Effect::size_percent);
+    // No number last.
+    let size = |of: &Ranked| of.1.map_or(-1.0, Effect::size_percent).max(-1.0);
     // Stable: values without an effect keep the order of the file.
     list.sort_by(|a, b| size(b).total_cmp(&size(a)));
     list
 }
 
-fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivity>) {
-    let name = &car.name;
+/// Values of a car: the strongest doubtful ones in the body if there is one, all others in what the full report has.
+fn of_car(
+    body: Option<&mut Section>,
+    more: &mut Section,
+    (car, name): (&CarRecord, &str),
+    sensitivity: Option<&Sensitivity>,
+) {
     let doubtful = ranked(car, sensitivity, is_doubtful);
-    let (first, rest) = doubtful.split_at(doubtful.len().min(SHOWN));
-    let caption = format!(
-        "Values of {name} that are {}, the strongest first",
-        doubtful_words(car, "left at the program's default")
-    );
-    section.table(table(&caption, first, sensitivity));
+    let shown = if body.is_some() { SHOWN } else { 0 };
+    let (first, rest) = doubtful.split_at(doubtful.len().min(shown));
+    let words = doubtful_words(car, "left at the program's default");
+    if let Some(body) = body {
+        let caption = format!("Values of {name} that are {words}, the strongest first");
+        body.table(table(&caption, first, sensitivity));
+    }
     if !rest.is_empty() {
-        let caption = format!("{} more of {name}", rest.len());
-        section.folded(table(&caption, rest, sensitivity));
+        let kind = if shown > 0 { "more" } else { "values" };
+        let caption = format!("{} {kind} of {name} that are {words}", rest.len());
+        more.table(table(&caption, rest, sensitivity));
     }
     let sourced = ranked(car, sensitivity, |value| {
         !is_doubtful(value) && is_given(value)
@@ -119,14 +139,14 @@ fn of_car(section: &mut Section, car: &CarRecord, sensitivity: Option<&Sensitivi
         "{} values of {name} with a source or set by the user",
         sourced.len()
     );
-    section.folded(table(&caption, &sourced, sensitivity));
+    more.folded(table(&caption, &sourced, sensitivity));
 }
 
 fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> ReportTable {
     let step = sensitivity.map_or(String::new(), |s| percent_text(s.step_percent));
     let heads = [
-        format!("fuel with it {step} lower, %"),
-        format!("fuel with it {step} higher, %"),
+        format!("fuel change, value \u{2212}{step} [%]"),
+        format!("fuel change, value +{step} [%]"),
     ];
     let mut columns = vec!["Key", "Value", "Status", "Where from"];
     if sensitivity.is_some() {
@@ -140,7 +160,7 @@ fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> R
         let shown = match (value.value.as_str(), value.unit.as_str()) {
             ("", _) => NONE.to_owned(),
             (text, "-" | "") => short(text),
-            (text, unit) => format!("{}\u{a0}{unit}", short(text)),
+            (text, unit) => format!("{}\u{a0}{}", short(text), sign(unit)),
         };
         let (key, status) = (value.key.clone(), value.status.clone());
         let mut cells = vec![key, shown, status, short(&value.source)];
@@ -178,9 +198,9 @@ pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
     if numbers == 0 {
         return None;
     }
+    let label = cars.first().map_or("", |car| car.run.label());
     let mut text = format!(
-        "{doubtful} of the {numbers} values of {} are {}",
-        subject.name,
+        "{doubtful} of the {numbers} values of {label} are {}",
         doubtful_words(subject, "defaults")
     );
     let sensitivity = record.sensitivity.as_ref();
@@ -189,10 +209,14 @@ pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
         sensitivity,
     ) && effect.size_percent().is_finite()
     {
+        // A temperature is moved by kelvins, not by a share of its degrees.
+        let step = match value.unit.as_str() {
+            "degC" => "5\u{a0}K".to_owned(),
+            _ => percent_text(sensitivity.step_percent),
+        };
         text += &format!(
-            "; the one that moves its fuel most is {} ({} of it move the fuel by {})",
+            "; the one that moves its fuel most is {} ({step} move the fuel by {})",
             value.key,
-            percent_text(sensitivity.step_percent),
             Quantity::Effect.text(effect.size_percent())
         );
     }

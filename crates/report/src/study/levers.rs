@@ -3,13 +3,16 @@
 use cvtcycle_config::Problem;
 use cvtcycle_study::execute::side_effects::{FLOOR, LUGGING};
 use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
+use cvtcycle_study::words::decimals;
 
 use super::{conditions, ended_badly, reproduce, unfinished};
 use crate::document::{Block, Document, ReportTable, Section};
-use crate::number::{NONE, Quantity, degc, grouped};
+use crate::number::{NONE, Quantity, degc, grouped, signed};
 use crate::results::StudyResults;
-use crate::study_answers::typeset;
 use crate::study_pictures::lever_pictures;
+
+/// Levers of a car in the body of a run's report at most.
+const SHOWN: usize = 12;
 
 /// The levers as a section of a report.
 ///
@@ -18,7 +21,11 @@ use crate::study_pictures::lever_pictures;
 pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     let answer = answer_of(study)?;
     let mut section = said(study, &answer, "levers", "Levers");
-    section.blocks.extend(details(&answer).blocks);
+    let all = details(&answer).blocks;
+    for block in &answer.blocks {
+        section.table(numbers(&answer, block, Some(SHOWN)));
+    }
+    section.more = all;
     Ok(section)
 }
 
@@ -46,7 +53,11 @@ pub fn document(study: &StudyResults) -> Result<Document, Problem> {
 }
 
 fn answer_of(study: &StudyResults) -> Result<LeverAnswer, Problem> {
-    lever_answer(&study.frame()?, study.answer.confidence)
+    let mut answer = lever_answer(&study.frame()?, study.answer.confidence)?;
+    for block in &mut answer.blocks {
+        block.vehicle = study.label(&block.vehicle);
+    }
+    Ok(answer)
 }
 
 /// What the blocks have, each once, in their order.
@@ -73,8 +84,7 @@ fn said(study: &StudyResults, answer: &LeverAnswer, id: &str, title: &str) -> Se
         .extend(unfinished(study, "what follows is what they say"));
     for block in &answer.blocks {
         section.heading(&case(block));
-        let words = answer_in_words(answer, block);
-        let words = words.iter().map(|line| typeset(line));
+        let words = answer_in_words(answer, block).into_iter();
         section.blocks.extend(words.map(Block::Text));
     }
     let runs = study.outline.points * study.outline.cars.len() as u64;
@@ -88,7 +98,7 @@ fn said(study: &StudyResults, answer: &LeverAnswer, id: &str, title: &str) -> Se
         None => Vec::new(),
     };
     for note in doubts.iter().chain(&answer.notes) {
-        section.text(format!("Note: {}.", typeset(note)));
+        section.text(format!("Note: {note}."));
     }
     section
 }
@@ -99,7 +109,7 @@ fn details(answer: &LeverAnswer) -> Section {
     for (block, (name, picture)) in answer.blocks.iter().zip(lever_pictures(answer)) {
         let caption = format!("Change of the fuel by each lever, {}.", case(block));
         section.figure(name, caption, picture);
-        section.table(numbers(answer, block));
+        section.table(numbers(answer, block, None));
     }
     if let Some(block) = answer.blocks.first() {
         section.folded(what_they_take(block));
@@ -107,7 +117,8 @@ fn details(answer: &LeverAnswer) -> Section {
     section
 }
 
-fn numbers(answer: &LeverAnswer, block: &LeverBlock) -> ReportTable {
+/// The foremost levers, or all of them, and the combinations.
+fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> ReportTable {
     let [low, high] = answer
         .confidence
         .ends()
@@ -125,7 +136,10 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock) -> ReportTable {
     let columns = columns.map(|(name, unit)| (name.to_owned(), unit));
     let caption = format!("Levers, {}", case(block));
     let mut table = ReportTable::of_numbers(&caption, "Lever", columns);
-    for row in &block.rows {
+    let single = block.rows.iter().filter(|row| !row.is_combination());
+    let together = block.rows.iter().filter(|row| row.is_combination());
+    let shown = single.take(most.unwrap_or(usize::MAX)).chain(together);
+    for row in shown {
         let name = match row.failed {
             0 => row.of.title.clone(),
             failed => format!("{} (fails in {failed})", row.of.title),
@@ -145,12 +159,13 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock) -> ReportTable {
 
 fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
     let drawn = answer.plan.is_some() && row.n > 0;
-    let of_draws = |x: f64| {
-        if drawn {
-            Quantity::Effect.bare_signed(x)
-        } else {
-            NONE.to_owned()
-        }
+    let [low, high] = [row.low_percent.value, row.high_percent.value];
+    // Digits end where the interval begins.
+    let digits = if drawn { decimals([low, high]) } else { 2 };
+    let change = |x: f64| signed(grouped(x, digits), x);
+    let of_draws = |x: f64| match drawn {
+        true => change(x),
+        false => NONE.to_owned(),
     };
     let saves = match drawn {
         true => format!("{} of {}", row.saves.k, row.saves.n),
@@ -158,9 +173,9 @@ fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
     };
     let seconds = |name: &str| Quantity::Seconds.bare(row.worst(name));
     vec![
-        Quantity::Effect.bare_signed(row.fuel_percent.value),
-        of_draws(row.low_percent.value),
-        of_draws(row.high_percent.value),
+        change(row.fuel_percent.value),
+        of_draws(low),
+        of_draws(high),
         saves,
         grouped(row.worst("min_clamp_safety"), 2),
         seconds(FLOOR),

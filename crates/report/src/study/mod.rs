@@ -6,15 +6,18 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
+use crate::charts::decision::information;
 use crate::document::{Block, Document, ReportTable, Section};
-use crate::number::{NONE, Quantity, degc, grouped, minus, phase, words};
+use crate::number::{NONE, Quantity, degc, grouped, minus, phase, sign, words};
 use crate::results::StudyResults;
 use crate::study_answers::answers;
 use crate::study_pictures::study_pictures;
 use cvtcycle_config::Problem;
-use cvtcycle_study::answer::Ended;
 use cvtcycle_study::answer::ambient::Matrix;
+use cvtcycle_study::answer::{Ended, Information, KnownFactor};
+use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::of_hundred;
+use cvtcycle_study::words::decimals;
 
 /// The study as a section of a report.
 ///
@@ -33,7 +36,45 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     blocks.push(Block::Text(extent(study)));
     blocks.extend(answers(study).into_iter().map(Block::Text));
     section.blocks.splice(0..0, blocks);
+    fold(
+        &mut section,
+        &["ambient_fuel", "distribution_subject_excess_percent"],
+    );
+    if let Some((of, _)) = cause(study) {
+        let title = &study.answer.title;
+        let caption = format!(
+            "Spread of the difference to the first baseline over the draws of \u{201c}{title}\u{201d}, as it is and with one value known: the next test."
+        );
+        section.figure("information", caption, information(of, "points", title));
+    }
     Ok(section)
+}
+
+/// The cause above chance that decides most of the difference to a baseline.
+pub(crate) fn cause(study: &StudyResults) -> Option<(&Information, &KnownFactor)> {
+    let mut outputs = study.answer.outputs.iter();
+    let of = outputs.find(|of| of.output == EXCESS && of.information.is_some())?;
+    let of = of.information.as_ref()?;
+    Some((of, of.causes().next()?))
+}
+
+/// Leaves text, the first table and some figures in the body; all others are for the full report.
+fn fold(section: &mut Section, kept: &[&str]) {
+    let mut tables = 0;
+    let is_body = |block: &Block| match block {
+        Block::Figure(figure) => kept.contains(&figure.name.as_str()),
+        Block::Table(_) => {
+            tables += 1;
+            tables == 1
+        }
+        Block::Folded(_) => false,
+        _ => true,
+    };
+    let (body, more) = std::mem::take(&mut section.blocks)
+        .into_iter()
+        .partition(is_body);
+    section.blocks = body;
+    section.more = more;
 }
 
 /// A warning that parts of the study are missing.
@@ -186,11 +227,21 @@ fn outputs(study: &StudyResults) -> ReportTable {
     };
     let columns = names.iter().map(|name| (name.to_string(), ""));
     let mut table = ReportTable::of_numbers("Outputs", "Output", columns);
+    for at in [3, 5].into_iter().filter(|_| !sampled) {
+        table.columns[at].number = false;
+    }
     for output in &study.answer.outputs {
         let mut cells = vec![output.counts()[0].to_string()];
         if let Some(s) = &output.summary {
-            let numbers = [s.mean, s.sd, s.quantile(ends[0]), s.quantile(ends[1])];
-            cells.extend(numbers.map(|x| grouped(x, 3)));
+            let [low, high] = ends.map(|p| s.quantile(p));
+            let digits = decimals([low, high]);
+            let numbers = [
+                (s.mean, digits),
+                (s.sd, digits + 1),
+                (low, digits),
+                (high, digits),
+            ];
+            cells.extend(numbers.map(|(x, digits)| grouped(x, digits)));
         }
         if let Some(range) = &output.range {
             let [least, most] =
@@ -203,7 +254,10 @@ fn outputs(study: &StudyResults) -> ReportTable {
             ]);
         }
         let name = output_name(&output.output);
-        table.named(format!("{name}, {} [{}]", output.car, output.unit), cells);
+        table.named(
+            format!("{name}, {} [{}]", output.car, sign(&output.unit)),
+            cells,
+        );
     }
     table
 }

@@ -15,7 +15,7 @@ pub fn answer(run: &RunSummary) -> Option<String> {
     let whole = price.together.percent?;
     let priced = |c: Component| {
         let percent = price.losses.get(c.name())?.saved.percent?;
-        Some((c.name().replace('_', " "), percent))
+        Some((run.loss_words(c.name()), percent))
     };
     let mut losses: Vec<(String, f64)> = Component::ALL.into_iter().filter_map(priced).collect();
     losses.sort_by(|a, b| b.1.total_cmp(&a.1));

@@ -33,8 +33,22 @@ pub(crate) mod tables;
 
 pub use cvtcycle_config::embedded::rows as embedded_rows;
 
+use cvtcycle_config::Problems;
+
 /// The file whose tolerances and sources all files may use: name and text.
 pub const COMMON: (&str, &str) = cvtcycle_config::embedded::common_rows()[0];
+/// The files of rows: those that the program carries, if they are wanted, then the user's own, names and texts.
+///
+/// # Errors
+/// All problems of the files.
+pub fn files(own: &[(String, String)], embedded: bool) -> Result<Vec<RowFile>, Problems> {
+    let name = |name: &str| format!("embedded:{name}.toml");
+    let carried = embedded_rows().iter().filter(|_| embedded);
+    let carried = carried.map(|(file, text)| (name(file), (*text).to_owned()));
+    let texts: Vec<(String, String)> = carried.chain(own.iter().cloned()).collect();
+    read((&name(COMMON.0), COMMON.1), &texts)
+}
+
 pub use expr::Computed;
 pub use judge::{CandidateVehicle, HeldOut, Judged, Report, judge};
 pub use keys::MECHANISMS;

@@ -91,6 +91,7 @@ impl Study {
             "name": &*car.name,
             "role": &*car.role,
             "title": setup.title,
+            "short": setup.short,
             "transmission": if setup.transmission().is_cvt() { "cvt" } else { "manual" },
             "lubricant": setup.oils().0.name,
             "engine_oil": setup.oils().1.name,

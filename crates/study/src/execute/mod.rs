@@ -8,6 +8,7 @@ mod cars;
 pub mod manifest;
 pub mod outputs;
 mod notes;
+mod pilot;
 mod point;
 mod preflight;
 mod prepare;
@@ -18,6 +19,8 @@ pub mod side_effects;
 pub use cars::{Column, StudyCar};
 pub use manifest::StudyManifest;
 pub(crate) use notes::idle;
+pub use pilot::Pilot;
+pub(crate) use point::{reason, status};
 pub use prepare::{Columns, Study};
 pub use relative::relative;
 

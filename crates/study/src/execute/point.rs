@@ -316,7 +316,7 @@ fn start(word: &str) -> Start {
 }
 
 /// A run fails as `run` fails; gross slip, of which `run` only warns, makes its numbers no statement about a car that anyone would build.
-fn status(summary: &RunSummary) -> Status {
+pub(crate) fn status(summary: &RunSummary) -> Status {
     let mut reasons: Vec<String> = summary.failures.iter().map(Failure::brief).collect();
     let slips = summary.flags_s.get("gross_slip").filter(|s| *s > 0.0);
     reasons.extend(slips.map(|s| format!("gross_slip for {s:.0} s")));
@@ -328,7 +328,7 @@ fn status(summary: &RunSummary) -> Status {
 }
 
 /// Problems in one line.
-fn reason(problems: &[Problem]) -> String {
+pub(crate) fn reason(problems: &[Problem]) -> String {
     let messages = problems
         .iter()
         .map(|problem| match problem.allowed.as_str() {

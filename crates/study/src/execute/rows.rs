@@ -12,7 +12,7 @@ use cvtcycle_output::trace::TraceColumn;
 
 /// Why a run has no numbers, or numbers that failed a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Status {
+pub(crate) enum Status {
     Ok,
     Failed(String),
     NotRun(String),

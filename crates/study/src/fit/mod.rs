@@ -21,6 +21,9 @@ pub mod solve;
 
 pub use cvtcycle_config::embedded::calibrations as embedded_calibrations;
 
+/// Most starts of a search.
+pub const MAX_STARTS: u64 = 1000;
+
 use crate::Progress;
 use cvtcycle_config::{Problem, Problems};
 use model::{Model, Prediction};

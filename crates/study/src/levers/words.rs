@@ -80,7 +80,11 @@ fn change(answer: &LeverAnswer, row: &LeverRow) -> String {
     let [low, high] = [row.low_percent, row.high_percent].map(|end| signed(end.value, 2));
     let (k, n) = (row.saves.k, row.saves.n);
     let share = row.saves.interval.map_or(f64::NAN, |[low, _]| low);
-    let (share, draws) = (fixed(100.0 * share, 0), answer.confidence.draws_percent());
+    // Rounded down, as where the number of draws is doubted: no more is shown than there is.
+    let (share, draws) = (
+        fixed((100.0 * share).floor(), 0),
+        answer.confidence.draws_percent(),
+    );
     format!(
         "{median} % fuel, {draws} % of the draws from {low} to {high}, less in {k} of {n}: in at least {share} % of all cases"
     )

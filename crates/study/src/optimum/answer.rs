@@ -3,20 +3,28 @@
 use cvtcycle_config::Problems;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::{Disk, Options, Setup, read};
-use cvtcycle_model::cycle::Step;
-use cvtcycle_model::drive::{Car, Conditions, Row, Totals, drive, litres_per_100km, start_state};
+use cvtcycle_model::cycle::{Step, Trace};
+use cvtcycle_model::drive::{
+    Car, Conditions, Row, Start, State, drive_into, litres_per_100km, own_trace,
+};
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::keys::{rad_s, rpm};
+use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::cvt::variator::Formulation;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::file::{LineFile, ReadFrom, again};
 use super::limits::{Infeasible, LimitName};
-use super::line::{Line, LineFit, burnt, fit_line};
+use super::line::{Line, LineFit, OUTSIDE, burnt, fit_line};
 use super::{Bound, Clamp, Limits, Task, bound};
 
-/// Gap between the driven path and the bound above which the bound is not tight.
+/// Gap between the driven path and the bound above which the bound is not tight. ASSUMED: half of what the dearest choice of a controller is worth.
 pub const TIGHT: f64 = 5e-3;
-/// Relative difference of two sums of the same drive.
+/// Relative difference of two sums of the same drive. Derived: rounding of some thousand steps is below 1e-12; numbers written to a file are exact.
 const PROVEN: f64 = 1e-9;
+/// Relative difference by which a path misses a limit that it is held at. Derived: what a solve leaves.
+const SAME: f64 = 1e-3;
 
 /// A car under one of its clamp laws.
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +56,8 @@ pub struct Question<'a> {
     pub grid: usize,
     /// Whether the operating line is sought.
     pub line: bool,
+    /// Whether the worth of a clutch is asked for that carries any torque at idle speed.
+    pub launch_at_idle: bool,
     /// Other least engine speeds, rpm.
     pub least_speeds_rpm: &'a [f64],
     /// Other cycles on which the line is driven.
@@ -59,6 +69,8 @@ pub struct Question<'a> {
 pub struct LawBound {
     /// Clamp law, or `free`.
     pub clamp: String,
+    /// Speed of the engine over a slipping clutch: by its `law` (LC-1), or `idle` (LC-7).
+    pub launch: &'static str,
     /// Fuel of the car with this law and its own ratio control, L/100 km; none for `free`.
     pub own_l_per_100km: Option<f64>,
     /// Time in which that car keeps less engine speed or reserve than the limits want, with the clutch locked, s.
@@ -71,6 +83,12 @@ pub struct LawBound {
     pub least_l_per_100km: f64,
     /// Tolerance (DP-11).
     pub tolerance_l_per_100km: f64,
+    /// The bound: least fuel less its tolerance; of a free clamp no more than that of a law that keeps its limits.
+    pub bound_l_per_100km: f64,
+    /// Least safety factor on the best path while the coupling is locked.
+    pub least_safety: f64,
+    /// Largest slip there, per cent.
+    pub most_slip_percent: f64,
     /// Fuel of the best path as driven (DP-10).
     pub driven_l_per_100km: f64,
     /// That above the least fuel less the tolerance, per cent.
@@ -99,6 +117,19 @@ pub struct Elsewhere {
     pub own_l_per_100km: f64,
     /// Fuel with the line, L/100 km.
     pub line_l_per_100km: f64,
+    /// Time with the line in which the engine is below its least speed where a lower ratio would have held it, s.
+    pub line_below_s: f64,
+}
+
+/// Speeds below which the coupling does not stay locked (LC-5, TC-7), where a ratio is chosen.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct LockFloor {
+    /// The lowest of them, rpm.
+    pub least_rpm: f64,
+    /// The highest, rpm.
+    pub most_rpm: f64,
+    /// Time in which they are above the least engine speed, which then decides nothing, s.
+    pub above_s: f64,
 }
 
 /// The operating line.
@@ -108,7 +139,7 @@ pub struct LineAnswer {
     pub drive: Vec<(f64, f64)>,
     /// Road speed, km/h; engine speed, rpm.
     pub overrun: Vec<(f64, f64)>,
-    /// Fuel of the car of the vehicle file, read and driven from the state in which the car as it is begins.
+    /// Fuel of the car of the vehicle file, read and driven as `run` drives it.
     pub l_per_100km: f64,
     /// That above the least fuel with the same clamp law, per cent: what looking ahead is worth.
     pub above_least_percent: f64,
@@ -122,6 +153,8 @@ pub struct LineAnswer {
     pub drives: usize,
     /// Fuel on other cycles.
     pub elsewhere: Vec<Elsewhere>,
+    /// What has to be given again with the file: it has all else.
+    pub again: Vec<String>,
     /// The vehicle file.
     #[serde(skip)]
     pub file: String,
@@ -134,8 +167,10 @@ pub struct Answer {
     pub bounds: Vec<LawBound>,
     /// Least fuel with the car's law by least engine speed, rpm; none where no ratio holds it.
     pub least_speeds: Vec<(f64, Option<f64>)>,
-    /// What each limit costs with the car's law.
+    /// What each limit costs with the car's law, and that of a clutch which needs its speed to carry a torque.
     pub limits: Vec<LimitPrice>,
+    /// Where the coupling's own limit is above the least engine speed; none where no ratio is chosen with it locked.
+    pub lock_floor: Option<LockFloor>,
     /// The operating line, if it was sought.
     pub line: Option<LineAnswer>,
     /// Failed checks.
@@ -156,17 +191,20 @@ pub enum NoAnswer {
     NoCvt,
 }
 
-/// Answers a question; `like` names the car in the line's file, `options` are those it was read with.
+/// Answers a question about a car that was read from somewhere.
 ///
 /// # Errors
 /// The limits cannot be held.
-pub fn answer(of: &Question, like: &str, options: &Options) -> Result<Answer, NoAnswer> {
-    let trace = of.cycle.trace_for(true);
-    let steps: Vec<Step> = trace.steps(of.conditions.max_dt_s).collect();
+pub fn answer(of: &Question, from: &ReadFrom) -> Result<Answer, NoAnswer> {
     let ready = |law: &LawCar| law.setup.car(of.conditions.ambient_k);
-    let cars: Vec<Car> = of.cars.iter().map(ready).collect();
+    let mut cars: Vec<Car> = of.cars.iter().map(ready).collect();
+    let first = cars.first().ok_or(NoAnswer::NoCvt)?;
+    let trace = own_trace(first, of.cycle.trace_for(true));
+    let steps: Vec<Step> = trace.steps(of.conditions.max_dt_s).collect();
     let least_speeds: Vec<f64> = of.least_speeds_rpm.iter().map(|n| rad_s(*n)).collect();
-    let tasks = of.tasks(&cars, &steps, &least_speeds);
+    let at_idle = of.launch_at_idle.then(|| launched_at_idle(first)).flatten();
+    cars.extend(at_idle);
+    let tasks = of.tasks(&cars, (&trace, &steps), &least_speeds);
     let bounds: Result<Vec<Bound>, _> = tasks.par_iter().map(bound).collect();
     let bounds = bounds.map_err(NoAnswer::Infeasible)?;
     let (Some(task), Some(main)) = (tasks.first(), bounds.first()) else {
@@ -182,36 +220,78 @@ pub fn answer(of: &Question, like: &str, options: &Options) -> Result<Answer, No
         let law = of.cars.get(k).map(|car| car.law);
         law_bound((law, fit.as_ref()), task, bound, &litres)
     });
-    let laws: Vec<LawBound> = laws.collect();
-    let loose = laws.iter().filter(|law| law.gap_percent > 100.0 * TIGHT);
-    let mut failures: Vec<String> = loose.map(not_tight).collect();
-    let line = fit.map(|fit| of.proven(fit, (task, main), &litres, (like, options)));
+    let mut laws: Vec<LawBound> = laws.collect();
+    let idle = of.launched_at_idle(&cars, &mut laws);
+    of.consistent(&mut laws);
+    let mut failures: Vec<String> = laws.iter().filter_map(loose).collect();
+    let line = fit.map(|fit| of.proven(fit, (task, main), &litres, from));
     let line = line.transpose().map_err(NoAnswer::Line)?;
     failures.extend(line.iter().filter(|line| !line.proven).map(|_| {
         "line not proven: its file, read and driven, gives another fuel than the line".to_owned()
     }));
     let speeds = main.least_speeds.iter();
+    let prices = main.without.iter();
+    let prices = prices.map(|(name, kg)| price(name.name(), kg / main.fuel_kg));
+    let least = laws[0].least_l_per_100km;
+    let launch = idle.map(|number| price("launch_law", laws[number].least_l_per_100km / least));
     Ok(Answer {
-        bounds: laws,
         least_speeds: speeds
             .map(|(w, kg)| (rpm(*w).round(), kg.map(litres)))
             .collect(),
-        limits: main
-            .without
-            .iter()
-            .map(|(name, kg)| price(*name, *kg, main))
-            .collect(),
+        limits: prices.chain(launch).collect(),
+        lock_floor: lock_floor(task, main),
+        bounds: laws,
         line,
         failures,
         path: main.rows.clone(),
     })
 }
 
-fn not_tight(law: &LawBound) -> String {
-    format!(
-        "bound not tight: with the clamp `{}` the best path burns {:.2} % more than the bound",
-        law.clamp, law.gap_percent
-    )
+/// Why a bound is none: nothing that drives may be below it, and the best path is to be near it.
+fn loose(law: &LawBound) -> Option<String> {
+    let (clamp, gap) = (&law.clamp, law.gap_percent);
+    if gap < 0.0 {
+        let below = -gap;
+        return Some(format!(
+            "no bound: with the clamp `{clamp}` the best path, driven, burns {below:.2} % less than it"
+        ));
+    }
+    (gap > 100.0 * TIGHT).then(|| {
+        format!(
+            "bound not tight: with the clamp `{clamp}` the best path burns {gap:.2} % more than the bound"
+        )
+    })
+}
+
+/// The car with a clutch that carries any torque at idle speed (LC-7); none with a device that cannot.
+fn launched_at_idle(car: &Car) -> Option<Car> {
+    let mut car = car.clone();
+    let Transmission::Cvt(cvt) = &mut car.transmission else {
+        return None;
+    };
+    cvt.coupling = cvt.coupling.at_least_speed()?;
+    Some(car)
+}
+
+/// Where the coupling's own limit is above the least engine speed.
+fn lock_floor(task: &Task, bound: &Bound) -> Option<LockFloor> {
+    let floors = bound.floor_rad_s.iter().zip(task.steps);
+    let floors = floors.filter_map(|(floor, step)| Some(((*floor)?, step.dt_s)));
+    let start = (f64::INFINITY, 0.0, 0.0);
+    let least_rad_s = task.limits.least_rad_s;
+    let (least, most, above_s) = floors.fold(start, |(least, most, above_s), (floor, dt_s)| {
+        let above_s = if floor > least_rad_s {
+            above_s + dt_s
+        } else {
+            above_s
+        };
+        (floor.min(least), floor.max(most), above_s)
+    });
+    (most > 0.0).then(|| LockFloor {
+        least_rpm: rpm(least),
+        most_rpm: rpm(most),
+        above_s,
+    })
 }
 
 /// The bound of a task as numbers, with the fuel of its car and of its car with the line; of a free clamp without a law.
@@ -226,8 +306,20 @@ fn law_bound(
         .and(fit)
         .map(|fit| burnt(task, &bound.chosen, &fit.line.on(task.car)));
     let grid = bound.coarser.iter();
+    let rows = || bound.rows.iter().zip(&bound.chosen);
+    let rows = || {
+        rows()
+            .filter(|(row, chosen)| **chosen && locked(row))
+            .map(|(row, _)| row)
+    };
     LawBound {
         clamp: law.unwrap_or("free").to_owned(),
+        launch: "law",
+        bound_l_per_100km: litres(bound.least_kg()),
+        least_safety: rows()
+            .map(|row| row.clamp_safety)
+            .fold(f64::INFINITY, f64::min),
+        most_slip_percent: rows().map(|row| 100.0 * row.slip.abs()).fold(0.0, f64::max),
         own_l_per_100km: own.as_ref().map(|own| litres(own.fuel_kg)),
         own_outside_s: own.map(|own| own.outside_s),
         line_l_per_100km: lined.as_ref().map(|lined| litres(lined.fuel_kg)),
@@ -241,29 +333,41 @@ fn law_bound(
     }
 }
 
-fn price(name: LimitName, without_kg: f64, bound: &Bound) -> LimitPrice {
+/// True where the coupling of a car that rolls is locked.
+fn locked(row: &Row) -> bool {
+    let unlocked = Flags::CLUTCH_SLIPPING.0 | Flags::CLUTCH_OPEN.0 | Flags::LOCKUP_OPEN.0;
+    row.speed_m_s > 0.0 && !row.flags.any(Flags(unlocked | Flags::ENGINE_OFF.0))
+}
+
+/// What a limit costs, from the share of the fuel that is burnt without it.
+fn price(limit: &'static str, without: f64) -> LimitPrice {
     LimitPrice {
-        limit: name.name(),
-        percent: 100.0 * (1.0 - without_kg / bound.fuel_kg),
+        limit,
+        percent: 100.0 * (1.0 - without),
     }
 }
 
 impl Question<'_> {
-    /// The tasks of all clamp laws, then that of a free clamp.
+    /// The tasks of all clamp laws, then that of a free clamp, then that of another launch.
     fn tasks<'a>(
         &self,
         cars: &'a [Car],
-        steps: &'a [Step],
+        (trace, steps): (&'a Trace, &'a [Step]),
         least_speeds_rad_s: &'a [f64],
     ) -> Vec<Task<'a>> {
-        let trace = self.cycle.trace_for(true);
+        let start_k = match self.conditions.start {
+            Start::At(temp_k) => temp_k,
+            Start::Soak | Start::Warm => self.conditions.ambient_k,
+        };
         let task = |(number, car): (usize, &'a Car), clamp: Clamp| {
             let main = number == 0 && clamp == Clamp::Law;
             Some(Task {
                 car,
                 cvt: super::cvt(car)?,
                 steps,
-                start: start_state(car, trace, &self.conditions),
+                trace,
+                start: State::at(start_k),
+                warm: self.conditions.start == Start::Warm,
                 clamp,
                 limits: self.limits(car),
                 grid: self.grid,
@@ -271,13 +375,44 @@ impl Question<'_> {
                 prices: if main { &LimitName::ALL } else { &[] },
             })
         };
-        let laws = cars.iter().enumerate();
+        let (laws, launch) = cars.split_at(self.cars.len());
+        let laws = laws.iter().enumerate();
         let laws = laws.filter_map(|car| task(car, Clamp::Law));
+        let launch = launch.iter().map(|car| (self.cars.len(), car));
+        let launch = launch.filter_map(|car| task(car, Clamp::Law));
         let free = self.free.iter().filter_map(|(safety, slip)| {
             let (safety, slip) = (*safety, *slip);
             task((0, cars.first()?), Clamp::Free { safety, slip })
         });
-        laws.chain(free).collect()
+        laws.chain(free).chain(launch).collect()
+    }
+
+    /// Names the bound of a car that is launched at idle speed, if there is one: its number.
+    fn launched_at_idle(&self, cars: &[Car], laws: &mut [LawBound]) -> Option<usize> {
+        let last = laws.len().checked_sub(1)?;
+        if cars.len() == self.cars.len() {
+            return None;
+        }
+        laws[last].clamp = laws[0].clamp.clone();
+        laws[last].launch = "idle";
+        Some(last)
+    }
+
+    /// A free clamp can do what each law does that keeps its limits: its bound is no higher than that of such a law.
+    fn consistent(&self, laws: &mut [LawBound]) {
+        let Some((safety, slip)) = self.free else {
+            return;
+        };
+        let keeps = |law: &&LawBound| {
+            law.launch == "law"
+                && law.least_safety >= safety * (1.0 - SAME)
+                && law.most_slip_percent <= 100.0 * slip * (1.0 + SAME)
+        };
+        let kept = laws.iter().filter(keeps).map(|law| law.bound_l_per_100km);
+        let least = kept.fold(f64::INFINITY, f64::min);
+        if let Some(free) = laws.iter_mut().find(|law| law.clamp == "free") {
+            free.bound_l_per_100km = free.bound_l_per_100km.min(least);
+        }
     }
 
     /// The line with the proof that its file is it.
@@ -286,10 +421,10 @@ impl Question<'_> {
         fit: LineFit,
         (task, main): (&Task, &Bound),
         litres: &impl Fn(f64) -> f64,
-        (like, options): (&str, &Options),
+        from: &ReadFrom,
     ) -> Result<LineAnswer, Problems> {
-        let file = self.file(&fit.line, like);
-        let setup = read("line.toml", &file, Box::new(Disk::default()), options)?;
+        let (file, here, options) = self.file(&fit.line, from);
+        let setup = read("line.toml", &here, Box::new(Disk::default()), &options)?;
         let car = setup.car(self.conditions.ambient_k);
         let proven_kg = burnt(task, &main.chosen, &car).fuel_kg;
         let above = |kg: f64| 100.0 * (proven_kg / kg - 1.0);
@@ -307,6 +442,7 @@ impl Question<'_> {
                 .collect(),
             drive: fit.line.drive,
             overrun: fit.line.overrun,
+            again: again_in_words(&options),
             file,
         })
     }
@@ -322,42 +458,91 @@ impl Question<'_> {
         }
     }
 
-    /// A vehicle file that is like the car but for its line.
-    fn file(&self, line: &Line, like: &str) -> String {
+    /// A vehicle file that is like the car but for its line: as it is written, as it is read here, and with what it has to be read.
+    fn file(&self, line: &Line, from: &ReadFrom) -> (String, String, Options) {
         let degc = self.conditions.ambient_k - 273.15;
-        format!(
-            "# Operating line of the least fuel on {} at {degc:.0} degC, engine at least {} rpm (cvtcycle optimum).\n\
-             # What was given by --set or --lubricant has to be given again.\n\
-             [vehicle]\ntitle = \"{} with the best line on {}\"\nlike = {}\n\n{}",
-            self.cycle.name,
-            self.least_rpm,
-            self.cars[0].setup.name,
-            self.cycle.name,
-            serde_json::Value::from(like),
-            line.table()
-        )
+        let (cycle, car) = (&self.cycle.name, self.cars[0].setup);
+        let least_rpm = self.least_rpm;
+        let head = format!(
+            "# Operating line of the least fuel on {cycle} at {degc:.0} degC, engine at least {least_rpm} rpm (cvtcycle optimum)."
+        );
+        let title = format!("{} with the best line on {cycle}", car.name);
+        let texts = |from: &ReadFrom| {
+            let file = LineFile {
+                head: &head,
+                title: &title,
+                car,
+                read: from,
+            };
+            let here = file.text(line, &|word| word.to_owned())?;
+            Some((file.text(line, from.named)?, here))
+        };
+        let options = again(from.options);
+        let reads =
+            |here: &str| read("line.toml", here, Box::new(Disk::default()), &options).is_ok();
+        if let Some((file, here)) = texts(from).filter(|(_, here)| reads(here)) {
+            return (file, here, options);
+        }
+        // What no file can have is given again.
+        let options = Options {
+            lubricant: None,
+            engine_oil: None,
+            ..from.options.clone()
+        };
+        let none = Options {
+            set: Vec::new(),
+            ..from.options.clone()
+        };
+        let plain = ReadFrom {
+            options: &none,
+            ..*from
+        };
+        let (file, here) = texts(&plain).unwrap_or_default();
+        (file, here, options)
     }
 
-    /// A car on a cycle.
-    fn driven(&self, car: &Setup, cycle: &Cycle) -> Totals {
-        let conditions = Conditions {
-            keep_rows: false,
-            ..self.conditions
+    /// Fuel of a car on a cycle, L/100 km, and the time in which its engine is below the least speed though a lower ratio is left, s.
+    fn driven(&self, car: &Setup, cycle: &Cycle) -> (f64, f64) {
+        let low = optimum_low(car.transmission());
+        let least_rad_s = (1.0 - OUTSIDE) * rad_s(self.least_rpm);
+        let below = |row: &&Row| {
+            locked(row) && row.belt_ratio < low && row.engine_speed_rad_s < least_rad_s
         };
-        drive(car, cycle, &conditions).totals
+        let mut below_s = 0.0;
+        let mut see = |rows: &[Row]| {
+            below_s += rows.iter().filter(below).map(|row| row.dt_s).sum::<f64>();
+        };
+        let driven = drive_into(car, cycle, &self.conditions, Some(&mut see));
+        let density = car.engine().fuel_density_kg_m3;
+        let kg = driven.totals.total().fuel_kg;
+        let distance_m = cycle.trace_for(true).distance_m();
+        (litres_per_100km(kg, density, distance_m), below_s)
     }
 
     /// The car as it is and with its line on another cycle.
     fn on(&self, cycle: &Cycle, line: &Setup) -> Elsewhere {
-        let litres = |car: &Setup| {
-            let density = car.engine().fuel_density_kg_m3;
-            let kg = self.driven(car, cycle).total().fuel_kg;
-            litres_per_100km(kg, density, cycle.trace_for(true).distance_m())
-        };
+        let (line_l_per_100km, line_below_s) = self.driven(line, cycle);
         Elsewhere {
             cycle: cycle.name.clone(),
-            own_l_per_100km: litres(self.cars[0].setup),
-            line_l_per_100km: litres(line),
+            own_l_per_100km: self.driven(self.cars[0].setup, cycle).0,
+            line_l_per_100km,
+            line_below_s,
         }
     }
+}
+
+/// Belt ratio below which a lower one is left; none where there is no belt.
+fn optimum_low(of: &Transmission) -> f64 {
+    match of {
+        Transmission::Cvt(cvt) => (1.0 - OUTSIDE) * cvt.ratio.low,
+        Transmission::Manual(_) => 0.0,
+    }
+}
+
+/// What has to be given again with a file, in the words of a user.
+fn again_in_words(options: &Options) -> Vec<String> {
+    let sets = options.set.iter().map(|by| by.input().to_string());
+    let plain = options.formulation == Formulation::default();
+    let belt = (!plain).then(|| format!("formulation {}", options.formulation.name()));
+    sets.chain(belt).collect()
 }

@@ -6,35 +6,42 @@
 //!
 //! A controller that looks at demand and speed knows nothing of what comes: what its best line burns more than the bound is the worth of looking ahead.
 
-use cvtcycle_model::drive::{Car, Drive, Row};
+use cvtcycle_model::drive::{Car, Row};
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::keys::{Quantity, rpm};
 use cvtcycle_model::math::Curve;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::transmission::Transmission;
-use cvtcycle_model::transmission::cvt::controller::OperatingLine;
+use cvtcycle_model::transmission::cvt::controller::{ColdRise, OperatingLine};
 
+use super::reference::follow;
 use super::{Bound, Task};
 
-/// Nodes of the drive line, per cent of rated power.
+/// Nodes of the drive line, per cent of rated power. ASSUMED: nearer to each other where cycles have most of their time, below a fifth of rated power.
 const SHARES_PERCENT: [f64; 12] = [
     0.0, 2.0, 4.0, 6.0, 9.0, 12.0, 16.0, 22.0, 30.0, 45.0, 70.0, 100.0,
 ];
-/// Nodes of the overrun line, km/h.
+/// Nodes of the overrun line, km/h. ASSUMED: from the speed at which low gives the least speeds to beyond the cycles.
 const SPEEDS_KMH: [f64; 9] = [0.0, 15.0, 25.0, 35.0, 50.0, 70.0, 90.0, 120.0, 160.0];
-/// First and last step of the search, rpm.
+/// Steps of the search, rpm. ASSUMED: the first crosses a hump of the fuel cut's ramp, the last moves the fuel by less than it is printed with.
 const STEPS_RPM: [f64; 7] = [320.0, 160.0, 80.0, 40.0, 20.0, 10.0, 5.0];
-/// Most passes over the nodes with one step.
+/// Most passes over the nodes with one step. ASSUMED: a fifth one moves the fuel of ECE15+EUDC by less than 0.01 %.
 const PASSES: usize = 4;
-/// Part of the least engine speed that a target may be below it: slip makes the engine faster than its target in drive.
+/// Part of the speed at less demand that a node of the drive line may be below it. ASSUMED: slip, 0.5 to 3 % in drive, makes the engine faster than
+/// its target, and more of it with more demand.
 const BELOW: f64 = 0.96;
-/// Fuel that a joule missing at the wheels counts for, kg/J: more than an engine needs for it.
+/// Fuel that a joule missing at the wheels counts for, kg/J. ASSUMED: five times what an engine of 30 % needs for it, 1/(0.3 43 MJ/kg).
 const MISSED_KG_J: f64 = 4e-7;
-/// Fuel that a second at half the least speed, or with half of full load more than allowed, counts for, kg.
+/// Fuel that a second counts for, kg, times the share of the least speed or of full load by which a limit is not kept. ASSUMED: 2 g are more than an
+/// engine burns in a second of a cycle, so that no limit is traded for fuel.
 const OUTSIDE_KG_S: f64 = 2e-3;
-/// Share of the least speed or of full load by which a limit is not kept.
-const OUTSIDE: f64 = 0.01;
-/// Efficiency with which the route over the engine's best points is begun where the cycle demands no such power.
+/// Share of the least speed or of full load by which a limit is not kept. ASSUMED: above the slip in overrun, which makes the engine slower than its target.
+pub const OUTSIDE: f64 = 0.01;
+/// Efficiency with which the route over the engine's best points is begun where the cycle demands no such power. As RC-3 reckons; ASSUMED.
 const ROUTE_EFFICIENCY: f64 = 0.85;
+
+/// Engine speeds among which the best point of a power is looked for: 25 rpm from each other. ASSUMED: what is begun with is searched on.
+const SPEEDS: u32 = 200;
 
 /// A drive line and an overrun line, in the units of a vehicle file.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +68,7 @@ pub struct LineFit {
 }
 
 impl Line {
-    /// The car with this line in place of its own, its demand unfiltered and without hysteresis.
+    /// The car with this line in place of its own, its demand unfiltered, without hysteresis, and the same in a cold car.
     #[must_use]
     pub fn on(&self, car: &Car) -> Car {
         let curve = |points: &[(f64, f64)], unit: &str| {
@@ -76,25 +83,13 @@ impl Line {
         if let Transmission::Cvt(cvt) = &mut car.transmission {
             cvt.ratio.hysteresis = 0.0;
             cvt.ratio.filter_s = 0.0;
+            cvt.ratio.cold = ColdRise::NONE;
             cvt.ratio.line = Some(Box::new(OperatingLine {
                 drive: curve(&self.drive, "power_percent"),
                 overrun: curve(&self.overrun, "speed_kmh"),
             }));
         }
         car
-    }
-
-    /// The table of a vehicle file that is like another one but for the line.
-    pub fn table(&self) -> String {
-        let rows = |points: &[(f64, f64)]| {
-            let rows: Vec<String> = points.iter().map(|(x, n)| format!("[{x}, {n}]")).collect();
-            rows.join(", ")
-        };
-        format!(
-            "[transmission.cvt.ratio]\nfilter_s = 0\nhysteresis = 0\ndrive_line = [{}]\noverrun_line = [{}]\n",
-            rows(&self.drive),
-            rows(&self.overrun)
-        )
     }
 
     /// The line with a node moved by so many rpm, within limits; other nodes of the drive line go along as far as its order needs it.
@@ -135,7 +130,7 @@ pub struct Burnt {
     pub outside_s: f64,
 }
 
-/// A car on the steps of a task by its own controller; limits count where a ratio is chosen.
+/// A car on the steps of a task by its own controller; limits count where a ratio is chosen and the coupling is locked.
 pub fn burnt(task: &Task, chosen: &[bool], car: &Car) -> Burnt {
     let mut sum = Burnt {
         fuel_kg: 0.0,
@@ -143,13 +138,11 @@ pub fn burnt(task: &Task, chosen: &[bool], car: &Car) -> Burnt {
         slowest_rad_s: f64::INFINITY,
         outside_s: 0.0,
     };
-    let mut drive = Drive::new(car, task.start);
-    for (step, chosen) in task.steps.iter().zip(chosen) {
-        let row = drive.step(step).0;
+    let mut see = |k: usize, row: &Row| {
         let fuel_kg = row.fuel_kg_s * row.dt_s;
         sum.fuel_kg += fuel_kg;
         sum.counted_kg += fuel_kg + MISSED_KG_J * row.deficit_w * row.dt_s;
-        if *chosen {
+        if chosen[k] && !row.flags.contains(Flags::LOCKUP_OPEN) {
             sum.slowest_rad_s = sum.slowest_rad_s.min(row.engine_speed_rad_s);
             let slow = 1.0 - row.engine_speed_rad_s / task.limits.least_rad_s;
             let short = row.throttle - (1.0 - task.limits.reserve);
@@ -160,7 +153,8 @@ pub fn burnt(task: &Task, chosen: &[bool], car: &Car) -> Burnt {
                 sum.outside_s += row.dt_s;
             }
         }
-    }
+    };
+    follow(task, car, |_, _| None, |k, _, _, row| see(k, row));
     sum
 }
 
@@ -171,7 +165,7 @@ pub fn fit_line(task: &Task, bound: &Bound) -> LineFit {
     let whole = |line: &Line| driven(line).counted_kg;
     let first_kg = driven(&line).fuel_kg;
     let (mut best, mut drives) = (whole(&line), 1);
-    let least_rpm = (BELOW * rpm(task.limits.least_rad_s)).ceil();
+    let least_rpm = rpm(task.limits.least_rad_s).ceil();
     let most_rpm = rpm(task.car.engine.highest_rad_s).floor();
     let count = line.drive.len() + line.overrun.len();
     for step in STEPS_RPM {
@@ -211,7 +205,12 @@ fn means(task: &Task, bound: &Bound) -> Line {
         let rows = bound.rows.iter().zip(&bound.chosen);
         rows.filter(|(_, chosen)| **chosen).map(|(row, _)| row)
     };
-    let target_rpm = |row: &Row| rpm(row.engine_speed_rad_s) * (1.0 - row.slip);
+    let final_drive = task.cvt.final_drive.ratio;
+    // The target is the speed of the box by its ratio, which over an open converter is not the engine's.
+    let target_rpm = |row: &Row| {
+        let wheel_rad_s = row.engine_speed_rad_s / row.overall_ratio;
+        rpm(row.belt_ratio * final_drive * wheel_rad_s).max(rpm(task.limits.least_rad_s).ceil())
+    };
     let drive: Vec<(f64, f64)> = chosen()
         .filter(|row| row.wheel_power_w > 0.0)
         .map(|row| (100.0 * row.wheel_power_w / rated_w, target_rpm(row)))
@@ -272,7 +271,7 @@ fn best_point_rpm(task: &Task, power_w: f64) -> f64 {
         task.car.charge,
     );
     let (low, high) = (task.limits.least_rad_s, engine.peak_power_rad_s());
-    let speeds = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
+    let speeds = (0..=SPEEDS).map(|k| low + (high - low) * f64::from(k) / f64::from(SPEEDS));
     let burn = |w: f64| {
         let crank_nm = power_w / w + warm.accessories_nm(w);
         let within = crank_nm <= (1.0 - task.limits.reserve) * warm.full_load_nm(w);

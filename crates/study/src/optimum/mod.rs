@@ -4,44 +4,51 @@
 //! | module | contents | labels |
 //! |---|---|---|
 //! | `program` | the dynamic program, without physics | DP-1, DP-3, DP-6 |
-//! | `nodes` | what engine and box do in a step at a ratio | DP-4 |
+//! | `node` | the numbers of a step at one ratio | |
+//! | `nodes` | what engine and box do in a step at a ratio | DP-4, DP-13, DP-14 |
 //! | `stages` | the car on its trace as stages of the program | DP-2, DP-5 |
 //! | `reference` | a drive with its states, and the worth of heat | DP-7, DP-8 |
 //! | `line` | curves of engine speed over demand and road speed, improved by driving | DP-12 |
 //! | `limits` | what each limit costs, and which one cannot be held | |
+//! | `file` | the line as a vehicle file | |
 //! | `answer` | all of it for a car, its clamp laws and a cycle | |
 //!
 //! | label | statement | status |
 //! |---|---|---|
 //! | DP-9 | J = V_0 + sum of worth_i P_i dt of the reference: least fuel, temperatures to first order | derived: linear terms of the heat that differs from the reference's |
 //! | DP-10 | D: fuel of the path, driven with its ratios and clamp law held (RC-12) | derived: what a controller that knows the cycle burns in the model |
-//! | DP-11 | tolerance = \|J - J of half the grid\| + \|J - J of the temperatures before\|; bound = J - tolerance | derived: no credit for the order of convergence |
+//! | DP-11 | tolerance = \|J - J of half the grid\| + \|J - J of the temperatures before\| = tau_0, + 2 max(0, J - tau_0 - D); bound = J - tolerance | derived: no credit for the order of convergence |
 //!
 //! Every controller of ratio, pressure and clutch within the limits drives one of the paths, and what is left out (DP-2) lowers the fuel: no
 //! such controller burns less than the bound. Temperatures follow the path: the program is solved in those of a drive, its path is driven, and
 //! so on until the fuel settles; what another controller's heat would save later is in the worth of heat.
 
 mod answer;
+mod file;
 mod limits;
 mod line;
+mod node;
 mod nodes;
 mod program;
 mod reference;
 mod stages;
 
 pub use answer::{
-    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, NoAnswer, Question, TIGHT, answer,
+    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, LockFloor, NoAnswer, Question,
+    TIGHT, answer,
 };
+pub use file::ReadFrom;
 pub use limits::{Infeasible, LimitName, Unheld};
 pub use line::{Line, LineFit, fit_line};
 
-use cvtcycle_model::cycle::Step;
+use cvtcycle_model::cycle::{Step, Trace};
 use cvtcycle_model::drive::{Car, Row, State};
 use cvtcycle_model::thermal::NODES;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 use rayon::prelude::*;
 
+use self::node::Mode;
 use self::nodes::Scene;
 use self::program::{Controls, Path, least};
 use self::reference::Reference;
@@ -51,6 +58,9 @@ use self::stages::{Problem, Table};
 const SETTLED: f64 = 2e-4;
 /// Most sets of temperatures.
 const MOST_TEMPERATURES: usize = 6;
+/// Part of what the best path, driven, burns less than the least fuel less the other tolerances that is in the tolerance. ASSUMED: once for that path, and as much again for
+/// others, which have the same launches.
+const LAG: f64 = 2.0;
 /// Strides of the coarser grids, coarsest first.
 const STRIDES: [usize; 2] = [4, 2];
 
@@ -90,8 +100,12 @@ pub struct Task<'a> {
     pub cvt: &'a Cvt,
     /// The steps of the trace.
     pub steps: &'a [Step],
-    /// State before the first.
+    /// The trace, with rows where start-stop may stop the engine.
+    pub trace: &'a Trace,
+    /// State before the first step.
     pub start: State,
+    /// Whether each drive is warmed up by itself: it begins in the state in which the same drive from `start` ends.
+    pub warm: bool,
     /// What clamps the belt.
     pub clamp: Clamp,
     /// Limits.
@@ -125,8 +139,10 @@ pub struct Bound {
     pub rows: Vec<Row>,
     /// What drives it.
     pub holds: Vec<Hold>,
-    /// Steps in which a ratio is chosen.
+    /// Steps in which a ratio is chosen and the limits of speed and reserve count while the coupling is locked.
     pub chosen: Vec<bool>,
+    /// Speed below which the coupling does not stay locked there, rad/s.
+    pub floor_rad_s: Vec<Option<f64>>,
 }
 
 impl Bound {
@@ -159,7 +175,9 @@ struct Solved {
     /// Worth of the heat of the reference, kg.
     worth_kg: f64,
     holds: Vec<Hold>,
-    chosen: Vec<bool>,
+    /// Mode of the coupling where a ratio is chosen.
+    modes: Vec<Option<Mode>>,
+    limited: Vec<bool>,
 }
 
 /// The least fuel of a task.
@@ -167,7 +185,7 @@ struct Solved {
 /// # Errors
 /// The limits cannot be held.
 pub fn bound(task: &Task) -> Result<Bound, Box<Infeasible>> {
-    let scene = Scene::new(task.car, task.cvt, task.steps, task.clamp);
+    let scene = Scene::new(task);
     let (reference, temperatures) = settled(&scene, task)?;
     let solved = Solved::new(&scene, task, reference, task.grid)?;
     let driven = solved.drive(&scene, task);
@@ -179,6 +197,11 @@ pub fn bound(task: &Task) -> Result<Bound, Box<Infeasible>> {
     let coarser: Vec<(usize, f64)> = coarser.collect();
     let grid_kg = coarser.last().map_or(0.0, |c| (c.1 - solved.fuel_kg).abs());
     let settled_kg = (change(&temperatures) - 1.0).abs() * solved.fuel_kg;
+    let locked_kg = solved
+        .warmer_kg(&scene, task)
+        .map_or(0.0, |kg| solved.fuel_kg - kg); // DP-14
+    let known_kg = grid_kg + settled_kg + locked_kg.max(0.0);
+    let lag_kg = LAG * (solved.fuel_kg - known_kg - driven.fuel_kg()).max(0.0);
     let at = |least_rad_s: &f64| {
         let limits = Limits {
             least_rad_s: *least_rad_s,
@@ -192,22 +215,23 @@ pub fn bound(task: &Task) -> Result<Bound, Box<Infeasible>> {
     };
     Ok(Bound {
         fuel_kg: solved.fuel_kg,
-        tolerance_kg: grid_kg + settled_kg, // DP-11
-        driven_kg: driven.fuel_kg(),        // DP-10
+        tolerance_kg: known_kg + lag_kg, // DP-11
+        driven_kg: driven.fuel_kg(),     // DP-10
         least_speeds: task.least_speeds_rad_s.par_iter().map(at).collect(),
         without: task.prices.par_iter().filter_map(without).collect(),
         coarser,
         temperatures,
         rows: driven.rows,
         holds: driven.holds,
-        chosen: solved.chosen,
+        floor_rad_s: solved.table.floors_rad_s(&solved.limited),
+        chosen: solved.limited,
     })
 }
 
 /// The best path's drive in its own temperatures, and the least fuel in each set of temperatures on the way; on half of the grid.
 fn settled(scene: &Scene, task: &Task) -> Result<(Reference, Vec<f64>), Box<Infeasible>> {
     let half = task.grid / 2 + 1;
-    let mut driven = Reference::drive(task.car, task.steps, task.start, |_, _| None);
+    let mut driven = Reference::drive(task, |_, _| None);
     let (mut least, mut fuel_kg) = (Vec::new(), f64::INFINITY);
     loop {
         let solved = Solved::new(scene, task, driven, half)?;
@@ -237,7 +261,7 @@ impl Solved {
         reference: Reference,
         grid: usize,
     ) -> Result<Self, Box<Infeasible>> {
-        let worth = reference.worth_kg_j(task.car, task.steps);
+        let worth = reference.worth_kg_j(task);
         let table = Table::new(scene, &reference, grid);
         let problem = Problem::new(scene, &table, &reference, &worth, task.limits);
         let Ok(path) = least_path(&problem) else {
@@ -248,7 +272,8 @@ impl Solved {
         let worth_kg = scene.worth_kg(&reference, &worth);
         let fuel_kg = path.total() + worth_kg; // DP-9
         let holds = problem.holds(&path);
-        let chosen = (0..task.steps.len()).map(|k| problem.chooses(k)).collect();
+        let modes = problem.modes(&path);
+        let limited = (0..task.steps.len()).map(|k| problem.limited(k)).collect();
         drop(problem);
         Ok(Solved {
             worth,
@@ -256,20 +281,28 @@ impl Solved {
             fuel_kg,
             worth_kg,
             holds,
-            chosen,
+            modes,
+            limited,
             reference,
         })
     }
 
     /// The path, driven in its own temperatures.
     fn drive(&self, scene: &Scene, task: &Task) -> Reference {
-        Reference::drive(task.car, task.steps, task.start, |k, state| {
+        Reference::drive(task, |k, state| {
             let hold = self.holds[k];
-            Some(match self.chosen[k] {
-                true => scene.locked(k, state, hold, &task.limits),
-                false => hold,
+            Some(match self.modes[k] {
+                Some(mode) => scene.within(k, state, (hold, mode), &task.limits),
+                None => hold,
             })
         })
+    }
+
+    /// Least fuel, kg, with oil that is warmer where it locks the coupling; none where no temperature does.
+    fn warmer_kg(&self, scene: &Scene, task: &Task) -> Option<f64> {
+        let scene = scene.warmer(&self.reference)?;
+        let table = Table::new(&scene, &self.reference, task.grid);
+        self.least_kg(&scene, &table, task.limits)
     }
 
     /// Least fuel under other limits, kg, in the same temperatures but for the worth of what heat differs (DP-9); none where they cannot be held.

@@ -1,5 +1,8 @@
 //! The dynamic program itself: stages with nodes, a cost from a place to a place, and the least sum. No physics.
 //!
+//! Nodes may lie in two layers, one number each and a mode that is one of two: a mode that a law of its own decides, so that a cost is infinite
+//! where the law does not lead from one layer to the other.
+//!
 //! | label | statement | status |
 //! |---|---|---|
 //! | DP-1 | V_t(x) = min over u of c_t(x, u) + V_{t+1}(u), V_N = 0; u from x within reach | source: Bellman 1957 |
@@ -35,6 +38,14 @@ impl Place {
         })
     }
 
+    /// The same place among nodes that begin later.
+    fn later(self, by: usize) -> Self {
+        Place {
+            node: self.node + by,
+            ..self
+        }
+    }
+
     /// A quantity here from its values at the nodes, linear between them; infinite next to an infinite one (DP-6).
     pub fn value(&self, at_nodes: &[f64]) -> f64 {
         let here = at_nodes[self.node];
@@ -61,8 +72,13 @@ pub trait Stages: Sync {
     /// How many stages there are.
     fn count(&self) -> usize;
 
-    /// Places in which a stage may end, ascending.
+    /// Places in which a stage may end, ascending in each layer.
     fn nodes(&self, stage: usize) -> &[f64];
+
+    /// Where the second layer begins among them; their number where there is but one.
+    fn second_layer(&self, stage: usize) -> usize {
+        self.nodes(stage).len()
+    }
 
     /// Place in which the first stage begins.
     fn start(&self) -> f64;
@@ -178,7 +194,6 @@ fn best<S: Stages>(
     from: &S::From,
     (controls, left): (Controls, &[f64]),
 ) -> Option<Best> {
-    let nodes = of.nodes(stage);
     let (low, high) = of.reach(stage, x);
     let mut best: Option<Best> = None;
     let mut consider = |x: f64, place: Place| {
@@ -197,17 +212,21 @@ fn best<S: Stages>(
             });
         }
     };
-    let first = nodes.partition_point(|node| *node < low - NEAR);
-    for (k, node) in nodes.iter().enumerate().skip(first) {
-        if *node > high + NEAR {
-            break;
+    let second = of.second_layer(stage);
+    let (one, other) = of.nodes(stage).split_at(second);
+    for (begin, nodes) in [(0, one), (second, other)] {
+        let first = nodes.partition_point(|node| *node < low - NEAR);
+        for (k, node) in nodes.iter().enumerate().skip(first) {
+            if *node > high + NEAR {
+                break;
+            }
+            consider(*node, Place::at(begin + k));
         }
-        consider(*node, Place::at(k));
-    }
-    if controls == Controls::WithEnds {
-        for x in [low, high, x.clamp(low, high)] {
-            if let Some(place) = Place::of(x, nodes).filter(|place| place.share > 0.0) {
-                consider(x, place); // DP-3
+        if controls == Controls::WithEnds {
+            for x in [low, high, x.clamp(low, high)] {
+                if let Some(place) = Place::of(x, nodes).filter(|place| place.share > 0.0) {
+                    consider(x, place.later(begin)); // DP-3
+                }
             }
         }
     }

@@ -3,9 +3,9 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | DP-2 | c_t(x, u) = m_f(w(u), T) dt - sum of worth_i P_i dt; T = T_fly(u) + T_acc + J (w(u)2 - w(x)2)/(2 w(u) dt) within SI-2, at most (1 - r) full load; w(u), T_fly(u), P_i by the step held at u | derived: the drive of a step from its ratio before and after; shift flow and PC-5's share of shifting left out, which only lowers it |
-//! | DP-5 | a step in which low gives less than the least speed, or before the clutch has locked, goes to low as fast as RC-4 allows | derived: RC-6, LC-5; no ratio holds the engine there |
+//! | DP-5 | with a clutch, a step in which low gives less than the least speed, or before the clutch has locked, goes to low as fast as RC-4 allows; with a torque converter such a step has no limit of speed | derived: RC-6, LC-5; no ratio holds the engine there |
 
-use cvtcycle_model::drive::{Drive, State};
+use cvtcycle_model::drive::State;
 use cvtcycle_model::engine::EngineAtTemperature;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
@@ -14,7 +14,8 @@ use cvtcycle_model::transmission::cvt::Hold;
 use rayon::prelude::*;
 
 use super::Limits;
-use super::nodes::{Node, Scene, free_law};
+use super::node::{At, Mode, Node};
+use super::nodes::{Scene, free_law};
 use super::program::{Path, Place, Stages};
 use super::reference::Reference;
 
@@ -29,8 +30,8 @@ const NEAR: f64 = 1e-6;
 pub struct Table {
     /// Logarithms of the ratio, ascending to low.
     pub grid: Vec<f64>,
-    /// Of each step, where the car rolls with its clutch locked.
-    nodes: Vec<Option<Vec<Node>>>,
+    /// Of each step in which a ratio is chosen: with the coupling locked and open; the latter empty with a clutch.
+    nodes: Vec<Option<[Vec<Node>; 2]>>,
 }
 
 impl Table {
@@ -39,18 +40,32 @@ impl Table {
         let (high, low) = (scene.cvt.ratio.high.ln(), scene.cvt.ratio.low.ln());
         let step = (low - high) / (count - 1) as f64;
         let grid: Vec<f64> = (0..count).map(|k| high + step * k as f64).collect();
-        let open = scene.open(reference);
-        let nodes = (0..scene.steps.len())
-            .into_par_iter()
-            .map(|k| (!open[k]).then(|| scene.nodes(reference, k, &grid)));
+        let by_law = scene.by_law(reference);
+        let by_command = scene.cvt.coupling.by_command();
+        let nodes = (0..scene.steps.len()).into_par_iter().map(|k| {
+            let of = |mode: Mode| scene.nodes(reference, k, &grid, mode);
+            let open = || by_command.then(|| of(Mode::Open));
+            (!by_law[k]).then(|| [of(Mode::Locked), open().unwrap_or_default()])
+        });
         let nodes = nodes.collect();
         Table { grid, nodes }
+    }
+
+    /// Speeds below which the coupling does not stay locked, rad/s, in some steps.
+    pub fn floors_rad_s(&self, steps: &[bool]) -> Vec<Option<f64>> {
+        let floor = |(nodes, wanted): (&Option<[Vec<Node>; 2]>, &bool)| {
+            let [locked, _] = nodes.as_ref().filter(|_| *wanted)?;
+            locked.last().map(|node| node.locked_rad_s)
+        };
+        self.nodes.iter().zip(steps).map(floor).collect()
     }
 
     /// Every `stride`-th ratio of it.
     #[must_use]
     pub fn coarser(&self, stride: usize) -> Table {
-        let own = |nodes: &Vec<Node>| nodes.iter().step_by(stride).copied().collect();
+        let own = |modes: &[Vec<Node>; 2]| {
+            [0, 1].map(|mode| modes[mode].iter().step_by(stride).copied().collect())
+        };
         Table {
             grid: self.grid.iter().step_by(stride).copied().collect(),
             nodes: self.nodes.iter().map(|n| n.as_ref().map(own)).collect(),
@@ -64,8 +79,12 @@ type Driven = (f64, [f64; NODES]);
 /// A step with its nodes.
 struct Stage {
     x: Vec<f64>,
-    /// Engine and box at each; empty where no ratio holds the engine (DP-5).
+    /// Engine and box at each, locked ones first; empty where no ratio is chosen (DP-5).
     nodes: Vec<Node>,
+    /// How many of them are locked.
+    locked: usize,
+    /// Whether low gives the least engine speed, so that the limits count.
+    limited: bool,
     /// Of a step without: fuel and heat, from each place of the stage before.
     by_law: Vec<Driven>,
     /// The car pulls away in low.
@@ -88,6 +107,8 @@ pub struct From<'a> {
     engine: EngineAtTemperature<'a>,
     place: Option<Place>,
     x: f64,
+    /// Whether the coupling was locked.
+    locked: bool,
 }
 
 impl<'a> Problem<'a> {
@@ -124,6 +145,11 @@ impl<'a> Problem<'a> {
         !self.stages[k].nodes.is_empty()
     }
 
+    /// True where the limits of speed and reserve count in a step while the coupling is locked.
+    pub fn limited(&self, k: usize) -> bool {
+        self.stages[k].limited
+    }
+
     /// Fuel and heat of a step that no ratio holds, from each place of the stage before.
     fn by_law(&self, k: usize) -> Vec<Driven> {
         if self.chooses(k) {
@@ -137,8 +163,8 @@ impl<'a> Problem<'a> {
         let of = |place: usize| {
             let x = begins[place];
             let before = self.state(k, x, (k > 0).then_some(Place::at(place)));
-            let mut drive = Drive::new(self.scene.car, before);
-            let hold = self.scene.by_law(self.reach(k, x).1.exp());
+            let hold = self.scene.law_held(self.reach(k, x).1.exp());
+            let mut drive = self.scene.drive(before);
             let row = drive.step_held(&self.scene.steps[k], &hold).0;
             (row.fuel_kg_s, self.scene.heat_w(&before, k, &row))
         };
@@ -162,7 +188,8 @@ impl<'a> Problem<'a> {
         match (nodes.filter(|nodes| !nodes.is_empty()), place) {
             (Some(nodes), Some(place)) => {
                 let node = Node::of(nodes, place);
-                self.scene.locked_at(before, x.exp(), node.engine_rad_s)
+                let scene = self.scene;
+                scene.rolling_at(before, x.exp(), node.engine_rad_s, node.mode)
             }
             _ => self.scene.in_ratio(before, x.exp()),
         }
@@ -183,13 +210,16 @@ impl<'a> Problem<'a> {
 
     /// Fuel in kg/s and heat in W at a node, from an engine before it (DP-2); none above the torque that is allowed.
     fn held(&self, node: &Node, from: &From, dt_s: f64) -> Option<Driven> {
+        if !node.follows(from.locked) {
+            return None; // DP-13
+        }
         let w = node.engine_rad_s;
         let cut = from.engine.cut_share;
         let steady_nm = node.cut_nm.max(node.fired_nm - cut * node.drag_nm);
         let wanted_nm = (self.scene.kinetic_j(w) - from.kinetic_j) / dt_s / w;
         let most_nm = (1.0 - self.limits.reserve) * node.full_load_nm;
-        let missed = node.deficit_w > 0.0;
-        if !missed && steady_nm + wanted_nm.max(0.0) > most_nm {
+        let free = node.deficit_w > 0.0 || node.mode == Mode::Open;
+        if !free && steady_nm + wanted_nm.max(0.0) > most_nm {
             return None;
         }
         let torque_nm = if wanted_nm > 0.0 {
@@ -208,13 +238,22 @@ impl<'a> Problem<'a> {
     pub fn holds(&self, path: &Path) -> Vec<Hold> {
         let hold = |k: usize| {
             let nodes = &self.stages[k].nodes;
-            let mut hold = self.scene.by_law(path.x[k].exp());
+            let mut hold = self.scene.law_held(path.x[k].exp());
             if let (Some(law), false) = (&mut hold.clamp, nodes.is_empty()) {
                 *law = free_law(Node::of(nodes, path.places[k]).safety);
             }
             hold
         };
         (0..self.count()).map(hold).collect()
+    }
+
+    /// How the coupling holds engine and box together where a path chooses a ratio.
+    pub fn modes(&self, path: &Path) -> Vec<Option<Mode>> {
+        let mode = |k: usize| {
+            let node = self.stages[k].nodes.get(path.places[k].node);
+            node.map(|node| node.mode)
+        };
+        (0..self.count()).map(mode).collect()
     }
 }
 
@@ -254,58 +293,101 @@ fn impossible(x: f64, node: Node) -> (Vec<f64>, Vec<Node>) {
 
 /// Which ratios a step may have.
 fn stage(scene: &Scene, table: &Table, reference: &Reference, limits: Limits, k: usize) -> Stage {
-    let grid = &table.grid;
-    let by_law = |from_low: bool| Stage {
-        x: with_low(grid),
-        nodes: Vec::new(),
-        by_law: Vec::new(),
-        from_low,
-    };
     let row = &reference.rows[k];
     let stood = k > 0 && scene.secondary_rad_s[k - 1] <= 0.0;
     let rolls = scene.secondary_rad_s[k] > 0.0;
     let from_low = stood && rolls && !row.flags.contains(Flags::LAUNCH_NOT_IN_LOW);
-    let Some(nodes) = &table.nodes[k] else {
-        return by_law(from_low);
+    let by_law = || Stage {
+        x: with_low(&table.grid),
+        nodes: Vec::new(),
+        locked: 0,
+        limited: false,
+        by_law: Vec::new(),
+        from_low,
     };
-    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    let Some([locked, open]) = &table.nodes[k] else {
+        return by_law();
+    };
+    let (first, last) = (locked[0], locked[locked.len() - 1]);
     let least = limits.least_rad_s.max(last.locked_rad_s);
-    let fast = |node: &Node| node.engine_rad_s >= least * (1.0 - NEAR);
-    if !fast(&last) {
-        return by_law(from_low);
+    let limited = last.engine_rad_s >= least * (1.0 - NEAR);
+    if !limited && !scene.cvt.coupling.by_command() {
+        return by_law();
     }
-    let most_w = row.deficit_w * 1.001 + 1.0;
-    let allowed = |node: &Node| node.ok && fast(node) && node.deficit_w <= most_w;
-    let mut own: Vec<(f64, Node)> = Vec::new();
-    // The places in which the engine has just its least speed, which is where most of the best paths run, and its greatest: with them no
-    // ratio is cut off from the next one by a distance of the grid that takes more than a step.
-    let between = |k_below: usize, w: f64| {
-        let (mut x, mut node) = (*grid.get(k_below + 1)?, *nodes.get(k_below + 1)?);
-        for _ in 0..3 {
-            x += (w / node.engine_rad_s).ln();
-            node = scene.node(reference, k, x.exp());
-        }
-        let inside = x > grid[k_below] + 1e-9 && x < grid[k_below + 1] - 1e-9;
-        (inside && allowed(&node)).then_some((x, node))
+    let may = May {
+        least_rad_s: if limited { least } else { 0.0 },
+        most_w: row.deficit_w * 1.001 + 1.0,
     };
-    let slow = nodes.iter().rposition(|node| !fast(node));
-    own.extend(slow.and_then(|below| between(below, least)));
-    let on_grid = grid.iter().copied().zip(nodes.iter().copied());
-    own.extend(on_grid.filter(|(_, node)| allowed(node)));
-    let engine = scene.engine(&reference.before[k], &scene.steps[k], 0.0);
-    let most = engine.max_rad_s() * (1.0 - NEAR);
-    let below = nodes.partition_point(|node| node.engine_rad_s <= most);
-    own.extend(below.checked_sub(1).and_then(|below| between(below, most)));
+    let mut own = may.locked(scene, reference, k, (&table.grid, locked));
+    let count = own.len();
+    let open = table.grid.iter().copied().zip(open.iter().copied());
+    own.extend(open.filter(|(_, node)| may.have(node)));
     let (x, nodes): (Vec<f64>, Vec<Node>) = own.into_iter().unzip();
     let (x, nodes) = match nodes.is_empty() {
-        true => impossible(grid[0], first),
+        true => impossible(table.grid[0], first),
         false => (x, nodes),
     };
     Stage {
         x,
+        locked: count,
         nodes,
+        limited,
         by_law: Vec::new(),
         from_low,
+    }
+}
+
+/// What a node of a step may be.
+struct May {
+    /// Least engine speed with the coupling locked, rad/s.
+    least_rad_s: f64,
+    /// Largest power that is missed, W.
+    most_w: f64,
+}
+
+impl May {
+    fn fast(&self, node: &Node) -> bool {
+        node.engine_rad_s >= self.least_rad_s * (1.0 - NEAR)
+    }
+
+    fn have(&self, node: &Node) -> bool {
+        let held = node.mode == Mode::Open || self.fast(node);
+        node.ok && held && node.deficit_w <= self.most_w
+    }
+
+    /// Places with the coupling locked. Those in which the engine has just its least speed, which is where most of the best paths run, and its
+    /// greatest are among them: so no ratio is cut off from the next one by a distance of the grid that takes more than a step.
+    fn locked(
+        &self,
+        scene: &Scene,
+        reference: &Reference,
+        k: usize,
+        (grid, nodes): (&[f64], &[Node]),
+    ) -> Vec<(f64, Node)> {
+        let mut own: Vec<(f64, Node)> = Vec::new();
+        let between = |k_below: usize, w: f64| {
+            let (mut x, mut node) = (*grid.get(k_below + 1)?, *nodes.get(k_below + 1)?);
+            for _ in 0..3 {
+                x += (w / node.engine_rad_s).ln();
+                let place = At {
+                    ratio: x.exp(),
+                    mode: Mode::Locked,
+                    guess_rad_s: w,
+                };
+                node = scene.node(reference, k, place);
+            }
+            let inside = x > grid[k_below] + 1e-9 && x < grid[k_below + 1] - 1e-9;
+            (inside && self.have(&node)).then_some((x, node))
+        };
+        let slow = nodes.iter().rposition(|node| !self.fast(node));
+        own.extend(slow.and_then(|below| between(below, self.least_rad_s)));
+        let on_grid = grid.iter().copied().zip(nodes.iter().copied());
+        own.extend(on_grid.filter(|(_, node)| self.have(node)));
+        let engine = scene.engine(&reference.before[k], &scene.steps[k], 0.0);
+        let most = engine.max_rad_s() * (1.0 - NEAR);
+        let below = nodes.partition_point(|node| node.engine_rad_s <= most);
+        own.extend(below.checked_sub(1).and_then(|below| between(below, most)));
+        own
     }
 }
 
@@ -318,6 +400,14 @@ impl<'a> Stages for Problem<'a> {
 
     fn nodes(&self, stage: usize) -> &[f64] {
         &self.stages[stage].x
+    }
+
+    fn second_layer(&self, stage: usize) -> usize {
+        let stage = &self.stages[stage];
+        match stage.nodes.is_empty() {
+            true => stage.x.len(),
+            false => stage.locked,
+        }
     }
 
     fn start(&self) -> f64 {
@@ -338,12 +428,17 @@ impl<'a> Stages for Problem<'a> {
     fn from(&self, k: usize, x: f64, place: Option<Place>) -> From<'a> {
         let before = &self.reference.before[k];
         let nodes = k.checked_sub(1).map(|k| &self.stages[k].nodes);
-        let (engine_rad_s, kinetic_j) = match (nodes.filter(|nodes| !nodes.is_empty()), place) {
+        let nodes = nodes.filter(|nodes| !nodes.is_empty());
+        let (engine_rad_s, kinetic_j, locked) = match (nodes, place) {
             (Some(nodes), Some(place)) => {
-                let w = Node::of(nodes, place).engine_rad_s;
-                (w, self.scene.kinetic_j(w))
+                let node = Node::of(nodes, place);
+                let w = node.engine_rad_s;
+                (w, self.scene.kinetic_j(w), node.mode == Mode::Locked)
             }
-            _ => (before.running.speed_rad_s, before.kinetic_j),
+            _ => {
+                let locked = self.reference.coupled_before(k);
+                (before.running.speed_rad_s, before.kinetic_j, locked)
+            }
         };
         From {
             kinetic_j,
@@ -352,6 +447,7 @@ impl<'a> Stages for Problem<'a> {
                 .engine(before, &self.scene.steps[k], engine_rad_s),
             place,
             x,
+            locked,
         }
     }
 

@@ -21,6 +21,35 @@ impl Design {
             Design::Sobol { .. } | Design::Saltelli { .. } => Some(2..=MAX_SOBOL_SAMPLES),
         }
     }
+
+    /// The design with another number of samples and another seed, where they are given.
+    ///
+    /// # Errors
+    /// A problem with the key `samples` or `seed`: a design that draws nothing, or a number out of range.
+    pub fn changed(&self, samples: Option<u64>, seed: Option<u64>) -> Result<Design, Problem> {
+        let key = match (samples, seed) {
+            (None, None) => return Ok(*self),
+            (Some(_), _) => "samples",
+            (None, Some(_)) => "seed",
+        };
+        let (Some(range), Some(changed)) = (self.sample_range(), self.with(samples, seed)) else {
+            let problem = Problem::invalid("the design of the plan draws no samples").key(key);
+            return Err(problem.hint(
+                "samples and seed are for Latin hypercube, Sobol, Monte Carlo and Saltelli designs",
+            ));
+        };
+        match samples {
+            Some(samples) if !range.contains(&samples) => {
+                let message = format!("{samples} samples are out of range for this design");
+                let problem = Problem::invalid(message)
+                    .key(key)
+                    .value(samples.to_string());
+                let problem = problem.allowed(format!("{} to {}", range.start(), range.end()));
+                Err(problem.hint(format!("the nearest allowed value is {}", range.end())))
+            }
+            _ => Ok(changed),
+        }
+    }
 }
 
 /// Reads the design; meaningless if one of its problems was reported.

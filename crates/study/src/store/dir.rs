@@ -172,6 +172,33 @@ impl StudyDir {
         Ok(())
     }
 
+    /// Takes over a whole part of another study with the same manifest, byte for byte.
+    ///
+    /// # Errors
+    /// A problem of `--out`, or a file that is no longer as it was written.
+    pub(super) fn adopt(&self, index: usize, from: &Path) -> Result<(), Problem> {
+        let (own, other) = (self.parts(), names::parts_folder(from));
+        let mark = names::part_mark(index);
+        let changed = |name: &str| {
+            let message = format!("{name} in {} changed while it was read", from.display());
+            problem(from, &message, "merge again").kind(ProblemKind::Damaged)
+        };
+        let list = Checksums::read(&other.join(&mark)).ok_or_else(|| changed(&mark))?;
+        for name in self.layout.files(index) {
+            let file = bounded::open_file(other.join(&name));
+            let mut file = file.map_err(|_| changed(&name))?;
+            let copy = put(&own, &name, |out| io::copy(&mut file, out).map(drop));
+            let sum = copy.map_err(|error| self.cannot_write(&name, &error))?;
+            if list.get(&name) != Some(&sum) {
+                return Err(changed(&name));
+            }
+        }
+        let marked = put(&own, &mark, |out| out.write_all(list.text().as_bytes()));
+        marked.map_err(|error| self.cannot_write(&mark, &error))?;
+        self.whole().insert(index);
+        Ok(())
+    }
+
     /// Writes the results over all parts, which are as they were written, into the directory itself, each whole or not at all, `summary.json`
     /// last, then the mark of a finished study.
     ///
@@ -355,7 +382,7 @@ fn no_study(path: &Path, error: ReadError) -> Problem {
     }
 }
 
-fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Problem {
+pub(super) fn other_settings(path: &Path, (stored, now): (&[u8], &[u8]), plan: &[u8]) -> Problem {
     let name = path.display();
     let (Ok(stored), Ok(now)) = (bounded::json(stored), bounded::json(now)) else {
         let hint = "begin the study anew in its place or in another directory";

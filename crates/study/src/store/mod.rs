@@ -23,6 +23,7 @@ mod export;
 mod files;
 mod footer;
 mod manifest;
+mod merge;
 mod names;
 mod parquet;
 mod parquet_read;

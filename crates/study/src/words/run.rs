@@ -6,7 +6,7 @@ use std::cell::OnceCell;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::decimal;
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
-use cvtcycle_output::number::fixed;
+use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
     Comparison, Contradiction, Driven, MapLeft, RunSummary, StartWord, Summary,
@@ -15,7 +15,9 @@ use cvtcycle_output::summary::{
 use super::intervals as drawn;
 use super::{against_print, between, decimals, more_or_less, of_difference, than};
 use crate::attribute::answer as price;
+use crate::check::rule::Printed;
 use crate::check::{About, published};
+use crate::statistics::{Confidence, Enough};
 
 /// Distance of the ambient temperatures up to which a published number is one of this run, K.
 const NEAR_K: f64 = 5.0;
@@ -84,6 +86,12 @@ fn contradicted(summary: &Summary, start: &str, driven: &[Driven]) -> Vec<Contra
             computed,
             unit: row.unit.clone(),
             printed: row.printed_text.clone(),
+            between: match row.printed {
+                Some(Printed::Range(low, high)) if low.is_finite() && high.is_finite() => {
+                    Some([low, high])
+                }
+                _ => None,
+            },
             condition: row.condition.clone(),
         })
     });
@@ -116,8 +124,33 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let against: String = summary.comparison.iter().filter_map(against).collect();
     let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
     let lines = [Some(first), price(run)].into_iter().flatten();
-    let lines = lines.chain(maps_left(summary));
+    let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
+}
+
+/// Share of the distance between the ends of the draws by which the car as it is may be from their median. ASSUMED: half of the draws of any bell
+/// are nearer, so that beyond it the draws are about other cars.
+const NEAR_MEDIAN: f64 = 0.25;
+
+/// Where draws say less of a difference than their interval looks like: too few, or the difference of the cars as they are not among them.
+fn draw_doubts(summary: &Summary) -> Vec<String> {
+    let confidence = Confidence::default();
+    let drawn = summary.comparison.iter().filter_map(|comparison| {
+        let (of, percent) = (comparison.interval.as_ref()?, comparison.fuel_percent?);
+        let [low, median, high] = of.percent;
+        let n = usize::try_from(of.draws).ok()?;
+        let mut doubts = Enough::of(n, confidence).doubts(confidence);
+        if (percent - median).abs() > NEAR_MEDIAN * (high - low) {
+            let decimals = decimals([low, high]);
+            let [median, percent] = [median, percent].map(|x| signed(x, decimals));
+            doubts.push(format!(
+                "the median of the draws is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
+            ));
+        }
+        let baseline = &comparison.baseline;
+        (!doubts.is_empty()).then(|| format!("Draws against {baseline}: {}.", doubts.join("; ")))
+    });
+    drawn.collect()
 }
 
 /// The measured maps that a car left for a large part of the run, a sentence each.
@@ -157,13 +190,15 @@ pub fn contradictions(summary: &Summary) -> Vec<String> {
 pub fn intervals(summary: &Summary) -> Vec<String> {
     let drawn = summary.comparison.iter().filter_map(|comparison| {
         let of = comparison.interval.as_ref()?;
-        let ends = between([of.percent[0], of.percent[2]], "%");
+        let ends = [of.percent[0], of.percent[2]];
+        let median = signed(of.percent[1], decimals(ends));
+        let ends = between(ends, "%");
         let (baseline, plan, draws, more) = (&comparison.baseline, &of.plan, of.draws, of.more);
         Some(format!(
-            "Difference to {baseline} over {draws} draws of the plan {plan}: 90 % of them are {ends}; the subject uses more in {more}."
+            "Difference to {baseline} over {draws} draws of the plan {plan}: 90 % of them are {ends}, the median is {median} %; the subject uses more in {more}."
         ))
     });
-    drawn.collect()
+    drawn.chain(draw_doubts(summary)).collect()
 }
 
 /// ", 7 % more than the baseline (90 % of 256 draws: +2 to +12 %)".

@@ -8,7 +8,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::Flags;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::rig::{MEETING_NM, Range, RigResults, is_near, oil_degc, ranges, rpm};
-use cvtcycle::output::table::TextColumns;
+use cvtcycle::output::table::{TextColumns, paragraphs};
 
 use super::RigPlan;
 use crate::print::colour::Paint;
@@ -191,12 +191,13 @@ fn strip_down(c: &Conditions, found: &RigResults, at_rpm: f64) -> String {
     let bars: Vec<String> = Stage::ALL[..4].iter().map(bar).collect();
     let (first, rest) = (bars[..2].join(", "), bars[2..].join(", "));
     let remainder = fixed(found.largest_remainder_nm(), 3);
-    format!(
-        "{table}bar: {first},\n     {rest}\n\
+    let notes = format!(
+        "bar: {first},\n     {rest}\n\
          interaction: belt loss of the complete box minus that without final drive (pressure, torque);\n\
          the final drive seems larger by it, the belt smaller\n\
          largest remainder after true loss and interaction, all points: {remainder} Nm\n"
-    )
+    );
+    table + &paragraphs(&notes)
 }
 
 fn transients(c: &Conditions, loops: &[Loop]) -> String {
@@ -252,7 +253,7 @@ fn loop_notes(c: &Conditions, l: &Loop) -> String {
         let printed = printed.join(", ");
         text += &format!("  thesis 5.3.2: warming {printed}; meeting near 40 degC\n");
     }
-    text
+    paragraphs(&text)
 }
 
 fn second_box(plan: &RigPlan, found: &RigResults) -> String {

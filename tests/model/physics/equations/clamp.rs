@@ -316,6 +316,7 @@ fn begin(car: &Car, wheel_rad_s: f64, power_w: f64) -> TransmissionState {
         gear: None,
         dt_s: 1.0,
         engine_off: false,
+        neutral_share: 0.0,
     })
 }
 

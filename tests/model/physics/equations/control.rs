@@ -24,16 +24,19 @@ fn control() -> RatioControl {
         filter_s: 0.0,
         cold: ColdRise::NONE,
         line: None,
+        shift_map: None,
     }
 }
 
 fn demand(power_share: f64, secondary_rad_s: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s,
+        primary_rad_s: before * secondary_rad_s,
         speed_m_s: 10.0,
         power_w: power_share * 80e3,
         share: power_share,
         full_load_rad_s: 0.0,
+        mapped_rad_s: None,
         cold_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,

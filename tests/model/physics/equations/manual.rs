@@ -94,6 +94,7 @@ fn solve(car: &Car, s: &Step) -> (StepOutput, TransmissionState) {
         gear: s.command,
         dt_s: s.dt_s,
         engine_off: s.engine_off,
+        neutral_share: 0.0,
     };
     let mut state = car.transmission.start(&around);
     (

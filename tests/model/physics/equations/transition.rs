@@ -40,6 +40,7 @@ fn shifted(
         gear: None::<GearCommand>,
         dt_s: 0.5,
         engine_off: false,
+        neutral_share: 0.0,
     };
     let mut state = car.transmission.start(&around);
     state.cvt = Some(CvtState::new(BeltAtRatio::new(&cvt.belt, from)));
@@ -58,6 +59,7 @@ fn shifted(
     let (down, up) = volumes(cvt, from);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
+        primary_rad_s: from * cvt.final_drive.ratio * wheel.wheel_rad_s,
         speed_m_s: wheel.speed_m_s,
         power_w: wheel.power_w,
         // From nothing before, half a second of the filter (RC-9).
@@ -67,6 +69,7 @@ fn shifted(
             &engine,
             wheel.power_w / cvt.ratio.route_efficiency,
         ),
+        mapped_rad_s: None,
         cold_rad_s: 0.0,
         ratio_before: from,
         flow_down_per_s: free / down,
@@ -229,6 +232,7 @@ fn after(
         gear: None,
         dt_s,
         engine_off: false,
+        neutral_share: 0.0,
     };
     let mut state = b.car.transmission.start(&around);
     state.cvt = Some(CvtState::new(BeltAtRatio::new(&b.cvt().belt, 1.0)));
@@ -325,6 +329,7 @@ fn an_engine_at_rest_turns_nothing() {
         gear: None,
         dt_s: 1.0,
         engine_off: true,
+        neutral_share: 0.0,
     };
     let mut state = car.transmission.start(&around);
     let Transmission::Cvt(cvt) = &car.transmission else {

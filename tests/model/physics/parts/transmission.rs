@@ -339,16 +339,19 @@ fn control() -> RatioControl {
         filter_s: 0.0,
         cold: ColdRise::NONE,
         line: None,
+        shift_map: None,
     }
 }
 
 fn demand(secondary: f64, power: f64, before: f64) -> RatioDemand {
     RatioDemand {
         secondary_rad_s: secondary,
+        primary_rad_s: before * secondary,
         speed_m_s: 10.0,
         power_w: power,
         share: power / 82e3,
         full_load_rad_s: 0.0,
+        mapped_rad_s: None,
         cold_rad_s: 0.0,
         ratio_before: before,
         flow_down_per_s: 9.0,

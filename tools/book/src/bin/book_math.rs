@@ -1,4 +1,5 @@
-//! Preprocessor of the book: equations become MathML when the book is built, so that it needs no network to be read.
+//! Preprocessor of the book: equations become MathML when the book is built, so that it needs no network to be read, and drawings
+//! become part of their page, so that its theme colours them.
 //!
 //! mdBook starts it (see `docs/book/book.toml`); by hand there is nothing to do but `mdbook build docs/book`.
 #![allow(
@@ -7,8 +8,9 @@
     reason = "a preprocessor writes to standard output"
 )]
 
-use cvtcycle_book::latex;
+use cvtcycle_book::{latex, pictures};
 use serde_json::Value;
+use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -23,14 +25,17 @@ fn main() -> ExitCode {
         };
     }
     let input: Result<(Value, Value), _> = serde_json::from_reader(std::io::stdin().lock());
-    let Ok((_, mut book)) = input else {
+    let Ok((context, mut book)) = input else {
         eprintln!(
             "book_math: standard input is no pair of context and book; it is started by mdbook, not by hand"
         );
         return ExitCode::from(2);
     };
+    let part = |place: &str| context.pointer(place).and_then(Value::as_str);
+    let source =
+        Path::new(part("/root").unwrap_or(".")).join(part("/config/book/src").unwrap_or("src"));
     let mut problems = Vec::new();
-    chapters(&mut book, &mut problems);
+    chapters(&mut book, &source, &mut problems);
     for problem in &problems {
         eprintln!("book_math: {problem}");
     }
@@ -42,10 +47,18 @@ fn main() -> ExitCode {
     }
 }
 
+/// A page with its equations as MathML and its drawings inside.
+fn rendered(text: &str, source: &Path) -> Result<String, Vec<String>> {
+    let read = |name: &str| std::fs::read_to_string(source.join(name)).ok();
+    pictures::page(&latex::page(text)?, read)
+}
+
 /// Renders the content of every chapter, wherever the version of mdBook keeps its chapters.
-fn chapters(value: &mut Value, problems: &mut Vec<String>) {
+fn chapters(value: &mut Value, source: &Path, problems: &mut Vec<String>) {
     match value {
-        Value::Array(list) => list.iter_mut().for_each(|item| chapters(item, problems)),
+        Value::Array(list) => list
+            .iter_mut()
+            .for_each(|item| chapters(item, source, problems)),
         Value::Object(map) => {
             let name = map
                 .get("path")
@@ -54,12 +67,12 @@ fn chapters(value: &mut Value, problems: &mut Vec<String>) {
                 .to_owned();
             for (key, item) in map.iter_mut() {
                 match item {
-                    Value::String(text) if key == "content" => match latex::page(text) {
+                    Value::String(text) if key == "content" => match rendered(text, source) {
                         Ok(page) => *text = page,
                         Err(list) => problems
                             .extend(list.into_iter().map(|problem| format!("{name}: {problem}"))),
                     },
-                    other => chapters(other, problems),
+                    other => chapters(other, source, problems),
                 }
             }
         }

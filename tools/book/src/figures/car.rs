@@ -14,41 +14,11 @@ use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 /// All of them, by file name.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     Ok(vec![
-        ("lubricant_viscosity", viscosity(r)),
         ("engine_fuel", engine(r)),
         ("road_load_force", road_load(r)),
         ("thermal_warm_up", warm_up(r)?),
         ("maps_edge", maps(r)?),
     ])
-}
-
-fn viscosity(r: &Reference) -> String {
-    let (oil, engine_oil) = r.cvt_car.oils();
-    let gear_oil = r.manual_car.oils().0;
-    let lines = |from: f64, to: f64| -> Vec<Line> {
-        [
-            (oil, "CVT fluid"),
-            (engine_oil, "engine oil"),
-            (gear_oil, "gear oil"),
-        ]
-        .map(|(oil, name)| {
-            sweep(name, from, to, 120, |t| {
-                1e6 * oil.kinematic_m2_s(t + ZERO_DEGC_K)
-            })
-        })
-        .to_vec()
-    };
-    let (x, y) = ("Temperature [degC]", "Kinematic viscosity [mm\u{b2}/s]");
-    plot(
-        "Viscosity of the shipped fluids",
-        "LU-1 through the values at 40 and 100 degC",
-        "Kinematic viscosity of CVT fluid, engine oil and gear oil against temperature, cold and warm.",
-        "",
-        vec![
-            axes("Cold", x, y, lines(-10.0, 40.0)),
-            axes("Warm", x, y, lines(40.0, 120.0)),
-        ],
-    )
 }
 
 fn engine(r: &Reference) -> String {
@@ -111,8 +81,11 @@ fn road_load(r: &Reference) -> String {
         })
     };
     let lines = vec![
-        force("dynamometer, any ambient", Surface::Dynamometer, -10.0),
-        force("road at 20 degC", Surface::Road, 20.0),
+        force(
+            "dynamometer at any ambient, road at 20 degC",
+            Surface::Dynamometer,
+            -10.0,
+        ),
         force("road at -10 degC", Surface::Road, -10.0),
     ];
     plot(

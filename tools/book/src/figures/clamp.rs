@@ -19,10 +19,12 @@ fn demand(r: &Reference, share: f64) -> RatioDemand {
     let power_w = share * rated_w;
     RatioDemand {
         secondary_rad_s: 0.0,
+        primary_rad_s: 0.0,
         speed_m_s: 0.0,
         power_w,
         share,
         full_load_rad_s: cvt.full_load_route.at(power_w / cvt.ratio.route_efficiency),
+        mapped_rad_s: None,
         cold_rad_s: 0.0,
         ratio_before: cvt.ratio.low,
         flow_down_per_s: f64::INFINITY,

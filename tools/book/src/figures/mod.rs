@@ -6,9 +6,13 @@ mod clamp;
 mod cold;
 mod drawn;
 mod parts;
+mod plates;
+mod point;
 mod prices;
 mod reference;
+mod round;
 pub mod tables;
+pub mod worked;
 
 use cvtcycle::report::charts::lines::{self, LineChart, Look, Points, line_chart};
 use std::path::Path;
@@ -36,13 +40,6 @@ const fn page(stem: &'static str, keys: &'static [&'static str]) -> Page {
 /// Pages of mechanisms in the order of the book.
 pub const PAGES: [Page; 26] = [
     page(
-        "belt",
-        &[
-            "transmission.cvt.variator.half_wedge_deg",
-            "transmission.cvt.variator.primary_piston_cm2",
-        ],
-    ),
-    page(
         "geometry",
         &[
             "transmission.cvt.belt.length_m",
@@ -51,6 +48,7 @@ pub const PAGES: [Page; 26] = [
         ],
     ),
     page("tension", &["transmission.cvt.variator.half_wedge_deg"]),
+    page("slip", &[]),
     page(
         "bands",
         &[
@@ -60,8 +58,14 @@ pub const PAGES: [Page; 26] = [
         ],
     ),
     page("film", &["transmission.cvt.belt.band_offset_mm"]),
-    page("slip", &[]),
     page("deflection", &["transmission.cvt.variator.half_wedge_deg"]),
+    page(
+        "belt",
+        &[
+            "transmission.cvt.variator.half_wedge_deg",
+            "transmission.cvt.variator.primary_piston_cm2",
+        ],
+    ),
     page("formulations", &[]),
     page("pump", &["transmission.cvt.pump."]),
     page("input_shaft", &[]),
@@ -113,6 +117,8 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
         .chain(drawn::figures(&reference))
         .chain(parts::figures(&reference))
         .chain(car::figures(&reference)?)
+        .chain(round::figures(&reference)?)
+        .chain(plates::figures(&reference)?)
     {
         files.push((format!("img/{name}.svg"), svg));
     }
@@ -120,6 +126,7 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
     let (picture, table) = prices::picture_and_table()?;
     files.push(("img/price_rover_216_cvt.svg".to_owned(), picture));
     files.push(("generated/prices.md".to_owned(), table));
+    files.extend(worked::files(&reference)?);
     files.extend(tables::files(source)?);
     Ok(files)
 }

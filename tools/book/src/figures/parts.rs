@@ -139,7 +139,7 @@ fn input_shaft(r: &Reference) -> String {
 
 fn reverse_clutch(r: &Reference) -> String {
     let clutch = r.cvt().clutch_drag;
-    let drag = sweep("drag", -20.0, 100.0, 240, |t| {
+    let drag = sweep("", -20.0, 100.0, 240, |t| {
         clutch.torque_nm(viscosity_power(nu(r, t), clutch.exponent), 2000.0 * RPM)
     });
     plot(

@@ -80,6 +80,7 @@ fn index(source: &Path) -> Result<String, String> {
         "cold",
         "optimum",
         "cycles",
+        "label",
         "levers",
         "physics_checks",
         "rigs",

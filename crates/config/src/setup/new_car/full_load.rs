@@ -49,13 +49,32 @@ impl Curve {
             self.nm
         } else {
             let share = (rpm - to) / (self.rated_rpm - to);
-            self.nm - (self.nm - self.rated_nm) * share * share
+            let fallen_nm = self.nm - (self.nm - self.rated_nm) * share * share;
+            // Between them no more power than at the ends: a charged engine is held at its rated power.
+            let (at_plateau, at_rated) = (self.nm * to, self.rated_nm * self.rated_rpm);
+            let most = at_rated + (at_plateau - at_rated).max(0.0) * (1.0 - share);
+            match rpm < self.rated_rpm {
+                true => fallen_nm.min(most / rpm), // NC-2
+                false => fallen_nm,
+            }
         }
+    }
+
+    /// Whether the rated power is what holds the torque at a speed.
+    fn is_held(&self, rpm: f64) -> bool {
+        let [_, to] = self.plateau;
+        let share = (rpm - to) / (self.rated_rpm - to);
+        self.torque_nm(rpm) < self.nm - (self.nm - self.rated_nm) * share * share
     }
 
     pub fn rows(&self) -> String {
         let highest_rpm = self.highest_rpm;
-        let steps = (1..40).map(|k| 500.0 * f64::from(k));
+        // Between two rows of a line of constant power there is more of it: rows near each other.
+        let [_, to] = self.plateau;
+        let is_step = |rpm: &f64| {
+            rpm % 500.0 < 1.0 || to < *rpm && *rpm < self.rated_rpm && self.is_held(*rpm)
+        };
+        let steps = (1..80).map(|k| 250.0 * f64::from(k)).filter(is_step);
         let inner = steps.filter(|rpm| *rpm > self.idle_rpm + 50.0 && *rpm < highest_rpm - 50.0);
         let mut speeds: Vec<f64> = inner
             .chain([self.idle_rpm, highest_rpm, self.rated_rpm])

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | NC-1 | r = 3.05 D/(2 pi), D = rim + 2 width height | source: CO2MPAS |
-//! | NC-2 | full load below n_T: T_max (1 - 0.31 ((n_T - n)/(n_T - n_idle))^1.5); above: T_max - (T_max - T_P)((n - n_T)/(n_P - n_T))^2, T_P = P/w_P | fitted to the CO2MPAS shape of the Rover |
+//! | NC-2 | full load below n_T: T_max (1 - 0.31 ((n_T - n)/(n_T - n_idle))^1.5); above: T_max - (T_max - T_P)((n - n_T)/(n_P - n_T))^2, T_P = P/w_P, up to n_P with no more power than P, nor than on the line from n_T to n_P where the plateau has more | fitted to the CO2MPAS shape of the Rover; held power of charged engines derived from P |
 //! | NC-3 | inertia 0.05 + 0.1 V kg m2, accessories 0.175 V + 0.2021 Nm, V in litres | source: CO2MPAS |
 //! | NC-4 | belt length by GE-3 from centre distance, low ratio and a least running radius of 30 mm; its mass 1.6 kg/m | derived; radius ASSUMED 25 to 35 mm |
 //! | NC-6 | heat capacity of the engine by rated power: block 0.525, oil 0.28 kJ/K per kW | derived from ADVISOR |
@@ -15,6 +15,7 @@
 //! reads the numbers from a file, `questions` says what may be asked for.
 
 mod answers;
+mod coast_down;
 mod full_load;
 mod options;
 mod questions;
@@ -60,11 +61,15 @@ pub struct NewCar {
 }
 
 /// Names of the numbers that a car may have, with their meaning.
-pub const NUMBERS: [(&str, &str); 21] = [
+pub const NUMBERS: [(&str, &str); 22] = [
     ("mass", "test mass, the driver with it: kg, lb or t"),
     ("f0", "constant part of the road load: N or lbf"),
     ("f1", "part linear in speed: N/(km/h) or lbf/mph"),
     ("f2", "part quadratic in speed: N/(km/h)2 or lbf/mph2"),
+    (
+        "road-load",
+        "what f0, f1 and f2 are of: body, or neutral for a coast-down in neutral with the drag of the box in it",
+    ),
     ("tyre", "tyre code, such as 215/55 R16"),
     (
         "wheel-radius",

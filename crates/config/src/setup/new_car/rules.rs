@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use super::coast_down::{DRAG, SOURCE};
 use super::full_load::Curve;
 use super::tyre::tyre;
 use super::{Answers, NUMBERS, meaning};
@@ -128,6 +129,7 @@ pub(super) fn lines(answers: &Answers, base: &Setup) -> Result<Vec<Line>, Proble
             given.is_given(option, key, toml::Value::String(word.clone()).to_string());
         }
     }
+    given.road_load();
     given.wheel();
     given.size();
     given.power();
@@ -231,6 +233,33 @@ impl Given<'_> {
                     "choose another class of box",
                 );
             }
+        }
+    }
+
+    /// The drag of the box inside a coast-down in neutral.
+    fn road_load(&mut self) {
+        match self.text("road-load") {
+            None | Some("body") => {}
+            Some("neutral") if self.text("f0").is_none() => self.complain(
+                "road-load",
+                "there is no coast-down to take the drag of the box from",
+                "give f0, f1 and f2 as well",
+            ),
+            Some("neutral") if self.base.transmission().is_cvt() => {
+                self.lines.extend(DRAG.into_iter().map(|(key, value)| Line {
+                    key,
+                    value: value.to_owned(),
+                    status: "assumed",
+                    source: SOURCE.to_owned(),
+                    option: None,
+                }));
+            }
+            Some("neutral") => {}
+            Some(_) => self.complain(
+                "road-load",
+                "this is no kind of road load",
+                "write body or neutral",
+            ),
         }
     }
 
@@ -367,16 +396,33 @@ impl Given<'_> {
             highest_rpm,
         };
         match curve.mistake() {
-            Some(message) => self.complain(
-                "power",
-                &message,
-                "check both numbers, their units and the speeds after @",
-            ),
+            Some(message) => {
+                let hint = self.hint_of_torque(&curve);
+                let usual = "check both numbers, their units and the speeds after @";
+                self.complain("power", &message, hint.as_deref().unwrap_or(usual));
+            }
             None => {
                 let words = format!("NC-2 through {nm:.0} Nm and {} kW", digits(kw));
                 self.follows("engine.full_load", curve.rows(), words);
             }
         }
+    }
+
+    /// The torque in lb ft, where it has no unit and would fit the power in that one.
+    fn hint_of_torque(&self, curve: &Curve) -> Option<String> {
+        let text = self.text("torque")?;
+        let (figure, speeds) = text.split_once('@').unwrap_or((text, ""));
+        figure.trim().parse::<f64>().ok()?;
+        let other = Curve {
+            nm: TORQUE.number(&format!("{}lbft", figure.trim())).ok()?,
+            ..*curve
+        };
+        let at = if speeds.is_empty() { "" } else { "@" };
+        let hint = format!(
+            "is the torque in lb ft? then write {}lbft{at}{speeds}",
+            figure.trim()
+        );
+        other.mistake().is_none().then_some(hint)
     }
 
     /// Low and high ratio of the belt, of which a span may give one; none after a problem.

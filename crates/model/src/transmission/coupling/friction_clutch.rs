@@ -6,11 +6,13 @@
 //! | LC-2 | creep torque at standstill, falling linearly to zero as the input shaft reaches idle speed | ASSUMED |
 //! | LC-3 | in overrun the coupling lets go from 0.2 idle speed above the release speed down to 1.1 idle speed | source: thesis 1.1.2 (order of the variogram); ramp ASSUMED |
 //! | LC-5 | once coupled it stays locked; between 1.2 idle speed and idle speed it lets the engine slip again | derived: locked until the engine would be dragged below idle; width ASSUMED |
+//! | LC-7 | at least speed: LC-1 with w_e = max(idle, w_input) whatever the torque | derived: at a torque of the clutch fuel rises with the engine's speed; a clutch that is pressed by oil of its own needs no speed to carry a torque |
 //! | LC-4 | slip loss = T (w_engine - w_input) | derived: power balance |
 
 use super::{Coupling, CouplingLoad, EngineSide};
 use crate::keys::{Values, keys};
 use crate::math::{exp, larger, ramp};
+use std::sync::Arc;
 
 /// A friction clutch that slips at launch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +89,14 @@ impl Coupling for FrictionClutch {
             engine_rad_s,
             loss_w: slipping_nm * (engine_rad_s - output_rad_s), // LC-4, CV-6
         }
+    }
+
+    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+        Some(Arc::new(FrictionClutch {
+            engage_rad_s: 0.0,
+            gain_nm_s2: f64::INFINITY,
+            ..*self
+        })) // LC-7
     }
 
     #[inline]

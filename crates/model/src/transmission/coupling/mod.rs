@@ -198,6 +198,17 @@ pub trait Coupling: Debug + Send + Sync {
         -together(at) * share * absorbed_nm
     }
 
+    /// The same device with an engine that never is faster than it has to be while it slips (LC-7); none where speed and torque are bound to
+    /// each other.
+    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+        None
+    }
+
+    /// Name of the device as in files.
+    fn device(&self) -> &'static str {
+        CLUTCH.name
+    }
+
     /// Factor on its loss (LC-6).
     fn loss_factor(&self) -> f64 {
         1.0

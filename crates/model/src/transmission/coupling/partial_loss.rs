@@ -90,6 +90,15 @@ impl Coupling for PartialLoss {
         self.inner.min_output_nm(at, absorbed_nm)
     }
 
+    fn device(&self) -> &'static str {
+        self.inner.device()
+    }
+
+    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+        let inner = self.inner.at_least_speed()?;
+        Some(PartialLoss::of(inner, self.factor))
+    }
+
     fn loss_factor(&self) -> f64 {
         self.factor * self.inner.loss_factor()
     }

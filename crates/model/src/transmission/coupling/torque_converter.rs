@@ -217,6 +217,10 @@ impl Coupling for TorqueConverter {
         larger(wanted, load.idle_rad_s)
     }
 
+    fn device(&self) -> &'static str {
+        super::CONVERTER.name
+    }
+
     /// The engine may be slower than the turbine that drives it.
     fn min_engine_rad_s(&self, _output_rad_s: f64) -> f64 {
         0.0

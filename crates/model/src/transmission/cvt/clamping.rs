@@ -1,7 +1,7 @@
-//! Pressure of the clamp laws that look at the belt (PC-3, PC-4), with the causes of a smallest one (PC-5).
+//! Pressure of the clamp laws that look at the belt (PC-3, PC-4, PC-6), with the causes of a smallest one (PC-5).
 
 use super::Cvt;
-use super::controller::ClampLaw;
+use super::controller::{ClampLaw, PressurePoint};
 use super::floors::Held;
 use super::variator::{BeltAtRatio, BeltLoad, belt_state};
 use crate::math::{larger, smaller};
@@ -30,6 +30,7 @@ impl Clamping<'_> {
                 safety,
                 least_torque_nm,
             } => self.for_torque_pa(safety, least_torque_nm),
+            ClampLaw::Table => self.of_table_pa(),
             ClampLaw::SlipLimited {
                 slip,
                 safety,
@@ -46,26 +47,42 @@ impl Clamping<'_> {
         }
     }
 
+    /// Pressure of the table, or that of the cause that needs more (PC-6, PC-5); without a table that of the torque.
+    fn of_table_pa(&self) -> (f64, ClampCause) {
+        let held = self.held(1.0, self.load.output_torque_nm.abs());
+        let at = PressurePoint::of_belt(
+            self.load.output_torque_nm,
+            self.at.geometry.ratio,
+            self.secondary_rad_s,
+        );
+        let table = self.cvt.pressure_table.as_ref();
+        held.above(table.map_or_else(|| held.of_torque_pa(), |table| table.pressure_pa(&at))) // PC-6
+    }
+
     /// Pressure for the torque with a safety factor, or that of the cause that needs more (PC-3, PC-5).
     fn for_torque_pa(&self, safety: f64, least_nm: f64) -> (f64, ClampCause) {
+        let torque = larger(self.load.output_torque_nm.abs(), least_nm);
+        let held = self.held(safety, torque);
+        held.above(held.of_torque_pa())
+    }
+
+    /// The belt at a torque with a safety factor, Nm (PC-3).
+    fn held(&self, safety: f64, torque: f64) -> Held<'_> {
         let (cvt, at, load) = (self.cvt, self.at, self.load);
-        let torque = larger(load.output_torque_nm.abs(), least_nm);
         let formulation = cvt.belt.formulation;
         let segment = formulation.segment_friction(load.segment_friction);
         let mu = formulation.capacity_friction(segment, load.capacity_friction);
         let weaker = smaller(at.thrust_ratio, 1.0);
         let force = safety * torque * cvt.belt.cos_wedge
             / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
-        let own_n = cvt.secondary_clamp_n(0.0, self.secondary_rad_s);
-        let held = Held {
+        Held {
             cvt,
             at,
             load,
-            own_n,
+            own_n: cvt.secondary_clamp_n(0.0, self.secondary_rad_s),
             need_n: force,
             force_log: self.force_log,
-        };
-        held.above((force - own_n) / cvt.secondary_piston_m2)
+        }
     }
 
     /// Slip at a pressure, Pa.

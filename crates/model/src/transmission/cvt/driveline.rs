@@ -42,6 +42,8 @@ pub(crate) enum Shaft {
     Engine,
     Primary,
     Secondary,
+    /// The shaft into the final drive: the secondary's but for a clutch behind it.
+    Output,
 }
 
 /// Powers of viscosity in the drags of the shafts, (nu/nu_80)^m with the exponent of each.
@@ -142,6 +144,8 @@ pub(crate) struct PartTorques {
     pub belt: BeltLosses,
     /// Belt, where a map replaces its parts.
     pub belt_map: Option<f64>,
+    /// The whole box, where a map replaces all of it, at the flywheel (MP-3).
+    pub box_map: Option<f64>,
     pub clutch: f64,
     pub pump: f64,
     /// Loss of the alternator for an electric pump.
@@ -156,20 +160,32 @@ impl PartTorques {
         self.clutch + self.bearing[0] + self.ring[0]
     }
 
+    /// Slip and loss torque of the belt, Nm at the primary: a map has no slip.
+    #[inline]
+    pub fn belt_in_force(&self) -> (f64, f64) {
+        match self.belt_map {
+            Some(loss) => (0.0, loss),
+            None => (self.belt.slip_total, self.belt.sum_nm()),
+        }
+    }
+
     /// Parts that turn with the engine, Nm at the flywheel.
     #[inline]
     pub fn engine_nm(&self) -> f64 {
-        self.pump + self.shaft + self.alternator
+        self.pump + self.shaft + self.alternator + self.box_map.unwrap_or(0.0)
     }
 
     /// Torque at the flywheel with that of the coupling, Nm.
     pub fn flywheel_nm(&self, coupling_nm: f64) -> f64 {
-        coupling_nm + self.pump + self.shaft + self.alternator
+        coupling_nm + self.pump + self.shaft + self.alternator + self.box_map.unwrap_or(0.0)
     }
 
     /// Gives every loss torque with its component and shaft.
     #[inline(always)]
     pub fn for_each_loss(&self, mut give: impl FnMut(Component, Shaft, f64)) {
+        if let Some(loss) = self.box_map {
+            return give(Component::BoxMap, Shaft::Engine, loss);
+        }
         match self.belt_map {
             Some(loss) => give(Component::BeltMap, Shaft::Primary, loss),
             None => {
@@ -187,7 +203,7 @@ impl PartTorques {
                 );
             }
         }
-        give(Component::FinalDrive, Shaft::Secondary, self.final_drive);
+        give(Component::FinalDrive, Shaft::Output, self.final_drive);
         give(Component::SealRing, Shaft::Primary, self.ring[0]);
         give(Component::SealRing, Shaft::Secondary, self.ring[1]);
         give(Component::ClutchDrag, Shaft::Primary, self.clutch);
@@ -297,8 +313,29 @@ impl<'a> Driveline<'a> {
         clamp: &Clamp,
         inside: &mut bool,
     ) -> PartTorques {
-        let through_nm = if self.parts.final_drive {
-            let at = (primary_rad_s, output_nm, clamp.pressure_pa);
+        let mut torques = self.through(
+            output_nm,
+            drive,
+            (primary_rad_s, secondary_rad_s),
+            clamp.pressure_pa,
+            inside,
+        );
+        self.turn_secondary(&mut torques, clamp);
+        torques
+    }
+
+    /// Torque into the final drive for one behind it, Nm, in place of the secondary's.
+    #[inline(always)]
+    pub fn through(
+        &self,
+        output_nm: f64,
+        drive: impl FnOnce() -> TurningTrain,
+        (primary_rad_s, secondary_rad_s): (f64, f64),
+        pressure_pa: f64,
+        inside: &mut bool,
+    ) -> PartTorques {
+        let through_nm = if self.parts.final_drive && !self.is_mapped() {
+            let at = (primary_rad_s, output_nm, pressure_pa);
             match self.mapped(Component::FinalDrive, at, inside) {
                 Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
                 None => drive().input_nm(output_nm), // FD-2
@@ -306,12 +343,17 @@ impl<'a> Driveline<'a> {
         } else {
             output_nm
         };
-        let mut torques = PartTorques {
+        PartTorques {
             final_drive: through_nm - output_nm,
             secondary: through_nm,
             ..PartTorques::default()
-        };
-        if self.parts.belt {
+        }
+    }
+
+    /// Adds bearing and rings of the secondary's shaft to its torque.
+    #[inline(always)]
+    pub fn turn_secondary(&self, torques: &mut PartTorques, clamp: &Clamp) {
+        if self.parts.belt && !self.is_mapped() {
             torques.bearing[1] = self.bearing_nm(1, clamp);
             if !self.cvt.has_map(Component::SealRing) {
                 let nm = self.shafts.ring_per_pa * clamp.pressure_pa;
@@ -319,7 +361,6 @@ impl<'a> Driveline<'a> {
             }
             torques.secondary += torques.bearing[1] + torques.ring[1];
         }
-        torques
     }
 
     /// Torque of the bearing on a pulley's shaft, Nm (PB-2).
@@ -342,6 +383,39 @@ impl<'a> Driveline<'a> {
         })
     }
 
+    /// Whether a map is in the place of all losses of the box (MP-3).
+    #[inline]
+    fn is_mapped(&self) -> bool {
+        self.changes
+            .is_some_and(|changes| changes.maps[Component::BoxMap].is_some())
+    }
+
+    /// Sets the loss of a box that is replaced by a map to that at rest, where it is known (MP-3).
+    pub fn rest(&self, torques: &mut PartTorques) {
+        let at_rest = self.changes.and_then(|changes| {
+            let factor = changes.factor[Component::BoxMap];
+            changes.at_rest_nm.map(|nm| factor * nm)
+        });
+        torques.box_map = torques.box_map.map(|loss| at_rest.unwrap_or(loss)); // MP-3
+    }
+
+    /// Loss of a box that is replaced by a map, Nm at the flywheel, for a torque behind it at the secondary (MP-3).
+    #[inline]
+    fn box_map_nm(&self, secondary_nm: f64, engine_rad_s: f64, inside: &mut bool) -> Option<f64> {
+        let changes = self.changes?;
+        let map = changes.maps[Component::BoxMap].as_ref()?;
+        let behind = MapPoint {
+            ratio: self.at.geometry.ratio,
+            input_speed_rad_s: engine_rad_s,
+            torque_nm: secondary_nm * self.at.prepared.inv_ratio,
+            pressure_pa: 0.0,
+            oil_k: self.oil_k,
+        };
+        let (loss, within) = map.loss_behind_nm(&behind, changes.factor[Component::BoxMap]);
+        *inside &= within;
+        Some(loss) // MP-3
+    }
+
     /// Loss of a belt that is replaced by a map, Nm at the primary.
     #[inline]
     pub fn belt_map_nm(
@@ -351,6 +425,9 @@ impl<'a> Driveline<'a> {
         pressure_pa: f64,
         inside: &mut bool,
     ) -> Option<f64> {
+        if self.is_mapped() {
+            return Some(0.0); // MP-3
+        }
         let at = (primary_rad_s, secondary_nm, pressure_pa);
         self.mapped(Component::BeltMap, at, inside)
     }
@@ -364,6 +441,9 @@ impl<'a> Driveline<'a> {
         clamp: &Clamp,
         inside: &mut bool,
     ) {
+        if self.is_mapped() {
+            return;
+        }
         torques.bearing[0] = self.bearing_nm(0, clamp);
         torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
@@ -392,6 +472,10 @@ impl<'a> Driveline<'a> {
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = pump.state(&self.pump, engine_rad_s, pressure_pa, need);
             state.torque_nm = self.loss_nm(Component::Pump, at, inside, || state.torque_nm);
+        }
+        torques.box_map = self.box_map_nm(torques.secondary, engine_rad_s, inside);
+        if torques.box_map.is_some() {
+            return state;
         }
         torques.pump = state.torque_nm;
         torques.alternator = state.alternator_share * state.torque_nm; // EP-2

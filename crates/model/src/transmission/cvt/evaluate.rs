@@ -79,9 +79,16 @@ pub(super) struct Point {
     /// Full load at the next engine speed, Nm.
     pub full_load_nm: f64,
     pub torques: PartTorques,
+    pub secondary_rad_s: f64,
     pub primary_rad_s: f64,
     pub primary_nm: f64,
-    /// Primary torque above the one that the engine's limit gives, Nm.
+    /// Torque that the coupling passes on, at the primary, Nm.
+    pub passed_nm: f64,
+    /// Speed of the primary with the coupling locked, rad/s.
+    pub over_rad_s: f64,
+    /// Torque of all losses between coupling and flywheel, Nm at the flywheel.
+    pub spin_nm: f64,
+    /// Torque that is passed on above the one that the engine's limit gives, Nm.
     pub miss_nm: f64,
     pub flywheel_nm: f64,
     /// Loss of the coupling, W.
@@ -118,6 +125,27 @@ impl Point {
             ..self.guess
         }
     }
+}
+
+/// The box between the wheels and the engine at a guess, the parts that turn with the engine's shaft apart.
+pub(super) struct Chain {
+    /// The belt's load, its torque apart.
+    pub load: BeltLoad,
+    pub torques: PartTorques,
+    /// Slip in force.
+    pub slip: f64,
+    pub secondary_rad_s: f64,
+    pub primary_rad_s: f64,
+    pub primary_nm: f64,
+    /// Torque that the coupling passes on, at the primary, Nm.
+    pub passed_nm: f64,
+    /// Speed of the primary with the coupling locked, rad/s.
+    pub over_rad_s: f64,
+    /// Torque of the losses between the coupling and the engine's shaft, Nm at the engine.
+    pub between_nm: f64,
+    /// The engine's side of the coupling.
+    pub side: EngineSide,
+    pub locked: bool,
 }
 
 /// The limit of the engine that fixes the output torque.
@@ -163,37 +191,81 @@ impl<P: PrimeMover> Step<'_, P> {
         torques
     }
 
-    /// Evaluates a guess, in place: a point is large.
-    ///
-    /// Under a limit of the engine, pressure and engine speed follow from the torque of that limit, not from the one that the guessed
-    /// output torque gives: so the two unknowns do not disturb each other.
-    pub(super) fn evaluate(&self, g: &Guess, limit: Limit, point: &mut Point) {
-        let (line, cvt, engine) = (&self.line, self.line.cvt, self.input.engine);
-        let mut inside_maps = true;
+    /// From the wheels to a launch device in front of the variator.
+    #[inline(always)]
+    fn launch_ahead(&self, g: &Guess, limit: Limit, inside: &mut bool) -> Chain {
+        let (line, cvt) = (&self.line, self.line.cvt);
         let belt_rad_s = self.primary_rad_s(g.slip);
-        let clamped = Clamp {
+        let clamp = Clamp {
             pressure_pa: g.pressure_pa,
             secondary_n: cvt.secondary_clamp_n(g.pressure_pa, self.secondary_rad_s),
         };
-        let load = |output_torque_nm: f64| BeltLoad {
+        let load = BeltLoad {
             primary_speed_rad_s: belt_rad_s,
-            output_torque_nm,
-            secondary_clamp_n: clamped.secondary_n,
+            secondary_clamp_n: clamp.secondary_n,
             ..self.load
         };
-        let mut torques = self.torques(g, belt_rad_s, &clamped, load, &mut inside_maps);
-        let (slip, belt_nm) = torques
-            .belt_map
-            .map_or((torques.belt.slip_total, torques.belt.sum_nm()), |loss| {
-                (0.0, loss)
-            });
+        let with = |output_torque_nm: f64| BeltLoad {
+            output_torque_nm,
+            ..load
+        };
+        let torques = self.torques(g, belt_rad_s, &clamp, with, inside);
+        let (slip, belt_nm) = torques.belt_in_force();
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
         let primary_nm = torques.secondary * ((1.0 - slip) * line.at.prepared.inv_ratio)
             + belt_nm
             + torques.primary_nm();
-        let own = self.engine_side(g, limit, (primary_nm, primary_rad_s), locked);
+        Chain {
+            load,
+            torques,
+            slip,
+            secondary_rad_s: self.secondary_rad_s,
+            primary_rad_s,
+            primary_nm,
+            passed_nm: primary_nm,
+            over_rad_s: primary_rad_s,
+            between_nm: 0.0,
+            side: self.engine_side(g, limit, (primary_nm, primary_rad_s), locked),
+            locked,
+        }
+    }
+
+    /// Evaluates a guess, in place: a point is large.
+    ///
+    /// Under a limit of the engine, pressure and engine speed follow from the torque of that limit, not from the one that the guessed
+    /// output torque gives: so the two unknowns do not disturb each other.
+    pub(super) fn evaluate(&self, g: &Guess, limit: Limit, point: &mut Point) {
+        if self.line.cvt.launch_behind {
+            return self.evaluate_behind(g, limit, point);
+        }
+        let mut inside_maps = true;
+        let chain = self.launch_ahead(g, limit, &mut inside_maps);
+        self.follow(g, limit, chain, inside_maps, point);
+    }
+
+    /// The same with a clutch behind the variator.
+    #[inline(never)]
+    fn evaluate_behind(&self, g: &Guess, limit: Limit, point: &mut Point) {
+        let mut inside_maps = true;
+        let chain = self.launch_behind(g, limit, &mut inside_maps);
+        self.follow(g, limit, chain, inside_maps, point);
+    }
+
+    /// What follows from the torques up to the engine: those of its own shaft, and engine speed, throttle and pressure under a limit.
+    #[inline(always)]
+    fn follow(
+        &self,
+        g: &Guess,
+        limit: Limit,
+        chain: Chain,
+        mut inside_maps: bool,
+        point: &mut Point,
+    ) {
+        let (line, cvt, engine) = (&self.line, self.line.cvt, self.input.engine);
+        let mut torques = chain.torques;
+        let (over_rad_s, own) = (chain.over_rad_s, chain.side);
         let engine_rad_s = own.engine_rad_s;
         let pump = line.turn_engine(
             &mut torques,
@@ -202,47 +274,35 @@ impl<P: PrimeMover> Step<'_, P> {
             self.shift_flow_m3_s,
             &mut inside_maps,
         );
-        let spin_nm = torques.engine_nm();
-        let turning = self.turning(primary_rad_s, engine_rad_s);
+        let spin_nm = torques.engine_nm() + chain.between_nm;
+        let turning = self.turning(over_rad_s, engine_rad_s);
         let wanted_nm = match limit {
-            Limit::None => primary_nm,
-            Limit::EngineDrag => self.min_primary_nm(&turning, spin_nm),
-            Limit::FullLoad => self.max_primary_nm(&turning, spin_nm),
+            Limit::None => chain.passed_nm,
+            Limit::EngineDrag => self.min_passed_nm(&turning, spin_nm),
+            Limit::FullLoad => self.max_passed_nm(&turning, spin_nm),
         };
         let flywheel_nm = own.engine_nm + spin_nm; // CV-2, CV-6
         let (wanted_flywheel_nm, next_engine_rad_s) = if limit == Limit::None {
             (flywheel_nm, engine_rad_s)
         } else {
-            let coupling = &cvt.coupling;
-            let (side, next) = if locked {
-                let slip_rad_s = self.hold.slip_rad_s;
-                let side = coupling.locked_side(wanted_nm, primary_rad_s, slip_rad_s);
-                (side, engine_rad_s)
-            } else {
-                let side = coupling.engine_side(wanted_nm, primary_rad_s, engine_rad_s);
-                let free = self.free_engine(wanted_nm, primary_rad_s);
-                (side, free.engine_rad_s)
-            };
-            (side.engine_nm + spin_nm, next)
+            self.under_limit(wanted_nm, (over_rad_s, engine_rad_s), chain.locked, spin_nm)
         };
         let crank_nm = wanted_flywheel_nm + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
         let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
-        let secondary_nm = torques.secondary;
-        let (set_pa, clamp_cause) = cvt.pressure_by(
-            self.clamp,
-            &signals,
-            line.at,
-            || load(secondary_nm),
-            self.secondary_rad_s,
-        );
+        let load = || BeltLoad {
+            output_torque_nm: torques.secondary,
+            ..chain.load
+        };
+        let (set_pa, clamp_cause) =
+            cvt.pressure_by(self.clamp, &signals, line.at, load, chain.secondary_rad_s);
         let (next_pressure_pa, flow_limited) =
             line.held_pa(set_pa, next_engine_rad_s, self.shift_flow_m3_s);
         *point = Point {
             guess: Guess {
                 engine_rad_s,
-                slip,
+                slip: chain.slip,
                 ..*g
             },
             slip_guessed: g.slip,
@@ -252,22 +312,47 @@ impl<P: PrimeMover> Step<'_, P> {
             throttle,
             full_load_nm,
             torques,
-            primary_rad_s,
-            primary_nm,
-            miss_nm: primary_nm - wanted_nm,
+            secondary_rad_s: chain.secondary_rad_s,
+            primary_rad_s: chain.primary_rad_s,
+            primary_nm: chain.primary_nm,
+            passed_nm: chain.passed_nm,
+            over_rad_s,
+            spin_nm,
+            miss_nm: chain.passed_nm - wanted_nm,
             flywheel_nm,
             coupling_w: own.loss_w,
             flow_limited,
             oil_flow_m3_s: pump.working_m3_s,
             inside_maps,
-            locked,
+            locked: chain.locked,
         };
+    }
+
+    /// Torque at the flywheel, Nm, and engine speed, rad/s, where a limit has the coupling pass on a torque at the speeds of its two sides.
+    #[inline(always)]
+    fn under_limit(
+        &self,
+        passed_nm: f64,
+        (over_rad_s, engine_rad_s): (f64, f64),
+        locked: bool,
+        spin_nm: f64,
+    ) -> (f64, f64) {
+        let coupling = &self.line.cvt.coupling;
+        let (side, next) = if locked {
+            let slip_rad_s = self.hold.slip_rad_s;
+            let side = coupling.locked_side(passed_nm, over_rad_s, slip_rad_s);
+            (side, engine_rad_s)
+        } else {
+            let side = coupling.engine_side(passed_nm, over_rad_s, engine_rad_s);
+            (side, self.free_engine(passed_nm, over_rad_s).engine_rad_s)
+        };
+        (side.engine_nm + spin_nm, next)
     }
 
     /// The engine's side of the coupling at a guess. A clutch has its engine never slower than the primary, and at the same speed while
     /// locked, so that it cannot give energy back.
     #[inline(always)]
-    fn engine_side(
+    pub(super) fn engine_side(
         &self,
         g: &Guess,
         limit: Limit,
@@ -317,15 +402,15 @@ impl<P: PrimeMover> Step<'_, P> {
         }
     }
 
-    /// Least primary torque that engine and coupling leave to the belt, Nm, with pump and shaft taking `spin_nm` (CV-3).
-    pub(super) fn min_primary_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
+    /// Least torque that engine and coupling pass on, Nm at the primary, with all between them taking `spin_nm` (CV-3).
+    pub(super) fn min_passed_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let absorbed_nm = engine.drag_nm(w) + engine.accessories_nm(w) + spin_nm;
         self.line.cvt.coupling.min_output_nm(at, absorbed_nm)
     }
 
-    /// Largest primary torque at full load, Nm (CV-4).
-    pub(super) fn max_primary_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
+    /// Largest torque passed on at full load, Nm at the primary (CV-4).
+    pub(super) fn max_passed_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let engine_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - spin_nm;
         if at.locked {

@@ -6,7 +6,7 @@
 //!
 //! F_need is the force of PC-3. Towards low the primary gives way, but not below what carries the torque, so the secondary presses e times as hard;
 //! towards high the primary has F_p = tau e F_s out of the same line pressure, p A_p >= tau e (p A_s + F_0); where no pressure does, the cap.
-//! PC-5 binds PC-3 and PC-4; a map was measured with its causes in it, and is held at p_control alone.
+//! PC-5 binds PC-3, PC-4 and PC-6; a map was measured with its causes in it, and is held at p_control alone.
 
 use super::Cvt;
 use super::variator::{BeltAtRatio, BeltLoad};
@@ -94,6 +94,11 @@ impl Held<'_> {
             (down_pa, ClampCause::ShiftDown),
             (up_pa, ClampCause::ShiftUp),
         ] // PC-5
+    }
+
+    /// Pressure for the force that the torque needs, Pa.
+    pub fn of_torque_pa(&self) -> f64 {
+        (self.need_n - self.own_n) / self.cvt.secondary_piston_m2
     }
 
     /// The larger of a law's pressure, Pa, and what each cause needs.

@@ -1,20 +1,23 @@
 //! Keys of `[transmission.cvt]`, and a CVT from their values.
 
 use super::clutch_drag::{ClutchDrag, ClutchKeys};
-use super::controller::{ClampKeys, RatioControl, RatioKeys, clamp};
+use super::controller::{ClampKeys, PressureTable, RatioControl, RatioKeys, clamp};
 use super::final_drive::FinalDrive;
 use super::floors::{Floors, PRESSURE, PressureKeys};
 use super::pulley_bearing::{PulleyBearing, PulleyBearingKeys};
 use super::pump::{Pump, PumpKeys};
 use super::seal_ring::{SealRing, SealRingKeys};
+use super::selector::{Selector, SelectorKeys};
 use super::shaft_drag::{ShaftDrag, ShaftKeys};
 use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorKeys};
 use super::{Cvt, LossChanges};
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
-use crate::keys::{Table, Values, keys};
+use crate::keys::{Choice, Kind, Table, Values, keys};
+use crate::maps::LossMap;
+use crate::transmission::box_map::{self, CVT_BOX, CVT_BOX_POINTS};
 use crate::transmission::component::{ByComponent, Component};
-use crate::transmission::coupling::{self, LAUNCH};
+use crate::transmission::coupling::{self, Coupling, LAUNCH};
 use crate::transmission::gear_train::GearKeys;
 use crate::transmission::{components, loss_factor};
 
@@ -24,28 +27,45 @@ const FINAL_DRIVE: Table = Table {
     ..GearKeys::TABLE
 };
 
+/// How the rows of a map of the whole box lie.
+const BOX_POINTS: &[Choice] = &[
+    Choice::word("grid", "a row for every combination of the columns' values"),
+    Choice::word(
+        "scattered",
+        "points anywhere: local planes through the nearest ones bring them onto a grid",
+    ),
+];
+
 keys! {
     /// Keys of `[transmission.cvt]` and its tables.
     CVT: CvtKeys = "cvt" [
         RatioKeys::TABLE, BeltKeys::TABLE, VariatorKeys::TABLE, PressureKeys::TABLE, PumpKeys::TABLE,
         PulleyBearingKeys::TABLE, SealRingKeys::TABLE, ShaftKeys::TABLE, ClutchKeys::TABLE, FINAL_DRIVE, MapKeys::TABLE,
-        LossFactorKeys::TABLE
+        LossFactorKeys::TABLE, SelectorKeys::TABLE
     ] {
         final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         final_drive_first_ratio: number(0.3, 6.0), "share of that ratio in the stage at the secondary", ["FD-1"];
-        clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, or slip limited";
+        clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, slip limited, or a table of the user's";
         launch: LAUNCH, "launch device: a friction clutch, or a torque converter";
+        launch_at: words(&[
+            Choice::word("input", "between engine and variator"),
+            Choice::word("output", "between variator and final drive: belt and pulleys turn with the engine"),
+        ], "input"), "place of the launch clutch", ["LO-1"];
         belt_heat_share: or(0.7, number(0.0, 1.0)), "share of belt loss that heats belt and pulleys", ["SI-3"];
     }
 
     /// Keys of `[transmission.cvt.maps]`: measured losses in place of a model.
     MAPS: MapKeys = "maps" [] {
-        belt: optional(text()), "CSV of measured torque loss at the primary that replaces the belt model";
-        pump: optional(text()), "CSV of measured torque loss at the primary that replaces the pump model";
-        input_shaft: optional(text()), "CSV of measured torque loss at the primary that replaces the input shaft model";
-        clutch_drag: optional(text()), "CSV of measured torque loss at the primary that replaces the reverse-clutch drag";
-        seal_ring: optional(text()), "CSV of measured torque loss at the primary that replaces the rings of both pulleys";
-        final_drive: optional(text()), "CSV of measured torque loss at the primary that replaces the final drive model";
+        belt: optional(csv()), "CSV of measured torque loss at the primary that replaces the belt model";
+        pump: optional(csv()), "CSV of measured torque loss at the primary that replaces the pump model";
+        input_shaft: optional(csv()), "CSV of measured torque loss at the primary that replaces the input shaft model";
+        clutch_drag: optional(csv()), "CSV of measured torque loss at the primary that replaces the reverse-clutch drag";
+        seal_ring: optional(csv()), "CSV of measured torque loss at the primary that replaces the rings of both pulleys";
+        final_drive: optional(csv()), "CSV of measured torque loss at the primary that replaces the final drive model";
+        r#box: optional(csv()), "CSV of measured loss at the input shaft that replaces all losses but those of the launch device; columns where measured ratio, input_speed_rpm, input_torque_nm, oil_temp_degc, and torque_loss_nm, power_loss_w or efficiency_percent", ["MP-3", "MP-6"];
+        box_points: words(BOX_POINTS, "grid"), "how the rows of that map lie", ["MP-5"];
+        no_load_loss_nm: optional(number(0.0, 1000.0)), "loss without torque of a box map that has efficiencies", ["MP-6"];
+        at_rest_loss_nm: optional(number(0.0, 1000.0)), "loss torque of a box that is a map with the car at rest in gear; absent: that of the map, which has parts that do not turn then", ["MP-3"];
     }
 
     /// Keys of `[transmission.cvt.loss_factor]`, by component.
@@ -63,6 +83,7 @@ keys! {
         belt_penetration: or(1.0, number(0.0, 5.0)), "factor on the loss of penetration; 1 is the model, 0 is without it", ["CV-7"];
         belt_map: or(1.0, number(0.0, 5.0)), "factor on the belt's measured map, where there is one; 1 is the map, 0 is without loss", ["CV-7"];
         final_drive: or(1.0, number(0.0, 5.0)), "factor on the loss of the final drive; 1 is the model, 0 is without it", ["CV-7"];
+        box_map: or(1.0, number(0.0, 5.0)), "factor on the map of the whole box, where there is one; 1 is the map, 0 is without loss", ["CV-7"];
     }
 }
 
@@ -87,14 +108,17 @@ impl Cvt {
         check_reach(s, &ratio, &belt, &low);
         check_wedge(&v, &belt, oil);
         let pressure = s.table("pressure");
-        let clamp = clamp(s, &CVT.clamp);
+        let (clamp, pressure_table) = clamp(s, &CVT.clamp);
         let radius_exponent = pressure.number(&PRESSURE.radius_exponent);
         let (floors, cap_pa) = Floors::from_values(&pressure);
+        check_cap(s, pressure_table.as_deref(), cap_pa);
         let changes = maps(&s.table("maps"));
-        let mapped = changes
-            .as_ref()
-            .is_some_and(|changes| changes.maps[Component::BeltMap].is_some());
-        let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &components(true, mapped));
+        let maps = changes
+            .iter()
+            .flat_map(|changes| Component::ALL.map(|c| changes.maps[c].as_ref().map(|_| c.part())));
+        let own = components(true, &maps.flatten().collect::<Vec<_>>());
+        let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
+        let launch = coupling::from_values(s, &CVT.launch, 5.0);
         let mut cvt = Cvt {
             final_drive: FinalDrive::from_values(
                 &s.table("final_drive"),
@@ -113,11 +137,14 @@ impl Cvt {
             seal_ring: SealRing::from_values(&s.table("seal_ring")),
             ratio,
             clamp,
+            pressure_table,
             radius_exponent,
             floors,
             cap_pa,
             low_radius_m: low.primary_radius_m,
-            coupling: coupling::from_values(s, &CVT.launch, 5.0),
+            launch_behind: launch_behind(s, &*launch, changes.as_deref()),
+            coupling: launch,
+            selector: Selector::from_values(&s.table("selector")),
             full_load_route,
             changes,
             belt_heat_share: s.number(&CVT.belt_heat_share),
@@ -126,6 +153,29 @@ impl Cvt {
         cvt.scale_losses(&factors);
         cvt
     }
+}
+
+/// Whether the launch clutch is behind the variator; a converter there, or a map of the whole box, is reported.
+fn launch_behind<V: Values>(s: &V, launch: &dyn Coupling, changes: Option<&LossChanges>) -> bool {
+    let behind = s.word(&CVT.launch_at) == "output";
+    if behind && launch.by_command() {
+        s.complain(
+            "launch_at",
+            "input where launch is torque_converter",
+            "a torque converter is driven by the engine, in front of the variator",
+            "set launch = \"friction_clutch\", or launch_at = \"input\"",
+        );
+    }
+    let whole_box = |changes: &LossChanges| changes.maps[Component::BoxMap].is_some();
+    if behind && changes.is_some_and(whole_box) {
+        s.complain(
+            "launch_at",
+            "input where maps.box is given",
+            "the map of a whole box is that of a box whose launch device is at its input",
+            "leave maps.box out, or set launch_at = \"input\"",
+        );
+    }
+    behind
 }
 
 /// The belt runs at both ends of the ratio, and the pulleys do not run into each other.
@@ -148,6 +198,20 @@ fn check_reach<V: Values>(s: &V, ratio: &RatioControl, belt: &Belt, low: &Geomet
             "",
             "the belt cannot reach this ratio",
             "check belt length and centre distance against the ratio limits",
+        );
+    }
+}
+
+/// No pressure of a table is above the cap, which would hold it.
+fn check_cap<V: Values>(s: &V, table: Option<&PressureTable>, cap_pa: f64) {
+    let pressures = table.map_or(&[][..], |table| table.grid().values());
+    let most_pa = pressures.iter().copied().fold(0.0, f64::max);
+    if most_pa > cap_pa {
+        s.table("clamp").table("table").complain(
+            "file",
+            &format!("at most pressure.cap_bar, {} bar", cap_pa / 1e5),
+            &format!("a pressure of the table is {} bar", most_pa / 1e5),
+            "raise cap_bar, or correct the table or its unit",
         );
     }
 }
@@ -187,16 +251,43 @@ fn centrifugal<V: Values>(v: &V, oil: &Lubricant) -> f64 {
     std::f64::consts::PI * oil.density_kg_m3(353.15) * (outer.powi(4) - inner.powi(4)) / 4.0 // VA-3
 }
 
+/// The map of the whole box.
+fn whole_box<V: Values>(s: &V) -> Option<LossMap> {
+    let idle_nm = s.optional(&MAPS.no_load_loss_nm);
+    let table = match s.word(&MAPS.box_points) {
+        "scattered" => &CVT_BOX_POINTS,
+        _ => &CVT_BOX,
+    };
+    box_map::from_values(s, &MAPS.r#box, table, idle_nm)
+}
+
 /// The measured maps that `[transmission.cvt.maps]` names.
 fn maps<V: Values>(s: &V) -> Option<Box<LossChanges>> {
-    let maps = ByComponent::from_fn(|component| {
+    let mut maps = ByComponent::from_fn(|component| {
         let name = component.map_key().filter(|_| component.part().is_cvt())?;
         let key = MapKeys::TABLE.keys.iter().find(|key| key.name == name)?;
         s.loss_map(key, "ratio")
     });
+    maps[Component::BoxMap] = whole_box(s);
+    let at_rest_nm = s.optional(&MAPS.at_rest_loss_nm);
+    let mut others = MapKeys::TABLE
+        .keys
+        .iter()
+        .filter(|key| matches!(key.kind, Kind::Csv));
+    if let Some(other) = others.find(|key| key.name != MAPS.r#box.name && s.has(key))
+        && s.has(&MAPS.r#box)
+    {
+        s.complain(
+            other.name,
+            "a map of the whole box, or maps of its parts",
+            "the map of the whole box is in the place of this one",
+            "remove one of them",
+        );
+    }
     maps.iter().any(Option::is_some).then(|| {
         Box::new(LossChanges {
             maps,
+            at_rest_nm,
             ..LossChanges::default()
         })
     })
@@ -209,7 +300,7 @@ mod tests {
 
     #[test]
     fn there_is_a_factor_for_each_loss() {
-        let own = |c: &Component| c.part() == Part::Coupling || c.part().is_cvt();
+        let own = |c: &Component| c.part() != Part::Manual;
         let components = Component::ALL.into_iter().filter(own);
         let names: Vec<&str> = components.map(Component::name).collect();
         let keys: Vec<&str> = LossFactorKeys::TABLE.keys.iter().map(|k| k.name).collect();

@@ -25,8 +25,10 @@ pub(crate) mod driveline;
 mod evaluate;
 pub mod floors;
 mod keys;
+mod launch_behind;
 mod prepare;
 mod secant;
+pub mod selector;
 mod solve;
 mod step_output;
 
@@ -36,12 +38,13 @@ pub use secant::{Slopes, Trend, WarmStart};
 
 use self::clamping::Clamping;
 use self::clutch_drag::ClutchDrag;
-use self::controller::{ClampLaw, ClampSignals, RatioControl};
+use self::controller::{ClampLaw, ClampSignals, PressureTable, RatioControl, ShiftPoint};
 use self::final_drive::FinalDrive;
 use self::floors::Floors;
 use self::pulley_bearing::PulleyBearing;
 use self::pump::Pump;
 use self::seal_ring::SealRing;
+use self::selector::Selector;
 use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::clamp_cause::ClampCause;
@@ -70,6 +73,8 @@ pub struct LossChanges {
     pub maps: ByComponent<Option<LossMap>>,
     /// Factors on the losses (CV-7).
     pub factor: LossFactors,
+    /// Loss of a box that is a map with the car at rest, Nm, where it is known (MP-3).
+    pub at_rest_nm: Option<f64>,
 }
 
 impl Default for LossChanges {
@@ -77,6 +82,7 @@ impl Default for LossChanges {
         LossChanges {
             maps: ByComponent::default(),
             factor: UNCHANGED,
+            at_rest_nm: None,
         }
     }
 }
@@ -110,6 +116,8 @@ pub struct Cvt {
     pub ratio: RatioControl,
     /// Clamp law.
     pub clamp: ClampLaw,
+    /// Table of the law that is one (PC-6).
+    pub pressure_table: Option<Arc<PressureTable>>,
     /// Exponent of the primary radius in the clamp map.
     pub radius_exponent: f64,
     /// Causes of a smallest secondary pressure.
@@ -118,8 +126,12 @@ pub struct Cvt {
     pub cap_pa: f64,
     /// Primary radius in low, m.
     pub low_radius_m: f64,
-    /// Coupling to the engine.
+    /// Launch device.
     pub coupling: Arc<dyn Coupling>,
+    /// True where that is a clutch behind the variator, so that belt and pulleys turn with the engine (LO-1).
+    pub launch_behind: bool,
+    /// Selector at rest.
+    pub selector: Selector,
     /// Engine speed for a power at full load, W to rad/s.
     pub full_load_route: Curve,
     /// Losses that are not those of the models, if there are any.
@@ -196,6 +208,20 @@ impl Cvt {
         })
     }
 
+    /// Speed that the shift map has for a share of rated power, rad/s (RC-14); none without one.
+    #[inline]
+    fn mapped_rad_s<P: PrimeMover>(&self, input: &StepInput<P>, share: f64) -> Option<f64> {
+        let map = self.ratio.shift_map.as_ref()?;
+        let engine = input.engine;
+        let at = ShiftPoint {
+            speed_m_s: input.wheel.speed_m_s,
+            secondary_rad_s: self.final_drive.ratio * input.wheel.wheel_rad_s,
+            power_w: share * engine.rated_w(),
+            efficiency: self.ratio.route_efficiency,
+        };
+        Some(map.target_rad_s(&at, |speed| engine.full_load_nm(speed) * speed))
+    }
+
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
     pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
         exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
@@ -226,12 +252,24 @@ impl Cvt {
         }
     }
 
+    /// Speed of the primary at the beginning of a step, rad/s, at a ratio over a secondary that has a speed once the clutch has locked.
+    #[inline]
+    fn primary_rad_s(&self, ratio: f64, secondary_rad_s: f64, past: &DrivelineState) -> f64 {
+        let locked = ratio * secondary_rad_s;
+        if self.launch_behind && !past.coupled {
+            larger(past.engine_rad_s, locked) // LO-1
+        } else {
+            locked
+        }
+    }
+
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
     pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> (CvtState, DrivelineState) {
         let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
+            primary_rad_s: self.ratio.low * secondary,
             speed_m_s: input.wheel.speed_m_s,
             power_w: input.wheel.power_w,
             share,
@@ -239,6 +277,7 @@ impl Cvt {
                 input.engine,
                 input.wheel.power_w / self.ratio.route_efficiency,
             ),
+            mapped_rad_s: self.mapped_rad_s(input, share),
             cold_rad_s: (self.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
             ratio_before: self.ratio.low,
             flow_down_per_s: 0.0,
@@ -264,6 +303,7 @@ impl Cvt {
             secondary_pa: self.floors.control_pa,
             coupled: primary > idle,
             stood: secondary <= 0.0,
+            rested_s: 0.0,
         };
         (own, driveline)
     }

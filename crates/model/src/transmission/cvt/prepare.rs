@@ -59,7 +59,9 @@ fn shift<P: PrimeMover>(
         input.wheel.power_w / input.engine.rated_w(),
         input.dt_s,
     );
-    if input.wheel.wheel_rad_s <= 0.0 {
+    let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
+    let primary_rad_s = cvt.primary_rad_s(before.ratio, secondary_rad_s, past);
+    if primary_rad_s <= 0.0 {
         return Shift {
             ratio: before.ratio,
             rate_per_s: 0.0,
@@ -75,11 +77,13 @@ fn shift<P: PrimeMover>(
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = larger(free, 0.0);
     let demand = RatioDemand {
-        secondary_rad_s: cvt.final_drive.ratio * input.wheel.wheel_rad_s,
+        secondary_rad_s,
+        primary_rad_s,
         speed_m_s: input.wheel.speed_m_s,
         power_w: input.wheel.power_w,
         share,
         full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
+        mapped_rad_s: cvt.mapped_rad_s(input, share),
         cold_rad_s: (cvt.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
@@ -235,9 +239,10 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         },
         shafts: PulleyShafts::new(cvt, at, Parts::ALL),
         radius_factor: powers.radius_factor,
-        force_log: cvt
-            .floors
-            .force_log(shift.rate_per_s, shift.ratio * secondary_rad_s),
+        force_log: cvt.floors.force_log(
+            shift.rate_per_s,
+            cvt.primary_rad_s(shift.ratio, secondary_rad_s, past),
+        ),
         oil_k: sump_k,
         oil: sump,
         changes: cvt.changes.as_deref(),

@@ -29,15 +29,14 @@ const NEAR: f64 = 0.02;
 impl<P: PrimeMover> Step<'_, P> {
     /// The limit that a point at the demanded torque violates; violations within `margin_nm` are ignored.
     fn violated(&self, p: &Point, margin_nm: f64) -> Limit {
-        let above_idle = p.primary_rad_s >= self.input.engine.idle_rad_s();
-        if above_idle && p.primary_nm >= 0.0 && p.throttle < 1.0 {
+        let above_idle = p.over_rad_s >= self.input.engine.idle_rad_s();
+        if above_idle && p.passed_nm >= 0.0 && p.throttle < 1.0 {
             return Limit::None; // CV-3 is below zero here, CV-4 above
         }
-        let at = self.turning(p.primary_rad_s, p.guess.engine_rad_s);
-        let spin_nm = p.torques.engine_nm();
-        if p.primary_nm < self.min_primary_nm(&at, spin_nm) - margin_nm {
+        let at = self.turning(p.over_rad_s, p.guess.engine_rad_s);
+        if p.passed_nm < self.min_passed_nm(&at, p.spin_nm) - margin_nm {
             Limit::EngineDrag
-        } else if p.primary_nm > self.max_primary_nm(&at, spin_nm) + margin_nm {
+        } else if p.passed_nm > self.max_passed_nm(&at, p.spin_nm) + margin_nm {
             Limit::FullLoad
         } else {
             Limit::None
@@ -235,6 +234,17 @@ struct Work {
     slopes: Slopes,
 }
 
+impl Work {
+    /// How a solve with a limit ended.
+    fn outcome(&self, limit: Limit) -> Outcome {
+        Outcome {
+            limit,
+            residual: self.residual,
+            evaluations: self.count,
+        }
+    }
+}
+
 /// The engine is off.
 fn engine_off<P: PrimeMover>(
     input: &StepInput<P>,
@@ -243,6 +253,7 @@ fn engine_off<P: PrimeMover>(
 ) -> StepOutput {
     past.engine_rad_s = input.engine.idle_rad_s(); // the starter brings it back there
     past.stood = true;
+    past.rested_s = 0.0;
     past.coupled = false;
     let mut rest = StepOutput {
         belt_ratio: ratio,
@@ -289,7 +300,23 @@ pub(super) fn solve<P: PrimeMover>(
         );
         if step.secondary_rad_s <= 0.0 {
             *shifting = step.shifting;
-            return standstill(&step, past, warm_start);
+            if !cvt.launch_behind {
+                return standstill(&step, past, warm_start);
+            }
+            let guess = Guess {
+                output_nm: 0.0,
+                slip: 0.0,
+                engine_rad_s: past.engine_rad_s,
+                pressure_pa: past.secondary_pa,
+            };
+            step.run(&guess, Limit::None, false, &mut work); // LO-4
+            return finish(
+                &step,
+                &work.point,
+                past,
+                warm_start,
+                work.outcome(Limit::None),
+            );
         }
         let ratio = step.line.at.geometry.ratio;
         let again = ratio.to_bits() == tried_ratio.to_bits();
@@ -303,11 +330,6 @@ pub(super) fn solve<P: PrimeMover>(
         warm_start.slopes = work.slopes;
         *shifting = step.shifting;
         warm_start.overrun = limit == Limit::EngineDrag;
-        let outcome = Outcome {
-            limit,
-            residual: work.residual,
-            evaluations: work.count,
-        };
-        return finish(&step, &work.point, past, warm_start, outcome);
+        return finish(&step, &work.point, past, warm_start, work.outcome(limit));
     }
 }

@@ -1,6 +1,7 @@
 //! From the solved point to the driveline's output: powers, brake, flags, state; and the step at standstill.
 
 use super::WarmStart;
+use super::controller::{ClampLaw, PressurePoint};
 use super::driveline::{PartTorques, Shaft};
 use super::evaluate::{Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::variator::{BeltLoad, belt_capacity_nm};
@@ -52,6 +53,7 @@ fn idling<P: PrimeMover>(
         output_torque_nm: creep_nm * line.at.geometry.ratio,
         ..step.load
     };
+    at.torques.secondary = creep_nm * line.at.geometry.ratio;
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
         let cvt = line.cvt;
@@ -65,6 +67,7 @@ fn idling<P: PrimeMover>(
             step.shift_flow_m3_s,
             &mut at.inside_maps,
         );
+        line.rest(&mut at.torques);
         at.oil_flow_m3_s = pump.working_m3_s;
         at.load_share = (at.torques.flywheel_nm(coupling_nm) + engine.accessories_nm(w))
             / engine.full_load_nm(w);
@@ -84,7 +87,7 @@ pub(super) fn standstill<P: PrimeMover>(
 ) -> StepOutput {
     let (line, cvt) = (&step.line, step.line.cvt);
     let idle = step.input.engine.idle_rad_s();
-    let creep = cvt.coupling.creep_nm(0.0, idle);
+    let creep = (1.0 - step.input.neutral_share) * cvt.coupling.creep_nm(0.0, idle); // SE-3
     let w = step.reach.nearest(idle);
     let side = cvt.coupling.engine_side(creep, 0.0, w);
     let at = idling(step, w, (creep, side.engine_nm), past.throttle);
@@ -99,7 +102,7 @@ pub(super) fn standstill<P: PrimeMover>(
         shaft_nm: at.torques.flywheel_nm(side.engine_nm),
         throttle: at.throttle,
         belt_ratio: ratio,
-        primary_pa: primary_pa(step, at.pressure_pa),
+        primary_pa: primary_pa(step, at.pressure_pa, 0.0),
         secondary_pa: at.pressure_pa,
         clamp_cause: at.clamp_cause,
         slip: 0.0,
@@ -115,42 +118,41 @@ pub(super) fn standstill<P: PrimeMover>(
     };
     output.alternator_w = at.torques.alternator * w;
     output.add_loss(Component::LaunchClutch, side.loss_w);
-    add_part_losses(&mut output, &at.torques, (w, 0.0, 0.0));
+    add_part_losses(&mut output, &at.torques, [w, 0.0, 0.0, 0.0]);
     let flags = &mut output.flags;
     flags.set(Flags::CLUTCH_SLIPPING, true);
     flags.set(Flags::FLOW_LIMITED, at.flow_limited);
     flags.set(Flags::NOT_CONVERGED, !converged(at.residual));
     let valid = at.inside_maps && at.load_share <= FULL_LOAD_LIMIT;
+    let valid = valid && table_holds(step, creep * ratio, 0.0);
     common_flags(step, &mut output, valid);
-    remember(past, &output, true);
+    remember(past, &output, Some(step.input.dt_s));
     warm_start.trend.reset_at_standstill();
     past.coupled = false;
     output
 }
 
-/// Adds the losses of all parts at the speeds of engine, primary and secondary, rad/s.
+/// Adds the losses of all parts at the speeds of engine, primary, secondary and the shaft into the final drive, rad/s.
 #[inline(always)]
 fn add_part_losses(
     output: &mut StepOutput,
     torques: &PartTorques,
-    (engine, primary, secondary): (f64, f64, f64),
+    [engine, primary, secondary, output_shaft]: [f64; 4],
 ) {
     torques.for_each_loss(|component, shaft, torque_nm| {
         let speed_rad_s = match shaft {
             Shaft::Engine => engine,
             Shaft::Primary => primary,
             Shaft::Secondary => secondary,
+            Shaft::Output => output_shaft,
         };
         output.add_loss(component, torque_nm * speed_rad_s);
     });
 }
 
-fn primary_pa<P>(step: &Step<P>, pa: f64) -> f64 {
+fn primary_pa<P>(step: &Step<P>, pa: f64, secondary_rad_s: f64) -> f64 {
     let cvt = step.line.cvt;
-    cvt.primary_pa(
-        cvt.secondary_clamp_n(pa, step.secondary_rad_s),
-        step.line.at,
-    )
+    cvt.primary_pa(cvt.secondary_clamp_n(pa, secondary_rad_s), step.line.at)
 }
 
 /// True for a residual within tolerance, false for NaN.
@@ -180,7 +182,7 @@ pub(super) fn finish<P: PrimeMover>(
         shaft_nm: p.flywheel_nm,
         throttle: p.throttle,
         belt_ratio: ratio,
-        primary_pa: primary_pa(step, g.pressure_pa),
+        primary_pa: primary_pa(step, g.pressure_pa, p.secondary_rad_s),
         secondary_pa: g.pressure_pa,
         clamp_cause: p.clamp_cause,
         slip: g.slip,
@@ -192,7 +194,8 @@ pub(super) fn finish<P: PrimeMover>(
         iterations: outcome.evaluations,
         ..StepOutput::at_rest()
     };
-    add_part_losses(&mut output, &p.torques, (we, wp, step.secondary_rad_s));
+    let speeds = [we, wp, p.secondary_rad_s, step.secondary_rad_s];
+    add_part_losses(&mut output, &p.torques, speeds);
     output.add_loss(Component::LaunchClutch, p.coupling_w);
     output.alternator_w = p.torques.alternator * we;
     if outcome.limit == Limit::None {
@@ -201,12 +204,16 @@ pub(super) fn finish<P: PrimeMover>(
         output.split_brake_and_shortfall(step.input.wheel, g.output_nm * step.secondary_rad_s);
     }
     solve_flags(step, p, past, &outcome, &mut output);
-    let loss_nm = output.shaft_nm - g.output_nm / ratio;
-    warm_start
-        .trend
-        .push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
-    remember(past, &output, false);
-    let turns_together = we <= wp * (1.0 + 1e-4);
+    let rests = step.secondary_rad_s <= 0.0;
+    if rests {
+        warm_start.trend.reset_at_standstill();
+    } else {
+        let loss_nm = output.shaft_nm - g.output_nm / ratio;
+        let trend = &mut warm_start.trend;
+        trend.push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
+    }
+    remember(past, &output, rests.then_some(step.input.dt_s));
+    let turns_together = we <= p.over_rad_s * (1.0 + 1e-4);
     past.coupled = p.locked || (turns_together && !step.line.cvt.coupling.by_command());
     output
 }
@@ -220,7 +227,8 @@ fn solve_flags<P: PrimeMover>(
     outcome: &Outcome,
     output: &mut StepOutput,
 ) {
-    let (wp, we) = (p.primary_rad_s, p.guess.engine_rad_s);
+    let (wp, we) = (p.over_rad_s, p.guess.engine_rad_s);
+    let rests = step.secondary_rad_s <= 0.0;
     let (belt, ratio) = (&p.torques.belt, step.line.at.geometry.ratio);
     let flags = &mut output.flags;
     flags.set(Flags::MISSED_TRACE, outcome.limit == Limit::FullLoad);
@@ -238,7 +246,7 @@ fn solve_flags<P: PrimeMover>(
     let closes = p.locked && !past.coupled && past.engine_rad_s > wp;
     flags.set(
         Flags::CLUTCH_SLIPPING,
-        (we > wp * (1.0 + 1e-9) && p.primary_nm > 0.0) || closes,
+        (we > wp * (1.0 + 1e-9) && p.passed_nm > 0.0) || closes || rests,
     );
     flags.set(Flags::LOCKUP_OPEN, by_command && !p.locked);
     let below_idle = wp < step.input.engine.idle_rad_s();
@@ -246,14 +254,25 @@ fn solve_flags<P: PrimeMover>(
         Flags::CLUTCH_OPEN,
         outcome.limit == Limit::EngineDrag && below_idle && !by_command,
     );
-    flags.set(Flags::OVERRUN, p.primary_nm < 0.0);
+    flags.set(Flags::OVERRUN, p.passed_nm < 0.0);
     flags.set(Flags::NOT_CONVERGED, !converged(outcome.residual));
     flags.set(
         Flags::LAUNCH_NOT_IN_LOW,
-        past.stood && ratio < 0.99 * step.line.cvt.ratio.low,
+        past.stood && !rests && ratio < 0.99 * step.line.cvt.ratio.low,
     );
     let share = (p.flywheel_nm + step.input.engine.accessories_nm(we)) / p.full_load_nm;
-    common_flags(step, output, p.inside_maps && share <= FULL_LOAD_LIMIT);
+    let inside = p.inside_maps && table_holds(step, p.torques.secondary, step.secondary_rad_s);
+    common_flags(step, output, inside && share <= FULL_LOAD_LIMIT);
+}
+
+/// Whether a clamp law that is a table has the belt's ratio, its torque at the secondary, Nm, and its speed, rad/s; of another law true (PC-6).
+fn table_holds<P>(step: &Step<P>, secondary_nm: f64, secondary_rad_s: f64) -> bool {
+    if *step.clamp != ClampLaw::Table {
+        return true;
+    }
+    let at = PressurePoint::of_belt(secondary_nm, step.line.at.geometry.ratio, secondary_rad_s);
+    let table = step.line.cvt.pressure_table.as_ref();
+    table.is_none_or(|table| table.holds(&at))
 }
 
 /// Flags of any step; `valid` from maps and full load.
@@ -278,9 +297,11 @@ fn common_flags<P: PrimeMover>(step: &Step<P>, output: &mut StepOutput, valid: b
     );
 }
 
-fn remember(past: &mut DrivelineState, output: &StepOutput, stood: bool) {
+/// Keeps what the next step looks at; `rest_s`: how long a car at rest was.
+fn remember(past: &mut DrivelineState, output: &StepOutput, rest_s: Option<f64>) {
     past.engine_rad_s = output.engine_rad_s;
     past.throttle = output.throttle;
     past.secondary_pa = output.secondary_pa;
-    past.stood = stood;
+    past.stood = rest_s.is_some();
+    past.rested_s = rest_s.map_or(0.0, |rest_s| past.rested_s + rest_s);
 }

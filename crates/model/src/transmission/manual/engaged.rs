@@ -136,22 +136,15 @@ impl Engaged<'_> {
         (x, count)
     }
 
-    /// Loss of a measured map, whose torque axis is the input torque, for an output torque: T_in = T_out + loss(T_in) by fixed point.
+    /// Loss of a measured map, whose torque axis is the input torque, for an output torque (MP-4).
     fn map_loss(&self, map: &LossMap, output_nm: f64) -> (f64, bool) {
-        let at = |torque_nm: f64| {
-            let (loss_nm, inside) = map.loss_nm(&MapPoint {
-                ratio: f64::from(self.gear),
-                input_speed_rad_s: self.input_rad_s,
-                torque_nm,
-                pressure_pa: 0.0,
-                oil_k: self.oil_k,
-            });
-            (self.map_factor * loss_nm, inside) // MB-6
+        let behind = MapPoint {
+            ratio: f64::from(self.gear),
+            input_speed_rad_s: self.input_rad_s,
+            torque_nm: output_nm,
+            pressure_pa: 0.0,
+            oil_k: self.oil_k,
         };
-        let mut answer = at(output_nm);
-        for _ in 0..8 {
-            answer = at(output_nm + answer.0);
-        }
-        answer
+        map.loss_behind_nm(&behind, self.map_factor) // MB-6
     }
 }

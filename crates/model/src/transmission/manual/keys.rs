@@ -2,6 +2,8 @@
 
 use super::{Manual, ShiftSpeeds};
 use crate::keys::{Key, Kind, Values, keys};
+use crate::transmission::box_map::{self, MANUAL_BOX};
+use crate::transmission::component::Part;
 use crate::transmission::coupling::{self, MANUAL_LAUNCH};
 use crate::transmission::gear_train::{GearKeys, GearParts};
 use crate::transmission::{components, loss_factor};
@@ -21,7 +23,8 @@ keys! {
 
     /// Keys of `[transmission.manual.maps]`.
     MAPS: MapKeys = "maps" [] {
-        r#box: optional(text()), "CSV of measured torque loss at the input shaft that replaces mesh, bearings, churning and seals";
+        r#box: optional(csv()), "CSV of measured loss at the input shaft that replaces mesh, bearings, churning and seals; columns where measured gear, input_speed_rpm, input_torque_nm, oil_temp_degc, and torque_loss_nm, power_loss_w or efficiency_percent", ["MP-4", "MP-6"];
+        no_load_loss_nm: optional(number(0.0, 1000.0)), "loss without torque of a box map that has efficiencies", ["MP-6"];
     }
 
     /// Keys of `[transmission.manual.loss_factor]`, by component.
@@ -50,8 +53,11 @@ impl Manual {
         let last = s.number(&MANUAL.final_ratio);
         let ratios: Vec<[f64; 2]> = overall.iter().map(|all| [all / last, last]).collect();
         let parts = GearParts::from_values(&s.table("gears"), oil_m3, &ratios);
-        let map = s.table("maps").loss_map(&MAPS.r#box, "gear");
-        let own = components(false, map.is_some());
+        let maps = s.table("maps");
+        let idle_nm = maps.optional(&MAPS.no_load_loss_nm);
+        let map = box_map::from_values(&maps, &MAPS.r#box, &MANUAL_BOX, idle_nm);
+        let mapped = map.is_some().then_some(Part::BoxMap);
+        let own = components(false, mapped.as_slice());
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
         let mut manual = Manual {
             shifts: ShiftSpeeds::from_values(s, overall.len()),

@@ -92,6 +92,7 @@ impl Manual {
             secondary_pa: 0.0,
             coupled: input > idle,
             stood: true,
+            rested_s: 0.0,
         }
     }
 

@@ -30,8 +30,10 @@ const ON_DARK: &str = "#ffffff";
 pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let count = outcome.parameters.len();
     let n = count.min(MAX_DRAWN);
-    let mut notes =
-        vec!["Columns bear the numbers of the rows. Crossed out: not known, for the data do not determine the parameter.".to_owned()];
+    let mut notes = vec![
+        "Columns bear the numbers of the rows. Crossed out: not identifiable from these data."
+            .to_owned(),
+    ];
     if n < count {
         notes.push(format!(
             "The first {n} of {count} parameters; correlation.csv has all."

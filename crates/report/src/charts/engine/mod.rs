@@ -20,8 +20,8 @@ pub(crate) use chart::{Block, Chart, Entry, Key, LEFT, PLOT_LEFT, Side, WIDTH};
 pub(crate) use panel::{BELOW, Item, Panel, Shape, free, grid, row_middle, rows_left, rows_panel};
 pub(crate) use place::{Label, Place, at};
 pub(crate) use style::{
-    CONTEXT, DIVERGING, Fill, INK, PLAIN, QUIET, RULE, STROKES, Stroke, Style, ZERO, between, ramp,
-    stroke,
+    CONTEXT, DIVERGING, Fill, INK, PLAIN, QUIET, RULE, STROKES, Stroke, Style, ZERO, between,
+    group_line, ramp, stroke,
 };
 pub(crate) use svg::{Point, Rect};
 pub(crate) use symbol::Symbol;

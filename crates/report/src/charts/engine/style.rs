@@ -1,7 +1,7 @@
 //! Lines and fills that stay apart in black and white and for the colour-blind.
 
 use super::svg::{Svg, UNITS};
-use cvtcycle_model::transmission::component::Fill as Place;
+use cvtcycle_model::transmission::component::{Fill as Place, LossGroup};
 use cvtcycle_output::Component;
 
 /// Colour of text and of frames.
@@ -112,6 +112,23 @@ pub(crate) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
+/// Cars, the subject first: the subject strongest.
+const CARS: [&str; 5] = ["#0b5a8c", "#d58a3c", "#a9a9a9", "#7a4f8f", "#5f8f5a"];
+
+/// Colour of a line for a group of losses, in the hues of [`Fill::component`].
+pub(crate) fn group_line(group: LossGroup) -> &'static str {
+    match group {
+        LossGroup::Launch => "#4b2991",
+        LossGroup::Pump => "#1f3b73",
+        LossGroup::Shafts => "#0072b2",
+        LossGroup::Belt => "#009e73",
+        LossGroup::FinalDrive => "#b38600",
+        LossGroup::Gears => "#a3311c",
+        LossGroup::BearingsAndSeals => "#d55e00",
+        LossGroup::Churning => "#b98b66",
+    }
+}
+
 /// What an area is filled with: a colour, and a hatch that distinguishes it from its neighbours in print.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Fill {
@@ -128,6 +145,15 @@ impl Fill {
         Fill {
             colour: colour.to_owned(),
             hatch: 0,
+            dark: false,
+        }
+    }
+
+    /// The fill of a car by its place in the run, the same in every picture.
+    pub fn car(index: usize) -> Self {
+        Fill {
+            colour: CARS[index % CARS.len()].to_owned(),
+            hatch: index / CARS.len(),
             dark: false,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::fmt::{Display, Write as _};
 
+use crate::number::typeset;
 use cvtcycle_output::escape::xml;
 
 /// Canvas units per pixel. Coordinates are written in whole units; at one unit per pixel gentle slopes would turn into stairs.
@@ -72,7 +73,7 @@ impl Svg {
     pub fn text_element(&mut self, place: &[(&str, &dyn Display)], paint: &str, text: &str) {
         self.tag("text", place, paint);
         // Writing into a String cannot fail, here and below.
-        let _ = writeln!(self.body, ">{}</text>", xml(text));
+        let _ = writeln!(self.body, ">{}</text>", xml(&set(text)));
     }
 
     fn tag(&mut self, name: &str, place: &[(&str, &dyn Display)], paint: &str) {
@@ -92,7 +93,7 @@ impl Svg {
 
     /// Opens a group whose full text shows under the pointer.
     pub fn open_titled(&mut self, title: &str) {
-        let _ = writeln!(self.body, "<g><title>{}</title>", xml(title));
+        let _ = writeln!(self.body, "<g><title>{}</title>", xml(&set(title)));
     }
 
     /// Closes the group.
@@ -156,12 +157,17 @@ impl Svg {
              height=\"{height}\" viewBox=\"0 0 {w} {h}\">\n<title>{}</title>\n\
              <desc>{}</desc>\n<defs>{}</defs>\n\
              <rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n{}</svg>\n",
-            xml(title),
-            xml(description),
+            xml(&set(title)),
+            xml(&set(description)),
             self.defs,
             self.body
         )
     }
+}
+
+/// A text as a picture has it: typeset, with plain blanks, since no line of a picture breaks by itself.
+fn set(text: &str) -> String {
+    typeset(text).replace('\u{a0}', " ")
 }
 
 /// Pixels to whole canvas units, limited to what viewers can still compute with.

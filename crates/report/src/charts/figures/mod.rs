@@ -7,14 +7,12 @@ mod difference;
 mod flow;
 mod overlay;
 mod sankey;
-mod temperature_bars;
 mod variogram;
 
 pub use bars::{CarLosses, CarParts, PhaseLosses, loss_by_component, loss_by_phase};
 pub use difference::{Difference, DifferenceTerm, difference_bars};
 pub use flow::{CarEnergy, energy_flow, transmission_flow};
 pub use overlay::{Overlay, OverlayPanel, overlay};
-pub use temperature_bars::{LossTrace, loss_by_temperature};
 pub use variogram::{GuideLine, Variogram, variogram};
 
 use super::engine::Fill;
@@ -80,7 +78,7 @@ pub enum Term {
 }
 
 impl Term {
-    fn fill(self) -> Fill {
+    pub(crate) fn fill(self) -> Fill {
         Fill::plain(match self {
             Term::Trunk => "#d4dae6",
             Term::EngineHeat => "#e5b98e",

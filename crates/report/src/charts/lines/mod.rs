@@ -9,6 +9,7 @@ use super::engine::{
     Side, Stroke, Style, Symbol, WIDTH, at, grid, range, stroke,
 };
 use super::picture::Picture;
+use cvtcycle_output::Component;
 
 const WIDE: f64 = WIDTH - 22.0 - PLOT_LEFT;
 const TOP: f64 = 60.0;
@@ -74,6 +75,8 @@ pub struct LineChart {
     pub legend: String,
     /// Look and name of each series.
     pub names: Vec<(Look, String)>,
+    /// The component that each stacked series is the loss of, by the number of its look; none where they are something else.
+    pub parts: Vec<Component>,
 }
 
 /// Draws a chart of lines.
@@ -84,7 +87,7 @@ pub fn line_chart(of: &LineChart) -> Picture {
     let panels = panels.map(|((panel, rect), columns)| draw(of, panel, *rect, columns));
     let stacked = of.panels.iter().any(|panel| panel.stacked);
     let entry = |(look, name): &(Look, String)| match stacked {
-        true => Entry::fill(Fill::nth(look.index, of.names.len()), name),
+        true => Entry::fill(of.fill(look.index), name),
         false => Entry::line(look.stroke(), name),
     };
     let mut entries: Vec<Entry> = of.names.iter().map(entry).collect();
@@ -138,6 +141,14 @@ fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, Vec<Entry>> {
 }
 
 impl LineChart {
+    /// What a stacked series is filled with: a component with its own colours.
+    fn fill(&self, index: usize) -> Fill {
+        match self.parts.get(index) {
+            Some(part) => Fill::component(*part),
+            None => Fill::nth(index, self.names.len()),
+        }
+    }
+
     /// Title of the horizontal axis of a panel.
     fn x_title(&self, panel: &LinePanel) -> &'static str {
         if panel.x_title.is_empty() {
@@ -183,7 +194,7 @@ fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> P
         drawn.level(0.0, CONTEXT);
     }
     if panel.stacked {
-        stack_layers(&mut drawn, panel.series.clone(), of.names.len());
+        stack_layers(&mut drawn, panel.series.clone(), |k| of.fill(k));
     } else {
         // The first of the list ends up on top.
         for (look, points) in panel.series.iter().rev() {
@@ -241,7 +252,11 @@ fn heights(panel: &LinePanel) -> Vec<f64> {
 }
 
 /// Adds the series of a panel as areas upon each other; a value that is not finite counts as nothing.
-pub(crate) fn stack_layers(drawn: &mut Panel, series: Vec<(Look, Points)>, count: usize) {
+pub(crate) fn stack_layers(
+    drawn: &mut Panel,
+    series: Vec<(Look, Points)>,
+    fill: impl Fn(usize) -> Fill,
+) {
     let longest = series.iter().map(|(_, points)| points.len()).max();
     let mut base = vec![0.0; longest.unwrap_or(0)];
     for (look, points) in series {
@@ -252,7 +267,7 @@ pub(crate) fn stack_layers(drawn: &mut Panel, series: Vec<(Look, Points)>, count
             (p.0, low, *base)
         });
         let layer: Vec<_> = layer.collect();
-        let style = Style::edged(Fill::nth(look.index, count), 0.4).class("layer");
+        let style = Style::edged(fill(look.index), 0.4).class("layer");
         drawn.add(Shape::between(&layer), style);
     }
 }

@@ -31,7 +31,7 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
         .x_labels(false)
         .below(34.0);
     let table = draw_groups(&mut panel, runs, &groups);
-    let entry = |(i, run): (usize, &PlotRun)| Entry::fill(Fill::nth(i, runs.len()), run.name);
+    let entry = |(i, run): (usize, &PlotRun)| Entry::fill(Fill::car(i), run.name);
     let entries = runs.iter().enumerate().map(entry).collect();
     let subject = match runs {
         [run] => run.name.to_owned(),
@@ -56,7 +56,7 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
             let number = optional_cell(value, 0.01);
             let row = table.push([group.clone(), run.name.to_owned(), number]);
             if let Some(value) = value {
-                let style = Style::edged(Fill::nth(i, runs.len()), 0.75).class("bar");
+                let style = Style::edged(Fill::car(i), 0.75).class("bar");
                 bar(panel, (from, from + width), value, style.row(row));
             }
         }

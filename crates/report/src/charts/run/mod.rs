@@ -18,7 +18,7 @@ use cvtcycle_output::summary::RunSummary;
 /// A run and what else its pictures show.
 #[derive(Clone, Debug)]
 pub struct PlotRun<'a> {
-    /// Name of the vehicle.
+    /// Name of the car in the picture.
     pub name: &'a str,
     /// Its trace.
     pub history: &'a History,

@@ -34,7 +34,7 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
         notes.push("The output does not vary: it has no indices.".to_owned());
     } else {
         notes.push(format!(
-            "Sum of first-order indices {}. What is missing to 1 is the work of factors together.",
+            "Sum of first-order indices {}. What remains to 1 is due to interactions.",
             with_interval(&of.sum_first)
         ));
         notes.push(format!(

@@ -25,7 +25,7 @@ pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices])
     let chosen = chosen((names, steps));
     let level = shown.confidence.percent();
     let mut notes = vec![format!(
-        "Bands: intervals of {level} %. Those of few samples may leave the plot; the table has them."
+        "Bands: intervals of {level} %. Clipped at small sample sizes; the table has them."
     )];
     if chosen.len() < names.len() {
         let (some, all) = (chosen.len(), names.len());

@@ -70,7 +70,10 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
     const KNOWN: [&str; 11] = [
         "L/100 km", "%", "g/km", "km", "s", "g", "kJ", "\u{b0}C", "rpm", "bar", "Nm",
     ];
-    match (unit, KNOWN.into_iter().find(|known| *known == sign(unit))) {
+    match (
+        unit,
+        KNOWN.into_iter().find(|known| sign(known) == sign(unit)),
+    ) {
         ("" | "-", _) => (name, ""),
         (_, Some(known)) => (name, known),
         _ => (with_unit(&name, unit), ""),

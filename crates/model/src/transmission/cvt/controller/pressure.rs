@@ -9,8 +9,10 @@
 //!
 //! The law is never raised silently: where it is below what the torque needs, the row is flagged `low_clamp`.
 
+use super::pressure_table::{PressureTable, TableKeys, pressure_table};
 use crate::keys::{Choice, Key, Values, keys};
 use crate::math::ramp;
+use std::sync::Arc;
 
 /// The Rover's law.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +54,8 @@ pub enum ClampLaw {
         /// Smallest torque that is clamped for, Nm.
         least_torque_nm: f64,
     },
+    /// PC-6, with the table of the box.
+    Table,
 }
 
 /// What the law looks at.
@@ -132,13 +136,21 @@ impl ClampKeys {
             "the least force that keeps the slip below a limit",
             SlipKeys::TABLE,
         ),
+        Choice::new(
+            "table",
+            "a table of the user's over torque, ratio and speed",
+            TableKeys::TABLE,
+        ),
     ];
 }
 
-/// The chosen clamp law.
-pub fn clamp<V: Values>(s: &V, key: &Key<'_>) -> ClampLaw {
+/// The chosen clamp law, and its table if it is one.
+pub fn clamp<V: Values>(s: &V, key: &Key<'_>) -> (ClampLaw, Option<Arc<PressureTable>>) {
     let (law, c) = s.choose(key);
-    match law {
+    if law == "table" {
+        return (ClampLaw::Table, pressure_table(&c));
+    }
+    let law = match law {
         "torque_following" => ClampLaw::TorqueFollowing {
             safety: c.number(&FOLLOWING.safety_factor),
             least_torque_nm: c.number(&FOLLOWING.least_torque_nm),
@@ -157,5 +169,6 @@ pub fn clamp<V: Values>(s: &V, key: &Key<'_>) -> ClampLaw {
             full_rad_s: c.number(&MAP.full_rpm),
             fall_s: c.number(&MAP.fall_per_1000_rpm),
         }),
-    }
+    };
+    (law, None)
 }

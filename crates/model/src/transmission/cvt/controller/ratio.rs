@@ -5,11 +5,11 @@
 //! | RC-1 | target speed: 1700 rpm at 15 % power, + g (P/P_max - 15 %) above it | 1700 rpm source: thesis 1.1.2, Fig 1-6; 15 % and rise ASSUMED |
 //! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
 //! | RC-13 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
-//! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-13 and PC-1 to PC-4 | derived: definition |
+//! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-14 and PC-1 to PC-6 | derived: definition |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
-//! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart; none at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
+//! | RC-4 | \|d ln I/dt\| <= rate min(1, n_p/n_ref), up and down rates apart, n_p the speed of the primary; none while the belt is at rest | source: thesis 2.4, 3.7 in words; values ASSUMED |
 //! | RC-6 | no up-shift before the launch clutch has locked | source: thesis 1.1.2, order A-B-C-D of the variogram |
 //! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
@@ -18,8 +18,10 @@
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 
+use super::shift_map::{ShiftMap, shift_map};
 use crate::keys::{Bound, Choice, Values, curve, keys};
 use crate::math::{Curve, clamp, exp, larger, ln, ramp, smaller};
+use std::sync::Arc;
 
 /// The checked controller.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +54,8 @@ pub struct RatioControl {
     pub filter_s: f64,
     /// Lines in place of gentle driving, if there are any.
     pub line: Option<Box<OperatingLine>>,
+    /// A table in place of gentle driving, if there is one; lines come before it.
+    pub shift_map: Option<Arc<ShiftMap>>,
     /// What a cold car adds to the target.
     pub cold: ColdRise,
 }
@@ -111,8 +115,10 @@ impl ColdRise {
 /// What the controller looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RatioDemand {
-    /// Secondary speed, rad/s.
+    /// Speed of the secondary once the clutch has locked, rad/s.
     pub secondary_rad_s: f64,
+    /// Speed of the primary, rad/s.
+    pub primary_rad_s: f64,
     /// Road speed, m/s.
     pub speed_m_s: f64,
     /// Wheel power asked for, W.
@@ -121,6 +127,8 @@ pub struct RatioDemand {
     pub share: f64,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: f64,
+    /// What the shift map has for it, rad/s (RC-14); none without one.
+    pub mapped_rad_s: Option<f64>,
     /// What a cold car adds to the target, rad/s.
     pub cold_rad_s: f64,
     /// Ratio before the step.
@@ -140,10 +148,14 @@ pub struct RatioDemand {
 }
 
 impl RatioControl {
-    /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13).
+    /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13, RC-14).
     pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
         let line = self.line.as_ref().and_then(|line| line.target_rad_s(d));
-        let mut speed = line.unwrap_or_else(|| self.gentle_target_rad_s(d.share));
+        let given = line.or_else(|| {
+            let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
+            d.mapped_rad_s.map(|mapped| larger(mapped, locked_rad_s)) // RC-14
+        });
+        let mut speed = given.unwrap_or_else(|| self.gentle_target_rad_s(d.share));
         if d.cold_rad_s > 0.0 {
             speed += d.cold_rad_s * clamp(d.share / LEAST_GENTLE_SHARE, 0.0, 1.0); // RC-11
         }
@@ -181,7 +193,7 @@ impl RatioControl {
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
     pub fn step(&self, d: &RatioDemand) -> (f64, f64, bool) {
         let before = d.ratio_before;
-        if d.secondary_rad_s <= 0.0 {
+        if d.primary_rad_s <= 0.0 {
             return (before, 0.0, false); // RC-4
         }
         let wanted = clamp(
@@ -201,7 +213,7 @@ impl RatioControl {
         if self.stays(d, wanted, change) {
             return (before, 0.0, false); // RC-10
         }
-        let pace = clamp(before * d.secondary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
+        let pace = clamp(d.primary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
         let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
         let short_of_flow =
             (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
@@ -273,6 +285,7 @@ keys! {
         filter_s: or(1.0, number(0.0, 10.0)), "time constant of the demand in gentle driving", ["RC-9"];
         drive_line: optional(rows(&[("power_percent", Bound::closed(0.0, 200.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target over demand in place of gentle_rpm and rise_rpm: rows [share of rated power %, engine speed rpm]", ["RC-13"];
         overrun_line: optional(rows(&[("speed_kmh", Bound::closed(0.0, 400.0)), ("speed_rpm", Bound::closed(300.0, 12_000.0))])), "target without power and in overrun in place of overrun_rpm: rows [road speed km/h, engine speed rpm]", ["RC-13"];
+        shift_map: optional(csv()), "CSV of the target over road speed and demand in place of gentle_rpm, rise_rpm and overrun_rpm; columns speed_kmh, pedal_percent or power_kw, and input_speed_rpm, engine_speed_rpm or belt_ratio", ["RC-14"];
         cold_rise_rpm: or(0.0, number(0.0, 2000.0)), "rise of engine speed in a cold car", ["RC-11"];
         cold_from_degc: or(0.0, number(-60.0, 110.0)), "temperature up to which that is in full", ["RC-11"];
         cold_to_degc: or(50.0, number(-50.0, 120.0)), "temperature from which there is none of it", ["RC-11"];
@@ -315,6 +328,11 @@ impl RatioControl {
             hysteresis: s.number(&RATIO.hysteresis),
             filter_s: s.number(&RATIO.filter_s),
             line: line(s),
+            shift_map: shift_map(
+                s,
+                &RATIO.shift_map,
+                &[&RATIO.drive_line, &RATIO.overrun_line],
+            ),
             cold: ColdRise {
                 rise_rad_s: s.number(&RATIO.cold_rise_rpm),
                 from_k: s.number(&RATIO.cold_from_degc),

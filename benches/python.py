@@ -1,0 +1,84 @@
+"""Times of the Python package, and of FASTSim 3 on the same machine.
+
+    pip install numpy polars fastsim==3.1.0 target/wheels/cvtcycle-*.whl
+    python benches/python.py [--native target/release/examples/native_run]
+
+Each time is the median of many calls. `native_run` drives the same run without Python and prints its own median.
+"""
+
+import argparse
+import statistics
+import subprocess
+import sys
+import time
+
+
+def median_us(call, count):
+    call()
+    times = []
+    for _ in range(count):
+        begun = time.perf_counter_ns()
+        call()
+        times.append((time.perf_counter_ns() - begun) / 1e3)
+    return statistics.median(times)
+
+
+def import_ms(module):
+    code = f"import time; t = time.perf_counter(); import {module}; print((time.perf_counter() - t) * 1e3)"
+    times = [float(subprocess.check_output([sys.executable, "-c", code])) for _ in range(7)]
+    return statistics.median(times)
+
+
+def cvtcycle(native):
+    import cvtcycle as cc
+    import numpy
+
+    car, cycle = cc.Car("rover_216_cvt"), cc.Cycle("ece15_eudc")
+    yield "cvtcycle: import, ms", import_ms("cvtcycle")
+    yield "cvtcycle: run, us", median_us(lambda: cc.run(car, cycle, trace=False), 400)
+    step = cc.Cycle.from_arrays([0, 1], [10, 10])
+    yield "cvtcycle: run of a single step, us: the call and little else", median_us(lambda: cc.run(car, step, trace=False), 2000)
+    if native:
+        yield "cvtcycle: the same run without Python, us", float(subprocess.check_output([native]))
+    yield "cvtcycle: run with trace and polars frame, us", median_us(lambda: cc.run(car, cycle).trace.to_polars(), 200)
+    family = cc.Family(car, cycle, ["road_load.mass_kg"])
+    X = numpy.linspace(1000, 1400, 512)[:, None]
+    yield "cvtcycle: family on all cores, us a point", median_us(lambda: family(X), 3) / len(X)
+    ratio = numpy.linspace(0.6, 2.2, 20_000)
+    yield "cvtcycle: losses on all cores, us a point", median_us(lambda: cc.losses(car, belt_ratio=ratio), 5) / len(ratio)
+
+
+def fastsim():
+    try:
+        import fastsim as fsim
+    except ImportError:
+        return
+    yield "FASTSim: import, ms", import_ms("fastsim")
+    vehicle = fsim.Vehicle.from_resource("2012_Ford_Fusion.yaml")
+    vehicle.set_save_interval(1)
+    cycle = fsim.Cycle.from_resource("udds.csv")
+
+    def drive():
+        sim = fsim.SimDrive(vehicle, cycle)
+        sim.run()
+        return sim.to_dataframe()
+
+    steps = len(cycle.to_dict()["time_seconds"])
+    yield f"FASTSim: run and polars frame of UDDS ({steps} steps), us", median_us(drive, 40)
+
+
+def fair():
+    import cvtcycle as cc
+
+    car, cycle = cc.Car("rover_216_cvt"), cc.Cycle("udds")
+    trace = cc.run(car, cycle).trace
+    words = f"cvtcycle: run and polars frame of UDDS ({len(trace)} steps, {len(trace.columns)} columns), us"
+    yield words, median_us(lambda: cc.run(car, cycle).trace.to_polars(), 200)
+
+
+if __name__ == "__main__":
+    arguments = argparse.ArgumentParser()
+    arguments.add_argument("--native")
+    for rows in (cvtcycle(arguments.parse_args().native), fair(), fastsim()):
+        for name, number in rows:
+            print(f"{name:75} {number:10.1f}", flush=True)

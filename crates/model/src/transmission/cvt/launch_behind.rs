@@ -1,0 +1,148 @@
+//! A launch clutch between variator and final drive: belt and pulleys turn with the engine, at rest too.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | LO-1 | w_p = w_e; w_s = w_e (1 - s)/I, and w_fd = i_fd w_wheel behind the clutch | derived: layout; a starting clutch on the driven pulley's shaft, as in Honda's Multi Matic |
+//! | LO-2 | LC-1 to LC-6 with T' = T_fd (1 - s)/I in place of T and w' = I w_fd/(1 - s) in place of the speed of the input shaft | derived: torque and speeds of the clutch seen from the engine through the variator; so it locks and lets go where a clutch at the input does |
+//! | LO-3 | T' >= creep below idle speed, >= -share (drag + accessories + pump + shaft + T_v) above it, T' <= full load - accessories - pump - shaft - T_v; T_v losses of pulley shafts, belt and reverse clutch at the primary | derived: CV-3 and CV-4 with what lies between clutch and engine |
+//! | LO-4 | at rest w_e = idle speed, T' the creep torque: pulleys, belt and pump turn, and the ratio goes to low by RC-4 and RC-5 | derived |
+//!
+//! T_fd torque into the final drive, s slip of the belt, I its ratio. Locked, it is the car with the clutch at the input. Its own drag while open is not modelled.
+
+use super::driveline::{Clamp, PartTorques};
+use super::evaluate::{Chain, Guess, Limit, Step};
+use super::variator::BeltLoad;
+use crate::math::larger;
+use crate::prime_mover::PrimeMover;
+use crate::thermal::BELT;
+use crate::transmission::coupling::EngineSide;
+
+impl<P: PrimeMover> Step<'_, P> {
+    /// From the wheels through a clutch behind the variator to the engine.
+    #[inline(always)]
+    pub(super) fn launch_behind(&self, g: &Guess, limit: Limit, inside: &mut bool) -> Chain {
+        let (line, cvt) = (&self.line, self.line.cvt);
+        let over_rad_s = self.primary_rad_s(g.slip);
+        let mut torques = self.behind_clutch(g, over_rad_s, inside);
+        let clutch_nm = torques.secondary;
+        let guessed = self.at_primary(g.slip);
+        let first = self.engine_side(
+            g,
+            limit,
+            (clutch_nm * guessed, over_rad_s),
+            self.locked(over_rad_s),
+        );
+        torques.secondary = self.shaft_nm(clutch_nm, &first, g.slip);
+        let w = first.engine_rad_s;
+        let clamp = Clamp {
+            pressure_pa: g.pressure_pa,
+            secondary_n: cvt
+                .secondary_clamp_n(g.pressure_pa, self.behind_belt_rad_s(&first, g.slip)),
+        };
+        line.turn_secondary(&mut torques, &clamp);
+        let load = BeltLoad {
+            primary_speed_rad_s: w,
+            secondary_clamp_n: clamp.secondary_n,
+            output_torque_nm: torques.secondary,
+            ..self.turning_load(&first, g.slip)
+        };
+        torques.belt = line.belt_losses(&load);
+        torques.belt_map = line.belt_map_nm(torques.secondary, w, g.pressure_pa, inside);
+        line.turn_primary(&mut torques, w, &clamp, inside);
+        let (slip, belt_nm) = torques.belt_in_force();
+        // With the slip in force, so that the power balance holds for this iterate exactly.
+        let over_rad_s = self.primary_rad_s(slip);
+        let (locked, referred) = (self.locked(over_rad_s), self.at_primary(slip));
+        let passed_nm = clutch_nm * referred; // LO-2
+        let side = if locked {
+            cvt.coupling
+                .locked_side(passed_nm, over_rad_s, self.hold.slip_rad_s)
+        } else {
+            let least = cvt.coupling.min_engine_rad_s(over_rad_s);
+            cvt.coupling
+                .engine_side(passed_nm, over_rad_s, larger(w, least))
+        };
+        torques.secondary =
+            self.shaft_nm(clutch_nm, &side, slip) + (torques.bearing[1] + torques.ring[1]);
+        let primary_nm = torques.secondary * referred + belt_nm + torques.primary_nm();
+        Chain {
+            load,
+            slip,
+            secondary_rad_s: self.behind_belt_rad_s(&side, slip),
+            primary_rad_s: side.engine_rad_s, // LO-1
+            primary_nm,
+            passed_nm,
+            over_rad_s,
+            between_nm: primary_nm - side.engine_nm, // LO-3
+            side,
+            locked,
+            torques,
+        }
+    }
+
+    /// Torque at the primary over that at the secondary at a slip, without losses.
+    #[inline]
+    fn at_primary(&self, slip: f64) -> f64 {
+        (1.0 - slip) * self.line.at.prepared.inv_ratio
+    }
+
+    /// The torque that the clutch gives to its output: what the final drive takes, or at rest what creeps.
+    #[inline(always)]
+    fn behind_clutch(&self, g: &Guess, over_rad_s: f64, inside: &mut bool) -> PartTorques {
+        if self.secondary_rad_s > 0.0 {
+            let speeds = (over_rad_s, self.secondary_rad_s);
+            let line = &self.line;
+            return line.through(g.output_nm, || self.drive, speeds, g.pressure_pa, inside);
+        }
+        let idle_rad_s = self.input.engine.idle_rad_s();
+        let in_drive = 1.0 - self.input.neutral_share;
+        let creep_nm = in_drive * self.line.cvt.coupling.creep_nm(0.0, idle_rad_s); // SE-3
+        PartTorques {
+            secondary: creep_nm / self.at_primary(g.slip), // LO-4
+            ..PartTorques::default()
+        }
+    }
+
+    /// True where the engine turns as fast as the locked clutch has it.
+    #[inline]
+    fn together(&self, side: &EngineSide, slip: f64) -> bool {
+        side.engine_rad_s <= self.primary_rad_s(slip)
+    }
+
+    /// Torque of the clutch at the secondary's shaft, Nm.
+    #[inline]
+    fn shaft_nm(&self, clutch_nm: f64, side: &EngineSide, slip: f64) -> f64 {
+        if self.together(side, slip) {
+            clutch_nm
+        } else {
+            side.engine_nm / self.at_primary(slip)
+        }
+    }
+
+    /// Speed of the secondary, rad/s (LO-1).
+    #[inline]
+    fn behind_belt_rad_s(&self, side: &EngineSide, slip: f64) -> f64 {
+        if self.together(side, slip) {
+            self.secondary_rad_s
+        } else {
+            side.engine_rad_s * self.at_primary(slip) // LO-1
+        }
+    }
+
+    /// The unloaded belt at the engine's speed.
+    #[inline(always)]
+    fn turning_load(&self, side: &EngineSide, slip: f64) -> BeltLoad {
+        if self.together(side, slip) {
+            return self.load;
+        }
+        let (line, oil) = (&self.line, self.input.oil);
+        let belt_k = self.input.heat.node_k[BELT];
+        let primary_rad_s = line.at.geometry.ratio * self.behind_belt_rad_s(side, slip);
+        let sliding = line
+            .cvt
+            .belt
+            .sliding_m_s(line.at.geometry.ratio, primary_rad_s);
+        let band = oil.friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
+        BeltLoad::unloaded(&oil.friction, band, line.at.prepared.film_area_m2, sliding)
+    }
+}

@@ -1,0 +1,71 @@
+//! The selector of an automatic box at rest: drive, or neutral.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | SE-1 | neutral while the engine has run less than t_D since its start; t_D of the cycle, 15 s in the US city test, where the file says so | source: 40 CFR 86.136-90, from memory |
+//! | SE-2 | neutral from t_N at rest on, where the file has one | ASSUMED: boxes that open their clutch at a long stop do so after 1 to 5 s |
+//! | SE-3 | n share of a step in neutral: creep torque times 1 - n | derived: an open box passes on nothing |
+//!
+//! A car that moves is in drive, so a cycle that begins at once has no neutral.
+
+use crate::keys::{Choice, Values, keys};
+use crate::math::{clamp, larger};
+
+/// The checked selector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Selector {
+    /// True where it is moved when the procedure of the cycle says so.
+    pub by_cycle: bool,
+    /// Time at rest from which the box is in neutral, s; infinite for a box that stays in drive.
+    pub neutral_after_s: f64,
+}
+
+/// What the selector looks at in a step at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelectorSignals {
+    /// Time from a start of the engine until the cycle has the selector in drive, s.
+    pub procedure_s: f64,
+    /// Time that the engine has run before the step, s.
+    pub running_s: f64,
+    /// Time that the car has been at rest before the step, s.
+    pub rested_s: f64,
+    /// Length of the step, s.
+    pub dt_s: f64,
+}
+
+impl Selector {
+    /// Share of a step at rest that the box is in neutral, 0..1.
+    #[inline]
+    pub fn neutral_share(&self, now: &SelectorSignals) -> f64 {
+        let started = if self.by_cycle {
+            clamp((now.procedure_s - now.running_s) / now.dt_s, 0.0, 1.0) // SE-1
+        } else {
+            0.0
+        };
+        let late_s = now.rested_s + now.dt_s - self.neutral_after_s;
+        larger(clamp(late_s / now.dt_s, 0.0, 1.0), started) // SE-2
+    }
+}
+
+keys! {
+    /// Keys of `[transmission.cvt.selector]`.
+    SELECTOR: SelectorKeys = "selector" [] {
+        at_start: words(&[
+            Choice::word("drive", "in drive from the first second"),
+            Choice::word("by_cycle", "in park or neutral as long as the procedure of the cycle has it"),
+        ], "drive"), "selector after a start of the engine", ["SE-1"];
+        neutral_after_s: optional(number(0.0, 600.0)), "time at rest after which the box is in neutral; absent: it stays in drive", ["SE-2"];
+    }
+}
+
+impl Selector {
+    /// The selector from the values of its table.
+    pub(super) fn from_values<V: Values>(s: &V) -> Self {
+        Selector {
+            by_cycle: s.word(&SELECTOR.at_start) == "by_cycle",
+            neutral_after_s: s
+                .optional(&SELECTOR.neutral_after_s)
+                .unwrap_or(f64::INFINITY),
+        }
+    }
+}

@@ -1,0 +1,19 @@
+"""The command line: ``python -m cvtcycle run --cycle ece15_eudc``."""
+
+from __future__ import annotations
+
+import signal
+import sys
+
+from . import _native
+
+
+def main() -> int:
+    """Runs the program with the words of this process, and gives its exit code."""
+    # The program handles Ctrl-C where it has something to finish; elsewhere it ends at once, as any program does.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    return _native.program(["cvtcycle", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,268 @@
+"""Cars and cycles."""
+
+from __future__ import annotations
+
+import json
+import numbers
+import os
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from . import _native
+from ._errors import bad
+from ._table import columns_of, table_text, texts
+
+Set = Mapping[str, Any] | Iterable[str] | None
+"""Changes of values: a mapping from key to value, or texts ``KEY=VALUE``."""
+
+
+def path_word(key: str, path: object) -> str:
+    """A name or path as text."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise bad(key, f"{type(path).__name__} is no name and no path", allowed="a text or a path")
+    return os.fspath(path)
+
+
+def assignments(changes: Set) -> list[str]:
+    """Changes of values as texts ``KEY=VALUE``."""
+    if changes is None:
+        return []
+    if isinstance(changes, Mapping):
+        return [f"{key}={_toml(str(key), value)}" for key, value in changes.items()]
+    return texts("set", changes)
+
+
+def _toml(key: str, value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        return repr(float(value))
+    if isinstance(value, str):
+        return value
+    if isinstance(value, (list, tuple)) or hasattr(value, "tolist"):
+        items = value.tolist() if hasattr(value, "tolist") else value
+        if not isinstance(items, (list, tuple)):
+            return _toml(key, items)
+        return "[" + ", ".join(_quoted(key, item) for item in items) + "]"
+    raise bad("set", f"{key}: a value of type {type(value).__name__} cannot be set", allowed="numbers, texts, lists of them")
+
+
+def _quoted(key: str, value: Any) -> str:
+    return json.dumps(value) if isinstance(value, str) else _toml(key, value)
+
+
+def _plain(place: str, value: Any) -> Any:
+    """A value of a dict in the types of JSON."""
+    if isinstance(value, Mapping):
+        return {str(name): _plain(f"{place}.{name}" if place else str(name), own) for name, own in value.items()}
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [_plain(f"{place}[{k}]", own) for k, own in enumerate(value)]
+    if isinstance(value, float) and (value != value or value in (float("inf"), float("-inf"))):
+        raise bad(place, f"{value} is not a finite number")
+    if isinstance(value, (bool, int, float, str)):
+        return value
+    raise bad(place, f"a value of type {type(value).__name__} has no place in a vehicle file")
+
+
+class Car:
+    """A car with its fluids, checked.
+
+    ``word`` is a shipped vehicle (``names("vehicle")``) or the path of a vehicle file. ``set`` changes values:
+    ``{"transmission.cvt.pump.displacement_cc_rev": 7}``, a mapping from key to value in the unit of the key; a key that ends in ``*``
+    multiplies, one that ends in ``+`` adds. ``lubricant`` and ``engine_oil`` are names or paths in place of the vehicle's own.
+    """
+
+    def __init__(
+        self,
+        word: str | os.PathLike[str],
+        *,
+        set: Set = None,
+        lubricant: str | None = None,
+        engine_oil: str | None = None,
+        formulation: str = "smooth",
+    ) -> None:
+        word = path_word("word", word)
+        self._made: tuple[Any, ...] = ("word", word, assignments(set), lubricant, engine_oil, formulation)
+        self._car = _native.Car(*self._made[1:])
+
+    @classmethod
+    def _of(cls, made: tuple[Any, ...]) -> Car:
+        car = cls.__new__(cls)
+        kind, *rest = made
+        car._made = made
+        if kind == "twin":
+            car._car = cls._of(rest[0])._car.twin()
+        else:
+            car._car = (_native.Car if kind == "word" else _native.Car.of_text)(*rest)
+        return car
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Car._of, (self._made,)
+
+    @classmethod
+    def from_toml(
+        cls,
+        text: str,
+        *,
+        name: str = "text.toml",
+        folder: str | os.PathLike[str] = ".",
+        set: Set = None,
+        lubricant: str | None = None,
+        engine_oil: str | None = None,
+        formulation: str = "smooth",
+    ) -> Car:
+        """A car from the text of a vehicle file. Problems cite it as ``name``; maps that it names are looked for in ``folder``."""
+        if not isinstance(text, str):
+            raise bad("text", f"{type(text).__name__} is no text")
+        folder = path_word("folder", folder)
+        return cls._of(("text", name, text, folder, assignments(set), lubricant, engine_oil, formulation))
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], **options: Any) -> Car:
+        """A car from the tables of a vehicle file as dicts; the options are those of :meth:`from_toml`."""
+        if not isinstance(data, Mapping):
+            raise bad("data", f"{type(data).__name__} is no dict")
+        return cls.from_toml(_native.Car.toml_of(json.dumps(_plain("", data))), **{"name": "dict.toml", **options})
+
+    def twin(self) -> Car:
+        """The same car with a manual box."""
+        return Car._of(("twin", self._made))
+
+    @property
+    def name(self) -> str:
+        """Name of its file."""
+        return self._car.name
+
+    @property
+    def title(self) -> str:
+        """Name for people."""
+        return self._car.title
+
+    @property
+    def is_cvt(self) -> bool:
+        """Whether it has a CVT; otherwise a manual box."""
+        return self._car.is_cvt
+
+    @property
+    def baselines(self) -> list[str]:
+        """The cars that its file compares it with, for ``baselines`` of :func:`run`."""
+        return self._car.baselines
+
+    @property
+    def notes(self) -> list[str]:
+        """What a reader of its results should know, a sentence each."""
+        return self._car.notes
+
+    def keys(self) -> list[dict[str, str]]:
+        """Every key with value, unit, status, source, note, allowed values and meaning."""
+        listed: list[dict[str, str]] = json.loads(self._car.keys())
+        return listed
+
+    def __getitem__(self, key: str) -> str:
+        """The value of a key, as its file has it."""
+        for own in self.keys():
+            if own["key"] == key:
+                return own["value"]
+        raise KeyError(key)
+
+    def __repr__(self) -> str:
+        return f"<cvtcycle.Car {self.name}: {self.title}>"
+
+
+class Cycle:
+    """A drive cycle: a shipped one (``names("cycle")``), ``constant_V`` with V in km/h, or the path of a table of time and speed."""
+
+    def __init__(self, word: str | os.PathLike[str]) -> None:
+        self._made: tuple[Any, ...] = ("word", path_word("word", word), None)
+        self._cycle = _native.Cycle(*self._made[1:])
+
+    @classmethod
+    def _of(cls, made: tuple[Any, ...]) -> Cycle:
+        cycle = cls.__new__(cls)
+        kind, *rest = made
+        cycle._made = made
+        cycle._cycle = (_native.Cycle if kind == "word" else _native.Cycle.of_bytes)(*rest)
+        return cycle
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Cycle._of, (self._made,)
+
+    @classmethod
+    def read(cls, file: Any, *, columns: str | None = None) -> Cycle:
+        """From a path or an open file: the program's own form, EPA, FASTSim, VECTO or a logger's table.
+
+        ``columns`` names those that are meant, such as ``time=Time_ADC:s,speed=VehSpd:mph``.
+        """
+        if not hasattr(file, "read"):
+            return cls._of(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns))
+        try:
+            data = file.read()
+        except (OSError, ValueError) as error:
+            raise bad("file", f"cannot read it: {error}") from error
+        name = str(getattr(file, "name", "file"))
+        return cls._of(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns))
+
+    @classmethod
+    def from_arrays(
+        cls,
+        time_s: Any,
+        speed_m_s: Any,
+        *,
+        grade: Any = None,
+        phase: Any = None,
+        gear: Any = None,
+        engine_off: Any = None,
+        name: str = "arrays",
+    ) -> Cycle:
+        """From arrays: time in s, speed in m/s, slope as rise over run, names of phases, gears, and 0 or 1 where the engine is off."""
+        given = {
+            "time_s": time_s,
+            "speed_m_s": speed_m_s,
+            "grade": grade,
+            "phase": phase,
+            "gear": gear,
+            "engine_off": engine_off,
+        }
+        return cls.from_frame({key: values for key, values in given.items() if values is not None}, name=name)
+
+    @classmethod
+    def from_frame(cls, frame: Any, *, name: str = "frame", columns: str | None = None) -> Cycle:
+        """From a frame or a mapping whose columns have the names of a cycle's file, such as ``time_s`` and ``speed_kmh``."""
+        return cls._of(("text", name, table_text(columns_of("frame", frame)), columns))
+
+    @property
+    def name(self) -> str:
+        """Name under which results cite it."""
+        return self._cycle.name
+
+    @property
+    def title(self) -> str:
+        """Name for people."""
+        return self._cycle.title
+
+    @property
+    def read_as(self) -> str | None:
+        """How its file was read, where it is another program's."""
+        return self._cycle.read_as
+
+    @property
+    def phases(self) -> list[str]:
+        """Names of its phases."""
+        return self._cycle.phases
+
+    @property
+    def duration_s(self) -> float:
+        """Duration, s."""
+        return self._cycle.duration_s
+
+    @property
+    def distance_m(self) -> float:
+        """Distance of a car with a CVT, m."""
+        return self._cycle.distance_m
+
+    def __repr__(self) -> str:
+        return f"<cvtcycle.Cycle {self.name}: {self.duration_s:g} s, {self.distance_m / 1000:.3f} km>"

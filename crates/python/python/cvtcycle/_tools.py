@@ -1,0 +1,114 @@
+"""Losses, belt, validation, calibration, explanations, schemas."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from typing import Any
+
+from . import _native
+from ._car import Car, Set, assignments, path_word
+from ._errors import bad
+from ._run import car_of
+from ._table import Table, columns_of, doubles, table_text, texts
+
+
+def names(kind: str) -> list[str]:
+    """Names of what the package carries: ``vehicle``, ``cycle``, ``lubricant``, ``plan``, ``calibration``, ``class``, ``rig``, ``levers``."""
+    return _native.names(kind)
+
+
+def explain(word: str) -> dict[str, Any]:
+    """The meaning of a key, column, flag, label of an equation or term, as ``cvtcycle explain --json`` prints it."""
+    found: dict[str, Any] = json.loads(_native.explain(word))
+    return found
+
+
+def schema(kind: str) -> dict[str, Any]:
+    """The JSON Schema of a kind of file: ``vehicle``, ``lubricant``, ``rig``, ``calibration``, ``validation``, ``plan``, ``levers``."""
+    found: dict[str, Any] = json.loads(_native.schema(kind))
+    return found
+
+
+def losses(
+    car: Car | str | os.PathLike[str],
+    *,
+    belt_ratio: Any = None,
+    gear: Any = None,
+    input_speed_rpm: Any = 2500.0,
+    output_torque_nm: Any = 0.0,
+    transmission_sump_degc: Any = 80.0,
+    belt_spray_degc: Any = None,
+    throttle: Any = None,
+    secondary_pressure_bar: Any = None,
+    threads: int | None = None,
+) -> Table:
+    """Losses of each part of a transmission at operating points, torques at the input shaft; the launch clutch is locked.
+
+    Arguments are numbers or arrays of one length; their names are those of the columns that come back. A CVT needs ``belt_ratio``, a manual
+    box ``gear``. ``output_torque_nm`` is behind the final drive. Without ``belt_spray_degc`` the belt is in steady state over the sump,
+    without ``secondary_pressure_bar`` the pressure is that of the clamping law at ``throttle`` (0 if it is not given).
+    """
+    subject = car_of("car", car)
+    ratio = "belt_ratio" if subject.is_cvt else "gear"
+    given = {
+        "belt_ratio": belt_ratio,
+        "gear": gear,
+        "input_speed_rpm": input_speed_rpm,
+        "output_torque_nm": output_torque_nm,
+        "transmission_sump_degc": transmission_sump_degc,
+        "belt_spray_degc": belt_spray_degc,
+        "throttle": 0.0 if throttle is None and subject.is_cvt else throttle,
+        "secondary_pressure_bar": secondary_pressure_bar,
+    }
+    if given[ratio] is None:
+        raise bad(ratio, f"{subject.name} needs it", hint="give a number or an array")
+    points = [(name, doubles(name, values)) for name, values in given.items() if values is not None]
+    return Table(_native.losses(subject._car, points, threads))
+
+
+def belt(
+    points: Any,
+    *,
+    car: Car | str | os.PathLike[str] = "rover_216_cvt",
+    formulation: str = "smooth",
+    band_speed: float | None = None,
+    name: str = "points",
+) -> Table:
+    """The belt model at the points of a table, a mapping or a frame with the columns of ``cvtcycle belt``.
+
+    It needs ``ratio``, ``input_speed_rpm``, ``secondary_pressure_bar`` and ``output_torque_nm`` (at the secondary pulley).
+    """
+    text = table_text(columns_of("points", points))
+    return Table(_native.belt(car_of("car", car)._car, name, text, formulation, band_speed))
+
+
+def validate(
+    vehicle: str | os.PathLike[str] = "rover_216_cvt",
+    *,
+    lubricant: str | None = None,
+    set: Set = None,
+    rows: Iterable[str] | str = (),
+    only_rows: bool = False,
+    chapter: str | None = None,
+) -> dict[str, Any]:
+    """Compares published values, and those of the user's own files of ``rows``, with the model, as ``cvtcycle validate --json`` does."""
+    own = texts("rows", rows)
+    word = path_word("vehicle", vehicle)
+    found = _native.validate(word, lubricant, assignments(set), own, not only_rows, chapter)
+    report: dict[str, Any] = json.loads(found)
+    return report
+
+
+def calibrate(
+    plan: str | os.PathLike[str],
+    *,
+    starts: int | None = None,
+    seed: int | None = None,
+    folds: bool = True,
+    threads: int | None = None,
+) -> dict[str, Any]:
+    """Fits parameters to measurements, as ``cvtcycle calibrate --json`` does; without ``folds`` there are no prediction errors."""
+    found: dict[str, Any] = json.loads(_native.calibrate(path_word("plan", plan), starts, seed, folds, threads))
+    return found

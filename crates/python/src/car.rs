@@ -1,0 +1,228 @@
+//! Cars: a vehicle file with its fluids and changes, checked.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use cvtcycle::config::setup::template::VehicleTemplate;
+use cvtcycle::config::setup::{self, Disk, NamedBy, Options, Setup, baseline_of};
+use cvtcycle::config::{Override, Problem, Problems};
+use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::study::explain::key_json;
+use pyo3::prelude::*;
+use serde_json::Value;
+
+use crate::errors::{bad, refused};
+
+/// The text of a vehicle that is in no file.
+#[derive(Clone, Debug)]
+struct Source {
+    text: String,
+    folder: PathBuf,
+    is_twin: bool,
+}
+
+/// A checked car.
+#[pyclass(frozen)]
+pub struct Car {
+    pub setup: Arc<Setup>,
+    /// Name or path of its file, or the name that problems call its text.
+    pub word: String,
+    pub options: Options,
+    source: Option<Source>,
+}
+
+/// The belt model of that name.
+///
+/// # Errors
+/// The exception of the argument.
+pub fn formulation(name: &str) -> PyResult<Formulation> {
+    Formulation::named(name).ok_or_else(|| {
+        let names = Formulation::NAMES.map(|(name, _)| name).join(", ");
+        bad("formulation", name, &names, "this formulation is not known")
+    })
+}
+
+fn options(
+    set: &[String],
+    (lubricant, engine_oil): (Option<String>, Option<String>),
+    named: &str,
+) -> PyResult<Options> {
+    Ok(Options {
+        lubricant,
+        engine_oil,
+        set: Override::parse_all(set).map_err(refused)?,
+        formulation: formulation(named)?,
+        named_by: NamedBy::Caller,
+    })
+}
+
+impl Car {
+    fn load(word: String, options: Options, source: Option<Source>) -> Result<Self, Problems> {
+        let setup = match &source {
+            None => setup::load(&word, &options)?,
+            Some(source) => {
+                let read = match source.is_twin {
+                    true => setup::read_twin,
+                    false => setup::read,
+                };
+                read(&word, &source.text, source.files(), &options)?
+            }
+        };
+        Ok(Car {
+            setup: Arc::new(setup),
+            word,
+            options,
+            source,
+        })
+    }
+
+    /// Its files, ready to be changed again and again.
+    ///
+    /// # Errors
+    /// Files that changed since they were read; a twin of a text.
+    pub fn template(&self) -> Result<(VehicleTemplate, Setup), Problems> {
+        match &self.source {
+            None => VehicleTemplate::load(&self.word, &self.options),
+            Some(source) if source.is_twin => {
+                Err(self.no_file("the twin of a text is no template").into())
+            }
+            Some(source) => {
+                VehicleTemplate::read(&self.word, &source.text, source.files(), &self.options)
+            }
+        }
+    }
+
+    /// The problem of something that needs a car with a file.
+    pub fn no_file(&self, message: &str) -> Problem {
+        let hint = "write the text into a file, and name that";
+        Problem::invalid(message)
+            .in_file(self.word.as_str())
+            .hint(hint)
+    }
+
+    /// Whether it has no file.
+    pub fn is_text(&self) -> bool {
+        self.source.is_some()
+    }
+}
+
+impl Source {
+    fn files(&self) -> Box<Disk> {
+        Box::new(Disk {
+            folder: self.folder.clone(),
+        })
+    }
+}
+
+#[pymethods]
+impl Car {
+    #[new]
+    #[pyo3(signature = (word, set, lubricant=None, engine_oil=None, formulation="smooth"))]
+    fn new(
+        py: Python<'_>,
+        word: PathBuf,
+        set: Vec<String>,
+        lubricant: Option<String>,
+        engine_oil: Option<String>,
+        formulation: &str,
+    ) -> PyResult<Self> {
+        let options = options(&set, (lubricant, engine_oil), formulation)?;
+        let word = word.to_string_lossy().into_owned();
+        py.detach(|| Car::load(word, options, None))
+            .map_err(refused)
+    }
+
+    /// From the text of a vehicle file that problems call `name`; maps that it names are in `folder`.
+    #[staticmethod]
+    #[pyo3(signature = (name, text, folder, set, lubricant=None, engine_oil=None, formulation="smooth"))]
+    #[expect(clippy::too_many_arguments, reason = "they are named in Python")]
+    fn of_text(
+        py: Python<'_>,
+        name: String,
+        text: String,
+        folder: PathBuf,
+        set: Vec<String>,
+        lubricant: Option<String>,
+        engine_oil: Option<String>,
+        formulation: &str,
+    ) -> PyResult<Self> {
+        let options = options(&set, (lubricant, engine_oil), formulation)?;
+        let source = Source {
+            text,
+            folder,
+            is_twin: false,
+        };
+        py.detach(|| Car::load(name, options, Some(source)))
+            .map_err(refused)
+    }
+
+    /// The TOML of a JSON object.
+    #[staticmethod]
+    fn toml_of(json: &str) -> PyResult<String> {
+        let no_table = |message: String| {
+            bad(
+                "data",
+                "",
+                "tables, lists, text, numbers, true, false",
+                &message,
+            )
+        };
+        let value: Value =
+            serde_json::from_str(json).map_err(|error| no_table(error.to_string()))?;
+        toml::to_string(&value).map_err(|error| no_table(error.to_string()))
+    }
+
+    /// The same car with a manual box.
+    fn twin(&self, py: Python<'_>) -> PyResult<Self> {
+        let options = self.options.of_twin(NamedBy::Caller);
+        let (word, source) = match &self.source {
+            None => (baseline_of(&self.word, setup::TWIN), None),
+            Some(source) => {
+                let source = Source {
+                    is_twin: true,
+                    ..source.clone()
+                };
+                (self.word.clone(), Some(source))
+            }
+        };
+        py.detach(|| Car::load(word, options, source))
+            .map_err(refused)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.setup.name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.setup.title
+    }
+
+    #[getter]
+    fn is_cvt(&self) -> bool {
+        self.setup.transmission().is_cvt()
+    }
+
+    #[getter]
+    fn baselines(&self) -> Vec<String> {
+        let names = self.setup.baselines.iter();
+        let word = |name: &String| match name.as_str() {
+            setup::TWIN => name.clone(),
+            _ => baseline_of(&self.word, name),
+        };
+        names.map(word).collect()
+    }
+
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        let doubts = self.setup.doubts();
+        self.setup.notes.iter().cloned().chain(doubts).collect()
+    }
+
+    /// Every key with value, unit, status, source and meaning, as JSON.
+    fn keys(&self) -> String {
+        let keys: Vec<Value> = self.setup.keys.iter().map(key_json).collect();
+        Value::Array(keys).to_string()
+    }
+}

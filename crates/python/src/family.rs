@@ -1,0 +1,122 @@
+//! One car with other numbers, as a function of them.
+
+use std::sync::Arc;
+
+use cvtcycle::study::Progress;
+use cvtcycle::study::family::{Family as CoreFamily, FamilyPoint};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::car::Car;
+use crate::cycle::Cycle;
+use crate::errors::{bad, refused};
+use crate::job::{Interrupted, job};
+use crate::run::Asked;
+use crate::table::{Cells, Table, TableColumn};
+
+/// A car, a cycle, and the keys that are the arguments.
+#[pyclass(frozen)]
+pub struct Family(Arc<CoreFamily>);
+
+/// The doubles of bytes in the order of this machine.
+///
+/// # Errors
+/// The exception of an argument whose bytes are no whole doubles.
+pub fn doubles(argument: &str, bytes: &[u8]) -> PyResult<Vec<f64>> {
+    let (whole, rest) = bytes.as_chunks::<8>();
+    match rest.is_empty() {
+        true => Ok(whole
+            .iter()
+            .map(|eight| f64::from_ne_bytes(*eight))
+            .collect()),
+        false => Err(bad(
+            argument,
+            "",
+            "an array of doubles",
+            "these are no whole doubles",
+        )),
+    }
+}
+
+#[pymethods]
+impl Family {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        car: &Car,
+        cycle: &Cycle,
+        keys: Vec<String>,
+        ambient_degc: f64,
+        start: &Bound<'_, PyAny>,
+        dt_s: f64,
+    ) -> PyResult<Self> {
+        let asked = Asked::new(ambient_degc, start, dt_s, false)?;
+        let cycle = cycle.of(car);
+        let made = py.detach(|| {
+            let template = car.template()?;
+            CoreFamily::new(template, (*cycle).clone(), asked.conditions, &keys)
+        });
+        made.map(|family| Family(Arc::new(family))).map_err(refused)
+    }
+
+    /// Key, unit and value of each argument in the car as it is.
+    #[getter]
+    fn arguments(&self) -> Vec<(String, &'static str, f64)> {
+        let arguments = self.0.arguments().into_iter().zip(self.0.base());
+        arguments
+            .map(|((key, unit), base)| (key, unit, base))
+            .collect()
+    }
+
+    /// Name, unit and meaning of each output.
+    #[getter]
+    fn outputs(&self) -> Vec<(String, String, String)> {
+        let head = |head: cvtcycle::output::table::Head| (head.name, head.unit, head.doc);
+        self.0.outputs().into_iter().map(head).collect()
+    }
+
+    /// Drives the car at points, rows of doubles: a table of the outputs, with the column `reason`.
+    fn points(
+        &self,
+        py: Python<'_>,
+        numbers: &[u8],
+        outputs: Vec<String>,
+        threads: Option<usize>,
+    ) -> PyResult<Table> {
+        let numbers = doubles("X", numbers)?;
+        let wanted = self.0.outputs_of(&outputs).map_err(refused)?;
+        let width = self.0.arguments().len();
+        if width == 0 || !numbers.len().is_multiple_of(width) {
+            let allowed = format!("rows of {width} numbers, one for each key");
+            return Err(bad("X", "", &allowed, "the numbers are no whole rows"));
+        }
+        let (family, places) = (Arc::clone(&self.0), wanted.clone());
+        let drive = move |stop: &crate::job::Stop| -> Vec<FamilyPoint> {
+            let point = |worker: &mut _, numbers: &[f64]| match stop.stopped() {
+                // Its result is not looked at any more.
+                true => FamilyPoint {
+                    numbers: vec![f64::NAN; places.len()],
+                    reason: String::new(),
+                },
+                false => family.point(worker, numbers, &places),
+            };
+            numbers
+                .par_chunks(width)
+                .map_init(|| family.worker(), point)
+                .collect()
+        };
+        let points = job(py, threads, Interrupted::Ends, drive)?;
+        let heads = self.0.outputs();
+        let columns = wanted.iter().enumerate().map(|(k, place)| {
+            let cells = points.iter().map(|point| point.numbers[k]).collect();
+            TableColumn::new(heads[*place].clone(), Cells::numbers(cells))
+        });
+        let reasons = TableColumn {
+            name: "reason".to_owned(),
+            unit: String::new(),
+            doc: "why the car was not driven, or which check its drive failed".to_owned(),
+            cells: Cells::text(points.iter().map(|point| &point.reason)),
+        };
+        Ok(Table::new(columns.chain([reasons]).collect()))
+    }
+}

@@ -1,0 +1,145 @@
+//! Validation, calibration, explanations and schemas: the JSON that the program prints.
+
+use cvtcycle::config::setup::Kind;
+use cvtcycle::config::{
+    Argument, Override, Problem, Problems, bounded, cycle, decode, schema as of,
+};
+use cvtcycle::model::files;
+use cvtcycle::output::BUILD;
+use cvtcycle::output::escape::json_text as text;
+use cvtcycle::study::check::keys::VALIDATION;
+use cvtcycle::study::check::{self, CandidateVehicle, ValidationRow, json};
+use cvtcycle::study::explain::Meanings;
+use cvtcycle::study::fit::plan::keys::CALIBRATION;
+use cvtcycle::study::fit::{self, MAX_STARTS};
+use cvtcycle::study::levers::keys::LEVER_FILE;
+use cvtcycle::study::plan::PLAN;
+use pyo3::prelude::*;
+
+use crate::errors::{bad, refused};
+use crate::job::{Interrupted, Stop, job};
+
+/// Version and build.
+#[pyfunction]
+pub fn version() -> (&'static str, &'static str) {
+    (env!("CARGO_PKG_VERSION"), BUILD)
+}
+
+/// Names of what the library carries: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`.
+#[pyfunction]
+pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
+    let kinds = [
+        ("vehicle", Kind::Vehicle),
+        ("class", Kind::Class),
+        ("lubricant", Kind::Lubricant),
+        ("rig", Kind::Rig),
+        ("plan", Kind::Plan),
+        ("levers", Kind::Levers),
+        ("calibration", Kind::Calibration),
+    ];
+    match kinds.iter().find(|(name, _)| *name == kind) {
+        Some((_, kind)) => Ok(kind.names()),
+        None if kind == "cycle" => Ok(cycle::names().to_vec()),
+        None => {
+            let allowed = kinds.map(|(name, _)| name).join(", ") + ", cycle";
+            Err(bad("kind", kind, &allowed, "there is no such kind"))
+        }
+    }
+}
+
+/// The meaning of a word.
+#[pyfunction]
+pub fn explain(py: Python<'_>, word: &str) -> PyResult<String> {
+    let found = py.detach(|| Meanings::of(word));
+    let found = found.map_err(|problem| refused(problem.key("word")))?;
+    text(&found.json(word)).map_err(refused)
+}
+
+/// The JSON Schema of a kind of file.
+#[pyfunction]
+pub fn schema(kind: &str) -> PyResult<String> {
+    let kinds = [
+        ("vehicle", files::VEHICLE),
+        ("lubricant", files::LUBRICANT),
+        ("rig", files::RIG),
+        ("calibration", CALIBRATION),
+        ("validation", VALIDATION),
+        ("plan", PLAN),
+        ("levers", LEVER_FILE),
+    ];
+    match kinds.iter().find(|(name, _)| *name == kind) {
+        Some((name, keys)) => text(&of::of(name, keys)).map_err(refused),
+        None => {
+            let allowed = kinds.map(|(name, _)| name).join(", ");
+            Err(bad("kind", kind, &allowed, "there is no such kind"))
+        }
+    }
+}
+
+/// Compares with published values, and with rows of the user's own files.
+#[pyfunction]
+pub fn validate(
+    py: Python<'_>,
+    vehicle: String,
+    lubricant: Option<String>,
+    set: Vec<String>,
+    rows: Vec<String>,
+    embedded: bool,
+    chapter: Option<String>,
+) -> PyResult<String> {
+    let set = Override::parse_all(&set).map_err(refused)?;
+    let compare = move |_: &Stop| -> Result<String, Problems> {
+        let own = |path: &String| -> Result<(String, String), Problems> {
+            let bytes = cycle::bytes(Argument::File, path, bounded::TOML)?;
+            Ok((path.clone(), decode(path, &bytes)?))
+        };
+        let own: Vec<_> = rows.iter().map(own).collect::<Result<_, _>>()?;
+        let files = check::files(&own, embedded)?;
+        let is_wanted = |row: &ValidationRow| {
+            let is_it = |chapter: &String| chapter.eq_ignore_ascii_case(&row.chapter);
+            chapter.as_ref().is_none_or(is_it)
+        };
+        if !files.iter().flat_map(|file| &file.rows).any(is_wanted) {
+            let chapter = chapter.as_deref().unwrap_or_default();
+            let problem = Problem::unknown_name(format!("no row belongs to chapter `{chapter}`"));
+            return Err(problem.key("chapter").value(chapter).into());
+        }
+        let candidate = CandidateVehicle {
+            vehicle,
+            lubricant,
+            set,
+            ..CandidateVehicle::default()
+        };
+        text(&json(&check::judge(&files, &candidate, is_wanted)?))
+    };
+    job(py, None, Interrupted::IsLeft, compare)?.map_err(refused)
+}
+
+/// Fits parameters to measurements.
+#[pyfunction]
+pub fn calibrate(
+    py: Python<'_>,
+    plan: String,
+    starts: Option<u64>,
+    seed: Option<u64>,
+    folds: bool,
+    threads: Option<usize>,
+) -> PyResult<String> {
+    if let Some(n) = starts.filter(|n| !(1..=MAX_STARTS).contains(n)) {
+        let (value, allowed) = (n.to_string(), format!("1 to {MAX_STARTS}"));
+        return Err(bad(
+            "starts",
+            &value,
+            &allowed,
+            &format!("{n} starts are out of range"),
+        ));
+    }
+    let search = move |stop: &Stop| -> Result<String, Problems> {
+        let mut plan = fit::open(&plan)?;
+        plan.search.starts = starts.map_or(plan.search.starts, |n| n as usize);
+        plan.search.seed = seed.unwrap_or(plan.search.seed);
+        plan.leave_out &= folds;
+        text(&fit::calibrate(&plan, stop)?)
+    };
+    job(py, threads, Interrupted::Ends, search)?.map_err(refused)
+}

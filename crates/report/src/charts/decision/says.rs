@@ -1,0 +1,87 @@
+//! Titles of figures: sentences with the numbers of their table, each only where it is true.
+
+use crate::number::{grouped, list_of, signed};
+use cvtcycle_study::words::{between, decimals, more_or_less, than};
+
+/// "7 % more than the baseline", with the digits that an interval leaves.
+pub fn against(percent: f64, interval: Option<[f64; 2]>, baseline: &str) -> String {
+    let compared = more_or_less(percent, interval.map_or(1, decimals));
+    format!("{compared} {} {baseline}", than(&compared))
+}
+
+/// "+1 to +10 %".
+pub fn level(interval: [f64; 2]) -> String {
+    between(interval, "%")
+}
+
+/// Title of the strip of the answer.
+pub(super) fn strip(subject: &str, first: Option<(&str, f64, Option<[f64; 2]>)>) -> String {
+    let Some((baseline, percent, interval)) = first else {
+        return format!("{subject} has no car to compare it with");
+    };
+    let compared = against(percent, interval, baseline);
+    match interval {
+        None => format!("{subject} uses {compared}; how sure that is, is not known"),
+        Some(ends @ [low, high]) if low < 0.0 && high > 0.0 => {
+            format!(
+                "{subject} uses {compared}; even the sign is open: {}",
+                level(ends)
+            )
+        }
+        Some(ends) => format!("{subject} uses {compared}; in the draws {}", level(ends)),
+    }
+}
+
+/// Title of the way from the fuel of a baseline to that of the subject, kJ/km; `terms` from the largest on.
+pub(super) fn waterfall(names: [&str; 2], difference: f64, terms: &[(String, f64)]) -> String {
+    let [subject, baseline] = names;
+    let kj = |x: f64| signed(grouped(x, 0), x);
+    let more = if difference < 0.0 { "less" } else { "more" };
+    let named = terms.iter().filter(|(_, x)| x.abs() >= 0.5).take(2);
+    let named: Vec<String> = named
+        .map(|(name, x)| format!("{name} {}", kj(*x)))
+        .collect();
+    let size = grouped(difference.abs(), 0);
+    let rest = if named.is_empty() {
+        String::new()
+    } else {
+        format!(": {}", list_of(&named))
+    };
+    format!("Per kilometre {subject} burns {size} kJ {more} than {baseline}{rest}")
+}
+
+/// Title of the same part of a cycle driven again and again, from all losses of each drive and those of each group in the first and last one.
+pub(super) fn repeats(totals: &[f64], parts: &[(String, [f64; 2])]) -> String {
+    let (Some(first), Some(last)) = (totals.first(), totals.last()) else {
+        return "No part of the cycle is driven twice".to_owned();
+    };
+    let word = if last < first { "cuts" } else { "raises" };
+    let [first, last] = [first, last].map(|kj| grouped(*kj, 0));
+    let drop = |of: &&(String, [f64; 2])| of.1[0] - of.1[1];
+    let most = parts.iter().max_by(|a, b| drop(a).total_cmp(&drop(b)));
+    let most = most.filter(|of| drop(of) > 0.0);
+    let most = most.map_or_else(String::new, |(name, ends)| {
+        let [a, b] = ends.map(|kj| grouped(kj, 0));
+        format!(", {name} most ({a} to {b})")
+    });
+    format!("Warmer oil {word} the loss of the same drive from {first} to {last} kJ{most}")
+}
+
+/// Title of what knowing a factor would leave of a spread.
+pub(super) fn information(best: Option<(&str, f64, f64)>, unit: &str) -> String {
+    match best {
+        Some((name, sd, left)) => {
+            let digits = decimals([0.0, sd]) + 1;
+            let [sd, left] = [sd, left].map(|x| grouped(x, digits));
+            format!("Knowing {name} would cut the spread from {sd} to {left} {unit}")
+        }
+        None => "No single value is above chance: more draws first".to_owned(),
+    }
+}
+
+/// Title of the numbers that were published and computed.
+pub(super) fn agreement(agree: usize, all: usize) -> String {
+    format!(
+        "{agree} of {all} published numbers that nothing was fitted to agree within their tolerance"
+    )
+}

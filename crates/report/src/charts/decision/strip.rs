@@ -1,0 +1,162 @@
+//! How sure the difference to each baseline is: values of the files, range of the draws, published number.
+
+use super::{MARGIN, TOP, says};
+use crate::charts::engine::{
+    Axis, Chart, Entry, Fill, INK, Label, QUIET, Style, Symbol, WIDTH, at, optional_cell,
+    row_middle, rows_left, rows_panel, stroke,
+};
+use crate::charts::picture::{Picture, PictureTable};
+use cvtcycle_study::words::decimals;
+
+/// Right edge of the plot with room for the numbers in words, height of a row, pixels.
+const RIGHT: f64 = WIDTH - 212.0;
+const ROW: f64 = 30.0;
+/// Half of the height of a bar, radius of a mark, pixels.
+const HALF: f64 = 6.0;
+const RADIUS: f64 = 5.5;
+/// Colour of what contradicts.
+const CONTRARY: &str = "#a3311c";
+
+/// The difference to one baseline, per cent of its fuel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Against {
+    /// Name of the baseline.
+    pub baseline: String,
+    /// With the values of the files.
+    pub files: Option<f64>,
+    /// 5 %, 50 % and 95 % of the draws.
+    pub drawn: Option<[f64; 3]>,
+    /// A published range that contradicts the values of the files.
+    pub published: Option<[f64; 2]>,
+}
+
+impl Against {
+    fn interval(&self) -> Option<[f64; 2]> {
+        self.drawn.map(|[low, _, high]| [low, high])
+    }
+}
+
+/// A row for each baseline; `conditions` are cycle and temperatures in words.
+pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Picture {
+    let values = rows.iter().flat_map(|row| {
+        let drawn = row.drawn.into_iter().flatten();
+        let published = row.published.into_iter().flatten();
+        row.files.into_iter().chain(drawn).chain(published)
+    });
+    let x = Axis::round(
+        "Fuel of the car against the baseline [%]",
+        values.chain([0.0]),
+        8,
+    );
+    let left = rows_left(rows.iter().map(|row| row.baseline.as_str()), 12.0);
+    let panel = rows_panel((left, TOP), RIGHT, rows.len().max(1), ROW, x);
+    let mut panel = panel.no_data(rows.is_empty());
+    let mut table = table();
+    for (k, row) in rows.iter().enumerate() {
+        let over = Label::new(at(0.0, 0.0), row.baseline.as_str());
+        panel.row_name(k, over.size(12.0).class("row").row(k));
+        let middle = |x: f64| at(x, row_middle(k));
+        if let Some([low, median, high]) = row.drawn {
+            let style = Style::edged(Fill::car(0), 0.5).fill_opacity(0.35).row(k);
+            panel.bar(k, (low, high), (-HALF, HALF), style);
+            panel.symbol(
+                Symbol::CIRCLE,
+                middle(median),
+                RADIUS - 1.0,
+                Symbol::white(INK).row(k),
+            );
+        }
+        if let Some([low, high]) = row.published {
+            let line = Style::line(stroke(CONTRARY, 2.0, &[])).row(k);
+            panel.segment(middle(low), middle(high), line);
+            let mark = middle(0.5 * (low + high));
+            panel.symbol(
+                Symbol::DIAMOND,
+                mark,
+                RADIUS,
+                Symbol::white(CONTRARY).row(k),
+            );
+        }
+        if let Some(files) = row.files {
+            panel.symbol(
+                Symbol::CIRCLE,
+                middle(files),
+                RADIUS,
+                Symbol::filled(INK).row(k),
+            );
+        }
+        let words = Label::new(
+            at(f64::INFINITY, row_middle(k)).shift(8.0, 4.0),
+            in_words(row),
+        );
+        panel.label(words.size(11.0).colour(QUIET));
+        table.push(cells(row));
+    }
+    panel.upright(0.0, stroke(INK, 1.2, &[]));
+    let first = rows.first();
+    let first = first.and_then(|row| Some((row.baseline.as_str(), row.files?, row.interval())));
+    Chart::new(says::strip(subject, first), conditions, MARGIN)
+        .panels([panel])
+        .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
+        .picture(table)
+}
+
+fn legend(rows: &[Against]) -> Vec<Entry> {
+    let mut list = vec![Entry::symbol(
+        Symbol::CIRCLE,
+        Symbol::filled(INK),
+        "values of the files",
+    )];
+    if rows.iter().any(|row| row.drawn.is_some()) {
+        list.push(Entry::fill(Fill::car(0), "90 % of the draws"));
+        list.push(Entry::symbol(
+            Symbol::CIRCLE,
+            Symbol::white(INK),
+            "median of the draws",
+        ));
+    }
+    if rows.iter().any(|row| row.published.is_some()) {
+        list.push(Entry::symbol(
+            Symbol::DIAMOND,
+            Symbol::white(CONTRARY),
+            "published, contradicts",
+        ));
+    }
+    list
+}
+
+/// "+7 % (+1 to +10 %)"; what is published after it.
+fn in_words(row: &Against) -> String {
+    let digits = row.interval().map_or(1, decimals);
+    let number = |x: f64, digits| cvtcycle_output::number::signed(x, digits);
+    let mut text = row
+        .files
+        .map_or_else(String::new, |x| format!("{} %", number(x, digits)));
+    if let Some(interval) = row.interval() {
+        text += &format!(" ({})", says::level(interval));
+    }
+    if let Some([low, high]) = row.published {
+        text += &format!(", published {} %", number(0.5 * (low + high), 0));
+    }
+    text
+}
+
+fn table() -> PictureTable {
+    PictureTable::new(&[
+        ("Against", ""),
+        ("Values of the files", "%"),
+        ("5 % of the draws below", "%"),
+        ("Median", "%"),
+        ("95 % of the draws below", "%"),
+        ("Published from", "%"),
+        ("to", "%"),
+    ])
+}
+
+fn cells(row: &Against) -> Vec<String> {
+    let drawn = (0..3).map(|k| row.drawn.map(|of| of[k]));
+    let published = (0..2).map(|k| row.published.map(|of| of[k]));
+    let numbers = [row.files].into_iter().chain(drawn).chain(published);
+    let cells = numbers.map(|x| optional_cell(x, 0.01));
+    [row.baseline.clone()].into_iter().chain(cells).collect()
+}

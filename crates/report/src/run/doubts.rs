@@ -1,0 +1,200 @@
+//! Results behind page 1: fuel by phase, where the energy went, what the studies say, what to doubt.
+
+use super::super::document::{Block, ReportTable, Section};
+use super::super::number::{Quantity, capital_first, grouped, list_of, percent, phase, words};
+use super::super::results::{RunResults, StudyResults};
+use super::super::{study_answers, validation};
+use super::{Car, energy};
+use cvtcycle_output::summary::{RunSummary, Summary};
+use cvtcycle_study::words::run::{intervals, maps_left};
+
+pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
+    let mut section = Section::new("results", "Results, and what to doubt");
+    let summary = &found.summary;
+    section.table(fuel(summary));
+    section.text(where_it_went(cars));
+    if let [subject, baseline, ..] = cars {
+        section.text(energy::difference(subject, baseline));
+    }
+    section.text(ends(cars));
+    for own in &found.studies {
+        // A study of another case says nothing about this run; its section says what it is.
+        if let Some(why) = study_answers::other_case(own, summary) {
+            let title = &own.answer.title;
+            section.alert(format!(
+                "The study \u{201c}{title}\u{201d} is of another case: {why}."
+            ));
+            continue;
+        }
+        // What the levers save is on page 1 and in their own section.
+        if own.outline.levers.is_some() {
+            continue;
+        }
+        if let Some(text) = own.unfinished() {
+            section.alert(format!("{text}; what it says here is of these."));
+        }
+        let title = &own.answer.title;
+        let answers = study_answers::answers_of_run(own, summary).into_iter();
+        let named = answers.map(|line| format!("Study \u{201c}{title}\u{201d}: {line}"));
+        section.blocks.extend(named.map(Block::Text));
+    }
+    section.heading("What to doubt");
+    section.blocks.push(Block::List(doubts(found, cars)));
+    section
+}
+
+/// Fuel, distance and difference of each car, by phase.
+fn fuel(summary: &Summary) -> ReportTable {
+    let runs = &summary.runs;
+    let columns = runs.iter().map(|run| (run.label().to_owned(), ""));
+    let mut table = ReportTable::of_numbers("Fuel and distance", "", columns);
+    let mut add = |what: &str, quantity: Quantity, strong: bool, of: &ByRun| {
+        let name = format!("{what} [{}]", quantity.unit());
+        let values = runs.iter().enumerate();
+        table.named(name, values.map(|(k, run)| quantity.bare(of(k, run))));
+        table.emphasise(strong);
+    };
+    let groups = runs.first().map_or(&[][..], |run| &run.phases);
+    for (p, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
+        let name = format!("Fuel, {}", phase(&group.name));
+        add(&name, Quantity::Fuel, false, &|_, run| {
+            run.phases.get(p).and_then(|p| p.fuel_l_per_100km)
+        });
+    }
+    let weighted = runs
+        .iter()
+        .any(|run| run.weighted_fuel_l_per_100km.is_some());
+    add("Fuel, whole cycle", Quantity::Fuel, !weighted, &|_, run| {
+        run.fuel_l_per_100km
+    });
+    if weighted {
+        let of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
+        add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, of);
+    }
+    if runs.len() > 1 {
+        let against = |k: usize| summary.comparison.get(k.checked_sub(1)?)?.fuel_percent;
+        add(
+            "Subject against this car",
+            Quantity::Percent,
+            true,
+            &|k, _| against(k),
+        );
+    }
+    let co2 = if weighted {
+        "Carbon dioxide, weighted"
+    } else {
+        "Carbon dioxide"
+    };
+    let of: &ByRun = &|_, run| run.weighted_co2_g_per_km.or(run.co2_g_per_km);
+    add(co2, Quantity::Co2, false, of);
+    add("Driven distance", Quantity::Distance, false, &|_, run| {
+        Some(run.distance_km)
+    });
+    table.note = "Positive differences: the subject uses more.".to_owned();
+    table
+}
+
+/// A number of a run by its index.
+type ByRun<'a> = dyn Fn(usize, &RunSummary) -> Option<f64> + 'a;
+
+fn where_it_went(cars: &[Car]) -> String {
+    let Some(subject) = cars.first() else {
+        return String::new();
+    };
+    let run = subject.run;
+    let mut losses = subject.losses_kj();
+    losses.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let largest = || losses.iter().take(3);
+    let names: Vec<String> = largest().map(|(c, _)| run.loss_words(c.name())).collect();
+    let sum: f64 = largest().map(|(_, kj)| kj).sum();
+    let share = |run: &RunSummary| percent(run.ledger_kj.get("losses"), run.fuel_energy_kj);
+    let others = cars[1..].iter();
+    let others = others.map(|car| format!(", {} {} %", car.run.label(), share(car.run)));
+    let lost = run.transmission_loss_kj();
+    format!(
+        "The transmission of {} loses {} % of the fuel's energy ({}){}. {} are {} % of that loss.",
+        run.label(),
+        share(run),
+        Quantity::Energy.text(lost),
+        others.collect::<String>(),
+        capital_first(&list_of(&names)),
+        grouped(100.0 * sum / lost, 0)
+    )
+}
+
+fn ends(cars: &[Car]) -> String {
+    let temperatures = |car: &Car| {
+        let nodes = ["transmission_sump", "engine_oil", "coolant"];
+        let end = |node: &str| words(node) + " " + &Quantity::Degc.text(car.run.end_degc.get(node));
+        format!("{}: {}", car.run.label(), nodes.map(end).join(", "))
+    };
+    let seconds = cars
+        .first()
+        .map(|car| Quantity::Seconds.text(car.run.duration_s));
+    let seconds = seconds.unwrap_or_default();
+    let ends: Vec<String> = cars.iter().map(temperatures).collect();
+    format!("At the end, after {seconds}: {}.", ends.join("; "))
+}
+
+/// Temperature below which the thesis measured trends only, degC.
+const MEASURED_FROM_DEGC: f64 = 25.0;
+
+/// Share of the time in which the transmission oil is below the measured temperatures, in a sentence, if there is any.
+pub(super) fn cold(car: &Car) -> Option<String> {
+    let history = car.history?;
+    let degc = history.column("transmission_sump_degc").iter();
+    let steps = degc.zip(history.column("dt_s"));
+    let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
+    let cold: f64 = cold.map(|(_, dt)| dt).sum();
+    let share = grouped(100.0 * cold / car.run.duration_s, 0);
+    let (name, from) = (car.run.label(), super::degc(MEASURED_FROM_DEGC));
+    (cold > 0.0).then(|| {
+        format!("For {share} % of the cycle the transmission oil of {name} is colder than any measurement of losses ({from}): there they are extrapolated.")
+    })
+}
+
+fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
+    let outside = cars.iter().filter(|car| car.run.outside_validity_s > 0.0);
+    let outside = outside.map(|car| {
+        let seconds = Quantity::Seconds.text(car.run.outside_validity_s);
+        let name = car.run.label();
+        format!("{name} ran outside the validity of a model for {seconds}.")
+    });
+    let mut list: Vec<String> = outside.collect();
+    list.extend(maps_left(&found.summary.labelled()));
+    let labelled = found.summary.labelled();
+    let unlike = labelled.comparison.iter();
+    let unlike = unlike.filter(|comparison| !comparison.differences.is_empty());
+    list.extend(
+        unlike.map(|of| format!("The comparison with {} is {}.", of.baseline, of.likeness)),
+    );
+    list.extend(cars.iter().filter_map(cold));
+    list.extend(super::values::doubt(found, cars));
+    let has_interval = |study: &&StudyResults| {
+        study.outline.plan.design.is_sampled()
+            && !study.answer.comparisons.is_empty()
+            && study.answer.points_done > 0
+            && study_answers::other_case(study, &found.summary).is_none()
+    };
+    let none = "There is no study of uncertainty of this case: the difference has no interval.";
+    let known = intervals(&found.summary.labelled());
+    let is_known = !known.is_empty();
+    list.extend(known);
+    list.extend(match found.studies.iter().find(has_interval) {
+        None => (!is_known).then(|| none.to_owned()),
+        Some(study) => {
+            let unfinished = study.unfinished();
+            unfinished.map(|text| format!("Its interval is preliminary: {text}."))
+        }
+    });
+    list.extend(found.validation.as_ref().map(validation::doubt));
+    for car in cars {
+        if let Some(safety) = car.run.min_clamp_safety {
+            let (name, safety) = (car.run.label(), Quantity::Ratio.text(safety));
+            list.push(format!(
+                "The belt of {name} is clamped to at least {safety} times its load."
+            ));
+        }
+    }
+    list
+}

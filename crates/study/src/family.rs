@@ -1,0 +1,200 @@
+//! One car with other numbers, as a function of them: what optimisers and sensitivity analyses of other programs call.
+//!
+//! A point is driven as a study drives it, and fails as a run of a study fails.
+
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
+use cvtcycle_config::setup::{AMBIENT, Setup};
+use cvtcycle_config::{Problem, Problems};
+use cvtcycle_model::drive::{Conditions, drive_into};
+use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_output::summary::{Driven, Settings, run_summary};
+use cvtcycle_output::table::{Column, Head};
+
+use crate::execute::outputs::{FUEL, Run, outputs};
+use crate::execute::{reason, status};
+
+/// The argument that is no key of the car's files.
+const AMBIENT_DEGC: &str = "ambient_degc";
+
+/// What a number of a point is.
+enum Argument {
+    /// A number of the car's files.
+    Number(ParameterRef),
+    /// Ambient temperature, degC.
+    Ambient,
+}
+
+/// A car, a cycle, and the keys whose values are the arguments.
+///
+/// ```
+/// use cvtcycle_config::{cycle, setup::{Options, template::VehicleTemplate}};
+/// use cvtcycle_model::drive::{Conditions, Start};
+/// use cvtcycle_study::family::Family;
+/// let car = VehicleTemplate::load("rover_216_cvt", &Options::default())?;
+/// let conditions = Conditions { ambient_k: 298.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
+/// let family = Family::new(car, cycle::find("ece15")?, conditions, &["road_load.mass_kg"])?;
+/// let fuel = family.outputs_of(&["fuel_l_per_100km"])?;
+/// let mut worker = family.worker();
+/// let fuel = |numbers: &[f64], worker: &mut _| family.point(worker, numbers, &fuel).numbers[0];
+/// assert!(fuel(&[1300.0], &mut worker) > fuel(&[1100.0], &mut worker));
+/// assert!(fuel(&[-1.0], &mut worker).is_nan());
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
+pub struct Family {
+    template: VehicleTemplate,
+    setup: Setup,
+    cycle: Cycle,
+    conditions: Conditions,
+    arguments: Vec<Argument>,
+    outputs: Vec<Column<Run>>,
+}
+
+/// The documents of a family's car, for one thread.
+pub struct FamilyWorker(Variant);
+
+/// What comes of a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FamilyPoint {
+    /// The wanted outputs; NaN for a car that cannot be driven, and for what it has not.
+    pub numbers: Vec<f64>,
+    /// Why the car could not be driven, or which check its drive failed; empty if all is well.
+    pub reason: String,
+}
+
+impl Family {
+    /// The family of a car, with the keys that are its arguments: those of its files, and `ambient_degc`.
+    ///
+    /// # Errors
+    /// Keys that the car does not have, or that hold no single number.
+    pub fn new<S: AsRef<str>>(
+        (template, setup): (VehicleTemplate, Setup),
+        cycle: Cycle,
+        conditions: Conditions,
+        keys: &[S],
+    ) -> Result<Self, Problems> {
+        let mut problems = Problems::new();
+        let argument = |key: &S| match key.as_ref() {
+            AMBIENT_DEGC => Some(Argument::Ambient),
+            key => problems.take(template.slot(key)).map(Argument::Number),
+        };
+        let arguments: Vec<Argument> = keys.iter().filter_map(argument).collect();
+        problems.finish()?;
+        let groups = cycle.phase_groups();
+        let phases = groups.into_iter().map(|(name, _)| name);
+        let phases: Vec<String> = phases.collect();
+        let phases = if phases.len() > 1 { phases } else { Vec::new() };
+        Ok(Family {
+            outputs: outputs(&phases, &setup.transmission().components()),
+            template,
+            setup,
+            cycle,
+            conditions: Conditions {
+                keep_rows: false,
+                ..conditions
+            },
+            arguments,
+        })
+    }
+
+    /// Name and unit of each argument.
+    pub fn arguments(&self) -> Vec<(String, &'static str)> {
+        let argument = |argument: &Argument| match argument {
+            Argument::Number(slot) => (slot.key().to_owned(), slot.unit()),
+            Argument::Ambient => (AMBIENT_DEGC.to_owned(), "degC"),
+        };
+        self.arguments.iter().map(argument).collect()
+    }
+
+    /// The value of each argument in the car as it is.
+    pub fn base(&self) -> Vec<f64> {
+        let base = |argument: &Argument| match argument {
+            Argument::Number(slot) => slot.base(),
+            Argument::Ambient => self.conditions.ambient_k - ZERO_DEGC_K,
+        };
+        self.arguments.iter().map(base).collect()
+    }
+
+    /// Every output that a point has.
+    pub fn outputs(&self) -> Vec<Head> {
+        self.outputs.iter().map(Column::head).collect()
+    }
+
+    /// Places of outputs by their names; without a name the headline fuel.
+    ///
+    /// # Errors
+    /// Names that no output has.
+    pub fn outputs_of<S: AsRef<str>>(&self, names: &[S]) -> Result<Vec<usize>, Problems> {
+        let mut problems = Problems::new();
+        let all = || self.outputs.iter().map(|column| &*column.name);
+        let mut place = |name: &str| {
+            let found = all().position(|own| own == name);
+            if found.is_none() {
+                let hint = cvtcycle_config::did_you_mean(name, all());
+                let message = format!("there is no output `{name}`");
+                let problem = Problem::unknown_name(message).key("outputs").value(name);
+                problems.add(problem.hint(hint.unwrap_or_default()));
+            }
+            found
+        };
+        let found: Vec<usize> = match names {
+            [] => place(FUEL).into_iter().collect(),
+            names => names
+                .iter()
+                .filter_map(|name| place(name.as_ref()))
+                .collect(),
+        };
+        problems.finish().map(|()| found)
+    }
+
+    /// Documents for a thread.
+    pub fn worker(&self) -> FamilyWorker {
+        FamilyWorker(self.template.bench())
+    }
+
+    /// Drives the car with these values of the arguments, in the units of their keys.
+    pub fn point(
+        &self,
+        FamilyWorker(variant): &mut FamilyWorker,
+        numbers: &[f64],
+        wanted: &[usize],
+    ) -> FamilyPoint {
+        let refused = |reason: String| FamilyPoint {
+            numbers: vec![f64::NAN; wanted.len()],
+            reason,
+        };
+        let mut conditions = self.conditions;
+        variant.reset();
+        for (argument, number) in self.arguments.iter().zip(numbers) {
+            match argument {
+                Argument::Number(slot) => variant.set(slot, *number),
+                Argument::Ambient if AMBIENT.contains(*number) => {
+                    conditions.ambient_k = number + ZERO_DEGC_K;
+                }
+                Argument::Ambient => {
+                    let allowed = AMBIENT.in_unit("degC");
+                    return refused(format!(
+                        "`{AMBIENT_DEGC}` is out of range (allowed: {allowed})"
+                    ));
+                }
+            }
+        }
+        let Ok(setup) = variant.build() else {
+            return refused(reason(&variant.problems()));
+        };
+        let outcome = drive_into(&setup, &self.cycle, &conditions, None);
+        let driven = Driven {
+            name: &self.setup.name,
+            setup: &setup,
+            outcome: &outcome,
+        };
+        let summary = run_summary(&self.cycle, "subject", &Settings::default(), &driven);
+        let reason = status(&summary).reason().to_owned();
+        let run = (summary, None);
+        let numbers = wanted.iter().map(|k| self.outputs[*k].number_of(&run));
+        FamilyPoint {
+            numbers: numbers.collect(),
+            reason,
+        }
+    }
+}

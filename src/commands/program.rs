@@ -1,0 +1,104 @@
+//! The program: the words of a command line to its output and exit code.
+
+use std::ffi::OsString;
+use std::sync::{Mutex, PoisonError};
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{CommandFactory, FromArgMatches};
+use cvtcycle::config::setup::{Kind, is_path};
+use cvtcycle::config::{Problem, is_hidden, visible};
+
+use super::Cli;
+use crate::args::problems::bad_value;
+use crate::print::colour::choice;
+use crate::print::{self, CommandOutput, Ending, Terminal};
+
+/// The words after the name of the program, for the record of a run.
+static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
+
+/// The words of the command line after the name of the program.
+pub fn words() -> Vec<OsString> {
+    WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone()
+}
+
+/// Runs the program: parses the words of a command line, the first of which is its own name, runs the command, prints, and returns the
+/// exit code. It is the whole program and takes the process for itself: threads, handling of Ctrl-C, standard output.
+pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words.iter().skip(1).cloned().collect();
+    // Read before clap parses the words, because it applies to its messages as well.
+    let colour = choice(&words);
+    let parsed = Cli::command()
+        .color(colour)
+        .try_get_matches_from(&words)
+        .and_then(|matches| Cli::from_arg_matches(&matches));
+    match parsed {
+        Ok(cli) => {
+            let terminal = Terminal::new(cli.color);
+            print::finish(cli.execute(terminal), terminal)
+        }
+        Err(mut error) => {
+            suggest_vehicle(&mut error, &words);
+            let terminal = Terminal::new(colour);
+            let result = match error.kind() {
+                ErrorKind::InvalidUtf8 => Err(not_utf8(&words).into()),
+                _ => Ok(usage(&error, terminal)),
+            };
+            print::finish(result, terminal)
+        }
+    }
+}
+
+/// `run mycar.toml`: where a command has `--vehicle`, a file without an option is likely to be one.
+fn suggest_vehicle(error: &mut clap::Error, words: &[OsString]) {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else {
+        return;
+    };
+    let program = Cli::command();
+    let name = words.get(1).and_then(|word| word.to_str());
+    let command = name.and_then(|name| program.find_subcommand(name));
+    let has_vehicle = |command: &clap::Command| {
+        let mut options = command.get_arguments();
+        options.any(|option| option.get_long() == Some("vehicle"))
+    };
+    let is_file =
+        !word.starts_with('-') && (is_path(word) || Kind::Vehicle.names().contains(&word.as_str()));
+    if error.kind() == ErrorKind::UnknownArgument && is_file && command.is_some_and(has_vehicle) {
+        let tip = format!("a vehicle is named by an option: --vehicle {word}");
+        error.insert(
+            ContextKind::Suggested,
+            ContextValue::StyledStrs(vec![tip.into()]),
+        );
+    }
+}
+
+/// Values and names of input files are UTF-8; only paths of output may be any path of the system.
+fn not_utf8(words: &[OsString]) -> Problem {
+    let word = words.iter().find(|word| word.to_str().is_none());
+    let value = word.map_or_else(String::new, |word| word.to_string_lossy().into_owned());
+    let message = format!("`{value}` is not UTF-8");
+    let hint = "rename the file, or name it by a link; --out takes any name";
+    bad_value("command line", &value, "", &message, hint)
+}
+
+/// Help, version and usage errors, written by our own writer, which handles a closed pipe and a full disk.
+fn usage(error: &clap::Error, terminal: Terminal) -> CommandOutput {
+    let plain = error.render().to_string();
+    // It repeats words of the command line.
+    let has_hidden = plain.contains(is_hidden);
+    let text = |colours: bool| match colours && !has_hidden {
+        true => error.render().ansi().to_string(),
+        false => visible(&plain).into_owned(),
+    };
+    match error.use_stderr() {
+        true => CommandOutput {
+            problems: text(terminal.stderr.is_on()),
+            ending: Ending::BadInput,
+            ..CommandOutput::default()
+        },
+        false => CommandOutput {
+            help: text(terminal.stdout.is_on()),
+            ..CommandOutput::default()
+        },
+    }
+}

@@ -1,0 +1,108 @@
+//! `label`: the tests of a fuel label and what is made of them.
+//!
+//! Truth: each test driven by `run`; the sums of LB-1 are tested with the formulas.
+
+use super::{json, refused, run, stdout};
+use serde_json::Value;
+
+/// Every test is the run that its description says, and both tables and notes are printed.
+#[test]
+fn tests_of_a_label_are_runs() {
+    let label = json(&[
+        "label",
+        "civic_20_6mt",
+        "--cold-w",
+        "300",
+        "--ac-w",
+        "2000",
+        "--json",
+    ]);
+    let tests = &label["cars"][0]["tests"];
+    let driven = |words: &[&str]| {
+        let car = [
+            "run",
+            "--vehicle",
+            "civic_20_6mt",
+            "--baseline",
+            "none",
+            "--price",
+            "never",
+        ];
+        json(&[&car[..], words, &["--json"]].concat())["runs"][0].clone()
+    };
+    let near = |a: &Value, b: &Value| {
+        let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    };
+    let fuel = "fuel_l_per_100km";
+    let ftp = driven(&["--cycle", "ftp75", "--ambient", "24"]);
+    near(&tests["ftp75"], &ftp["weighted_fuel_l_per_100km"]);
+    let cold = [
+        "--cycle",
+        "ftp75",
+        "--ambient",
+        "-6.7",
+        "--set",
+        "road_load.load_factor=1.1",
+        "--set",
+        "engine.electrical_w+=300",
+    ];
+    let cold = driven(&cold);
+    for (bag, phase) in [0, 1, 3].into_iter().enumerate() {
+        near(&tests["bags"][bag], &ftp["phases"][phase][fuel]);
+        near(&tests["cold_bags"][bag], &cold["phases"][phase][fuel]);
+    }
+    let warm = |cycle, degc| driven(&["--cycle", cycle, "--ambient", degc, "--start", "warm"]);
+    near(&tests["hwfet"], &warm("hwfet", "24")[fuel]);
+    let us06 = warm("us06", "24");
+    for part in us06["phases"].as_array().unwrap() {
+        let place = usize::from(part["name"] == "highway");
+        near(&tests["us06"][place], &part[fuel]);
+    }
+    let sc03 = [
+        "--cycle",
+        "sc03",
+        "--ambient",
+        "35",
+        "--start",
+        "warm",
+        "--set",
+        "engine.electrical_w+=2000",
+    ];
+    near(&tests["sc03"], &driven(&sc03)[fuel]);
+    for (place, degc) in ["23", "14"].into_iter().enumerate() {
+        let wltc = driven(&["--cycle", "wltc", "--ambient", degc]);
+        near(
+            &label["cars"][0]["wltp"][place]["co2_g_per_km"],
+            &wltc["co2_g_per_km"],
+        );
+    }
+    let text = stdout(&run(&["label", "civic_20_cvt", "civic_20_6mt"])).replace('\n', " ");
+    for part in [
+        "five cycles (LB-4), city",
+        "CO2 at 14 over 23 degC",
+        "without air conditioning",
+        "without heating",
+        "not for certification",
+    ] {
+        assert!(text.contains(part), "{part}\n{text}");
+    }
+}
+
+#[test]
+fn all_problems_of_a_label_at_once() {
+    let message = refused(&[
+        "label",
+        "civic_20_cv",
+        "rover_216_cvt",
+        "--ac-w",
+        "-1",
+        "--cold-w",
+        "x",
+        "--set",
+        "road_load.mass=1",
+    ]);
+    for part in ["civic_20_cvt", "--ac-w", "--cold-w", "road_load.mass_kg"] {
+        assert!(message.contains(part), "{part}\n{message}");
+    }
+}

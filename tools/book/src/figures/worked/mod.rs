@@ -1,0 +1,477 @@
+//! One operating point worked through the pages of the belt: each equation with its numbers, worked out here by the page's own
+//! equations, next to what the program gives.
+
+mod losses;
+mod slip;
+
+use super::point::{Answer, HEAD, POINT, answers, numbers};
+use super::reference::{RPM, Reference};
+use cvtcycle::model::fluid::Friction;
+use cvtcycle::model::transmission::cvt::variator::{Belt, BeltAtRatio};
+use std::fmt::Write as _;
+
+/// A line of a worked example.
+#[derive(Clone)]
+struct Step {
+    /// Symbol, in LaTeX.
+    symbol: &'static str,
+    /// Label of the equation, or where the number is from.
+    by: &'static str,
+    /// The equation with its numbers, in LaTeX.
+    worked: String,
+    /// Result of the equation as the page has it.
+    value: f64,
+    /// The same from the program, where it prints it.
+    program: Option<f64>,
+    /// Factor to the unit that is shown, and the unit.
+    shown: (f64, &'static str),
+}
+
+/// A result of the pages' equations, and the same of the program.
+pub struct Checked {
+    /// Page and symbol.
+    pub name: String,
+    /// By the equations of the page.
+    pub worked: f64,
+    /// By the program.
+    pub program: f64,
+}
+
+/// Every result that the program has as well.
+///
+/// # Errors
+/// A sentence, if the belt does not answer.
+pub fn checked() -> Result<Vec<Checked>, String> {
+    let pages = pages(&Reference::load()?)?;
+    let of_page = |(page, steps): (&'static str, Vec<Step>)| {
+        let checked = steps.into_iter().filter_map(move |step| {
+            let name = format!("{page}: {}", step.symbol);
+            step.program.map(|program| Checked {
+                name,
+                worked: step.value,
+                program,
+            })
+        });
+        checked.collect::<Vec<_>>()
+    };
+    Ok(pages.into_iter().flat_map(of_page).collect())
+}
+
+/// Worked pages: name, steps.
+fn pages(r: &Reference) -> Result<Vec<(&'static str, Vec<Step>)>, String> {
+    let of = Point::new(r)?;
+    let forces = of.forces();
+    Ok(vec![
+        ("geometry", of.geometry()),
+        ("tension", of.tension(&forces)),
+        ("slip", of.slip(&forces)),
+        ("bands", of.bands(&forces)),
+        ("deflection", of.deflection()),
+        ("belt", of.sum(&forces)),
+    ])
+}
+
+/// The include files: a table a page, and the table of the exercise.
+///
+/// # Errors
+/// A sentence, if the belt does not answer.
+pub fn files(r: &Reference) -> Result<Vec<(String, String)>, String> {
+    let mut files = Vec::new();
+    for (page, steps) in pages(r)? {
+        files.push((format!("generated/worked_{page}.md"), table(&steps)));
+    }
+    files.push(("generated/exercise.md".to_owned(), exercise(r)?));
+    Ok(files)
+}
+
+fn table(steps: &[Step]) -> String {
+    let mut text = "<!-- Written by `tools/docs` from `cvtcycle belt`. -->\n\n\
+        | symbol | result | with the numbers | by |\n|---|---:|---|---|\n"
+        .to_owned();
+    for step in steps {
+        // Writing into a String cannot fail.
+        let _ = writeln!(
+            text,
+            "| ${}$ | {} | ${}$ | {} |",
+            step.symbol,
+            format!("{} {}", digits(step.value * step.shown.0), step.shown.1).trim_end(),
+            step.worked,
+            linked(step.by)
+        );
+    }
+    text
+}
+
+/// A label as a link to its page.
+fn linked(by: &str) -> String {
+    let page = match by.get(..2) {
+        Some("GE") => "geometry",
+        Some("TE") => "tension",
+        Some("SL") => "slip",
+        Some("BT") => "bands",
+        Some("WE" | "PE") => "deflection",
+        Some("VA") => "belt",
+        _ => return by.to_owned(),
+    };
+    format!("[{by}]({page}.md#{by})")
+}
+
+/// Four significant digits.
+fn digits(x: f64) -> String {
+    let whole = x.abs().max(1e-9).log10().floor() as i32 + 1;
+    let places = usize::try_from(4 - whole).unwrap_or(0);
+    format!("{x:.places$}").replace('-', "\u{2212}")
+}
+
+/// The point with what its pages start from.
+struct Point<'r> {
+    r: &'r Reference,
+    belt: &'r Belt,
+    friction: Friction,
+    at: BeltAtRatio,
+    answer: Answer,
+    ratio: f64,
+    bar: f64,
+    output_nm: f64,
+    rad_s: f64,
+}
+
+/// Forces that later pages need, by the equations of the earlier ones.
+struct Forces {
+    /// Mean tension without compression, N: A of TE-7.
+    bare_n: f64,
+    speed_m_s: f64,
+    sigma: f64,
+    compression_n: f64,
+    mean_n: f64,
+    step_n: f64,
+    /// Torque of the bands at the primary, Nm.
+    band_nm: f64,
+}
+
+impl<'r> Point<'r> {
+    fn new(r: &'r Reference) -> Result<Self, String> {
+        let belt = &r.cvt().belt;
+        let [ratio, rpm, bar, output_nm] = numbers(POINT)?;
+        let answer = answers(r, &[POINT])?.pop().ok_or("no answer")?;
+        Ok(Point {
+            r,
+            belt,
+            friction: r.oil().friction,
+            at: BeltAtRatio::new(belt, ratio),
+            answer,
+            ratio,
+            bar,
+            output_nm,
+            rad_s: rpm * RPM,
+        })
+    }
+
+    /// Forces of clamping from the wraps, N: primary, secondary.
+    fn clamps(&self) -> [f64; 2] {
+        let of = |name: &str| self.answer.of(name);
+        let secondary = of("secondary_clamp_n");
+        let wraps = [of("primary_wrap_rad"), of("secondary_wrap_rad")];
+        [secondary * wraps[0] / wraps[1], secondary]
+    }
+
+    /// Normal force on a segment, N: primary, secondary (SL-4).
+    fn normals(&self) -> [f64; 2] {
+        let (g, belt) = (&self.at.geometry, self.belt);
+        let [fp, fs] = self.clamps();
+        let normal = |clamp: f64, radius: f64, wrap: f64| {
+            2.0 * clamp * belt.segment_thickness_m / (radius * wrap * belt.cos_wedge)
+        };
+        [
+            normal(fp, g.primary_radius_m, g.primary_wrap_rad),
+            normal(fs, g.secondary_radius_m, g.secondary_wrap_rad),
+        ]
+    }
+
+    /// The smaller wrap, rad.
+    fn small_rad(&self) -> f64 {
+        let g = &self.at.geometry;
+        g.primary_wrap_rad.min(g.secondary_wrap_rad)
+    }
+
+    fn forces(&self) -> Forces {
+        let (g, belt) = (&self.at.geometry, self.belt);
+        let [primary, secondary] = self.clamps();
+        let speed_m_s = self.rad_s * g.primary_radius_m;
+        let bare_n = primary * belt.tan_wedge / g.primary_wrap_rad
+            + secondary * belt.tan_wedge / g.secondary_wrap_rad
+            + belt.masses_kg_m()[0] * speed_m_s * speed_m_s;
+        let sigma = -(self.ratio.ln() / belt.unity_width).tanh();
+        let grip = self.friction.band * self.small_rad();
+        let z = self.output_nm / g.secondary_radius_m + sigma * grip * bare_n;
+        let compression_n = z / (1.0 - sigma * z.signum() * 0.5 * grip);
+        let mean_n = bare_n + 0.5 * compression_n.abs();
+        let step_n = -sigma * grip * mean_n;
+        let lever = belt.band_offset_m + belt.band_thickness_m * 0.5 * (belt.band_count - 1.0);
+        let band_nm = sigma.abs() * grip * mean_n * (1.0 / self.ratio - 1.0).abs() * lever;
+        Forces {
+            bare_n,
+            speed_m_s,
+            sigma,
+            compression_n,
+            mean_n,
+            step_n,
+            band_nm,
+        }
+    }
+
+    fn step(&self, symbol: &'static str, by: &'static str, worked: String, value: f64) -> Step {
+        Step {
+            symbol,
+            by,
+            worked,
+            value,
+            program: None,
+            shown: (1.0, ""),
+        }
+    }
+
+    fn geometry(&self) -> Vec<Step> {
+        let g = &self.at.geometry;
+        let (x, l) = (1e3 * self.belt.centre_distance_m, 1e3 * self.belt.length_m);
+        let (rp, rs) = (1e3 * g.primary_radius_m, 1e3 * g.secondary_radius_m);
+        let alpha = ((rs - rp) / x).asin();
+        let wraps = [1.0, -1.0].map(|s| std::f64::consts::PI - s * 2.0 * alpha);
+        let strut = (x * x - (rs - rp).powi(2)).sqrt();
+        let sum = rp * wraps[0] + rs * wraps[1] + 2.0 * strut;
+        let root = format!("f({rs:.2}\\ \\text{{mm}}) = 0, \\quad X = {x:.1}, \\ L = {l:.1}");
+        let mut steps = vec![
+            self.step("R_s", "GE-4", root, rs)
+                .of("secondary_radius_m", self, 1e3)
+                .mm(),
+            self.step(
+                "R_p",
+                "GE-1",
+                format!("{rs:.2} / {}", self.ratio),
+                rs / self.ratio,
+            )
+            .of("primary_radius_m", self, 1e3)
+            .mm(),
+        ];
+        steps.extend(self.wraps(alpha, wraps, [rp, rs, x]));
+        steps.extend([
+            self.step(
+                "\\ell_\\text{strut}",
+                "GE-3",
+                format!("\\sqrt{{{x:.1}^2 - {:.2}^2}}", rs - rp),
+                strut,
+            )
+            .of("strut_length_m", self, 1e3)
+            .mm(),
+            self.step(
+                "L",
+                "GE-3",
+                format!(
+                    "{rp:.2} \\cdot {:.4} + {rs:.2} \\cdot {:.4} + 2 \\cdot {strut:.2}",
+                    wraps[0], wraps[1]
+                ),
+                sum,
+            )
+            .is(l)
+            .mm(),
+        ]);
+        steps
+    }
+
+    /// Lean of the struts and wraps, from both radii and the centre distance, mm.
+    fn wraps(&self, alpha: f64, wraps: [f64; 2], [rp, rs, x]: [f64; 3]) -> [Step; 3] {
+        [
+            self.step(
+                "\\alpha",
+                "GE-2",
+                format!("\\arcsin\\frac{{{rs:.2} - {rp:.2}}}{{{x:.1}}}"),
+                alpha,
+            )
+            .unit("rad"),
+            self.step(
+                "\\beta_p",
+                "GE-2",
+                format!("\\pi - 2 \\cdot {alpha:.4}"),
+                wraps[0],
+            )
+            .of("primary_wrap_rad", self, 1.0)
+            .unit("rad"),
+            self.step(
+                "\\beta_s",
+                "GE-2",
+                format!("\\pi + 2 \\cdot {alpha:.4}"),
+                wraps[1],
+            )
+            .of("secondary_wrap_rad", self, 1.0)
+            .unit("rad"),
+        ]
+    }
+
+    fn tension(&self, f: &Forces) -> Vec<Step> {
+        let mut steps = self.clamping(f).to_vec();
+        steps.extend(self.compression(f));
+        steps
+    }
+
+    /// From the pressure to the mean tension without compression.
+    fn clamping(&self, f: &Forces) -> [Step; 4] {
+        let (g, belt) = (&self.at.geometry, self.belt);
+        let ([fp, fs], tan) = (self.clamps(), belt.tan_wedge);
+        let mass = belt.masses_kg_m()[0];
+        let (bp, bs) = (g.primary_wrap_rad, g.secondary_wrap_rad);
+        let wedge = (fp * tan / bp, fs * tan / bs);
+        [
+            self.step(
+                "F_s",
+                "VA-3",
+                "p_s A_s + F_\\text{spring} + \\ldots".to_owned(),
+                fs,
+            )
+            .of("secondary_clamp_n", self, 1.0)
+            .unit("N"),
+            self.step(
+                "F_p",
+                "TE-1",
+                format!("{fs:.0} \\cdot {bp:.3} / {bs:.3}"),
+                fp,
+            )
+            .of("primary_clamp_n", self, 1.0)
+            .unit("N"),
+            self.step(
+                "v",
+                "",
+                format!("{:.2} \\cdot {:.5}", self.rad_s, g.primary_radius_m),
+                f.speed_m_s,
+            )
+            .of("belt_speed_m_s", self, 1.0)
+            .unit("m/s"),
+            self.step(
+                "A",
+                "TE-7",
+                format!(
+                    "{:.1} + {:.1} + {mass:.3} \\cdot {:.3}^2",
+                    wedge.0, wedge.1, f.speed_m_s
+                ),
+                f.bare_n,
+            )
+            .unit("N"),
+        ]
+    }
+
+    /// Compression and tension step.
+    fn compression(&self, f: &Forces) -> [Step; 4] {
+        let g = &self.at.geometry;
+        let (mu, small) = (self.friction.band, self.small_rad());
+        let z = self.output_nm / g.secondary_radius_m + f.sigma * mu * small * f.bare_n;
+        let c = 0.5 * mu * small;
+        [
+            self.step(
+                "Z",
+                "TE-7",
+                format!(
+                    "{} / {:.5} - {mu} \\cdot {small:.3} \\cdot {:.1}",
+                    self.output_nm, g.secondary_radius_m, f.bare_n
+                ),
+                z,
+            )
+            .unit("N"),
+            self.step(
+                "C_x",
+                "TE-7",
+                format!("{z:.1} / (1 + {c:.4})"),
+                f.compression_n,
+            )
+            .of("segment_compression_n", self, 1.0)
+            .unit("N"),
+            self.step(
+                "T_m",
+                "TE-7",
+                format!("{:.1} + {:.1} / 2", f.bare_n, f.compression_n),
+                f.mean_n,
+            )
+            .is(0.5 * (self.answer.of("band_tension_1_n") + self.answer.of("band_tension_2_n")))
+            .unit("N"),
+            self.step(
+                "\\Delta T",
+                "TE-7",
+                format!("{mu} \\cdot {small:.3} \\cdot {:.1}", f.mean_n),
+                f.step_n,
+            )
+            .of("band_tension_step_n", self, 1.0)
+            .unit("N"),
+        ]
+    }
+}
+
+impl Step {
+    /// Held against a column of `cvtcycle belt`, times a factor.
+    fn of(self, column: &str, point: &Point, factor: f64) -> Self {
+        self.is(factor * point.answer.of(column))
+    }
+
+    /// Held against a number of the program.
+    fn is(self, program: f64) -> Self {
+        Step {
+            program: Some(program),
+            ..self
+        }
+    }
+
+    fn unit(self, unit: &'static str) -> Self {
+        Step {
+            shown: (1.0, unit),
+            ..self
+        }
+    }
+
+    fn mm(self) -> Self {
+        self.unit("mm")
+    }
+
+    fn percent(self) -> Self {
+        Step {
+            shown: (100.0, "%"),
+            ..self
+        }
+    }
+}
+
+/// The exercise: a table that a reader can make, and its answers.
+fn exercise(r: &Reference) -> Result<String, String> {
+    let rows = [
+        POINT,
+        "2.417,2000,30,40",
+        "1.0,2000,20,60",
+        "0.5,2000,11,40",
+    ];
+    let columns = [
+        ("segment_compression_n", "$C_x$ N"),
+        ("active_segments", "$k$"),
+        ("slip_percent", "$s$ %"),
+        ("belt_loss_nm", "loss Nm"),
+    ];
+    let mut text = format!(
+        "<!-- Written by `tools/docs` from `cvtcycle belt`. -->\n\n```text\n$ cat points.csv\n{HEAD}\n{}\n$ cvtcycle belt --points points.csv --out belt.csv\n```\n\n",
+        rows.join("\n")
+    );
+    let heads: Vec<&str> = columns.iter().map(|(_, head)| *head).collect();
+    let _ = writeln!(
+        text,
+        "<details>\n<summary>Answers</summary>\n\n| ratio, speed rpm, pressure bar, torque Nm | {} |\n|---|---|---|---|---|",
+        heads.join(" | ")
+    );
+    for (row, answer) in rows.iter().zip(answers(r, &rows)?) {
+        let cells: Vec<String> = columns
+            .iter()
+            .map(|(column, _)| digits(answer.of(column)))
+            .collect();
+        let _ = writeln!(
+            text,
+            "| {} | {} |",
+            row.replace(',', ", "),
+            cells.join(" | ")
+        );
+    }
+    text.push_str("\n</details>\n");
+    Ok(text)
+}
