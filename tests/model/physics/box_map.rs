@@ -237,10 +237,31 @@ fn scattered_points_of_a_linear_field() {
         let want = field(&[x[0], x[1], x[2], 0.0, 0.0]);
         assert!((got - want).abs() < 1e-9, "{got} {want}");
     }
-    assert!(leave_one_out(&rows).unwrap().1 < 1e-9);
+    assert!(leave_one_out(&rows).unwrap().largest_nm < 1e-9);
     let mut off = rows.clone();
     off[100].1 += 1.0;
-    assert!(leave_one_out(&off).unwrap().1 > 0.9);
+    let missed = leave_one_out(&off).unwrap();
+    assert!(missed.largest_nm > 0.9 && missed.rms_nm < missed.largest_nm);
+    let csv = off.iter().fold(
+        "ratio,input_speed_rpm,input_torque_nm,torque_loss_nm\n".to_owned(),
+        |csv, (x, y)| {
+            let rpm = x[1] * 30.0 / std::f64::consts::PI;
+            csv + &format!("{},{rpm},{},{}\n", x[0], x[2], y + 20.0)
+        },
+    );
+    let scattered = "transmission.cvt.maps.box_points=scattered";
+    let setup = car(CVT, &csv, &[BOX, scattered]).unwrap();
+    let said = format!(
+        "{} scattered points: each differs from the plane through the others by {:.2} N m (root of the mean square), {:.2} N m at most",
+        off.len(),
+        missed.rms_nm,
+        missed.largest_nm
+    );
+    assert!(
+        setup.notes.iter().any(|note| note.contains(&said)),
+        "{:?}",
+        setup.notes
+    );
     // Half of the box without a point, and points on one plane.
     let half = rows.iter().filter(|(x, _)| x[0] < 1.2 || x[1] < 100.0);
     let hole = gridded(&half.copied().collect::<Vec<_>>()).unwrap_err();

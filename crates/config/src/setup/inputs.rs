@@ -13,6 +13,7 @@ use cvtcycle_model::engine::Engine;
 use cvtcycle_model::files::{HEAD, TwinKeys, VEHICLE_FILE};
 use cvtcycle_model::fluid::{Friction, Lubricant};
 use cvtcycle_model::keys::Values;
+use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::road::RoadLoadInput;
 use cvtcycle_model::thermal::Network;
 use cvtcycle_model::transmission::Transmission;
@@ -229,6 +230,7 @@ impl Frame {
             false => Vec::new(),
         };
         notes.extend(changed_losses(&car.transmission));
+        notes.extend(scattered_maps(&car.transmission));
         Ok(Setup {
             name: self.name.clone(),
             title,
@@ -254,6 +256,18 @@ fn changed_losses(transmission: &Transmission) -> impl Iterator<Item = String> {
             "loss_factor.{name} = {factor}: to see what a loss costs, no car that could be built"
         )
     })
+}
+
+/// A sentence on each map from scattered points (MP-5): what its interpolation misses.
+fn scattered_maps(transmission: &Transmission) -> impl Iterator<Item = String> {
+    let of = |(_, map): (Component, &LossMap)| {
+        let scatter = map.scatter()?;
+        Some(format!(
+            "the map of the whole box has {} scattered points: each differs from the plane through the others by {:.2} N m (root of the mean square), {:.2} N m at most",
+            scatter.points, scatter.rms_nm, scatter.largest_nm
+        ))
+    };
+    transmission.maps().filter_map(of)
 }
 
 /// What a comparison of fluids does not tell.

@@ -14,6 +14,18 @@ const STILL_NM: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct LossMap {
     grid: Grid,
+    scatter: Option<Scatter>,
+}
+
+/// How well scattered points are met by the plane through their neighbours (MP-5), each left out in turn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scatter {
+    /// Number of points.
+    pub points: usize,
+    /// Root of the mean square of the differences, Nm.
+    pub rms_nm: f64,
+    /// Largest difference, Nm.
+    pub largest_nm: f64,
 }
 
 /// Where a map is read.
@@ -34,7 +46,21 @@ pub struct MapPoint {
 impl LossMap {
     /// A map from its grid.
     pub fn new(grid: Grid) -> Self {
-        LossMap { grid }
+        LossMap {
+            grid,
+            scatter: None,
+        }
+    }
+
+    /// The map of a grid that was made from scattered points.
+    #[must_use]
+    pub fn of_scatter(self, scatter: Option<Scatter>) -> Self {
+        LossMap { scatter, ..self }
+    }
+
+    /// How well the scattered points are met that the grid was made from, if it was.
+    pub fn scatter(&self) -> Option<Scatter> {
+        self.scatter
     }
 
     /// The grid of the map.

@@ -4,4 +4,4 @@ mod bsfc;
 mod loss;
 
 pub use bsfc::BsfcMap;
-pub use loss::{LossMap, MapPoint};
+pub use loss::{LossMap, MapPoint, Scatter};

@@ -276,7 +276,9 @@ pub(crate) fn from_values<V: Values>(
     let rows = s.file_table(key, table)?;
     let made = points(&rows, idle_nm).and_then(|points| match table.is_grid {
         true => map(&points),
-        false => scattered::gridded(&points).and_then(|points| map(&points)),
+        false => scattered::gridded(&points)
+            .and_then(|grid| map(&grid))
+            .map(|map| map.of_scatter(scattered::leave_one_out(&points))),
     });
     let report = |why: NoMap| s.complain(key.name, &why.allowed, &why.message, &why.hint);
     made.map_err(report).ok()

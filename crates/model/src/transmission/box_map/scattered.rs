@@ -7,6 +7,7 @@
 //! Refused where the points lie in one plane, and where a node is farther from every point than a quarter of an axis: nothing is guessed there.
 
 use super::NoMap;
+use crate::maps::Scatter;
 use crate::math::GRID_AXES;
 
 /// Values of an axis of the grid.
@@ -94,19 +95,23 @@ pub fn gridded(points: &[Point]) -> Result<Vec<Point>, NoMap> {
         .collect()
 }
 
-/// Root of the mean square of each point's difference to the plane of the others, and the largest one; none where the points fill no grid.
+/// Each point against the plane of the others; none where the others lie in one plane.
 #[must_use]
-pub fn leave_one_out(points: &[Point]) -> Option<(f64, f64)> {
+pub fn leave_one_out(points: &[Point]) -> Option<Scatter> {
     let axes = Axes::of(points);
-    let (mut squares, mut most) = (0.0, 0.0f64);
+    let (mut squares, mut largest_nm) = (0.0, 0.0f64);
     for k in 0..points.len() {
         let others = [&points[..k], &points[k + 1..]].concat();
         let near = nearest(&axes, &points[k].0, &others);
         let miss = plane(&axes, &points[k].0, &near)? - points[k].1;
         squares += miss * miss;
-        most = most.max(miss.abs());
+        largest_nm = largest_nm.max(miss.abs());
     }
-    Some(((squares / points.len() as f64).sqrt(), most))
+    Some(Scatter {
+        points: points.len(),
+        rms_nm: (squares / points.len() as f64).sqrt(),
+        largest_nm,
+    })
 }
 
 fn distance(way: &[f64; GRID_AXES]) -> f64 {
