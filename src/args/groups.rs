@@ -109,6 +109,26 @@ impl DriveArgs {
     }
 }
 
+/// Ambient temperature.
+#[derive(Args, Clone, Debug)]
+pub struct AmbientArgs {
+    /// Ambient temperature, degC, -40 to 60
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
+    ambient: String,
+}
+
+impl AmbientArgs {
+    /// The temperature, degC.
+    pub fn get(&self, problems: &mut Problems) -> Option<f64> {
+        problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"))
+    }
+}
+
 /// Ambient temperatures of a command that drives the same at each.
 #[derive(Args, Clone, Debug)]
 pub struct AmbientsArgs {
@@ -203,12 +223,19 @@ impl ConfidenceArgs {
     }
 }
 
+/// The cycle.
+#[derive(Args, Clone, Debug)]
+pub struct CycleArgs {
+    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
+    #[arg(id = "cycle", long = "cycle", value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
+    pub word: String,
+}
+
 /// The cycle, and the vehicles that are compared on it.
 #[derive(Args, Clone, Debug)]
 pub struct ComparisonArgs {
-    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
-    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
-    pub cycle: String,
+    #[command(flatten)]
+    pub cycle: CycleArgs,
     /// Vehicle to compare with; repeatable; `twin` for the same car with a manual box, `none` for no comparison [default: baselines of the vehicle file]
     #[arg(long, value_name = "NAME|FILE.toml|twin|none", value_parser = Names(|| [Kind::Vehicle.names(), vec!["twin", "none"]].concat()), hide_possible_values = true)]
     pub baseline: Vec<String>,
@@ -224,7 +251,7 @@ impl ComparisonArgs {
     /// Reads the cycle.
     pub fn cycle(&self, columns: &ColumnsArgs, problems: &mut Problems) -> Option<Cycle> {
         let columns = columns.get(problems);
-        problems.take(cycle::open(&self.cycle, &columns))
+        problems.take(cycle::open(&self.cycle.word, &columns))
     }
 
     /// Names of the baselines: those given, else those of the file of the vehicle.

@@ -6,8 +6,8 @@ pub mod problems;
 pub mod ranges;
 
 pub use groups::{
-    AmbientsArgs, ColumnsArgs, ComparisonArgs, ConfidenceArgs, DriveArgs, FormulationArgs,
-    JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs, VehicleArgs,
+    AmbientArgs, AmbientsArgs, ColumnsArgs, ComparisonArgs, ConfidenceArgs, CycleArgs, DriveArgs,
+    FormulationArgs, JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs, VehicleArgs,
 };
 
 use std::ops::RangeInclusive;

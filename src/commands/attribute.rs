@@ -6,12 +6,12 @@ mod tables;
 use clap::Args;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::{Bound, Problems};
-use cvtcycle::model::drive::{Conditions, Start, drive};
+use cvtcycle::model::drive::{Conditions, Start};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
-use cvtcycle::output::summary::{Driven, SCHEMA, Settings, StartWord, Summary, summarise};
+use cvtcycle::output::summary::{SCHEMA, Settings, StartWord, Summary, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use serde::Serialize;
 
@@ -120,7 +120,7 @@ impl Execute for AttributeArgs {
         let formulation = self.formulation.get(problems);
         let comparison = (&self.comparison, Baselines::Named);
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
-        let cycle = vehicles::own_cycle(&self.comparison.cycle, cycle, &vehicles);
+        let cycle = vehicles::own_cycle(&self.comparison.cycle.word, cycle, &vehicles);
         let ambients_degc = self.ambients.get(problems);
         let (start, dt_s) = self.drive.get(problems);
         let factor = problems.take(number("--factor", &self.factor, FACTOR, "factor"));
@@ -188,16 +188,8 @@ impl AttributeArgs {
             set_all: self.comparison.set_all.clone(),
             strict: false,
         };
-        let outcomes = vehicles
-            .iter()
-            .map(|car| drive(&car.setup, cycle, &conditions));
-        let outcomes: Vec<_> = outcomes.collect();
-        let driven = vehicles.iter().zip(&outcomes).map(|(car, outcome)| Driven {
-            name: &car.name,
-            setup: &car.setup,
-            outcome,
-        });
-        let driven: Vec<Driven> = driven.collect();
+        let outcomes = vehicles::drive_all(vehicles, cycle, &conditions);
+        let driven = vehicles::driven(vehicles, &outcomes);
         let start = plan.start.1.clone();
         let mut summary = summarise(cycle, ambient_degc, start, settings.clone(), &driven);
         for (run, car) in summary.runs.iter_mut().zip(vehicles) {

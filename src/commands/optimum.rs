@@ -7,7 +7,7 @@ use std::path::Path;
 use clap::Args;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
+use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Bound, Problems, cycle};
 use cvtcycle::model::drive::{Conditions, Start};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
@@ -26,8 +26,8 @@ use serde::Serialize;
 use super::{Execute, threads, vehicles};
 use crate::args::problems::{bad_value, cite};
 use crate::args::{
-    ColumnsArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs,
-    count, cycles, number,
+    AmbientArgs, ColumnsArgs, CycleArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
+    ThreadArgs, VehicleArgs, count, cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -65,19 +65,12 @@ A torque converter locks up by its own law, start-stop by its own; the limits co
 pub struct OptimumArgs {
     #[command(flatten)]
     car: VehicleArgs,
-    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
-    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
-    cycle: String,
+    #[command(flatten)]
+    cycle: CycleArgs,
     #[command(flatten)]
     columns: ColumnsArgs,
-    /// Ambient temperature, degC, -40 to 60
-    #[arg(
-        long,
-        value_name = "DEGC",
-        default_value = "25",
-        allow_hyphen_values = true
-    )]
-    ambient: String,
+    #[command(flatten)]
+    ambient: AmbientArgs,
     #[command(flatten)]
     drive: DriveArgs,
     #[command(flatten)]
@@ -212,7 +205,7 @@ impl Execute for OptimumArgs {
         let out = self.out.dir(problems);
         let (numbers, start) = (numbers?, start?);
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
-        let cycle = cycle::for_car(&self.cycle, cycle?, &own);
+        let cycle = cycle::for_car(&self.cycle.word, cycle?, &own);
         let others = elsewhere.into_iter();
         let others = others.map(|(word, other)| cycle::for_car(&word, other, &own));
         Some(OptimumPlan {
@@ -299,9 +292,9 @@ impl OptimumArgs {
     /// The cycle; columns may be those of a file of `--prove` alone.
     fn own_cycle(&self, columns: &Columns) -> Result<Cycle, Problems> {
         let is_file = |word: &String| word.ends_with(".csv");
-        match !is_file(&self.cycle) && self.prove.iter().any(is_file) {
-            true => cycle::find(&self.cycle),
-            false => cycle::open(&self.cycle, columns),
+        match !is_file(&self.cycle.word) && self.prove.iter().any(is_file) {
+            true => cycle::find(&self.cycle.word),
+            false => cycle::open(&self.cycle.word, columns),
         }
     }
 
@@ -325,10 +318,10 @@ impl OptimumArgs {
         (dt_s, least): (Option<f64>, Option<f64>),
         problems: &mut Problems,
     ) -> Option<Numbers> {
+        let ambient = self.ambient.get(problems);
         let mut take = |option: &str, text: &str, range: Bound, suffix: &str| {
             problems.take(number(option, text, range, suffix))
         };
-        let ambient = take("--ambient", &self.ambient, AMBIENT, "ambient_degc");
         let reserve = take("--reserve", &self.reserve, RESERVE, "reserve_percent");
         let safety = take("--safety", &self.safety, SAFETY, "safety");
         let slip = take("--max-slip", &self.max_slip, SLIP, "slip_percent");
@@ -372,7 +365,7 @@ impl OptimumArgs {
         if trace.max_speed_m_s() <= 0.0 {
             let message = "the car is at rest all the time: there is nothing to choose";
             let allowed = "a cycle that is driven";
-            problems.add(bad_value("--cycle", &self.cycle, allowed, message, ""));
+            problems.add(bad_value("--cycle", &self.cycle.word, allowed, message, ""));
         }
         problems.take(vehicles::kept_count(trace.step_count(dt_s), dt_s));
     }
@@ -428,7 +421,7 @@ fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
     if why.unheld.is_empty() {
         let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
         let hint = "another cycle, or a car that can follow it";
-        return bad_value("--cycle", &of.cycle, "", &message, hint).into();
+        return bad_value("--cycle", &of.cycle.word, "", &message, hint).into();
     }
     let problem = |limit: &Unheld| {
         let (option, value) = match limit.name {

@@ -10,13 +10,12 @@ use std::ops::RangeInclusive;
 use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
-use cvtcycle::config::setup::AMBIENT;
-use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
+use cvtcycle::model::drive::{Conditions, Start};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Driven, Settings, StartWord, name_run};
+use cvtcycle::output::summary::{Settings, StartWord, name_run};
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
 use cvtcycle::study::run::{RunQuestion, summary};
@@ -26,8 +25,8 @@ use super::vehicles::{self, Baselines, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::{overrides, problem};
 use crate::args::{
-    ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
-    VehicleArgs, count_if_given, names_of, number, one_of, word_of_plan,
+    AmbientArgs, ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs,
+    OutputArgs, VehicleArgs, count_if_given, names_of, one_of, word_of_plan,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::report::run_files::{self, TraceFormat};
@@ -58,14 +57,8 @@ pub struct RunArgs {
     comparison: ComparisonArgs,
     #[command(flatten)]
     columns: ColumnsArgs,
-    /// Ambient temperature, degC, -40 to 60
-    #[arg(
-        long,
-        value_name = "DEGC",
-        default_value = "25",
-        allow_hyphen_values = true
-    )]
-    ambient: String,
+    #[command(flatten)]
+    ambient: AmbientArgs,
     #[command(flatten)]
     drive: DriveArgs,
     #[command(flatten)]
@@ -137,7 +130,7 @@ impl RunArgs {
         Some(Base {
             vehicle: word_of_plan(&self.car.vehicle),
             baselines: (!named.is_empty()).then_some(named),
-            cycle: word_of_plan(&self.comparison.cycle),
+            cycle: word_of_plan(&self.comparison.cycle.word),
             ambient_degc,
             start: start.text(),
             lubricant: self.car.lubricant.as_deref().map(word_of_plan),
@@ -158,8 +151,8 @@ impl Execute for RunArgs {
         let formulation = self.formulation.get(problems);
         let comparison = (&self.comparison, Baselines::OfFile);
         let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
-        let cycle = vehicles::own_cycle(&self.comparison.cycle, cycle, &vehicles);
-        let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
+        let cycle = vehicles::own_cycle(&self.comparison.cycle.word, cycle, &vehicles);
+        let ambient = self.ambient.get(problems);
         let (start, dt_s) = self.drive.get(problems);
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
         let when = |option: &str, word: &str| one_of(option, word, &When::NAMES);
@@ -207,16 +200,8 @@ impl Execute for RunArgs {
             max_dt_s: plan.dt_s,
             keep_rows: out.is_some(),
         };
-        let outcomes = vehicles
-            .iter()
-            .map(|car| drive(&car.setup, cycle, &conditions));
-        let outcomes: Vec<Outcome> = outcomes.collect();
-        let driven = vehicles.iter().zip(&outcomes).map(|(car, outcome)| Driven {
-            name: &car.name,
-            setup: &car.setup,
-            outcome,
-        });
-        let driven: Vec<Driven> = driven.collect();
+        let outcomes = vehicles::drive_all(vehicles, cycle, &conditions);
+        let driven = vehicles::driven(vehicles, &outcomes);
         let settings = Settings {
             dt_s: plan.dt_s,
             formulation: plan.formulation.name().to_owned(),

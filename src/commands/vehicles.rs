@@ -4,7 +4,9 @@ use cvtcycle::config::bounded;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
+use cvtcycle::model::drive::{Conditions, Outcome, drive};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::summary::Driven;
 
 use crate::args::problems::{assigned, overrides};
 use crate::args::{ComparisonArgs, VehicleArgs};
@@ -19,6 +21,24 @@ pub struct RunVehicle {
     pub word: String,
     /// Options it was loaded with.
     pub options: Options,
+}
+
+/// All vehicles on the cycle.
+pub fn drive_all(vehicles: &[RunVehicle], cycle: &Cycle, conditions: &Conditions) -> Vec<Outcome> {
+    let outcomes = vehicles
+        .iter()
+        .map(|car| drive(&car.setup, cycle, conditions));
+    outcomes.collect()
+}
+
+/// The vehicles with their outcomes, for a summary.
+pub fn driven<'a>(vehicles: &'a [RunVehicle], outcomes: &'a [Outcome]) -> Vec<Driven<'a>> {
+    let driven = vehicles.iter().zip(outcomes).map(|(car, outcome)| Driven {
+        name: &car.name,
+        setup: &car.setup,
+        outcome,
+    });
+    driven.collect()
 }
 
 /// Whether the steps of all vehicles are few enough to be kept.

@@ -103,7 +103,7 @@ impl StudyAmbientArgs {
         comparison
             .named_baselines()
             .for_each(|name| drop(check("vehicle", "--baseline", name)));
-        check("cycle", "--cycle", &comparison.cycle);
+        check("cycle", "--cycle", &comparison.cycle.word);
         let oils = [
             ("lubricant", "--lubricant", &car.lubricant),
             ("engine_oil", "--engine-oil", &comparison.engine_oil),
@@ -135,7 +135,7 @@ impl StudyAmbientArgs {
             vehicle: car.vehicle.clone(),
             baselines: (!comparison.baseline.is_empty())
                 .then(|| comparison.named_baselines().cloned().collect()),
-            cycle: comparison.cycle.clone(),
+            cycle: comparison.cycle.word.clone(),
             lubricant: car.lubricant.clone(),
             engine_oil: comparison.engine_oil.clone(),
             set,
@@ -146,7 +146,7 @@ impl StudyAmbientArgs {
             Some(_) => Keep::Columns(TRACES.map(str::to_owned).to_vec()),
             None => Keep::Summary,
         };
-        let title = format!("{} on {}, cold to warm", car.vehicle, comparison.cycle);
+        let title = format!("{} on {}, cold to warm", car.vehicle, comparison.cycle.word);
         problems.take(Plan::matrix(&title, base, axes, keep, places))
     }
 }

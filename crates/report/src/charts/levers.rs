@@ -78,30 +78,46 @@ fn strip(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Pictur
     Chart::new(title(block), subject, MARGIN)
         .panels([panel])
         .legend(foot, legend)
-        .notes(foot, notes(answer))
+        .notes(foot, notes(answer, block, rows))
         .picture(table(answer, rows))
 }
 
-/// The lever that saves most, in a sentence.
+/// The lever that saves most, and the largest combination, in a sentence.
 fn title(block: &LeverBlock) -> String {
-    let mut single = block.rows.iter().filter(|row| !row.is_combination());
-    match single.find(|row| saves(row)) {
-        Some(best) => {
-            let (name, saved) = (capital_first(&best.of.title), -best.fuel_percent.value);
-            format!("{name} saves most: {saved:.1} % of the fuel")
-        }
-        None => "No lever saves fuel".to_owned(),
+    let (together, mut single): (Vec<_>, Vec<_>) =
+        (block.rows.iter().filter(|row| saves(row))).partition(|row| row.is_combination());
+    single.truncate(1);
+    let saved = |row: &LeverRow| -row.fuel_percent.value;
+    let Some(best) = single.first() else {
+        return "No lever saves fuel".to_owned();
+    };
+    let name = capital_first(&best.of.title);
+    let alone = format!("{name} saves most: {:.1} % of the fuel", saved(best));
+    match together.first() {
+        None => alone,
+        Some(all) => format!("{alone}; levers together {:.1} %", saved(all)),
     }
 }
 
-fn notes(answer: &LeverAnswer) -> Vec<String> {
-    if answer.plan.is_none() {
-        return vec!["Points: the car as its file has it, without draws.".to_owned()];
-    }
-    let (draws, done) = (answer.confidence.draws_percent(), answer.draws_done);
-    vec![format!(
-        "Bars: {draws} % of {done} paired draws. Points: medians. At the right: draws that save fuel, of those without a failed run."
-    )]
+fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<String> {
+    let marks = match answer.plan {
+        None => "Points: the car as its file has it, without draws.".to_owned(),
+        Some(_) => format!(
+            "Bars: {} % of {} draws of the uncertain values, each with and without the lever. Points: medians. At the right: draws that save fuel, of those without a failed run.",
+            answer.confidence.draws_percent(),
+            answer.draws_done
+        ),
+    };
+    let together = rows.iter().filter(|row| row.is_combination());
+    let together = together.map(|row| {
+        let title = |name: &String| {
+            let of = block.rows.iter().find(|other| other.of.name == *name);
+            of.map_or_else(|| name.clone(), |other| other.of.title.clone())
+        };
+        let members: Vec<String> = row.of.members.iter().map(title).collect();
+        format!("{}: {}.", capital_first(&row.of.title), members.join("; "))
+    });
+    [marks].into_iter().chain(together).collect()
 }
 
 /// In how many draws a lever saves.

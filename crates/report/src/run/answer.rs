@@ -213,19 +213,19 @@ fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
     let mut list: Vec<String> = cars.first().and_then(doubts::cold).into_iter().collect();
     list.extend(found.validation.as_ref().map(validation::differing));
     let now = cars.first().and_then(|car| car.run.min_clamp_safety);
-    let best = options.as_ref().and_then(|(_, block)| single(block).next());
-    if let Some(row) = best {
+    let block = options.iter().map(|(_, block)| block);
+    for row in block.flat_map(|block| single(block).take(OPTIONS.1)) {
         let worst = row.worst("min_clamp_safety");
-        if now.is_some_and(|now| worst < now - SAFETY) {
-            list.push(format!(
-                "{}: the least clamp safety falls from {} to {} in the worst draw.",
-                capital_first(&row.of.title),
-                Quantity::Ratio.text(now),
-                Quantity::Ratio.text(worst)
-            ));
-        }
-        if !row.of.needs.is_empty() {
-            list.push(format!("It takes: {}.", row.of.needs.trim_end_matches('.')));
+        let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
+            let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
+            format!("its least clamp safety falls from {now} to {worst} in the worst draw")
+        });
+        let needs = row.of.needs.trim_end_matches('.');
+        let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
+        let both: Vec<String> = falls.into_iter().chain(needs).collect();
+        if !both.is_empty() {
+            let title = capital_first(&row.of.title);
+            list.push(format!("{title}: {}.", both.join("; ")));
         }
     }
     if list.is_empty() {
@@ -262,6 +262,10 @@ fn decisions(options: &Options, test: Option<String>) -> Vec<String> {
     let block = options.iter().map(|(_, block)| block);
     let levers = block.flat_map(|block| single(block).take(OPTIONS.1));
     let levers = levers.map(|row| format!("concept: {}", row.of.title));
+    let blocks = options.iter().flat_map(|(_, block)| &block.rows);
+    let together = blocks.filter(|row| row.is_combination() && saves(row));
+    let together = together.map(|row| format!("concept: {}", row.of.title));
+    let levers = levers.chain(together);
     let asked = levers.chain(test).chain(["none of these".to_owned()]);
     let mut list: Vec<String> = asked.map(|text| format!("\u{2610} {text}")).collect();
     list.push("Reviewed ________________".to_owned());

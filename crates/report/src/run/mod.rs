@@ -9,7 +9,7 @@ mod reproduce;
 mod values;
 
 use super::document::{Document, Section};
-use super::number::{degc, words};
+use super::number::{degc, list_of, words};
 use super::results::RunResults;
 use super::{study, study_answers, validation};
 use cvtcycle_config::Problem;
@@ -99,12 +99,20 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     Ok(document)
 }
 
+/// Cars that a title names, at most.
+const NAMED: usize = 3;
+
 fn title(summary: &Summary) -> String {
     let subject = summary.runs.first().map_or("", |run| run.title.as_str());
-    match summary.runs.len() {
-        0 | 1 => subject.to_owned(),
-        2 => format!("{subject} against {}", summary.runs[1].title),
-        more => format!("{subject} against {} cars", more - 1),
+    let others = summary.runs.get(1..).unwrap_or_default();
+    match others {
+        [] => subject.to_owned(),
+        [other] => format!("{subject} against {}", other.title),
+        _ if others.len() <= NAMED => {
+            let names: Vec<String> = others.iter().map(|run| run.label().to_owned()).collect();
+            format!("{subject} against {}", list_of(&names))
+        }
+        _ => format!("{subject} against {} cars", others.len()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! How sure the difference to each baseline is: values of the files, range of the draws, published number.
+//! How sure the difference to each baseline is: nominal values (those of the files), range of the draws, published number.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -22,11 +22,11 @@ const CONTRARY: &str = "#a3311c";
 pub struct Against {
     /// Name of the baseline.
     pub baseline: String,
-    /// With the values of the files.
+    /// With the nominal values, those of the files.
     pub files: Option<f64>,
     /// 5 %, 50 % and 95 % of the draws.
     pub drawn: Option<[f64; 3]>,
-    /// A published range that contradicts the values of the files.
+    /// A published range that contradicts it.
     pub published: Option<[f64; 2]>,
 }
 
@@ -44,7 +44,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
         row.files.into_iter().chain(drawn).chain(published)
     });
     let x = Axis::round(
-        "Fuel of the car against the baseline [%]",
+        &format!("Fuel of {subject} against each car [%]"),
         values.chain([0.0]),
         8,
     );
@@ -57,7 +57,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
         panel.row_name(k, over.size(12.0).class("row").row(k));
         let middle = |x: f64| at(x, row_middle(k));
         if let Some([low, median, high]) = row.drawn {
-            let style = Style::edged(Fill::car(0), 0.5).fill_opacity(0.35).row(k);
+            let style = Style::edged(Fill::car(0), 0.5).row(k);
             panel.bar(k, (low, high), (-HALF, HALF), style);
             panel.symbol(
                 Symbol::CIRCLE,
@@ -105,10 +105,13 @@ fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(
         Symbol::CIRCLE,
         Symbol::filled(INK),
-        "values of the files",
+        "nominal values",
     )];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(Fill::car(0), "90 % of the draws"));
+        list.push(Entry::fill(
+            Fill::car(0),
+            "90 % of the draws of uncertain values",
+        ));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
@@ -144,7 +147,7 @@ fn in_words(row: &Against) -> String {
 fn table() -> PictureTable {
     PictureTable::new(&[
         ("Against", ""),
-        ("Values of the files", "%"),
+        ("Nominal values", "%"),
         ("5 % of the draws below", "%"),
         ("Median", "%"),
         ("95 % of the draws below", "%"),
