@@ -2,8 +2,9 @@
 
     pip install numpy polars fastsim==3.1.0 target/wheels/cvtcycle-*.whl
     python benches/python.py [--native target/release/examples/native_run]
+    python benches/python.py --ratio        both programs in turn on UDDS, time a step; `benches/against_fastsim` installs all of it
 
-Each time is the median of many calls. `native_run` drives the same run without Python and prints its own median.
+Each time is the median of many calls; of --ratio it is the least. `native_run` drives the same run without Python and prints its own median.
 """
 
 import argparse
@@ -76,9 +77,45 @@ def fair():
     yield words, median_us(lambda: cc.run(car, cycle).trace.to_polars(), 200)
 
 
+def once_us(call, *given):
+    begun = time.perf_counter_ns()
+    call(*given)
+    return (time.perf_counter_ns() - begun) / 1e3
+
+
+def ratio(rounds=60):
+    """Time a step of UDDS, one run of each program after the other, so that both have the same machine."""
+    import cvtcycle as cc
+    import fastsim as fsim
+
+    cycle, theirs = cc.Cycle("udds"), fsim.Cycle.from_resource("udds.csv")
+    steps = {"cvtcycle": len(cc.run("rover_216_cvt", cycle).trace), "FASTSim": len(theirs.to_dict()["time_seconds"])}
+    cars = {name: cc.Car(name) for name in ("rover_216_cvt", "rover_216_5mt")}
+    vehicles = {name: fsim.Vehicle.from_resource(f"2026_Chrysler_Pacifica_Select{name}.yaml") for name in ("", "_thrml")}
+    for vehicle in vehicles.values():
+        vehicle.set_save_interval(None)
+    times = {}
+
+    def took(name, of, call, *given):
+        times[name] = min(times.get(name, float("inf")), once_us(call, *given) / steps[of])
+
+    for _ in range(rounds):
+        for name, car in cars.items():
+            took(f"cvtcycle {name}", "cvtcycle", lambda: cc.run(car, cycle, trace=False))
+        for name, vehicle in vehicles.items():
+            sim = fsim.SimDrive(vehicle, theirs)
+            took("FASTSim with its thermal model" if name else "FASTSim without temperatures", "FASTSim", sim.run)
+    yield from ((f"{name}, us a step", number) for name, number in times.items())
+    thermal = times["FASTSim with its thermal model"]
+    for name in cars:
+        yield f"FASTSim with its thermal model / cvtcycle {name}", thermal / times[f"cvtcycle {name}"]
+
+
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser()
     arguments.add_argument("--native")
-    for rows in (cvtcycle(arguments.parse_args().native), fair(), fastsim()):
+    arguments.add_argument("--ratio", action="store_true")
+    given = arguments.parse_args()
+    for rows in (ratio(),) if given.ratio else (cvtcycle(given.native), fair(), fastsim()):
         for name, number in rows:
             print(f"{name:75} {number:10.1f}", flush=True)

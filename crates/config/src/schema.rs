@@ -24,8 +24,8 @@ pub fn of(file: &str, keys: &Table) -> Value {
     let mut schema = table(keys, head.is_none());
     if let Some(head) = head {
         // What is required may be inherited.
-        let like = json!({ "required": [HEAD.like.name] });
-        schema["if"] = json!({ "required": [head.name], "properties": { head.name: like } });
+        let like = open(json!({ "required": [HEAD.like.name] }));
+        schema["if"] = open(json!({ "required": [head.name], "properties": { head.name: like } }));
         schema["else"] = requirements(keys);
     }
     schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
@@ -87,14 +87,20 @@ fn requirements(table: &Table) -> Value {
             let options = choices.iter();
             let options = options.map(|one| (one.name.to_owned(), requirements(&one.table)));
             let options: Map<_, _> = options.collect();
-            properties.insert(key.name.to_owned(), json!({ "properties": options }));
+            properties.insert(key.name.to_owned(), open(json!({ "properties": options })));
         }
     }
     for inner in table.tables.iter().filter(|inner| is_required(inner)) {
         required.push(inner.name);
         properties.insert(inner.name.to_owned(), requirements(inner));
     }
-    json!({ "required": required, "properties": properties })
+    open(json!({ "required": required, "properties": properties }))
+}
+
+/// A table that may have other entries as well. JSON Schema lets it have them anyway; some editors ask for it in words.
+fn open(mut table: Value) -> Value {
+    table["additionalProperties"] = json!(true);
+    table
 }
 
 /// Whether a table has a key that is always required.

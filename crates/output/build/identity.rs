@@ -34,14 +34,14 @@ pub const INPUTS: [&str; 22] = [
     "vehicles",
 ];
 
-/// The first 16 hexadecimal digits of the SHA-256 over names and bytes of all files that count and are there. Names are relative and
+/// The first 16 hexadecimal digits of the SHA-256 over names and bytes of all `inputs` below a folder that are there. Names are relative and
 /// sorted, and line ends are those of Unix, so that every checkout of one commit has one identity.
 ///
 /// # Errors
 /// A file or folder cannot be read.
-pub fn identity(root: &Path) -> io::Result<String> {
+pub fn identity(root: &Path, inputs: &[&str]) -> io::Result<String> {
     let mut files = Vec::new();
-    for input in INPUTS {
+    for input in inputs {
         collect(&root.join(input), input, &mut files)?;
     }
     files.sort();

@@ -5,21 +5,46 @@ use std::fmt::Write as _;
 /// Text in place of a missing number in tables for people.
 pub const NONE: &str = "-";
 
-/// A number from here on is given with an exponent.
+/// An exact number is given with an exponent below this one ...
+const SMALL: f64 = 1e-5;
+/// ... and from this one on.
+const LARGE: f64 = 1e16;
+
+/// A rounded number from here on is given with an exponent.
 const MANY_FIGURES: f64 = 1e15;
 
 /// Appends the shortest decimal that reads back to the same number, with an exponent below 1e-5 and from 1e16 on; `NaN`, `inf` and
 /// `-inf` for what is not finite, zero without a sign.
 pub fn push_exact(text: &mut String, x: f64) {
     let x = x + 0.0;
-    let size = x.abs();
+    if x.abs() < LARGE {
+        push_digits(text, x);
+        return;
+    }
     // Writing into a String cannot fail.
-    let done = if size <= 0.0 || !size.is_finite() || (1e-5..1e16).contains(&size) {
-        write!(text, "{x}")
-    } else {
-        write!(text, "{x:e}")
+    let done = match x.is_finite() {
+        true => write!(text, "{x:e}"),
+        false => write!(text, "{x}"),
     };
     debug_assert!(done.is_ok());
+}
+
+/// Appends what `{x}` gives: the shortest decimal that reads back to the same number, without an exponent.
+pub fn push_plain(text: &mut String, x: f64) {
+    let size = x.abs();
+    if size <= 0.0 || (SMALL..LARGE).contains(&size) {
+        push_digits(text, x);
+        return;
+    }
+    let done = write!(text, "{x}");
+    debug_assert!(done.is_ok());
+}
+
+/// Appends a number below [`LARGE`], with an exponent below [`SMALL`]. The digits of `{x}` in a third of its time.
+fn push_digits(text: &mut String, x: f64) {
+    let mut digits = zmij::Buffer::new();
+    let digits = digits.format_finite(x);
+    text.push_str(digits.strip_suffix(".0").unwrap_or(digits));
 }
 
 /// The text of [`push_exact`]; empty for a number that is not finite.
@@ -90,5 +115,32 @@ pub fn tiny(x: Option<f64>) -> String {
         Some(x) if x.abs() > 0.0 => format!("{x:.0e}"),
         Some(_) => "0".to_owned(),
         None => NONE.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Truth: the standard library's own digits. The numbers are all bit patterns in turn, then those of tables: few decimals, any size.
+    #[test]
+    fn the_digits_are_those_of_the_standard_library() {
+        let ends = [0.0, -0.0, 1.0, SMALL, LARGE, 5e-324, f64::MAX, f64::NAN];
+        let ends = ends.into_iter().flat_map(|x: f64| [x, -x, x.next_down()]);
+        let bits = |k: u64| k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let any = (0..200_000).map(|k| f64::from_bits(bits(k)));
+        let sized = |k: u64| (bits(k) >> 40) as f64 * 10_f64.powi((k % 40) as i32 - 24);
+        for x in ends.chain(any).chain((0..200_000).map(sized)) {
+            let (mut text, mut plain) = (String::new(), String::new());
+            push_exact(&mut text, x);
+            push_plain(&mut plain, x);
+            assert_eq!(plain, format!("{x}"));
+            let size = x.abs();
+            let with_exponent = size > 0.0 && size.is_finite() && !(SMALL..LARGE).contains(&size);
+            match with_exponent {
+                true => assert_eq!(text, format!("{x:e}")),
+                false => assert_eq!(text, format!("{}", x + 0.0)),
+            }
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
 
 use crate::files::{hex, sha256};
-use crate::number::finite;
+use crate::number::{finite, push_plain};
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
 };
@@ -63,8 +63,18 @@ fn cycle_text(cycle: &Cycle) -> String {
         for row in &trace.intervals {
             let (start_m_s, end_m_s) = (row.start_speed_m_s, row.end_speed_m_s);
             let (start_s, end_s, phase) = (row.start_s, row.end_s, row.phase);
-            let (grade, off) = (row.grade, u8::from(row.engine_off));
-            text += &format!("{start_s},{end_s},{start_m_s},{end_m_s},{phase},{grade},{off}\n");
+            for x in [
+                start_s,
+                end_s,
+                start_m_s,
+                end_m_s,
+                f64::from(phase),
+                row.grade,
+            ] {
+                push_plain(&mut text, x);
+                text.push(',');
+            }
+            text += if row.engine_off { "1\n" } else { "0\n" };
         }
         for (column, commands) in trace.gear_columns() {
             let commands: Vec<String> = commands.iter().map(GearCommand::to_string).collect();

@@ -28,13 +28,13 @@ fn workspace() -> TempDir {
 }
 
 fn of(dir: &TempDir) -> String {
-    identity(dir.path()).unwrap()
+    identity(dir.path(), &INPUTS).unwrap()
 }
 
 #[test]
 fn the_program_has_the_identity_of_its_sources() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    assert_eq!(identity(root).unwrap(), BUILD);
+    assert_eq!(identity(root, &INPUTS).unwrap(), BUILD);
     for input in INPUTS {
         assert!(root.join(input).exists(), "{input}");
     }

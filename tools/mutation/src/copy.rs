@@ -22,7 +22,7 @@ pub struct Copy {
     pub ranges: Vec<Range<usize>>,
 }
 
-/// Files of a repository: those that git knows or does not ignore.
+/// Files of a repository: those that git knows or does not ignore. A link to a folder counts as the files in that folder.
 ///
 /// # Errors
 /// git fails.
@@ -39,11 +39,10 @@ pub fn files(root: &Path) -> Result<Vec<String>, String> {
         .output()
         .map_err(|e| format!("git: {e}"))?;
     let text = String::from_utf8_lossy(&output.stdout);
-    let mut files: Vec<String> = text
-        .split('\0')
-        .filter(|f| !f.is_empty() && root.join(f).is_file())
-        .map(str::to_owned)
-        .collect();
+    let mut files = Vec::new();
+    for name in text.split('\0').filter(|name| !name.is_empty()) {
+        add(root, name, &mut files)?;
+    }
     files.sort();
     files.dedup();
     if files.is_empty() {
@@ -54,6 +53,21 @@ pub fn files(root: &Path) -> Result<Vec<String>, String> {
     } else {
         Ok(files)
     }
+}
+
+/// Adds a file, or the files of a folder.
+fn add(root: &Path, name: &str, files: &mut Vec<String>) -> Result<(), String> {
+    let path = root.join(name);
+    if path.is_file() {
+        files.push(name.to_owned());
+    } else if path.is_dir() {
+        let failed = |e| format!("{}: {e}", path.display());
+        for entry in fs::read_dir(&path).map_err(failed)? {
+            let inner = entry.map_err(failed)?.file_name();
+            add(root, &format!("{name}/{}", inner.to_string_lossy()), files)?;
+        }
+    }
+    Ok(())
 }
 
 fn read(path: &Path) -> Result<String, String> {

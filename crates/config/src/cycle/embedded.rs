@@ -50,7 +50,7 @@ macro_rules! entries {
         static ENTRIES: [Entry; 27] = [$(Entry {
             name: $name,
             title: $title,
-            table: include_str!(concat!("../../../../cycles/", $name, ".csv")),
+            table: include_str!(concat!("../../data/cycles/", $name, ".csv")),
             automatic: entries!(@ Automatic::Same $(, $automatic)?),
             six_gears: entries!(@ SixGears::AsTable $(, $six)?),
         },)*];
@@ -112,12 +112,17 @@ pub fn names() -> &'static [&'static str] {
 /// A table is parsed when its name is first asked for.
 #[must_use]
 pub fn embedded(name: &str) -> Option<Cycle> {
+    shared(name).cloned()
+}
+
+/// As [`embedded`], without a copy.
+#[must_use]
+pub fn shared(name: &str) -> Option<&'static Cycle> {
     static PARSED: [OnceLock<Option<Cycle>>; ENTRIES.len()] =
         [const { OnceLock::new() }; ENTRIES.len()];
     let place = NAMES.iter().position(|known| *known == name)?;
-    PARSED[place]
-        .get_or_init(|| parsed(&ENTRIES[place]))
-        .clone()
+    let cycle = PARSED[place].get_or_init(|| parsed(&ENTRIES[place]));
+    cycle.as_ref()
 }
 
 fn parsed(entry: &Entry) -> Option<Cycle> {

@@ -14,7 +14,7 @@ mod row;
 mod write;
 
 pub use cvtcycle_model::cycle::*;
-pub use embedded::{embedded, names};
+pub use embedded::{embedded, names, shared};
 pub use find::{ALIASES, CONSTANT, bytes, constant_speed, find, for_car, is_csv, name_of, open};
 pub use read::{read_columns, read_csv};
 pub use row::{FOREIGN, columns};

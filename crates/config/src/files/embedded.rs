@@ -9,7 +9,7 @@ macro_rules! embedded {
             $(#[$meta])*
             #[must_use]
             pub const fn $function() -> &'static [File] {
-                &[$(($name, include_str!(concat!("../../../../", $folder, "/", $name, $ending)))),*]
+                &[$(($name, include_str!(concat!("../../data/", $folder, "/", $name, $ending)))),*]
             }
         )*
     };

@@ -1,5 +1,7 @@
 //! Reading of lists and of tables of numbers.
+use std::collections::HashMap;
 use std::fmt;
+use std::sync::LazyLock;
 
 use crate::document::overrides::Override;
 use crate::document::{Node, Value};
@@ -49,7 +51,7 @@ impl<'r> Section<'r> {
 
     /// The items of a list as numbers in the key's unit, NaN where one is wrong.
     fn each_number(&self, key: &Key<'_>, items: &[Node], allowed: Bound) -> Vec<f64> {
-        let number = |item| self.check_number(key.name, key.quantity, item, allowed);
+        let number = |item| self.check_number(key.name, || key.quantity, item, allowed);
         let numbers = items.iter().map(|item| number(item).unwrap_or(f64::NAN));
         numbers.collect()
     }
@@ -185,7 +187,7 @@ impl<'r> Section<'r> {
         let mut rows: Vec<Vec<f64>> = items.iter().filter_map(row).collect();
         self.given(key.name, &found, format_args!("{rows:?}"), None);
         for (column, (name, _)) in columns.iter().enumerate() {
-            let quantity = Quantity::of(name);
+            let quantity = quantity_of(name);
             rows.iter_mut()
                 .for_each(|row| row[column] = quantity.to_si(row[column]));
         }
@@ -214,12 +216,22 @@ impl<'r> Section<'r> {
         let mut good = true;
         let mut row = Vec::with_capacity(cells.len());
         for (cell, (name, bound)) in cells.iter().zip(columns) {
-            let number = self.check_number(key.name, Quantity::of(name), cell, *bound);
+            let number = self.check_number(key.name, || Quantity::of(name), cell, *bound);
             good &= number.is_some();
             row.extend(number);
         }
         good.then_some(row)
     }
+}
+
+/// [`Quantity::of`] by a table: a study reads the columns of each car anew.
+fn quantity_of(name: &str) -> Quantity {
+    static BY_SUFFIX: LazyLock<HashMap<&str, Quantity>> =
+        LazyLock::new(|| Quantity::ALL.iter().map(|of| (of.suffix(), *of)).collect());
+    // The longest suffix begins first.
+    let mut ends = name.match_indices('_').map(|(at, _)| &name[at..]);
+    let found = ends.find_map(|end| BY_SUFFIX.get(end));
+    found.copied().unwrap_or(Quantity::NONE)
 }
 
 /// The words of a text, between commas.
@@ -264,7 +276,20 @@ pub fn decimal(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::range_values;
+    use super::{quantity_of, range_values};
+    use cvtcycle_model::keys::Quantity;
+
+    /// Truth: the search over all units, on names with one suffix, two, and none.
+    #[test]
+    fn a_column_has_the_unit_of_its_longest_suffix() {
+        for first in Quantity::ALL.iter().chain([&Quantity::NONE]) {
+            for last in Quantity::ALL.iter().chain([&Quantity::NONE]) {
+                let name = format!("loss{}{}", first.suffix(), last.suffix());
+                assert_eq!(quantity_of(&name), Quantity::of(&name), "{name}");
+            }
+        }
+        assert_eq!(quantity_of("shaft"), Quantity::NONE);
+    }
 
     #[test]
     fn ranges_have_both_ends() {

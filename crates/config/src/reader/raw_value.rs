@@ -101,7 +101,7 @@ impl<'r> RawValue<'r> {
     #[must_use]
     pub fn number(&self, quantity: Quantity, allowed: Bound) -> Option<f64> {
         self.section
-            .check_number(&self.key, quantity, self.node, allowed)
+            .check_number(&self.key, || quantity, self.node, allowed)
     }
 
     /// Reports that it is of another kind than expected.

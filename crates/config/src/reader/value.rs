@@ -122,7 +122,7 @@ impl<'r> Section<'r> {
         match self.open(key) {
             Lookup::Found(found) => {
                 let value = self
-                    .check_number(key.name, key.quantity, found.node, allowed)
+                    .check_number(key.name, || key.quantity, found.node, allowed)
                     .ok_or(false)?;
                 let si = key.quantity.to_si(value);
                 self.given(key.name, &found, value, Some(si));
@@ -164,11 +164,11 @@ impl<'r> Section<'r> {
         })
     }
 
-    /// A finite number within its range, in its own unit.
+    /// A finite number within its range, in its own unit, which only a problem names.
     pub(crate) fn check_number(
         &self,
         key: &str,
-        quantity: Quantity,
+        quantity: impl FnOnce() -> Quantity,
         node: &Node,
         allowed: Bound,
     ) -> Option<f64> {
@@ -183,7 +183,7 @@ impl<'r> Section<'r> {
         if allowed.contains(value) {
             return Some(value);
         }
-        let range = allowed.in_unit(quantity.unit());
+        let range = allowed.in_unit(quantity().unit());
         if value.is_finite() {
             self.report_out_of_range(key, node, &range);
         } else {

@@ -110,7 +110,13 @@ fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
     }
     if let (Kind::Vehicle | Kind::Class, Some(oil)) = (kind, oil()) {
         let oils = [oil.clone(), oil];
-        drop(parts(&root, oils, Formulation::default(), name.to_owned()));
+        drop(parts(
+            &root,
+            oils,
+            Formulation::default(),
+            name.to_owned(),
+            None,
+        ));
     }
     let mut keys = reader.known();
     if kind == Kind::Class {

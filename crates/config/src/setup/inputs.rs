@@ -150,7 +150,7 @@ impl Inputs {
         let documents = self.files.each_ref().map(|input| input.document.as_ref());
         let reader = |document| Reader::new(document).with_files(&self.frame.files);
         let readers = documents.map(|document| document.map(reader));
-        let assembled = self.frame.assemble(&readers);
+        let assembled = self.frame.assemble(&readers, None);
         let mut problems = Problems::new();
         let mut keys = Vec::new();
         for (k, (reader, input)) in readers.into_iter().zip(&self.files).enumerate() {
@@ -198,22 +198,25 @@ impl Inputs {
 }
 
 impl Frame {
-    /// Puts a car together from readings of vehicle, transmission oil and engine oil, which take what is wrong with it.
+    /// Puts a car together from readings of vehicle, transmission oil and engine oil, which take what is wrong with it. Of an earlier
+    /// reading, which found nothing wrong, those parts are taken whose values are the same.
     ///
     /// # Errors
     /// Not for what is wrong with the car.
-    pub fn assemble(&self, readers: &[Option<Reader<'_>>; 3]) -> Result<Setup, Problems> {
+    pub fn assemble(
+        &self,
+        readers: &[Option<Reader<'_>>; 3],
+        earlier: Option<&Earlier<'_>>,
+    ) -> Result<Setup, Problems> {
         let [vehicle, oil, engine_oil] = readers;
         let Some(vehicle) = vehicle else {
             return Err(Problems::new());
         };
         let root = vehicle.root();
-        let Head {
-            title,
-            short,
-            baselines,
-            ..
-        } = head(&root, &self.name);
+        let head = match kept(earlier, |anew| anew.vehicle) {
+            Some(of) => of.head.clone(),
+            None => head(&root, &self.name),
+        };
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
             Some(reader) => Ok(Lubricant::from_values(
                 &reader.root(),
@@ -222,9 +225,19 @@ impl Frame {
             // Some fluid, so that the reading goes on.
             None => load_lubricant("cvtf_ezl799_class").map(|found| found.0),
         };
-        let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
+        let fluids = [
+            match kept(earlier, |anew| anew.oil) {
+                Some(of) => of.car.oil.clone(),
+                None => fluid(oil, 0)?,
+            },
+            match kept(earlier, |anew| anew.engine_oil) {
+                Some(of) => of.car.engine_oil.clone(),
+                None => fluid(engine_oil, 1)?,
+            },
+        ];
         let same = self.own_friction == Some(fluids[0].friction);
-        let (road_load, car) = parts(&root, fluids, self.formulation, self.name.clone());
+        let name = self.name.clone();
+        let (road_load, car) = parts(&root, fluids, self.formulation, name, earlier);
         let mut notes = match car.transmission.is_cvt() && same {
             true => vec![SAME_FRICTION.to_owned()],
             false => Vec::new(),
@@ -233,9 +246,9 @@ impl Frame {
         notes.extend(scattered_maps(&car.transmission));
         Ok(Setup {
             name: self.name.clone(),
-            title,
-            short,
-            baselines,
+            title: head.title,
+            short: head.short,
+            baselines: head.baselines,
             vehicle: Vehicle::new(car, road_load),
             keys: Vec::new(),
             notes,
@@ -370,7 +383,82 @@ fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bo
         .collect()
 }
 
+/// The car of an earlier reading of the same files, in which nothing was wrong.
+#[derive(Clone, Debug)]
+pub(super) struct Read {
+    head: Head,
+    road_load: RoadLoadInput,
+    car: Car,
+}
+
+impl Read {
+    /// The parts of a car.
+    pub fn of(setup: &Setup) -> Self {
+        Read {
+            head: Head {
+                title: setup.title.clone(),
+                short: setup.short.clone(),
+                baselines: setup.baselines.clone(),
+                fluid: String::new(),
+                engine_oil: String::new(),
+            },
+            road_load: setup.road_load.clone(),
+            car: setup.car(cvtcycle_model::road::REFERENCE_K),
+        }
+    }
+}
+
+/// Which parts of a car have other values than in an earlier reading.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Anew {
+    road_load: bool,
+    engine: bool,
+    /// Any other table of the vehicle's file.
+    vehicle: bool,
+    oil: bool,
+    engine_oil: bool,
+}
+
+impl Anew {
+    /// Adds the value at a path in a file, by its place in [`Target::CAR`].
+    pub fn add(&mut self, file: usize, path: &[Box<str>]) {
+        let table = path.first().map_or("", |name| &**name);
+        let part = match (Target::CAR[file], table) {
+            (Target::Lubricant, _) => &mut self.oil,
+            (Target::EngineOil, _) => &mut self.engine_oil,
+            (_, ROAD_LOAD) => &mut self.road_load,
+            (_, ENGINE) => &mut self.engine,
+            _ => &mut self.vehicle,
+        };
+        *part = true;
+    }
+
+    /// Whether the driveline and the thermal network have other values: the oil fills them, and the engine limits the control.
+    fn driveline(&self) -> bool {
+        self.vehicle || self.oil || self.engine
+    }
+}
+
+/// An earlier reading, and what has changed since.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Earlier<'e> {
+    pub read: &'e Read,
+    pub anew: Anew,
+}
+
+/// The earlier reading where a part is as it was.
+fn kept<'e>(earlier: Option<&Earlier<'e>>, is_new: impl Fn(&Anew) -> bool) -> Option<&'e Read> {
+    earlier
+        .filter(|earlier| !is_new(&earlier.anew))
+        .map(|earlier| earlier.read)
+}
+
+/// Tables of a vehicle's file that are a part of the car by themselves.
+const ROAD_LOAD: &str = "road_load";
+const ENGINE: &str = "engine";
+
 /// What the `[vehicle]` table says.
+#[derive(Clone, Debug)]
 pub(super) struct Head {
     title: String,
     short: String,
@@ -401,20 +489,23 @@ pub(super) fn parts<V: Values>(
     [oil, engine_oil]: [Lubricant; 2],
     formulation: Formulation,
     name: String,
+    earlier: Option<&Earlier<'_>>,
 ) -> (RoadLoadInput, Car) {
-    let road_load = RoadLoadInput::from_values(&root.table("road_load"));
-    let engine = Engine::from_values(&root.table("engine"));
-    let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
-    // The gears of the transmission turn in the oil of the network's sump.
-    let network = Network::from_values(&root.table("thermal"), kind == "cvt", &oil);
-    let (transmission, belt_heat_share) = if kind == "cvt" {
-        let filled = (&oil, network.sump_oil_m3);
-        let cvt = Cvt::from_values(&section, &engine, filled, formulation);
-        let share = cvt.belt_heat_share;
-        (Transmission::Cvt(Box::new(cvt)), share)
-    } else {
-        let manual = Manual::from_values(&section, network.sump_oil_m3);
-        (Transmission::Manual(Box::new(manual)), 0.0)
+    let road_load = match kept(earlier, |anew| anew.road_load) {
+        Some(of) => of.road_load.clone(),
+        None => RoadLoadInput::from_values(&root.table(ROAD_LOAD)),
+    };
+    let engine = match kept(earlier, |anew| anew.engine) {
+        Some(of) => of.car.engine.clone(),
+        None => Engine::from_values(&root.table(ENGINE)),
+    };
+    let (network, transmission) = match kept(earlier, Anew::driveline) {
+        Some(of) => (of.car.network.clone(), of.car.transmission.clone()),
+        None => driveline(root, &engine, &oil, formulation),
+    };
+    let belt_heat_share = match &transmission {
+        Transmission::Cvt(cvt) => cvt.belt_heat_share,
+        Transmission::Manual(_) => 0.0,
     };
     let car = Car {
         name,
@@ -430,6 +521,29 @@ pub(super) fn parts<V: Values>(
         belt_heat_share,
     };
     (road_load, car)
+}
+
+fn driveline<V: Values>(
+    root: &V,
+    engine: &Engine,
+    oil: &Lubricant,
+    formulation: Formulation,
+) -> (Network, Transmission) {
+    let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
+    // The gears of the transmission turn in the oil of the network's sump.
+    let network = Network::from_values(&root.table("thermal"), kind == "cvt", oil);
+    let transmission = match kind {
+        "cvt" => {
+            let filled = (oil, network.sump_oil_m3);
+            let cvt = Cvt::from_values(&section, engine, filled, formulation);
+            Transmission::Cvt(Box::new(cvt))
+        }
+        _ => {
+            let manual = Manual::from_values(&section, network.sump_oil_m3);
+            Transmission::Manual(Box::new(manual))
+        }
+    };
+    (network, transmission)
 }
 
 /// The kinds of box with their words.

@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::inputs::{Inputs, wrong_keys};
+use super::inputs::{Anew, Earlier, Inputs, Read, wrong_keys};
 use super::{Files, Options, Setup};
 use crate::document::overrides::path_of;
 use crate::{
@@ -19,6 +19,8 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct VehicleTemplate {
     inputs: Arc<Inputs>,
+    /// The unchanged car.
+    read: Arc<Read>,
     /// Of every key what a reference needs: value and range.
     keys: HashMap<String, KeyInfo>,
 }
@@ -114,8 +116,12 @@ impl VehicleTemplate {
             .iter()
             .map(|info| (info.key.clone(), known(info)))
             .collect();
-        let inputs = Arc::new(inputs);
-        Ok((VehicleTemplate { inputs, keys }, setup))
+        let template = VehicleTemplate {
+            inputs: Arc::new(inputs),
+            read: Arc::new(Read::of(&setup)),
+            keys,
+        };
+        Ok((template, setup))
     }
 
     /// Whether the unchanged files have the key.
@@ -172,7 +178,7 @@ impl VehicleTemplate {
         let readers = documents
             .each_ref()
             .map(|document| document.as_ref().map(reader));
-        let _ = inputs.frame.assemble(&readers);
+        let _ = inputs.frame.assemble(&readers, None);
         let known = readers[file].as_ref().map(Reader::known);
         let mut known = known.into_iter().flatten();
         if let Some(info) = known.find(|info| info.key == own) {
@@ -197,6 +203,8 @@ impl VehicleTemplate {
             |document: &Option<Document>| PatchedDocument::new(document.as_ref().unwrap_or(&empty));
         Variant {
             inputs: Arc::clone(&self.inputs),
+            read: Arc::clone(&self.read),
+            anew: Anew::default(),
             documents: self
                 .inputs
                 .files
@@ -244,6 +252,10 @@ pub struct Rejected {
 #[derive(Clone, Debug)]
 pub struct Variant {
     inputs: Arc<Inputs>,
+    /// The unchanged car.
+    read: Arc<Read>,
+    /// Which of its parts the numbers change.
+    anew: Anew,
     /// In the order of [`Target::CAR`].
     documents: [PatchedDocument; 3],
     /// The numbers in force, in the order in which they came.
@@ -262,6 +274,7 @@ impl Variant {
         if !self.documents[slot.file].set(&slot.path, number) {
             self.conflicts += 1;
         }
+        self.anew.add(slot.file, &slot.path);
         if slot.inactive && !self.inactive.contains(&slot.key) {
             self.inactive.push(Arc::clone(&slot.key));
         }
@@ -278,6 +291,7 @@ impl Variant {
         self.numbers.clear();
         self.conflicts = 0;
         self.inactive.clear();
+        self.anew = Anew::default();
     }
 
     /// The car with the numbers in force; it has no [`Setup::keys`].
@@ -292,7 +306,11 @@ impl Variant {
         let readers = self.documents.each_ref().map(|patched| {
             Some(Reader::check_only(patched.document()).with_files(&self.inputs.frame.files))
         });
-        let setup = match self.inputs.frame.assemble(&readers) {
+        let earlier = Earlier {
+            read: &self.read,
+            anew: self.anew,
+        };
+        let setup = match self.inputs.frame.assemble(&readers, Some(&earlier)) {
             Ok(setup) => setup,
             Err(problems) => return rejected(problems.len()),
         };

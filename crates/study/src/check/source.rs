@@ -1,11 +1,12 @@
 //! Sources of computed values, read from `[sources.NAME]`.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::keys::{BeltKeys, BenchKeys, FluidKeys, RunKeys, StripDownKeys, TransientKeys};
 use super::keys::{KINDS, RUN, SOURCE};
 use cvtcycle_config::bounded::{SOURCE_ROWS, long_enough_s};
-use cvtcycle_config::cycle::{CONSTANT, Cycle, constant_speed, embedded, names, read_csv};
+use cvtcycle_config::cycle::{CONSTANT, Cycle, constant_speed, names, read_csv, shared};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Override, Place, Problem, Section, did_you_mean, unit_of};
 use cvtcycle_model::bench::transmission::MAX_DURATION_S;
@@ -289,18 +290,22 @@ pub fn phases(cycle: &Cycle) -> Vec<String> {
 ///
 /// # Errors
 /// There is no such cycle.
-pub fn cycle(source: &Source) -> Result<Cycle, String> {
+pub fn cycle(source: &Source) -> Result<Cow<'static, Cycle>, String> {
     if !source.points.is_empty() {
         let row = |row: &Vec<f64>| format!("{},{}\n", row[0], row[1] * 3.6);
         let rows: String = source.points.iter().map(row).collect();
         let text = format!("time_s,speed_kmh\n{rows}");
         let cycle = read_csv("points.csv", text.as_bytes());
-        return cycle.map_err(|mut problems| problems.remove(0).message);
+        return cycle
+            .map(Cow::Owned)
+            .map_err(|mut problems| problems.remove(0).message);
     }
     if let Some(constant) = constant_speed(&source.cycle) {
-        return constant.map_err(|problem| problem.message);
+        return constant.map(Cow::Owned).map_err(|problem| problem.message);
     }
-    embedded(&source.cycle).ok_or_else(|| format!("there is no cycle named `{}`", source.cycle))
+    shared(&source.cycle)
+        .map(Cow::Borrowed)
+        .ok_or_else(|| format!("there is no cycle named `{}`", source.cycle))
 }
 
 impl Source {

@@ -1,6 +1,7 @@
 //! Parquet files of this program, read by column.
 
 use std::collections::HashSet;
+use std::fmt;
 use std::fs::File;
 use std::io;
 use std::ops::RangeInclusive;
@@ -36,6 +37,13 @@ pub struct ParquetFile {
     path: PathBuf,
     file: SerializedFileReader<File>,
     columns: Vec<Head>,
+}
+
+impl fmt::Debug for ParquetFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let file = &mut f.debug_struct("ParquetFile");
+        file.field("path", &self.path).finish_non_exhaustive()
+    }
 }
 
 impl ParquetFile {

@@ -1,11 +1,11 @@
 //! A study that is read, whether it is finished, interrupted or being written.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use serde_json::Value;
 
@@ -46,8 +46,19 @@ pub struct Study {
     opened: Sum,
     layout: Layout,
     present: Vec<usize>,
-    // Files whose checksum was found right: it is computed once only.
-    known: Mutex<HashSet<String>>,
+    files: Mutex<Files>,
+}
+
+/// Files of parts that stay open: of a larger study those that were opened first. Each holds its footer, some 0.1 MB.
+const MAX_OPEN: usize = 64;
+
+/// What is known of the files of parts.
+#[derive(Debug, Default)]
+struct Files {
+    /// Those whose checksum was found right: it is computed once only.
+    right: HashSet<String>,
+    /// Those that are open: their footers are read once only.
+    open: HashMap<String, Arc<ParquetFile>>,
 }
 
 impl Study {
@@ -87,7 +98,7 @@ impl Study {
             opened: sha256(&bytes),
             layout,
             present,
-            known: Mutex::default(),
+            files: Mutex::default(),
         })
     }
 
@@ -150,27 +161,34 @@ impl Study {
     ///
     /// # Errors
     /// A problem that names the file: it is missing or damaged, or no such part or table is there.
-    pub fn part(&self, index: usize, table: &str) -> Result<ParquetFile, Problem> {
+    pub fn part(&self, index: usize, table: &str) -> Result<Arc<ParquetFile>, Problem> {
         let folder = names::parts_folder(&self.path);
         let name = names::part_file(table, index, "parquet");
         let path = folder.join(&name);
+        let mut files = self.files.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(file) = files.open.get(&name) {
+            return Ok(Arc::clone(file));
+        }
         if !self.layout.tables.iter().any(|other| other == table) {
             let tables = self.layout.tables.join(", ");
             let message = format!("the study has no table `{table}`, only {tables}");
             return Err(file_problem(UnknownName, &self.path, message, ""));
         }
         let file = bounded::open_file(&path).map_err(|error| unreadable(&path, &error))?;
-        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if !known.contains(&name) {
+        if !files.right.contains(&name) {
             let list = Checksums::read(&folder.join(names::part_mark(index)));
             let right = list.as_ref().and_then(|list| list.get(&name));
             let message = "the list of checksums of this part is damaged";
             let right = right.ok_or_else(|| file_problem(Damaged, &path, message, MEND))?;
             check_sum(&path, &file, right)?;
-            known.insert(name);
+            files.right.insert(name.clone());
         }
-        drop(known);
-        ParquetFile::open_known(&path, file)?.with_rows(&self.rows_due(index, table))
+        let file = ParquetFile::open_known(&path, file)?;
+        let file = Arc::new(file.with_rows(&self.rows_due(index, table))?);
+        if files.open.len() < MAX_OPEN {
+            files.open.insert(name, Arc::clone(&file));
+        }
+        Ok(file)
     }
 
     /// Rows that a table of a part may have: of runs those of its points, as far as the manifest says how many there are.

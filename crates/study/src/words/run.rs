@@ -41,12 +41,14 @@ pub fn assess(summary: &mut Summary, cycle: &Cycle, driven: &[Driven]) {
     let Some((subject, baselines)) = driven.split_first() else {
         return;
     };
+    let cycle_sha256 = OnceCell::new();
     for (comparison, baseline) in summary.comparison.iter_mut().zip(baselines) {
         comparison.interval = drawn::known(&drawn::Pair {
             cycle,
             ambient_degc,
             start: &start,
             cars: [subject.setup, baseline.setup],
+            cycle_sha256: &cycle_sha256,
         });
     }
 }

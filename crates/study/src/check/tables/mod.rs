@@ -68,8 +68,9 @@ impl TableRow {
 
 /// A table of `count` columns.
 pub fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
+    let room = rows.size_hint().1.unwrap_or(0);
     let mut table = Table {
-        columns: vec![Vec::new(); count],
+        columns: (0..count).map(|_| Vec::with_capacity(room)).collect(),
         ..Table::default()
     };
     for row in rows {

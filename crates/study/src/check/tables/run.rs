@@ -1,5 +1,6 @@
 //! A car through a cycle as a table: its trace, or its totals.
 
+use std::borrow::Cow;
 use std::sync::LazyLock;
 
 use super::{Column, TableRow, from_rows, names, numbers};
@@ -17,7 +18,7 @@ use cvtcycle_output::trace::COLUMNS;
 /// A finished run.
 #[derive(Clone, Debug)]
 pub struct Driven {
-    cycle: Cycle,
+    cycle: Cow<'static, Cycle>,
     outcome: Outcome,
     rated_w: f64,
     fuel_density_kg_m3: f64,

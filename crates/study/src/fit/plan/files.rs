@@ -321,7 +321,7 @@ fn of_scalars(s: &Section, (path, bytes): File, context: &Context, found: &mut F
     let cycle = source
         .as_ref()
         .and_then(|source| source::cycle(source).ok());
-    let phases = cycle.as_ref().map(source::phases);
+    let phases = cycle.as_ref().map(|cycle| source::phases(cycle));
     let (sheet, problems) = read_scalars(path, bytes, &names, phases.as_deref());
     report(s, problems);
     let (Some(source), Some(sheet)) = (source, sheet) else {
