@@ -174,7 +174,7 @@ fn own_libraries() -> Result<Vec<(Platform, Vec<u8>)>, Problem> {
     let beyond = folder.join("../x86_64-pc-windows-gnu/release");
     let mut found = Vec::new();
     for platform in Platform::ALL {
-        let places = [folder, &beyond].map(|folder| folder.join(platform.library()));
+        let places = [folder, beyond.as_path()].map(|folder| folder.join(platform.library()));
         if let Some(path) = places.iter().find(|path| path.is_file()) {
             found.push(library(path)?);
         }

@@ -1,5 +1,6 @@
 //! Arguments of `losses` to a checked grid of operating points.
 
+use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::bench::Bench;
 use cvtcycle::model::transmission::Transmission;
@@ -47,22 +48,7 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     let mut grid = LossGrid::default();
     fill_axes(args, &mut grid, problems);
     if let Some(setup) = &setup {
-        let ratios = match setup.transmission() {
-            Transmission::Cvt(cvt) => {
-                let (range, _) = Axis::Ratio.range_in(setup.transmission());
-                let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
-                let text = args.ratio.as_deref().unwrap_or("low");
-                let ratios = values_or_words("--ratio", text, range, "", &words);
-                let ratios = problems.take(ratios).unwrap_or_default();
-                check_cvt(args, formulation, &ratios, problems);
-                ratios
-            }
-            Transmission::Manual(manual) => {
-                check_manual(args, formulation, problems);
-                let gears = gears(args.gear.as_deref(), manual.overall.len());
-                problems.take(gears).unwrap_or_default()
-            }
-        };
+        let ratios = ratios(args, setup, formulation, problems);
         grid.values[Axis::Ratio as usize] = ratios;
         if let Some(part) = map {
             check_map(args, part, setup.transmission().is_cvt(), &grid, problems);
@@ -70,7 +56,7 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     }
     let form = form.unwrap_or(MapForm::Csv);
     check_form(args, map, form, &grid, problems);
-    let bench = setup.as_ref().map(Bench::as_printed);
+    let bench = setup.as_ref().map(|setup| Bench::as_printed(setup));
     if let Some(bench) = bench.as_ref().filter(|_| form == MapForm::Gem) {
         fill_gem(args, bench, &mut grid);
     }
@@ -92,6 +78,31 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
         form,
         out,
     })
+}
+
+/// Ratios of a CVT or gears, and the options that go with neither.
+fn ratios(
+    args: &LossesArgs,
+    setup: &Setup,
+    formulation: Formulation,
+    problems: &mut Problems,
+) -> Vec<f64> {
+    match setup.transmission() {
+        Transmission::Cvt(cvt) => {
+            let (range, _) = Axis::Ratio.range_in(setup.transmission());
+            let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
+            let text = args.ratio.as_deref().unwrap_or("low");
+            let ratios = values_or_words("--ratio", text, range, "", &words);
+            let ratios = problems.take(ratios).unwrap_or_default();
+            check_cvt(args, formulation, &ratios, problems);
+            ratios
+        }
+        Transmission::Manual(manual) => {
+            check_manual(args, formulation, problems);
+            let gears = gears(args.gear.as_deref(), manual.overall.len());
+            problems.take(gears).unwrap_or_default()
+        }
+    }
 }
 
 /// Axes that every transmission has.

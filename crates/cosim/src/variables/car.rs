@@ -3,7 +3,7 @@
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
-use super::{CarResult, Causality, Get, Variable, input, mechanical, row};
+use super::{CarResult, Causality, Get, Variable, flag_words, input, mechanical, row};
 
 /// Vehicle speed, m/s.
 pub const SPEED: usize = 1;
@@ -224,7 +224,7 @@ fn outputs(is_cvt: bool, output: &mut CarOutput) {
         "flags_VEH_PNT",
         "",
         |c| f64::from(c.row.flags.0),
-        "states and departures from validity, a bit each: `cvtcycle explain flags`",
+        &flag_words(),
     );
 }
 

@@ -8,6 +8,7 @@ pub mod point;
 
 use cvtcycle_model::bench::{BenchAnswer, BenchPoint};
 use cvtcycle_model::drive::{Car, Row};
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::{ByComponent, Component};
 
@@ -174,6 +175,15 @@ pub fn variables(kind: Kind, transmission: &Transmission) -> Vec<Variable> {
         )
     }));
     all
+}
+
+/// What the bits of the flags are.
+fn flag_words() -> String {
+    let names = Flags::NAMES.iter();
+    let bits = names.map(|(flag, name)| format!("{} {name}", flag.0.trailing_zeros()));
+    let bits: Vec<String> = bits.collect();
+    let bits = bits.join(", ");
+    format!("states and departures from validity, bits from the lowest: {bits}")
 }
 
 /// All losses but that of the pump.

@@ -5,7 +5,7 @@ use cvtcycle_model::fluid::VALID_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
-use super::{Causality, Get, LossResult, Variable, input, mechanical, row};
+use super::{Causality, Get, LossResult, Variable, flag_words, input, mechanical, row};
 
 /// Speed of the input shaft, rad/s.
 pub const SPEED: usize = 1;
@@ -146,7 +146,7 @@ fn outputs(is_cvt: bool, output: &mut LossOutput) {
         "flags_AT_PNT",
         "",
         |l| f64::from(l.answer.flags.0),
-        "departures from validity, a bit each: `cvtcycle explain flags`",
+        &flag_words(),
     );
 }
 
