@@ -10,6 +10,7 @@ use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::output::Flags;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::loss_forms::{MapForm, write_form};
 use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{Axis, LossRow};
 use cvtcycle::report::charts::loss_figures;
@@ -37,6 +38,7 @@ Examples:
   cvtcycle losses --ratio high --speed 2000..4000 --torque 0..100:10 --out high_map
   cvtcycle losses --vehicle rover_216_5mt --gear 3 --torque 50
   cvtcycle losses --ratio high..low:0.2 --speed 500..6000:500 --temp -10..90:25 --as-map pump > pump.csv
+  cvtcycle losses --ratio 1 --speed 600..6000:600 --torque -60..140:20 --as-map box --map-form vtlm > ratio_1.vtlm
 
 A numeric option takes a number, a list (25,50,75), a range with a step (1000..4000:250, both ends included) or without \
 one (1000..4000), or these mixed. Losses are torques at the input shaft; the launch clutch is locked."
@@ -56,6 +58,14 @@ pub struct LossesArgs {
     /// Torque taken from the output shaft, after the final drive, Nm; negative in overrun [default: 0]
     #[arg(long, value_name = "NM", allow_hyphen_values = true)]
     torque: Option<String>,
+    /// Torque into the input shaft, Nm, in place of --torque; in a CVT the clamping law sees it over full load as throttle
+    #[arg(
+        long,
+        value_name = "NM",
+        allow_hyphen_values = true,
+        conflicts_with = "torque"
+    )]
+    input_torque: Option<String>,
     /// Transmission oil in the sump, degC [default: 80]
     #[arg(long, value_name = "DEGC", allow_hyphen_values = true)]
     temp: Option<String>,
@@ -75,6 +85,10 @@ pub struct LossesArgs {
     /// secondary pulley (belt, final_drive) or at the input shaft (box)
     #[arg(long, value_name = "COMPONENT", value_parser = Names(|| names_of(&MapPart::NAMES)), hide_possible_values = true, conflicts_with_all = ["json", "format"])]
     as_map: Option<String>,
+    /// Form of a map of the whole box: csv, as a vehicle file can name it; vtlm, a transmission loss map of VECTO; gem, the table of 40 CFR
+    /// 1037.565(g), with its grid where none is given; modelica, tables over speed and kinematic viscosity
+    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| names_of(&MapForm::NAMES)), hide_possible_values = true)]
+    map_form: String,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
@@ -89,11 +103,20 @@ impl Execute for LossesArgs {
     }
 
     fn run(&self, plan: LossesPlan, terminal: Terminal) -> CommandResult {
-        let LossesPlan { losses, map, out } = plan;
+        let LossesPlan {
+            losses,
+            map,
+            form,
+            out,
+        } = plan;
         if let Some(part) = map {
-            let write = |out: &mut dyn io::Write| write_map(out, &losses.bench, part, &losses.grid);
+            let (bench, grid) = (&losses.bench, &losses.grid);
+            let write = |out: &mut dyn io::Write| match form {
+                MapForm::Csv => write_map(out, bench, part, grid),
+                form => write_form(out, form, bench, grid),
+            };
             let head = losses.json_head(self.as_map.as_deref());
-            return self.write_map(&head, out, write);
+            return self.write_map(&head, form, out, write);
         }
         let files = WrittenFiles::write(out, |dir| {
             dir.write("losses.csv", |out| losses.write_csv(out, losses.rows()))?;
@@ -137,6 +160,7 @@ impl LossesArgs {
     fn write_map(
         &self,
         head: &serde_json::Value,
+        form: MapForm,
         out: Option<OutputDir>,
         write: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
     ) -> CommandResult {
@@ -146,7 +170,8 @@ impl LossesArgs {
         }
         let name = self.as_map.as_deref().unwrap_or_default();
         let files = WrittenFiles::write(out, |dir| {
-            dir.write(&format!("map_{name}.csv"), |out| write(out))?;
+            let file = format!("map_{name}.{}", form.ending());
+            dir.write(&file, |out| write(out))?;
             dir.put("summary.json", json_text(head)?)?;
             Ok("")
         })?;

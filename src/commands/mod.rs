@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod convert;
 mod explain;
+mod fmu;
 mod label;
 mod levers;
 mod list;
@@ -97,6 +98,8 @@ enum Command {
     New(Box<new::NewArgs>),
     /// Convert a drive cycle from one form of file to another: EPA, FASTSim, VECTO, a logger's table
     Convert(convert::ConvertArgs),
+    /// Write a car as an FMU (FMI 2.0 or 3.0), a unit for co-simulation in other programs
+    Fmu(Box<fmu::FmuArgs>),
     /// List the built-in cycles, vehicles, classes, lubricants or levers
     List(list::ListArgs),
     /// Show all values of a vehicle or lubricant with status and source, or a cycle
@@ -155,6 +158,7 @@ impl Cli {
             Command::Belt(args) => args.execute(terminal),
             Command::Convert(args) => args.execute(terminal),
             Command::New(args) => args.execute(terminal),
+            Command::Fmu(args) => args.execute(terminal),
             Command::List(args) => args.execute(terminal),
             Command::Show(args) => args.execute(terminal),
             Command::Explain(args) => args.execute(terminal),

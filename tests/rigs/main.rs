@@ -11,6 +11,7 @@ mod common;
 
 mod belt;
 mod loss_columns;
+mod loss_forms;
 mod losses;
 mod rig_transmission;
 mod rig_variator;

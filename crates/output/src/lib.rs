@@ -5,6 +5,7 @@ pub mod escape;
 pub mod file;
 pub mod files;
 pub mod history;
+pub mod loss_forms;
 pub mod loss_table;
 pub mod losses;
 pub mod number;

@@ -9,7 +9,6 @@ use super::losses::{Axis, LossGrid, bench_point};
 use crate::Component;
 use crate::table::{Column, write_csv};
 use cvtcycle_model::bench::{Bench, BenchPoint, Parts};
-use cvtcycle_model::transmission::Transmission;
 
 /// A component that a map can replace, named like its key in the vehicle file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +59,7 @@ impl MapPart {
     pub fn loss_nm(self, bench: &Bench, point: &BenchPoint) -> f64 {
         let part = |component: Component, point: &BenchPoint| bench.solve(point).part_nm(component);
         let at_output = BenchPoint {
-            output_nm: point.output_nm * own_ratio(bench, point),
+            output_nm: point.output_nm * bench.own_ratio(point),
             ..*point
         };
         match self {
@@ -80,48 +79,12 @@ impl MapPart {
                 let answer = bench.solve(&at_pulley);
                 answer.belt_nm() + answer.part_nm(Component::PulleyBearing)
             }
-            MapPart::Box => bench.solve(&at_input_torque(bench, point)).total_nm(),
+            MapPart::Box => {
+                let at_input = bench.at_input_torque(point, point.output_nm);
+                bench.solve(&at_input).total_nm()
+            }
         }
     }
-}
-
-/// Final drive of a CVT, overall ratio of a manual box's gear.
-fn own_ratio(bench: &Bench, point: &BenchPoint) -> f64 {
-    match &bench.car().transmission {
-        Transmission::Cvt(cvt) => cvt.final_drive.ratio,
-        Transmission::Manual(manual) => manual.overall[point.ratio as usize - 1],
-    }
-}
-
-/// The point at which the box takes the point's torque at its input instead of giving it at its output. In a CVT the clamp law sees that torque over
-/// full load as throttle.
-fn at_input_torque(bench: &Bench, point: &BenchPoint) -> BenchPoint {
-    let car = bench.car();
-    let (wanted_nm, own) = (point.output_nm, own_ratio(bench, point));
-    let (overall, throttle) = match car.transmission.is_cvt() {
-        true => {
-            let full_load_nm = car.engine.full_load.at(point.input_rad_s);
-            (
-                own * point.ratio,
-                (wanted_nm / full_load_nm).clamp(0.0, 1.0),
-            )
-        }
-        false => (own, point.throttle),
-    };
-    let mut found = BenchPoint {
-        output_nm: wanted_nm * overall,
-        throttle,
-        ..*point
-    };
-    // The losses change by a few per cent of the torque, so that each pass leaves a few per cent of the error.
-    for _ in 0..60 {
-        let miss = bench.solve(&found).input_nm - wanted_nm;
-        if miss.abs() <= 1e-13 * (1.0 + wanted_nm.abs()) {
-            break;
-        }
-        found.output_nm -= miss * overall;
-    }
-    found
 }
 
 /// A point of a map: its axes and the loss.

@@ -38,15 +38,17 @@ pub enum Axis {
     Throttle,
     /// Secondary pressure, bar; the clamp law's where it is not given.
     Pressure,
-    /// Torque at the output shaft, Nm.
+    /// Torque at the output shaft, Nm; not given where that at the input shaft is.
     Torque,
+    /// Torque at the input shaft, Nm; in a CVT the clamp law sees it over full load as throttle.
+    InputTorque,
     /// Speed of the input shaft, rpm.
     Speed,
 }
 
 impl Axis {
     /// Number of axes.
-    pub const COUNT: usize = 7;
+    pub const COUNT: usize = 8;
     /// All axes, outermost first.
     pub const ALL: [Axis; Self::COUNT] = [
         Axis::Ratio,
@@ -55,6 +57,7 @@ impl Axis {
         Axis::Throttle,
         Axis::Pressure,
         Axis::Torque,
+        Axis::InputTorque,
         Axis::Speed,
     ];
 
@@ -67,7 +70,7 @@ impl Axis {
             Axis::Sump | Axis::Belt => (temp, "_degc"),
             Axis::Throttle => (Bound::closed(0.0, 1.0), ""),
             Axis::Pressure => (Bound::closed(0.0, 100.0), "_bar"),
-            Axis::Torque => (Bound::closed(-5000.0, 5000.0), "_nm"),
+            Axis::Torque | Axis::InputTorque => (Bound::closed(-5000.0, 5000.0), "_nm"),
             Axis::Speed => (Bound::open_low(0.0, 10_000.0), "_rpm"),
         }
     }
@@ -96,6 +99,7 @@ impl Axis {
             Axis::Throttle => ("Throttle", "throttle"),
             Axis::Pressure => ("Secondary pressure [bar]", "bar"),
             Axis::Torque => ("Torque at the output shaft [Nm]", "Nm out"),
+            Axis::InputTorque => ("Torque at the input shaft [Nm]", "Nm in"),
             Axis::Speed => ("Input speed [rpm]", "rpm"),
         }
     }
@@ -127,11 +131,12 @@ impl Axis {
             Axis::Belt => format!("belt {text} \u{b0}C"),
             Axis::Pressure | Axis::Speed => format!("{text} {}", self.short(cvt)),
             Axis::Torque => format!("{text} Nm at the output"),
+            Axis::InputTorque => format!("{text} Nm at the input"),
         }
     }
 }
 
-/// Values of all axes, each in the unit of its column. Empty: not given, for belt temperature and pressure only.
+/// Values of all axes, each in the unit of its column. Empty: not given, for belt temperature, pressure, and one of the torques only.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LossGrid {
     /// Values by [`Axis`].
@@ -220,7 +225,10 @@ pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
 impl LossRow {
     /// Solves a point.
     pub fn new(bench: &Bench, asked: [f64; Axis::COUNT]) -> Self {
-        let point = bench_point(&asked);
+        let point = match asked[Axis::InputTorque as usize] {
+            wanted_nm if wanted_nm.is_nan() => bench_point(&asked),
+            wanted_nm => bench.at_input_torque(&bench_point(&asked), wanted_nm),
+        };
         LossRow {
             asked,
             point,

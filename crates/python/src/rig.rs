@@ -28,6 +28,7 @@ fn column_of(axis: Axis, is_cvt: bool) -> &'static str {
         Axis::Throttle => "throttle",
         Axis::Pressure => "secondary_pressure_bar",
         Axis::Torque => "output_torque_nm",
+        Axis::InputTorque => "input_torque_nm",
         Axis::Speed => "input_speed_rpm",
     }
 }
@@ -39,7 +40,13 @@ type Points = [Vec<f64>; Axis::COUNT];
 fn points_of(transmission: &Transmission, given: &[(String, Vec<u8>)]) -> PyResult<Points> {
     let is_cvt = transmission.is_cvt();
     let has = |axis: &Axis| {
-        let of_all = [Axis::Ratio, Axis::Sump, Axis::Torque, Axis::Speed];
+        let of_all = [
+            Axis::Ratio,
+            Axis::Sump,
+            Axis::Torque,
+            Axis::InputTorque,
+            Axis::Speed,
+        ];
         is_cvt || of_all.contains(axis)
     };
     let mut axes = Points::default();

@@ -35,6 +35,10 @@ def test_losses_are_those_of_the_program() -> None:
     speeds = numpy.arange(1000.0, 4001.0, 500.0)
     table = cc.losses("rover_216_cvt", belt_ratio=1.5, input_speed_rpm=speeds, output_torque_nm=100.0, transmission_sump_degc=25)
     same(table, printed("losses", "--ratio", "1.5", "--speed", "1000..4000:500", "--torque", "100", "--temp", "25", "--format", "csv"))
+    by_input = cc.losses("rover_216_cvt", belt_ratio=1.5, input_torque_nm=60.0)
+    assert abs(by_input["input_torque_nm"][0] - 60.0) < 1e-9
+    with pytest.raises(cc.InputError):
+        cc.losses("rover_216_cvt", belt_ratio=1.5, input_torque_nm=60.0, output_torque_nm=0.0)
     table = cc.losses("rover_216_5mt", gear=[3], output_torque_nm=50)
     same(table, printed("losses", "--vehicle", "rover_216_5mt", "--gear", "3", "--torque", "50", "--format", "csv"))
 

@@ -1,10 +1,12 @@
 //! Arguments of `losses` to a checked grid of operating points.
 
+use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::bench::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
+use cvtcycle::output::loss_forms::{MapForm, gem_grid};
 use cvtcycle::output::loss_table::MapPart;
 use cvtcycle::output::losses::{Axis, LossGrid, LossTable, MAX_POINTS};
 
@@ -22,6 +24,7 @@ fn option_of(axis: Axis) -> &'static str {
         Axis::Throttle => "--throttle",
         Axis::Pressure => "--pressure",
         Axis::Torque => "--torque",
+        Axis::InputTorque => "--input-torque",
         Axis::Speed => "--speed",
     }
 }
@@ -30,6 +33,8 @@ fn option_of(axis: Axis) -> &'static str {
 pub struct LossesPlan {
     pub losses: LossTable,
     pub map: Option<MapPart>,
+    /// Form of the map.
+    pub form: MapForm,
     pub out: Option<OutputDir>,
 }
 
@@ -38,30 +43,22 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     let formulation = args.formulation.get(problems);
     let map = args.as_map.as_ref();
     let map = map.and_then(|word| problems.take(one_of("--as-map", word, &MapPart::NAMES)));
+    let form = problems.take(one_of("--map-form", &args.map_form, &MapForm::NAMES));
     let setup = args.car.load(formulation, problems);
     let mut grid = LossGrid::default();
     fill_axes(args, &mut grid, problems);
     if let Some(setup) = &setup {
-        let ratios = match setup.transmission() {
-            Transmission::Cvt(cvt) => {
-                let (range, _) = Axis::Ratio.range_in(setup.transmission());
-                let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
-                let text = args.ratio.as_deref().unwrap_or("low");
-                let ratios = values_or_words("--ratio", text, range, "", &words);
-                let ratios = problems.take(ratios).unwrap_or_default();
-                check_cvt(args, formulation, &ratios, problems);
-                ratios
-            }
-            Transmission::Manual(manual) => {
-                check_manual(args, formulation, problems);
-                let gears = gears(args.gear.as_deref(), manual.overall.len());
-                problems.take(gears).unwrap_or_default()
-            }
-        };
+        let ratios = ratios(args, setup, formulation, problems);
         grid.values[Axis::Ratio as usize] = ratios;
         if let Some(part) = map {
             check_map(args, part, setup.transmission().is_cvt(), &grid, problems);
         }
+    }
+    let form = form.unwrap_or(MapForm::Csv);
+    check_form(args, map, form, &grid, problems);
+    let bench = setup.as_ref().map(|setup| Bench::as_printed(setup));
+    if let Some(bench) = bench.as_ref().filter(|_| form == MapForm::Gem) {
+        fill_gem(args, bench, &mut grid);
     }
     if grid.size() > MAX_POINTS as f64 {
         problems.add(too_many(&grid));
@@ -69,13 +66,43 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     let out = args.out.dir(problems);
     let setup = setup?;
     let losses = LossTable {
-        bench: Bench::as_printed(&setup),
+        bench: bench?,
         setup,
         grid,
         formulation: args.formulation.formulation.clone(),
         set: args.car.set.clone(),
     };
-    Some(LossesPlan { losses, map, out })
+    Some(LossesPlan {
+        losses,
+        map,
+        form,
+        out,
+    })
+}
+
+/// Ratios of a CVT or gears, and the options that go with neither.
+fn ratios(
+    args: &LossesArgs,
+    setup: &Setup,
+    formulation: Formulation,
+    problems: &mut Problems,
+) -> Vec<f64> {
+    match setup.transmission() {
+        Transmission::Cvt(cvt) => {
+            let (range, _) = Axis::Ratio.range_in(setup.transmission());
+            let words = [("low", cvt.ratio.low), ("high", cvt.ratio.high)];
+            let text = args.ratio.as_deref().unwrap_or("low");
+            let ratios = values_or_words("--ratio", text, range, "", &words);
+            let ratios = problems.take(ratios).unwrap_or_default();
+            check_cvt(args, formulation, &ratios, problems);
+            ratios
+        }
+        Transmission::Manual(manual) => {
+            check_manual(args, formulation, problems);
+            let gears = gears(args.gear.as_deref(), manual.overall.len());
+            problems.take(gears).unwrap_or_default()
+        }
+    }
 }
 
 /// Axes that every transmission has.
@@ -86,12 +113,18 @@ fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
         grid.values[axis as usize] = found.unwrap_or_default();
     };
     fill(Axis::Speed, args.speed.as_deref().or(Some("2500")));
-    fill(Axis::Torque, args.torque.as_deref().or(Some("0")));
+    let output = args.torque.as_deref().or(Some("0"));
+    fill(Axis::Torque, output.filter(|_| args.input_torque.is_none()));
+    fill(Axis::InputTorque, args.input_torque.as_deref());
     fill(Axis::Sump, args.temp.as_deref().or(Some("80")));
     fill(Axis::Throttle, args.throttle.as_deref().or(Some("0")));
     // With no --belt-temp the belt is in steady state, and with no --pressure the clamping law is used: no values on that axis.
     fill(Axis::Belt, args.belt_temp.as_deref());
     fill(Axis::Pressure, args.pressure.as_deref());
+    if args.input_torque.is_some() && args.throttle.is_some() {
+        let message = "with --input-torque the clamping law sees that torque over full load";
+        problems.add(problem("--throttle", message, "leave out one of the two"));
+    }
     if args.pressure.is_some() && args.throttle.is_some() {
         let message = "with --pressure the clamping law is not used, so the throttle has no effect";
         problems.add(problem("--throttle", message, "leave out one of the two"));
@@ -156,6 +189,45 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     problems.finish().map(|()| found)
 }
 
+/// What a form of a map cannot have.
+fn check_form(
+    args: &LossesArgs,
+    map: Option<MapPart>,
+    form: MapForm,
+    grid: &LossGrid,
+    problems: &mut Problems,
+) {
+    if form == MapForm::Csv {
+        return;
+    }
+    if map != Some(MapPart::Box) {
+        let message = "this form is one of a map of the whole box";
+        problems.add(problem("--map-form", message, "add --as-map box"));
+    }
+    for axis in form.single() {
+        let count = grid.of(*axis).len();
+        if count > 1 {
+            let message = format!("{count} values, but `{}` has one", args.map_form);
+            let hint = "give one value; another map has the next";
+            problems.add(problem(option_of(*axis), &message, hint));
+        }
+    }
+}
+
+/// The grid of 40 CFR 1037.565 for what is not given.
+fn fill_gem(args: &LossesArgs, bench: &Bench, grid: &mut LossGrid) {
+    for (axis, values) in gem_grid(bench) {
+        let given = match axis {
+            Axis::Speed => &args.speed,
+            Axis::Torque => &args.torque,
+            _ => &args.temp,
+        };
+        if given.is_none() {
+            grid.values[axis as usize] = values;
+        }
+    }
+}
+
 /// Options that a map of the component cannot have.
 fn check_map(
     args: &LossesArgs,
@@ -175,6 +247,10 @@ fn check_map(
         let message =
             "a map is for driving, for which the printed formulations are not defined everywhere";
         problems.add(problem("--as-map", message, "leave out --formulation"));
+    }
+    if args.input_torque.is_some() {
+        let message = "the torque of a map is that of the component itself: of the whole box, that at its input";
+        problems.add(problem("--input-torque", message, "use --torque"));
     }
     let mut single = |axis: Axis, hint: &str| {
         let count = grid.of(axis).len();

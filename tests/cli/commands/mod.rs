@@ -5,6 +5,7 @@ mod attribute;
 mod optimum;
 mod compare;
 mod cycles;
+mod fmu;
 mod inputs;
 mod label;
 mod levers;

@@ -3,6 +3,7 @@
 //! A name without a path and without `.toml` is an embedded file; anything else is a path.
 
 pub mod assumptions;
+pub mod carried;
 pub mod catalogue;
 mod doubts;
 pub mod new_car;

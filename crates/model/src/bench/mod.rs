@@ -5,6 +5,7 @@
 mod point;
 mod cvt_bench;
 mod held_point;
+mod input_torque;
 mod limits;
 pub mod transmission;
 pub mod variator;

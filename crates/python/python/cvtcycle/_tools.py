@@ -37,7 +37,8 @@ def losses(
     belt_ratio: Any = None,
     gear: Any = None,
     input_speed_rpm: Any = 2500.0,
-    output_torque_nm: Any = 0.0,
+    output_torque_nm: Any = None,
+    input_torque_nm: Any = None,
     transmission_sump_degc: Any = 80.0,
     belt_spray_degc: Any = None,
     throttle: Any = None,
@@ -47,7 +48,8 @@ def losses(
     """Losses of each part of a transmission at operating points, torques at the input shaft; the launch clutch is locked.
 
     Arguments are numbers or arrays of one length; their names are those of the columns that come back. A CVT needs ``belt_ratio``, a manual
-    box ``gear``. ``output_torque_nm`` is behind the final drive. Without ``belt_spray_degc`` the belt is in steady state over the sump,
+    box ``gear``. ``output_torque_nm`` is behind the final drive (0 if no torque is given); ``input_torque_nm`` takes its place, and that of
+    ``throttle``: the clamping law sees it over full load. Without ``belt_spray_degc`` the belt is in steady state over the sump,
     without ``secondary_pressure_bar`` the pressure is that of the clamping law at ``throttle`` (0 if it is not given).
     """
     subject = car_of("car", car)
@@ -56,12 +58,16 @@ def losses(
         "belt_ratio": belt_ratio,
         "gear": gear,
         "input_speed_rpm": input_speed_rpm,
-        "output_torque_nm": output_torque_nm,
+        "output_torque_nm": 0.0 if output_torque_nm is None and input_torque_nm is None else output_torque_nm,
+        "input_torque_nm": input_torque_nm,
         "transmission_sump_degc": transmission_sump_degc,
         "belt_spray_degc": belt_spray_degc,
         "throttle": 0.0 if throttle is None and subject.is_cvt else throttle,
         "secondary_pressure_bar": secondary_pressure_bar,
     }
+    for name, other in (("output_torque_nm", output_torque_nm), ("throttle", throttle)):
+        if input_torque_nm is not None and other is not None:
+            raise bad("input_torque_nm", f"it takes the place of {name}", hint=f"leave out {name}")
     if given[ratio] is None:
         raise bad(ratio, f"{subject.name} needs it", hint="give a number or an array")
     points = [(name, doubles(name, values)) for name, values in given.items() if values is not None]

@@ -14,9 +14,10 @@ const MIN_ON_MAP: usize = 3;
 /// Largest number of panels of a figure.
 const MAX_PANELS: usize = 12;
 /// Axes by priority.
-const ORDER: [GridAxis; 7] = [
+const ORDER: [GridAxis; 8] = [
     GridAxis::Speed,
     GridAxis::Torque,
+    GridAxis::InputTorque,
     GridAxis::Sump,
     GridAxis::Pressure,
     GridAxis::Throttle,

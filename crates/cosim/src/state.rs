@@ -1,0 +1,158 @@
+//! A saved state as bytes: what was asked for in each step since the start. Reading it drives these steps again, so that the state has every
+//! bit of the one that was saved, and bytes of any origin give a state that can be reached, or a refusal.
+//!
+//! Little endian: magic, kind, number of variables, steps; then numbers of 8 bytes: values, time, the start of the drive, the steps.
+
+use crate::unit::{Asked, FAR_S, is_step};
+use crate::variables::{Causality, car};
+use crate::{Refusal, Unit};
+
+const MAGIC: [u8; 8] = *b"cvtcy-1\n";
+/// Magic, kind and three counts of 8 bytes.
+const HEAD: usize = 8 * 5;
+const NUMBERS_A_STEP: usize = 6;
+
+/// The step of its numbers.
+fn asked(numbers: &[f64]) -> Option<Asked> {
+    let &[from_s, dt_s, speed_m_s, grade, ambient_k, gear] = numbers else {
+        return None;
+    };
+    Some(Asked {
+        from_s,
+        dt_s,
+        speed_m_s,
+        grade,
+        ambient_k,
+        gear,
+    })
+}
+
+impl Unit {
+    /// Its state as bytes, with [`crate::unit::Saved`] in place of its own.
+    #[must_use]
+    pub fn bytes_of(&self, saved: &crate::unit::Saved) -> Vec<u8> {
+        let start = saved.drive.as_ref().map(|drive| drive.start);
+        let steps: &[Asked] = match &saved.drive {
+            Some(drive) => &drive.steps,
+            None => &[],
+        };
+        let counts = [
+            self.kind() as u64,
+            saved.values.len() as u64,
+            u64::from(start.is_some()),
+            steps.len() as u64,
+        ];
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
+        let of_step = |step: &Asked| {
+            let Asked {
+                from_s,
+                dt_s,
+                speed_m_s,
+                grade,
+                ambient_k,
+                gear,
+            } = *step;
+            [from_s, dt_s, speed_m_s, grade, ambient_k, gear]
+        };
+        let numbers = saved.values.iter().copied().chain([saved.time_s]);
+        let numbers = numbers.chain(start.into_iter().flatten());
+        let numbers = numbers.chain(steps.iter().flat_map(of_step));
+        bytes.extend(numbers.flat_map(f64::to_le_bytes));
+        bytes
+    }
+
+    /// Takes the state of bytes.
+    ///
+    /// # Errors
+    /// They are no state of this unit; the unit is then as it was.
+    pub fn restore_bytes(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
+        let before = self.save();
+        let read = self.read_bytes(bytes);
+        if read.is_err() {
+            self.restore(&before)?;
+        }
+        read
+    }
+
+    fn read_bytes(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
+        let damaged = || Refusal::new("the bytes are no state of this unit");
+        let (head, numbers) = bytes.split_at_checked(HEAD).ok_or_else(damaged)?;
+        let (words, rest) = head.as_chunks::<8>();
+        let (numbers, odd) = numbers.as_chunks::<8>();
+        let [magic, counts @ ..] = words else {
+            return Err(damaged());
+        };
+        let counts: Vec<u64> = counts
+            .iter()
+            .map(|word| u64::from_le_bytes(*word))
+            .collect();
+        let &[kind, values, started, steps] = counts.as_slice() else {
+            return Err(damaged());
+        };
+        let own = [self.kind() as u64, self.variables().len() as u64];
+        let whole = rest.is_empty() && odd.is_empty() && *magic == MAGIC;
+        let count = steps
+            .checked_mul(NUMBERS_A_STEP as u64)
+            .and_then(|count| count.checked_add(own[1] + 1 + 3 * started.min(1)));
+        if !whole || [kind, values] != own || started > 1 || count != Some(numbers.len() as u64) {
+            return Err(damaged());
+        }
+        let numbers: Vec<f64> = numbers
+            .iter()
+            .map(|word| f64::from_le_bytes(*word))
+            .collect();
+        let (values, rest) = numbers.split_at(self.variables().len());
+        let (time, rest) = rest.split_at(1);
+        self.reset();
+        if let Some(start) = rest.first_chunk::<3>().filter(|_| started == 1) {
+            self.drive_again(*start, &rest[3..])?;
+        }
+        let times_fit = time[0].abs() <= FAR_S;
+        let is_free = |(variable, value): (&crate::Variable, &f64)| {
+            let (low, high) = variable.range;
+            match variable.causality {
+                Causality::Input | Causality::Parameter => low <= *value && *value <= high,
+                Causality::Independent | Causality::Output => value.is_finite(),
+            }
+        };
+        if !times_fit || !self.variables().iter().zip(values).all(is_free) {
+            return Err(damaged());
+        }
+        let saved = self.saved();
+        saved.values = values.to_vec();
+        saved.time_s = time[0];
+        Ok(())
+    }
+
+    /// Drives the steps of a state.
+    fn drive_again(&mut self, start: [f64; 3], steps: &[f64]) -> Result<(), Refusal> {
+        let damaged = || Refusal::new("the bytes are no state of this unit");
+        let variables = self.variables();
+        let range = |place: usize, value: f64| {
+            let (low, high) = variables[place].range;
+            low <= value && value <= high
+        };
+        let gears = variables
+            .get(car::GEAR)
+            .filter(|own| own.causality == Causality::Input)
+            .map_or((-1.0, -1.0), |own| own.range);
+        let [speed, ambient, start_k] = start;
+        let mut fits =
+            range(car::SPEED, speed) && range(car::AMBIENT, ambient) && range(car::START, start_k);
+        let steps: Option<Vec<Asked>> = steps.chunks(NUMBERS_A_STEP).map(asked).collect();
+        let steps = steps.ok_or_else(damaged)?;
+        for step in &steps {
+            fits &= is_step(step.from_s, step.dt_s);
+            fits &= range(car::SPEED, step.speed_m_s) && range(car::GRADE, step.grade);
+            fits &= range(car::AMBIENT, step.ambient_k);
+            fits &= gears.0 <= step.gear && step.gear <= gears.1 && step.gear.fract().abs() <= 0.0;
+        }
+        if !fits {
+            return Err(damaged());
+        }
+        self.begin(start)?;
+        steps.iter().try_for_each(|step| self.drive(step))?;
+        Ok(())
+    }
+}

@@ -1,0 +1,138 @@
+//! A whole car, step by step.
+
+use std::sync::Arc;
+
+use cvtcycle_model::cycle::{GearColumns, GearCommand, Interval, Trace};
+use cvtcycle_model::drive::{Drive, Row, State};
+use cvtcycle_model::flags::Flags;
+use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
+
+use super::{Refusal, Unit, show};
+use crate::variables::{CarResult, Get, car};
+
+/// Longest step of the model, s, as in a run; a longer communication step is divided.
+const MODEL_STEP_S: f64 = 1.0;
+/// One step that was asked for: all that the state after it follows from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Asked {
+    pub from_s: f64,
+    pub dt_s: f64,
+    pub speed_m_s: f64,
+    pub grade: f64,
+    pub ambient_k: f64,
+    pub gear: f64,
+}
+
+/// A drive so far.
+#[derive(Clone, Debug)]
+pub(crate) struct Driven {
+    state: State,
+    fuel_kg: f64,
+    distance_m: f64,
+    speed_m_s: f64,
+    /// Speed, ambient and temperature at the start, m/s and K.
+    pub start: [f64; 3],
+    /// All steps since the start; shared with saved states until one of them goes on.
+    pub steps: Arc<Vec<Asked>>,
+}
+
+impl Unit {
+    /// Begins a drive with speed, ambient and temperature of all parts.
+    pub(crate) fn begin(&mut self, start: [f64; 3]) -> Result<(), Refusal> {
+        let [speed_m_s, ambient_k, start_k] = start;
+        let lowest_k = car::AMBIENT_K.0;
+        if start_k < lowest_k {
+            return Err(Refusal::new(format!(
+                "T_start_VEH_PNT_K = {start_k} is out of range: {lowest_k} to {} K, or 0",
+                car::START_K.1
+            )));
+        }
+        self.car = self.setup.car(ambient_k);
+        let state = State::at(start_k);
+        let t = &state.heat.node_k;
+        let row = Row {
+            coolant_k: t[COOLANT],
+            engine_oil_k: t[ENGINE_OIL],
+            sump_k: t[SUMP],
+            metal_k: t[METAL],
+            belt_spray_k: t[BELT],
+            ..Row::default()
+        };
+        self.saved.drive = Some(Driven {
+            state,
+            fuel_kg: 0.0,
+            distance_m: 0.0,
+            speed_m_s,
+            start,
+            steps: Arc::default(),
+        });
+        self.show_row(&row);
+        Ok(())
+    }
+
+    /// Drives a step.
+    pub(crate) fn drive(&mut self, asked: &Asked) -> Result<(), Refusal> {
+        let Some(driven) = &mut self.saved.drive else {
+            return Err(Refusal::new("a step before the end of initialization"));
+        };
+        if (asked.ambient_k - self.car.ambient_k).abs() > 0.0 {
+            self.car = self.setup.car(asked.ambient_k);
+        }
+        let interval = Interval {
+            start_s: asked.from_s,
+            end_s: asked.from_s + asked.dt_s,
+            start_speed_m_s: driven.speed_m_s,
+            end_speed_m_s: asked.speed_m_s,
+            phase: 0,
+            grade: asked.grade,
+            engine_off: false,
+        };
+        let command = match asked.gear {
+            gear if gear < 0.0 => None,
+            gear if gear > 0.0 => Some(GearCommand::InGear(gear as u8)),
+            _ => Some(GearCommand::Neutral),
+        };
+        let gears = GearColumns::new(None, None, command.map(|command| vec![command]));
+        let trace = Trace::with_gears(vec![interval], gears);
+        let mut drive = Drive::along(&self.car, &trace, driven.state);
+        let (mut row, mut fuel_kg, mut distance_m) = (Row::default(), 0.0, 0.0);
+        let (mut flags, mut fuel_by_step) = (Flags::default(), driven.fuel_kg);
+        trace.for_each_step(MODEL_STEP_S, |step| {
+            (row, _) = drive.step(&step);
+            fuel_kg += row.fuel_kg_s * row.dt_s;
+            fuel_by_step += row.fuel_kg_s * row.dt_s;
+            distance_m += row.distance_m;
+            flags = Flags(flags.0 | row.flags.0);
+        });
+        driven.state = drive.state();
+        driven.fuel_kg = fuel_by_step;
+        driven.distance_m += distance_m;
+        driven.speed_m_s = asked.speed_m_s;
+        Arc::make_mut(&mut driven.steps).push(*asked);
+        row.fuel_kg_s = fuel_kg / asked.dt_s;
+        row.flags = flags;
+        self.show_row(&row);
+        Ok(())
+    }
+
+    fn show_row(&mut self, row: &Row) {
+        let Some(driven) = &self.saved.drive else {
+            return;
+        };
+        let result = CarResult {
+            row,
+            fuel_kg: driven.fuel_kg,
+            distance_m: driven.distance_m,
+            car: &self.car,
+        };
+        show(
+            &self.variables,
+            &mut self.saved.values,
+            &row.loss_w,
+            |get| match get {
+                Get::Car(of) => Some(of(&result)),
+                _ => None,
+            },
+        );
+    }
+}

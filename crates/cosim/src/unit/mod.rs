@@ -1,0 +1,340 @@
+//! A unit that is instantiated: inputs in, steps, outputs out, states saved and taken back.
+
+mod driving;
+mod operating_point;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use cvtcycle_config::setup::{Setup, carried};
+use cvtcycle_config::{Problems, bounded, one_line};
+use cvtcycle_model::bench::Bench;
+use cvtcycle_model::drive::Car;
+use cvtcycle_model::transmission::component::ByComponent;
+
+use crate::UNIT_FILE;
+use crate::variables::{self, Causality, Get, Kind, Variable, car};
+pub(crate) use driving::Asked;
+use driving::Driven;
+
+/// Shortest and longest communication step, s; the shortest is that of a run.
+pub const STEP_S: (f64, f64) = (0.01, 3600.0);
+/// Farthest time from 0, s: beyond it a short step would lose its digits.
+pub(crate) const FAR_S: f64 = 1e9;
+/// Part of a step by which its beginning may differ from the end of the one before.
+const NEAR: f64 = 1e-6;
+
+/// Whether a step may begin at a time and be of a length, s.
+pub(crate) fn is_step(from_s: f64, dt_s: f64) -> bool {
+    let (least, most) = STEP_S;
+    // The difference of two times has their rounding.
+    from_s.abs() <= FAR_S && least * (1.0 - NEAR) <= dt_s && dt_s <= most
+}
+
+/// A call that is refused; the unit is as it was before it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// Whether the results of the call count all the same.
+    pub warns: bool,
+    /// What is wrong, the value, what is allowed.
+    pub message: String,
+}
+
+impl Refusal {
+    /// Of a call that has done nothing.
+    pub fn new(message: impl Into<String>) -> Self {
+        Refusal {
+            warns: false,
+            message: message.into(),
+        }
+    }
+}
+
+impl From<Problems> for Refusal {
+    fn from(problems: Problems) -> Self {
+        let mut message = String::new();
+        for problem in problems.iter() {
+            let place = problem.place.file_name().unwrap_or_default();
+            // Writing into a text cannot fail.
+            let _ = write!(message, "{place}: {}; {} ", problem.message, problem.hint);
+        }
+        Refusal::new(one_line(message.trim_end()))
+    }
+}
+
+/// What a unit has besides its car: copied by a saved state.
+#[derive(Clone, Debug)]
+pub struct Saved {
+    pub(crate) values: Vec<f64>,
+    pub(crate) time_s: f64,
+    pub(crate) drive: Option<Driven>,
+    /// Whether the inputs have changed since the outputs were computed; of operating points.
+    stale: bool,
+}
+
+/// A unit.
+#[derive(Debug)]
+pub struct Unit {
+    kind: Kind,
+    setup: Setup,
+    bench: Option<Bench>,
+    /// The car at the ambient of the last step.
+    car: Car,
+    variables: Vec<Variable>,
+    saved: Saved,
+}
+
+impl Unit {
+    /// The unit of a car.
+    #[must_use]
+    pub fn new(kind: Kind, setup: Setup) -> Self {
+        let variables = variables::variables(kind, setup.transmission());
+        let values = variables.iter().map(|variable| variable.start).collect();
+        Unit {
+            kind,
+            bench: (kind == Kind::Losses).then(|| Bench::new(&setup)),
+            car: setup.car(car::START_AMBIENT_K),
+            setup,
+            variables,
+            saved: Saved {
+                values,
+                time_s: 0.0,
+                drive: None,
+                stale: true,
+            },
+        }
+    }
+
+    /// The unit whose resources are in a folder, where it is the one that a description names by its token.
+    ///
+    /// # Errors
+    /// A file that is missing or damaged, a description of another unit, all problems of the car.
+    pub fn open(resources: &Path, token: &str) -> Result<Self, Refusal> {
+        let path = resources.join(UNIT_FILE);
+        let bytes = bounded::read_file(&path, bounded::CHECKSUMS).map_err(|error| {
+            let path = path.display();
+            Refusal::new(format!("cannot read the resource {path}: {error}"))
+        })?;
+        let text = String::from_utf8_lossy(&bytes);
+        let (kind, own) = text.trim().split_once(' ').unwrap_or_default();
+        let known = Kind::NAMES.into_iter().find(|(name, _)| *name == kind);
+        let Some((_, kind)) = known else {
+            let path = path.display();
+            return Err(Refusal::new(format!("{path} names no kind of unit")));
+        };
+        if own != token {
+            return Err(Refusal::new(format!(
+                "the token `{}` is not that of these resources, `{own}`",
+                one_line(token)
+            )));
+        }
+        Ok(Unit::new(kind, carried::open(resources)?))
+    }
+
+    /// Its variables; the value reference of each is its place.
+    #[must_use]
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// End of the last step, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.saved.time_s
+    }
+
+    /// Value of a variable.
+    ///
+    /// # Errors
+    /// There is no such variable; an operating point without a solution.
+    pub fn get(&mut self, reference: u32) -> Result<f64, Refusal> {
+        self.variable(reference)?;
+        if self.kind == Kind::Losses && self.saved.stale {
+            self.solve()?;
+        }
+        match reference {
+            0 => Ok(self.saved.time_s),
+            _ => Ok(self.saved.values[reference as usize]),
+        }
+    }
+
+    /// Whether a variable is a whole number.
+    ///
+    /// # Errors
+    /// There is no such variable.
+    pub fn is_whole(&self, reference: u32) -> Result<bool, Refusal> {
+        Ok(self.variable(reference)?.whole)
+    }
+
+    /// Sets an input, or a parameter before the start.
+    ///
+    /// # Errors
+    /// There is no such variable, it is not to be set, or the value is out of its range.
+    pub fn set(&mut self, reference: u32, value: f64) -> Result<(), Refusal> {
+        let Variable {
+            name,
+            causality,
+            range: (low, high),
+            whole,
+            unit,
+            ..
+        } = self.variable(reference)?;
+        match causality {
+            Causality::Input => {}
+            Causality::Parameter if self.saved.drive.is_none() => {}
+            Causality::Parameter => {
+                let message =
+                    format!("{name} is a parameter: set it before the end of initialization");
+                return Err(Refusal::new(message));
+            }
+            Causality::Independent | Causality::Output => {
+                return Err(Refusal::new(format!(
+                    "{name} is computed: it cannot be set"
+                )));
+            }
+        }
+        let fits = *low <= value && value <= *high && (!whole || value.fract().abs() <= 0.0);
+        if !fits {
+            return Err(Refusal::new(format!(
+                "{name} = {value} is out of range: {low} to {high} {unit}"
+            )));
+        }
+        self.saved.values[reference as usize] = value;
+        self.saved.stale = true;
+        Ok(())
+    }
+
+    fn variable(&self, reference: u32) -> Result<&Variable, Refusal> {
+        let count = self.variables.len();
+        self.variables.get(reference as usize).ok_or_else(|| {
+            let last = count - 1;
+            Refusal::new(format!(
+                "there is no variable with value reference {reference}; the last is {last}"
+            ))
+        })
+    }
+
+    /// Ends initialization at a time, s.
+    ///
+    /// # Errors
+    /// A time that is no number, a start temperature between 0 and 233.15 K, an operating point without a solution.
+    pub fn start(&mut self, time_s: f64) -> Result<(), Refusal> {
+        let is_near = time_s.abs() <= FAR_S;
+        if !is_near {
+            return Err(Refusal::new(format!(
+                "the start time {time_s} s is out of range: {} to {FAR_S} s",
+                -FAR_S
+            )));
+        }
+        self.saved.time_s = time_s;
+        if self.kind == Kind::Losses {
+            return self.solve();
+        }
+        let values = &self.saved.values;
+        let (ambient_k, asked_k) = (values[car::AMBIENT], values[car::START]);
+        let start_k = if asked_k > 0.0 { asked_k } else { ambient_k };
+        self.begin([values[car::SPEED], ambient_k, start_k])
+    }
+
+    /// Goes on by a communication step from a time, s.
+    ///
+    /// # Errors
+    /// A step that is too short or too long, or does not begin where the last one ended; nothing has been done. As a warning: an operating
+    /// point without a solution.
+    pub fn step(&mut self, from_s: f64, dt_s: f64) -> Result<(), Refusal> {
+        let (least, most) = STEP_S;
+        if !is_step(self.saved.time_s, dt_s) {
+            return Err(Refusal::new(format!(
+                "a communication step of {dt_s} s is out of range: {least} to {most} s"
+            )));
+        }
+        let at_s = self.saved.time_s;
+        let follows = (from_s - at_s).abs() <= NEAR * dt_s;
+        if !follows {
+            return Err(Refusal::new(format!(
+                "the step begins at {from_s} s, the last one ended at {at_s} s"
+            )));
+        }
+        let solved = match self.kind {
+            Kind::Losses => self.solve().map_err(|refused| Refusal {
+                warns: true,
+                ..refused
+            }),
+            Kind::Car => {
+                let value = |place: usize| self.saved.values.get(place);
+                let has_gears = self
+                    .variables
+                    .get(car::GEAR)
+                    .is_some_and(|own| own.causality == Causality::Input);
+                let gear = value(car::GEAR).filter(|_| has_gears);
+                let asked = Asked {
+                    from_s,
+                    dt_s,
+                    speed_m_s: self.saved.values[car::SPEED],
+                    grade: self.saved.values[car::GRADE],
+                    ambient_k: self.saved.values[car::AMBIENT],
+                    gear: gear.copied().unwrap_or(-1.0),
+                };
+                self.drive(&asked)?;
+                Ok(())
+            }
+        };
+        self.saved.time_s = from_s + dt_s;
+        solved
+    }
+
+    /// The state.
+    #[must_use]
+    pub fn save(&self) -> Saved {
+        self.saved.clone()
+    }
+
+    /// Takes a state back.
+    ///
+    /// # Errors
+    /// It is of another unit.
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), Refusal> {
+        if saved.values.len() != self.variables.len() {
+            return Err(Refusal::new("the state is of another unit"));
+        }
+        self.saved = saved.clone();
+        Ok(())
+    }
+
+    /// Back to before initialization.
+    pub fn reset(&mut self) {
+        let values = self.variables.iter().map(|variable| variable.start);
+        self.saved = Saved {
+            values: values.collect(),
+            time_s: 0.0,
+            drive: None,
+            stale: true,
+        };
+    }
+
+    pub(crate) fn kind(&self) -> Kind {
+        self.kind
+    }
+
+    pub(crate) fn saved(&mut self) -> &mut Saved {
+        &mut self.saved
+    }
+}
+
+/// Puts outputs in place; one that has no value now (a ratio with the engine off) keeps its last one.
+fn show(
+    variables: &[Variable],
+    values: &mut [f64],
+    loss_w: &ByComponent<f64>,
+    value: impl Fn(&Get) -> Option<f64>,
+) {
+    for (variable, place) in variables.iter().zip(values) {
+        let new = match variable.get {
+            Get::Loss(component) => Some(loss_w[component]),
+            ref get => value(get),
+        };
+        if let Some(new) = new.filter(|new| !new.is_nan()) {
+            *place = new;
+        }
+    }
+}

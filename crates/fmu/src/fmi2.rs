@@ -1,0 +1,294 @@
+//! FMI 2.0 for co-simulation.
+#![expect(
+    unsafe_code,
+    reason = "C finds these functions by their names, and hands over pointers"
+)]
+
+use std::ffi::{c_char, c_int, c_void};
+
+use cvtcycle_cosim::Refusal;
+
+use crate::slave::{ERROR, Log2, Logger, OK, Wanted, call, free, given, instantiate, put};
+
+/// `fmi2CallbackFunctions`: of these only the logger is used.
+#[repr(C)]
+struct Callbacks {
+    logger: Option<Log2>,
+    allocate_memory: *const c_void,
+    free_memory: *const c_void,
+    step_finished: *const c_void,
+    environment: *mut c_void,
+}
+
+/// `fmi2CoSimulation`.
+const CO_SIMULATION: c_int = 1;
+
+/// The folder of a URI `file:///PATH`, percent-encoded.
+fn folder(uri: &str) -> Result<String, Refusal> {
+    let rest = uri
+        .strip_prefix("file://localhost/")
+        .map(|path| format!("/{path}"));
+    let rest = rest.or_else(|| uri.strip_prefix("file://").map(str::to_owned));
+    // Some masters write one slash only.
+    let rest = rest.or_else(|| uri.strip_prefix("file:").map(str::to_owned));
+    let Some(path) = rest else {
+        return Err(Refusal::new(format!(
+            "the location of the resources `{uri}` is no file:// URI"
+        )));
+    };
+    let mut bytes = Vec::with_capacity(path.len());
+    let mut rest = path.as_bytes();
+    while let Some((byte, after)) = rest.split_first() {
+        let digits = after.get(..2).filter(|_| *byte == b'%');
+        let digits = digits.and_then(|digits| std::str::from_utf8(digits).ok());
+        match digits.and_then(|digits| u8::from_str_radix(digits, 16).ok()) {
+            Some(decoded) => {
+                bytes.push(decoded);
+                rest = &after[2..];
+            }
+            None => {
+                bytes.push(*byte);
+                rest = after;
+            }
+        }
+    }
+    let path = String::from_utf8_lossy(&bytes).into_owned();
+    // Of file:///C:/folder the path is C:/folder.
+    let is_drive = path.as_bytes().get(2) == Some(&b':');
+    Ok(match path.strip_prefix('/').filter(|_| is_drive) {
+        Some(path) => path.to_owned(),
+        None => path,
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SetDebugLogging(
+    instance: *mut c_void,
+    _on: c_int,
+    _count: usize,
+    _categories: *const *const c_char,
+) -> c_int {
+    // There is no debug logging: refusals are logged whatever is asked for.
+    call(instance, |_| Ok(()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2Instantiate(
+    name: *const c_char,
+    kind: c_int,
+    token: *const c_char,
+    resources: *const c_char,
+    callbacks: *const c_void,
+    _visible: c_int,
+    _logging: c_int,
+) -> *mut c_void {
+    // SAFETY: null, or the structure of the standard, which outlives the instance.
+    let callbacks = unsafe { callbacks.cast::<Callbacks>().as_ref() };
+    let logger = callbacks.map_or(Logger::Fmi2(None, std::ptr::null_mut()), |own| {
+        Logger::Fmi2(own.logger, own.environment)
+    });
+    let wanted = Wanted {
+        name,
+        token,
+        resources,
+        logger,
+    };
+    if kind != CO_SIMULATION {
+        logger.log(c"", ERROR, "this FMU is for co-simulation only");
+        return std::ptr::null_mut();
+    }
+    instantiate(&wanted, folder)
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2FreeInstance(instance: *mut c_void) {
+    free(instance);
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SetupExperiment(
+    instance: *mut c_void,
+    _tolerance_defined: c_int,
+    _tolerance: f64,
+    start_s: f64,
+    _stop_defined: c_int,
+    _stop_s: f64,
+) -> c_int {
+    call(instance, |slave| {
+        slave.start_s = start_s;
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2EnterInitializationMode(instance: *mut c_void) -> c_int {
+    call(instance, |_| Ok(()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2ExitInitializationMode(instance: *mut c_void) -> c_int {
+    call(instance, |slave| slave.unit.start(slave.start_s))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2Terminate(instance: *mut c_void) -> c_int {
+    call(instance, |_| Ok(()))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2Reset(instance: *mut c_void) -> c_int {
+    call(instance, |slave| {
+        slave.unit.reset();
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2GetReal(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    values: *mut f64,
+) -> c_int {
+    call(instance, |slave| {
+        slave.get((references, count), (values, count), false, |x| x)
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2GetInteger(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    values: *mut c_int,
+) -> c_int {
+    call(instance, |slave| {
+        slave.get((references, count), (values, count), true, |x| x as c_int)
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SetReal(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    values: *const f64,
+) -> c_int {
+    call(instance, |slave| {
+        slave.set((references, count), (values, count), false, |x| x)
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SetInteger(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    values: *const c_int,
+) -> c_int {
+    call(instance, |slave| {
+        slave.set((references, count), (values, count), true, f64::from)
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2GetFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
+    call(instance, |slave| slave.save(state))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SetFMUstate(instance: *mut c_void, state: *mut c_void) -> c_int {
+    call(instance, |slave| {
+        let saved = slave.saved(state)?;
+        slave.unit.restore(saved)
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2FreeFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
+    call(instance, |slave| slave.free_saved(state))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SerializedFMUstateSize(
+    instance: *mut c_void,
+    state: *mut c_void,
+    size: *mut usize,
+) -> c_int {
+    call(instance, |slave| {
+        put(size, slave.bytes_of(state)?.len());
+        Ok(())
+    })
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2SerializeFMUstate(
+    instance: *mut c_void,
+    state: *mut c_void,
+    bytes: *mut u8,
+    size: usize,
+) -> c_int {
+    call(instance, |slave| slave.write_bytes(state, (bytes, size)))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2DeSerializeFMUstate(
+    instance: *mut c_void,
+    bytes: *const u8,
+    size: usize,
+    state: *mut *mut c_void,
+) -> c_int {
+    call(instance, |slave| slave.read_bytes((bytes, size), state))
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn fmi2DoStep(
+    instance: *mut c_void,
+    from_s: f64,
+    step_s: f64,
+    _no_state_set_before: c_int,
+) -> c_int {
+    call(instance, |slave| slave.unit.step(from_s, step_s))
+}
+
+/// Functions of what no variable has, or no unit can do: refused as soon as anything is wanted.
+macro_rules! without {
+    ($what:literal: $($name:ident)*) => {$(
+        #[unsafe(no_mangle)]
+        extern "C" fn $name(instance: *mut c_void, references: *const u32, count: usize) -> c_int {
+            call(instance, |_| match given(references, count)? {
+                [] => Ok(()),
+                _ => Err(Refusal::new(concat!(stringify!($name), ": ", $what))),
+            })
+        }
+    )*};
+}
+
+without!("no variable of this FMU has this type": fmi2GetBoolean fmi2GetString fmi2SetBoolean fmi2SetString);
+without!("this FMU has no derivatives": fmi2SetRealInputDerivatives fmi2GetRealOutputDerivatives);
+
+/// Functions that this FMU does not have.
+macro_rules! refused {
+    ($($name:ident)*) => {$(
+        // More arguments follow in C, which a function of this convention may leave alone.
+        #[unsafe(no_mangle)]
+        extern "C" fn $name(instance: *mut c_void) -> c_int {
+            call(instance, |_| Err(Refusal::new(concat!(stringify!($name), ": this FMU cannot do this"))))
+        }
+    )*};
+}
+
+refused!(fmi2GetDirectionalDerivative fmi2CancelStep fmi2GetStatus fmi2GetRealStatus fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus);
+
+/// The statuses agree with those of the standard.
+const _: () = assert!(OK == 0 && ERROR == 3);
