@@ -6,7 +6,7 @@ use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::driveline::{Clamp, Driveline, Shaft};
+use crate::transmission::cvt::driveline::{Clamp, Driveline, PartTorques, Shaft};
 use crate::transmission::cvt::variator::point::{LIMIT_SLACK, PointStatus};
 use crate::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltLosses, BeltState, Slip, belt_point, belt_state,
@@ -148,12 +148,14 @@ impl OnBench<'_> {
             pressure_pa: pa,
             secondary_n: cvt.secondary_clamp_n(pressure_pa, secondary_rad_s),
         };
-        let mut torques = line.secondary(
+        let mut torques = PartTorques::default();
+        line.secondary(
             output,
             || line.final_drive(secondary_rad_s, output),
             (w, secondary_rad_s),
             &clamp,
             &mut inside_maps,
+            &mut torques,
         );
         let secondary = torques.secondary;
         let load = self.load(u, secondary, clamp.secondary_n);
@@ -175,7 +177,8 @@ impl OnBench<'_> {
             }
         }
         line.turn_primary(&mut torques, w, &clamp, &mut inside_maps);
-        let pump = line.turn_engine(&mut torques, w, pa, 0.0, &mut inside_maps);
+        let shaft = line.engine_shaft(w);
+        let pump = line.turn_engine(&mut torques, &shaft, pa, 0.0, &mut inside_maps);
         let mut loss_nm = ByComponent::default();
         torques.for_each_loss(|component, shaft, torque_nm| {
             loss_nm[component] += match shaft {

@@ -302,19 +302,33 @@ fn node_power(car: &Car, output: &StepOutput, burn: &Burn) -> [f64; NODES] {
     power
 }
 
+/// The components whose heat goes the same way; how many there are is checked when this is compiled.
+const fn heating<const COUNT: usize>(to: HeatTo) -> [Component; COUNT] {
+    let mut found = [Component::LaunchClutch; COUNT];
+    let (mut number, mut count) = (0, 0);
+    while number < Component::COUNT {
+        let component = Component::ALL[number];
+        if component.heat() as u8 == to as u8 {
+            found[count] = component;
+            count += 1;
+        }
+        number += 1;
+    }
+    assert!(count == COUNT);
+    found
+}
+
 /// Heat that the transmission's losses, W, put into each node, W (SI-3).
 #[inline]
 pub fn loss_heat_w(car: &Car, loss_w: &ByComponent<f64>) -> [f64; NODES] {
+    const BELT_HEAT: [Component; 6] = heating(HeatTo::Belt);
+    const METAL_HEAT: [Component; 4] = heating(HeatTo::Metal);
+    const COUPLING_HEAT: [Component; 1] = heating(HeatTo::Coupling);
+    const SUMP_HEAT: [Component; 7] = heating(HeatTo::Sump);
     // First the sums of what goes the same way.
-    let (mut belt, mut metal, mut coupling, mut sump) = (0.0, 0.0, 0.0, 0.0);
-    for component in Component::ALL {
-        *match component.heat() {
-            HeatTo::Belt => &mut belt,
-            HeatTo::Metal => &mut metal,
-            HeatTo::Coupling => &mut coupling,
-            HeatTo::Sump => &mut sump,
-        } += loss_w[component];
-    }
+    let sum = |of: &[Component]| of.iter().fold(0.0, |sum, one| sum + loss_w[*one]);
+    let (belt, metal) = (sum(&BELT_HEAT), sum(&METAL_HEAT));
+    let (coupling, sump) = (sum(&COUPLING_HEAT), sum(&SUMP_HEAT));
     let mut power = [0.0; NODES];
     power[BELT] = car.belt_heat_share * belt;
     power[METAL] = metal;

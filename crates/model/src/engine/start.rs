@@ -67,6 +67,9 @@ impl Running {
 
     /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
     pub(super) fn spending_per_s(&self, within_s: f64, dt_s: f64) -> f64 {
+        if self.since_s >= within_s {
+            return 0.0; // all is spent
+        }
         let spent = |since_s: f64| {
             let u = smaller(since_s / within_s, 1.0);
             u * (2.0 - u)

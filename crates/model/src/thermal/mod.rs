@@ -292,15 +292,16 @@ impl Network {
         let t = &heat.node_k;
         let per_s = 1.0 / input.dt_s;
         let capacity_w_k = self.capacity_j_k.map(|capacity| capacity * per_s);
-        let mut rise = self.rise_k(&now, t, input, &capacity_w_k);
+        let (air_w_k, mut air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
+        let mut rise = self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w));
         // Only beyond the end of the thermostat's ramp can both be: the step was too long for its slope.
         if now.radiator.0 + now.radiator.1 * rise[COOLANT] < 0.0
             && t[COOLANT] + rise[COOLANT] > input.ambient_k
         {
             now.radiator = (0.0, 0.0); // TH-9
-            rise = self.rise_shut_k(&now, t, input, &capacity_w_k);
+            air_w = now.air_w(t, input.ambient_k);
+            rise = self.rise_shut_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w));
         }
-        let (air_w_k, air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut node_k = *t;
         let (mut stored_w, mut to_air_w) = (0.0, now.radiator.1 * rise[COOLANT]);
         for i in 0..NODES {
@@ -318,7 +319,7 @@ impl Network {
         }
     }
 
-    /// Rise of the nodes within the step, K (TH-5).
+    /// Rise of the nodes within the step, K, with conductance and heat to the air of each (TH-5).
     #[inline(always)]
     fn rise_k(
         &self,
@@ -326,8 +327,8 @@ impl Network {
         t: &[f64; NODES],
         input: &HeatInput,
         capacity_w_k: &[f64; NODES],
+        (air_w_k, air_w): (&[f64; NODES], &[f64; NODES]),
     ) -> [f64; NODES] {
-        let (air_w_k, air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut right = now.links.flows_w(t);
         let mut own = *capacity_w_k;
         for i in 0..NODES {
@@ -351,8 +352,9 @@ impl Network {
         t: &[f64; NODES],
         input: &HeatInput,
         capacity_w_k: &[f64; NODES],
+        air: (&[f64; NODES], &[f64; NODES]),
     ) -> [f64; NODES] {
-        self.rise_k(now, t, input, capacity_w_k)
+        self.rise_k(now, t, input, capacity_w_k, air)
     }
 
     #[inline]

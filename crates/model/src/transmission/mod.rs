@@ -57,16 +57,21 @@ impl Transmission {
     }
 
     /// Solves one step.
+    // Within the caller, so that what it fills is not copied.
+    #[inline(always)]
     pub fn solve<P: PrimeMover>(
         &self,
         input: &StepInput<P>,
         state: &mut TransmissionState,
     ) -> StepOutput {
-        match (self, &mut state.cvt) {
-            (Transmission::Cvt(cvt), Some(own)) => cvt.solve(input, own, &mut state.driveline),
-            (Transmission::Cvt(_), None) => StepOutput::at_rest(),
-            (Transmission::Manual(manual), _) => manual.solve(input, &mut state.driveline),
+        let mut output = StepOutput::at_rest();
+        let TransmissionState { cvt, driveline } = state;
+        match (self, cvt) {
+            (Transmission::Cvt(cvt), Some(own)) => cvt.solve(input, own, driveline, &mut output),
+            (Transmission::Cvt(_), None) => (),
+            (Transmission::Manual(manual), _) => manual.solve(input, driveline, &mut output),
         }
+        output
     }
 
     /// True for a CVT, which drives the automatic trace.

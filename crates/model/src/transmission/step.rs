@@ -111,6 +111,7 @@ pub struct StepOutput {
 
 impl StepOutput {
     /// Nothing turns.
+    #[inline]
     pub fn at_rest() -> Self {
         StepOutput {
             engine_rad_s: 0.0,

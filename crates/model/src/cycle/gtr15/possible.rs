@@ -255,10 +255,13 @@ impl Possible {
             let is_possible =
                 !at_rest && ((least..=limit + ROUNDING_RPM).contains(&n) || gear == 0 && n < least);
             let (held, slips) = at.held_rpm(n, gear, phases.change[t]);
-            let available = at.available_kw(held, gear);
             self.slips.push(slips);
-            list[gear] = (is_possible, gear < 2 || available >= required_kw);
-            if is_possible && most.is_none_or(|(kw, _)| available >= kw) {
+            if !is_possible {
+                continue;
+            }
+            let available = at.available_kw(held, gear);
+            list[gear] = (true, gear < 2 || available >= required_kw);
+            if most.is_none_or(|(kw, _)| available >= kw) {
                 most = Some((available, gear));
             }
         }

@@ -243,7 +243,8 @@ impl<'a> Schedule<'a> {
                     **gear != own + 1
                 }
             };
-            let away = self.gear[b + 2..].iter().take_while(is_away).count();
+            let ahead = self.gear[b + 2..].iter().take(EXCURSION + 1);
+            let away = ahead.take_while(is_away).count();
             if away <= EXCURSION {
                 for t in b + 1..b + 2 + away {
                     let least = self.possible.least[t];

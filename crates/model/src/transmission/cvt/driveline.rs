@@ -2,7 +2,7 @@
 
 use super::controller::ClampSignals;
 use super::pulley_bearing::PulleyBearing;
-use super::pump::{PumpAtTemperature, PumpState};
+use super::pump::{PumpAtTemperature, PumpState, TurningPump};
 use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
 use crate::fluid::{Lubricant, OilState};
@@ -120,6 +120,15 @@ pub(crate) struct Driveline<'a> {
     pub changes: Option<&'a LossChanges>,
 }
 
+/// What turns with the engine's shaft, at its speed.
+#[derive(Clone, Copy)]
+pub(crate) struct EngineShaft<'a> {
+    pub rad_s: f64,
+    pub pump: TurningPump<'a>,
+    /// Drag of the input shaft by its model, Nm.
+    drag_nm: f64,
+}
+
 /// How the secondary is clamped.
 #[derive(Clone, Copy)]
 pub(crate) struct Clamp {
@@ -212,6 +221,23 @@ impl PartTorques {
     }
 }
 
+/// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
+pub(super) fn final_drive(
+    cvt: &Cvt,
+    secondary_rad_s: f64,
+    demand_nm: f64,
+    oil: OilState,
+) -> TurningTrain {
+    let train = &cvt.final_drive.train;
+    let turning = train.turning(secondary_rad_s, demand_nm, oil);
+    match cvt.changes.as_deref() {
+        Some(changes) => {
+            turning.times(&TrainLosses::all(changes.factor[Component::FinalDrive])) // CV-7
+        }
+        None => turning,
+    }
+}
+
 impl<'a> Driveline<'a> {
     /// The box with some of its parts at an oil temperature, K.
     pub fn new(
@@ -292,18 +318,11 @@ impl<'a> Driveline<'a> {
 
     /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
     pub fn final_drive(&self, secondary_rad_s: f64, demand_nm: f64) -> TurningTrain {
-        let train = &self.cvt.final_drive.train;
-        let turning = train.turning(secondary_rad_s, demand_nm, self.oil);
-        match self.changes {
-            Some(changes) => {
-                turning.times(&TrainLosses::all(changes.factor[Component::FinalDrive])) // CV-7
-            }
-            None => turning,
-        }
+        final_drive(self.cvt, secondary_rad_s, demand_nm, self.oil)
     }
 
-    /// Torques of what turns with the secondary for a torque behind the final drive, Nm: those of the final drive, `drive`, then bearing and
-    /// rings of the shaft.
+    /// Sets the torques to those of what turns with the secondary for a torque behind the final drive, Nm: those of the final drive, `drive`,
+    /// then bearing and rings of the shaft.
     #[inline(always)]
     pub fn secondary(
         &self,
@@ -312,16 +331,16 @@ impl<'a> Driveline<'a> {
         (primary_rad_s, secondary_rad_s): (f64, f64),
         clamp: &Clamp,
         inside: &mut bool,
-    ) -> PartTorques {
-        let mut torques = self.through(
+        torques: &mut PartTorques,
+    ) {
+        *torques = self.through(
             output_nm,
             drive,
             (primary_rad_s, secondary_rad_s),
             clamp.pressure_pa,
             inside,
         );
-        self.turn_secondary(&mut torques, clamp);
-        torques
+        self.turn_secondary(torques, clamp);
     }
 
     /// Torque into the final drive for one behind it, Nm, in place of the secondary's.
@@ -455,43 +474,54 @@ impl<'a> Driveline<'a> {
         }
     }
 
+    /// What turns with the engine's shaft at a speed.
+    #[inline(always)]
+    pub fn engine_shaft(&self, rad_s: f64) -> EngineShaft<'_> {
+        EngineShaft {
+            rad_s,
+            pump: self.turning_pump(rad_s),
+            drag_nm: (self.cvt.shaft_drag).torque_nm(self.viscosity.shaft, rad_s),
+        }
+    }
+
+    /// The pump at a speed of the engine.
+    #[inline(always)]
+    pub fn turning_pump(&self, engine_rad_s: f64) -> TurningPump<'_> {
+        self.cvt.pump.turning(&self.pump, engine_rad_s)
+    }
+
     /// Sets the torques of the parts that turn with the engine, at its speed, a pressure and a flow into the pulleys; the pump's state.
     #[inline(always)]
     pub fn turn_engine(
         &self,
         torques: &mut PartTorques,
-        engine_rad_s: f64,
+        shaft: &EngineShaft,
         pressure_pa: f64,
         shift_flow_m3_s: f64,
         inside: &mut bool,
     ) -> PumpState {
-        let at = (engine_rad_s, 0.0, pressure_pa);
+        let at = (shaft.rad_s, 0.0, pressure_pa);
         let mut state = PumpState::default();
         if self.parts.pump {
-            let pump = &self.cvt.pump;
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
-            state = pump.state(&self.pump, engine_rad_s, pressure_pa, need);
+            state = shaft.pump.state(pressure_pa, need);
             state.torque_nm = self.loss_nm(Component::Pump, at, inside, || state.torque_nm);
         }
-        torques.box_map = self.box_map_nm(torques.secondary, engine_rad_s, inside);
+        torques.box_map = self.box_map_nm(torques.secondary, shaft.rad_s, inside);
         if torques.box_map.is_some() {
             return state;
         }
         torques.pump = state.torque_nm;
         torques.alternator = state.alternator_share * state.torque_nm; // EP-2
-        torques.shaft = self.loss_nm(Component::InputShaft, at, inside, || {
-            let drag = &self.cvt.shaft_drag;
-            drag.torque_nm(self.viscosity.shaft, engine_rad_s)
-        });
+        torques.shaft = self.loss_nm(Component::InputShaft, at, inside, || shaft.drag_nm);
         state
     }
 
     /// The pressure that the circuit holds of the one that the clamp law sets, Pa, and whether the pump's flow is what limits it (PU-6). A pump
     /// that is a measured map says nothing of its flow: it holds any pressure.
     #[inline]
-    pub fn held_pa(&self, set_pa: f64, engine_rad_s: f64, shift_flow_m3_s: f64) -> (f64, bool) {
-        let pump = &self.cvt.pump;
-        let most_pa = pump.deliverable_pa(&self.pump, engine_rad_s, shift_flow_m3_s);
+    pub fn held_pa(&self, set_pa: f64, pump: &TurningPump, shift_flow_m3_s: f64) -> (f64, bool) {
+        let most_pa = pump.deliverable_pa(shift_flow_m3_s);
         let short = set_pa > most_pa;
         let limits = short && !self.cvt.has_map(Component::Pump);
         (if limits { most_pa } else { set_pa }, short)

@@ -131,7 +131,6 @@ impl Point {
 pub(super) struct Chain {
     /// The belt's load, its torque apart.
     pub load: BeltLoad,
-    pub torques: PartTorques,
     /// Slip in force.
     pub slip: f64,
     pub secondary_rad_s: f64,
@@ -166,34 +165,41 @@ impl<P: PrimeMover> Step<'_, P> {
         self.line.at.geometry.ratio * self.secondary_rad_s / (1.0 - slip) // CV-1
     }
 
-    /// Torques of final drive, belt, pulley shafts and reverse clutch at a guess.
+    /// Sets the torques of final drive, belt, pulley shafts and reverse clutch at a guess.
     #[inline(always)]
-    fn torques(
+    fn turn_box(
         &self,
         g: &Guess,
         primary_rad_s: f64,
         clamp: &Clamp,
         load: impl FnOnce(f64) -> BeltLoad,
         inside: &mut bool,
-    ) -> PartTorques {
+        torques: &mut PartTorques,
+    ) {
         let line = &self.line;
-        let mut torques = line.secondary(
+        line.secondary(
             g.output_nm,
             || self.drive,
             (primary_rad_s, self.secondary_rad_s),
             clamp,
             inside,
+            torques,
         );
         let secondary_nm = torques.secondary;
         torques.belt = line.belt_losses(&load(secondary_nm));
         torques.belt_map = line.belt_map_nm(secondary_nm, primary_rad_s, clamp.pressure_pa, inside);
-        line.turn_primary(&mut torques, primary_rad_s, clamp, inside);
-        torques
+        line.turn_primary(torques, primary_rad_s, clamp, inside);
     }
 
     /// From the wheels to a launch device in front of the variator.
     #[inline(always)]
-    fn launch_ahead(&self, g: &Guess, limit: Limit, inside: &mut bool) -> Chain {
+    fn launch_ahead(
+        &self,
+        g: &Guess,
+        limit: Limit,
+        inside: &mut bool,
+        torques: &mut PartTorques,
+    ) -> Chain {
         let (line, cvt) = (&self.line, self.line.cvt);
         let belt_rad_s = self.primary_rad_s(g.slip);
         let clamp = Clamp {
@@ -209,7 +215,7 @@ impl<P: PrimeMover> Step<'_, P> {
             output_torque_nm,
             ..load
         };
-        let torques = self.torques(g, belt_rad_s, &clamp, with, inside);
+        self.turn_box(g, belt_rad_s, &clamp, with, inside, torques);
         let (slip, belt_nm) = torques.belt_in_force();
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
@@ -219,7 +225,6 @@ impl<P: PrimeMover> Step<'_, P> {
             + torques.primary_nm();
         Chain {
             load,
-            torques,
             slip,
             secondary_rad_s: self.secondary_rad_s,
             primary_rad_s,
@@ -241,7 +246,7 @@ impl<P: PrimeMover> Step<'_, P> {
             return self.evaluate_behind(g, limit, point);
         }
         let mut inside_maps = true;
-        let chain = self.launch_ahead(g, limit, &mut inside_maps);
+        let chain = self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques);
         self.follow(g, limit, chain, inside_maps, point);
     }
 
@@ -249,11 +254,11 @@ impl<P: PrimeMover> Step<'_, P> {
     #[inline(never)]
     fn evaluate_behind(&self, g: &Guess, limit: Limit, point: &mut Point) {
         let mut inside_maps = true;
-        let chain = self.launch_behind(g, limit, &mut inside_maps);
+        let chain = self.launch_behind(g, limit, &mut inside_maps, &mut point.torques);
         self.follow(g, limit, chain, inside_maps, point);
     }
 
-    /// What follows from the torques up to the engine: those of its own shaft, and engine speed, throttle and pressure under a limit.
+    /// What follows from the torques up to the engine, which are in the point: those of its own shaft, and engine speed, throttle and pressure under a limit.
     #[inline(always)]
     fn follow(
         &self,
@@ -264,12 +269,13 @@ impl<P: PrimeMover> Step<'_, P> {
         point: &mut Point,
     ) {
         let (line, cvt, engine) = (&self.line, self.line.cvt, self.input.engine);
-        let mut torques = chain.torques;
+        let torques = &mut point.torques;
         let (over_rad_s, own) = (chain.over_rad_s, chain.side);
         let engine_rad_s = own.engine_rad_s;
+        let shaft = line.engine_shaft(engine_rad_s);
         let pump = line.turn_engine(
-            &mut torques,
-            engine_rad_s,
+            torques,
+            &shaft,
             g.pressure_pa,
             self.shift_flow_m3_s,
             &mut inside_maps,
@@ -282,50 +288,50 @@ impl<P: PrimeMover> Step<'_, P> {
             Limit::FullLoad => self.max_passed_nm(&turning, spin_nm),
         };
         let flywheel_nm = own.engine_nm + spin_nm; // CV-2, CV-6
-        let (wanted_flywheel_nm, next_engine_rad_s) = if limit == Limit::None {
-            (flywheel_nm, engine_rad_s)
+        let (wanted_flywheel_nm, next_engine_rad_s, next_pump) = if limit == Limit::None {
+            (flywheel_nm, engine_rad_s, shaft.pump)
         } else {
-            self.under_limit(wanted_nm, (over_rad_s, engine_rad_s), chain.locked, spin_nm)
+            let speeds = (over_rad_s, engine_rad_s);
+            let (nm, rad_s) = self.under_limit(wanted_nm, speeds, chain.locked, spin_nm);
+            (nm, rad_s, line.turning_pump(rad_s))
         };
         let crank_nm = wanted_flywheel_nm + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
         let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
+        let secondary_nm = torques.secondary;
         let load = || BeltLoad {
-            output_torque_nm: torques.secondary,
+            output_torque_nm: secondary_nm,
             ..chain.load
         };
         let (set_pa, clamp_cause) =
             cvt.pressure_by(self.clamp, &signals, line.at, load, chain.secondary_rad_s);
         let (next_pressure_pa, flow_limited) =
-            line.held_pa(set_pa, next_engine_rad_s, self.shift_flow_m3_s);
-        *point = Point {
-            guess: Guess {
-                engine_rad_s,
-                slip: chain.slip,
-                ..*g
-            },
-            slip_guessed: g.slip,
-            next_engine_rad_s,
-            next_pressure_pa,
-            clamp_cause,
-            throttle,
-            full_load_nm,
-            torques,
-            secondary_rad_s: chain.secondary_rad_s,
-            primary_rad_s: chain.primary_rad_s,
-            primary_nm: chain.primary_nm,
-            passed_nm: chain.passed_nm,
-            over_rad_s,
-            spin_nm,
-            miss_nm: chain.passed_nm - wanted_nm,
-            flywheel_nm,
-            coupling_w: own.loss_w,
-            flow_limited,
-            oil_flow_m3_s: pump.working_m3_s,
-            inside_maps,
-            locked: chain.locked,
+            line.held_pa(set_pa, &next_pump, self.shift_flow_m3_s);
+        point.guess = Guess {
+            engine_rad_s,
+            slip: chain.slip,
+            ..*g
         };
+        point.slip_guessed = g.slip;
+        point.next_engine_rad_s = next_engine_rad_s;
+        point.next_pressure_pa = next_pressure_pa;
+        point.clamp_cause = clamp_cause;
+        point.throttle = throttle;
+        point.full_load_nm = full_load_nm;
+        point.secondary_rad_s = chain.secondary_rad_s;
+        point.primary_rad_s = chain.primary_rad_s;
+        point.primary_nm = chain.primary_nm;
+        point.passed_nm = chain.passed_nm;
+        point.over_rad_s = over_rad_s;
+        point.spin_nm = spin_nm;
+        point.miss_nm = chain.passed_nm - wanted_nm;
+        point.flywheel_nm = flywheel_nm;
+        point.coupling_w = own.loss_w;
+        point.flow_limited = flow_limited;
+        point.oil_flow_m3_s = pump.working_m3_s;
+        point.inside_maps = inside_maps;
+        point.locked = chain.locked;
     }
 
     /// Torque at the flywheel, Nm, and engine speed, rad/s, where a limit has the coupling pass on a torque at the speeds of its two sides.

@@ -20,10 +20,16 @@ use crate::transmission::coupling::EngineSide;
 impl<P: PrimeMover> Step<'_, P> {
     /// From the wheels through a clutch behind the variator to the engine.
     #[inline(always)]
-    pub(super) fn launch_behind(&self, g: &Guess, limit: Limit, inside: &mut bool) -> Chain {
+    pub(super) fn launch_behind(
+        &self,
+        g: &Guess,
+        limit: Limit,
+        inside: &mut bool,
+        torques: &mut PartTorques,
+    ) -> Chain {
         let (line, cvt) = (&self.line, self.line.cvt);
         let over_rad_s = self.primary_rad_s(g.slip);
-        let mut torques = self.behind_clutch(g, over_rad_s, inside);
+        *torques = self.behind_clutch(g, over_rad_s, inside);
         let clutch_nm = torques.secondary;
         let guessed = self.at_primary(g.slip);
         let first = self.engine_side(
@@ -39,7 +45,7 @@ impl<P: PrimeMover> Step<'_, P> {
             secondary_n: cvt
                 .secondary_clamp_n(g.pressure_pa, self.behind_belt_rad_s(&first, g.slip)),
         };
-        line.turn_secondary(&mut torques, &clamp);
+        line.turn_secondary(torques, &clamp);
         let load = BeltLoad {
             primary_speed_rad_s: w,
             secondary_clamp_n: clamp.secondary_n,
@@ -48,7 +54,7 @@ impl<P: PrimeMover> Step<'_, P> {
         };
         torques.belt = line.belt_losses(&load);
         torques.belt_map = line.belt_map_nm(torques.secondary, w, g.pressure_pa, inside);
-        line.turn_primary(&mut torques, w, &clamp, inside);
+        line.turn_primary(torques, w, &clamp, inside);
         let (slip, belt_nm) = torques.belt_in_force();
         // With the slip in force, so that the power balance holds for this iterate exactly.
         let over_rad_s = self.primary_rad_s(slip);
@@ -76,7 +82,6 @@ impl<P: PrimeMover> Step<'_, P> {
             between_nm: primary_nm - side.engine_nm, // LO-3
             side,
             locked,
-            torques,
         }
     }
 

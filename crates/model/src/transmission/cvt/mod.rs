@@ -202,10 +202,18 @@ impl Cvt {
     /// that line falls with speed, so three passes from the speed of greatest power settle it.
     #[inline]
     pub fn full_load_rad_s<P: PrimeMover>(&self, engine: &P, power_w: f64) -> f64 {
-        (0..3).fold(self.ratio.highest_rad_s, |speed, _| {
-            self.full_load_route
-                .at(power_w / engine.full_load_share(speed)) // RC-3
-        })
+        if power_w <= 0.0 {
+            return self.full_load_route.at(0.0);
+        }
+        let mut speed = self.ratio.highest_rad_s;
+        for _ in 0..3 {
+            let before = speed;
+            speed = (self.full_load_route).at(power_w / engine.full_load_share(before)); // RC-3
+            if speed.to_bits() == before.to_bits() {
+                break; // settled: another pass gives the same
+            }
+        }
+        speed
     }
 
     /// Speed that the shift map has for a share of rated power, rad/s (RC-14); none without one.
@@ -350,13 +358,14 @@ impl Cvt {
         }
     }
 
-    /// Solves one step (CV-1 to CV-5).
-    pub fn solve<P: PrimeMover>(
+    /// Solves one step (CV-1 to CV-5); fills an output at rest.
+    pub(super) fn solve<P: PrimeMover>(
         &self,
         input: &StepInput<P>,
         own: &mut CvtState,
         past: &mut DrivelineState,
-    ) -> StepOutput {
-        solve::solve(self, input, own, past)
+        output: &mut StepOutput,
+    ) {
+        solve::solve(self, input, own, past, output);
     }
 }

@@ -1,7 +1,7 @@
 //! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
 
 use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
-use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers};
+use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
 use super::evaluate::Step;
 use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
@@ -228,29 +228,33 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         film_exponents: friction.film_exponents(),
     };
     let powers = Powers::new(cvt, at, &bases);
-    let line = Driveline {
-        cvt,
-        at,
-        parts: Parts::ALL,
-        viscosity: powers.viscosity,
-        pump: PumpAtTemperature {
-            viscous_factor: powers.viscous_factor,
-            ..inlet
-        },
-        shafts: PulleyShafts::new(cvt, at, Parts::ALL),
-        radius_factor: powers.radius_factor,
-        force_log: cvt.floors.force_log(
-            shift.rate_per_s,
-            cvt.primary_rad_s(shift.ratio, secondary_rad_s, past),
-        ),
-        oil_k: sump_k,
-        oil: sump,
-        changes: cvt.changes.as_deref(),
-    };
     Step {
         // The demand of the wheels decides the friction of the teeth (GM-2).
-        drive: line.final_drive(secondary_rad_s, input.wheel.power_w / secondary_rad_s),
-        line,
+        drive: final_drive(
+            cvt,
+            secondary_rad_s,
+            input.wheel.power_w / secondary_rad_s,
+            sump,
+        ),
+        line: Driveline {
+            cvt,
+            at,
+            parts: Parts::ALL,
+            viscosity: powers.viscosity,
+            pump: PumpAtTemperature {
+                viscous_factor: powers.viscous_factor,
+                ..inlet
+            },
+            shafts: PulleyShafts::new(cvt, at, Parts::ALL),
+            radius_factor: powers.radius_factor,
+            force_log: cvt.floors.force_log(
+                shift.rate_per_s,
+                cvt.primary_rad_s(shift.ratio, secondary_rad_s, past),
+            ),
+            oil_k: sump_k,
+            oil: sump,
+            changes: cvt.changes.as_deref(),
+        },
         input,
         secondary_rad_s,
         load: BeltLoad::unloaded(

@@ -147,20 +147,6 @@ impl Pump {
         self.displacement_m3_rad * speed_rad_s
     }
 
-    /// An electric pump at an engine's speed (EP-2).
-    fn electric(&self, of: &ElectricPump, most_m3_s: f64, at: (f64, f64, f64)) -> PumpState {
-        let (speed_rad_s, secondary_pa, need_m3_s) = at;
-        let working_m3_s = smaller(need_m3_s, most_m3_s);
-        let electric_w = (secondary_pa + self.line_drop_pa) * working_m3_s / of.efficiency; // EP-2
-        PumpState {
-            torque_nm: electric_w / speed_rad_s,
-            alternator_share: 1.0 / of.alternator - 1.0,
-            flow_m3_s: working_m3_s,
-            working_m3_s,
-            flow_limited: need_m3_s > most_m3_s,
-        }
-    }
-
     /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
     pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
         self.with_factor(eta_pa_s, 1.0).need_m3_s(secondary_pa)
@@ -174,13 +160,27 @@ impl Pump {
         speed_rad_s: f64,
         shift_flow_m3_s: f64,
     ) -> f64 {
-        let drawn = now.drawn_m3_s(self.full_flow_m3_s(speed_rad_s));
-        let spare = drawn - now.lubrication_m3_s - shift_flow_m3_s;
-        if spare > LEAST_PA * now.leakage_m3_s_pa {
-            spare / now.leakage_m3_s_pa
-        } else {
-            LEAST_PA
-        } // PU-6
+        self.turning(now, speed_rad_s)
+            .deliverable_pa(shift_flow_m3_s)
+    }
+
+    /// The pump with an engine at a speed, in its oil.
+    #[inline(always)]
+    pub fn turning(&self, now: &PumpAtTemperature, speed_rad_s: f64) -> TurningPump<'_> {
+        let flow_m3_s = self.full_flow_m3_s(speed_rad_s);
+        let viscous_nm = self.viscous
+            * ETA_REFERENCE_PA_S
+            * now.viscous_factor
+            * speed_rad_s
+            * self.displacement_m3_rad;
+        TurningPump {
+            pump: self,
+            now: *now,
+            speed_rad_s,
+            flow_m3_s,
+            drawn_m3_s: now.drawn_m3_s(flow_m3_s),
+            viscous_nm: self.heating.torque_nm(viscous_nm, speed_rad_s), // PU-1
+        }
     }
 
     /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
@@ -229,33 +229,75 @@ impl Pump {
         secondary_pa: f64,
         need_m3_s: f64,
     ) -> PumpState {
-        let flow = self.full_flow_m3_s(speed_rad_s);
-        let drawn = now.drawn_m3_s(flow);
-        if let PumpKind::Electric(of) = &self.kind {
-            return self.electric(of, drawn, (speed_rad_s, secondary_pa, need_m3_s));
+        self.turning(now, speed_rad_s)
+            .state(secondary_pa, need_m3_s)
+    }
+}
+
+/// The pump at a speed in its oil: what depends on neither pressure nor need is known.
+#[derive(Clone, Copy, Debug)]
+pub struct TurningPump<'a> {
+    pump: &'a Pump,
+    now: PumpAtTemperature,
+    speed_rad_s: f64,
+    /// Flow of the whole displacement, and what it draws, m3/s.
+    flow_m3_s: f64,
+    drawn_m3_s: f64,
+    /// The second term of PU-1.
+    viscous_nm: f64,
+}
+
+impl TurningPump<'_> {
+    /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
+    #[inline(always)]
+    pub fn deliverable_pa(&self, shift_flow_m3_s: f64) -> f64 {
+        let now = &self.now;
+        let spare = self.drawn_m3_s - now.lubrication_m3_s - shift_flow_m3_s;
+        if spare > LEAST_PA * now.leakage_m3_s_pa {
+            spare / now.leakage_m3_s_pa
+        } else {
+            LEAST_PA
+        } // PU-6
+    }
+
+    /// Torque and flow at a pressure and a need (PU-1, PU-4).
+    #[inline(always)]
+    pub fn state(&self, secondary_pa: f64, need_m3_s: f64) -> PumpState {
+        let (pump, drawn) = (self.pump, self.drawn_m3_s);
+        if let PumpKind::Electric(of) = &pump.kind {
+            return self.electric(of, secondary_pa, need_m3_s);
         }
-        let (share, working) = if self.kind == PumpKind::Fixed {
+        let (share, working) = if pump.kind == PumpKind::Fixed {
             (1.0, drawn)
         } else {
-            let share = self.share(need_m3_s, drawn);
-            (share, now.drawn_m3_s(share * flow))
+            let share = pump.share(need_m3_s, drawn);
+            (share, self.now.drawn_m3_s(share * self.flow_m3_s))
         };
         let pressure =
-            share * (secondary_pa + self.line_drop_pa) + (1.0 - share) * self.residual_pa; // PU-4
-        let viscous = self.viscous
-            * ETA_REFERENCE_PA_S
-            * now.viscous_factor
-            * speed_rad_s
-            * self.displacement_m3_rad;
-        let torque = self.displacement_m3_rad * (1.0 + self.friction) * pressure
-            + self.heating.torque_nm(viscous, speed_rad_s)
-            + self.constant_nm; // PU-1
+            share * (secondary_pa + pump.line_drop_pa) + (1.0 - share) * pump.residual_pa; // PU-4
+        let torque = pump.displacement_m3_rad * (1.0 + pump.friction) * pressure
+            + self.viscous_nm
+            + pump.constant_nm; // PU-1
         PumpState {
             torque_nm: torque,
             alternator_share: 0.0,
-            flow_m3_s: flow,
+            flow_m3_s: self.flow_m3_s,
             working_m3_s: working,
             flow_limited: need_m3_s > drawn,
+        }
+    }
+
+    /// An electric pump (EP-2).
+    fn electric(&self, of: &ElectricPump, secondary_pa: f64, need_m3_s: f64) -> PumpState {
+        let most_m3_s = self.drawn_m3_s;
+        let working_m3_s = smaller(need_m3_s, most_m3_s);
+        let electric_w = (secondary_pa + self.pump.line_drop_pa) * working_m3_s / of.efficiency; // EP-2
+        PumpState {
+            torque_nm: electric_w / self.speed_rad_s,
+            alternator_share: 1.0 / of.alternator - 1.0,
+            flow_m3_s: working_m3_s,
+            working_m3_s,
+            flow_limited: need_m3_s > most_m3_s,
         }
     }
 }

@@ -250,30 +250,28 @@ fn engine_off<P: PrimeMover>(
     input: &StepInput<P>,
     ratio: f64,
     past: &mut DrivelineState,
-) -> StepOutput {
+    rest: &mut StepOutput,
+) {
     past.engine_rad_s = input.engine.idle_rad_s(); // the starter brings it back there
     past.stood = true;
     past.rested_s = 0.0;
     past.coupled = false;
-    let mut rest = StepOutput {
-        belt_ratio: ratio,
-        secondary_pa: 0.0,
-        primary_pa: 0.0,
-        slip: 0.0,
-        clamp_safety: f64::INFINITY,
-        ..StepOutput::at_rest()
-    };
+    rest.belt_ratio = ratio;
+    rest.secondary_pa = 0.0;
+    rest.primary_pa = 0.0;
+    rest.slip = 0.0;
+    rest.clamp_safety = f64::INFINITY;
     rest.flags.set(Flags::ENGINE_OFF, true);
-    rest
 }
 
-/// Solves one step of the CVT; the belt of `own` follows the ratio.
+/// Solves one step of the CVT; the belt of `own` follows the ratio, and an output at rest is filled.
 pub(super) fn solve<P: PrimeMover>(
     cvt: &Cvt,
     input: &StepInput<P>,
     own: &mut CvtState,
     past: &mut DrivelineState,
-) -> StepOutput {
+    output: &mut StepOutput,
+) {
     let CvtState {
         belt,
         warm_start,
@@ -283,7 +281,7 @@ pub(super) fn solve<P: PrimeMover>(
     let before = belt.geometry;
     let hold = hold.take();
     if input.engine_off {
-        return engine_off(input, before.ratio, past);
+        return engine_off(input, before.ratio, past, output);
     }
     let mut work = Work::default();
     let mut efficiency = cvt.ratio.route_efficiency;
@@ -301,7 +299,7 @@ pub(super) fn solve<P: PrimeMover>(
         if step.secondary_rad_s <= 0.0 {
             *shifting = step.shifting;
             if !cvt.launch_behind {
-                return standstill(&step, past, warm_start);
+                return standstill(&step, past, warm_start, output);
             }
             let guess = Guess {
                 output_nm: 0.0,
@@ -310,13 +308,8 @@ pub(super) fn solve<P: PrimeMover>(
                 pressure_pa: past.secondary_pa,
             };
             step.run(&guess, Limit::None, false, &mut work); // LO-4
-            return finish(
-                &step,
-                &work.point,
-                past,
-                warm_start,
-                work.outcome(Limit::None),
-            );
+            let outcome = work.outcome(Limit::None);
+            return finish(&step, &work.point, (past, warm_start), &outcome, output);
         }
         let ratio = step.line.at.geometry.ratio;
         let again = ratio.to_bits() == tried_ratio.to_bits();
@@ -330,6 +323,7 @@ pub(super) fn solve<P: PrimeMover>(
         warm_start.slopes = work.slopes;
         *shifting = step.shifting;
         warm_start.overrun = limit == Limit::EngineDrag;
-        return finish(&step, &work.point, past, warm_start, work.outcome(limit));
+        let outcome = work.outcome(limit);
+        return finish(&step, &work.point, (past, warm_start), &outcome, output);
     }
 }

@@ -54,23 +54,24 @@ fn idling<P: PrimeMover>(
         ..step.load
     };
     at.torques.secondary = creep_nm * line.at.geometry.ratio;
+    let shaft = line.engine_shaft(w);
+    let (accessories_nm, full_load_nm) = (engine.accessories_nm(w), engine.full_load_nm(w));
     while at.residual > TOLERANCE && at.evaluations < MAX_EVALUATIONS {
         let signals = line.signals(at.throttle, w);
         let cvt = line.cvt;
         let (set_pa, cause) = cvt.pressure_by(step.clamp, &signals, line.at, load, 0.0);
         at.clamp_cause = cause;
-        (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, w, step.shift_flow_m3_s);
+        (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, &shaft.pump, step.shift_flow_m3_s);
         let pump = line.turn_engine(
             &mut at.torques,
-            w,
+            &shaft,
             at.pressure_pa,
             step.shift_flow_m3_s,
             &mut at.inside_maps,
         );
         line.rest(&mut at.torques);
         at.oil_flow_m3_s = pump.working_m3_s;
-        at.load_share = (at.torques.flywheel_nm(coupling_nm) + engine.accessories_nm(w))
-            / engine.full_load_nm(w);
+        at.load_share = (at.torques.flywheel_nm(coupling_nm) + accessories_nm) / full_load_nm;
         let next = clamp(at.load_share, 0.0, 1.0);
         at.residual = (next - at.throttle).abs();
         at.throttle = next;
@@ -79,12 +80,13 @@ fn idling<P: PrimeMover>(
     at
 }
 
-/// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn.
+/// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn. Fills an output at rest.
 pub(super) fn standstill<P: PrimeMover>(
     step: &Step<P>,
     past: &mut DrivelineState,
     warm_start: &mut WarmStart,
-) -> StepOutput {
+    output: &mut StepOutput,
+) {
     let (line, cvt) = (&step.line, step.line.cvt);
     let idle = step.input.engine.idle_rad_s();
     let creep = (1.0 - step.input.neutral_share) * cvt.coupling.creep_nm(0.0, idle); // SE-3
@@ -97,39 +99,35 @@ pub(super) fn standstill<P: PrimeMover>(
     };
     let capacity = belt_capacity_nm(&cvt.belt, line.at, &clamped);
     let ratio = line.at.geometry.ratio;
-    let mut output = StepOutput {
-        engine_rad_s: w,
-        shaft_nm: at.torques.flywheel_nm(side.engine_nm),
-        throttle: at.throttle,
-        belt_ratio: ratio,
-        primary_pa: primary_pa(step, at.pressure_pa, 0.0),
-        secondary_pa: at.pressure_pa,
-        clamp_cause: at.clamp_cause,
-        slip: 0.0,
-        clamp_safety: if creep > 0.0 {
-            capacity / (creep * ratio)
-        } else {
-            f64::INFINITY
-        },
-        oil_flow_m3_s: at.oil_flow_m3_s,
-        residual: at.residual,
-        iterations: at.evaluations,
-        ..StepOutput::at_rest()
+    output.engine_rad_s = w;
+    output.shaft_nm = at.torques.flywheel_nm(side.engine_nm);
+    output.throttle = at.throttle;
+    output.belt_ratio = ratio;
+    output.primary_pa = primary_pa(step, at.pressure_pa, 0.0);
+    output.secondary_pa = at.pressure_pa;
+    output.clamp_cause = at.clamp_cause;
+    output.slip = 0.0;
+    output.clamp_safety = if creep > 0.0 {
+        capacity / (creep * ratio)
+    } else {
+        f64::INFINITY
     };
+    output.oil_flow_m3_s = at.oil_flow_m3_s;
+    output.residual = at.residual;
+    output.iterations = at.evaluations;
     output.alternator_w = at.torques.alternator * w;
     output.add_loss(Component::LaunchClutch, side.loss_w);
-    add_part_losses(&mut output, &at.torques, [w, 0.0, 0.0, 0.0]);
+    add_part_losses(output, &at.torques, [w, 0.0, 0.0, 0.0]);
     let flags = &mut output.flags;
     flags.set(Flags::CLUTCH_SLIPPING, true);
     flags.set(Flags::FLOW_LIMITED, at.flow_limited);
     flags.set(Flags::NOT_CONVERGED, !converged(at.residual));
     let valid = at.inside_maps && at.load_share <= FULL_LOAD_LIMIT;
     let valid = valid && table_holds(step, creep * ratio, 0.0);
-    common_flags(step, &mut output, valid);
-    remember(past, &output, Some(step.input.dt_s));
+    common_flags(step, output, valid);
+    remember(past, output, Some(step.input.dt_s));
     warm_start.trend.reset_at_standstill();
     past.coupled = false;
-    output
 }
 
 /// Adds the losses of all parts at the speeds of engine, primary, secondary and the shaft into the final drive, rad/s.
@@ -167,35 +165,32 @@ pub(super) struct Outcome {
     pub evaluations: u16,
 }
 
-/// Output of a solved step.
+/// Fills an output at rest with that of a solved step.
 pub(super) fn finish<P: PrimeMover>(
     step: &Step<P>,
     p: &Point,
-    past: &mut DrivelineState,
-    warm_start: &mut WarmStart,
-    outcome: Outcome,
-) -> StepOutput {
+    (past, warm_start): (&mut DrivelineState, &mut WarmStart),
+    outcome: &Outcome,
+    output: &mut StepOutput,
+) {
     let (g, ratio) = (&p.guess, step.line.at.geometry.ratio);
     let (wp, we) = (p.primary_rad_s, g.engine_rad_s);
-    let mut output = StepOutput {
-        engine_rad_s: we,
-        shaft_nm: p.flywheel_nm,
-        throttle: p.throttle,
-        belt_ratio: ratio,
-        primary_pa: primary_pa(step, g.pressure_pa, p.secondary_rad_s),
-        secondary_pa: g.pressure_pa,
-        clamp_cause: p.clamp_cause,
-        slip: g.slip,
-        primary_nm: p.primary_nm - p.torques.primary_nm(),
-        secondary_nm: p.torques.secondary,
-        clamp_safety: p.torques.belt.capacity_nm / p.torques.secondary.abs(),
-        oil_flow_m3_s: p.oil_flow_m3_s,
-        residual: outcome.residual,
-        iterations: outcome.evaluations,
-        ..StepOutput::at_rest()
-    };
+    output.engine_rad_s = we;
+    output.shaft_nm = p.flywheel_nm;
+    output.throttle = p.throttle;
+    output.belt_ratio = ratio;
+    output.primary_pa = primary_pa(step, g.pressure_pa, p.secondary_rad_s);
+    output.secondary_pa = g.pressure_pa;
+    output.clamp_cause = p.clamp_cause;
+    output.slip = g.slip;
+    output.primary_nm = p.primary_nm - p.torques.primary_nm();
+    output.secondary_nm = p.torques.secondary;
+    output.clamp_safety = p.torques.belt.capacity_nm / p.torques.secondary.abs();
+    output.oil_flow_m3_s = p.oil_flow_m3_s;
+    output.residual = outcome.residual;
+    output.iterations = outcome.evaluations;
     let speeds = [we, wp, p.secondary_rad_s, step.secondary_rad_s];
-    add_part_losses(&mut output, &p.torques, speeds);
+    add_part_losses(output, &p.torques, speeds);
     output.add_loss(Component::LaunchClutch, p.coupling_w);
     output.alternator_w = p.torques.alternator * we;
     if outcome.limit == Limit::None {
@@ -203,7 +198,7 @@ pub(super) fn finish<P: PrimeMover>(
     } else {
         output.split_brake_and_shortfall(step.input.wheel, g.output_nm * step.secondary_rad_s);
     }
-    solve_flags(step, p, past, &outcome, &mut output);
+    solve_flags(step, p, past, outcome, output);
     let rests = step.secondary_rad_s <= 0.0;
     if rests {
         warm_start.trend.reset_at_standstill();
@@ -212,10 +207,9 @@ pub(super) fn finish<P: PrimeMover>(
         let trend = &mut warm_start.trend;
         trend.push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
     }
-    remember(past, &output, rests.then_some(step.input.dt_s));
+    remember(past, output, rests.then_some(step.input.dt_s));
     let turns_together = we <= p.over_rad_s * (1.0 + 1e-4);
     past.coupled = p.locked || (turns_together && !step.line.cvt.coupling.by_command());
-    output
 }
 
 /// Flags of a solved step.

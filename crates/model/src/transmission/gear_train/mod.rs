@@ -22,7 +22,7 @@ use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
 use crate::fluid::OilState;
 use crate::keys::RPM;
-use crate::math::{larger, ln};
+use crate::math::{larger, ln, ln_each};
 
 /// Largest share of the power that a train loses under load.
 const MAX_SHARE: f64 = 0.1;
@@ -53,6 +53,7 @@ pub struct GearParts {
 pub struct GearTrain {
     /// Speeds of the shafts over that of shaft 0.
     turns: [f64; 3],
+    log_turns: [f64; 3],
     meshes: [Mesh; 2],
     bearings: Vec<Bearing>,
     bearing: BearingFactors,
@@ -120,6 +121,7 @@ impl GearParts {
         };
         GearTrain {
             turns,
+            log_turns: turns.map(ln),
             meshes: [mesh(0), mesh(1)],
             bearings: self.bearings.clone(),
             bearing: self.bearing,
@@ -144,18 +146,20 @@ impl GearTrain {
         if first_rad_s <= 0.0 {
             return TurningTrain::default();
         }
-        let log_nu = ln(oil.kinematic_m2_s);
-        let log_eta = ln(1e3 * oil.kinematic_m2_s * oil.density_kg_m3);
-        let log_nu_n = log_nu + ln(first_rad_s * (1e6 / RPM));
-        let log_turns = self.turns.map(ln);
+        let [log_nu, log_eta, log_n, log_first] = ln_each([
+            oil.kinematic_m2_s,
+            1e3 * oil.kinematic_m2_s * oil.density_kg_m3,
+            first_rad_s * (1e6 / RPM),
+            first_rad_s,
+        ]);
+        let log_nu_n = log_nu + log_n;
         let bearing_nm = self.bearings.iter().map(|b| {
             let turns = self.turns[b.shaft];
-            let log_nu_n = log_nu_n + log_turns[b.shaft];
+            let log_nu_n = log_nu_n + self.log_turns[b.shaft];
             turns * b.torque_nm(&self.bearing, first_rad_s * turns, log_nu_n)
         });
-        let log_first = ln(first_rad_s);
         let churning_nm = self.churners.iter().map(|(shaft, factor)| {
-            let log_rad_s = log_first + log_turns[*shaft];
+            let log_rad_s = log_first + self.log_turns[*shaft];
             self.turns[*shaft] * churning::torque_nm(*factor, oil.density_kg_m3, log_rad_s, log_nu)
         });
         let mesh_share: f64 = self

@@ -133,19 +133,19 @@ impl Manual {
         no_gear && engaged && step.wheel.power_w > 0.0 && step.wheel.accel_m_s2 > 0.0
     }
 
-    /// Solves one step.
-    pub fn solve<P: PrimeMover>(
+    /// Solves one step; fills an output at rest.
+    pub(super) fn solve<P: PrimeMover>(
         &self,
         step: &StepInput<P>,
         state: &mut DrivelineState,
-    ) -> StepOutput {
+        output: &mut StepOutput,
+    ) {
         if step.engine_off {
             state.engine_rad_s = step.engine.idle_rad_s(); // the starter brings it back there
             state.stood = true;
             state.coupled = false;
-            let mut rest = StepOutput::at_rest();
-            rest.flags.set(Flags::ENGINE_OFF, true);
-            return rest;
+            output.flags.set(Flags::ENGINE_OFF, true);
+            return;
         }
         let at = ManualStep {
             manual: self,
@@ -153,23 +153,23 @@ impl Manual {
             state,
             oil: step.oil.state(step.heat.node_k[SUMP]),
         };
-        let mut output = match self.command(step, state) {
+        match self.command(step, state) {
             GearCommand::InGear(gear) | GearCommand::Change(gear)
                 if step.wheel.wheel_rad_s > 0.0 && gear > 0 =>
             {
-                at.engaged(gear)
+                at.engaged(gear, output);
             }
-            GearCommand::Neutral if step.wheel.wheel_rad_s <= 0.0 => at.neutral(),
+            GearCommand::Neutral if step.wheel.wheel_rad_s <= 0.0 => at.neutral(output),
             GearCommand::Declutched(gear)
             | GearCommand::InGear(gear)
-            | GearCommand::Change(gear) => at.coasting(gear),
-            GearCommand::Neutral => at.coasting(state.gear),
-        };
+            | GearCommand::Change(gear) => at.coasting(gear, output),
+            GearCommand::Neutral => at.coasting(state.gear, output),
+        }
         output.flags.set(
             Flags::OVERSPEED,
             output.engine_rad_s > step.engine.max_rad_s(),
         );
-        let wrong_gear = Self::is_wrong_gear(step, &output);
+        let wrong_gear = Self::is_wrong_gear(step, output);
         output.flags.set(Flags::WRONG_GEAR, wrong_gear);
         output.flags.set(
             Flags::OUTSIDE_VALIDITY,
@@ -192,6 +192,5 @@ impl Manual {
         let slips = output.flags.contains(Flags::CLUTCH_SLIPPING);
         state.coupled = turning && (!slips || (state.coupled && locks));
         state.stood = step.wheel.wheel_rad_s <= 0.0;
-        output
     }
 }

@@ -40,57 +40,44 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     }
 
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
-    pub fn coasting(&self, gear: u8) -> StepOutput {
-        let output = self.declutched(gear);
+    pub fn coasting(&self, gear: u8, output: &mut StepOutput) {
+        self.declutched(gear, output);
         if output.deficit_w > 0.0 {
-            self.engaged(gear.max(1))
-        } else {
-            output
+            self.engaged(gear.max(1), output);
         }
     }
 
-    pub fn neutral(&self) -> StepOutput {
+    pub fn neutral(&self, output: &mut StepOutput) {
         let w = self.free_engine_rad_s();
         let losses = self.box_in(self.top(), w, 0.0).unloaded_nm();
         let share = self.manual.neutral_share;
-        let mut output = StepOutput {
-            engine_rad_s: w,
-            shaft_nm: share * sum_nm(&losses),
-            ..StepOutput::at_rest()
-        };
-        lose(&mut output, &losses, share * w);
-        self.set_throttle(&mut output, self.step.engine.full_load_nm(w));
-        output
+        output.engine_rad_s = w;
+        output.shaft_nm = share * sum_nm(&losses);
+        lose(output, &losses, share * w);
+        self.set_throttle(output, self.step.engine.full_load_nm(w));
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
-    fn declutched(&self, gear: u8) -> StepOutput {
+    fn declutched(&self, gear: u8, output: &mut StepOutput) {
         let gear = if gear == 0 { self.top() } else { gear };
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
         let losses = self.box_in(gear, input, 0.0).unloaded_nm();
-        let mut output = StepOutput {
-            engine_rad_s: self.free_engine_rad_s(),
-            gear,
-            ..StepOutput::at_rest()
-        };
+        output.engine_rad_s = self.free_engine_rad_s();
+        output.gear = gear;
         output.flags.set(Flags::CLUTCH_OPEN, true);
         if input > 0.0 {
             let output_nm = -sum_nm(&losses);
-            lose(&mut output, &losses, input);
+            lose(output, &losses, input);
             output.split_brake_and_shortfall(self.step.wheel, output_nm * input);
         }
         let full_load_nm = self.step.engine.full_load_nm(output.engine_rad_s);
-        self.set_throttle(&mut output, full_load_nm);
-        output
+        self.set_throttle(output, full_load_nm);
     }
 
-    pub fn engaged(&self, gear: u8) -> StepOutput {
+    /// The box in a gear, or in a lower one where that lacks torque; fills the output anew.
+    pub fn engaged(&self, gear: u8, output: &mut StepOutput) {
         let mut gear = gear;
-        loop {
-            let (output, lacks_torque) = self.in_gear(gear);
-            if !lacks_torque || !self.may_shift_down(gear) {
-                return output;
-            }
+        while self.in_gear(gear, output) && self.may_shift_down(gear) {
             gear -= 1;
         }
     }
@@ -114,9 +101,9 @@ impl<P: PrimeMover> ManualStep<'_, P> {
             .set(Flags::OUTSIDE_VALIDITY, share > FULL_LOAD_LIMIT);
     }
 
-    /// The box in a gear: the torque demanded, or the one at the engine's limit; and whether the gear lacks torque. It does too where only an
+    /// The box in a gear: the torque demanded, or the one at the engine's limit. True where the gear lacks torque; it does too where only an
     /// engine that still comes down from a lower gear has enough.
-    fn in_gear(&self, gear: u8) -> (StepOutput, bool) {
+    fn in_gear(&self, gear: u8, output: &mut StepOutput) -> bool {
         let (engine, wheel) = (self.step.engine, self.step.wheel);
         let input = self.manual.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
         let demand_nm = wheel.power_w / input;
@@ -148,7 +135,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         } else {
             None
         };
-        let mut output = StepOutput {
+        *output = StepOutput {
             gear,
             iterations: 1,
             ..StepOutput::at_rest()
@@ -169,7 +156,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let side = self.manual.coupling.engine_side(at.input_nm, input, w);
         output.shaft_nm = side.engine_nm;
         output.add_loss(Component::LaunchClutch, side.loss_w);
-        lose(&mut output, &at.losses_nm, input);
+        lose(output, &at.losses_nm, input);
         if limit.is_some() {
             output.split_brake_and_shortfall(wheel, at.output_nm * input);
         } else {
@@ -183,7 +170,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         flags.set(Flags::OVERRUN, at.input_nm < 0.0);
         flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
         flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
-        self.set_throttle(&mut output, full_load_nm);
+        self.set_throttle(output, full_load_nm);
         // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it. Where that lags at
         // full load nothing else may: no more than full load is passed on.
         let mean_rad_s = w + speed.excess_rad_s;
@@ -192,7 +179,7 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let on_the_way_w = smaller(at_mean.loss_w - side.loss_w, larger(room_nm, 0.0) * w);
         output.shaft_nm += on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
-        (output, lacks_torque)
+        lacks_torque
     }
 
     /// Engine speed over the coupling in this step: at once that of a faster box; over a slower one, as after a change up, the coupling slips
