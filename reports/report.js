@@ -16,11 +16,11 @@
 
   const number = (text) => Number(text.replace("\u2212", "-"));
 
-  for (const figure of document.querySelectorAll("figure.figure")) {
+  const connect = (figure) => {
     const drawing = figure.querySelector(".drawing");
     const svg = drawing.querySelector("svg");
     const table = figure.querySelector("details table");
-    if (!svg || !table) continue;
+    if (!svg || !table) return;
     // The words of a title would come up as a second hint of the browser's own.
     const title = svg.querySelector(":scope > title");
     if (title) { svg.setAttribute("aria-label", title.textContent); title.remove(); }
@@ -112,5 +112,9 @@
       const box = drawing.getBoundingClientRect();
       show(index, box.left + box.width / 2, Math.max(box.top, 0) + 8);
     });
-  }
+  };
+  const all = (root) => root.querySelectorAll("figure.figure").forEach(connect);
+  all(document);
+  // Figures that were put into the page later.
+  document.addEventListener("figures", (event) => { tip.hidden = true; all(event.detail); });
 })();
