@@ -6,7 +6,11 @@
 
   // The simulator: each call is JSON in, JSON out. Its text is also that of the worker.
   const machine = async (bytes) => {
-    const { instance } = await WebAssembly.instantiate(bytes, {});
+    // Libraries that it was built from name functions of a page which it never calls.
+    const module = await WebAssembly.compile(bytes);
+    const imports = {};
+    for (const { module: from, name } of WebAssembly.Module.imports(module)) (imports[from] ??= {})[name] = () => { throw new Error(name); };
+    const instance = await WebAssembly.instantiate(module, imports);
     const own = instance.exports;
     return (name, value) => {
       const text = new TextEncoder().encode(JSON.stringify(value));
@@ -61,6 +65,8 @@
     return of;
   };
   const value = (input) => Number(input.value).toFixed(Number(input.dataset.decimals ?? 0));
+  // Which car the figures are against does not matter to the draws.
+  const drawnOf = (of) => JSON.stringify({ ...of, against: "" });
   const show = () => {
     for (const input of inputs) {
       const output = form.querySelector(`output[for="${input.id}"]`);
@@ -98,14 +104,13 @@
   let worker = null;
   let due = false;
   let resting = 0;
-  let known = { key: "", drawn: null };
+  let known = { key: drawnOf(state()), drawn: scene.drawn };
 
   const update = () => {
     due = false;
     const begun = performance.now();
     const now = state();
-    // Which car the figures are against does not matter to the draws.
-    const key = JSON.stringify({ ...now, against: "" });
+    const key = drawnOf(now);
     let found;
     try {
       found = call("live_answer", { state: now, drawn: known.key === key ? known.drawn : null });
@@ -131,8 +136,8 @@
 
   const drawn = ({ data }) => {
     if (data.ready) return;
-    const key = JSON.stringify(data.state);
-    if (key !== JSON.stringify({ ...state(), against: "" })) return;
+    const key = drawnOf(data.state);
+    if (key !== drawnOf(state())) return;
     known = { key, drawn: data.drawn };
     if (data.problem) said.textContent = `No interval: ${data.problem}`; else soon();
   };

@@ -9,7 +9,7 @@ use super::document::{Block, Document, ReportTable, Section};
 use super::live::Kind;
 use super::number::typeset;
 use cvtcycle_config::visible;
-use cvtcycle_output::PROGRAM;
+use cvtcycle_output::{Component, PROGRAM};
 
 /// The answer of a live section.
 #[derive(Template)]
@@ -159,6 +159,12 @@ impl Numbering {
             blocks: of.blocks.iter().map(shown).collect(),
         }
     }
+}
+
+/// Names of the components as cells have them, in small letters.
+fn component_names() -> String {
+    let names = Component::ALL.map(|component| component.name().replace('_', " "));
+    names.join(",").to_lowercase()
 }
 
 /// The paragraphs of a remark.

@@ -15,6 +15,7 @@ mod streams;
 mod study;
 #[cfg(unix)]
 mod terminal;
+mod whatif;
 mod words;
 
 use std::fs;

@@ -9,11 +9,12 @@ use cvtcycle_config::{Override, Problem, Problems, carried};
 use cvtcycle_model::drive::{Conditions, Outcome, drive};
 use cvtcycle_output::History;
 use cvtcycle_output::history::known;
-use cvtcycle_output::summary::{DrawnDifference, Driven, Settings, Summary};
+use cvtcycle_output::summary::{
+    DrawnDifference, Driven, Settings, Summary, find_maps_left, summarise,
+};
 use cvtcycle_study::plan::Base;
-use cvtcycle_study::run::{RunQuestion, summary};
 use cvtcycle_study::words::drawn::{Draws, prepare};
-use cvtcycle_study::words::run::{contradictions, maps_left, sentences};
+use cvtcycle_study::words::run::{maps_left, sentences};
 
 use super::controls::{Control, Kind, of_car};
 use super::scene::{Scene, State};
@@ -110,12 +111,24 @@ impl LivePage {
             })
     }
 
-    /// As [`LivePage::answer`], for a state that has to be good.
+    /// As [`LivePage::answer`], for a state that has to be good, with all of its draws.
     ///
     /// # Errors
     /// Problems of the cars and of the cycle.
-    pub fn answer_or_problems(&mut self, state: &State) -> Result<Answer, Problems> {
-        self.driven_answer(state, None)
+    pub fn drawn_answer(
+        &mut self,
+        state: &State,
+    ) -> Result<(Answer, Option<Vec<DrawnDifference>>), Problems> {
+        let first = self.driven_answer(state, None)?;
+        if !first.can_draw {
+            return Ok((first, None));
+        }
+        let drawn = loop {
+            if let Some(drawn) = self.draw(state)? {
+                break drawn;
+            }
+        };
+        Ok((self.driven_answer(state, Some(drawn.clone()))?, Some(drawn)))
     }
 
     /// Drives the next part of a state's draws; the differences after the last one.
@@ -224,6 +237,7 @@ impl LivePage {
     fn car(
         &mut self,
         car: &Wanted,
+        loaded: Option<Setup>,
         cycle: &Cycle,
         conditions: &Conditions,
     ) -> Result<Arc<DrivenCar>, Problems> {
@@ -235,7 +249,10 @@ impl LivePage {
         if let Some(known) = self.driven.get(&key) {
             return Ok(Arc::clone(known));
         }
-        let mut setup = load(&car.word, &car.options)?;
+        let mut setup = match loaded {
+            Some(setup) => setup,
+            None => load(&car.word, &car.options)?,
+        };
         if of_file {
             setup.short += " as it is";
         }
@@ -276,9 +293,10 @@ impl LivePage {
         };
         let own = load(&wanted[0].word, &wanted[0].options)?;
         let cycle = cycle::for_car(&state.cycle, self.cycle(&state.cycle)?, &own);
+        let mut own = Some(own);
         let mut cars = Vec::new();
         for car in &wanted {
-            cars.push(self.car(car, &cycle, &conditions)?);
+            cars.push(self.car(car, own.take(), &cycle, &conditions)?);
         }
         let names = names(&wanted);
         let driven = cars.iter().zip(&names).map(|(car, name)| Driven {
@@ -292,15 +310,8 @@ impl LivePage {
             formulation: self.scene.formulation.clone(),
             ..Settings::default()
         };
-        let question = RunQuestion {
-            cycle: &cycle,
-            conditions,
-            ambient_degc: state.ambient_degc,
-            start: start_word,
-            settings,
-            price: false,
-        };
-        let mut found = summary(&question, &driven);
+        let mut found = summarise(&cycle, state.ambient_degc, start_word, settings, &driven);
+        find_maps_left(&mut found, &cycle, &conditions, &driven);
         for (comparison, drawn) in found.comparison.iter_mut().zip(drawn.into_iter().flatten()) {
             comparison.interval = Some(drawn);
         }
@@ -344,7 +355,6 @@ impl LivePage {
         let alerts = words::flags(subject, of_file.clone().next())
             .into_iter()
             .chain(words::beyond(&self.controls, state))
-            .chain(contradictions(&labelled))
             .chain(maps_left(&labelled));
         alerts.for_each(|line| section.alert(line));
         words::needs(&self.controls, state)

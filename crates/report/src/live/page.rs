@@ -5,6 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use cvtcycle_config::Problems;
 use cvtcycle_config::cycle;
 use cvtcycle_config::setup::{Kind as FileKind, Options, TWIN, is_path, is_twin, load};
+use cvtcycle_output::summary::DrawnDifference;
 
 use super::answer::{Answer, LivePage};
 use super::controls::{Control, Slider};
@@ -34,6 +35,7 @@ pub struct LiveSection {
     pub oils: Vec<String>,
     /// The first answer.
     pub answer: Answer,
+    drawn: Option<Vec<DrawnDifference>>,
     scene: String,
 }
 
@@ -45,7 +47,10 @@ impl LiveSection {
     pub fn new(scene: Scene) -> Result<Self, Problems> {
         let (made, files) = cvtcycle_config::carried::reading(|| LiveSection::answered(&scene));
         let mut section = made?;
-        let scene = scene.with_files(files);
+        let scene = Scene {
+            drawn: section.drawn.take(),
+            ..scene.with_files(files)
+        };
         let json = serde_json::to_string(&scene).unwrap_or_default();
         // Within a script no tag may begin.
         section.scene = json.replace('<', "\\u003c");
@@ -77,7 +82,7 @@ impl LiveSection {
             &FileKind::Lubricant.names(),
             state.lubricant.as_deref().unwrap_or_default(),
         );
-        let answer = page.answer_or_problems(&state)?;
+        let (answer, drawn) = page.drawn_answer(&state)?;
         Ok(LiveSection {
             controls: page.controls().to_vec(),
             state,
@@ -85,6 +90,7 @@ impl LiveSection {
             cycles,
             oils,
             answer,
+            drawn,
             scene: String::new(),
         })
     }

@@ -9,7 +9,7 @@ use cvtcycle_config::{Argument, Override, Problem, Problems, carried};
 use cvtcycle_model::drive::Start;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-use cvtcycle_output::summary::StartWord;
+use cvtcycle_output::summary::{DrawnDifference, StartWord};
 use serde::{Deserialize, Serialize};
 
 /// Cars and conditions of a page, as the command line has them, and the files that they are made of.
@@ -35,6 +35,9 @@ pub struct Scene {
     pub state: State,
     /// Number of the first figure of the live section.
     pub first_figure: usize,
+    /// The differences of the first state over its draws.
+    #[serde(default)]
+    pub drawn: Option<Vec<DrawnDifference>>,
     /// The user's files by their paths, as Base64.
     pub files: BTreeMap<String, String>,
 }
