@@ -24,6 +24,7 @@ mod study;
 mod threads;
 mod validate;
 mod vehicles;
+mod whatif;
 
 pub use program::program;
 
@@ -82,6 +83,8 @@ enum Command {
     Study(Box<study::StudyArgs>),
     /// Write a design-review report of a run or a study, or of two runs compared: one HTML file and its figures
     Report(report::ReportArgs),
+    /// Make a page on which a car can be driven again with other values: no server, no network
+    Whatif(Box<whatif::WhatifArgs>),
     /// Compare runs with each other: fuel, losses, and the values in which the cars differ
     Compare(compare::CompareArgs),
     /// Compare with the published values of the thesis, and with your own measurements
@@ -150,6 +153,7 @@ impl Cli {
             Command::Label(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
+            Command::Whatif(args) => args.execute(terminal),
             Command::Compare(args) => args.execute(terminal),
             Command::Validate(args) => args.execute(terminal),
             Command::Calibrate(args) => args.execute(terminal),

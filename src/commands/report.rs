@@ -4,10 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use cvtcycle::report::document::Document;
+use cvtcycle::report::live::{LiveSection, of_dir};
 use cvtcycle::report::report;
 use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};
+use crate::args::problems::problem;
 use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
@@ -39,6 +41,9 @@ pub struct ReportArgs {
     /// Every figure and table, not the body of twelve pages alone
     #[arg(long)]
     full: bool,
+    /// With the simulator and levers of the run's own cars in the page (HTML)
+    #[arg(long)]
+    live: bool,
     /// Title, logo, author and remarks of the report (docs/report.md)
     #[arg(long, value_name = "FILE.toml")]
     cover: Option<String>,
@@ -49,6 +54,31 @@ pub struct ReportArgs {
     out: OutArgs,
     #[command(flatten)]
     output: OutputArgs,
+}
+
+impl ReportArgs {
+    /// The section that can be driven again.
+    fn live_section(
+        &self,
+        document: &Document,
+        form: Form,
+        problems: &mut Problems,
+    ) -> Option<LiveSection> {
+        let refused = match (&self.dirs[..], form) {
+            (_, Form::Markdown) => Some(("levers are in a page alone", "choose --format html")),
+            ([_, _], _) => Some((
+                "two runs cannot be driven again on one page",
+                "make the report of one of them",
+            )),
+            _ => None,
+        };
+        if let Some((message, hint)) = refused {
+            problems.add(problem("--live", message, hint));
+            return None;
+        }
+        let first_figure = document.figures().count() + 1;
+        problems.take(of_dir(&self.dirs[0], first_figure))
+    }
 }
 
 impl Execute for ReportArgs {
@@ -74,7 +104,11 @@ impl Execute for ReportArgs {
                 .join(format!("report.{}", form.endings()[0])),
         };
         let target = problems.take(Target::new(&file, form, self.out.force));
-        Some((document?.shown(self.full), target?))
+        let mut document = document?.shown(self.full);
+        if self.live {
+            document.live = Some(self.live_section(&document, form, problems)?);
+        }
+        Some((document, target?))
     }
 
     fn run(&self, (document, target): Self::Plan, _: Terminal) -> CommandResult {

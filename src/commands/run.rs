@@ -165,8 +165,8 @@ impl Execute for RunArgs {
         let draws = match (wanted, ambient, &start, dt_s) {
             (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
                 let base = self.base((degc, start, dt_s, formulation), &vehicles, problems);
-                let of_cvts = vehicles.iter().all(|car| car.setup.transmission().is_cvt());
-                base.and_then(|base| problems.take(prepare(base, n, of_cvts)))
+                let is_cvt = vehicles[0].setup.transmission().is_cvt();
+                base.and_then(|base| problems.take(prepare(base, n, is_cvt)))
             }
             _ => None,
         };

@@ -29,7 +29,7 @@ pub use document::Document;
 pub use document::overrides::{Acts, KeyPath, Override, Target};
 pub use document::patched::PatchedDocument;
 pub use document::syntax::decode;
-pub use files::{bounded, embedded};
+pub use files::{bounded, carried, embedded};
 pub use problem::near::{did_you_mean, near, suggestion};
 pub use problem::place::{Argument, Input, Place};
 pub use problem::render::render;

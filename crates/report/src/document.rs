@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::charts::Picture;
+use crate::live::LiveSection;
 
 /// A report.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +20,8 @@ pub struct Document {
     pub logo: Option<(String, String)>,
     /// Sections.
     pub sections: Vec<Section>,
+    /// The section that can be driven again, if there is one.
+    pub live: Option<LiveSection>,
     /// What is incomplete, for standard error.
     pub warnings: Vec<String>,
 }

@@ -10,6 +10,7 @@
 //! | `study::levers` | the sections on a study of levers |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
+//! | `live` | a page that can be driven again |
 //! | `run_files` | the files of a run, of which a report is made |
 //! | `write` | the files of a report |
 //! | `render` | the document as HTML or Markdown (templates in `reports/`) |
@@ -20,6 +21,7 @@ pub mod charts;
 pub mod compare;
 pub mod cover;
 pub mod document;
+pub mod live;
 pub mod results;
 pub mod number;
 mod problems;

@@ -5,10 +5,18 @@ use std::fmt;
 use askama::Template;
 use askama::filters::Escaper;
 
-use super::document::{Block, Document, ReportTable};
+use super::document::{Block, Document, ReportTable, Section};
+use super::live::Kind;
 use super::number::typeset;
 use cvtcycle_config::visible;
-use cvtcycle_output::PROGRAM;
+use cvtcycle_output::{Component, PROGRAM};
+
+/// The answer of a live section.
+#[derive(Template)]
+#[template(path = "live_answer.html")]
+struct LiveAnswer<'a> {
+    section: ShownSection<'a>,
+}
 
 #[derive(Template)]
 #[template(path = "report.html")]
@@ -68,6 +76,17 @@ pub fn html(document: &Document) -> Result<String, String> {
     .map_err(|error| error.to_string())
 }
 
+/// The blocks of a live section as HTML; its first figure has this number.
+pub(crate) fn live(section: &Section, first_figure: usize) -> String {
+    let mut numbering = Numbering {
+        figures: first_figure.saturating_sub(1),
+        ..Numbering::default()
+    };
+    let section = numbering.section(false, section, &mut std::iter::empty());
+    // Never fails for the templates of this program.
+    LiveAnswer { section }.render().unwrap_or_default()
+}
+
 /// The document as Markdown; its figures are the SVG files in the folder with the address `figures`.
 ///
 /// # Errors
@@ -93,35 +112,59 @@ pub fn markdown(document: &Document, figures: &str) -> Result<String, String> {
     Ok(out)
 }
 
-fn sections<'a>(document: &'a Document) -> Vec<ShownSection<'a>> {
-    let (mut figures, mut tables) = (0, 0);
+fn sections(document: &Document) -> Vec<ShownSection<'_>> {
+    let mut numbering = Numbering::default();
     let mut files = document.figures().map(|(file, _)| file);
-    let mut shown = |block: &'a Block| {
-        let count = match block {
-            Block::Table(_) | Block::Folded(_) => &mut tables,
-            Block::Figure(_) => &mut figures,
-            _ => &mut 0,
-        };
-        *count += 1;
-        let number = *count;
-        let file = match block {
-            Block::Figure(_) => files.next().unwrap_or_default(),
-            _ => String::new(),
-        };
-        ShownBlock {
-            block,
-            number,
-            file,
-        }
-    };
     let sections = document.sections.iter().enumerate();
-    let sections = sections.map(|(k, of)| ShownSection {
-        first: k == 0,
-        id: &of.id,
-        title: &of.title,
-        blocks: of.blocks.iter().map(&mut shown).collect(),
-    });
+    let sections = sections.map(|(k, of)| numbering.section(k == 0, of, &mut files));
     sections.collect()
+}
+
+/// Numbers of the last figure and of the last table.
+#[derive(Default)]
+struct Numbering {
+    figures: usize,
+    tables: usize,
+}
+
+impl Numbering {
+    fn section<'a>(
+        &mut self,
+        first: bool,
+        of: &'a Section,
+        files: &mut dyn Iterator<Item = String>,
+    ) -> ShownSection<'a> {
+        let shown = |block: &'a Block| {
+            let count = match block {
+                Block::Table(_) | Block::Folded(_) => &mut self.tables,
+                Block::Figure(_) => &mut self.figures,
+                _ => &mut 0,
+            };
+            *count += 1;
+            let number = *count;
+            let file = match block {
+                Block::Figure(_) => files.next().unwrap_or_default(),
+                _ => String::new(),
+            };
+            ShownBlock {
+                block,
+                number,
+                file,
+            }
+        };
+        ShownSection {
+            first,
+            id: &of.id,
+            title: &of.title,
+            blocks: of.blocks.iter().map(shown).collect(),
+        }
+    }
+}
+
+/// Names of the components as cells have them, in small letters.
+fn component_names() -> String {
+    let names = Component::ALL.map(|component| component.name().replace('_', " "));
+    names.join(",").to_lowercase()
 }
 
 /// The paragraphs of a remark.

@@ -16,6 +16,7 @@ mod streams;
 mod study;
 #[cfg(unix)]
 mod terminal;
+mod whatif;
 mod words;
 
 use std::fs;

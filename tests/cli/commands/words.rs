@@ -222,7 +222,7 @@ fn what_is_set_is_certain() {
         let mut base = Plan::open("uncertainty_rover").unwrap().base;
         base.set = Override::parse_all(set).unwrap();
         base.set_all = Override::parse_all(set_all).unwrap();
-        let study = prepare(base, 2, false).unwrap();
+        let study = prepare(base, 2, true).unwrap();
         let factors = study.plan.factors.iter();
         factors.map(|factor| factor.key.clone()).collect()
     };

@@ -21,6 +21,7 @@
 //! The size of a file is read first, so that a large one is refused unread, but it is not trusted: pipes and devices have none, and a file
 //! may grow while it is read.
 
+use super::carried;
 use crate::problem::Problem;
 use crate::problem::place::Place;
 use serde_json::Value;
@@ -234,6 +235,10 @@ impl From<io::Error> for ReadError {
 /// # Errors
 /// It cannot be read, or has more bytes than its limit.
 pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, ReadError> {
+    let path = path.as_ref();
+    if let Some(bytes) = carried::find(path) {
+        return Ok(bytes.to_vec());
+    }
     let file = File::open(path)?;
     let found = file.metadata()?;
     let size = if found.is_file() { found.len() } else { 0 };
@@ -244,10 +249,10 @@ pub fn read(path: impl AsRef<Path>, limit: Limit) -> Result<Vec<u8>, ReadError> 
     let mut bytes = Vec::with_capacity(usize::try_from(size + 1).unwrap_or(0));
     let read = file.take(limit.bytes + 1).read_to_end(&mut bytes)?;
     if read as u64 > limit.bytes {
-        Err(ReadError::TooLarge(None, limit))
-    } else {
-        Ok(bytes)
+        return Err(ReadError::TooLarge(None, limit));
     }
+    carried::note(path, &bytes);
+    Ok(bytes)
 }
 
 /// The bytes of a file that another file names, or that the program has written: its author may be unknown, and a pipe
@@ -270,6 +275,9 @@ pub fn open_file(path: impl AsRef<Path>) -> Result<File, ReadError> {
 }
 
 fn is_file(path: &Path) -> Result<(), ReadError> {
+    if carried::find(path).is_some() {
+        return Ok(());
+    }
     let found = fs::metadata(path)?;
     // A directory has its own words from the operating system.
     if found.is_file() || found.is_dir() {

@@ -1,6 +1,8 @@
-//! Files that an input names, the limits of their size (`bounded`), and the files that the program carries (`embedded`).
+//! Files that an input names, the limits of their size (`bounded`), the files that the program carries (`embedded`), and the user's where there
+//! is no disk (`carried`).
 
 pub mod bounded;
+pub mod carried;
 pub mod embedded;
 
 use std::any::Any;

@@ -77,7 +77,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
 }
 
 /// The title of a cycle up to its details: "NEDC" of "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)".
-pub(super) fn brief(title: &str) -> &str {
+pub(crate) fn brief(title: &str) -> &str {
     title.split([':', '(', ',']).next().map_or(title, str::trim)
 }
 
@@ -163,7 +163,8 @@ fn single(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
     single.filter(|row| saves(row))
 }
 
-fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
+/// How sure the difference to each baseline is, as a figure; none without a baseline.
+pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     let Some((subject, baselines)) = summary.runs.split_first() else {
         return;
     };

@@ -23,7 +23,7 @@ fn car_energy(car: &Car) -> CarEnergy {
 }
 
 /// Energies of two cars over their distance, kJ/km.
-pub(super) fn per_km(subject: &Car, baseline: &Car) -> PerKm {
+pub(crate) fn per_km(subject: &Car, baseline: &Car) -> PerKm {
     let of = |car: &Car, kj: Option<f64>| kj.unwrap_or(0.0) / car.run.distance_km;
     let term = |(name, words, term): (&str, &str, Term)| {
         let [own, other] = [subject, baseline].map(|car| of(car, car.run.term_kj(name)));

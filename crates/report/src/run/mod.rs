@@ -18,7 +18,9 @@ use cvtcycle_output::history::History;
 use cvtcycle_output::record::{CarRecord, Record};
 use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
 
+pub(crate) use answer::{brief, strip};
 pub(super) use conditions::change_table;
+pub(crate) use energy::per_km;
 pub use reproduce::hashes;
 
 /// A car of a run with everything that is known of it.

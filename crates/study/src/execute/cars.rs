@@ -156,10 +156,15 @@ impl StudyCar {
 
     /// With the way in which each factor reaches it.
     fn bound(mut self, plan: &Plan, subject: bool, left_out: &[usize]) -> Result<Self, Problems> {
-        let template = match plan.skip_missing {
-            true => Some(VehicleTemplate::load(&self.word, &self.options)?.0),
+        let own = match plan.skip_missing || plan.by_box.is_some() {
+            true => Some(VehicleTemplate::load(&self.word, &self.options)?),
             false => None,
         };
+        let is_cvt = |(_, setup): &(_, Setup)| setup.transmission().is_cvt();
+        let by_box = plan.by_box.zip(own.as_ref().map(is_cvt));
+        let subject = by_box.map_or(subject, |(of, is_cvt)| of == is_cvt);
+        let template = own.map(|(template, _)| template);
+        let template = template.filter(|_| plan.skip_missing);
         let mut stride = 1_usize;
         for (index, factor) in plan.factors.iter().enumerate() {
             let mut binding = match left_out.contains(&index) {

@@ -64,6 +64,9 @@ pub struct Plan {
     pub skip_missing: bool,
     /// A number outside the range of its key is held at the end of the range; else the study does not begin.
     pub clip: bool,
+    /// Whose the factors of the subject are, by the kind of box: `Some(true)` of every car with a CVT, `Some(false)` of every manual one, and
+    /// those of the baselines of all others. None: of subject and baselines by their roles.
+    pub by_box: Option<bool>,
     /// Places of the keys of `[study]`; `design` is the place of the design's table.
     pub places: Places,
 }

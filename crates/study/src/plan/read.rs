@@ -60,6 +60,7 @@ fn head(document: &Document, file: &str, text: &str) -> (Plan, Problems) {
         keep: keep(&s, &mut places),
         analyse: names(&s, &STUDY.analyse, &mut places).unwrap_or_default(),
         most_runs: s.integer(&STUDY.most_runs).unsigned_abs(),
+        by_box: None,
         skip_missing: s.word(&STUDY.missing) == "skip",
         clip: s.word(&STUDY.bounds) == "clip",
         places,

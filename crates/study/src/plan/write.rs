@@ -80,6 +80,7 @@ impl Plan {
             most_runs: default(&STUDY.most_runs)
                 .and_then(|runs| runs.number())
                 .map_or(0, |runs| runs as u64),
+            by_box: None,
             skip_missing: false,
             clip: false,
             places,

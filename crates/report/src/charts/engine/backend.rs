@@ -19,6 +19,9 @@ const TICK_TEXT: f64 = 11.0;
 const TITLE_TEXT: f64 = 12.0;
 /// Ratio of plotters' font sizes to those of SVG.
 const FONT: f64 = 1.24;
+/// Width of a letter, and depth of a line below its base, in heights of a letter.
+const LETTER: f64 = 0.7;
+const BELOW_LINE: f64 = 0.24;
 
 type Drawn = Result<(), DrawingErrorKind<Infallible>>;
 
@@ -107,6 +110,18 @@ impl DrawingBackend for Surface<'_> {
             self.0.text_element(&[("x", &x), ("y", &y)], &paint, text);
         }
         Ok(())
+    }
+
+    /// As plotters estimates it without a font; in a browser it would ask the page, which a chart there does not see.
+    fn estimate_text_size<S: BackendTextStyle>(
+        &self,
+        text: &str,
+        style: &S,
+    ) -> Result<(u32, u32), DrawingErrorKind<Infallible>> {
+        let em = style.size() / FONT / FONT;
+        let wide = (LETTER * em * text.len() as f64).round();
+        let tall = em.round() + (BELOW_LINE * em).round();
+        Ok((wide as u32, tall as u32))
     }
 }
 

@@ -86,6 +86,7 @@ pub fn overlay(of: &Overlay) -> Picture {
         panel
     };
     let entries = RUNS.into_iter().zip(["A", "B"]).zip(&of.names);
+    let entries = entries.filter(|(_, name)| !name.is_empty());
     let entries =
         entries.map(|((stroke, run), name)| Entry::line(stroke, format!("{run}: {name}")));
     Chart::new(&of.title, &of.subject, PLOT_LEFT)

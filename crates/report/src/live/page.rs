@@ -1,0 +1,134 @@
+//! What a page with levers has besides its answer: controls, scene and the simulator.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use cvtcycle_config::Problems;
+use cvtcycle_config::cycle;
+use cvtcycle_config::setup::{Kind as FileKind, Options, TWIN, is_path, is_twin, load};
+use cvtcycle_output::summary::DrawnDifference;
+
+use super::answer::{Answer, LivePage};
+use super::controls::{Control, Slider};
+use super::scene::{Scene, State};
+use super::words;
+use crate::number::sign;
+
+/// The simulator, compressed: `tools/live` makes it.
+#[cfg(not(target_family = "wasm"))]
+const PROGRAM: &[u8] = include_bytes!("../../assets/live.wasm.gz");
+/// It does not carry itself.
+#[cfg(target_family = "wasm")]
+const PROGRAM: &[u8] = &[];
+
+/// The live section of a page.
+#[derive(Clone, Debug)]
+pub struct LiveSection {
+    /// How it begins.
+    pub state: State,
+    /// The levers.
+    pub controls: Vec<Control>,
+    /// Words of the cars that the figures can hold the subject against, with their names.
+    pub cars: Vec<(String, String)>,
+    /// Names of the cycles.
+    pub cycles: Vec<String>,
+    /// Names of transmission oils.
+    pub oils: Vec<String>,
+    /// The first answer.
+    pub answer: Answer,
+    drawn: Option<Vec<DrawnDifference>>,
+    scene: String,
+}
+
+impl LiveSection {
+    /// The section of a scene, with its first answer and with the user's files that are read for it.
+    ///
+    /// # Errors
+    /// Problems of the cars and of the cycle.
+    pub fn new(scene: Scene) -> Result<Self, Problems> {
+        let (made, files) = cvtcycle_config::carried::reading(|| LiveSection::answered(&scene));
+        let mut section = made?;
+        let scene = Scene {
+            drawn: section.drawn.take(),
+            ..scene.with_files(files)
+        };
+        let json = serde_json::to_string(&scene).unwrap_or_default();
+        // Within a script no tag may begin.
+        section.scene = json.replace('<', "\\u003c");
+        Ok(section)
+    }
+
+    fn answered(scene: &Scene) -> Result<Self, Problems> {
+        let state = scene.state.clone();
+        let mut page = LivePage::new(scene.clone())?;
+        let mut cars = vec![(scene.vehicle.clone(), "the car as it is".to_owned())];
+        for word in &scene.baselines {
+            cars.push(match is_twin(word) {
+                true => (TWIN.to_owned(), "its twin with a manual box".to_owned()),
+                false => (word.clone(), load(word, &Options::default())?.short),
+            });
+        }
+        let own = |names: &[&str], word: &str| -> Vec<String> {
+            let names = names.iter().map(|name| (*name).to_owned());
+            let own = Some(word.to_owned()).filter(|word| is_path(word) || cycle::is_csv(word));
+            own.into_iter().chain(names).collect()
+        };
+        let cycles = own(cycle::names(), &state.cycle);
+        let cycles = match cycles.contains(&state.cycle) {
+            true => cycles,
+            // A constant speed, or another name of a cycle.
+            false => [state.cycle.clone()].into_iter().chain(cycles).collect(),
+        };
+        let oils = own(
+            &FileKind::Lubricant.names(),
+            state.lubricant.as_deref().unwrap_or_default(),
+        );
+        let (answer, drawn) = page.drawn_answer(&state)?;
+        Ok(LiveSection {
+            controls: page.controls().to_vec(),
+            state,
+            cars,
+            cycles,
+            oils,
+            answer,
+            drawn,
+            scene: String::new(),
+        })
+    }
+
+    /// The scene, for the page's script.
+    pub fn scene(&self) -> &str {
+        &self.scene
+    }
+
+    /// The simulator, for the page's script.
+    pub fn program(&self) -> String {
+        STANDARD.encode(PROGRAM)
+    }
+}
+
+impl Slider {
+    /// The car's value with its unit.
+    pub fn base_text(&self) -> String {
+        words::with_unit(self, self.base)
+    }
+
+    /// The known range in words.
+    pub fn known_text(&self) -> String {
+        words::known(self)
+    }
+
+    /// Its unit as people write it.
+    pub fn unit_sign(&self) -> &'static str {
+        sign(self.unit)
+    }
+
+    /// Where the known range begins and ends on the track, per cent.
+    pub fn band_percent(&self) -> [String; 2] {
+        self.band().map(|share| format!("{:.1}", 100.0 * share))
+    }
+
+    /// A number of it, as an attribute has it.
+    pub fn attribute(&self, value: &f64) -> String {
+        format!("{value:.*}", self.decimals())
+    }
+}

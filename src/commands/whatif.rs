@@ -1,0 +1,120 @@
+//! `whatif`: a page on which a car can be driven again with other values, without this program.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use cvtcycle::config::Problems;
+use cvtcycle::config::cycle;
+use cvtcycle::config::setup::{AMBIENT, Kind};
+use cvtcycle::report::document::Document;
+use cvtcycle::report::live::{LiveSection, Scene, State};
+use cvtcycle::report::write::{Form, Target};
+
+use super::Execute;
+use super::vehicles::{self, Baselines};
+use crate::args::{
+    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, number,
+};
+use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
+
+/// Arguments of `whatif`.
+#[derive(Args, Clone, Debug)]
+#[command(
+    mut_arg("out", |out| out.value_name("FILE.html").help("The page [default: whatif.html]")),
+    after_help = "\
+Examples:
+  cvtcycle whatif --ambient -10
+  cvtcycle whatif mycar.toml --baseline twin --out mycar.html
+  cvtcycle whatif civic_20_cvt --cycle wltp --lubricant dexron_iii
+
+The page is one file that loads nothing: it has the simulator with it, and the files that the car is made of, measured maps and own fluids \
+as well. It computes fuel, losses and temperatures as levers are moved, and the interval of each difference from draws of the uncertain \
+values when they rest. Its command prints the same numbers here. A browser without WebAssembly shows the car as it is."
+)]
+pub struct WhatifArgs {
+    /// Vehicle
+    #[arg(value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
+    vehicle: String,
+    /// Transmission oil of this vehicle [default: from the vehicle file]
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Lubricant.names()), hide_possible_values = true)]
+    lubricant: Option<String>,
+    /// Override one value of this vehicle, whatever the levers are at; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    #[command(flatten)]
+    comparison: ComparisonArgs,
+    /// Ambient temperature, degC, -40 to 60
+    #[arg(
+        long,
+        value_name = "DEGC",
+        default_value = "25",
+        allow_hyphen_values = true
+    )]
+    ambient: String,
+    #[command(flatten)]
+    drive: DriveArgs,
+    #[command(flatten)]
+    formulation: FormulationArgs,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+impl Execute for WhatifArgs {
+    type Plan = (Scene, String, Target);
+
+    fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
+        let cycle = problems.take(cycle::find(&self.comparison.cycle));
+        let formulation = self.formulation.get(problems);
+        let car = VehicleArgs {
+            vehicle: self.vehicle.clone(),
+            lubricant: self.lubricant.clone(),
+            set: self.set.clone(),
+        };
+        let comparison = (&self.comparison, Baselines::OfFile);
+        let cars = vehicles::load(&car, comparison, formulation, problems);
+        let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
+        let (start, dt_s) = self.drive.get(problems);
+        let file = self.out.out.clone();
+        let file = file.unwrap_or_else(|| PathBuf::from("whatif.html"));
+        let target = problems.take(Target::new(&file, Form::Html, self.out.force));
+        cycle?;
+        let (subject, baselines) = cars.split_first()?;
+        let scene = Scene {
+            vehicle: self.vehicle.clone(),
+            baselines: baselines.iter().map(|car| car.word.clone()).collect(),
+            set: self.set.clone(),
+            set_all: self.comparison.set_all.clone(),
+            engine_oil: self.comparison.engine_oil.clone(),
+            start: start?.1.text(),
+            dt_s: dt_s?,
+            formulation: formulation.name().to_owned(),
+            state: State {
+                cycle: self.comparison.cycle.clone(),
+                ambient_degc: ambient?,
+                lubricant: self.lubricant.clone(),
+                ..State::default()
+            },
+            first_figure: 1,
+            ..Scene::default()
+        };
+        Some((scene, subject.setup.title.clone(), target?))
+    }
+
+    fn run(&self, (scene, title, target): Self::Plan, _: Terminal) -> CommandResult {
+        let document = Document {
+            subtitle: "Levers of its design, driven in this page".to_owned(),
+            running: scene.state.cycle.clone(),
+            title,
+            live: Some(LiveSection::new(scene)?),
+            ..Document::default()
+        };
+        let paths = target.write(&document)?;
+        let page = paths.first().map(|path| path.display().to_string());
+        let page = page.unwrap_or_default();
+        let json = json_text(&serde_json::json!({ "page": page }))?;
+        let results = Results::new(json, Vec::new(), WrittenFiles::default());
+        Ok(results.output(&self.output, || format!("{page}\n")))
+    }
+}
