@@ -65,7 +65,7 @@ impl Execute for WhatifArgs {
     type Plan = (Scene, String, Target);
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
-        let cycle = problems.take(cycle::find(&self.comparison.cycle));
+        let cycle = problems.take(cycle::find(&self.comparison.cycle.word));
         let formulation = self.formulation.get(problems);
         let car = VehicleArgs {
             vehicle: self.vehicle.clone(),
@@ -91,7 +91,7 @@ impl Execute for WhatifArgs {
             dt_s: dt_s?,
             formulation: formulation.name().to_owned(),
             state: State {
-                cycle: self.comparison.cycle.clone(),
+                cycle: self.comparison.cycle.word.clone(),
                 ambient_degc: ambient?,
                 lubricant: self.lubricant.clone(),
                 ..State::default()

@@ -22,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{exp, larger, ln, pair, smaller};
+use crate::math::{Left, Real, both, larger};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -35,41 +35,44 @@ const MIN_DENSITY: f64 = 0.3;
 
 /// Friction that a fluid lends to the belt's contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
+pub struct Friction<R = f64> {
     /// Boundary friction band on band and band on segment at 85 degC.
-    pub band: f64,
+    pub band: R,
     /// Rise of the band friction with belt temperature, 1/K.
-    pub band_rise_per_k: f64,
+    pub band_rise_per_k: R,
     /// Friction segment on pulley in micro slip.
-    pub segment: f64,
+    pub segment: R,
     /// Friction segment on pulley in macro slip, which bounds the torque.
-    pub capacity: f64,
+    pub capacity: R,
     /// Friction in wedging and penetration.
-    pub flank: f64,
+    pub flank: R,
     /// Whether the bands can ride on oil at all (LU-5).
     pub film: bool,
     /// eta dv at which the film carries half, N/m.
-    pub half_n_m: f64,
+    pub half_n_m: R,
     /// Exponent q of the film's share.
-    pub film_exponent: f64,
+    pub film_exponent: R,
     /// Thickness of the film where it carries half, m.
-    pub half_thickness_m: f64,
+    pub half_thickness_m: R,
     /// Dissipation of an interface that halves the shear of its film, W (FH-1).
-    pub film_heating_w: f64,
+    pub film_heating_w: R,
 }
 
 /// Exponent of thickness in FI-2.
 const THICKNESS_EXPONENT: f64 = 0.6;
 
+/// Exponent of x over thickness.
+const SHEARED_EXPONENT: f64 = 1.0 - THICKNESS_EXPONENT;
+
 /// Band friction at one state. Pairs are the innermost interface, band on segments, and each other one, band on band.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BandFriction {
+pub struct BandFriction<R = f64> {
     /// Boundary friction (LU-4).
-    pub mu: f64,
+    pub mu: R,
     /// Share of the contact that the film carries, 0..1 (LU-5).
-    pub film_share: [f64; 2],
+    pub film_share: [R; 2],
     /// Shear of the film over the whole contact, its share counted and without heating, Pa (FI-1, FI-2).
-    pub shear_pa: [f64; 2],
+    pub shear_pa: [R; 2],
 }
 
 impl BandFriction {
@@ -85,52 +88,60 @@ impl BandFriction {
 
 /// Logarithms of x = eta dv/N_half by interface as powers: x^q and x^0.4; zeros where nothing slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmPowers {
+pub struct FilmPowers<R = f64> {
     /// x^q (LU-5).
-    pub carried: [f64; 2],
+    pub carried: [R; 2],
     /// x over x^0.6 (FI-2).
-    pub sheared: [f64; 2],
+    pub sheared: [R; 2],
 }
 
-impl Friction {
+impl<R: Real> Friction<R>
+where
+    f64: Left<R>,
+{
     /// Band friction at belt temperature, dynamic viscosity and sliding speeds (LU-4, LU-5, FI-2).
-    #[inline]
-    pub fn band(&self, belt_k: f64, eta_pa_s: f64, sliding_m_s: [f64; 2]) -> BandFriction {
-        let loads = self.film_loads(eta_pa_s, sliding_m_s);
-        let power =
-            |exponent: f64| loads.map(|x| if x > 0.0 { exp(exponent * ln(x)) } else { 0.0 });
-        let [carried, sheared] = self.film_exponents().map(power);
+    #[inline(always)]
+    pub fn band(&self, belt_k: R, eta_pa_s: R, sliding_m_s: [R; 2]) -> BandFriction<R> {
+        let x = self.film_loads(eta_pa_s, sliding_m_s);
+        let slides = both!(i => x[i].above(0.0));
+        let log = both!(i => x[i].ln());
+        let power = |q: R| both!(i => R::pick(slides[i], (q * log[i]).exp(), q.filled(0.0)));
+        let [q, rest] = self.film_exponents();
+        let (carried, sheared) = (power(q), power(rest));
         self.band_on_film(belt_k, FilmPowers { carried, sheared })
     }
 
     /// x = eta dv/N_half of LU-5 by interface; 0 where nothing slides or the film is switched off.
-    #[inline]
-    pub fn film_loads(&self, eta_pa_s: f64, sliding_m_s: [f64; 2]) -> [f64; 2] {
+    #[inline(always)]
+    pub fn film_loads(&self, eta_pa_s: R, sliding_m_s: [R; 2]) -> [R; 2] {
         if self.film {
-            sliding_m_s.map(|dv| eta_pa_s * dv / self.half_n_m)
+            both!(i => eta_pa_s * sliding_m_s[i] / self.half_n_m)
         } else {
-            [0.0; 2]
+            [eta_pa_s.filled(0.0); 2]
         }
     }
 
     /// Exponents of x in [`FilmPowers`].
-    #[inline]
-    pub fn film_exponents(&self) -> [f64; 2] {
-        [self.film_exponent, 1.0 - THICKNESS_EXPONENT]
+    #[inline(always)]
+    pub fn film_exponents(&self) -> [R; 2] {
+        [
+            self.film_exponent,
+            self.film_exponent.filled(SHEARED_EXPONENT),
+        ]
     }
 
     /// Band friction at belt temperature with the powers of the films' loads known (LU-4, LU-5, FI-2).
-    #[inline]
-    pub fn band_on_film(&self, belt_k: f64, powers: FilmPowers) -> BandFriction {
-        let warm = exp(self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0));
-        let film_share = powers
-            .carried
-            .map(|z| if z.is_finite() { z / (1.0 + z) } else { 1.0 }); // LU-5
+    #[inline(always)]
+    pub fn band_on_film(&self, belt_k: R, powers: FilmPowers<R>) -> BandFriction<R> {
+        let warm = (self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0)).exp();
+        let z = powers.carried;
+        let is_finite = both!(i => z[i].filled(f64::MAX).reaches(z[i].abs()));
+        let film_share = both!(i => R::pick(is_finite[i], z[i] / (1.0 + z[i]), z[i].filled(1.0))); // LU-5
         let most_pa = self.half_n_m / self.half_thickness_m; // eta dv/h where the film carries half
         BandFriction {
-            mu: smaller(self.band * warm, MAX_BAND_FRICTION), // LU-4
+            mu: (self.band * warm).least(MAX_BAND_FRICTION), // LU-4
             film_share,
-            shear_pa: pair(|i| film_share[i] * most_pa * powers.sheared[i]), // FI-1, FI-2
+            shear_pa: both!(i => film_share[i] * most_pa * powers.sheared[i]), // FI-1, FI-2
         }
     }
 }

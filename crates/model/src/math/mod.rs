@@ -1,12 +1,16 @@
-//! Numerical tools without physics: interpolation, ramps, elementary functions.
+//! Numerical tools without physics: interpolation, ramps, elementary functions, and the number that equations are written for.
 
+mod circular;
 mod curve;
 mod elementary;
 mod grid;
+mod real;
 
+pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
-pub use elementary::{exp, exp_each, ln, ln_each};
+pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
+pub use real::{Left, Mask, Operand, Real};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
 #[inline(always)]
@@ -32,13 +36,14 @@ pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
 ///
 /// `from` and `to` may be in either order; equal ends give a step: 0 below them, 1 at them and above.
 #[inline]
-pub fn ramp(x: f64, from: f64, to: f64) -> f64 {
+pub fn ramp<R: Real>(x: R, from: R, to: R) -> R
+where
+    f64: Left<R>,
+{
     let width = to - from;
-    if width.abs() > 0.0 {
-        clamp((x - from) / width, 0.0, 1.0)
-    } else {
-        f64::from(u8::from(x >= from))
-    }
+    let step = R::pick(x.reaches(from), x.filled(1.0), x.filled(0.0));
+    let along = ((x - from) / width).held(0.0, 1.0);
+    R::pick(width.abs().above(0.0), along, step)
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).
@@ -53,3 +58,20 @@ pub fn smooth_ramp(x: f64, from: f64, to: f64) -> f64 {
 pub fn pair(f: impl Fn(usize) -> f64) -> [f64; 2] {
     [f(0), f(1)]
 }
+
+/// `both!(i => of[i])`: the same of two sides, as an array; [`pair`] without a function, so that it is always inlined.
+macro_rules! both {
+    ($side:ident => $value:expr) => {
+        [
+            {
+                let $side = 0;
+                $value
+            },
+            {
+                let $side = 1;
+                $value
+            },
+        ]
+    };
+}
+pub(crate) use both;

@@ -18,12 +18,13 @@
 //! The film is taken to be in step with its dissipation: it holds grams of oil, and is there within a second.
 
 use crate::keys::{Key, Values, spec};
+use crate::math::{Left, Real};
 
 /// Heating of a film by its own drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ViscousSelfHeating {
+pub struct ViscousSelfHeating<R = f64> {
     /// Four over the dissipation that halves the drag, 1/W; 0 without heating.
-    four_per_halving_w: f64,
+    four_per_halving_w: R,
 }
 
 impl ViscousSelfHeating {
@@ -34,14 +35,25 @@ impl ViscousSelfHeating {
 
     /// Heating by the dissipation in W that halves the drag (FH-1); none without one.
     pub fn halving_at_w(halving_w: Option<f64>) -> Self {
-        halving_w.map_or(Self::NONE, |halving_w| ViscousSelfHeating {
+        halving_w.map_or(Self::NONE, ViscousSelfHeating::halving)
+    }
+}
+
+impl<R: Real> ViscousSelfHeating<R>
+where
+    f64: Left<R>,
+{
+    /// Heating by the dissipation in W that halves the drag (FH-1).
+    #[inline(always)]
+    pub fn halving(halving_w: R) -> Self {
+        ViscousSelfHeating {
             four_per_halving_w: 4.0 / halving_w,
-        })
+        }
     }
 
     /// Viscous drag, Nm, from the drag without heating, Nm, and the speed, rad/s (FH-1); both not below zero.
-    #[inline]
-    pub fn torque_nm(self, unheated_nm: f64, speed_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn torque_nm(self, unheated_nm: R, speed_rad_s: R) -> R {
         2.0 * unheated_nm
             / (1.0 + (1.0 + unheated_nm * speed_rad_s * self.four_per_halving_w).sqrt()) // FH-1
     }

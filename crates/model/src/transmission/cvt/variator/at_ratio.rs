@@ -1,84 +1,87 @@
 //! The belt at one ratio: what every operating point there has in common.
 
 use super::{Belt, Geometry, bands, deflection};
-use crate::math::{ln, ramp, smaller};
+use crate::math::{Left, Real, both, ramp};
 
 /// The belt at one ratio: everything that does not depend on torque or pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltAtRatio {
+pub struct BeltAtRatio<R = f64> {
     /// Geometry.
-    pub geometry: Geometry,
+    pub geometry: Geometry<R>,
     /// Direction of the tension step, -1 in low, +1 in high (TE-6).
-    pub direction: f64,
+    pub direction: R,
     /// Primary clamp over secondary clamp (TE-1).
-    pub thrust_ratio: f64,
+    pub thrust_ratio: R,
     /// What the loss equations need of this ratio, worked out once.
-    pub prepared: Prepared,
+    pub prepared: Prepared<R>,
 }
 
 /// Coefficients of one ratio, so that an operating point costs few divisions; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prepared {
+pub struct Prepared<R = f64> {
     /// Contact arcs, m.
-    pub arc_m: [f64; 2],
+    pub arc_m: [R; 2],
     /// Segments in the wraps.
-    pub count: [f64; 2],
+    pub count: [R; 2],
     /// Resultant normal force of a segment per clamping force.
-    pub normal_per_clamp: [f64; 2],
+    pub normal_per_clamp: [R; 2],
     /// Shoulder friction of a segment per tension step.
-    pub shoulder_per_step: [f64; 2],
+    pub shoulder_per_step: [R; 2],
     /// Extension of the band pack per shoulder force of the primary, m/N (SL-1).
-    pub band_gap_m_n: f64,
+    pub band_gap_m_n: R,
     /// Compression of the free strut per force, m/N (SL-2).
-    pub strut_gap_m_n: f64,
+    pub strut_gap_m_n: R,
     /// Friction-weighted sliding of the band pack per turn of the primary, m/rad (BT-3, BT-6).
-    pub slide_m: [f64; 2],
+    pub slide_m: [R; 2],
     /// Part of it that is not at the innermost interface, from 0 to 1.
-    pub outer_part: f64,
+    pub outer_part: R,
     /// Part of it that a coating of the shoulders takes away; 0 without one (BT-8).
-    pub coated_part: f64,
+    pub coated_part: R,
     /// Smaller wrap times the friction factor of the shoulders, rad (TE-7, BT-8).
-    pub shoulder_rad: f64,
+    pub shoulder_rad: R,
     /// Contact area of a film, m2 (FI-1).
-    pub film_area_m2: f64,
+    pub film_area_m2: R,
     /// Levers of the films' forces, innermost interface and all others, m (FI-1).
-    pub film_levers_m: [f64; 2],
+    pub film_levers_m: [R; 2],
     /// Share of the primary's deflection left by its end stop (WE-4).
-    pub stop: f64,
+    pub stop: R,
     /// Half the cotangent of the angle in the wedge terms (WE-2).
-    pub wedge_half_cot: f64,
+    pub wedge_half_cot: R,
     /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m (WE-3).
-    pub wedge_per_m: [f64; 2],
+    pub wedge_per_m: [R; 2],
     /// Penetration torque per friction force and deflection (PE-1).
-    pub penetration: f64,
+    pub penetration: R,
     /// One over the segments in the wraps.
-    pub inv_segments: [f64; 2],
+    pub inv_segments: [R; 2],
     /// One over the belt ratio.
-    pub inv_ratio: f64,
+    pub inv_ratio: R,
     /// One over the secondary radius, 1/m.
-    pub inv_secondary_radius: f64,
+    pub inv_secondary_radius: R,
     /// Sum of both clamping forces over their wraps per clamping force of the secondary, 1/rad (TE-7).
-    pub clamps_per_wrap: f64,
+    pub clamps_per_wrap: R,
     /// Torque capacity per clamping force and friction, m (VA-2, VA-4).
-    pub capacity_m: f64,
+    pub capacity_m: R,
     /// One over the width of the blend between the loading branches, 1/N.
-    pub per_blend_n: f64,
+    pub per_blend_n: R,
 }
 
-impl Prepared {
-    fn new(belt: &Belt, g: &Geometry, (direction, thrust_ratio): (f64, f64)) -> Self {
+impl<R: Real> Prepared<R>
+where
+    f64: Left<R>,
+{
+    fn new(belt: &Belt<R>, g: &Geometry<R>, (direction, thrust_ratio): (R, R)) -> Self {
         let pitch = belt.segment_thickness_m;
         let arc_m = [
             g.primary_radius_m * g.primary_wrap_rad,
             g.secondary_radius_m * g.secondary_wrap_rad,
         ];
-        let least = smaller(g.primary_wrap_rad, g.secondary_wrap_rad);
+        let radius_m = [g.primary_radius_m, g.secondary_radius_m];
+        let least = g.primary_wrap_rad.least(g.secondary_wrap_rad);
         Prepared {
             arc_m,
-            count: arc_m.map(|a| a / pitch),
-            normal_per_clamp: arc_m.map(|a| 2.0 * pitch / (a * belt.cos_wedge)),
-            shoulder_per_step: [g.primary_radius_m, g.secondary_radius_m]
-                .map(|r| pitch / (r * least)),
+            count: both!(i => arc_m[i] / pitch),
+            normal_per_clamp: both!(i => 2.0 * pitch / (arc_m[i] * belt.cos_wedge)),
+            shoulder_per_step: both!(i => pitch / (radius_m[i] * least)),
             band_gap_m_n: belt.length_m
                 / (belt.youngs_pa * belt.band_area_m2() * g.primary_wrap_rad),
             strut_gap_m_n: g.strut_m / (belt.youngs_pa * belt.strut_area_m2),
@@ -94,7 +97,7 @@ impl Prepared {
             wedge_half_cot: 0.5 / belt.formulation.wedge_tan(belt.tan_wedge),
             wedge_per_m: deflection::wedge_per_m(belt, g),
             penetration: deflection::penetration(belt, g),
-            inv_segments: arc_m.map(|a| pitch / a),
+            inv_segments: both!(i => pitch / arc_m[i]),
             inv_ratio: 1.0 / g.ratio,
             inv_secondary_radius: 1.0 / g.secondary_radius_m,
             clamps_per_wrap: thrust_ratio / g.primary_wrap_rad + 1.0 / g.secondary_wrap_rad,
@@ -104,22 +107,17 @@ impl Prepared {
     }
 }
 
-/// From here on tanh is 1 to the last bit.
-const FULL_STEP: f64 = 20.0;
-
-impl BeltAtRatio {
+impl<R: Real> BeltAtRatio<R>
+where
+    f64: Left<R>,
+{
     /// Prepares a ratio.
-    pub fn new(belt: &Belt, ratio: f64) -> Self {
+    pub fn new(belt: &Belt<R>, ratio: R) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-        let log = ln(ratio);
-        let steep = log / belt.unity_width;
-        let direction = if steep.abs() < FULL_STEP {
-            -steep.tanh()
-        } else {
-            -steep.signum()
-        }; // TE-6
+        let log = ratio.ln();
+        let direction = -(log / belt.unity_width).tanh(); // TE-6
         let thrust_ratio = match &belt.thrust_ratio {
-            Some(curve) => curve.at(log),
+            Some(curve) => log.each(|log| curve.at(log)),
             None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
         };
         BeltAtRatio {

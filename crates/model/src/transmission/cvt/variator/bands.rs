@@ -17,12 +17,15 @@
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
 use crate::fluid::{BandFriction, Friction};
-use crate::math::{pair, smaller};
+use crate::math::{Left, Real, both};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Friction-weighted sliding of the band pack on each pulley per turn of the primary, m: on both with the wrap factor (BT-2 to BT-4), or on
 /// the smaller wrap alone, with the part of the one force that a `direction` of the tension step leaves (BT-6, BT-7).
-pub fn slide_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
+pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2]
+where
+    f64: Left<R>,
+{
     let n = belt.band_count;
     let slide = (1.0 / g.ratio - 1.0).abs()
         * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
@@ -30,51 +33,58 @@ pub fn slide_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
         return on_smaller_wrap(g, direction.abs() * slide);
     }
     let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
-    let least = smaller(wraps[0], wraps[1]);
-    wraps.map(|w| {
-        if belt.formulation.scales_band_force() {
-            0.5 * slide * least / w
-        } else {
-            0.5 * slide
-        }
-    }) // BT-4
+    let least = wraps[0].least(wraps[1]);
+    if belt.formulation.scales_band_force() {
+        both!(i => 0.5 * slide * least / wraps[i]) // BT-4
+    } else {
+        [0.5 * slide; 2] // BT-4
+    }
 }
 
 /// A value of the pulley of smaller wrap, where the bands slide, and nothing of the other (BT-7).
-fn on_smaller_wrap(g: &Geometry, value: f64) -> [f64; 2] {
-    if g.primary_wrap_rad < g.secondary_wrap_rad {
-        [value, 0.0]
-    } else {
-        [0.0, value]
-    }
+fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
+    let (primary, none) = (
+        g.secondary_wrap_rad.above(g.primary_wrap_rad),
+        value.filled(0.0),
+    );
+    [R::pick(primary, value, none), R::pick(primary, none, value)]
 }
 
 /// Part of the bands' sliding, weighted by friction, that is not at the innermost interface (BT-2).
-pub fn outer_part(belt: &Belt) -> f64 {
+pub fn outer_part<R: Real>(belt: &Belt<R>) -> R
+where
+    f64: Left<R>,
+{
     let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
-    if outer > 0.0 {
-        outer / (belt.band_offset_m + outer)
-    } else {
-        0.0
-    }
+    let part = outer / (belt.band_offset_m + outer);
+    R::pick(outer.above(0.0), part, outer.filled(0.0))
 }
 
 /// Part of the bands' sliding that a coating of the shoulders takes away (BT-8).
-pub fn coated_part(belt: &Belt) -> f64 {
+pub fn coated_part<R: Real>(belt: &Belt<R>) -> R
+where
+    f64: Left<R>,
+{
     (1.0 - belt.shoulder_friction) * (1.0 - outer_part(belt)) // BT-8
 }
 
 /// Contact area of a film, on the smaller wrap, m2 (FI-1).
-pub fn film_area_m2(belt: &Belt, g: &Geometry) -> f64 {
+pub fn film_area_m2<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R
+where
+    f64: Left<R>,
+{
     let arcs_m = [
         g.primary_radius_m * g.primary_wrap_rad,
         g.secondary_radius_m * g.secondary_wrap_rad,
     ];
-    belt.band_width_m * smaller(arcs_m[0], arcs_m[1])
+    belt.band_width_m * arcs_m[0].least(arcs_m[1])
 }
 
 /// Levers of the films' forces, at the primary shaft, m: innermost interface, all others together (FI-1).
-pub fn film_levers_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
+pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2]
+where
+    f64: Left<R>,
+{
     let turns = direction.abs() * (1.0 / g.ratio - 1.0).abs();
     [
         turns * belt.band_offset_m,
@@ -83,19 +93,22 @@ pub fn film_levers_m(belt: &Belt, g: &Geometry, direction: f64) -> [f64; 2] {
 }
 
 /// Forces of the films on the innermost interface and on each other one, N (FI-1, FH-1).
-#[inline]
-pub fn film_n(
-    friction: &Friction,
-    band: &BandFriction,
-    area_m2: f64,
-    sliding_m_s: [f64; 2],
-) -> [f64; 2] {
-    let heating = ViscousSelfHeating::halving_at_w(Some(friction.film_heating_w));
-    pair(|i| heating.torque_nm(band.shear_pa[i] * area_m2, sliding_m_s[i])) // FI-1
+#[inline(always)]
+pub fn film_n<R: Real>(
+    friction: &Friction<R>,
+    band: &BandFriction<R>,
+    area_m2: R,
+    sliding_m_s: [R; 2],
+) -> [R; 2]
+where
+    f64: Left<R>,
+{
+    let heating = ViscousSelfHeating::halving(friction.film_heating_w);
+    both!(i => heating.torque_nm(band.shear_pa[i] * area_m2, sliding_m_s[i])) // FI-1
 }
 
 /// Adopted band speed of a formulation as `travel_m` takes it (BT-1, BT-7).
-pub fn speed_share(belt: &Belt) -> f64 {
+pub fn speed_share<R>(belt: &Belt<R>) -> f64 {
     if belt.formulation.by_statics() {
         -0.5
     } else {
@@ -115,15 +128,19 @@ pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
 }
 
 /// Sliding speed at the innermost interface and at each other one where the bands slide, m/s (BT-1, BT-7).
-#[inline]
-pub fn sliding_speed_m_s(belt: &Belt, ratio: f64, primary_speed_rad_s: f64) -> [f64; 2] {
+#[inline(always)]
+pub fn sliding_speed_m_s<R: Real>(belt: &Belt<R>, ratio: R, primary_speed_rad_s: R) -> [R; 2]
+where
+    f64: Left<R>,
+{
     let share = if belt.formulation.by_statics() {
         1.0 // BT-7
     } else {
         0.5 // BT-1
     };
     let turns = share * (1.0 / ratio - 1.0).abs();
-    [belt.band_offset_m, belt.band_thickness_m].map(|step| turns * step * primary_speed_rad_s.abs())
+    let steps = [belt.band_offset_m, belt.band_thickness_m];
+    both!(i => turns * steps[i] * primary_speed_rad_s.abs())
 }
 
 /// Sliding speed at the innermost interface on primary and secondary, m/s (BT-1, BT-7).
@@ -137,19 +154,22 @@ pub fn pulley_sliding_m_s(belt: &Belt, g: &Geometry, primary_speed_rad_s: f64) -
 }
 
 /// Boundary friction loss of the bands on the arcs of primary and secondary, Nm at the primary shaft (BT-3, BT-6).
-#[inline]
-pub fn band_loss_nm(at: &BeltAtRatio, t: &Tension, band: &BandFriction) -> [f64; 2] {
+#[inline(always)]
+pub fn band_loss_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, band: &BandFriction<R>) -> [R; 2]
+where
+    f64: Left<R>,
+{
     let shoulder_n = [t.primary_shoulder_n, t.secondary_shoulder_n];
     let [inner, outer] = band.film_share;
     let lifted = inner + (outer - inner) * at.prepared.outer_part;
     let coated = at.prepared.coated_part * (1.0 - inner);
     let mu = band.mu * (1.0 - lifted - coated); // BT-8
-    pair(|i| mu * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3, BT-6
+    both!(i => mu * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3, BT-6
 }
 
 /// Viscous shear of the films, torque at the primary shaft, Nm (FI-1).
-#[inline]
-pub fn film_loss_nm(at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+#[inline(always)]
+pub fn film_loss_nm<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     let [inner, outer] = at.prepared.film_levers_m;
     load.film_n[0] * inner + load.film_n[1] * outer // FI-1
 }

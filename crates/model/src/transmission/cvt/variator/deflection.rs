@@ -11,68 +11,83 @@
 //! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
 
 use super::{Belt, BeltAtRatio, Geometry, Tension};
-use crate::math::pair;
+use crate::math::{Left, Real, both};
 
 /// Wedge and penetration losses at the primary shaft, Nm; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Deflection {
+pub struct Deflection<R = f64> {
     /// Wedging at entry and exit.
-    pub wedge_nm: [f64; 2],
+    pub wedge_nm: [R; 2],
     /// Penetration.
-    pub penetration_nm: [f64; 2],
+    pub penetration_nm: [R; 2],
 }
 
 /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
-pub fn wedge_per_m(belt: &Belt, g: &Geometry) -> [f64; 2] {
-    let arcs = 0.5 * belt.formulation.wedge_arcs() / belt.segment_thickness_m;
+pub fn wedge_per_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> [R; 2]
+where
+    f64: Left<R>,
+{
+    let arcs = belt.formulation.wedge_arcs() / (2.0 * belt.segment_thickness_m);
     [arcs, arcs / g.ratio]
 }
 
 /// 2 `R_p` / t, times depth over deflection (PE-1).
-pub fn penetration(belt: &Belt, g: &Geometry) -> f64 {
+pub fn penetration<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R
+where
+    f64: Left<R>,
+{
     let depth = if belt.formulation.radial_penetration() {
         0.5 / belt.tan_wedge
     } else {
-        1.0
+        belt.tan_wedge.filled(1.0)
     };
     2.0 * g.primary_radius_m * depth / belt.segment_thickness_m
 }
 
-/// Wedge and penetration losses (WE-1 to PE-1).
-#[inline]
-pub fn deflection(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_flank: f64) -> Deflection {
-    clamped(belt, at, t.primary_clamp_n, t.secondary_clamp_n, mu_flank)
+/// Wedge and penetration losses, both pulleys side by side (WE-1 to PE-1).
+#[inline(always)]
+pub fn deflection<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    t: &Tension<R>,
+    mu_flank: R,
+) -> Deflection<R>
+where
+    f64: Left<R>,
+{
+    let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
+    mu_flank.within(|| clamped(belt, at, clamp_n, mu_flank))
 }
 
-/// The same from the clamping forces, N, both pulleys side by side.
-#[inline(never)]
-fn clamped(
-    belt: &Belt,
-    at: &BeltAtRatio,
-    primary_n: f64,
-    secondary_n: f64,
-    mu_flank: f64,
-) -> Deflection {
+/// The same from the clamping forces, N.
+#[inline(always)]
+fn clamped<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    clamp_n: [R; 2],
+    mu_flank: R,
+) -> Deflection<R>
+where
+    f64: Left<R>,
+{
     let (g, prepared) = (&at.geometry, &at.prepared);
     let radius_m = [g.primary_radius_m, g.secondary_radius_m];
-    let clamp_n = [primary_n, secondary_n];
-    let friction_n = pair(|i| mu_flank * clamp_n[i] * prepared.normal_per_clamp[i]);
+    let friction_n = both!(i => mu_flank * clamp_n[i] * prepared.normal_per_clamp[i]);
     let compliance_per_n = [
         prepared.stop * belt.primary_compliance_per_n,
         belt.secondary_compliance_per_n,
     ]; // WE-4
-    let delta_m = pair(|i| clamp_n[i] * (radius_m[i] * compliance_per_n[i])); // WE-1
-    let chord_m2 = pair(|i| {
-        let (r, q) = (radius_m[i], delta_m[i] * prepared.wedge_half_cot);
-        q * ((r + r + q) * (r + r + q + q)).sqrt() // WE-2: sqrt(q (2R+q)) sqrt(2 (R+q) q)
-    });
+    let delta_m = both!(i => clamp_n[i] * (radius_m[i] * compliance_per_n[i])); // WE-1
+    let (r, q) = (radius_m, both!(i => delta_m[i] * prepared.wedge_half_cot));
+    // WE-2: sqrt(q (2R+q)) sqrt(2 (R+q) q)
+    let chord_m2 = both!(i => q[i] * ((r[i] + r[i] + q[i]) * (r[i] + r[i] + q[i] + q[i])).sqrt());
     let wedge_n = if belt.formulation.own_wedge_force() {
         friction_n
     } else {
         [friction_n[0]; 2]
     };
     Deflection {
-        wedge_nm: pair(|i| prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]), // WE-3
-        penetration_nm: pair(|i| prepared.penetration * friction_n[i] * delta_m[i]), // PE-1
+        wedge_nm: both!(i => prepared.wedge_per_m[i] * wedge_n[i] * chord_m2[i]), // WE-3
+        penetration_nm: both!(i => prepared.penetration * friction_n[i] * delta_m[i]), // PE-1
     }
 }

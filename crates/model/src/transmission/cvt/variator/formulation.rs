@@ -4,6 +4,7 @@
 //! the rows below.
 
 use crate::keys::Choice;
+use crate::math::{Real, tan};
 
 /// Which reading of the belt model is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,18 +49,18 @@ impl Formulation {
     }
 
     /// Segment friction where the formulation prescribes it; the fluid's otherwise.
-    #[inline]
-    pub fn segment_friction(self, fluid: f64) -> f64 {
+    #[inline(always)]
+    pub fn segment_friction<R: Real>(self, fluid: R) -> R {
         match self {
             Formulation::Smooth => fluid,
-            Formulation::AppendixC => 0.125,
-            Formulation::Chapter8 => 0.13,
+            Formulation::AppendixC => fluid.filled(0.125),
+            Formulation::Chapter8 => fluid.filled(0.13),
         }
     }
 
     /// Friction that bounds the torque: of macro slip (VA-4), in the printed forms that of micro slip (VA-2).
-    #[inline]
-    pub fn capacity_friction(self, segment: f64, macro_slip: f64) -> f64 {
+    #[inline(always)]
+    pub fn capacity_friction<R: Real>(self, segment: R, macro_slip: R) -> R {
         match self {
             Formulation::Smooth => macro_slip,
             Formulation::AppendixC | Formulation::Chapter8 => segment,
@@ -126,32 +127,35 @@ impl Formulation {
     }
 
     /// tan of the angle in the wedge terms: the program has a literal 11 degrees.
-    #[inline]
-    pub fn wedge_tan(self, own: f64) -> f64 {
+    #[inline(always)]
+    pub fn wedge_tan<R: Real>(self, own: R) -> R {
         if self == Formulation::AppendixC {
-            11.0f64.to_radians().tan()
+            own.filled(tan(11.0f64.to_radians()))
         } else {
             own
         }
     }
 
     /// Part of the primary's deflection left near its end stop, from the ramp's value (1 away from the stop).
-    #[inline]
-    pub fn primary_stop(self, ramp: f64) -> f64 {
+    #[inline(always)]
+    pub fn primary_stop<R: Real>(self, ramp: R) -> R {
         match self {
-            Formulation::AppendixC => 1.0,
+            Formulation::AppendixC => ramp.filled(1.0),
             Formulation::Smooth | Formulation::Chapter8 => ramp,
         }
     }
 
     /// Segment compression as the slip equations take it: the program lifts \|C_x\| < 30 N to +30 N, the chapter to 30 N with its sign.
-    #[inline]
-    pub fn compression_n(self, cx: f64) -> f64 {
-        match self {
-            Formulation::Smooth => cx,
+    #[inline(always)]
+    pub fn compression_n<R: Real>(self, cx: R) -> R {
+        let lifted = |cx: f64| match self {
             Formulation::AppendixC if cx.abs() < 30.0 => 30.0,
             Formulation::Chapter8 if cx.abs() < 30.0 => 30.0f64.copysign(cx),
-            Formulation::AppendixC | Formulation::Chapter8 => cx,
+            _ => cx,
+        };
+        match self {
+            Formulation::Smooth => cx,
+            Formulation::AppendixC | Formulation::Chapter8 => cx.each(lifted),
         }
     }
 }

@@ -10,42 +10,51 @@
 //! Symbols: X centre distance, L belt length, all m; angles rad. Valid for ratios 0.3 to 3.3 of the shipped belt; the configured
 //! limits lie within. f is convex and rising in R, so Newton from the series start needs at most three steps.
 
+use crate::math::{Left, Mask, Real};
 use std::f64::consts::PI;
 
 /// Geometry of the belt at one ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Geometry {
+pub struct Geometry<R = f64> {
     /// Belt ratio I = R_sec / R_pri.
-    pub ratio: f64,
+    pub ratio: R,
     /// Primary running radius, m.
-    pub primary_radius_m: f64,
+    pub primary_radius_m: R,
     /// Secondary running radius, m.
-    pub secondary_radius_m: f64,
+    pub secondary_radius_m: R,
     /// Primary wrap angle, rad.
-    pub primary_wrap_rad: f64,
+    pub primary_wrap_rad: R,
     /// Secondary wrap angle, rad.
-    pub secondary_wrap_rad: f64,
+    pub secondary_wrap_rad: R,
     /// Length of one free strut, m.
-    pub strut_m: f64,
+    pub strut_m: R,
 }
 
-impl Geometry {
+/// Square of pi.
+const PI_SQUARED: f64 = PI * PI;
+
+impl<R: Real> Geometry<R>
+where
+    f64: Left<R>,
+{
     /// Solves the belt's geometry for a ratio, centre distance and belt length (GE-1 to GE-4).
-    pub fn new(ratio: f64, centre_distance_m: f64, belt_length_m: f64) -> Self {
+    pub fn new(ratio: R, centre_distance_m: R, belt_length_m: R) -> Self {
         let (x, l) = (centre_distance_m, belt_length_m);
         let g = 1.0 - 1.0 / ratio;
         let h = 1.0 + 1.0 / ratio;
         let free = l - 2.0 * x;
-        let mut r = 2.0 * free / (PI * h + (PI * PI * h * h + 4.0 * g * g * free / x).sqrt());
+        let mut r = 2.0 * free / (PI * h + (PI_SQUARED * h * h + 4.0 * g * g * free / x).sqrt());
         let mut alpha = (g * r / x).asin();
         let mut strut = (x * x - g * r * g * r).sqrt();
+        let mut open = !r.above(r); // in every lane
         for _ in 0..4 {
             let f = PI * h * r + 2.0 * alpha * g * r + 2.0 * strut - l;
             let step = f / (PI * h + 2.0 * alpha * g); // GE-4
-            r -= step;
+            r = R::pick(open, r - step, r);
             alpha = (g * r / x).asin();
             strut = (x * x - g * r * g * r).sqrt();
-            if step.abs() <= 1e-9 * r {
+            open = open & step.abs().above(1e-9 * r);
+            if !open.any() {
                 break;
             }
         }
@@ -59,6 +68,15 @@ impl Geometry {
         }
     }
 
+    /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
+    pub fn secondary_radius_slope_m(&self) -> R {
+        // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.
+        let bp = self.primary_wrap_rad / self.ratio;
+        bp * self.secondary_radius_m / (bp + self.secondary_wrap_rad)
+    }
+}
+
+impl Geometry {
     /// Whether a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
     pub fn is_real(&self, belt_length_m: f64, segment_thickness_m: f64) -> bool {
         let arcs = [
@@ -67,12 +85,5 @@ impl Geometry {
         ];
         let left = arcs[0] + arcs[1] + 2.0 * self.strut_m - belt_length_m; // GE-3
         arcs.iter().all(|arc| *arc >= segment_thickness_m) && left.abs() <= 1e-9 * belt_length_m
-    }
-
-    /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
-    pub fn secondary_radius_slope_m(&self) -> f64 {
-        // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.
-        let bp = self.primary_wrap_rad / self.ratio;
-        bp * self.secondary_radius_m / (bp + self.secondary_wrap_rad)
     }
 }

@@ -31,126 +31,133 @@ pub use slip::Slip;
 pub use tension::Tension;
 
 use crate::fluid::{BandFriction, Friction, Lubricant};
-use crate::math::{Curve, larger, smaller};
+use crate::math::{Curve, Left, Real};
 use crate::transmission::component::Component;
 use crate::transmission::loss_factor::LossFactors;
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Belt {
+pub struct Belt<R = f64> {
     /// Centre distance of the pulleys, m.
-    pub centre_distance_m: f64,
+    pub centre_distance_m: R,
     /// Length of the belt, m.
-    pub length_m: f64,
+    pub length_m: R,
     /// Thickness of a segment, m.
-    pub segment_thickness_m: f64,
+    pub segment_thickness_m: R,
     /// Half wedge angle: cosine.
-    pub cos_wedge: f64,
+    pub cos_wedge: R,
     /// Half wedge angle: tangent.
-    pub tan_wedge: f64,
+    pub tan_wedge: R,
     /// Bands in a pack.
-    pub band_count: f64,
+    pub band_count: R,
     /// Thickness of a band, m.
-    pub band_thickness_m: f64,
+    pub band_thickness_m: R,
     /// Width of both packs, m.
-    pub band_width_m: f64,
+    pub band_width_m: R,
     /// Offset of the innermost band above the rocking edge, m.
-    pub band_offset_m: f64,
+    pub band_offset_m: R,
     /// Friction between shoulders and innermost band over that between bands (BT-8).
-    pub shoulder_friction: f64,
+    pub shoulder_friction: R,
     /// Mass per length, kg/m.
-    pub mass_kg_m: f64,
+    pub mass_kg_m: R,
     /// Part of it in the bands, kg/m.
-    pub band_mass_kg_m: f64,
+    pub band_mass_kg_m: R,
     /// Young's modulus of bands and segments, Pa.
-    pub youngs_pa: f64,
+    pub youngs_pa: R,
     /// Contact area between segments in the free strut, m2.
-    pub strut_area_m2: f64,
+    pub strut_area_m2: R,
     /// Gap between all segments at no load, m.
-    pub initial_gap_m: f64,
+    pub initial_gap_m: R,
     /// Axial deflection of the primary per radius and force, 1/N.
-    pub primary_compliance_per_n: f64,
+    pub primary_compliance_per_n: R,
     /// Axial deflection of the secondary per radius and force, 1/N.
-    pub secondary_compliance_per_n: f64,
+    pub secondary_compliance_per_n: R,
     /// Ratio from which the primary leans on its end stop.
-    pub stop_from_ratio: f64,
+    pub stop_from_ratio: R,
     /// Ratio at which it rests on it fully.
-    pub stop_to_ratio: f64,
+    pub stop_to_ratio: R,
     /// Width of the smoothing of the tension step in ln I.
-    pub unity_width: f64,
+    pub unity_width: R,
     /// Force width of the blend between the loading branches, N.
-    pub blend_n: f64,
+    pub blend_n: R,
     /// Bound of each pulley's slip.
-    pub slip_bound: f64,
+    pub slip_bound: R,
     /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
     pub thrust_ratio: Option<Curve>,
     /// Reading of the thesis.
     pub formulation: Formulation,
 }
 
-impl Belt {
+impl<R: Real> Belt<R>
+where
+    f64: Left<R>,
+{
     /// Cross-section of both band packs, m2.
-    #[inline]
-    pub fn band_area_m2(&self) -> f64 {
+    #[inline(always)]
+    pub fn band_area_m2(&self) -> R {
         self.band_count * self.band_width_m * self.band_thickness_m
     }
 
     /// Mass per length that presses on the bands, and that of the bands where they carry themselves, kg/m (TE-8).
-    #[inline]
-    pub fn masses_kg_m(&self) -> [f64; 2] {
+    #[inline(always)]
+    pub fn masses_kg_m(&self) -> [R; 2] {
         let bands = if self.formulation.by_statics() {
             self.band_mass_kg_m
         } else {
-            0.0
+            self.mass_kg_m.filled(0.0)
         };
         [self.mass_kg_m - bands, bands] // TE-8
     }
 
     /// Sliding speeds that can carry a film, at the innermost interface and at each other one, m/s; 0 for formulations without a film.
-    #[inline]
-    pub fn sliding_m_s(&self, ratio: f64, primary_rad_s: f64) -> [f64; 2] {
+    #[inline(always)]
+    pub fn sliding_m_s(&self, ratio: R, primary_rad_s: R) -> [R; 2] {
         if self.formulation.has_film() {
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
-            [0.0; 2]
+            [ratio.filled(0.0); 2]
         }
     }
 }
 
 /// What acts on the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltLoad {
+pub struct BeltLoad<R = f64> {
     /// Primary speed, rad/s.
-    pub primary_speed_rad_s: f64,
+    pub primary_speed_rad_s: R,
     /// Torque at the secondary pulley, Nm; negative in overrun.
-    pub output_torque_nm: f64,
+    pub output_torque_nm: R,
     /// Axial clamping force of the secondary, N.
-    pub secondary_clamp_n: f64,
+    pub secondary_clamp_n: R,
     /// Band friction in force.
-    pub band: BandFriction,
+    pub band: BandFriction<R>,
     /// Force of the film at the innermost interface and at each other one, N (FI-1).
-    pub film_n: [f64; 2],
+    pub film_n: [R; 2],
     /// Segment friction of the fluid.
-    pub segment_friction: f64,
+    pub segment_friction: R,
     /// Friction of macro slip of the fluid.
-    pub capacity_friction: f64,
+    pub capacity_friction: R,
     /// Flank friction of the fluid.
-    pub flank_friction: f64,
+    pub flank_friction: R,
 }
 
-impl BeltLoad {
+impl<R: Real> BeltLoad<R>
+where
+    f64: Left<R>,
+{
     /// The lubricated belt without speed, torque and clamping force, for a band friction in a contact area, m2, that slides at speeds, m/s.
-    #[inline]
+    #[inline(always)]
     pub fn unloaded(
-        friction: &Friction,
-        band: BandFriction,
-        film_area_m2: f64,
-        sliding_m_s: [f64; 2],
+        friction: &Friction<R>,
+        band: BandFriction<R>,
+        film_area_m2: R,
+        sliding_m_s: [R; 2],
     ) -> Self {
+        let none = film_area_m2.filled(0.0);
         BeltLoad {
-            primary_speed_rad_s: 0.0,
-            output_torque_nm: 0.0,
-            secondary_clamp_n: 0.0,
+            primary_speed_rad_s: none,
+            output_torque_nm: none,
+            secondary_clamp_n: none,
             band,
             film_n: bands::film_n(friction, &band, film_area_m2, sliding_m_s),
             segment_friction: friction.segment,
@@ -158,7 +165,9 @@ impl BeltLoad {
             flank_friction: friction.flank,
         }
     }
+}
 
+impl BeltLoad {
     /// The lubricated belt at a temperature, K, that turns at a ratio and primary speed, without torque and clamping force.
     pub fn turning(
         belt: &Belt,
@@ -181,49 +190,51 @@ impl BeltLoad {
 
 /// The belt's answer: its losses and what they follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltState {
+pub struct BeltState<R: Real = f64> {
     /// Torque at the primary pulley, Nm (VA-1).
-    pub input_torque_nm: f64,
+    pub input_torque_nm: R,
     /// Tensions and forces.
-    pub tension: Tension,
+    pub tension: Tension<R>,
     /// Slip in detail.
-    pub slip: Slip,
+    pub slip: Slip<R>,
     /// Boundary friction of the bands before slip relieves them, Nm at the primary shaft (BT-3, BT-6).
-    pub band_nm: f64,
+    pub band_nm: R,
     /// Shear of the film before slip relieves it, Nm at the primary shaft (FI-1).
-    pub film_nm: f64,
+    pub film_nm: R,
     /// Losses, total slip and capacity.
-    pub losses: BeltLosses,
+    pub losses: BeltLosses<R>,
 }
 
 /// What the driveline needs of the belt: losses as torques at the primary shaft, Nm, never negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BeltLosses {
+pub struct BeltLosses<R: Real = f64> {
     /// Boundary friction of the bands.
-    pub band_nm: f64,
+    pub band_nm: R,
     /// Shear of the film.
-    pub film_nm: f64,
+    pub film_nm: R,
     /// Sliding of segments on pulleys.
-    pub slip_nm: f64,
+    pub slip_nm: R,
     /// Wedging.
-    pub wedge_nm: f64,
+    pub wedge_nm: R,
     /// Penetration.
-    pub penetration_nm: f64,
+    pub penetration_nm: R,
     /// Total slip as a fraction.
-    pub slip_total: f64,
+    pub slip_total: R,
     /// Torque capacity at the secondary, Nm (VA-2).
-    pub capacity_nm: f64,
+    pub capacity_nm: R,
     /// Torque above capacity, or slip at its bound.
-    pub gross_slip: bool,
+    pub gross_slip: R::Mask,
+}
+
+impl<R: Real> BeltLosses<R> {
+    /// All belt losses, Nm at the primary shaft.
+    #[inline(always)]
+    pub fn sum_nm(&self) -> R {
+        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
+    }
 }
 
 impl BeltLosses {
-    /// All belt losses, Nm at the primary shaft.
-    #[inline]
-    pub fn sum_nm(&self) -> f64 {
-        self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
-    }
-
     /// Each loss times its factor, slip with the loss that it makes (CV-7).
     pub fn times(self, factor: &LossFactors) -> Self {
         let slips = factor[Component::BeltSlip];
@@ -266,24 +277,27 @@ impl BeltState {
 }
 
 /// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
-#[inline]
-fn capacity_nm(at: &BeltAtRatio, t: &Tension, friction: f64) -> f64 {
-    let weaker = smaller(t.primary_clamp_n, t.secondary_clamp_n);
+#[inline(always)]
+fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, friction: R) -> R {
+    let weaker = t.primary_clamp_n.least(t.secondary_clamp_n);
     weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
 /// Everything that the equations give at one operating point, pulley by pulley.
-struct Parts {
-    tension: Tension,
-    slip: Slip,
-    band_nm: [f64; 2],
-    film_nm: f64,
-    deflection: Deflection,
-    capacity_nm: f64,
+struct Parts<R: Real> {
+    tension: Tension<R>,
+    slip: Slip<R>,
+    band_nm: [R; 2],
+    film_nm: R,
+    deflection: Deflection<R>,
+    capacity_nm: R,
 }
 
 #[inline(always)]
-fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
+fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R>
+where
+    f64: Left<R>,
+{
     let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
     let band_nm = bands::band_loss_nm(at, &tension, &load.band);
@@ -309,34 +323,40 @@ fn parts(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Parts {
     }
 }
 
-fn sum(pair: [f64; 2]) -> f64 {
+#[inline(always)]
+fn sum<R: Real>(pair: [R; 2]) -> R {
     pair[0] + pair[1]
 }
 
 #[inline(always)]
-fn losses(load: &BeltLoad, parts: &Parts) -> BeltLosses {
+fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R>
+where
+    f64: Left<R>,
+{
     let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
     let share_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
     // Slip against the torque relieves bands and film, both by the same share (SL-11).
     let sliding_nm = sum(parts.band_nm) + parts.film_nm;
-    let left = if share_nm < 0.0 {
-        larger(1.0 + share_nm / sliding_nm, 0.0)
-    } else {
-        1.0
-    };
+    let is_relieved = share_nm.filled(0.0).above(share_nm);
+    let relieved = (1.0 + share_nm / sliding_nm).most(0.0);
+    let left = R::pick(is_relieved, relieved, share_nm.filled(1.0));
     BeltLosses {
         band_nm: left * sum(parts.band_nm),
         film_nm: left * parts.film_nm,
-        slip_nm: larger(share_nm, 0.0),
+        slip_nm: share_nm.most(0.0),
         wedge_nm: sum(parts.deflection.wedge_nm),
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
         capacity_nm,
-        gross_slip: slip.held || load.output_torque_nm.abs() > capacity_nm,
+        gross_slip: slip.held | load.output_torque_nm.abs().above(capacity_nm),
     }
 }
 
-fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
+#[inline(always)]
+fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> BeltState<R>
+where
+    f64: Left<R>,
+{
     let losses = losses(load, parts);
     BeltState {
         input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - losses.slip_total)
@@ -351,7 +371,14 @@ fn state(at: &BeltAtRatio, load: &BeltLoad, parts: &Parts) -> BeltState {
 
 /// Slip, losses and capacity at one operating point: the sums of [`belt_state`] without its detail.
 #[inline(always)]
-pub fn belt_losses(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltLosses {
+pub fn belt_losses<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    load: &BeltLoad<R>,
+) -> BeltLosses<R>
+where
+    f64: Left<R>,
+{
     losses(load, &parts(belt, at, load))
 }
 
@@ -377,6 +404,10 @@ pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
 /// let state = belt_state(belt, &BeltAtRatio::new(belt, 2.0), &load);
 /// assert!(state.losses.slip_total > 0.0 && !state.losses.gross_slip);
 /// ```
-pub fn belt_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
+#[inline(always)]
+pub fn belt_state<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> BeltState<R>
+where
+    f64: Left<R>,
+{
     state(at, load, &parts(belt, at, load))
 }

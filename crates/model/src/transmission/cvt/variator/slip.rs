@@ -19,31 +19,34 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{clamp, exp, larger, pair, smaller};
+use crate::math::{Left, Mask, Real, both};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Slip {
+pub struct Slip<R: Real = f64> {
     /// Slip at the primary over belt speed.
-    pub primary: f64,
+    pub primary: R,
     /// Slip at the secondary over belt speed.
-    pub secondary: f64,
+    pub secondary: R,
     /// Part of the loading pulley's slip that closes the gaps, over belt speed.
-    pub gap: f64,
+    pub gap: R,
     /// Part of the loading pulley's slip that the band friction on its idle arc adds, over belt speed.
-    pub idle: f64,
+    pub idle: R,
     /// Torque loss at the primary, referred to the primary shaft, Nm; by statics with the sign of slip times torque (SL-11).
-    pub primary_loss_nm: f64,
+    pub primary_loss_nm: R,
     /// Torque loss at the secondary, referred to the primary shaft, Nm; by statics with the sign of slip times torque (SL-11).
-    pub secondary_loss_nm: f64,
+    pub secondary_loss_nm: R,
     /// Segments in the active arc of the branch in force.
-    pub active_segments: f64,
+    pub active_segments: R,
     /// Whether the bound of SL-9 holds the slip.
-    pub held: bool,
+    pub held: R::Mask,
 }
 
 /// Grip never below this share of the friction limit (ASSUMED): keeps the active arc finite where the bands' pull alone takes it up.
 const MIN_GRIP: f64 = 0.05;
+
+/// Least lambda of an idle segment (SL-10).
+const LEAST_LAMBDA: f64 = MIN_GRIP - 1.0;
 
 /// Grip never below this force, N (ASSUMED; negligible against any real one): without clamping slip is at its bound and not 0/0.
 const NO_GRIP_N: f64 = 1e-6;
@@ -55,49 +58,56 @@ const ALONE: f64 = 9.0;
 pub(super) const MAX_AREA_N: f64 = 4492.0;
 
 /// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`MAX_AREA_N`] (SL-3 without holding).
-#[inline]
-pub(super) fn printed_area_m2(compression_n: f64) -> f64 {
+#[inline(always)]
+pub(super) fn printed_area_m2<R: Real>(compression_n: R) -> R
+where
+    f64: Left<R>,
+{
     let c = compression_n;
     1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
 }
 
 /// Contact area between segments in an arc for a compression \|C_x\|, m2 (SL-3).
-#[inline]
-fn arc_area_m2(compression_n: f64) -> f64 {
-    let c = compression_n;
-    printed_area_m2(smaller(c, MAX_AREA_N))
+#[inline(always)]
+fn arc_area_m2<R: Real>(compression_n: R) -> R
+where
+    f64: Left<R>,
+{
+    printed_area_m2(compression_n.least(MAX_AREA_N))
 }
 
 /// What the slip equations of both branches look at; pairs are primary, secondary.
 #[derive(Clone, Copy)]
-pub(super) struct Contact<'a> {
-    pub belt: &'a Belt,
-    pub at: &'a BeltAtRatio,
+pub(super) struct Contact<'a, R = f64> {
+    pub belt: &'a Belt<R>,
+    pub at: &'a BeltAtRatio<R>,
     /// Extension of the band pack and initial gap, m.
-    pub slack_m: f64,
+    pub slack_m: R,
     /// Normal force on a segment times friction, N.
-    pub grip_n: [f64; 2],
+    pub grip_n: [R; 2],
     /// Band friction on the shoulder of a segment, with the sign of dT, N.
-    pub shoulder_n: [f64; 2],
+    pub shoulder_n: [R; 2],
     /// C_x as the formulation has the slip equations take it, N.
-    pub compression_n: f64,
+    pub compression_n: R,
 }
 
-impl<'a> Contact<'a> {
-    #[inline]
-    pub fn new(belt: &'a Belt, at: &'a BeltAtRatio, t: &Tension, mu_segment: f64) -> Self {
+impl<'a, R: Real> Contact<'a, R>
+where
+    f64: Left<R>,
+{
+    #[inline(always)]
+    pub fn new(belt: &'a Belt<R>, at: &'a BeltAtRatio<R>, t: &Tension<R>, mu_segment: R) -> Self {
         let prepared = &at.prepared;
-        let grip = |clamp_n: f64, pulley: usize| {
-            let n = mu_segment * clamp_n * prepared.normal_per_clamp[pulley];
-            larger(n, NO_GRIP_N)
-        };
+        let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
+        let grip_n =
+            both!(i => (mu_segment * clamp_n[i] * prepared.normal_per_clamp[i]).most(NO_GRIP_N));
         Contact {
             belt,
             at,
             slack_m: (t.primary_shoulder_n + t.ring_n * at.geometry.primary_wrap_rad)
                 * prepared.band_gap_m_n
                 + belt.initial_gap_m, // SL-1
-            grip_n: [grip(t.primary_clamp_n, 0), grip(t.secondary_clamp_n, 1)],
+            grip_n,
             shoulder_n: [
                 t.step_n * prepared.shoulder_per_step[0],
                 t.step_n * prepared.shoulder_per_step[1],
@@ -108,105 +118,92 @@ impl<'a> Contact<'a> {
 }
 
 /// Both loading branches side by side: conventional (segments loaded in the primary), inverted (in the secondary).
-struct Branches {
+struct Branches<R> {
     /// Slip of the loaded pulley, not below zero, and of the other one.
-    loaded: [f64; 2],
-    other: [f64; 2],
+    loaded: [R; 2],
+    other: [R; 2],
     /// Slip of the loaded pulley before its bound (SL-9), and the part of it that closes the gaps.
-    free: [f64; 2],
-    gap: [f64; 2],
-    loss_loaded_nm: [f64; 2],
-    loss_other_nm: [f64; 2],
-    active_segments: [f64; 2],
+    free: [R; 2],
+    gap: [R; 2],
+    loss_loaded_nm: [R; 2],
+    loss_other_nm: [R; 2],
+    active_segments: [R; 2],
 }
 
 /// Works out both branches (SL-2 to SL-7, SL-9, SL-10). One of them carries no compression; processors do two at once for one.
-#[inline(never)]
-fn branches(c: &Contact) -> Branches {
+#[inline(always)]
+fn branches<R: Real>(c: &Contact<'_, R>) -> Branches<R>
+where
+    f64: Left<R>,
+{
     let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
-    let swapped = |of: [f64; 2]| [of[1], of[0]];
-    let (pitch, arc, arc_other) = (
-        belt.segment_thickness_m,
-        prepared.arc_m,
-        swapped(prepared.arc_m),
-    );
-    let cx = [c.compression_n, -c.compression_n].map(|x| larger(x, 0.0));
+    let pitch = belt.segment_thickness_m;
+    let arc = prepared.arc_m;
+    let arc_other = [arc[1], arc[0]];
+    let cx = [c.compression_n.most(0.0), (-c.compression_n).most(0.0)];
     let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
-    let grip = pair(|i| {
-        let (grip, floor) = (c.grip_n[i] - shoulder[i], MIN_GRIP * c.grip_n[i]);
-        larger(grip, floor)
-    });
-    let k = pair(|i| cx[i] / grip[i]); // SL-4
-    let segments = pair(|i| smaller(k[i], prepared.count[i]));
-    let active = segments.map(|n| n * pitch);
-    let arcs = pair(|i| 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
-    let e_segs = pair(|i| cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
-    let idle_arc = pair(|i| arc[i] - active[i]);
-    let gap = pair(|i| (c.slack_m + e_segs[i]) / (idle_arc[i] + 1e-9)); // SL-5
-    let per_grip = c.grip_n.map(|n| 1.0 / n);
-    let lambda = pair(|i| {
-        let lambda = shoulder[i] * per_grip[i];
-        larger(lambda, MIN_GRIP - 1.0) // SL-10
-    });
+    let grip = both!(i => (c.grip_n[i] - shoulder[i]).most(MIN_GRIP * c.grip_n[i]));
+    let k = both!(i => cx[i] / grip[i]); // SL-4
+    let segments = both!(i => k[i].least(prepared.count[i]));
+    let active = both!(i => segments[i] * pitch);
+    let arcs = both!(i => 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
+    let e_segs = both!(i => cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
+    let idle_arc = both!(i => arc[i] - active[i]);
+    let gap = both!(i => (c.slack_m + e_segs[i]) / (idle_arc[i] + 1e-9)); // SL-5
+    let per_grip = both!(i => 1.0 / c.grip_n[i]);
+    let lambda = both!(i => (shoulder[i] * per_grip[i]).most(LEAST_LAMBDA)); // SL-10
     // Conventional loading takes the magnitude: the larger of the number and its opposite.
     let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
-    let idle = pair(|i| gap[i] * larger(turned[i] * lambda[i], lambda[i])); // SL-6
-    let free = pair(|i| gap[i] + idle[i]); // not below zero (SL-10)
-    let loaded = pair(|i| smaller(belt.slip_bound, free[i])); // SL-9
-    let total_other = swapped([
-        cx[1] - c.shoulder_n[0] * prepared.count[0],
+    let idle = both!(i => gap[i] * (turned[i] * lambda[i]).most(lambda[i])); // SL-6
+    let free = both!(i => gap[i] + idle[i]); // not below zero (SL-10)
+    let loaded = both!(i => belt.slip_bound.least(free[i])); // SL-9
+    // The other pulley of each branch: the secondary of conventional loading, the primary of inverted loading.
+    let total_other = [
         cx[0] + c.shoulder_n[1] * prepared.count[1],
-    ]);
-    let per_other = swapped(pair(|i| prepared.inv_segments[i] * per_grip[i]));
-    let other = pair(|i| {
-        clamp(
-            loaded[i] * (total_other[i] * per_other[i]),
-            -belt.slip_bound,
-            belt.slip_bound,
-        )
-    }); // SL-9
+        cx[1] - c.shoulder_n[0] * prepared.count[0],
+    ];
+    let per_other = [
+        prepared.inv_segments[1] * per_grip[1],
+        prepared.inv_segments[0] * per_grip[0],
+    ];
+    let other_free = both!(i => loaded[i] * (total_other[i] * per_other[i]));
+    let other = both!(i => other_free[i].held(-belt.slip_bound, belt.slip_bound)); // SL-9
     let mut branches = Branches {
         loaded,
         other,
         free,
         gap,
-        loss_loaded_nm: [0.0; 2],
-        loss_other_nm: [0.0; 2],
+        loss_loaded_nm: [c.slack_m.filled(0.0); 2],
+        loss_other_nm: [c.slack_m.filled(0.0); 2],
         active_segments: k,
     };
     if f.by_statics() {
         return branches; // SL-11
     }
     let r = c.at.geometry.primary_radius_m;
-    let mut loaded_n = pair(|i| loaded[i] * c.grip_n[i] * segments[i]);
+    let mut loaded_n = both!(i => loaded[i] * c.grip_n[i] * segments[i]);
     if f.counts_idle_arc() {
-        let share = pair(|i| {
-            if loaded[i] < free[i] {
-                loaded[i] / free[i]
-            } else {
-                1.0
-            }
-        });
-        loaded_n = pair(|i| {
-            loaded_n[i] + (idle[i] * share[i] * shoulder[i]).abs() * (idle_arc[i] / pitch)
-        });
+        let held = both!(i => free[i].above(loaded[i]));
+        let share = both!(i => R::pick(held[i], loaded[i] / free[i], free[i].filled(1.0)));
+        let idle_n = both!(i => (idle[i] * share[i] * shoulder[i]).abs());
+        loaded_n = both!(i => loaded_n[i] + idle_n[i] * (idle_arc[i] / pitch));
     }
-    branches.loss_loaded_nm = pair(|i| r * loaded_n[i]); // SL-7
-    branches.loss_other_nm = pair(|i| r * (other[i] * total_other[i]).abs()); // SL-7
+    branches.loss_loaded_nm = both!(i => r * loaded_n[i]); // SL-7
+    branches.loss_other_nm = both!(i => r * (other[i] * total_other[i]).abs()); // SL-7
     branches
 }
 
-impl Slip {
+impl<R: Real> Slip<R>
+where
+    f64: Left<R>,
+{
     /// The slip with its share of the loss by statics: `net_nm` is the output torque at the primary shaft, `sliding_nm` what bands and film
     /// lose before it (SL-11, SL-12).
     #[inline(always)]
-    pub(super) fn by_statics(self, net_nm: f64, sliding_nm: f64) -> Self {
+    pub(super) fn by_statics(self, net_nm: R, sliding_nm: R) -> Self {
         let share_nm = (self.primary + self.secondary) * net_nm;
-        let kept = if share_nm < -sliding_nm {
-            -sliding_nm / share_nm
-        } else {
-            1.0
-        }; // SL-12
+        let beyond = (-sliding_nm).above(share_nm);
+        let kept = R::pick(beyond, -sliding_nm / share_nm, share_nm.filled(1.0)); // SL-12
         let (primary, secondary) = (kept * self.primary, kept * self.secondary);
         Slip {
             primary,
@@ -222,32 +219,29 @@ impl Slip {
 
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
 #[inline(always)]
-pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip {
+pub fn slip<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, t: &Tension<R>, mu_segment: R) -> Slip<R>
+where
+    f64: Left<R>,
+{
     let contact = Contact::new(belt, at, t, mu_segment);
-    let b = branches(&contact);
+    let b = mu_segment.within(|| branches(&contact));
     let x = contact.compression_n * at.prepared.per_blend_n;
     // SL-8: (1 + tanh x)/2
-    let w = if x > ALONE {
-        1.0
-    } else if x < -ALONE {
-        0.0
-    } else {
-        1.0 / (1.0 + exp(-2.0 * x))
-    };
-    let mix = |conventional: f64, inverted: f64| w * conventional + (1.0 - w) * inverted;
+    let (blends, zero) = (!x.abs().above(ALONE), x.filled(0.0));
+    let mut w = R::pick(x.above(0.0), x.filled(1.0), zero);
+    if blends.any() {
+        w = R::pick(blends, 1.0 / (1.0 + (-2.0 * x).exp()), w);
+    }
     let other = if belt.formulation.flips_inverted_primary() {
         b.other[1]
     } else {
         -b.other[1]
     }; // SL-6
-    let branch = usize::from(x < 0.0);
-    let gap = pair(|i| {
-        if b.free[i] > b.loaded[i] {
-            b.gap[i] * (b.loaded[i] / b.free[i])
-        } else {
-            b.gap[i]
-        }
-    }); // SL-9
+    let held = both!(i => b.free[i].above(b.loaded[i]));
+    let gap = both!(i => R::pick(held[i], b.gap[i] * (b.loaded[i] / b.free[i]), b.gap[i])); // SL-9
+    let is_inverted = zero.above(x);
+    let mix = |conventional: R, inverted: R| w * conventional + (1.0 - w) * inverted;
+    let in_force = |of: [R; 2]| R::pick(is_inverted, of[1], of[0]);
     Slip {
         primary: mix(b.loaded[0], other),
         secondary: mix(b.other[0].abs(), -b.loaded[1]),
@@ -255,7 +249,7 @@ pub fn slip(belt: &Belt, at: &BeltAtRatio, t: &Tension, mu_segment: f64) -> Slip
         idle: mix(b.loaded[0] - gap[0], b.loaded[1] - gap[1]),
         primary_loss_nm: mix(b.loss_loaded_nm[0], b.loss_other_nm[1]),
         secondary_loss_nm: mix(b.loss_other_nm[0], b.loss_loaded_nm[1]),
-        active_segments: b.active_segments[branch],
-        held: b.free[branch] > b.loaded[branch],
+        active_segments: in_force(b.active_segments),
+        held: in_force(b.free).above(in_force(b.loaded)),
     }
 }

@@ -16,65 +16,80 @@
 //! true for mu_b < 0.53; TE-7 mu_b beta / 2 < 1, true for mu_b < 0.64.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
+use crate::math::{Left, Real};
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tension {
+pub struct Tension<R = f64> {
     /// Axial clamping force, primary, N.
-    pub primary_clamp_n: f64,
+    pub primary_clamp_n: R,
     /// Axial clamping force, secondary, N.
-    pub secondary_clamp_n: f64,
+    pub secondary_clamp_n: R,
     /// Total shoulder normal force, primary (Q-hat), N.
-    pub primary_shoulder_n: f64,
+    pub primary_shoulder_n: R,
     /// Total shoulder normal force, secondary, N.
-    pub secondary_shoulder_n: f64,
+    pub secondary_shoulder_n: R,
     /// Segment compression C_x, N; negative when it acts in the opposite strut.
-    pub compression_n: f64,
+    pub compression_n: R,
     /// Step of band tension dT, N.
-    pub step_n: f64,
+    pub step_n: R,
     /// Tension that the bands' own mass takes up, N (TE-8).
-    pub ring_n: f64,
+    pub ring_n: R,
 }
 
 /// Compression C_x for the step that it has without one, Z, and the rise of the step with it, s c (TE-5, TE-7).
 #[inline(always)]
-fn compression_n(z: f64, sc: f64) -> f64 {
+fn compression_n<R: Real>(z: R, sc: R) -> R
+where
+    f64: Left<R>,
+{
     // The divisors are known before the torque is: nothing waits for a division.
-    z * if z >= 0.0 {
-        1.0 / (1.0 - sc)
-    } else {
-        1.0 / (1.0 + sc)
-    }
+    z * R::pick(z.reaches(0.0), 1.0 / (1.0 - sc), 1.0 / (1.0 + sc))
 }
 
 /// Clamping forces of primary and secondary (TE-1), and the flows of momentum m v2 of what presses and of bands that carry themselves (TE-8), N.
 #[inline(always)]
-fn forces_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> ([f64; 2], [f64; 2]) {
+fn forces_n<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> ([R; 2], [R; 2])
+where
+    f64: Left<R>,
+{
     let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
     let clamp_n = [
         load.secondary_clamp_n * at.thrust_ratio,
         load.secondary_clamp_n,
     ]; // TE-1
-    (clamp_n, belt.masses_kg_m().map(|mass| mass * v * v))
+    let [pressing, bands] = belt.masses_kg_m();
+    (clamp_n, [pressing * v * v, bands * v * v])
 }
 
 /// Shoulder force per angle of wrap without compression, A, N (TE-7).
 #[inline(always)]
-fn bare_mean_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, centrifugal_n: f64) -> f64 {
+fn bare_mean_n<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    load: &BeltLoad<R>,
+    centrifugal_n: R,
+) -> R {
     belt.tan_wedge * load.secondary_clamp_n * at.prepared.clamps_per_wrap + centrifugal_n
 }
 
 /// Boundary friction of the innermost interface per mean tension: of the part that is not on a film, on the smaller wrap (TE-7).
 #[inline(always)]
-fn grip(at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+fn grip<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R
+where
+    f64: Left<R>,
+{
     let dry = 1.0 - load.band.film_share[0];
     load.band.mu * dry * at.prepared.shoulder_rad
 }
 
-impl Tension {
+impl<R: Real> Tension<R>
+where
+    f64: Left<R>,
+{
     /// The belt's tension by its formulation, with the smoothed direction of the step (TE-6).
     #[inline(always)]
-    pub fn driving(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Self {
+    pub fn driving(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Self {
         if belt.formulation.by_statics() {
             Tension::one_force(belt, at, load)
         } else {
@@ -84,7 +99,7 @@ impl Tension {
 
     /// Solves tension and compression with one force between bands and segments on both pulleys (TE-7).
     #[inline(always)]
-    pub fn one_force(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> Self {
+    pub fn one_force(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Self {
         let (g, s) = (&at.geometry, at.direction);
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
         let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
@@ -106,7 +121,7 @@ impl Tension {
     }
 
     /// Step of tension without compression, N: the torque at which compression changes sign gives it (TE-5, TE-7 with Z = 0).
-    pub fn bare_step_n(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+    pub fn bare_step_n(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
         let (clamp_n, [centrifugal_n, _]) = forces_n(belt, at, load);
         let g = &at.geometry;
         let force_n = if belt.formulation.by_statics() {
@@ -119,7 +134,7 @@ impl Tension {
 
     /// Solves tension and compression for a direction s of the tension step, -1 in low, +1 in high (TE-2 to TE-5).
     #[inline(always)]
-    pub fn new(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad, s: f64) -> Self {
+    pub fn new(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>, s: R) -> Self {
         let (g, mu, bp) = (&at.geometry, load.band.mu, at.geometry.primary_wrap_rad);
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
         let a = 2.0 * clamp_n[0] * belt.tan_wedge + bp * centrifugal_n;
@@ -143,7 +158,7 @@ impl Tension {
 
     /// Mean band tension (T1 + T2)/2, N (thesis eq. 39).
     #[inline]
-    pub fn mean_tension_n(&self, g: &Geometry) -> f64 {
+    pub fn mean_tension_n(&self, g: &Geometry<R>) -> R {
         self.primary_shoulder_n / g.primary_wrap_rad + self.ring_n // TE-8
     }
 }
