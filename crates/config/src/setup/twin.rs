@@ -20,6 +20,7 @@ use crate::{Problem, Problems, Reader, Section};
 use cvtcycle_model::engine::ENGINE;
 use cvtcycle_model::files::{HEAD, TWIN, TwinKeys};
 use cvtcycle_model::keys::{Key, Values};
+use cvtcycle_model::math::{exp, ln};
 use cvtcycle_model::road::ROAD_LOAD;
 
 /// Marks the name of a twin: that of its car follows.
@@ -120,7 +121,7 @@ impl TwinTable {
         );
         let first = self.first_per_m * radius_m; // TW-1
         let shares = self.set.shares.iter();
-        let ratios = shares.map(|share| first * (-share * span.ln()).exp()); // TW-2
+        let ratios = shares.map(|share| first * exp(-share * ln(span))); // TW-2
         let words = format!("TW-1, TW-2: {f:.1} rpm per km/h in first, span {span}");
         (ratios.collect(), Origin::of("derived", words))
     }

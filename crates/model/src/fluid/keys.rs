@@ -2,6 +2,7 @@
 
 use super::{Friction, Lubricant, MAX_BAND_FRICTION, VALID_K, Viscosity, ZERO_DEGC_K};
 use crate::keys::{Bound, Key, Values, keys};
+use crate::math::exp;
 
 keys! {
     /// Keys of a lubricant file.
@@ -85,7 +86,7 @@ impl Friction {
         let film = s.table("film");
         let band = s.number(&FRICTION.band);
         let band_rise_per_k = s.number(&FRICTION.band_rise_per_k);
-        let hot = band * (band_rise_per_k * (VALID_K.end() - ZERO_DEGC_K - 85.0)).exp(); // LU-4
+        let hot = band * exp(band_rise_per_k * (VALID_K.end() - ZERO_DEGC_K - 85.0)); // LU-4
         if hot > MAX_BAND_FRICTION {
             let allowed = format!("band friction up to {MAX_BAND_FRICTION} at 160 degC");
             let message = format!(

@@ -1,6 +1,6 @@
 //! Kinematic viscosity in the coordinates of ASTM D341 (LU-1): straight lines between points, the end lines continued.
 
-use crate::math::{exp_each, ln_each};
+use crate::math::{exp_each, ln, ln_each};
 
 /// Steepest fall of ln ln(nu + 0.7) over ln T. Usual oils have 2.5 to 4; the steepest that is sold, a polyphenyl ether, 4.6. A slip of the pen
 /// beyond it would be solid in the cold.
@@ -39,8 +39,8 @@ impl Viscosity {
         if points.windows(2).any(|p| p[0].1 <= p[1].1) {
             return Err("viscosity must fall as temperature rises".into());
         }
-        let x: Vec<f64> = points.iter().map(|p| p.0.ln()).collect();
-        let w: Vec<f64> = points.iter().map(|p| (p.1 * 1e6 + 0.7).ln().ln()).collect();
+        let x: Vec<f64> = points.iter().map(|p| ln(p.0)).collect();
+        let w: Vec<f64> = points.iter().map(|p| ln(ln(p.1 * 1e6 + 0.7))).collect();
         let slope: Vec<f64> = (0..x.len())
             .map(|i| i.max(1))
             .map(|hi| (w[hi] - w[hi - 1]) / (x[hi] - x[hi - 1]))

@@ -1,11 +1,13 @@
 //! Numerical tools without physics: interpolation, ramps, elementary functions.
 
+mod circular;
 mod curve;
 mod elementary;
 mod grid;
 
+pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
-pub use elementary::{exp, exp_each, ln, ln_each};
+pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.

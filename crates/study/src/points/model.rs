@@ -4,6 +4,7 @@ use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::keys::rad_s;
+use cvtcycle_model::math::{cos, tan};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::{PointFlags, PointLimits};
@@ -122,7 +123,7 @@ impl Model {
         let belt = &mut self.belts[index.unwrap_or_default()];
         numbers[PULLEY_ANGLE] = own(PULLEY_ANGLE, self.pulley_angle_deg);
         (belt.cos_wedge, belt.tan_wedge) = match given.numbers[PULLEY_ANGLE].map(f64::to_radians) {
-            Some(angle) => (angle.cos(), angle.tan()),
+            Some(angle) => (cos(angle), tan(angle)),
             None => (vehicle.cos_wedge, vehicle.tan_wedge),
         };
         numbers[BAND_OFFSET] = own(BAND_OFFSET, vehicle.band_offset_m * 1e3);
@@ -132,7 +133,7 @@ impl Model {
         belt.band_count = numbers[BAND_COUNT];
         let mut at = BeltAtRatio::new(belt, ratio);
         if let Some(angle) = given.numbers[WEDGE_ANGLE] {
-            at.prepared.wedge_half_cot = 0.5 / angle.to_radians().tan();
+            at.prepared.wedge_half_cot = 0.5 / tan(angle.to_radians());
         }
         let wedge_deg = match formulation {
             Formulation::AppendixC => 11.0,

@@ -2,6 +2,7 @@
 
 mod belt;
 mod cycle;
+mod elementary;
 mod math;
 mod pulley_shafts;
 mod transmission;

@@ -44,7 +44,8 @@ impl Curve {
     fn torque_nm(&self, rpm: f64) -> f64 {
         let [from, to] = self.plateau;
         if rpm < from {
-            self.nm * (1.0 - 0.31 * ((from - rpm) / (from - self.idle_rpm)).powf(1.5))
+            let share = (from - rpm) / (from - self.idle_rpm);
+            self.nm * (1.0 - 0.31 * (share * share.sqrt()))
         } else if rpm <= to {
             self.nm
         } else {

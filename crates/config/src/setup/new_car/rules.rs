@@ -14,6 +14,7 @@ use crate::setup::Setup;
 use crate::setup::twin::shifts_kmh;
 use crate::{Problem, Problems, decimal};
 use cvtcycle_model::keys::{RAD_S, RPM};
+use cvtcycle_model::math::{asin, exp, ln};
 use cvtcycle_model::transmission::Transmission;
 
 /// A value of the file.
@@ -337,7 +338,7 @@ impl Given<'_> {
             return;
         };
         let litres = cc / 1e3;
-        let stroke_mm = (cc * 1e3 / PI).cbrt(); // NC-9: four cylinders of pi/4 s^3
+        let stroke_mm = exp(ln(cc * 1e3 / PI) / 3.0); // NC-9: four cylinders of pi/4 s^3
         for (key, value, rule) in [
             (
                 "engine.stroke_mm",
@@ -611,7 +612,8 @@ impl Given<'_> {
 /// Length of the belt that runs at the least radius in low (GE-3, NC-4).
 fn belt_length_m(low: f64, centre_m: f64) -> f64 {
     let (primary, secondary) = (LEAST_RADIUS_M, low * LEAST_RADIUS_M);
-    let alpha = ((secondary - primary) / centre_m).asin();
-    let strut = (centre_m * centre_m - (secondary - primary).powi(2)).sqrt();
+    let difference = secondary - primary;
+    let alpha = asin(difference / centre_m);
+    let strut = (centre_m * centre_m - difference * difference).sqrt();
     primary * (PI - 2.0 * alpha) + secondary * (PI + 2.0 * alpha) + 2.0 * strut
 }

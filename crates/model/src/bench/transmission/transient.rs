@@ -11,6 +11,7 @@
 use super::conditions::Conditions;
 use crate::bench::{Bench, BenchAnswer, BenchPoint};
 use crate::drive::loss_heat_w;
+use crate::math::exp;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network, SUMP};
 
 /// Step, s: the rig recorded once a second (thesis 5.3).
@@ -320,7 +321,7 @@ impl Running<'_> {
         let cooler = &self.conditions.cooler;
         let carried_w_k = cooler.flow_m3_s * oil_volume_heat_j_m3k;
         carried_w_k
-            * (1.0 - (-cooler.conductance_w_k / carried_w_k).exp())
+            * (1.0 - exp(-cooler.conductance_w_k / carried_w_k))
             * (sump_k - cooler.coolant_k) // RT-2
     }
 }

@@ -358,7 +358,8 @@ impl TorqueConverter {
     /// A converter from the values of its keys.
     pub(super) fn from_values<V: Values>(s: &V) -> Self {
         // Given at 1000 rpm.
-        let per_square = Quantity::of("_rpm").to_si(1000.0).powi(2);
+        let thousand_rpm = Quantity::of("_rpm").to_si(1000.0);
+        let per_square = thousand_rpm * thousand_rpm;
         let capacity_nm_s2 = s.number(&TORQUE_CONVERTER.capacity_nm) / per_square;
         let own = s.rows(&TORQUE_CONVERTER.table).unwrap_or_default();
         let own: Vec<[f64; 3]> = own.iter().map(|row| [row[0], row[1], row[2]]).collect();

@@ -15,6 +15,7 @@ use crate::engine::Engine;
 use crate::fluid::Lubricant;
 use crate::keys::{Choice, Kind, Table, Values, keys};
 use crate::maps::LossMap;
+use crate::math::asin;
 use crate::transmission::box_map::{self, CVT_BOX, CVT_BOX_POINTS};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::coupling::{self, Coupling, LAUNCH};
@@ -225,7 +226,7 @@ fn check_wedge<V: Values>(v: &V, belt: &Belt, oil: &Lubricant) {
             "half_wedge_deg",
             &format!(
                 "above {:.2}, the angle of friction of segments on pulleys",
-                mu.atan().to_degrees()
+                asin(mu / (1.0 + mu * mu).sqrt()).to_degrees()
             ),
             "segments would hold themselves in this wedge",
             "open the angle, or take a fluid with less segment friction",
@@ -248,7 +249,9 @@ fn centrifugal<V: Values>(v: &V, oil: &Lubricant) -> f64 {
             "give both as radii, the smaller one here",
         );
     }
-    std::f64::consts::PI * oil.density_kg_m3(353.15) * (outer.powi(4) - inner.powi(4)) / 4.0 // VA-3
+    let squares = outer * outer + inner * inner;
+    let difference = (outer - inner) * (outer + inner);
+    std::f64::consts::PI * oil.density_kg_m3(353.15) * (squares * difference) / 4.0 // VA-3
 }
 
 /// The map of the whole box.

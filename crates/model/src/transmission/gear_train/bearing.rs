@@ -56,10 +56,11 @@ impl Bearing {
     /// (BR-1, BR-2).
     pub fn torque_nm(&self, factors: &BearingFactors, shaft_rad_s: f64, log_nu_n: f64) -> f64 {
         let nu_n = exp(2.0 / 3.0 * larger(log_nu_n, LEAST_LOG_NU_N));
-        let unheated_nm =
-            factors.unloaded * self.count * self.f0 * 1e-10 * nu_n * (1e3 * self.mean_m).powi(3);
+        let mean_mm = 1e3 * self.mean_m;
+        let cube_mm3 = mean_mm * mean_mm * mean_mm;
+        let unheated_nm = factors.unloaded * self.count * self.f0 * 1e-10 * nu_n * cube_mm3;
         let heating = ViscousSelfHeating::halving_at_w(Some(self.count * factors.heating_w));
-        let boundary = exp(-2.6e-8 * exp(1.4 * log_nu_n) * (1e3 * self.mean_m));
+        let boundary = exp(-2.6e-8 * exp(1.4 * log_nu_n) * mean_mm);
         heating.torque_nm(unheated_nm, shaft_rad_s) // BR-1
             + factors.preload * self.preload_nm * (FULL_FILM + BOUNDARY * boundary) // BR-2
     }

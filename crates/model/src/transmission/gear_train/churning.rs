@@ -7,7 +7,7 @@
 //! Fr = w^2 R/g, Re = w R^2/nu; R radius, D diameter, b width, h immersion, all m; S_m wetted flanks and rim, m2; V oil in the sump, m3;
 //! rho kg/m3. The law of low Reynolds numbers is used at all of them.
 
-use crate::math::{exp, ln, smaller};
+use crate::math::{asin, exp, ln, smaller};
 
 const GRAVITY_M_S2: f64 = 9.81;
 
@@ -31,8 +31,11 @@ impl Churner {
             self.radius_m,
             smaller(self.immersion_m, 2.0 * self.radius_m),
         );
-        let half = (1.0 - h / r).acos();
-        2.0 * r * r * (half - half.sin() * half.cos()) + 2.0 * half * r * self.face_m
+        // Half of the angle under oil, whose cosine is 1 - h/r.
+        let cos = 1.0 - h / r;
+        let half = 2.0 * asin((h / (2.0 * r)).sqrt());
+        let sin = (1.0 - cos * cos).sqrt();
+        2.0 * r * r * (half - sin * cos) + 2.0 * half * r * self.face_m
     }
 
     /// What of CH-1 depends on neither speed nor oil, Nm over density, speed^0.59 and viscosity^0.21, SI.
@@ -44,11 +47,11 @@ impl Churner {
             return 0.0;
         }
         let power = |x: f64, exponent: f64| exp(exponent * ln(x));
-        0.5 * r.powi(3)
+        0.5 * (r * r * r)
             * self.wetted_m2()
             * 1.366
             * power(h / d, 0.45)
-            * power(oil_m3 / d.powi(3), 0.1)
+            * power(oil_m3 / (d * d * d), 0.1)
             * power(r / GRAVITY_M_S2, -0.6)
             * power(r * r, -0.21)
             * power(self.face_m / r, 0.21)

@@ -11,7 +11,7 @@
 //! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
 //! before the torques are.
 
-use crate::math::{exp, larger, ln, smaller};
+use crate::math::{cos, exp, larger, ln, smaller, tan};
 use std::f64::consts::PI;
 
 /// Normal pressure angle, rad.
@@ -73,16 +73,19 @@ impl Stage {
 
     /// Teeth of the smaller wheel.
     pub fn pinion_teeth(&self, ratio: f64) -> f64 {
-        2.0 * self.pinion_radius_m(ratio) * self.helix_rad.cos() / self.module_m
+        2.0 * self.pinion_radius_m(ratio) * cos(self.helix_rad) / self.module_m
     }
 
     /// The mesh at a ratio of speeds, its first wheel turning `turns` times as fast as the train's first shaft.
     pub fn mesh(&self, ratio: f64, turns: f64, teeth: Teeth) -> Mesh {
         let u = Self::wheel_over_pinion(ratio);
-        let (helix_cos, module) = (self.helix_rad.cos(), self.module_m);
-        let transverse = (PRESSURE_ANGLE_RAD.tan() / helix_cos).atan();
-        let (sin, cos, tan) = (transverse.sin(), transverse.cos(), transverse.tan());
-        let base_helix_cos = (self.helix_rad.tan() * cos).atan().cos();
+        let (helix_cos, module) = (cos(self.helix_rad), self.module_m);
+        let cos_of_tan = |tan: f64| 1.0 / (1.0 + tan * tan).sqrt();
+        let (pressure_tan, helix_tan) = (tan(PRESSURE_ANGLE_RAD), tan(self.helix_rad));
+        // The transverse pressure angle.
+        let tan = pressure_tan / helix_cos;
+        let cos = cos_of_tan(tan);
+        let (sin, base_helix_cos) = (tan * cos, cos_of_tan(helix_tan * cos));
         let pinion = 2.0 * self.pinion_radius_m(ratio);
         let base = [pinion * cos, pinion * u * cos];
         let tip = [pinion + 2.0 * module, pinion * u + 2.0 * module];

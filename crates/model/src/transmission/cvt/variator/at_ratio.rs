@@ -1,7 +1,7 @@
 //! The belt at one ratio: what every operating point there has in common.
 
 use super::{Belt, Geometry, bands, deflection};
-use crate::math::{ln, ramp, smaller};
+use crate::math::{ln, ramp, smaller, tanh};
 
 /// The belt at one ratio: everything that does not depend on torque or pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -104,20 +104,12 @@ impl Prepared {
     }
 }
 
-/// From here on tanh is 1 to the last bit.
-const FULL_STEP: f64 = 20.0;
-
 impl BeltAtRatio {
     /// Prepares a ratio.
     pub fn new(belt: &Belt, ratio: f64) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
         let log = ln(ratio);
-        let steep = log / belt.unity_width;
-        let direction = if steep.abs() < FULL_STEP {
-            -steep.tanh()
-        } else {
-            -steep.signum()
-        }; // TE-6
+        let direction = -tanh(log / belt.unity_width); // TE-6
         let thrust_ratio = match &belt.thrust_ratio {
             Some(curve) => curve.at(log),
             None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1

@@ -4,6 +4,7 @@
 //! the rows below.
 
 use crate::keys::Choice;
+use crate::math::tan;
 
 /// Which reading of the belt model is used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -129,7 +130,7 @@ impl Formulation {
     #[inline]
     pub fn wedge_tan(self, own: f64) -> f64 {
         if self == Formulation::AppendixC {
-            11.0f64.to_radians().tan()
+            tan(11.0f64.to_radians())
         } else {
             own
         }

@@ -10,6 +10,7 @@
 //! Symbols: X centre distance, L belt length, all m; angles rad. Valid for ratios 0.3 to 3.3 of the shipped belt; the configured
 //! limits lie within. f is convex and rising in R, so Newton from the series start needs at most three steps.
 
+use crate::math::asin;
 use std::f64::consts::PI;
 
 /// Geometry of the belt at one ratio.
@@ -37,13 +38,13 @@ impl Geometry {
         let h = 1.0 + 1.0 / ratio;
         let free = l - 2.0 * x;
         let mut r = 2.0 * free / (PI * h + (PI * PI * h * h + 4.0 * g * g * free / x).sqrt());
-        let mut alpha = (g * r / x).asin();
+        let mut alpha = asin(g * r / x);
         let mut strut = (x * x - g * r * g * r).sqrt();
         for _ in 0..4 {
             let f = PI * h * r + 2.0 * alpha * g * r + 2.0 * strut - l;
             let step = f / (PI * h + 2.0 * alpha * g); // GE-4
             r -= step;
-            alpha = (g * r / x).asin();
+            alpha = asin(g * r / x);
             strut = (x * x - g * r * g * r).sqrt();
             if step.abs() <= 1e-9 * r {
                 break;

@@ -2,6 +2,7 @@
 
 use super::{Belt, Formulation};
 use crate::keys::{Bound, Values, curve, keys};
+use crate::math::{cos, ln, tan};
 
 keys! {
     /// Keys of `[transmission.cvt.belt]`.
@@ -51,14 +52,14 @@ impl Belt {
         let wedge = variator.number(&VARIATOR.half_wedge_deg);
         let length_m = belt.number(&BELT.length_m);
         let thrust = belt.rows(&BELT.thrust_ratio).unwrap_or_default();
-        let logs: Vec<Vec<f64>> = thrust.iter().map(|r| vec![r[0].ln(), r[1]]).collect();
+        let logs: Vec<Vec<f64>> = thrust.iter().map(|r| vec![ln(r[0]), r[1]]).collect();
         let mass_kg = belt.number(&BELT.mass_kg);
         let made = Belt {
             centre_distance_m: variator.number(&VARIATOR.centre_distance_mm),
             length_m,
             segment_thickness_m: belt.number(&BELT.segment_thickness_mm),
-            cos_wedge: wedge.cos(),
-            tan_wedge: wedge.tan(),
+            cos_wedge: cos(wedge),
+            tan_wedge: tan(wedge),
             band_count: belt.integer(&BELT.band_count) as f64,
             band_thickness_m: belt.number(&BELT.band_thickness_mm),
             band_width_m: belt.number(&BELT.band_width_mm),
