@@ -131,7 +131,9 @@ impl<'a> Drive<'a> {
             let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
             *kinetic_j = if step.engine_off { 0.0 } else { idling };
         }
-        let mut output = car.transmission.solve(&input, transmission);
+        let mut output = StepOutput::at_rest();
+        car.transmission
+            .solve_into(&input, transmission, &mut output);
         let mut electric = Electric::default();
         if let Some(stopping) = &stopping {
             electric = stopping.electric(&input, (car, transmission), &mut output, start_stop);

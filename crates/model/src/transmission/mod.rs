@@ -57,21 +57,30 @@ impl Transmission {
     }
 
     /// Solves one step.
-    // Within the caller, so that what it fills is not copied.
-    #[inline(always)]
     pub fn solve<P: PrimeMover>(
         &self,
         input: &StepInput<P>,
         state: &mut TransmissionState,
     ) -> StepOutput {
         let mut output = StepOutput::at_rest();
+        self.solve_into(input, state, &mut output);
+        output
+    }
+
+    /// The same, filling an output at rest: none is copied.
+    #[inline]
+    pub fn solve_into<P: PrimeMover>(
+        &self,
+        input: &StepInput<P>,
+        state: &mut TransmissionState,
+        output: &mut StepOutput,
+    ) {
         let TransmissionState { cvt, driveline } = state;
         match (self, cvt) {
-            (Transmission::Cvt(cvt), Some(own)) => cvt.solve(input, own, driveline, &mut output),
+            (Transmission::Cvt(cvt), Some(own)) => cvt.solve(input, own, driveline, output),
             (Transmission::Cvt(_), None) => (),
-            (Transmission::Manual(manual), _) => manual.solve(input, driveline, &mut output),
+            (Transmission::Manual(manual), _) => manual.solve(input, driveline, output),
         }
-        output
     }
 
     /// True for a CVT, which drives the automatic trace.

@@ -10,7 +10,7 @@
 //! preloaded bearing loses less torque the faster it turns and the thicker its oil is, down to a third: its rollers lift off. Its power
 //! still rises with speed.
 
-use crate::math::{exp, larger};
+use crate::math::{exp, exp_each, larger, ln};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Ends of the mixed friction of a bearing over its boundary friction (BR-2).
@@ -55,14 +55,58 @@ impl Bearing {
     /// Torque at its own shaft without load from the teeth, Nm, at a speed of that shaft and with the logarithm of nu n in mm2/s rpm
     /// (BR-1, BR-2).
     pub fn torque_nm(&self, factors: &BearingFactors, shaft_rad_s: f64, log_nu_n: f64) -> f64 {
-        let nu_n = exp(2.0 / 3.0 * larger(log_nu_n, LEAST_LOG_NU_N));
+        let alone = self.in_train(factors, 1.0);
+        alone.torque_nm(shaft_rad_s, film_powers(log_nu_n))
+    }
+
+    /// The bearings on a shaft that turns so many times as fast as shaft 0 of a train.
+    pub fn in_train(&self, factors: &BearingFactors, turns: f64) -> TrainBearing {
         let mean_mm = 1e3 * self.mean_m;
         let cube_mm3 = mean_mm * mean_mm * mean_mm;
-        let unheated_nm = factors.unloaded * self.count * self.f0 * 1e-10 * nu_n * cube_mm3;
-        let heating = ViscousSelfHeating::halving_at_w(Some(self.count * factors.heating_w));
-        let boundary = exp(-2.6e-8 * exp(1.4 * log_nu_n) * mean_mm);
-        heating.torque_nm(unheated_nm, shaft_rad_s) // BR-1
-            + factors.preload * self.preload_nm * (FULL_FILM + BOUNDARY * boundary) // BR-2
+        let per_power_nm = factors.unloaded * self.count * self.f0 * 1e-10 * cube_mm3; // BR-1
+        let [turns_23, turns_14] = film_powers(ln(turns));
+        TrainBearing {
+            turns,
+            unheated_nm: per_power_nm * turns_23,
+            least_nm: per_power_nm * film_powers(LEAST_LOG_NU_N)[0],
+            heating: ViscousSelfHeating::halving_at_w(Some(self.count * factors.heating_w)),
+            preload_nm: factors.preload * self.preload_nm,
+            film: -2.6e-8 * mean_mm * turns_14, // BR-2
+        }
+    }
+}
+
+/// The powers (nu n)^(2/3) and (nu n)^1.4 from the logarithm of nu n in mm2/s rpm (BR-1, BR-2).
+#[inline(always)]
+pub fn film_powers(log_nu_n: f64) -> [f64; 2] {
+    exp_each([2.0 / 3.0 * log_nu_n, 1.4 * log_nu_n])
+}
+
+/// The bearings of one kind in a train: what depends on neither speed nor oil is known. Powers of nu n are those of shaft 0; a shaft with
+/// another speed has a constant times them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrainBearing {
+    /// Speed of the shaft over that of shaft 0.
+    turns: f64,
+    /// M_0 without heating over (nu n)^(2/3), and its least, Nm.
+    unheated_nm: f64,
+    least_nm: f64,
+    heating: ViscousSelfHeating,
+    /// M of BR-2 in boundary friction, Nm.
+    preload_nm: f64,
+    /// Exponent of psi over (nu n)^1.4.
+    film: f64,
+}
+
+impl TrainBearing {
+    /// Torque at shaft 0, Nm, at a speed of that shaft and with the powers of its nu n (BR-1, BR-2).
+    #[inline]
+    pub fn torque_nm(&self, first_rad_s: f64, [power_23, power_14]: [f64; 2]) -> f64 {
+        let unheated_nm = larger(self.unheated_nm * power_23, self.least_nm);
+        let boundary = exp(self.film * power_14);
+        let own_nm = self.heating.torque_nm(unheated_nm, self.turns * first_rad_s) // BR-1
+            + self.preload_nm * (FULL_FILM + BOUNDARY * boundary); // BR-2
+        self.turns * own_nm
     }
 }
 

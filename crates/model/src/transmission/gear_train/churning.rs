@@ -58,6 +58,12 @@ impl Churner {
     }
 }
 
+/// The factor of a churner for its torque at shaft 0 of a train, and for the speed of that shaft, from its own and from the speed of its shaft
+/// over that of shaft 0 (CH-1).
+pub fn in_train(factor: f64, turns: f64) -> f64 {
+    factor * turns * exp(0.59 * ln(turns))
+}
+
 /// Torque at a shaft of a churner with its factor, Nm, from the logarithms of the shaft's speed in rad/s and of nu in m2/s (CH-1).
 #[inline]
 pub fn torque_nm(factor: f64, density_kg_m3: f64, log_rad_s: f64, log_nu: f64) -> f64 {

@@ -11,7 +11,7 @@
 //! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
 //! before the torques are.
 
-use crate::math::{cos, exp, larger, ln, smaller, tan};
+use crate::math::{cos, exp, exp_each, larger, ln, ln_each, smaller, tan};
 use std::f64::consts::PI;
 
 /// Normal pressure angle, rad.
@@ -118,18 +118,40 @@ impl Mesh {
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
     pub fn friction(&self, first_rad_s: f64, torque_nm: f64, log_eta: f64) -> f64 {
-        let load = larger(
-            torque_nm.abs() * self.line_load_per_nm,
-            LEAST_LINE_LOAD_N_MM,
-        );
-        let pitch_m_s = first_rad_s * self.pinion_turns * self.pitch_radius_m;
-        let pitch_m_s = larger(pitch_m_s, LEAST_PITCH_M_S);
-        let power = exp(0.2 * ln(load / pitch_m_s) - 0.05 * log_eta);
-        smaller(self.friction_factor * power, MAX_FRICTION) // GM-2
+        Mesh::frictions([self], first_rad_s, torque_nm, log_eta)[0]
+    }
+
+    /// The same of several meshes of a train.
+    #[inline(always)]
+    fn frictions<const COUNT: usize>(
+        meshes: [&Mesh; COUNT],
+        first_rad_s: f64,
+        torque_nm: f64,
+        log_eta: f64,
+    ) -> [f64; COUNT] {
+        let loads = meshes.map(|mesh| {
+            let load = torque_nm.abs() * mesh.line_load_per_nm;
+            let pitch_m_s = first_rad_s * mesh.pinion_turns * mesh.pitch_radius_m;
+            larger(load, LEAST_LINE_LOAD_N_MM) / larger(pitch_m_s, LEAST_PITCH_M_S)
+        });
+        let powers = exp_each(ln_each(loads).map(|log| 0.2 * log - 0.05 * log_eta));
+        std::array::from_fn(|k| smaller(meshes[k].friction_factor * powers[k], MAX_FRICTION)) // GM-2
+    }
+
+    /// Lost shares of the power through several meshes of a train (GM-3).
+    #[inline(always)]
+    pub fn shares<const COUNT: usize>(
+        meshes: [&Mesh; COUNT],
+        first_rad_s: f64,
+        torque_nm: f64,
+        log_eta: f64,
+    ) -> [f64; COUNT] {
+        let frictions = Mesh::frictions(meshes, first_rad_s, torque_nm, log_eta);
+        std::array::from_fn(|k| frictions[k] * meshes[k].loss_factor) // GM-3
     }
 
     /// Lost share of the power through the mesh (GM-3).
     pub fn share(&self, first_rad_s: f64, torque_nm: f64, log_eta: f64) -> f64 {
-        self.friction(first_rad_s, torque_nm, log_eta) * self.loss_factor // GM-3
+        Mesh::shares([self], first_rad_s, torque_nm, log_eta)[0]
     }
 }

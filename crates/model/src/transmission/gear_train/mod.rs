@@ -16,13 +16,13 @@ pub mod seal;
 
 pub use keys::GearKeys;
 
-use self::bearing::{Bearing, BearingFactors, load_share};
+use self::bearing::{Bearing, BearingFactors, TrainBearing, load_share};
 use self::churning::Churner;
 use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
 use crate::fluid::OilState;
 use crate::keys::RPM;
-use crate::math::{larger, ln, ln_each};
+use crate::math::{larger, ln_each};
 
 /// Largest share of the power that a train loses under load.
 const MAX_SHARE: f64 = 0.1;
@@ -51,14 +51,10 @@ pub struct GearParts {
 /// A train at the ratios of its stages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GearTrain {
-    /// Speeds of the shafts over that of shaft 0.
-    turns: [f64; 3],
-    log_turns: [f64; 3],
     meshes: [Mesh; 2],
-    bearings: Vec<Bearing>,
-    bearing: BearingFactors,
-    /// Shaft and factor of each churner.
-    churners: Vec<(usize, f64)>,
+    bearings: Vec<TrainBearing>,
+    /// Factor of the churners at the speed of shaft 0 (CH-1).
+    churning: f64,
     /// Lip seals, at shaft 0, Nm.
     seal_nm: f64,
     /// Lost in the bearings under the load of both stages (BR-3).
@@ -120,16 +116,13 @@ impl GearParts {
             )
         };
         GearTrain {
-            turns,
-            log_turns: turns.map(ln),
             meshes: [mesh(0), mesh(1)],
-            bearings: self.bearings.clone(),
-            bearing: self.bearing,
-            churners: self
-                .churners
-                .iter()
-                .map(|c| (c.shaft, self.churning * c.factor(self.oil_m3)))
+            bearings: (self.bearings.iter())
+                .map(|bearing| bearing.in_train(&self.bearing, turns[bearing.shaft]))
                 .collect(),
+            churning: (self.churners.iter())
+                .map(|c| churning::in_train(self.churning * c.factor(self.oil_m3), turns[c.shaft]))
+                .sum(),
             seal_nm: self
                 .seals
                 .iter()
@@ -152,21 +145,10 @@ impl GearTrain {
             first_rad_s * (1e6 / RPM),
             first_rad_s,
         ]);
-        let log_nu_n = log_nu + log_n;
-        let bearing_nm = self.bearings.iter().map(|b| {
-            let turns = self.turns[b.shaft];
-            let log_nu_n = log_nu_n + self.log_turns[b.shaft];
-            turns * b.torque_nm(&self.bearing, first_rad_s * turns, log_nu_n)
-        });
-        let churning_nm = self.churners.iter().map(|(shaft, factor)| {
-            let log_rad_s = log_first + self.log_turns[*shaft];
-            self.turns[*shaft] * churning::torque_nm(*factor, oil.density_kg_m3, log_rad_s, log_nu)
-        });
-        let mesh_share: f64 = self
-            .meshes
-            .iter()
-            .map(|mesh| mesh.share(first_rad_s, demand_nm, log_eta))
-            .sum();
+        let powers = bearing::film_powers(log_nu + log_n);
+        let bearing_nm = (self.bearings.iter()).map(|b| b.torque_nm(first_rad_s, powers));
+        let [first, second] = Mesh::shares(self.meshes.each_ref(), first_rad_s, demand_nm, log_eta);
+        let mesh_share = first + second;
         let share = mesh_share + self.bearing_share;
         let held = if share > MAX_SHARE {
             MAX_SHARE / share
@@ -175,7 +157,7 @@ impl GearTrain {
         };
         TurningTrain {
             bearing_nm: bearing_nm.sum(), // GT-1
-            churning_nm: churning_nm.sum(),
+            churning_nm: churning::torque_nm(self.churning, oil.density_kg_m3, log_first, log_nu),
             seal_nm: self.seal_nm,
             mesh_share: held * mesh_share,
             bearing_share: held * self.bearing_share,
