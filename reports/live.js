@@ -128,7 +128,7 @@
       said.textContent = "The interval follows when the levers rest.";
       resting = setTimeout(() => { history.replaceState(null, "", address()); said.textContent = "Drawing the uncertain values\u2026"; worker.postMessage({ state: { ...now, against: "" } }); }, REST_MS);
     } else {
-      resting = setTimeout(() => { history.replaceState(null, "", address()); said.textContent = answer.querySelector(".lead, .alert")?.textContent ?? ""; }, REST_MS);
+      resting = setTimeout(() => { history.replaceState(null, "", address()); said.textContent = found.failed ? "No such car." : found.can_draw ? "The answer is that of the levers, with its interval." : "The answer is that of the levers."; }, REST_MS);
     }
     performance.measure("live-answer", { start: begun });
   };

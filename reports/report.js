@@ -72,13 +72,14 @@
   // Data of the panels of a figure over time, to be drawn again over a part of it: paths and lines are moved, ticks made anew.
   let clips = 0;
   const zoomed = (svg, panels) => {
+    const lowest = Math.max(...panels.map((panel) => panel.top));
     const parts = panels.map((panel) => {
       const inside = (one, below = 0) => { const box = one.getBBox(); const y = box.y + box.height / 2; return y >= panel.top - 1 && y <= panel.top + panel.tall + below + 1; };
-      const of = (selector) => [...svg.querySelectorAll(selector)].filter((one) => !one.closest("defs, .legend") && inside(one));
+      const of = (selector, below) => [...svg.querySelectorAll(selector)].filter((one) => !one.closest("defs, .legend") && inside(one, below));
       const paths = of("path").filter((path) => /^[MhvlZ\d\s.-]+$/.test(path.getAttribute("d"))).map((path) => [path, path.getAttribute("d")]);
       const lines = of("line:not(.cursor)").map((line) => [line, Number(line.getAttribute("x1"))]).filter(([line, x]) => Number(line.getAttribute("x2")) === x);
-      const grid = of("polyline").filter((line) => line.getBBox().width === 0);
-      const under = [...svg.querySelectorAll("text:not([transform])")].filter((text) => { const box = text.getBBox(); return box.y >= panel.top + panel.tall - 4 && box.y < panel.top + panel.tall + 60 && /^[\d.,\s\u2212\u202f]+$/.test(text.textContent); });
+      const grid = of("polyline", 24).filter((line) => line.getBBox().width === 0);
+      const under = panel.top < lowest ? [] : [...svg.querySelectorAll("text:not([transform])")].filter((text) => { const box = text.getBBox(); return box.y >= panel.top + panel.tall - 4 && box.y < panel.top + panel.tall + 60 && /^[\d.,\s\u2212\u202f]+$/.test(text.textContent); });
       return { panel, paths, lines, grid, under, whole: [panel.from, panel.to] };
     });
     for (const { panel, paths } of parts) {

@@ -41,7 +41,7 @@ const badTexts = () => {
     const frame = svg.getBoundingClientRect();
     const scale = frame.width / svg.viewBox.baseVal.width;
     // The box of a text has the height of its font's line; half of the letters' height on either side is air.
-    const boxes = [...svg.querySelectorAll("text")].filter((text) => text.textContent.trim()).map((text) => {
+    const boxes = [...svg.querySelectorAll("text")].filter((text) => text.textContent.trim() && text.checkVisibility()).map((text) => {
       const box = text.getBoundingClientRect();
       const upright = box.height > box.width && text.textContent.length > 1;
       const air = { x: upright ? box.width * 0.2 : 0.5, y: upright ? 0.5 : box.height * 0.2 };
@@ -182,6 +182,49 @@ for (const file of reports) {
         await page.keyboard.press("Escape");
         assert.equal(await tip.isVisible(), false);
       }
+      await context.close();
+    });
+
+    test("figures over time share one cursor and one part of the time", async () => {
+      const { context, page, heard } = await open(file);
+      const traces = await page.$$eval("figure.figure", (all) => all.filter((f) => f.querySelector("rect.plot[data-x0]") && f.querySelector("details thead th .unit")?.textContent === "[s]").map((f) => f.id));
+      if (traces.length > 1) {
+        const first = page.locator(`[id="${traces[0]}"]`);
+        await first.scrollIntoViewIfNeeded();
+        const box = await first.locator("rect.plot").first().boundingBox();
+        await page.mouse.move(box.x + box.width * 0.3, box.y + box.height / 2);
+        const lit = await page.$$eval("figure.figure", (all) => all.filter((f) => f.querySelector("svg .cursor")).map((f) => f.id));
+        assert.deepEqual(lit, traces);
+        const paths = () => page.$$eval("figure.figure", (all, ids) => all.filter((f) => ids.includes(f.id)).map((f) => [...f.querySelectorAll("svg path[d]")].map((path) => path.getAttribute("d")).join()), traces);
+        const whole = await paths();
+        await page.mouse.down();
+        await page.mouse.move(box.x + box.width * 0.5, box.y + box.height / 2, { steps: 4 });
+        await page.mouse.up();
+        const part = await paths();
+        assert.ok(part.every((own, k) => own !== whole[k]), "all figures show the part");
+        assert.deepEqual(await page.evaluate(badTexts), []);
+        await first.locator("button.csv", { hasText: "Whole cycle" }).click();
+        assert.deepEqual(await paths(), whole);
+      }
+      assert.deepEqual(heard.console, []);
+      await context.close();
+    });
+
+    test("a component is lit wherever it is, and the numbers of a figure can be saved", async () => {
+      const { context, page } = await open(file);
+      const mark = page.locator("#fig-loss_by_component svg rect[data-row], #fig-loss_by_component svg path[data-row]").first();
+      if (await mark.count()) {
+        await mark.scrollIntoViewIfNeeded();
+        await mark.hover({ force: true });
+        const names = await page.$$eval("tr.lit", (all) => [...new Set(all.map((row) => [...row.cells].slice(0, 2).map((cell) => cell.textContent.toLowerCase()).find((text) => document.querySelector("main").dataset.components.split(",").includes(text))))]);
+        assert.equal(names.length, 1, `${names}`);
+        assert.ok(await page.locator("svg .lit").count() > 1);
+      }
+      const figure = page.locator("figure.figure").first();
+      const [saved] = await Promise.all([page.waitForEvent("download"), figure.locator("button.csv", { hasText: "CSV" }).click()]);
+      const lines = readFileSync(await saved.path(), "utf8").trimEnd().split("\r\n");
+      assert.equal(lines.length, 1 + await figure.locator("details tbody tr").count());
+      assert.equal(saved.suggestedFilename(), `${(await figure.getAttribute("id")).replace("fig-", "")}.csv`);
       await context.close();
     });
 

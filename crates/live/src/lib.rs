@@ -1,7 +1,7 @@
 //! The simulator in a page. `tools/live` builds it for wasm32-unknown-unknown and compresses it into `crates/report/assets`, where `report`
 //! finds it; `reports/live.js` calls it.
 //!
-//! Everything goes through two buffers of JSON: JavaScript asks for room with [`live_reserve`], writes the input there, calls a function, which
+//! Everything goes through two buffers of JSON: JavaScript gets room from [`live_reserve`], writes the input there, calls a function, which
 //! returns the length of its output, and reads that many bytes from [`live_output`]. Both buffers stay where they are until the next call.
 //! A name that JavaScript finds is the only thing here that Rust calls unsafe: another symbol of that name would take its place.
 

@@ -43,14 +43,27 @@ fn a_page_of_an_own_car_has_its_files_and_begins_with_the_run() {
     let files = scene["files"].as_object().unwrap();
     let names: Vec<&str> = files.keys().map(String::as_str).collect();
     assert_eq!(names, ["box.toml", "box_loss.csv"]);
-    let words = ["run", "--vehicle", "box.toml", "--draws", "256", "--price", "never"];
+    let words = [
+        "run",
+        "--vehicle",
+        "box.toml",
+        "--draws",
+        "256",
+        "--price",
+        "never",
+    ];
     let printed = stdout(&run_in(dir.path(), &[&words[..], &car[..]].concat()));
     let printed = one_line(printed.split("\n\n").next().unwrap());
     let (_, lead) = page.split_once("<p class=\"lead\">").unwrap();
     let lead = one_line(&plain(lead.split_once("</p>").unwrap().0));
     let numbers = |text: &str| -> Vec<String> {
-        let words = text.split(' ').map(|word| word.trim_matches(|c: char| !c.is_ascii_digit()));
-        words.filter(|word| word.parse::<f64>().is_ok()).map(str::to_owned).collect()
+        let words = text
+            .split(' ')
+            .map(|word| word.trim_matches(|c: char| !c.is_ascii_digit()));
+        words
+            .filter(|word| word.parse::<f64>().is_ok())
+            .map(str::to_owned)
+            .collect()
     };
     let printed = printed.split(". ").next().unwrap();
     assert!(numbers(&lead).len() >= 5, "{lead}");
@@ -65,7 +78,10 @@ fn bad_input_leaves_no_page() {
     for (words, says) in [
         (&["whatif", "rover_216_cv"][..], "rover_216_cvt"),
         (&["whatif", "--out", "there.html"], "there already"),
-        (&["whatif", "--out", "there.html", "--force"], "is no report"),
+        (
+            &["whatif", "--out", "there.html", "--force"],
+            "is no report",
+        ),
         (&["whatif", "--out", "page.txt"], ".html"),
         (&["whatif", "--ambient", "70"], "-40 to 60"),
         (&["whatif", "--set", "engine.nothing=1"], "engine.nothing"),
@@ -73,12 +89,19 @@ fn bad_input_leaves_no_page() {
     ] {
         let refused = run_in(dir.path(), words);
         assert_eq!(refused.status.code(), Some(2), "{words:?}");
-        assert!(stderr(&refused).contains(says), "{words:?}: {}", stderr(&refused));
+        assert!(
+            stderr(&refused).contains(says),
+            "{words:?}: {}",
+            stderr(&refused)
+        );
         assert_eq!(stdout(&refused), "");
     }
     let left: Vec<_> = fs::read_dir(dir.path()).unwrap().collect();
     assert_eq!(left.len(), 1);
-    assert_eq!(fs::read_to_string(dir.path().join("there.html")).unwrap(), "mine");
+    assert_eq!(
+        fs::read_to_string(dir.path().join("there.html")).unwrap(),
+        "mine"
+    );
 }
 
 /// A run's report has the run's own car and conditions; one whose file has changed since is refused.
@@ -87,8 +110,25 @@ fn a_report_is_driven_again_with_the_cars_of_its_run() {
     let dir = tempfile::tempdir().unwrap();
     let car = Path::new(env!("CARGO_MANIFEST_DIR")).join("vehicles/rover_216_cvt.toml");
     fs::copy(&car, dir.path().join("own.toml")).unwrap();
-    let run = ["run", "--vehicle", "own.toml", "--cycle", "ece15", "--ambient", "-7", "--out", "cold"];
-    let more = ["--set", "road_load.mass_kg=1200", "--sensitivity", "never", "--price", "never"];
+    let run = [
+        "run",
+        "--vehicle",
+        "own.toml",
+        "--cycle",
+        "ece15",
+        "--ambient",
+        "-7",
+        "--out",
+        "cold",
+    ];
+    let more = [
+        "--set",
+        "road_load.mass_kg=1200",
+        "--sensitivity",
+        "never",
+        "--price",
+        "never",
+    ];
     let driven = run_in(dir.path(), &[&run[..], &more[..]].concat());
     assert_eq!(driven.status.code(), Some(0), "{}", stderr(&driven));
     let report = ["report", "cold", "--live", "--out", "cold.html"];
@@ -97,16 +137,28 @@ fn a_report_is_driven_again_with_the_cars_of_its_run() {
     let page = fs::read_to_string(dir.path().join("cold.html")).unwrap();
     let (_, command) = page.split_once("id=\"live-command\">").unwrap();
     let command = command.split_once('<').unwrap().0;
-    for part in ["--vehicle own.toml", "--cycle ece15", "--ambient -7", "--set road_load.mass_kg=1200"] {
+    for part in [
+        "--vehicle own.toml",
+        "--cycle ece15",
+        "--ambient -7",
+        "--set road_load.mass_kg=1200",
+    ] {
         assert!(command.contains(part), "{command}");
     }
     let text = fs::read_to_string(&car).unwrap();
     fs::write(dir.path().join("own.toml"), text.replace("1130", "1131")).unwrap();
     let refused = run_in(dir.path(), &[&report[..], &["--force"]].concat());
-    assert_eq!(refused.status.code(), Some(0), "the mass is set, so that the car is the same");
+    assert_eq!(
+        refused.status.code(),
+        Some(0),
+        "the mass is set, so that the car is the same"
+    );
     fs::write(
         dir.path().join("own.toml"),
-        fs::read_to_string(&car).unwrap().replace("displacement_cc_rev = {", "displacement_cc_rev = { value = 7.0 } # {"),
+        fs::read_to_string(&car).unwrap().replace(
+            "displacement_cc_rev = {",
+            "displacement_cc_rev = { value = 7.0 } # {",
+        ),
     )
     .unwrap();
     let refused = run_in(dir.path(), &[&report[..], &["--force"]].concat());

@@ -22,7 +22,7 @@ use super::words;
 use crate::charts::decision::waterfall;
 use crate::charts::figures::{CarLosses, Overlay, OverlayPanel, loss_by_component, overlay};
 use crate::document::{Block, Section};
-use crate::number::{degc, list_of};
+use crate::number::Quantity;
 use crate::render;
 use crate::run::{Car, brief, conditions_line, per_km, strip};
 
@@ -427,9 +427,9 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     };
     let ends = pair.iter().filter_map(|car| {
         let end = sump(car).last()?.1;
-        Some(format!("{} at {}", car.run.label(), degc(end)))
+        Some(format!("{} {}", car.run.label(), Quantity::Degc.text(end)))
     });
-    let title = format!("The sump ends warm: {}", list_of(&ends.collect::<Vec<_>>()));
+    let title = format!("Sump at the end: {}", ends.collect::<Vec<_>>().join(", "));
     let mut runs = pair.iter();
     let mut next = || {
         runs.next()

@@ -109,7 +109,7 @@ pub(super) fn command(
     option("--cycle", &state.cycle);
     option("--ambient", &ambient);
     option("--start", &scene.start);
-    if scene.dt_s != 1.0 {
+    if (scene.dt_s - 1.0).abs() > 0.0 {
         option("--dt", &dt);
     }
     if scene.formulation().name() != "smooth" {
