@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use cvtcycle::config::setup::carried::CarriedCar;
 use cvtcycle::config::setup::{Kind as FileKind, Options, Setup};
-use cvtcycle::config::{Problem, Problems, bounded};
+use cvtcycle::config::{Argument, Problem, Problems, bounded};
 use cvtcycle::output::file::OutputFile;
 use cvtcycle_cosim::Kind;
 use cvtcycle_cosim::description::Fmi;
@@ -78,7 +78,12 @@ impl Execute for FmuArgs {
             set: overrides("--set", &self.set, problems),
             ..Options::default()
         };
-        let car = problems.take(CarriedCar::load(&self.car, &options));
+        let of_car = |problem: Problem| match problem.place.is_argument(Argument::Vehicle) {
+            true => problem.in_file("CAR").key("CAR"),
+            false => problem,
+        };
+        let car = CarriedCar::load(&self.car, &options);
+        let car = problems.take(car.map_err(|found| found.map(of_car)));
         let libraries = problems.take(self.libraries());
         let (car, setup) = car?;
         let (kind, fmi) = (kind?, fmi?);

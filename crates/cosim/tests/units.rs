@@ -136,7 +136,8 @@ fn values_out_of_range_are_refused() {
         (Kind::Losses, "rover_216_5mt"),
     ] {
         let mut unit = Unit::new(kind, setup(word));
-        for (place, own) in unit.variables().to_vec().into_iter().enumerate() {
+        let variables = unit.variables().to_vec();
+        for (place, own) in variables.iter().enumerate() {
             let reference = u32::try_from(place).unwrap();
             let is_set = matches!(own.causality, Causality::Input | Causality::Parameter);
             let (low, high) = own.range;

@@ -31,7 +31,6 @@ extern "C" fn fmi3SetDebugLogging(
 }
 
 #[unsafe(no_mangle)]
-#[expect(clippy::too_many_arguments, reason = "those of the standard")]
 extern "C" fn fmi3InstantiateCoSimulation(
     name: *const c_char,
     token: *const c_char,

@@ -117,7 +117,11 @@ fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
     fill(Axis::Torque, output.filter(|_| args.input_torque.is_none()));
     fill(Axis::InputTorque, args.input_torque.as_deref());
     fill(Axis::Sump, args.temp.as_deref().or(Some("80")));
-    fill(Axis::Throttle, args.throttle.as_deref().or(Some("0")));
+    let throttle = args.throttle.as_deref().or(Some("0"));
+    fill(
+        Axis::Throttle,
+        throttle.filter(|_| args.input_torque.is_none()),
+    );
     // With no --belt-temp the belt is in steady state, and with no --pressure the clamping law is used: no values on that axis.
     fill(Axis::Belt, args.belt_temp.as_deref());
     fill(Axis::Pressure, args.pressure.as_deref());

@@ -77,8 +77,8 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
     let mut output = |name: &str, unit, get, description: &str| {
         all.push(Variable {
             get: Get::Car(get),
-            whole: unit == "",
-            unit: if unit == "" { "1" } else { unit },
+            whole: unit.is_empty(),
+            unit: if unit.is_empty() { "1" } else { unit },
             ..row(name, Output, unit, description)
         });
     };
@@ -89,6 +89,12 @@ type CarOutput<'f> = dyn FnMut(&str, &'static str, fn(&CarResult) -> f64, &str) 
 
 /// Means over the last step; temperatures are those at its end. A unit of `""` marks a whole number.
 fn outputs(is_cvt: bool, output: &mut CarOutput) {
+    motion(output);
+    ratio(is_cvt, output);
+    heat(output);
+}
+
+fn motion(output: &mut CarOutput) {
     output(
         "mf_fuel_ENG_PNT_out_kgps",
         "kg/s",
@@ -143,6 +149,9 @@ fn outputs(is_cvt: bool, output: &mut CarOutput) {
         |c| c.row.brake_w,
         "power into the wheel brakes",
     );
+}
+
+fn ratio(is_cvt: bool, output: &mut CarOutput) {
     if is_cvt {
         output(
             "ratio_AT",
@@ -177,6 +186,9 @@ fn outputs(is_cvt: bool, output: &mut CarOutput) {
     } else {
         output("gear_AT", "", |c| f64::from(c.row.gear), "gear; 0 neutral");
     }
+}
+
+fn heat(output: &mut CarOutput) {
     output(
         "ToutOil",
         "K",

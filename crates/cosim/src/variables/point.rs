@@ -74,8 +74,8 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
     let mut output = |name: &str, unit, get, description: &str| {
         all.push(Variable {
             get: Get::Losses(get),
-            whole: unit == "",
-            unit: if unit == "" { "1" } else { unit },
+            whole: unit.is_empty(),
+            unit: if unit.is_empty() { "1" } else { unit },
             ..row(name, Causality::Output, unit, description)
         });
     };
