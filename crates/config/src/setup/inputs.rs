@@ -388,7 +388,7 @@ impl Read {
                 fluid: String::new(),
                 engine_oil: String::new(),
             },
-            road_load: setup.road_load.clone(),
+            road_load: setup.road_load,
             car: setup.car(cvtcycle_model::road::REFERENCE_K),
         }
     }
@@ -478,7 +478,7 @@ pub(super) fn parts<V: Values>(
     earlier: Option<&Earlier<'_>>,
 ) -> (RoadLoadInput, Car) {
     let road_load = match kept(earlier, |anew| anew.road_load) {
-        Some(of) => of.road_load.clone(),
+        Some(of) => of.road_load,
         None => RoadLoadInput::from_values(&root.table(ROAD_LOAD)),
     };
     let engine = match kept(earlier, |anew| anew.engine) {
