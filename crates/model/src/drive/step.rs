@@ -172,16 +172,8 @@ impl<'a> Drive<'a> {
             },
         );
         *heat = heat_step.heat;
-        *running = if step.engine_off {
-            Running::STOPPED
-        } else {
-            Running {
-                since_s: running.since_s + step.dt_s,
-                speed_rad_s: output.engine_rad_s,
-                wheel_rad_s: wheel.wheel_rad_s,
-                ..*running
-            }
-        };
+        let speeds_rad_s = (output.engine_rad_s, wheel.wheel_rad_s);
+        *running = running.after(step.engine_off, step.dt_s, speeds_rad_s);
         result
     }
 

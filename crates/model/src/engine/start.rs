@@ -65,6 +65,21 @@ impl Running {
         }
     }
 
+    /// After a step of a running engine, or of one that is off: `(engine_rad_s, wheel_rad_s)` are the speeds in the step.
+    #[inline(always)]
+    #[must_use]
+    pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (f64, f64)) -> Running {
+        if off {
+            return Running::STOPPED;
+        }
+        Running {
+            since_s: self.since_s + dt_s,
+            speed_rad_s: engine_rad_s,
+            wheel_rad_s,
+            ..self
+        }
+    }
+
     /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
     pub(super) fn spending_per_s(&self, within_s: f64, dt_s: f64) -> f64 {
         if self.since_s >= within_s {
