@@ -15,6 +15,7 @@ mod deflection;
 mod formulation;
 mod geometry;
 mod keys;
+mod load;
 mod slip;
 mod tension;
 mod printed;
@@ -26,11 +27,11 @@ pub use deflection::Deflection;
 pub use formulation::Formulation;
 pub use geometry::Geometry;
 pub use keys::{BELT, BeltKeys, VARIATOR, VariatorKeys};
+pub use load::BeltLoad;
 pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::fluid::{BandFriction, Friction, Lubricant};
 use crate::math::{Curve, Left, Real};
 use crate::transmission::component::Component;
 use crate::transmission::loss_factor::LossFactors;
@@ -116,74 +117,6 @@ where
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
             [ratio.filled(0.0); 2]
-        }
-    }
-}
-
-/// What acts on the belt at one operating point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltLoad<R = f64> {
-    /// Primary speed, rad/s.
-    pub primary_speed_rad_s: R,
-    /// Torque at the secondary pulley, Nm; negative in overrun.
-    pub output_torque_nm: R,
-    /// Axial clamping force of the secondary, N.
-    pub secondary_clamp_n: R,
-    /// Band friction in force.
-    pub band: BandFriction<R>,
-    /// Force of the film at the innermost interface and at each other one, N (FI-1).
-    pub film_n: [R; 2],
-    /// Segment friction of the fluid.
-    pub segment_friction: R,
-    /// Friction of macro slip of the fluid.
-    pub capacity_friction: R,
-    /// Flank friction of the fluid.
-    pub flank_friction: R,
-}
-
-impl<R: Real> BeltLoad<R>
-where
-    f64: Left<R>,
-{
-    /// The lubricated belt without speed, torque and clamping force, for a band friction in a contact area, m2, that slides at speeds, m/s.
-    #[inline(always)]
-    pub fn unloaded(
-        friction: &Friction<R>,
-        band: BandFriction<R>,
-        film_area_m2: R,
-        sliding_m_s: [R; 2],
-    ) -> Self {
-        let none = film_area_m2.filled(0.0);
-        BeltLoad {
-            primary_speed_rad_s: none,
-            output_torque_nm: none,
-            secondary_clamp_n: none,
-            band,
-            film_n: bands::film_n(friction, &band, film_area_m2, sliding_m_s),
-            segment_friction: friction.segment,
-            capacity_friction: friction.capacity,
-            flank_friction: friction.flank,
-        }
-    }
-}
-
-impl BeltLoad {
-    /// The lubricated belt at a temperature, K, that turns at a ratio and primary speed, without torque and clamping force.
-    pub fn turning(
-        belt: &Belt,
-        oil: &Lubricant,
-        belt_k: f64,
-        ratio: f64,
-        primary_rad_s: f64,
-    ) -> Self {
-        let friction = &oil.friction;
-        let sliding = belt.sliding_m_s(ratio, primary_rad_s);
-        let band = friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
-        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-        let film_area_m2 = bands::film_area_m2(belt, &geometry);
-        BeltLoad {
-            primary_speed_rad_s: primary_rad_s,
-            ..BeltLoad::unloaded(friction, band, film_area_m2, sliding)
         }
     }
 }
