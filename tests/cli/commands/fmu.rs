@@ -29,7 +29,10 @@ fn an_fmu_has_all_that_it_needs() {
         let [a, b] = ["a.fmu", "b.fmu"].map(|name| fs::read(dir.join(name)).unwrap());
         assert!(a == b);
         let mut archive = zip::ZipArchive::new(File::open(dir.join("a.fmu")).unwrap()).unwrap();
-        let names: Vec<String> = archive.file_names().map(ToOwned::to_owned).collect();
+        let names: Vec<String> = archive
+            .file_names()
+            .map(|name| name.unwrap().into_owned())
+            .collect();
         for name in [
             "modelDescription.xml".to_owned(),
             "documentation/index.html".to_owned(),

@@ -71,7 +71,7 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
             )
         }),
     }
-    let mut output = |name: &str, unit, get, description: &str| {
+    let mut output = |name: &str, unit: &'static str, get, description: &str| {
         all.push(Variable {
             get: Get::Losses(get),
             whole: unit.is_empty(),

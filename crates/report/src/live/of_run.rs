@@ -78,7 +78,7 @@ fn scene(
     if car_sha256(&driven) != subject.resolved_sha256 {
         return Err(changed(&format!("car {}", subject.name), hint));
     }
-    let cycle = cycle::find(&scene.state.cycle).map_err(Problems::from);
+    let cycle = cycle::find(&scene.state.cycle);
     let same = |found: cycle::Cycle| cycle_sha256(&found) == record.cycle.sha256;
     match cycle.is_ok_and(same) {
         true => Ok(scene),
