@@ -19,6 +19,7 @@ pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Motion, Step};
+use crate::math::{exp, ln};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -65,7 +66,7 @@ pub struct Ambient {
 impl Ambient {
     /// Pressure over sea level's (RL-4).
     pub fn pressure_ratio(&self) -> f64 {
-        (1.0 - 2.25577e-5 * self.altitude_m).powf(5.25588) // RL-4
+        exp(5.25588 * ln(1.0 - 2.25577e-5 * self.altitude_m)) // RL-4
     }
 
     /// Air density over that at 20 degC and sea level.
