@@ -17,22 +17,22 @@ const MANY_FIGURES: f64 = 1e15;
 /// `-inf` for what is not finite, zero without a sign.
 pub fn push_exact(text: &mut String, x: f64) {
     let x = x + 0.0;
-    if x.abs() < LARGE {
+    let size = x.abs();
+    if has_one_nearest(x) {
         push_digits(text, x);
         return;
     }
     // Writing into a String cannot fail.
-    let done = match x.is_finite() {
-        true => write!(text, "{x:e}"),
-        false => write!(text, "{x}"),
+    let done = match size <= 0.0 || !size.is_finite() || (SMALL..LARGE).contains(&size) {
+        true => write!(text, "{x}"),
+        false => write!(text, "{x:e}"),
     };
     debug_assert!(done.is_ok());
 }
 
 /// Appends what `{x}` gives: the shortest decimal that reads back to the same number, without an exponent.
 pub fn push_plain(text: &mut String, x: f64) {
-    let size = x.abs();
-    if size <= 0.0 || (SMALL..LARGE).contains(&size) {
+    if x.abs() >= SMALL && has_one_nearest(x) {
         push_digits(text, x);
         return;
     }
@@ -40,7 +40,15 @@ pub fn push_plain(text: &mut String, x: f64) {
     debug_assert!(done.is_ok());
 }
 
-/// Appends a number below [`LARGE`], with an exponent below [`SMALL`]. The digits of `{x}` in a third of its time.
+/// Whether no two shortest decimals can be equally near to a number: of these `zmij` takes the even one and the standard library the larger. A number that
+/// lies half-way between two decimals of k - 1 places is a multiple of 2^-k. Decimals of k - 2 places are too coarse for its last bit 2^-m, those
+/// of k - 1 are not: (m - k) >= 0.69 m - 2, which below 2^40, where m >= 12, are six bits of zero at its end.
+fn has_one_nearest(x: f64) -> bool {
+    const LAST_BITS: u64 = 0x3f;
+    x.to_bits() & LAST_BITS != 0 && x.abs() < (1_u64 << 40) as f64
+}
+
+/// Appends a number that has one nearest shortest decimal, with an exponent below [`SMALL`]: the digits of `{x}` in a third of its time.
 fn push_digits(text: &mut String, x: f64) {
     let mut digits = zmij::Buffer::new();
     let digits = digits.format_finite(x);
@@ -130,7 +138,10 @@ mod tests {
         let bits = |k: u64| k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let any = (0..200_000).map(|k| f64::from_bits(bits(k)));
         let sized = |k: u64| (bits(k) >> 40) as f64 * 10_f64.powi((k % 40) as i32 - 24);
-        for x in ends.chain(any).chain((0..200_000).map(sized)) {
+        // Few bits: half-way between two decimals, where the two differ.
+        let halved = |k: u64| (bits(k) >> (24 + k % 20)) as f64 / (1_u64 << (k % 24)) as f64;
+        let numbers = ends.chain(any).chain((0..200_000).map(sized));
+        for x in numbers.chain((0..400_000).map(halved)) {
             let (mut text, mut plain) = (String::new(), String::new());
             push_exact(&mut text, x);
             push_plain(&mut plain, x);
