@@ -29,6 +29,9 @@ use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, clamp, exp, larger, ln, smaller};
 use crate::prime_mover::PrimeMover;
 
+/// Fuel power up to which none is burnt, W: a car whose demand is just the engine's own drag has some 1e-12 W of rounding, and a second of cut fuel would depend on the last bit.
+const NO_FUEL_W: f64 = 1e-3;
+
 /// Part of the full-load line that is left to an engine whose air does not carry its friction: keeps the throttle finite.
 const LEAST_FULL_LOAD: f64 = 0.02;
 /// Highest temperature of the coolant, K: a half-and-half mix of water and glycol boils at 129 degC with 1 bar over ambient.
@@ -378,7 +381,7 @@ impl EngineAtTemperature<'_> {
             to_coolant_w: waste - hot_gas - to_oil, // EN-6
             to_oil_w: to_oil,
             exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt + start_w, // EN-9
-            cut: fuel_w <= 0.0,
+            cut: fuel_w <= NO_FUEL_W,
             // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
             outside: point.outside
                 || (point.fuel_pa <= 0.0
