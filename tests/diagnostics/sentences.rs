@@ -28,10 +28,15 @@ const OUTSIDE: &[(&str, &str)] = &[
         "names given to options: only this module, see INSIDE",
     ),
     ("cvtcycle", "options, words of the command line, output"),
+    ("live", "pages that the program wrote: tools/browser"),
     ("output::file", "output"),
     ("output::files", "output"),
     ("python", "arguments of Python: crates/python/tests"),
     ("report::compare", "directories that the program wrote"),
+    (
+        "report::live",
+        "pages and records that the program wrote: tools/browser",
+    ),
     ("report::problems", "directories that the program wrote"),
     ("report::results", "directories that the program wrote"),
     (

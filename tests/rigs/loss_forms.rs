@@ -226,7 +226,7 @@ fn bad_input() {
             vec!["--input-torque", "20", "--throttle", "0.5"],
             "over full load",
         ),
-        (vec!["--input-torque", "NaN"], "not a finite number"),
+        (vec!["--input-torque", "NaN"], "`NaN` is not a number"),
     ] {
         let text = refused(&words);
         assert!(text.contains(says), "{words:?}: {text}");

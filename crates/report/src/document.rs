@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::charts::Picture;
-use crate::live::LiveSection;
+use crate::live_section::LiveSection;
 
 /// A report.
 #[derive(Clone, Debug, Default)]

@@ -11,6 +11,7 @@
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
 //! | `live` | a page that can be driven again |
+//! | `live_section` | what such a page shows: levers, states, answers |
 //! | `run_files` | the files of a run, of which a report is made |
 //! | `write` | the files of a report |
 //! | `render` | the document as HTML or Markdown (templates in `reports/`) |
@@ -22,6 +23,7 @@ pub mod compare;
 pub mod cover;
 pub mod document;
 pub mod live;
+mod live_section;
 pub mod results;
 pub mod number;
 mod problems;

@@ -16,18 +16,17 @@ use cvtcycle_study::plan::Base;
 use cvtcycle_study::words::drawn::{Draws, prepare};
 use cvtcycle_study::words::run::{maps_left, sentences};
 
-use super::controls::{Control, Kind, of_car};
-use super::scene::{Scene, State};
-use super::words;
+use super::controls::of_car;
+use super::scene::{DRAWS, Scene};
+use super::{command, words};
 use crate::charts::decision::waterfall;
 use crate::charts::figures::{CarLosses, Overlay, OverlayPanel, loss_by_component, overlay};
 use crate::document::{Block, Section};
+use crate::live_section::{Answer, Control, Kind, State};
 use crate::number::Quantity;
 use crate::render;
 use crate::run::{Car, brief, conditions_line, per_km, strip};
 
-/// Draws of the uncertain values behind an interval.
-pub const DRAWS: u64 = 256;
 /// Cars with their outcomes that are kept: those of the last states.
 const KEPT: usize = 24;
 /// Columns of the trace that the figures need.
@@ -42,19 +41,6 @@ pub struct LivePage {
     cycle: Option<(String, Cycle)>,
     /// The draws of a state, begun.
     draws: Option<(State, Draws)>,
-}
-
-/// The answer to a state.
-#[derive(Clone, Debug, Default, serde::Serialize)]
-pub struct Answer {
-    /// Sentences and figures as HTML.
-    pub html: String,
-    /// The command that prints the same numbers.
-    pub command: String,
-    /// Whether there is a difference whose interval can be drawn.
-    pub can_draw: bool,
-    /// Whether no such car can be built or driven; the sentences then say why.
-    pub failed: bool,
 }
 
 struct DrivenCar {
@@ -323,7 +309,7 @@ impl LivePage {
         let named = wanted.iter().skip(1).map(|car| car.named.clone());
         Ok(Answer {
             html: render::live(&section, self.scene.first_figure),
-            command: words::command(
+            command: command::command(
                 &self.scene,
                 state,
                 &set.collect::<Vec<_>>(),

@@ -8,6 +8,8 @@ use cvtcycle_study::levers::{Lever, LeverFile};
 use cvtcycle_study::plan::{Factor, FactorValues, Plan};
 use cvtcycle_study::words::drawn::PLAN;
 
+use crate::live_section::{Change, Control, Kind, Slider};
+
 /// Levers of a page.
 const MOST: usize = 6;
 /// Positions of a slider, at least.
@@ -68,81 +70,6 @@ const CANDIDATES: [Candidate; 14] = [
     Number("idle", "Idle speed, warm", "engine.idle.hot_rpm"),
     Number("radius", "Radius of the wheels", "road_load.wheel_radius_m"),
 ];
-
-/// A lever of a page.
-#[derive(Clone, Debug)]
-pub struct Control {
-    /// Name in states and addresses.
-    pub name: String,
-    /// Name for people.
-    pub title: &'static str,
-    /// What it is.
-    pub kind: Kind,
-}
-
-/// Kinds of lever.
-#[derive(Clone, Debug)]
-pub enum Kind {
-    /// A number.
-    Slider(Slider),
-    /// One of some changes, or none.
-    Choice(Vec<Change>),
-}
-
-/// A number that can be moved, all in the unit of its key.
-#[derive(Clone, Debug)]
-pub struct Slider {
-    /// Dotted key.
-    pub key: &'static str,
-    /// Unit; empty for none.
-    pub unit: &'static str,
-    /// Value of the car.
-    pub base: f64,
-    /// Ends.
-    pub ends: [f64; 2],
-    /// Distance of two positions.
-    pub step: f64,
-    /// The range of the car's value, of the shipped levers and of the plan of uncertainty; beyond it nothing is known.
-    pub known: [f64; 2],
-    /// What the key means.
-    pub meaning: &'static str,
-}
-
-/// A change of a car.
-#[derive(Clone, Debug)]
-pub struct Change {
-    /// Name.
-    pub name: String,
-    /// Name for people.
-    pub title: String,
-    /// What it takes; may be empty.
-    pub needs: String,
-    /// Overrides.
-    pub set: Vec<Override>,
-}
-
-impl Slider {
-    /// Decimals of its positions.
-    #[must_use]
-    pub fn decimals(&self) -> usize {
-        (-self.step.log10().floor()).clamp(0.0, 6.0) as usize
-    }
-
-    /// The known range on the track, from 0 to 1.
-    #[must_use]
-    pub fn band(&self) -> [f64; 2] {
-        let [from, to] = self.ends;
-        self.known
-            .map(|x| ((x - from) / (to - from)).clamp(0.0, 1.0))
-    }
-
-    /// Whether a value is one that something is known of; a position may be rounded.
-    #[must_use]
-    pub fn knows(&self, value: f64) -> bool {
-        let half = 0.5 * self.step;
-        (self.known[0] - half..=self.known[1] + half).contains(&value)
-    }
-}
 
 /// The levers of a car.
 ///

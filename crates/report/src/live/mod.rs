@@ -7,19 +7,20 @@
 //! | `answer` | a state of the levers to sentences, figures and the command that gives the same numbers |
 //! | `of_run` | the scene of a run in a directory |
 //! | `page` | the section of a page: levers, first answer, scene, simulator |
-//! | `words` | the sentences, and the command for a shell |
+//! | `words` | the sentences |
+//! | `command` | the command for a shell that prints the same numbers |
 //!
 //! The same functions make the picture of a page without scripts, on this machine, and each later one, in the page (`crates/live`).
 
 mod answer;
+mod command;
 mod controls;
 mod of_run;
 mod page;
 mod scene;
 mod words;
 
-pub use answer::{Answer, DRAWS, LivePage};
-pub use controls::{Change, Control, Kind, Slider};
+pub use crate::live_section::{Answer, Change, Control, Kind, LiveSection, Slider, State};
+pub use answer::LivePage;
 pub use of_run::of_dir;
-pub use page::LiveSection;
-pub use scene::{Scene, State};
+pub use scene::{DRAWS, Scene};

@@ -8,8 +8,8 @@ use cvtcycle_output::provenance::{car_sha256, cycle_sha256};
 use cvtcycle_output::record::{CarRecord, Record};
 use cvtcycle_output::summary::Summary;
 
-use super::page::LiveSection;
-use super::scene::{Scene, State};
+use super::scene::Scene;
+use crate::live_section::{LiveSection, State};
 use crate::problems::problem;
 use crate::results::{ResultDir, find};
 

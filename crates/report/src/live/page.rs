@@ -5,13 +5,10 @@ use base64::engine::general_purpose::STANDARD;
 use cvtcycle_config::Problems;
 use cvtcycle_config::cycle;
 use cvtcycle_config::setup::{Kind as FileKind, Options, TWIN, is_path, is_twin, load};
-use cvtcycle_output::summary::DrawnDifference;
 
-use super::answer::{Answer, LivePage};
-use super::controls::{Control, Slider};
-use super::scene::{Scene, State};
-use super::words;
-use crate::number::sign;
+use super::answer::LivePage;
+use super::scene::Scene;
+use crate::live_section::LiveSection;
 
 /// The simulator, compressed: `tools/live` makes it.
 #[cfg(not(target_family = "wasm"))]
@@ -19,25 +16,6 @@ const PROGRAM: &[u8] = include_bytes!("../../assets/live.wasm.gz");
 /// It does not carry itself.
 #[cfg(target_family = "wasm")]
 const PROGRAM: &[u8] = &[];
-
-/// The live section of a page.
-#[derive(Clone, Debug)]
-pub struct LiveSection {
-    /// How it begins.
-    pub state: State,
-    /// The levers.
-    pub controls: Vec<Control>,
-    /// Words of the cars that the figures can hold the subject against, with their names.
-    pub cars: Vec<(String, String)>,
-    /// Names of the cycles.
-    pub cycles: Vec<String>,
-    /// Names of transmission oils.
-    pub oils: Vec<String>,
-    /// The first answer.
-    pub answer: Answer,
-    drawn: Option<Vec<DrawnDifference>>,
-    scene: String,
-}
 
 impl LiveSection {
     /// The section of a scene, with its first answer and with the user's files that are read for it.
@@ -103,32 +81,5 @@ impl LiveSection {
     /// The simulator, for the page's script.
     pub fn program(&self) -> String {
         STANDARD.encode(PROGRAM)
-    }
-}
-
-impl Slider {
-    /// The car's value with its unit.
-    pub fn base_text(&self) -> String {
-        words::with_unit(self, self.base)
-    }
-
-    /// The known range in words.
-    pub fn known_text(&self) -> String {
-        words::known(self)
-    }
-
-    /// Its unit as people write it.
-    pub fn unit_sign(&self) -> &'static str {
-        sign(self.unit)
-    }
-
-    /// Where the known range begins and ends on the track, per cent.
-    pub fn band_percent(&self) -> [String; 2] {
-        self.band().map(|share| format!("{:.1}", 100.0 * share))
-    }
-
-    /// A number of it, as an attribute has it.
-    pub fn attribute(&self, value: &f64) -> String {
-        format!("{value:.*}", self.decimals())
     }
 }

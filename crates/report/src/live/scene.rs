@@ -12,6 +12,11 @@ use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::summary::{DrawnDifference, StartWord};
 use serde::{Deserialize, Serialize};
 
+use crate::live_section::State;
+
+/// Draws of the uncertain values behind an interval.
+pub const DRAWS: u64 = 256;
+
 /// Cars and conditions of a page, as the command line has them, and the files that they are made of.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Scene {
@@ -40,23 +45,6 @@ pub struct Scene {
     pub drawn: Option<Vec<DrawnDifference>>,
     /// The user's files by their paths, as Base64.
     pub files: BTreeMap<String, String>,
-}
-
-/// A state of cycle, ambient, fluid and levers.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Name or path of the cycle.
-    pub cycle: String,
-    /// Ambient temperature, degC.
-    pub ambient_degc: f64,
-    /// Transmission oil; that of the car's file if none.
-    pub lubricant: Option<String>,
-    /// What each moved lever is at: a number, or the name of a change.
-    #[serde(default)]
-    pub levers: BTreeMap<String, String>,
-    /// The word of the car that the figures hold the subject against; the first one if it is none of them.
-    #[serde(default)]
-    pub against: String,
 }
 
 impl Scene {

@@ -1,12 +1,9 @@
-//! What a page says besides its figures: what the levers leave, and the command that gives the same numbers.
+//! What a page says besides its figures: what the levers leave.
 
 use cvtcycle_output::Flags;
-use cvtcycle_output::number::fixed;
 use cvtcycle_output::summary::RunSummary;
 
-use super::answer::DRAWS;
-use super::controls::{Control, Kind, Slider};
-use super::scene::{Scene, State};
+use crate::live_section::{Control, Kind, State};
 use crate::number::{Quantity, capital_first, words};
 
 /// Flags that say that a number is not that of a car that works.
@@ -59,8 +56,8 @@ pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
             format!(
                 "{} {}: outside {}, the range of the shipped levers and of the plan of uncertainty; the model is not supported there.",
                 control.title,
-                with_unit(slider, value),
-                known(slider)
+                slider.with_unit(value),
+                slider.known_text()
             )
         })
     };
@@ -79,70 +76,4 @@ pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
         (!needs.is_empty()).then(|| format!("{} takes: {needs}.", capital_first(&change.title)))
     };
     controls.iter().filter_map(of).collect()
-}
-
-/// A value of a slider with its unit.
-pub fn with_unit(slider: &Slider, value: f64) -> String {
-    let number = fixed(Some(value), slider.decimals());
-    format!("{number} {}", slider.unit).trim_end().to_owned()
-}
-
-/// The range of a slider that something is known of, in words.
-pub fn known(slider: &Slider) -> String {
-    let [low, high] = slider.known.map(|x| fixed(Some(x), slider.decimals()));
-    format!("{low} to {high} {}", slider.unit)
-        .trim_end()
-        .to_owned()
-}
-
-/// The command that prints the numbers of a state: overrides in the order in which the page has them, then the cars.
-pub(super) fn command(
-    scene: &Scene,
-    state: &State,
-    set: &[String],
-    baselines: &[String],
-) -> String {
-    let mut list: Vec<&str> = vec!["cvtcycle", "run", "--vehicle", &scene.vehicle];
-    let mut option = |name: &'static str, value| list.extend([name, value]);
-    let ambient = state.ambient_degc.to_string();
-    let (dt, draws) = (scene.dt_s.to_string(), DRAWS.to_string());
-    option("--cycle", &state.cycle);
-    option("--ambient", &ambient);
-    option("--start", &scene.start);
-    if (scene.dt_s - 1.0).abs() > 0.0 {
-        option("--dt", &dt);
-    }
-    if scene.formulation().name() != "smooth" {
-        option("--formulation", &scene.formulation);
-    }
-    for text in &scene.set_all {
-        option("--set-all", text);
-    }
-    for text in set {
-        option("--set", text);
-    }
-    if let Some(oil) = &state.lubricant {
-        option("--lubricant", oil);
-    }
-    if let Some(oil) = &scene.engine_oil {
-        option("--engine-oil", oil);
-    }
-    for name in baselines {
-        option("--baseline", name);
-    }
-    match baselines.is_empty() {
-        true => option("--baseline", "none"),
-        false => option("--draws", &draws),
-    }
-    let quoted = list.into_iter().map(quoted);
-    quoted.collect::<Vec<_>>().join(" ")
-}
-
-/// A word for a shell.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-+=./:,%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
 }
