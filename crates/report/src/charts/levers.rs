@@ -15,6 +15,8 @@ const ROW: f64 = 22.0;
 /// Half of the height of the bar of a range, radius of its median, pixels.
 const HALF: f64 = 5.0;
 const RADIUS: f64 = 4.5;
+/// Levers of a combination that are named below the figure; tables have all.
+const NAMED: usize = 4;
 /// What the marks are.
 const MARKS: [&str; 2] = ["Lever", "Levers together"];
 
@@ -103,7 +105,7 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
     let marks = match answer.plan {
         None => "Points: the car as its file has it, without draws.".to_owned(),
         Some(_) => format!(
-            "Bars: {} % of {} draws of the uncertain values, each with and without the lever. Points: medians. At the right: draws that save fuel, of those without a failed run.",
+            "Bars: {} % of {} draws of the uncertain values, each with and without the lever. Points: medians. Right: draws that save fuel.",
             answer.confidence.draws_percent(),
             answer.draws_done
         ),
@@ -115,7 +117,13 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
             of.map_or_else(|| name.clone(), |other| other.of.title.clone())
         };
         let members: Vec<String> = row.of.members.iter().map(title).collect();
-        format!("{}: {}.", capital_first(&row.of.title), members.join("; "))
+        let (shown, rest) = members.split_at(members.len().min(NAMED));
+        let more = match rest.len() {
+            0 => String::new(),
+            n => format!("; and {n} more"),
+        };
+        let name = capital_first(&row.of.title);
+        format!("{name}: {}{more}.", shown.join("; "))
     });
     [marks].into_iter().chain(together).collect()
 }

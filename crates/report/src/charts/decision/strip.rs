@@ -78,12 +78,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
             );
         }
         if let Some(files) = row.files {
-            panel.symbol(
-                Symbol::CIRCLE,
-                middle(files),
-                RADIUS,
-                Symbol::filled(INK).row(k),
-            );
+            panel.symbol(Symbol::CIRCLE, middle(files), RADIUS, nominal().row(k));
         }
         let words = Label::new(
             at(f64::INFINITY, row_middle(k)).shift(8.0, 4.0),
@@ -101,17 +96,15 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
         .picture(table)
 }
 
+/// Dark, with a pale edge that shows it on a bar.
+fn nominal() -> Style {
+    Style::colour(INK).edge(stroke("#ffffff", 1.0, &[]))
+}
+
 fn legend(rows: &[Against]) -> Vec<Entry> {
-    let mut list = vec![Entry::symbol(
-        Symbol::CIRCLE,
-        Symbol::filled(INK),
-        "nominal values",
-    )];
+    let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(
-            Fill::car(0),
-            "90 % of the draws of uncertain values",
-        ));
+        list.push(Entry::fill(Fill::car(0), "90 % of the draws"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
