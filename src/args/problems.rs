@@ -91,3 +91,11 @@ fn option_of(argument: Argument) -> &'static str {
         Argument::File => "FILE",
     }
 }
+
+/// A problem with the vehicle cites the argument `CAR` of a command that names it without an option.
+pub fn of_car(problem: Problem) -> Problem {
+    match problem.place.is_argument(Argument::Vehicle) {
+        true => problem.in_file("CAR").key("CAR"),
+        false => problem,
+    }
+}

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use cvtcycle::config::setup::carried::CarriedCar;
 use cvtcycle::config::setup::{Kind as FileKind, Options, Setup};
-use cvtcycle::config::{Argument, Problem, Problems, bounded};
+use cvtcycle::config::{Problem, Problems, bounded};
 use cvtcycle::output::file::OutputFile;
 use cvtcycle_cosim::Kind;
 use cvtcycle_cosim::description::Fmi;
 use cvtcycle_cosim::package::{Package, Platform};
 
 use super::Execute;
-use crate::args::problems::{bad_value, in_options, overrides, problem};
+use crate::args::problems::{bad_value, in_options, of_car, overrides, problem};
 use crate::args::{Names, OutArgs, names_of, one_of};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
@@ -77,10 +77,6 @@ impl Execute for FmuArgs {
             engine_oil: self.engine_oil.clone(),
             set: overrides("--set", &self.set, problems),
             ..Options::default()
-        };
-        let of_car = |problem: Problem| match problem.place.is_argument(Argument::Vehicle) {
-            true => problem.in_file("CAR").key("CAR"),
-            false => problem,
         };
         let car = CarriedCar::load(&self.car, &options);
         let car = problems.take(car.map_err(|found| found.map(of_car)));

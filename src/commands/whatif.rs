@@ -12,6 +12,7 @@ use cvtcycle::report::write::{Form, Target};
 
 use super::Execute;
 use super::vehicles::{self, Baselines};
+use crate::args::problems::of_car;
 use crate::args::{
     ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, number,
 };
@@ -73,7 +74,9 @@ impl Execute for WhatifArgs {
             set: self.set.clone(),
         };
         let comparison = (&self.comparison, Baselines::OfFile);
-        let cars = vehicles::load(&car, comparison, formulation, problems);
+        let mut found = Problems::new();
+        let cars = vehicles::load(&car, comparison, formulation, &mut found);
+        problems.append(found.map(of_car));
         let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
         let (start, dt_s) = self.drive.get(problems);
         let file = self.out.out.clone();
