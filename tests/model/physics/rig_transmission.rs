@@ -263,7 +263,7 @@ fn heat_of_a_transient_balances() {
 }
 
 /// 5.3.2, Figs 5-5 and 5-6, within 0.6 Nm (the transducer's 0.5 Nm and the reading): warming in low 12.5 at the start, 11 at 80 and 11.25 Nm at
-/// 100 degC; in high 9.25 Nm at the end, and about 11 Nm at the start: within the 1 Nm of two boxes (5.3.4) only, since up to 3 Nm of final
+/// 100 degC; in high "as low as 9.25 Nm", so at its least, and about 11 Nm at the start: within the 1 Nm of two boxes (5.3.4) only, since up to 3 Nm of final
 /// drive and 13 Nm in all, printed for 25 degC (5.3.1, 5.5.1), ask for more (docs/results.md); the cooling branch above the warming one. Printed, not asserted: the
 /// branches meet near 40 degC, and the small rise from 80 to 100 degC in low.
 #[test]
@@ -271,12 +271,18 @@ fn val_transients() {
     let [low, high] = loops(&[], &[]);
     let start = |l: &Loop| l.moments[0].answer.total_nm();
     let warm = |l: &Loop, degc: f64| l.loss_nm(Branch::Warming, degc + ZERO).unwrap();
+    let least = |l: &Loop| {
+        let warming = l.moments.iter().filter(|m| m.branch == Branch::Warming);
+        warming
+            .map(|m| m.answer.total_nm())
+            .fold(f64::INFINITY, f64::min)
+    };
     let rows = [
         ("low at the start", start(&low), 12.5, 0.6),
         ("low at 80 degC", warm(&low, 80.0), 11.0, 0.6),
         ("low at 100 degC", warm(&low, 100.0), 11.25, 0.6),
         ("high at the start", start(&high), 11.0, 1.0),
-        ("high at 100 degC", warm(&high, 100.0), 9.25, 0.6),
+        ("high at its least", least(&high), 9.25, 0.6),
     ];
     for (what, found, printed, _) in rows {
         println!("{what}: {found:.2} Nm, printed {printed}");
@@ -297,9 +303,9 @@ fn val_transients() {
     let outside = rows
         .iter()
         .filter(|(_, found, printed, width)| (found - printed).abs() > *width);
-    // Known: by 0.02 and 0.01 Nm, since one law of bearings gives the final drive less in low and more in high when warm (GT-1).
+    // Known: by 0.02 Nm, since one law of bearings gives the final drive less in low and more in high when warm (GT-1).
     let names: Vec<&str> = outside.map(|row| row.0).collect();
-    assert_eq!(names, ["low at the start", "high at 100 degC"], "{rows:?}");
+    assert_eq!(names, ["low at the start"], "{rows:?}");
     assert!(
         rows.iter()
             .all(|(_, found, printed, _)| (found - printed).abs() < 0.65)

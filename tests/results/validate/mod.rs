@@ -124,6 +124,28 @@ fn the_shipped_rows_keep_their_recorded_verdicts() {
     }
 }
 
+/// Truth: the reason of the tolerance `indicative` itself. A size that the thesis quotes of another car, box or fluid is held as such, whatever its verdict; a bound or an identity
+/// may be held more closely, and two rows compare the project's own cars.
+#[test]
+fn quoted_sizes_are_held_as_quoted_sizes() {
+    let (_, all) = json(&["validate", "--json", "--all"]);
+    let mut seen = 0;
+    for row in all["rows"].as_array().unwrap() {
+        if row["kind"] != "L" || row["tolerance"].as_str().is_none_or(str::is_empty) {
+            continue;
+        }
+        let tolerance = row["tolerance"].as_str().unwrap();
+        let own_cars = ["3.04b", "3.05b"].contains(&row["id"].as_str().unwrap());
+        assert!(
+            own_cars || tolerance == "indicative" || tolerance == "exact",
+            "{}: {tolerance}",
+            row["id"]
+        );
+        seen += usize::from(tolerance == "indicative");
+    }
+    assert!(seen >= 15, "{seen}");
+}
+
 #[test]
 fn the_readme_counts_the_verdicts_of_today() {
     let (_, all) = json(&["validate", "--json"]);
