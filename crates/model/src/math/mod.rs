@@ -5,12 +5,14 @@ mod curve;
 mod elementary;
 mod grid;
 mod real;
+mod runs;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
 pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
 pub use real::{Left, Mask, Operand, Real};
+pub use runs::{Runs, all};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
 #[inline(always)]
@@ -75,3 +77,14 @@ macro_rules! both {
     };
 }
 pub(crate) use both;
+
+/// `every!(i in 0, 1, 2 => of[i])`: the same at several places, as an array, as [`both`].
+macro_rules! every {
+    ($place:ident in $($number:literal),* => $value:expr) => {
+        [$({
+            let $place = $number;
+            $value
+        }),*]
+    };
+}
+pub(crate) use every;
