@@ -172,6 +172,14 @@ pub struct Step {
     pub interval: usize,
 }
 
+impl Step {
+    /// Distance driven, m.
+    #[inline(always)]
+    pub fn distance_m(&self) -> f64 {
+        self.motion.speed_m_s * self.dt_s
+    }
+}
+
 /// What a car is asked to drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {

@@ -3,7 +3,7 @@
 //! [`Runs`] adds it to [`Real`]: the number is that of one run (f64) or of several, one a lane. What all runs of a group share (time, road speed,
 //! a switch) stays what it is. A function that has f64 alone is asked run by run: `x.numbers(|run| ..)`.
 
-use super::{Curve, Left, Mask, Real};
+use super::{Curve, Mask, Operand, Real};
 use std::fmt::Debug;
 
 /// A number of one run or of several, with what each run has besides numbers.
@@ -53,23 +53,20 @@ pub trait Runs: Real {
 
     /// Where `self` is below the other; no where one is no number.
     #[inline(always)]
-    fn below(self, other: impl super::Operand<Self>) -> Self::Mask {
+    fn below(self, other: impl Operand<Self>) -> Self::Mask {
         other.lifted(self).above(self)
     }
 
     /// Where `self` is at or below the other; no where one is no number.
     #[inline(always)]
-    fn at_most(self, other: impl super::Operand<Self>) -> Self::Mask {
+    fn at_most(self, other: impl Operand<Self>) -> Self::Mask {
         other.lifted(self).reaches(self)
     }
 
-    /// The sum of numbers, from 0 on in their order.
+    /// The sum of numbers in their order, as `Iterator::sum` has it.
     #[inline(always)]
-    fn sum_of(self, numbers: &[Self]) -> Self
-    where
-        f64: Left<Self>,
-    {
-        let mut sum = self.filled(0.0);
+    fn sum_of(self, numbers: &[Self]) -> Self {
+        let mut sum = self.filled(-0.0);
         for number in numbers {
             sum = sum + *number;
         }

@@ -11,6 +11,7 @@ pub mod viscous_self_heating;
 pub mod manual;
 mod step;
 
+pub(crate) use step::set_flag;
 pub use step::{DrivelineState, StepInput, StepOutput};
 
 use self::component::{Component, Part};
