@@ -4,12 +4,15 @@ mod circular;
 mod curve;
 mod elementary;
 mod grid;
+mod lanes;
 mod real;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
 pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
+pub use lanes::{Answers, Gather, Level, Simd, dispatch, f64x4, f64x8};
+pub(crate) use lanes::{gather, gather_each};
 pub use real::{Left, Mask, Operand, Real};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
