@@ -4,8 +4,10 @@
 /// that cannot turn its own pump and accessories in the cold. Such rows are flagged outside validity.
 pub const FULL_LOAD_LIMIT: f64 = 1.0 + 1e-5;
 
+use crate::math::Real;
+
 /// An engine or motor at its temperature and altitude; speeds in rad/s at its shaft, torques in Nm.
-pub trait PrimeMover<R = f64> {
+pub trait PrimeMover<R: Real = f64> {
     /// Idle speed.
     fn idle_rad_s(&self) -> R;
     /// Highest speed.

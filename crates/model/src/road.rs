@@ -19,7 +19,7 @@ pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Step, mean_powers};
-use crate::math::{Left, Mask, Operand, Runs, exp, ln};
+use crate::math::{Left, Mask, Operand, Real, exp, ln};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -30,7 +30,7 @@ const CHARGE_REFERENCE_K: f64 = 298.15;
 
 /// The checked road load, coefficients in force for one ambient.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoadLoad<R = f64> {
+pub struct RoadLoad<R: Real = f64> {
     /// f0, N.
     pub f0_n: R,
     /// f1, N s/m.
@@ -77,7 +77,7 @@ impl Ambient {
 
 /// Demand at the wheels in one step: means over the step, works over the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WheelDemand<R = f64> {
+pub struct WheelDemand<R: Real = f64> {
     /// Mean speed, m/s.
     pub speed_m_s: f64,
     /// Acceleration, m/s2.
@@ -108,7 +108,7 @@ fn along_the_road(grade: f64) -> f64 {
     (1.0 + grade * grade).sqrt()
 }
 
-impl<R: Runs> RoadLoad<R>
+impl<R: Real> RoadLoad<R>
 where
     f64: Left<R>,
 {

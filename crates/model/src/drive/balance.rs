@@ -12,14 +12,14 @@ macro_rules! energy_terms {
     ($($term:ident: $doc:literal;)*) => {
         /// Terms of both balances in one row, W.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
-        pub struct EnergyTerms<R = f64> {
+        pub struct EnergyTerms<R: Real = f64> {
             $(#[doc = $doc] pub $term: R,)*
         }
 
         /// Names of the terms, in the order of [`EnergyTerms::as_array`].
         pub const TERM_NAMES: [&str; [$($doc),*].len()] = [$(stringify!($term)),*];
 
-        impl<R: Copy> EnergyTerms<R> {
+        impl<R: Real> EnergyTerms<R> {
             /// The terms in the order of [`TERM_NAMES`].
             #[inline(always)]
             pub fn as_array(&self) -> [R; TERM_NAMES.len()] {
@@ -53,7 +53,11 @@ energy_terms! {
 
 #[inline(always)]
 fn error<R: Real>(difference: R, scale: R) -> R {
-    R::pick(scale.above(scale.filled(0.0)), difference / scale, scale.filled(0.0)) // LE-3
+    R::pick(
+        scale.above(scale.filled(0.0)),
+        difference / scale,
+        scale.filled(0.0),
+    ) // LE-3
 }
 
 impl<R: Real> EnergyTerms<R>

@@ -2,14 +2,14 @@
 
 use crate::engine::Engine;
 use crate::fluid::Lubricant;
-use crate::math::Runs;
+use crate::math::Real;
 use crate::road::{RoadLoad, Tyre};
 use crate::thermal::Network;
 use crate::transmission::Transmission;
 
 /// A car ready to drive: every part checked, for one ambient.
 #[derive(Clone, Debug)]
-pub struct Car<R: Runs = f64, T = Transmission> {
+pub struct Car<R: Real = f64, T = Transmission> {
     /// Name of the vehicle file.
     pub name: String,
     /// Road load for the ambient.

@@ -6,7 +6,7 @@ use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
-use crate::math::{Left, Runs};
+use crate::math::{Left, Real};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
@@ -21,7 +21,7 @@ pub const HIGHEST_K: [(usize, f64); 3] = [
 
 /// One time step: means over the step that ends at `time_s`; temperatures are those at its end.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Row<R: Runs = f64> {
+pub struct Row<R: Real = f64> {
     /// End of the step, s from the start of the cycle.
     pub time_s: f64,
     /// Length of the step, s.
@@ -51,7 +51,7 @@ pub struct Row<R: Runs = f64> {
     /// Engine torque with accessories, without inertia, over full-load torque at that speed, 0..1.
     pub throttle: R,
     /// Gear of a manual box; 0 neutral or CVT.
-    pub gear: R::Of<u8>,
+    pub gear: R::Each<u8>,
     /// Belt ratio I = R_sec / R_pri (thesis eq. 5); NaN for a manual box.
     pub belt_ratio: R,
     /// Engine speed over wheel speed; NaN at standstill.
@@ -61,7 +61,7 @@ pub struct Row<R: Runs = f64> {
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pressure_pa: R,
     /// What decided the secondary pressure (PC-5); of no meaning for a manual box.
-    pub clamp_cause: R::Of<ClampCause>,
+    pub clamp_cause: R::Each<ClampCause>,
     /// Belt slip as a fraction; NaN for a manual box.
     pub slip: R,
     /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
@@ -113,15 +113,15 @@ pub struct Row<R: Runs = f64> {
     /// What the implicit solve left, as a fraction of full-load torque.
     pub solve_residual: R,
     /// Evaluations of the driveline that the implicit solve needed.
-    pub iterations: R::Of<u16>,
+    pub iterations: R::Each<u16>,
     /// States and departures from validity.
-    pub flags: R::Of<Flags>,
+    pub flags: R::Each<Flags>,
 }
 
 pub(super) type Input<'a, R = f64> = StepInput<'a, EngineAtTemperature<'a, R>, R>;
 
 /// Rotating energy and crank torque of a step.
-pub(super) struct Inertia<R = f64> {
+pub(super) struct Inertia<R: Real = f64> {
     pub crank_nm: R,
     pub accessories_nm: R,
     pub kinetic_w: R,
@@ -130,7 +130,7 @@ pub(super) struct Inertia<R = f64> {
 }
 
 /// Everything that a step computed.
-pub(super) struct Solved<'a, R: Runs = f64> {
+pub(super) struct Solved<'a, R: Real = f64> {
     pub output: &'a StepOutput<R>,
     pub inertia: &'a Inertia<R>,
     pub burn: &'a Burn<R>,
@@ -144,7 +144,7 @@ pub(super) struct Solved<'a, R: Runs = f64> {
 
 /// Energy terms of a step, each from the model that owns it.
 #[inline(always)]
-fn terms<R: Runs>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R>
+fn terms<R: Real>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R>
 where
     f64: Left<R>,
 {
@@ -171,7 +171,7 @@ where
 
 /// The row of a step with its energy terms; `is_cvt`: the car has a belt.
 #[inline(always)]
-pub(super) fn row<R: Runs>(
+pub(super) fn row<R: Real>(
     is_cvt: bool,
     step: &Step,
     input: &Input<R>,
@@ -184,14 +184,14 @@ where
     let (d, b, wheel) = (a.output, a.burn, input.wheel);
     let engine_rad_s = d.engine_rad_s;
     let (zero, none) = (engine_rad_s.filled(0.0), engine_rad_s.filled(f64::NAN));
-    let mut flags = d.flags;
+    let mut flags = d.flags.clone();
     let turns = engine_rad_s.above(0.0);
-    set_flag(zero, &mut flags, Flags::FUEL_CUT, b.cut & turns);
-    set_flag(zero, &mut flags, Flags::OUTSIDE_VALIDITY, b.outside);
+    set_flag::<R>(&mut flags, Flags::FUEL_CUT, b.cut & turns);
+    set_flag::<R>(&mut flags, Flags::OUTSIDE_VALIDITY, b.outside);
     let t = &a.heat.heat.node_k;
     let [first, second, third] = HIGHEST_K;
     let hot = t[first.0].above(first.1) | t[second.0].above(second.1) | t[third.0].above(third.1);
-    set_flag(zero, &mut flags, Flags::TOO_HOT, hot);
+    set_flag::<R>(&mut flags, Flags::TOO_HOT, hot);
     let rolls = wheel.wheel_rad_s.above(0.0);
     let row = Row {
         time_s: step.time_s,
@@ -208,12 +208,12 @@ where
         engine_speed_rad_s: engine_rad_s,
         engine_torque_nm: d.shaft_nm,
         throttle: d.throttle,
-        gear: d.gear,
+        gear: d.gear.clone(),
         belt_ratio: d.belt_ratio,
         overall_ratio: R::pick(rolls, engine_rad_s / wheel.wheel_rad_s, none),
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,
-        clamp_cause: d.clamp_cause,
+        clamp_cause: d.clamp_cause.clone(),
         slip: d.slip,
         primary_nm: d.primary_nm,
         secondary_nm: d.secondary_nm,
@@ -239,7 +239,7 @@ where
         power_ledger_error: terms.power_error(),
         heat_ledger_error: terms.heat_error(),
         solve_residual: d.residual,
-        iterations: d.iterations,
+        iterations: d.iterations.clone(),
         flags,
     };
     (row, terms)

@@ -5,13 +5,13 @@ use super::{Car, EnergyTerms, Row};
 use crate::cycle::Trace;
 use crate::engine::Running;
 use crate::engine::start_stop::StartStopState;
-use crate::math::Runs;
+use crate::math::Real;
 use crate::thermal::Heat;
 use crate::transmission::TransmissionState;
 
 /// What a drive carries from step to step.
 #[derive(Clone, Copy, Debug)]
-pub struct State<R = f64, S = TransmissionState> {
+pub struct State<R: Real = f64, S = TransmissionState> {
     /// Temperatures.
     pub heat: Heat<R>,
     /// Transmission; none before the first step.
@@ -26,7 +26,7 @@ pub struct State<R = f64, S = TransmissionState> {
     pub start_stop: StartStopState,
 }
 
-impl<R: Runs, S> State<R, S> {
+impl<R: Real, S> State<R, S> {
     /// Everything at one temperature, engine about to start.
     pub fn at(temp_k: R) -> Self {
         let zero = temp_k.filled(0.0);
@@ -47,7 +47,7 @@ impl<R: Runs, S> State<R, S> {
 }
 
 /// Receives the rows of a drive in order.
-pub trait Recorder<R: Runs = f64> {
+pub trait Recorder<R: Real = f64> {
     /// One row and its energy terms.
     fn record(&mut self, row: &Row<R>, terms: &EnergyTerms<R>);
 }

@@ -2,13 +2,13 @@
 
 use super::{EnergyTerms, HIGHEST_K, Recorder, Row, TERM_NAMES};
 use crate::flags::Flags;
-use crate::math::{Left, Mask, Runs};
+use crate::math::{Left, Mask, Real};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::{ByComponent, Component};
 
 /// Sums over one phase.
 #[derive(Clone, Debug, Default)]
-pub struct PhaseTotals<R = f64> {
+pub struct PhaseTotals<R: Real = f64> {
     /// Duration, s.
     pub duration_s: f64,
     /// Distance, m.
@@ -28,7 +28,7 @@ pub struct PhaseTotals<R = f64> {
 }
 
 /// Largest value of the rows that were looked at, and when.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
     /// Value; minus infinity if no row was looked at.
     pub value: f64,
@@ -55,7 +55,7 @@ impl Extreme {
 
 /// Sums and extremes over a whole run.
 #[derive(Clone, Debug, Default)]
-pub struct Totals<R: Runs = f64> {
+pub struct Totals<R: Real = f64> {
     /// By phase index of the cycle.
     pub phases: Vec<PhaseTotals<R>>,
     /// Largest ledger error of any row, both ledgers.
@@ -65,9 +65,9 @@ pub struct Totals<R: Runs = f64> {
     /// Time of that row's end, s.
     pub min_clamp_at_s: R,
     /// Time with each flag, s, in the order of [`Flags::NAMES`].
-    pub flag_s: R::Of<[f64; Flags::NAMES.len()]>,
+    pub flag_s: R::Each<[f64; Flags::NAMES.len()]>,
     /// Moving time in which each cause decided the secondary pressure, s, in the order of [`ClampCause::NAMES`].
-    pub clamp_cause_s: R::Of<[f64; ClampCause::NAMES.len()]>,
+    pub clamp_cause_s: R::Each<[f64; ClampCause::NAMES.len()]>,
     /// Worst missing power, W.
     pub worst_deficit_w: R,
     /// Torque at the wheels missing there, Nm.
@@ -75,19 +75,19 @@ pub struct Totals<R: Runs = f64> {
     /// End of the row with the worst deficit, s.
     pub worst_deficit_at_s: R,
     /// Highest engine speed of the rows above its limit, rad/s.
-    pub fastest_rad_s: R::Of<Extreme>,
+    pub fastest_rad_s: R::Each<Extreme>,
     /// Highest temperatures of the rows that are too hot, K, in the order of [`HIGHEST_K`].
-    pub hottest_k: R::Of<[Extreme; HIGHEST_K.len()]>,
+    pub hottest_k: R::Each<[Extreme; HIGHEST_K.len()]>,
     /// End of the first row with a gear that the cycle does not prescribe, s.
-    pub wrong_gear_at_s: R::Of<f64>,
+    pub wrong_gear_at_s: R::Each<f64>,
     /// Time in which torque, speed, fuel or a temperature was no number, s.
-    pub not_finite_s: R::Of<f64>,
+    pub not_finite_s: R::Each<f64>,
     /// End of the first such row, s.
-    pub not_finite_at_s: R::Of<f64>,
+    pub not_finite_at_s: R::Each<f64>,
     /// Largest residual of the implicit solve.
     pub worst_residual: R,
     /// Evaluations of the driveline.
-    pub evaluations: R::Of<u64>,
+    pub evaluations: R::Each<u64>,
     /// Rows.
     pub rows: u64,
 }
@@ -145,7 +145,7 @@ impl PhaseTotals {
     }
 }
 
-impl<R: Runs> PhaseTotals<R> {
+impl<R: Real> PhaseTotals<R> {
     /// Empty sums for the runs of a number.
     fn like(zero: R) -> Self {
         PhaseTotals {
@@ -175,7 +175,7 @@ impl<R: Runs> PhaseTotals<R> {
     }
 }
 
-impl<R: Runs> Totals<R> {
+impl<R: Real> Totals<R> {
     /// Empty sums for the runs of a number, for a number of phases.
     pub fn like(number: R, phases: usize) -> Self {
         let (zero, none) = (number.filled(0.0), number.filled(f64::NAN));
@@ -184,18 +184,18 @@ impl<R: Runs> Totals<R> {
             ledger_error: zero,
             min_clamp_safety: zero.filled(f64::INFINITY),
             min_clamp_at_s: none,
-            flag_s: R::of(|_| [0.0; Flags::NAMES.len()]),
-            clamp_cause_s: R::of(|_| [0.0; ClampCause::NAMES.len()]),
+            flag_s: R::every(|_| [0.0; Flags::NAMES.len()]),
+            clamp_cause_s: R::every(|_| [0.0; ClampCause::NAMES.len()]),
             worst_deficit_w: zero,
             worst_deficit_nm: zero,
             worst_deficit_at_s: none,
-            fastest_rad_s: R::of(|_| Extreme::default()),
-            hottest_k: R::of(|_| [Extreme::default(); HIGHEST_K.len()]),
-            wrong_gear_at_s: R::of(|_| f64::NAN),
-            not_finite_s: R::of(|_| 0.0),
-            not_finite_at_s: R::of(|_| f64::NAN),
+            fastest_rad_s: R::every(|_| Extreme::default()),
+            hottest_k: R::every(|_| [Extreme::default(); HIGHEST_K.len()]),
+            wrong_gear_at_s: R::every(|_| f64::NAN),
+            not_finite_s: R::every(|_| 0.0),
+            not_finite_at_s: R::every(|_| f64::NAN),
             worst_residual: zero,
-            evaluations: R::of(|_| 0),
+            evaluations: R::every(|_| 0),
             rows: 0,
         }
     }
@@ -207,24 +207,24 @@ impl<R: Runs> Totals<R> {
             ledger_error: self.ledger_error.lane(run),
             min_clamp_safety: self.min_clamp_safety.lane(run),
             min_clamp_at_s: self.min_clamp_at_s.lane(run),
-            flag_s: *R::own(&self.flag_s, run),
-            clamp_cause_s: *R::own(&self.clamp_cause_s, run),
+            flag_s: *R::one(&self.flag_s, run),
+            clamp_cause_s: *R::one(&self.clamp_cause_s, run),
             worst_deficit_w: self.worst_deficit_w.lane(run),
             worst_deficit_nm: self.worst_deficit_nm.lane(run),
             worst_deficit_at_s: self.worst_deficit_at_s.lane(run),
-            fastest_rad_s: *R::own(&self.fastest_rad_s, run),
-            hottest_k: *R::own(&self.hottest_k, run),
-            wrong_gear_at_s: *R::own(&self.wrong_gear_at_s, run),
-            not_finite_s: *R::own(&self.not_finite_s, run),
-            not_finite_at_s: *R::own(&self.not_finite_at_s, run),
+            fastest_rad_s: *R::one(&self.fastest_rad_s, run),
+            hottest_k: *R::one(&self.hottest_k, run),
+            wrong_gear_at_s: *R::one(&self.wrong_gear_at_s, run),
+            not_finite_s: *R::one(&self.not_finite_s, run),
+            not_finite_at_s: *R::one(&self.not_finite_at_s, run),
             worst_residual: self.worst_residual.lane(run),
-            evaluations: *R::own(&self.evaluations, run),
+            evaluations: *R::one(&self.evaluations, run),
             rows: self.rows,
         }
     }
 }
 
-impl<R: Runs> Totals<R>
+impl<R: Real> Totals<R>
 where
     f64: Left<R>,
 {
@@ -251,19 +251,29 @@ where
             + row.fuel_kg_s
             + (row.coolant_k + row.engine_oil_k + row.sump_k + row.metal_k);
         let is_finite = sum.filled(f64::MAX).reaches(sum.abs());
-        for run in 0..R::COUNT {
-            if R::own(&row.flags, run).any(Flags::IMPOSSIBLE) {
+        for run in 0..R::LANES {
+            if R::one(&row.flags, run).any(Flags::IMPOSSIBLE) {
                 let temps_k = [row.coolant_k, row.engine_oil_k, row.sump_k]; // in the order of HIGHEST_K
                 let speed_rad_s = row.engine_speed_rad_s.lane(run);
                 let temps_k = temps_k.map(|temp_k| temp_k.lane(run));
-                self.impossible(run, *R::own(&row.flags, run), row.time_s, speed_rad_s, temps_k);
+                self.impossible(
+                    run,
+                    *R::one(&row.flags, run),
+                    row.time_s,
+                    speed_rad_s,
+                    temps_k,
+                );
             }
         }
         if (!is_finite).any() {
-            for run in (0..R::COUNT).filter(|run| !sum.answer(is_finite, *run)) {
-                let first_s = R::own_mut(&mut self.not_finite_at_s, run);
-                *first_s = if first_s.is_nan() { row.time_s } else { *first_s };
-                lengthen(R::own_mut(&mut self.not_finite_s, run), row.dt_s);
+            for run in (0..R::LANES).filter(|run| !is_finite.lane(*run)) {
+                let first_s = R::one_mut(&mut self.not_finite_at_s, run);
+                *first_s = if first_s.is_nan() {
+                    row.time_s
+                } else {
+                    *first_s
+                };
+                lengthen(R::one_mut(&mut self.not_finite_s, run), row.dt_s);
             }
         }
     }
@@ -271,8 +281,8 @@ where
     /// The worst deficit of the runs that miss the trace.
     #[inline(always)]
     fn deficit(&mut self, row: &Row<R>, lacks: R::Mask, at_s: R) {
-        let misses = |run| R::own(&row.flags, run).contains(Flags::MISSED_TRACE);
-        let lacks = lacks & at_s.answers(misses);
+        let misses = |run| R::one(&row.flags, run).contains(Flags::MISSED_TRACE);
+        let lacks = lacks & at_s.ask(misses);
         let nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
         self.worst_deficit_w = R::pick(lacks, row.deficit_w, self.worst_deficit_w);
         self.worst_deficit_at_s = R::pick(lacks, at_s, self.worst_deficit_at_s);
@@ -291,15 +301,15 @@ where
         temps_k: [f64; HIGHEST_K.len()],
     ) {
         if flags.contains(Flags::OVERSPEED) {
-            R::own_mut(&mut self.fastest_rad_s, run).see(engine_rad_s, at_s);
+            R::one_mut(&mut self.fastest_rad_s, run).see(engine_rad_s, at_s);
         }
         if flags.contains(Flags::TOO_HOT) {
-            let hottest = R::own_mut(&mut self.hottest_k, run);
+            let hottest = R::one_mut(&mut self.hottest_k, run);
             for (extreme, temp_k) in hottest.iter_mut().zip(temps_k) {
                 extreme.see(temp_k, at_s);
             }
         }
-        let first_s = R::own_mut(&mut self.wrong_gear_at_s, run);
+        let first_s = R::one_mut(&mut self.wrong_gear_at_s, run);
         if flags.contains(Flags::WRONG_GEAR) && first_s.is_nan() {
             *first_s = at_s;
         }
@@ -312,7 +322,7 @@ fn lengthen(time_s: &mut f64, by_s: f64) {
     *time_s += by_s;
 }
 
-impl<R: Runs> Recorder<R> for Totals<R>
+impl<R: Real> Recorder<R> for Totals<R>
 where
     f64: Left<R>,
 {
@@ -334,20 +344,23 @@ where
             *s = *s + *w * row.dt_s;
         }
         p.terms.add(terms, row.dt_s);
-        for run in 0..R::COUNT {
+        for run in 0..R::LANES {
             if row.speed_m_s > 0.0 {
-                let cause = *R::own(&row.clamp_cause, run) as usize;
-                lengthen(&mut R::own_mut(&mut self.clamp_cause_s, run)[cause], row.dt_s);
+                let cause = *R::one(&row.clamp_cause, run) as usize;
+                lengthen(
+                    &mut R::one_mut(&mut self.clamp_cause_s, run)[cause],
+                    row.dt_s,
+                );
             }
-            let mut left = R::own(&row.flags, run).0;
+            let mut left = R::one(&row.flags, run).0;
             while left != 0 {
                 let bit = left.trailing_zeros() as usize; // flags are in the order of their bits
-                if let Some(seconds) = R::own_mut(&mut self.flag_s, run).get_mut(bit) {
+                if let Some(seconds) = R::one_mut(&mut self.flag_s, run).get_mut(bit) {
                     lengthen(seconds, row.dt_s);
                 }
                 left &= left - 1;
             }
-            *R::own_mut(&mut self.evaluations, run) += u64::from(*R::own(&row.iterations, run));
+            *R::one_mut(&mut self.evaluations, run) += u64::from(*R::one(&row.iterations, run));
         }
         self.rows += 1;
         self.extremes(row);

@@ -12,7 +12,7 @@
 //! line that would leave these bounds below the engine's highest speed.
 
 use crate::maps::BsfcMap;
-use crate::math::{Left, Real, Runs, all};
+use crate::math::{Left, Mask, Real};
 
 const BAR: f64 = 1e5;
 /// Fuel over indicated work, both near zero, from which rounding explains that it is less.
@@ -22,7 +22,7 @@ pub const EFFICIENCY: std::ops::RangeInclusive<f64> = 0.05..=1.0;
 
 /// Coefficients of the extended Willans line, per displacement, in bar and m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Willans<R = f64> {
+pub struct Willans<R: Real = f64> {
     /// a.
     pub a: R,
     /// b, s/m.
@@ -39,7 +39,7 @@ pub struct Willans<R = f64> {
 
 /// A fuel model.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FuelModel<R = f64> {
+pub enum FuelModel<R: Real = f64> {
     /// Extended Willans line.
     Willans(Willans<R>),
     /// Measured map, one for all runs.
@@ -57,7 +57,7 @@ pub struct FuelPoint<R: Real = f64> {
     pub outside: R::Mask,
 }
 
-impl<R: Runs> FuelModel<R>
+impl<R: Real> FuelModel<R>
 where
     f64: Left<R>,
 {
@@ -82,7 +82,7 @@ where
         let need = brake_pa + friction_pa;
         let zero = need.filled(0.0);
         let none = zero.reaches(need);
-        if all(none) {
+        if none.all() {
             return FuelPoint {
                 fuel_pa: zero,
                 indicated_pa: zero,
@@ -105,11 +105,10 @@ where
     fn of_map(&self, map: &BsfcMap, piston_m_s: R, speed_rad_s: R, need: R) -> FuelPoint<R> {
         let hot = self.hot_friction_pa(piston_m_s);
         let brake_pa = need - hot; // BM-3
-        let found = R::of(|run| {
-            map.at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run))
-        });
-        let fuel_pa = need.numbers(|run| R::own(&found, run).0);
-        let inside = need.answers(|run| R::own(&found, run).1);
+        let found =
+            R::every(|run| map.at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run)));
+        let fuel_pa = need.by_lane(|run| R::one(&found, run).0);
+        let inside = need.ask(|run| R::one(&found, run).1);
         // Below the map both go to zero together, up to rounding.
         let short = fuel_pa.below(need * ALMOST_ALL - 1e-3);
         FuelPoint {

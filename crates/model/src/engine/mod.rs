@@ -26,7 +26,7 @@ pub use start::Running;
 pub use start_stop::StartStop;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
-use crate::math::{Curve, Left, Real, Runs, all};
+use crate::math::{Curve, Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
 
 /// Fuel power up to which none is burnt, W: a car whose demand is just the engine's own drag has some 1e-12 W of rounding, and a second of cut fuel would depend on the last bit.
@@ -44,7 +44,7 @@ pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
 
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Engine<R: Runs = f64> {
+pub struct Engine<R: Real = f64> {
     /// Displacement, m3.
     pub displacement_m3: R,
     /// Stroke, m.
@@ -52,7 +52,7 @@ pub struct Engine<R: Runs = f64> {
     /// Rated power, W.
     pub rated_w: R,
     /// Full-load torque over speed, rad/s to Nm, at sea level.
-    pub full_load: R::Curves,
+    pub full_load: R::Each<Curve>,
     /// Largest speed, rad/s.
     pub highest_rad_s: R,
     /// Moment of inertia of engine, flywheel and primary side, kg m2.
@@ -119,7 +119,7 @@ pub struct Engine<R: Runs = f64> {
 
 /// The engine at one temperature state, in one air.
 #[derive(Clone, Copy, Debug)]
-pub struct EngineAtTemperature<'a, R: Runs = f64> {
+pub struct EngineAtTemperature<'a, R: Real = f64> {
     /// The engine.
     pub engine: &'a Engine<R>,
     /// Friction over hot friction (EN-2).
@@ -197,7 +197,7 @@ impl Engine {
     }
 }
 
-impl<R: Runs> Engine<R>
+impl<R: Real> Engine<R>
 where
     f64: Left<R>,
 {
@@ -268,7 +268,7 @@ where
     }
 }
 
-impl<R: Runs> PrimeMover<R> for EngineAtTemperature<'_, R>
+impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R>
 where
     f64: Left<R>,
 {
@@ -289,7 +289,7 @@ where
 
     #[inline(always)]
     fn full_load_share(&self, speed_rad_s: R) -> R {
-        self.full_load_nm(speed_rad_s) / speed_rad_s.on(&self.engine.full_load)
+        self.full_load_nm(speed_rad_s) / speed_rad_s.each_of(&self.engine.full_load, Curve::at)
     }
 
     #[inline(always)]
@@ -310,7 +310,7 @@ where
 
     #[inline(always)]
     fn full_load_nm(&self, speed_rad_s: R) -> R {
-        let hot = speed_rad_s.on(&self.engine.full_load);
+        let hot = speed_rad_s.each_of(&self.engine.full_load, Curve::at);
         let piston_m_s = self.engine.piston_m_s(speed_rad_s);
         let friction = self
             .engine
@@ -326,7 +326,8 @@ where
     fn accessories_nm(&self, speed_rad_s: R) -> R {
         let least = 0.5 * self.engine.idle_hot_rad_s;
         let w = speed_rad_s.most(least);
-        let turning_nm = (self.engine.electrical_w + self.charging_w) / w + self.engine.accessory_nm;
+        let turning_nm =
+            (self.engine.electrical_w + self.charging_w) / w + self.engine.accessory_nm;
         R::pick(speed_rad_s.above(0.0), turning_nm, w.filled(0.0)) // EN-4
     }
 
@@ -337,7 +338,7 @@ where
     }
 }
 
-impl<R: Runs> EngineAtTemperature<'_, R>
+impl<R: Real> EngineAtTemperature<'_, R>
 where
     f64: Left<R>,
 {
@@ -362,7 +363,7 @@ where
         let e = self.engine;
         let zero = speed_rad_s.filled(0.0);
         let rests = zero.reaches(speed_rad_s);
-        if all(rests) {
+        if rests.all() {
             return Burn {
                 fuel_kg_s: zero,
                 fuel_w: zero,
@@ -376,7 +377,9 @@ where
         let brake_pa = e.mep_pa(torque_nm);
         let friction_pa = self.friction_pa(speed_rad_s);
         let piston_m_s = e.piston_m_s(speed_rad_s);
-        let point = e.fuel.fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa);
+        let point = e
+            .fuel
+            .fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa);
         let burns = point.fuel_pa.above(0.0);
         let watts = e.displacement_m3 * speed_rad_s / FOUR_PI;
         let burnt = point.fuel_pa * watts;
@@ -400,7 +403,11 @@ where
             fuel_w: R::pick(rests, zero, fuel_w),
             to_coolant_w: R::pick(rests, zero, waste - hot_gas - to_oil), // EN-6
             to_oil_w: R::pick(rests, zero, to_oil),
-            exhaust_w: R::pick(rests, zero, hot_gas + (self.enrichment - 1.0) * burnt + start_w), // EN-9
+            exhaust_w: R::pick(
+                rests,
+                zero,
+                hot_gas + (self.enrichment - 1.0) * burnt + start_w,
+            ), // EN-9
             cut: !rests & zero.filled(NO_FUEL_W).reaches(fuel_w),
             outside: !rests & (point.outside | drawn),
         }

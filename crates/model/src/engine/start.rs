@@ -9,14 +9,14 @@
 
 use super::Engine;
 use crate::fluid::ZERO_DEGC_K;
-use crate::math::{Left, Real, Runs, all, both, ramp};
+use crate::math::{Left, Mask, Real, both, ramp};
 
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
 pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
 
 /// What the engine did before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Running<R = f64> {
+pub struct Running<R: Real = f64> {
     /// Time since the start, s: 0 at the start, infinite where it is long ago.
     pub since_s: f64,
     /// Coolant at the start, K.
@@ -63,7 +63,7 @@ impl<R: Real> Running<R> {
     #[inline(always)]
     pub fn rolled(self, wheel_rad_s: R) -> Running<R> {
         let keeps = wheel_rad_s.reaches(self.wheel_rad_s);
-        if all(keeps) {
+        if keeps.all() {
             return self;
         }
         let slowed = self.speed_rad_s * wheel_rad_s / self.wheel_rad_s;
@@ -106,7 +106,7 @@ where
         let zero = within_s.filled(0.0);
         let since = within_s.filled(self.since_s);
         let over = since.reaches(within_s);
-        if all(over) {
+        if over.all() {
             return zero; // all is spent
         }
         let u = both!(end => ([since, since + dt_s][end] / within_s).least(1.0));
@@ -124,7 +124,7 @@ where
     ((COLD_K - coolant_k) / 60.0).held(0.0, 1.0)
 }
 
-impl<R: Runs> Engine<R>
+impl<R: Real> Engine<R>
 where
     f64: Left<R>,
 {

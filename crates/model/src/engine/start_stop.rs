@@ -183,7 +183,7 @@ impl StartStop {
 
 /// Electric power of a step, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Electric<R = f64> {
+pub struct Electric<R: Real = f64> {
     /// Out of the store; negative into it.
     pub store_w: R,
     /// Lost in alternator, store and starter.

@@ -22,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{Left, Real, both, larger};
+use crate::math::{Left, Real, both, gather, larger};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -35,7 +35,7 @@ const MIN_DENSITY: f64 = 0.3;
 
 /// Friction that a fluid lends to the belt's contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction<R = f64> {
+pub struct Friction<R: Real = f64> {
     /// Boundary friction band on band and band on segment at 85 degC.
     pub band: R,
     /// Rise of the band friction with belt temperature, 1/K.
@@ -58,6 +58,8 @@ pub struct Friction<R = f64> {
     pub film_heating_w: R,
 }
 
+gather!(Friction { band, band_rise_per_k, segment, capacity, flank, half_n_m, film_exponent, half_thickness_m, film_heating_w } same { film });
+
 /// Exponent of thickness in FI-2.
 const THICKNESS_EXPONENT: f64 = 0.6;
 
@@ -66,7 +68,7 @@ const SHEARED_EXPONENT: f64 = 1.0 - THICKNESS_EXPONENT;
 
 /// Band friction at one state. Pairs are the innermost interface, band on segments, and each other one, band on band.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BandFriction<R = f64> {
+pub struct BandFriction<R: Real = f64> {
     /// Boundary friction (LU-4).
     pub mu: R,
     /// Share of the contact that the film carries, 0..1 (LU-5).
@@ -88,7 +90,7 @@ impl BandFriction {
 
 /// Logarithms of x = eta dv/N_half by interface as powers: x^q and x^0.4; zeros where nothing slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmPowers<R = f64> {
+pub struct FilmPowers<R: Real = f64> {
     /// x^q (LU-5).
     pub carried: [R; 2],
     /// x over x^0.6 (FI-2).

@@ -4,15 +4,16 @@ mod circular;
 mod curve;
 mod elementary;
 mod grid;
+mod lanes;
 mod real;
-mod runs;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
 pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
+pub use lanes::{Answers, Gather, Level, Simd, dispatch, f64x4, f64x8};
+pub(crate) use lanes::{gather, gather_each};
 pub use real::{Left, Mask, Operand, Real};
-pub use runs::{Runs, all};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
 #[inline(always)]
@@ -78,8 +79,8 @@ macro_rules! both {
 }
 pub(crate) use both;
 
-/// `every!(i in 0, 1, 2 => of[i])`: the same at several places, as an array, as [`both`].
-macro_rules! every {
+/// `places!(i in 0, 1, 2 => of[i])`: the same at several places, as an array, as [`both`].
+macro_rules! places {
     ($place:ident in $($number:literal),* => $value:expr) => {
         [$({
             let $place = $number;
@@ -87,4 +88,4 @@ macro_rules! every {
         }),*]
     };
 }
-pub(crate) use every;
+pub(crate) use places;

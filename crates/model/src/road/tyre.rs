@@ -10,11 +10,11 @@
 use super::GRAVITY_M_S2;
 use crate::cycle::Motion;
 use crate::keys::{Values, keys};
-use crate::math::{Left, Runs};
+use crate::math::{Left, Real};
 
 /// The checked tyres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tyre<R = f64> {
+pub struct Tyre<R: Real = f64> {
     /// Rolling resistance of the warm car, N; 0 without a tyre model.
     pub warm_n: R,
     /// Share of it that takes part in the measured load.
@@ -34,7 +34,7 @@ pub struct Tyre<R = f64> {
 /// Least rolling resistance over that of the warm tyre.
 const LEAST: f64 = 0.5;
 
-impl<R: Runs> Tyre<R>
+impl<R: Real> Tyre<R>
 where
     f64: Left<R>,
 {

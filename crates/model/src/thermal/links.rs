@@ -7,7 +7,7 @@ use super::{BELT, COOLANT, ENGINE_OIL, METAL, NODES, SUMP};
 use crate::math::{Left, Real};
 
 /// Conductances between nodes, W/K.
-pub(super) struct Links<R = f64> {
+pub(super) struct Links<R: Real = f64> {
     pub coolant_oil: R,
     pub coolant_metal: R,
     pub coolant_sump: R,

@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{Left, Mask, Real, all, every, exp, ln, ramp};
+use crate::math::{Left, Mask, Real, exp, ln, places, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -40,7 +40,7 @@ pub const BELT: usize = 4;
 
 /// The oil-to-air cooler.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cooler<R = f64> {
+pub struct Cooler<R: Real = f64> {
     /// U at standstill, W/K.
     pub still_w_k: R,
     /// U per road speed, W s/(K m).
@@ -55,7 +55,7 @@ pub struct Cooler<R = f64> {
 
 /// The checked network.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Network<R = f64> {
+pub struct Network<R: Real = f64> {
     /// Heat capacities, J/K; 0 for an unused node.
     pub capacity_j_k: [R; NODES],
     /// Oil in the sump of the transmission, m3.
@@ -106,12 +106,12 @@ pub const SPRAY_REFERENCE_RAD_S: f64 = crate::keys::rad_s(2500.0);
 
 /// Temperatures of the nodes, K.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heat<R = f64> {
+pub struct Heat<R: Real = f64> {
     /// Node temperatures, K.
     pub node_k: [R; NODES],
 }
 
-impl<R: Copy> Heat<R> {
+impl<R: Real> Heat<R> {
     /// All nodes at one temperature.
     pub fn uniform(temp_k: R) -> Self {
         Heat {
@@ -122,7 +122,7 @@ impl<R: Copy> Heat<R> {
 
 /// What happens around the nodes in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeatInput<R = f64> {
+pub struct HeatInput<R: Real = f64> {
     /// Heat into the nodes, W.
     pub power_w: [R; NODES],
     /// Ambient temperature, K.
@@ -143,7 +143,7 @@ pub struct HeatInput<R = f64> {
 
 /// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeatStep<R = f64> {
+pub struct HeatStep<R: Real = f64> {
     /// Temperatures at its end.
     pub heat: Heat<R>,
     /// Heat stored, W.
@@ -157,7 +157,7 @@ pub struct HeatStep<R = f64> {
 }
 
 /// Conductances of one step.
-struct Now<R = f64> {
+struct Now<R: Real = f64> {
     /// Block, engine oil pan and transmission case to the air under the bonnet, W/K.
     block_air_w_k: R,
     pan_air_w_k: R,
@@ -248,7 +248,7 @@ where
         let carried = flow * input.oil_volume_heat_j_m3k;
         let open = ((sump_k - c.bypass_below_k) / 2.0).held(0.0, 1.0);
         let passed = zero.reaches(carried) | zero.reaches(open);
-        if all(passed) {
+        if passed.all() {
             return (carried, zero);
         }
         let u = c.still_w_k + c.per_speed_w_s_k_m * input.speed_m_s;
@@ -314,7 +314,7 @@ where
         let mut now = self.now(heat, input, speed_power_07);
         let t = &heat.node_k;
         let per_s = input.dt_s.recip();
-        let capacity_w_k = every!(i in 0, 1, 2, 3, 4 => self.capacity_j_k[i] * per_s);
+        let capacity_w_k = places!(i in 0, 1, 2, 3, 4 => self.capacity_j_k[i] * per_s);
         let (air_w_k, mut air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut rise = self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w));
         // Only beyond the end of the thermostat's ramp can both be: the step was too long for its slope.

@@ -6,14 +6,14 @@ use super::coupling::Reach;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
-use crate::math::{Left, Mask, Runs};
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::Heat;
 
 /// What a driveline receives for a step.
 #[derive(Debug)]
-pub struct StepInput<'a, P, R = f64> {
+pub struct StepInput<'a, P, R: Real = f64> {
     /// Demand at the wheels.
     pub wheel: &'a WheelDemand<R>,
     /// The engine at its present temperature.
@@ -46,9 +46,9 @@ impl<P: PrimeMover> StepInput<'_, P> {
 
 /// What a driveline keeps of the step before.
 #[derive(Clone, Copy, Debug)]
-pub struct DrivelineState<R: Runs = f64> {
+pub struct DrivelineState<R: Real = f64> {
     /// Manual box: gear engaged.
-    pub gear: R::Of<u8>,
+    pub gear: R::Each<u8>,
     /// Engine speed, rad/s.
     pub engine_rad_s: R,
     /// Throttle, as a start for the solve.
@@ -65,7 +65,7 @@ pub struct DrivelineState<R: Runs = f64> {
 
 /// What a driveline gives for a step, powers in W.
 #[derive(Clone, Copy, Debug)]
-pub struct StepOutput<R: Runs = f64> {
+pub struct StepOutput<R: Real = f64> {
     /// Engine speed, rad/s.
     pub engine_rad_s: R,
     /// Torque at the flywheel into the transmission, without inertia, Nm.
@@ -73,7 +73,7 @@ pub struct StepOutput<R: Runs = f64> {
     /// Throttle 0..1.
     pub throttle: R,
     /// Gear of a manual box, 0 otherwise.
-    pub gear: R::Of<u8>,
+    pub gear: R::Each<u8>,
     /// Belt ratio; NaN for a manual box.
     pub belt_ratio: R,
     /// Primary pressure, Pa; NaN for a manual box.
@@ -81,7 +81,7 @@ pub struct StepOutput<R: Runs = f64> {
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pa: R,
     /// What decided the secondary pressure; of no meaning for a manual box.
-    pub clamp_cause: R::Of<ClampCause>,
+    pub clamp_cause: R::Each<ClampCause>,
     /// Belt slip; NaN for a manual box.
     pub slip: R,
     /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
@@ -105,9 +105,9 @@ pub struct StepOutput<R: Runs = f64> {
     /// Residual of the solve, a fraction.
     pub residual: R,
     /// Evaluations of the solve.
-    pub iterations: R::Of<u16>,
+    pub iterations: R::Each<u16>,
     /// Flags.
-    pub flags: R::Of<Flags>,
+    pub flags: R::Each<Flags>,
 }
 
 impl StepOutput {
@@ -118,7 +118,7 @@ impl StepOutput {
     }
 }
 
-impl<R: Runs> StepOutput<R>
+impl<R: Real> StepOutput<R>
 where
     f64: Left<R>,
 {
@@ -130,11 +130,11 @@ where
             engine_rad_s: zero,
             shaft_nm: zero,
             throttle: zero,
-            gear: R::of(|_| 0),
+            gear: R::every(|_| 0),
             belt_ratio: none,
             primary_pa: none,
             secondary_pa: none,
-            clamp_cause: R::of(|_| ClampCause::Law),
+            clamp_cause: R::every(|_| ClampCause::Law),
             slip: none,
             primary_nm: none,
             secondary_nm: none,
@@ -146,8 +146,8 @@ where
             deficit_w: zero,
             oil_flow_m3_s: zero,
             residual: zero,
-            iterations: R::of(|_| 0),
-            flags: R::of(|_| Flags::default()),
+            iterations: R::every(|_| 0),
+            flags: R::every(|_| Flags::default()),
         }
     }
 
@@ -170,14 +170,14 @@ where
     /// Sets a flag where the mask says so.
     #[inline(always)]
     pub fn flag(&mut self, flag: Flags, on: R::Mask) {
-        set_flag(self.engine_rad_s, &mut self.flags, flag, on);
+        set_flag::<R>(&mut self.flags, flag, on);
     }
 
     /// Where a flag is set.
     #[inline(always)]
     pub fn has(&self, flag: Flags) -> R::Mask {
-        let has = |run| R::own(&self.flags, run).contains(flag);
-        self.engine_rad_s.answers(has)
+        let has = |run| R::one(&self.flags, run).contains(flag);
+        self.engine_rad_s.ask(has)
     }
 
     /// Takes over what another output has for the runs of a mask.
@@ -188,31 +188,46 @@ where
                 $(self.$field = R::pick(runs, other.$field, self.$field);)*
             };
         }
-        numbers!(engine_rad_s, shaft_nm, throttle, belt_ratio, primary_pa, secondary_pa, slip);
-        numbers!(primary_nm, secondary_nm, clamp_safety, alternator_w, output_w, brake_w);
+        numbers!(
+            engine_rad_s,
+            shaft_nm,
+            throttle,
+            belt_ratio,
+            primary_pa,
+            secondary_pa,
+            slip
+        );
+        numbers!(
+            primary_nm,
+            secondary_nm,
+            clamp_safety,
+            alternator_w,
+            output_w,
+            brake_w
+        );
         numbers!(deficit_w, oil_flow_m3_s, residual);
         for (own, other) in self.loss_w.iter_mut().zip(&other.loss_w) {
             *own = R::pick(runs, *other, *own);
         }
-        for run in 0..R::COUNT {
-            if self.residual.answer(runs, run) {
-                *R::own_mut(&mut self.gear, run) = *R::own(&other.gear, run);
-                *R::own_mut(&mut self.clamp_cause, run) = *R::own(&other.clamp_cause, run);
-                *R::own_mut(&mut self.iterations, run) = *R::own(&other.iterations, run);
-                *R::own_mut(&mut self.flags, run) = *R::own(&other.flags, run);
+        for run in 0..R::LANES {
+            if runs.lane(run) {
+                *R::one_mut(&mut self.gear, run) = *R::one(&other.gear, run);
+                *R::one_mut(&mut self.clamp_cause, run) = *R::one(&other.clamp_cause, run);
+                *R::one_mut(&mut self.iterations, run) = *R::one(&other.iterations, run);
+                *R::one_mut(&mut self.flags, run) = *R::one(&other.flags, run);
             }
         }
     }
 }
 
-/// Sets a flag of the runs where the mask says so; `like` is any number of theirs.
+/// Sets a flag of the runs where the mask says so.
 #[inline(always)]
-pub(crate) fn set_flag<R: Runs>(like: R, flags: &mut R::Of<Flags>, flag: Flags, on: R::Mask) {
-    if R::COUNT == 1 {
-        R::own_mut(flags, 0).set(flag, on.any());
+pub(crate) fn set_flag<R: Real>(flags: &mut R::Each<Flags>, flag: Flags, on: R::Mask) {
+    if R::LANES == 1 {
+        R::one_mut(flags, 0).set(flag, on.any());
     } else if on.any() {
-        for run in 0..R::COUNT {
-            R::own_mut(flags, run).set(flag, like.answer(on, run));
+        for run in 0..R::LANES {
+            R::one_mut(flags, run).set(flag, on.lane(run));
         }
     }
 }

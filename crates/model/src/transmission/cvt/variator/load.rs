@@ -6,7 +6,7 @@ use crate::math::{Left, Real};
 
 /// What acts on the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltLoad<R = f64> {
+pub struct BeltLoad<R: Real = f64> {
     /// Primary speed, rad/s.
     pub primary_speed_rad_s: R,
     /// Torque at the secondary pulley, Nm; negative in overrun.
