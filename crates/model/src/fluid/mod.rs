@@ -22,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{Left, Real, both, gather, larger};
+use crate::math::{Left, Real, both, gather};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -150,48 +150,54 @@ where
 
 /// A checked lubricant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lubricant {
+pub struct Lubricant<R: Real = f64> {
     /// Short name as in `--lubricant`.
     pub name: String,
     /// Name for people.
     pub title: String,
     /// Kinematic viscosity.
-    pub viscosity: Viscosity,
+    pub viscosity: Viscosity<R>,
     /// Density at 15 degC, kg/m3.
-    pub density15_kg_m3: f64,
+    pub density15_kg_m3: R,
     /// Friction in the belt's contacts.
-    pub friction: Friction,
+    pub friction: Friction<R>,
 }
+
+gather!(Lubricant { viscosity, density15_kg_m3, friction } same { name, title });
 
 /// Viscosity and density of an oil at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OilState {
+pub struct OilState<R: Real = f64> {
     /// Kinematic viscosity, m2/s.
-    pub kinematic_m2_s: f64,
+    pub kinematic_m2_s: R,
     /// Density, kg/m3.
-    pub density_kg_m3: f64,
+    pub density_kg_m3: R,
 }
 
 /// Validity range of the fluid models, K.
 pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
 
-impl Lubricant {
+impl<R: Real> Lubricant<R>
+where
+    f64: Left<R>,
+{
     /// Kinematic viscosity, m2/s (LU-1).
-    #[inline]
-    pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn kinematic_m2_s(&self, temp_k: R) -> R {
         self.viscosity.kinematic_m2_s(temp_k)
     }
 
     /// Density, kg/m3 (LU-2).
-    #[inline]
-    pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn density_kg_m3(&self, temp_k: R) -> R {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
-        self.density15_kg_m3 * larger(MIN_DENSITY, share) // LU-2
+        self.density15_kg_m3 * share.filled(MIN_DENSITY).most(share) // LU-2
     }
 
     /// Viscosity and density.
-    pub fn state(&self, temp_k: f64) -> OilState {
+    #[inline(always)]
+    pub fn state(&self, temp_k: R) -> OilState<R> {
         OilState {
             kinematic_m2_s: self.kinematic_m2_s(temp_k),
             density_kg_m3: self.density_kg_m3(temp_k),
@@ -199,13 +205,14 @@ impl Lubricant {
     }
 
     /// Dynamic viscosity, Pa s.
-    #[inline]
-    pub fn dynamic_pa_s(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn dynamic_pa_s(&self, temp_k: R) -> R {
         self.kinematic_m2_s(temp_k) * self.density_kg_m3(temp_k)
     }
 
     /// Specific heat capacity, J/kgK (LU-3).
-    pub fn heat_capacity_j_kgk(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn heat_capacity_j_kgk(&self, temp_k: R) -> R {
         1000.0 * (1.685 + 0.0034 * (temp_k - ZERO_DEGC_K)) / (self.density15_kg_m3 / 1000.0).sqrt() // LU-3
     }
 }

@@ -18,7 +18,7 @@ use std::ops::{BitAnd, BitOr, Not};
 pub use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 
 /// Yes or no, for each lane of a vector of the processor.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Answers<M>(M);
 
 macro_rules! lanes {
@@ -44,6 +44,14 @@ macro_rules! lanes {
             #[inline(always)]
             fn not(self) -> Self {
                 Answers(!self.0)
+            }
+        }
+
+        impl<S: Simd> Debug for Answers<$mask<S>> {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.debug_list()
+                    .entries((0..$count).map(|lane| self.lane(lane)))
+                    .finish()
             }
         }
 
@@ -198,6 +206,18 @@ macro_rules! lanes {
 }
 
 lanes!(f64x4 mask64x4 4, f64x8 mask64x8 8);
+
+/// Four zeros, from which other numbers take their lanes.
+#[inline(always)]
+pub fn four<S: Simd>(simd: S) -> f64x4<S> {
+    f64x4::splat(simd, 0.0)
+}
+
+/// Eight zeros.
+#[inline(always)]
+pub fn eight<S: Simd>(simd: S) -> f64x8<S> {
+    f64x8::splat(simd, 0.0)
+}
 
 /// A record of one run that several runs side by side can have together.
 pub trait Gather: Sized {

@@ -11,7 +11,7 @@ pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
 pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
-pub use lanes::{Answers, Gather, Level, Simd, dispatch, f64x4, f64x8};
+pub use lanes::{Answers, Gather, Level, Simd, dispatch, eight, f64x4, f64x8, four};
 pub(crate) use lanes::{gather, gather_each};
 pub use real::{Left, Mask, Operand, Real};
 
