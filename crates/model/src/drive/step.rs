@@ -364,9 +364,7 @@ where
     f64: Left<R>,
 {
     let sump_k = input.heat.node_k[SUMP];
-    let density_kg_m3 = sump_k.each(|sump_k| car.oil.density_kg_m3(sump_k));
-    let oil_volume_heat_j_m3k =
-        density_kg_m3 * sump_k.each(|sump_k| car.oil.heat_capacity_j_kgk(sump_k));
+    let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
     car.network.advance_in_wind(
         input.heat,
         &HeatInput {

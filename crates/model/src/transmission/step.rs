@@ -19,7 +19,7 @@ pub struct StepInput<'a, P, R: Real = f64> {
     /// The engine at its present temperature.
     pub engine: &'a P,
     /// Transmission oil.
-    pub oil: &'a Lubricant,
+    pub oil: &'a Lubricant<R>,
     /// Temperatures at the beginning of the step.
     pub heat: &'a Heat<R>,
     /// Gear that the cycle prescribes, if it does.
