@@ -55,7 +55,6 @@ impl Viscosity {
         }
         Ok(Viscosity { x, w, slope })
     }
-
 }
 
 impl<R: Real> Viscosity<R>
