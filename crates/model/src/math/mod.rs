@@ -81,3 +81,14 @@ macro_rules! both {
     };
 }
 pub(crate) use both;
+
+/// `places!(i in 0, 1, 2 => of[i])`: the same at several places, as an array, as [`both`].
+macro_rules! places {
+    ($place:ident in $($number:literal),* => $value:expr) => {
+        [$({
+            let $place = $number;
+            $value
+        }),*]
+    };
+}
+pub(crate) use places;

@@ -219,6 +219,28 @@ pub trait Real:
     fn asin(self) -> Self {
         self.each(circular::asin)
     }
+
+    /// Where `self` is below the other; no where one is no number.
+    #[inline(always)]
+    fn below(self, other: impl Operand<Self>) -> Self::Mask {
+        other.lifted(self).above(self)
+    }
+
+    /// Where `self` is at or below the other; no where one is no number.
+    #[inline(always)]
+    fn at_most(self, other: impl Operand<Self>) -> Self::Mask {
+        other.lifted(self).reaches(self)
+    }
+
+    /// The sum of numbers in their order, as `Iterator::sum` has it.
+    #[inline(always)]
+    fn sum_of(self, numbers: &[Self]) -> Self {
+        let mut sum = self.filled(-0.0);
+        for number in numbers {
+            sum = sum + *number;
+        }
+        sum
+    }
 }
 
 impl Real for f64 {

@@ -11,6 +11,7 @@ pub mod viscous_self_heating;
 pub mod manual;
 mod step;
 
+pub(crate) use step::set_flag;
 pub use step::{DrivelineState, StepInput, StepOutput};
 
 use self::component::{Component, Part};
@@ -18,7 +19,9 @@ use self::coupling::Coupling;
 use self::cvt::CvtState;
 use self::loss_factor::LossFactors;
 use crate::maps::LossMap;
+use crate::math::Real;
 use crate::prime_mover::PrimeMover;
+use std::fmt::Debug;
 
 /// A transmission of either kind.
 #[derive(Clone, Debug)]
@@ -29,18 +32,36 @@ pub enum Transmission {
     Manual(Box<manual::Manual>),
 }
 
-/// What a transmission carries from step to step.
-#[derive(Clone, Copy, Debug)]
-pub struct TransmissionState {
-    /// CVT: its belt and the start of its solve.
-    pub cvt: Option<CvtState>,
-    /// Everything else.
-    pub driveline: DrivelineState,
+/// A transmission as the loop over a cycle sees it, of one run or of several side by side.
+pub trait Driveline<R: Real = f64> {
+    /// What it carries from step to step.
+    type State: Clone + Debug;
+
+    /// State at the beginning of a cycle.
+    fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State;
+
+    /// Solves one step, filling an output at rest: none is copied.
+    fn solve_into<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+        state: &mut Self::State,
+        output: &mut StepOutput<R>,
+    );
+
+    /// Engine speed before a step, rad/s.
+    fn engine_rad_s(state: &Self::State) -> R;
+
+    /// True for a CVT, which drives the automatic trace.
+    fn is_cvt(&self) -> bool;
+
+    /// Factor on the loss of its coupling (LC-6).
+    fn coupling_factor(&self) -> R;
 }
 
-impl Transmission {
-    /// State at the beginning of a cycle.
-    pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
+impl Driveline for Transmission {
+    type State = TransmissionState;
+
+    fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
         match self {
             Transmission::Cvt(cvt) => {
                 let (state, driveline) = cvt.start(input);
@@ -56,20 +77,8 @@ impl Transmission {
         }
     }
 
-    /// Solves one step.
-    pub fn solve<P: PrimeMover>(
-        &self,
-        input: &StepInput<P>,
-        state: &mut TransmissionState,
-    ) -> StepOutput {
-        let mut output = StepOutput::at_rest();
-        self.solve_into(input, state, &mut output);
-        output
-    }
-
-    /// The same, filling an output at rest: none is copied.
     #[inline]
-    pub fn solve_into<P: PrimeMover>(
+    fn solve_into<P: PrimeMover>(
         &self,
         input: &StepInput<P>,
         state: &mut TransmissionState,
@@ -81,6 +90,48 @@ impl Transmission {
             (Transmission::Cvt(_), None) => (),
             (Transmission::Manual(manual), _) => manual.solve(input, driveline, output),
         }
+    }
+
+    #[inline(always)]
+    fn engine_rad_s(state: &TransmissionState) -> f64 {
+        state.driveline.engine_rad_s
+    }
+
+    #[inline(always)]
+    fn is_cvt(&self) -> bool {
+        matches!(self, Transmission::Cvt(_))
+    }
+
+    #[inline(always)]
+    fn coupling_factor(&self) -> f64 {
+        self.coupling().loss_factor()
+    }
+}
+
+/// What a transmission carries from step to step.
+#[derive(Clone, Copy, Debug)]
+pub struct TransmissionState {
+    /// CVT: its belt and the start of its solve.
+    pub cvt: Option<CvtState>,
+    /// Everything else.
+    pub driveline: DrivelineState,
+}
+
+impl Transmission {
+    /// State at the beginning of a cycle.
+    pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
+        Driveline::start(self, input)
+    }
+
+    /// Solves one step.
+    pub fn solve<P: PrimeMover>(
+        &self,
+        input: &StepInput<P>,
+        state: &mut TransmissionState,
+    ) -> StepOutput {
+        let mut output = StepOutput::at_rest();
+        self.solve_into(input, state, &mut output);
+        output
     }
 
     /// True for a CVT, which drives the automatic trace.
