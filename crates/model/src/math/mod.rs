@@ -38,7 +38,7 @@ pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
 ///
 /// `from` and `to` may be in either order; equal ends give a step: 0 below them, 1 at them and above.
-#[inline]
+#[inline(always)]
 pub fn ramp<R: Real>(x: R, from: R, to: R) -> R
 where
     f64: Left<R>,
@@ -50,8 +50,11 @@ where
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).
-#[inline]
-pub fn smooth_ramp(x: f64, from: f64, to: f64) -> f64 {
+#[inline(always)]
+pub fn smooth_ramp<R: Real>(x: R, from: R, to: R) -> R
+where
+    f64: Left<R>,
+{
     let u = ramp(x, from, to);
     u * u * (3.0 - 2.0 * u)
 }

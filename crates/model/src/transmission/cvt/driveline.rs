@@ -501,7 +501,7 @@ impl<'a> Driveline<'a> {
         inside: &mut bool,
     ) -> PumpState {
         let at = (shaft.rad_s, 0.0, pressure_pa);
-        let mut state = PumpState::default();
+        let mut state = PumpState::none(pressure_pa);
         if self.parts.pump {
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = shaft.pump.state(pressure_pa, need);
