@@ -85,6 +85,9 @@ impl<R, C> Left<R> for C where
 pub trait Real:
     Copy
     + Debug
+    + Send
+    + Sync
+    + 'static
     + Neg<Output = Self>
     + Add<Output = Self>
     + Sub<Output = Self>

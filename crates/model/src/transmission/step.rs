@@ -32,10 +32,10 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub neutral_share: R,
 }
 
-impl<P: PrimeMover> StepInput<'_, P> {
+impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
     /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
-    #[inline]
-    pub(super) fn reach(&self, from_rad_s: f64, load_nm: f64) -> Reach {
+    #[inline(always)]
+    pub(super) fn reach(&self, from_rad_s: R, load_nm: R) -> Reach<R> {
         Reach {
             from_rad_s,
             slowest_rad_s: self.engine.slowed_rad_s(from_rad_s, load_nm, self.dt_s),
@@ -154,11 +154,17 @@ where
     /// Splits the difference between the power given and the power demanded into brake and deficit.
     #[inline(always)]
     pub(super) fn split_brake_and_shortfall(&mut self, wheel: &WheelDemand<R>, output_w: R) {
-        self.output_w = output_w;
+        self.split_of(output_w.answer(true), wheel, output_w);
+    }
+
+    /// The same for the runs of a mask.
+    #[inline(always)]
+    pub(super) fn split_of(&mut self, runs: R::Mask, wheel: &WheelDemand<R>, output_w: R) {
         let over = output_w - wheel.power_w;
         let brakes = over.reaches(0.0);
-        self.brake_w = R::pick(brakes, over, self.brake_w);
-        self.deficit_w = R::pick(brakes, self.deficit_w, -over);
+        self.output_w = R::pick(runs, output_w, self.output_w);
+        self.brake_w = R::pick(runs & brakes, over, self.brake_w);
+        self.deficit_w = R::pick(runs & !brakes, -over, self.deficit_w);
     }
 
     /// Adds a loss power.
