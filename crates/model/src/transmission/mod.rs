@@ -163,8 +163,8 @@ impl Transmission {
     #[inline]
     pub fn coupling(&self) -> &dyn Coupling {
         match self {
-            Transmission::Cvt(cvt) => &*cvt.coupling,
-            Transmission::Manual(manual) => &*manual.coupling,
+            Transmission::Cvt(cvt) => &cvt.coupling,
+            Transmission::Manual(manual) => &manual.coupling,
         }
     }
 

@@ -19,7 +19,7 @@ pub struct StepInput<'a, P, R: Real = f64> {
     /// The engine at its present temperature.
     pub engine: &'a P,
     /// Transmission oil.
-    pub oil: &'a Lubricant,
+    pub oil: &'a Lubricant<R>,
     /// Temperatures at the beginning of the step.
     pub heat: &'a Heat<R>,
     /// Gear that the cycle prescribes, if it does.
@@ -32,10 +32,13 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub neutral_share: R,
 }
 
-impl<P: PrimeMover> StepInput<'_, P> {
+impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R>
+where
+    f64: Left<R>,
+{
     /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
-    #[inline]
-    pub(super) fn reach(&self, from_rad_s: f64, load_nm: f64) -> Reach {
+    #[inline(always)]
+    pub(super) fn reach(&self, from_rad_s: R, load_nm: R) -> Reach<R> {
         Reach {
             from_rad_s,
             slowest_rad_s: self.engine.slowed_rad_s(from_rad_s, load_nm, self.dt_s),

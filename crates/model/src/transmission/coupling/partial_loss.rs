@@ -4,21 +4,20 @@
 //! |---|---|---|
 //! | LC-6 | P_loss' = f P_loss, T_e' = T_e - (1 - f) P_loss/w_e, speeds and torques at the box as before; for f > 1 full load passes on less | derived: power balance of a coupling that loses a part; f = 0 passes power on at any ratio of speeds |
 
-use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning};
-use std::sync::Arc;
+use super::{Coupling, CouplingLoad, EngineSide, Hold, Launch, LockSignals, Turning};
 
 /// A coupling whose loss is multiplied by a factor.
 #[derive(Clone, Debug)]
 pub(crate) struct PartialLoss {
-    inner: Arc<dyn Coupling>,
+    inner: Launch,
     factor: f64,
 }
 
 impl PartialLoss {
     /// A coupling with its loss times a factor; itself for 1.
-    pub fn of(inner: Arc<dyn Coupling>, factor: f64) -> Arc<dyn Coupling> {
+    pub fn of(inner: Launch, factor: f64) -> Launch {
         if (factor - 1.0).abs() > 0.0 {
-            Arc::new(PartialLoss { inner, factor })
+            Launch::other(PartialLoss { inner, factor })
         } else {
             inner
         }
@@ -94,7 +93,7 @@ impl Coupling for PartialLoss {
         self.inner.device()
     }
 
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+    fn at_least_speed(&self) -> Option<Launch> {
         let inner = self.inner.at_least_speed()?;
         Some(PartialLoss::of(inner, self.factor))
     }

@@ -24,7 +24,7 @@ pub use keys::ManualKeys;
 
 use self::step::ManualStep;
 use super::component::Component;
-use super::coupling::{Coupling, PartialLoss};
+use super::coupling::{Launch, PartialLoss};
 use super::gear_train::GearTrain;
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
@@ -35,7 +35,6 @@ use crate::maps::LossMap;
 use crate::math::larger;
 use crate::prime_mover::PrimeMover;
 use crate::thermal::SUMP;
-use std::sync::Arc;
 
 /// The checked manual box.
 #[derive(Clone, Debug)]
@@ -49,7 +48,7 @@ pub struct Manual {
     /// Shift speeds where the cycle prescribes no gears.
     pub shifts: ShiftSpeeds,
     /// Coupling to the engine.
-    pub coupling: Arc<dyn Coupling>,
+    pub coupling: Launch,
     /// Measured map of the whole box in place of bearings, churning, seals and mesh.
     pub map: Option<LossMap>,
     /// Factors on the losses (MB-6), if there are any.
@@ -65,7 +64,7 @@ impl Manual {
     /// Multiplies each loss by a factor (MB-6, LC-6).
     pub fn scale_losses(&mut self, factors: &LossFactors) {
         let launch = factors[Component::LaunchClutch];
-        self.coupling = PartialLoss::of(Arc::clone(&self.coupling), launch);
+        self.coupling = PartialLoss::of(self.coupling.clone(), launch);
         let mut own = product(&self.loss_factors(), factors);
         own[Component::LaunchClutch] = 1.0; // the coupling has it
         self.factor = loss_factor::changes(&own).then(|| Box::new(own));

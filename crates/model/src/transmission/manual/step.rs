@@ -8,7 +8,7 @@ use crate::math::{clamp, larger, smaller};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
-use crate::transmission::coupling::{CouplingLoad, Turning};
+use crate::transmission::coupling::{Coupling, CouplingLoad, Turning};
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
 /// The box in a step, in its oil.
