@@ -19,7 +19,7 @@ pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Step, mean_powers};
-use crate::math::{Left, Mask, Operand, Real, exp, ln};
+use crate::math::{Left, Mask, Operand, Real, exp, gather, ln};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -44,6 +44,15 @@ pub struct RoadLoad<R: Real = f64> {
     /// Dynamic tyre radius, m.
     pub wheel_radius_m: R,
 }
+
+gather!(RoadLoad {
+    f0_n,
+    f1_n_per_m_s,
+    f2_n_per_m_s2,
+    mass_kg,
+    inertia_kg,
+    wheel_radius_m
+});
 
 /// How the coefficients depend on ambient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

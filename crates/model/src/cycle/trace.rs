@@ -338,7 +338,7 @@ impl Trace {
     }
 
     /// Gives every step of [`Trace::steps`] to `take`, in order; two plain loops cost a drive less than the iterator.
-    #[inline]
+    #[inline(always)]
     pub fn for_each_step(&self, max_dt_s: f64, mut take: impl FnMut(Step)) {
         for (number, (interval, motion)) in self.intervals.iter().zip(&self.motions).enumerate() {
             let parts = interval.parts(max_dt_s);

@@ -23,9 +23,9 @@ pub struct Car<R: Real = f64, T = Transmission> {
     /// Thermal network.
     pub network: Network<R>,
     /// Transmission oil.
-    pub oil: Lubricant,
+    pub oil: Lubricant<R>,
     /// Engine oil.
-    pub engine_oil: Lubricant,
+    pub engine_oil: Lubricant<R>,
     /// Ambient temperature, K.
     pub ambient_k: R,
     /// Charge of the engine's cylinders over that at 25 degC and sea level (EN-5).

@@ -293,7 +293,10 @@ where
         return give_back(output, surplus_w);
     }
     // A clutch that loses a part only passes on the rest (LC-6).
-    let lost = car.transmission.coupling_factor().least(1.0);
+    let lost = match car.transmission.coupling_factor() {
+        Some(factor) => factor.least(1.0),
+        None => surplus_w.filled(1.0),
+    };
     let launch_w = output.loss_w[Component::LaunchClutch];
     output.loss_w[Component::LaunchClutch] = R::pick(slips, launch_w + lost * surplus_w, launch_w); // SI-4
     give_back(output, R::pick(slips, (1.0 - lost) * surplus_w, surplus_w));
@@ -364,9 +367,7 @@ where
     f64: Left<R>,
 {
     let sump_k = input.heat.node_k[SUMP];
-    let density_kg_m3 = sump_k.each(|sump_k| car.oil.density_kg_m3(sump_k));
-    let oil_volume_heat_j_m3k =
-        density_kg_m3 * sump_k.each(|sump_k| car.oil.heat_capacity_j_kgk(sump_k));
+    let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
     car.network.advance_in_wind(
         input.heat,
         &HeatInput {

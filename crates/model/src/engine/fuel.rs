@@ -12,7 +12,7 @@
 //! line that would leave these bounds below the engine's highest speed.
 
 use crate::maps::BsfcMap;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Gather, Left, Mask, Real, gather};
 
 const BAR: f64 = 1e5;
 /// Fuel over indicated work, both near zero, from which rounding explains that it is less.
@@ -37,13 +37,51 @@ pub struct Willans<R: Real = f64> {
     pub l2: R,
 }
 
+gather!(Willans { a, b, c, a2, l, l2 });
+
 /// A fuel model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FuelModel<R: Real = f64> {
     /// Extended Willans line.
     Willans(Willans<R>),
-    /// Measured map, one for all runs.
-    Map(BsfcMap),
+    /// Measured map.
+    Map(R::Each<BsfcMap>),
+}
+
+impl Gather for FuelModel {
+    type Together<R: Real> = FuelModel<R>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> FuelModel<R> {
+        match of[0] {
+            FuelModel::Willans(first) => {
+                let line = |model: &&'_ Self| match model {
+                    FuelModel::Willans(line) => *line,
+                    FuelModel::Map(_) => *first, // never in one group
+                };
+                let lines: Vec<Willans> = of.iter().map(line).collect();
+                FuelModel::Willans(Gather::gather(like, &lines.iter().collect::<Vec<_>>()))
+            }
+            FuelModel::Map(first) => FuelModel::Map(R::every(|run| match of[run] {
+                FuelModel::Map(map) => map.clone(),
+                FuelModel::Willans(_) => first.clone(), // never in one group
+            })),
+        }
+    }
+
+    fn lane<R: Real>(together: &FuelModel<R>, lane: usize) -> Self {
+        match together {
+            FuelModel::Willans(line) => FuelModel::Willans(Willans::lane(line, lane)),
+            FuelModel::Map(map) => FuelModel::Map(R::one(map, lane).clone()),
+        }
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (FuelModel::Willans(_), FuelModel::Willans(_)) => true,
+            (FuelModel::Map(_), FuelModel::Map(_)) => true,
+            _ => false,
+        }
+    }
 }
 
 /// Answer of a fuel model, mean effective pressures in Pa.
@@ -66,7 +104,11 @@ where
     pub fn hot_friction_pa(&self, piston_m_s: R) -> R {
         match self {
             FuelModel::Willans(w) => (w.l + w.l2 * piston_m_s * piston_m_s) * BAR,
-            FuelModel::Map(m) => (m.friction.0 + m.friction.1 * piston_m_s * piston_m_s) * BAR,
+            FuelModel::Map(m) => {
+                let friction = piston_m_s.by_lane(|run| R::one(m, run).friction.0);
+                let per_square = piston_m_s.by_lane(|run| R::one(m, run).friction.1);
+                (friction + per_square * piston_m_s * piston_m_s) * BAR
+            }
         }
     }
 
@@ -102,11 +144,18 @@ where
 
     /// Fuel of a measured map for an indicated mean effective pressure, Pa (BM-3).
     #[inline(always)]
-    fn of_map(&self, map: &BsfcMap, piston_m_s: R, speed_rad_s: R, need: R) -> FuelPoint<R> {
+    fn of_map(
+        &self,
+        map: &R::Each<BsfcMap>,
+        piston_m_s: R,
+        speed_rad_s: R,
+        need: R,
+    ) -> FuelPoint<R> {
         let hot = self.hot_friction_pa(piston_m_s);
         let brake_pa = need - hot; // BM-3
-        let found =
-            R::every(|run| map.at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run)));
+        let found = R::every(|run| {
+            R::one(map, run).at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run))
+        });
         let fuel_pa = need.by_lane(|run| R::one(&found, run).0);
         let inside = need.ask(|run| R::one(&found, run).1);
         // Below the map both go to zero together, up to rounding.

@@ -26,7 +26,7 @@ pub use start::Running;
 pub use start_stop::StartStop;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
-use crate::math::{Curve, Left, Mask, Real};
+use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 
 /// Fuel power up to which none is burnt, W: a car whose demand is just the engine's own drag has some 1e-12 W of rounding, and a second of cut fuel would depend on the last bit.
@@ -115,6 +115,15 @@ pub struct Engine<R: Real = f64> {
     pub fuel: FuelModel<R>,
     /// Start-stop, if there is one.
     pub start_stop: Option<StartStop>,
+}
+
+gather! {
+    Engine {
+        displacement_m3, stroke_m, rated_w, full_load, highest_rad_s, inertia_kg_m2, inertia_torque_nm, idle_hot_rad_s, idle_cold_rad_s,
+        idle_cold_k, idle_warm_k, idle_after_start_rad_s, idle_after_start_s, hot_k, viscous_share, viscous_exponent, reference_m2_s,
+        film_coolant_share, overrun_drag, enrichment, start_kg, start_s, cut_from_k, cut_above_rad_s, fuel_back_rad_s, electrical_w,
+        accessory_nm, exhaust_idle, exhaust_fast, friction_to_oil, heating_value_j_kg, fuel_density_kg_m3, co2_kg_kg, fuel,
+    } same { start_stop }
 }
 
 /// The engine at one temperature state, in one air.
@@ -207,7 +216,7 @@ where
         &self,
         coolant_k: R,
         oil_k: R,
-        oil: &Lubricant,
+        oil: &Lubricant<R>,
         charge: R,
         running: &Running<R>,
         dt_s: f64,
@@ -241,11 +250,10 @@ where
 
     /// Friction over that of the warm engine with the reference oil.
     #[inline(always)]
-    fn friction_factor(&self, coolant_k: R, oil_k: R, oil: &Lubricant) -> R {
+    fn friction_factor(&self, coolant_k: R, oil_k: R, oil: &Lubricant<R>) -> R {
         let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
         let film_k = film_k.least(self.hot_k);
-        let film_m2_s = film_k.each(|film_k| oil.kinematic_m2_s(film_k));
-        let thicker = film_m2_s / self.reference_m2_s;
+        let thicker = oil.kinematic_m2_s(film_k) / self.reference_m2_s;
         1.0 + self.viscous_share * ((self.viscous_exponent * thicker.ln()).exp() - 1.0) // EN-2
     }
 

@@ -10,7 +10,7 @@
 use super::GRAVITY_M_S2;
 use crate::cycle::Motion;
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real};
+use crate::math::{Left, Real, gather};
 
 /// The checked tyres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,6 +30,16 @@ pub struct Tyre<R: Real = f64> {
     /// To the air over road speed to the power of 0.7, W/K.
     pub wind_w_k: R,
 }
+
+gather!(Tyre {
+    warm_n,
+    share,
+    per_k,
+    warm_k,
+    capacity_j_k,
+    still_w_k,
+    wind_w_k
+});
 
 /// Least rolling resistance over that of the warm tyre.
 const LEAST: f64 = 0.5;

@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{Left, Mask, Real, exp, ln, places, ramp};
+use crate::math::{Left, Mask, Real, exp, gather, ln, places, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -96,6 +96,18 @@ pub struct Network<R: Real = f64> {
     pub cooler: Option<Cooler<R>>,
     /// Under-bonnet air: rise as a share of coolant over ambient.
     pub under_bonnet: R,
+}
+
+gather! {
+    Cooler { still_w_k, per_speed_w_s_k_m, flow_share, highest_m3_s, bypass_below_k }
+}
+
+gather! {
+    Network {
+        capacity_j_k, sump_oil_m3, coolant_oil_w_k, block_air_w_k, block_air_per_speed, pan_air_w_k, pan_air_per_speed, radiator_w_k,
+        radiator_per_speed, thermostat_from_k, thermostat_to_k, oil_metal_w_k, case_air_w_k, case_air_per_speed, bell_housing_w_k, spray_w_k,
+        exchanger_w_k, exchanger_opens_k, cooler, under_bonnet,
+    }
 }
 
 /// Share of a conductance that is left with nothing turning (TH-6).

@@ -261,8 +261,8 @@ impl<T: Gather> Gather for ByComponent<T> {
     type Together<R: Real> = ByComponent<T::Together<R>>;
 
     fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Vec<_> = of.iter().map(|one| &one.0).collect();
-        ByComponent(Gather::gather(like, &each))
+        let values: Vec<&[T; Component::COUNT]> = of.iter().map(|one| &one.0).collect();
+        ByComponent(Gather::gather(like, &values))
     }
 
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {

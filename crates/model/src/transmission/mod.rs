@@ -54,8 +54,8 @@ pub trait Driveline<R: Real = f64> {
     /// True for a CVT, which drives the automatic trace.
     fn is_cvt(&self) -> bool;
 
-    /// Factor on the loss of its coupling (LC-6).
-    fn coupling_factor(&self) -> R;
+    /// Factor on the loss of its coupling (LC-6); none where it loses what its model says.
+    fn coupling_factor(&self) -> Option<R>;
 }
 
 impl Driveline for Transmission {
@@ -72,7 +72,7 @@ impl Driveline for Transmission {
             }
             Transmission::Manual(manual) => TransmissionState {
                 cvt: None,
-                driveline: manual.start(input),
+                driveline: manual.begin(input),
             },
         }
     }
@@ -103,7 +103,7 @@ impl Driveline for Transmission {
     }
 
     #[inline(always)]
-    fn coupling_factor(&self) -> f64 {
+    fn coupling_factor(&self) -> Option<f64> {
         self.coupling().loss_factor()
     }
 }
@@ -174,7 +174,7 @@ impl Transmission {
             Transmission::Cvt(cvt) => cvt.loss_factors(),
             Transmission::Manual(manual) => manual.loss_factors(),
         };
-        factors[Component::LaunchClutch] = self.coupling().loss_factor();
+        factors[Component::LaunchClutch] = self.coupling().loss_factor().unwrap_or(1.0);
         factors
     }
 

@@ -157,11 +157,17 @@ where
     /// Splits the difference between the power given and the power demanded into brake and deficit.
     #[inline(always)]
     pub(super) fn split_brake_and_shortfall(&mut self, wheel: &WheelDemand<R>, output_w: R) {
-        self.output_w = output_w;
+        self.split_of(output_w.answer(true), wheel, output_w);
+    }
+
+    /// The same for the runs of a mask.
+    #[inline(always)]
+    pub(super) fn split_of(&mut self, runs: R::Mask, wheel: &WheelDemand<R>, output_w: R) {
         let over = output_w - wheel.power_w;
         let brakes = over.reaches(0.0);
-        self.brake_w = R::pick(brakes, over, self.brake_w);
-        self.deficit_w = R::pick(brakes, self.deficit_w, -over);
+        self.output_w = R::pick(runs, output_w, self.output_w);
+        self.brake_w = R::pick(runs & brakes, over, self.brake_w);
+        self.deficit_w = R::pick(runs & !brakes, -over, self.deficit_w);
     }
 
     /// Adds a loss power.

@@ -26,14 +26,6 @@ pub struct FrictionClutch<R: Real = f64> {
     pub release_rad_s: R,
 }
 
-/// Input speed over idle speed from which a coupled clutch does not slip (LC-5).
-const LOCKED_OVER_IDLE: f64 = 1.2;
-/// Width of the transition from creeping to launching, Nm.
-const CREEP_WIDTH_NM: f64 = 5.0;
-/// Speed that rounds off the square root at zero torque, rad/s (200 rpm).
-const ROUND_RAD_S: f64 = 20.944;
-const ROUND_RAD_S_SQUARED: f64 = ROUND_RAD_S * ROUND_RAD_S;
-
 gather!(FrictionClutch {
     engage_rad_s,
     gain_nm_s2,
@@ -41,18 +33,14 @@ gather!(FrictionClutch {
     release_rad_s
 });
 
-impl<R: Real> FrictionClutch<R>
-where
-    f64: Left<R>,
-{
-    /// Engine speed of a clutch that slips with a torque above its creep torque (LC-1).
-    #[inline(always)]
-    fn pulling_rad_s(&self, above: R, idle_rad_s: R) -> R {
-        let lift = (self.engage_rad_s - idle_rad_s).most(0.0);
-        let rounded = (above / self.gain_nm_s2 + ROUND_RAD_S_SQUARED).sqrt();
-        idle_rad_s + (lift * (1.0 - (-above / CREEP_WIDTH_NM).exp()) + rounded - ROUND_RAD_S) // LC-1
-    }
-}
+/// Input speed over idle speed from which a coupled clutch does not slip (LC-5).
+const LOCKED_OVER_IDLE: f64 = 1.2;
+/// Width of the transition from creeping to launching, Nm.
+const CREEP_WIDTH_NM: f64 = 5.0;
+/// Speed that rounds off the square root at zero torque, rad/s (200 rpm).
+const ROUND_RAD_S: f64 = 20.944;
+/// Its square.
+const ROUND_SQUARED: f64 = ROUND_RAD_S * ROUND_RAD_S;
 
 impl<R: Real> Coupling<R> for FrictionClutch<R>
 where
@@ -61,34 +49,7 @@ where
     /// LC-1, LC-5: never below idle nor below the input shaft.
     #[inline(always)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
-        let CouplingLoad {
-            output_nm,
-            output_rad_s,
-            idle_rad_s,
-            coupled,
-        } = *load;
-        let stays = coupled & output_rad_s.reaches(self.locked_from_rad_s(idle_rad_s));
-        if stays.all() {
-            return output_rad_s;
-        }
-        let above = output_nm - self.creep_nm;
-        let pulls = above.above(0.0);
-        let mut speed = idle_rad_s;
-        if pulls.any() {
-            speed = R::pick(pulls, self.pulling_rad_s(above, idle_rad_s), speed);
-        }
-        let caught = stays | output_rad_s.reaches(speed);
-        if caught.all() {
-            return output_rad_s;
-        }
-        let one = speed.filled(1.0);
-        let mut slip_share = one;
-        if coupled.any() {
-            let held = ramp(output_rad_s, idle_rad_s, LOCKED_OVER_IDLE * idle_rad_s);
-            slip_share = R::pick(coupled, 1.0 - held, one);
-        }
-        let slips = output_rad_s + slip_share * (speed - output_rad_s); // LC-5
-        R::pick(caught, output_rad_s, slips)
+        self.steady_rad_s(load)
     }
 
     #[inline(always)]
@@ -100,13 +61,12 @@ where
     /// nor take energy.
     #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
-        let zero = output_nm.filled(0.0);
-        let overrun = zero.above(output_nm);
+        let overruns = output_nm.below(0.0);
         let mut engine_nm = output_nm;
-        if overrun.any() {
-            engine_nm = R::pick(overrun, output_nm * output_rad_s / engine_rad_s, engine_nm);
+        if overruns.any() {
+            engine_nm = R::pick(overruns, output_nm * output_rad_s / engine_rad_s, engine_nm);
         }
-        let slipping_nm = R::pick(overrun, zero, output_nm);
+        let slipping_nm = R::pick(overruns, output_nm.filled(0.0), output_nm);
         EngineSide {
             engine_nm,
             engine_rad_s,
@@ -115,11 +75,7 @@ where
     }
 
     fn at_least_speed(&self) -> Option<Launch<R>> {
-        Some(Launch::Clutch(FrictionClutch {
-            engage_rad_s: self.engage_rad_s.filled(0.0),
-            gain_nm_s2: self.gain_nm_s2.filled(f64::INFINITY),
-            ..*self
-        })) // LC-7
+        Some(Launch::clutch(self.of_least_speed()))
     }
 
     #[inline(always)]
@@ -138,10 +94,56 @@ where
         let to = self.release_rad_s.most(from);
         ramp(output_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
     }
+}
 
+impl<R: Real> FrictionClutch<R>
+where
+    f64: Left<R>,
+{
+    /// The clutch whose engine is never faster than it has to be (LC-7).
+    pub(super) fn of_least_speed(&self) -> Self {
+        FrictionClutch {
+            engage_rad_s: self.engage_rad_s.filled(0.0),
+            gain_nm_s2: self.gain_nm_s2.filled(f64::INFINITY),
+            ..*self
+        } // LC-7
+    }
+
+    /// LC-1, LC-5.
     #[inline(always)]
-    fn loss_factor(&self) -> R {
-        self.creep_nm.filled(1.0)
+    fn steady_rad_s(&self, load: &CouplingLoad<R>) -> R {
+        let CouplingLoad {
+            output_nm,
+            output_rad_s,
+            idle_rad_s,
+            coupled,
+        } = *load;
+        let locked = coupled & output_rad_s.reaches(LOCKED_OVER_IDLE * idle_rad_s);
+        if locked.all() {
+            return output_rad_s;
+        }
+        let above = output_nm - self.creep_nm;
+        let mut speed = idle_rad_s;
+        let pulls = above.above(0.0);
+        if pulls.any() {
+            let lifts = self.engage_rad_s.above(idle_rad_s);
+            let lift = R::pick(lifts, self.engage_rad_s - idle_rad_s, above.filled(0.0));
+            let raised = lift * (1.0 - (-above / CREEP_WIDTH_NM).exp())
+                + (above / self.gain_nm_s2 + ROUND_SQUARED).sqrt()
+                - ROUND_RAD_S; // LC-1
+            speed = R::pick(pulls, speed + raised, speed);
+        }
+        let slower = locked | speed.at_most(output_rad_s);
+        if slower.all() {
+            return output_rad_s;
+        }
+        let mut slip_share = above.filled(1.0);
+        if coupled.any() {
+            let stays = ramp(output_rad_s, idle_rad_s, LOCKED_OVER_IDLE * idle_rad_s);
+            slip_share = R::pick(coupled, 1.0 - stays, slip_share);
+        }
+        let slipping = output_rad_s + slip_share * (speed - output_rad_s); // LC-5
+        R::pick(slower, output_rad_s, slipping)
     }
 }
 

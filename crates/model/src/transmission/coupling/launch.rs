@@ -1,14 +1,16 @@
 //! The coupling of a box, in a form that the compiler sees through: the clutch of several runs side by side, or any other device lane by lane.
 
-use super::{Coupling, CouplingLoad, EngineSide, FrictionClutch, Hold, LockSignals, Turning};
+use super::{
+    Coupling, CouplingLoad, DriverClutch, EngineSide, FrictionClutch, Hold, LockSignals, Turning,
+};
 use crate::math::{Gather, Left, Mask, Real};
 use std::sync::Arc;
 
 /// The coupling of a box.
 #[derive(Clone, Debug)]
 pub enum Launch<R: Real = f64> {
-    /// A friction clutch.
-    Clutch(FrictionClutch<R>),
+    /// A friction clutch, with factors on its loss.
+    Clutch(DriverClutch<R>),
     /// Another device, one for each run, and a one with their lanes.
     Other(R::Each<Device>, R),
 }
@@ -25,9 +27,24 @@ impl PartialEq for Device {
 }
 
 impl Launch {
-    /// A device.
+    /// Another device.
     pub(in crate::transmission) fn other(device: impl Coupling + 'static) -> Self {
         Launch::Other(Device(Arc::new(device)), 1.0)
+    }
+}
+
+impl<R: Real> Launch<R> {
+    /// The friction clutch, if it is one.
+    fn as_clutch(&self) -> Option<&DriverClutch<R>> {
+        match self {
+            Launch::Clutch(clutch) => Some(clutch),
+            Launch::Other(..) => None,
+        }
+    }
+
+    /// A friction clutch that loses what its model says.
+    pub(super) fn clutch(clutch: FrictionClutch<R>) -> Self {
+        Launch::Clutch(DriverClutch::new(clutch))
     }
 }
 
@@ -35,19 +52,15 @@ impl Gather for Launch {
     type Together<R: Real> = Launch<R>;
 
     fn gather<R: Real>(like: R, of: &[&Self]) -> Launch<R> {
-        let clutch = |launch: &&Launch| match launch {
-            Launch::Clutch(clutch) => Some(*clutch),
-            Launch::Other(..) => None,
-        };
-        let clutches: Option<Vec<FrictionClutch>> = of.iter().map(clutch).collect();
-        match clutches {
-            Some(clutches) => {
-                let each: Vec<_> = clutches.iter().collect();
-                Launch::Clutch(Gather::gather(like, &each))
-            }
+        match of
+            .iter()
+            .map(|launch| launch.as_clutch())
+            .collect::<Option<Vec<_>>>()
+        {
+            Some(clutches) => Launch::Clutch(Gather::gather(like, &clutches)),
             None => {
                 let device = |lane: usize| match of[lane] {
-                    Launch::Clutch(clutch) => Device(Arc::new(*clutch)),
+                    Launch::Clutch(clutch) => Device(Arc::new(clutch.clone())),
                     Launch::Other(device, _) => device.clone(),
                 };
                 Launch::Other(R::every(device), like.filled(1.0))
@@ -63,8 +76,14 @@ impl Gather for Launch {
     }
 
     fn alike(&self, other: &Self) -> bool {
-        let kind = std::mem::discriminant;
-        kind(self) == kind(other) && self.by_command() == other.by_command()
+        match (self, other) {
+            (Launch::Clutch(own), Launch::Clutch(other)) => own.alike(other),
+            (Launch::Other(..), Launch::Other(..)) => {
+                let with_factor = |launch: &Launch| launch.loss_factor().is_some();
+                self.by_command() == other.by_command() && with_factor(self) == with_factor(other)
+            }
+            _ => false,
+        }
     }
 }
 
@@ -261,11 +280,11 @@ where
     fn at_least_speed(&self) -> Option<Launch<R>> {
         match self {
             Launch::Clutch(clutch) => clutch.at_least_speed(),
-            Launch::Other(devices, _) => {
+            Launch::Other(devices, like) => {
                 let each = (0..R::LANES).map(|lane| one::<R>(devices, lane).at_least_speed());
                 let each: Vec<Launch> = each.collect::<Option<_>>()?;
                 let of: Vec<&Launch> = each.iter().collect();
-                Some(Launch::gather(self.loss_factor(), &of))
+                Some(Launch::gather(*like, &of))
             }
         }
     }
@@ -278,11 +297,12 @@ where
     }
 
     #[inline(always)]
-    fn loss_factor(&self) -> R {
+    fn loss_factor(&self) -> Option<R> {
         match self {
             Launch::Clutch(clutch) => clutch.loss_factor(),
             Launch::Other(devices, like) => {
-                like.by_lane(|lane| one::<R>(devices, lane).loss_factor())
+                one::<R>(devices, 0).loss_factor()?;
+                Some(like.by_lane(|lane| one::<R>(devices, lane).loss_factor().unwrap_or(1.0)))
             }
         }
     }

@@ -10,6 +10,7 @@ mod torque_converter;
 
 pub use friction_clutch::FrictionClutch;
 pub use launch::Launch;
+pub use partial_loss::DriverClutch;
 pub(super) use partial_loss::PartialLoss;
 pub use torque_converter::{LockUp, TorqueConverter};
 
@@ -46,8 +47,14 @@ pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Lau
     let (kind, own) = s.choose(key);
     match kind {
         "torque_converter" => Launch::other(TorqueConverter::from_values(&own)),
-        _ => Launch::Clutch(FrictionClutch::from_values(&own, creep_nm)),
+        _ => Launch::clutch(FrictionClutch::from_values(&own, creep_nm)),
     }
+}
+
+/// The clutch of a manual box.
+pub(super) fn drivers_clutch<V: Values>(s: &V, key: &Key<'_>) -> DriverClutch {
+    let (_, own) = s.choose(key);
+    DriverClutch::new(FrictionClutch::from_values(&own, 0.0))
 }
 
 /// What the coupling is to pass on.
@@ -65,6 +72,7 @@ pub struct CouplingLoad<R: Real = f64> {
 
 impl<R: Real> CouplingLoad<R> {
     /// A torque into the box, Nm, at its speed over an engine with an idle speed, rad/s.
+    #[inline(always)]
     pub fn new(output_nm: R, output_rad_s: R, idle_rad_s: R, coupled: R::Mask) -> Self {
         CouplingLoad {
             output_nm,
@@ -152,12 +160,13 @@ where
     f64: Left<R>,
 {
     let one = at.engine_rad_s.filled(1.0);
-    let faster = at.engine_rad_s.above(at.output_rad_s);
-    if !faster.any() {
+    let ahead = at.engine_rad_s.above(at.output_rad_s);
+    if !ahead.any() {
         return one;
     }
-    let share = at.engine_rad_s / at.output_rad_s;
-    R::pick(faster, 1.0 - ramp(share, one, share.filled(1.02)), one)
+    let over = at.engine_rad_s / at.output_rad_s;
+    let faded = 1.0 - ramp(over, one, one.filled(1.02));
+    R::pick(ahead, faded, one)
 }
 
 /// A coupling between engine and box.
@@ -178,7 +187,6 @@ where
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R;
 
     /// True for a coupling that locks by command. Any other has locked once engine and box turn together, and the box stays in low until then.
-    #[inline(always)]
     fn by_command(&self) -> bool {
         false
     }
@@ -186,11 +194,12 @@ where
     /// How it holds engine and box together in a step; `past`: it had locked before.
     #[inline(always)]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
-        let open = now.idle_rad_s.filled(f64::INFINITY);
+        let idle_rad_s = now.idle_rad_s;
+        let never = idle_rad_s.filled(f64::INFINITY);
         Hold {
             coupled: past,
-            locked_from_rad_s: R::pick(past, self.locked_from_rad_s(now.idle_rad_s), open),
-            slip_rad_s: open.filled(0.0),
+            locked_from_rad_s: R::pick(past, self.locked_from_rad_s(idle_rad_s), never),
+            slip_rad_s: idle_rad_s.filled(0.0),
         }
     }
 
@@ -215,15 +224,14 @@ where
     /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
     #[inline(always)]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
-        let creeps = at.idle_rad_s.above(at.output_rad_s);
-        let mut least_nm = at.output_rad_s;
+        let creeps = at.output_rad_s.below(at.idle_rad_s);
+        let mut least_nm = absorbed_nm.filled(0.0);
+        if creeps.any() {
+            least_nm = self.creep_nm(at.output_rad_s, at.idle_rad_s);
+        }
         if !creeps.all() {
             let share = self.overrun_share(at.output_rad_s, at.idle_rad_s);
-            least_nm = -together(at) * share * absorbed_nm;
-        }
-        if creeps.any() {
-            let creep_nm = self.creep_nm(at.output_rad_s, at.idle_rad_s);
-            least_nm = R::pick(creeps, creep_nm, least_nm);
+            least_nm = R::pick(creeps, least_nm, -together(at) * share * absorbed_nm);
         }
         least_nm
     }
@@ -239,16 +247,18 @@ where
         CLUTCH.name
     }
 
-    /// Factor on its loss (LC-6).
-    fn loss_factor(&self) -> R;
+    /// Factor on its loss (LC-6); none where it loses what its model says.
+    #[inline(always)]
+    fn loss_factor(&self) -> Option<R> {
+        None
+    }
 
     /// The engine's side for a torque into the box, its speed the one of steady state as far as `reach` has it.
     #[inline(always)]
     fn solve(&self, load: &CouplingLoad<R>, reach: &Reach<R>) -> EngineSide<R> {
         let reached = reach.nearest(self.engine_rad_s(load));
         let least = self.min_engine_rad_s(load.output_rad_s);
-        let engine_rad_s = reached.most(least);
-        self.engine_side(load.output_nm, load.output_rad_s, engine_rad_s)
+        self.engine_side(load.output_nm, load.output_rad_s, reached.most(least))
     }
 }
 
@@ -279,10 +289,10 @@ where
         let fall = self.from_rad_s - end_rad_s;
         let most = self.from_rad_s - self.slowest_rad_s;
         let falls = fall.above(0.0) & most.above(0.0);
-        R::pick(
-            falls,
-            0.5 * fall * (fall / most).least(1.0),
-            fall.filled(0.0),
-        ) // EN-12
+        let none = fall.filled(0.0);
+        if !falls.any() {
+            return none;
+        }
+        R::pick(falls, 0.5 * fall * (fall / most).least(1.0), none) // EN-12
     }
 }

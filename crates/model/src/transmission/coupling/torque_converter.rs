@@ -272,10 +272,6 @@ impl Coupling for TorqueConverter {
         }
     }
 
-    fn loss_factor(&self) -> f64 {
-        1.0
-    }
-
     #[inline]
     fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide {
         let engine_nm = if output_nm >= 0.0 && engine_rad_s >= output_rad_s {

@@ -49,11 +49,11 @@ use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
-use super::coupling::{Launch, PartialLoss};
+use super::coupling::{Coupling, Launch, PartialLoss};
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::maps::LossMap;
-use crate::math::{Curve, Left, Mask, Real, gather, gather_each};
+use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
@@ -85,7 +85,6 @@ pub struct LossChanges<R: Real = f64> {
     pub at_rest_nm: Option<R>,
 }
 
-gather_each!(LossMap);
 gather!(LossChanges {
     maps,
     factor,
@@ -399,6 +398,43 @@ where
         output: &mut StepOutput<R>,
     ) {
         solve::solve(self, input, own, past, output);
+    }
+}
+
+impl<R: Real> super::Driveline<R> for Cvt<R>
+where
+    f64: Left<R>,
+{
+    type State = (CvtState<R>, DrivelineState<R>);
+
+    #[inline(always)]
+    fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State {
+        Cvt::start(self, input)
+    }
+
+    #[inline(always)]
+    fn solve_into<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+        (own, past): &mut Self::State,
+        output: &mut StepOutput<R>,
+    ) {
+        self.solve(input, own, past, output);
+    }
+
+    #[inline(always)]
+    fn engine_rad_s((_, past): &Self::State) -> R {
+        past.engine_rad_s
+    }
+
+    #[inline(always)]
+    fn is_cvt(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn coupling_factor(&self) -> Option<R> {
+        self.coupling.loss_factor()
     }
 }
 

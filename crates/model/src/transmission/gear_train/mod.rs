@@ -199,7 +199,7 @@ where
 {
     /// Nothing is lost; `like` has the lanes.
     #[inline(always)]
-    fn at_rest(like: R) -> Self {
+    pub(crate) fn at_rest(like: R) -> Self {
         let none = like.filled(0.0);
         TurningTrain {
             bearing_nm: none,

@@ -1,0 +1,276 @@
+//! Several cars through one cycle in lockstep: one text of the physics, a car in each lane.
+//!
+//! Each run has the bits that [`drive_into`](super::drive_into) gives it alone. Cars can be in one group that are of one kind (see
+//! [`Gather::alike`]) and drive the same trace; those with start-stop drive alone. A run that fails keeps its numbers that are none to itself.
+
+use std::borrow::Cow;
+
+use super::run::{Conditions, Outcome, Start, drive_into};
+use super::simulate::{Recorder, State};
+use super::step::{begun, end, engine, wheel};
+use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
+use crate::cycle::{Cycle, GearCommand, Step, Trace};
+use crate::engine::start_stop::Electric;
+use crate::math::{Gather, Left, Level, Real, Simd, dispatch, eight, four};
+use crate::thermal::Heat;
+use crate::transmission::manual::Manual;
+use crate::transmission::{Driveline, StepInput, StepOutput, Transmission};
+
+/// One run of many on a cycle.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<'a> {
+    /// The car.
+    pub vehicle: &'a Vehicle,
+    /// How it is driven.
+    pub conditions: Conditions,
+}
+
+/// Drives runs through a cycle, side by side where they can be; what comes of each, in their order. No rows are kept.
+pub fn drive_each(runs: &[Run], cycle: &Cycle) -> Vec<Outcome> {
+    drive_each_on(Level::new(), runs, cycle)
+}
+
+/// The same with the instructions of a level.
+pub fn drive_each_on(level: Level, runs: &[Run], cycle: &Cycle) -> Vec<Outcome> {
+    let width = width(level);
+    let mut outcomes = Vec::with_capacity(runs.len());
+    let mut rest = runs;
+    while let [first, others @ ..] = rest {
+        let start = Prepared::new(first, cycle);
+        let mut group = vec![start];
+        for run in others.iter().take(width - 1) {
+            let next = Prepared::new(run, cycle);
+            if !group[0].alike(&next) {
+                break;
+            }
+            group.push(next);
+        }
+        rest = &rest[group.len()..];
+        match group.as_slice() {
+            [alone] => outcomes.push(drive_into(
+                alone.run.vehicle,
+                cycle,
+                &alone.run.conditions,
+                None,
+            )),
+            group => outcomes.extend(together(level, group, cycle.phases.len())),
+        }
+    }
+    outcomes
+}
+
+/// How many runs are side by side at a level.
+fn width(level: Level) -> usize {
+    if wide(level) { 8 } else { 4 }
+}
+
+/// Whether eight lanes pay: with the wide vectors of newer processors.
+fn wide(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        level.as_avx2().is_some()
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = level;
+        false
+    }
+}
+
+/// A run with its car for its ambient and its trace.
+struct Prepared<'a> {
+    run: &'a Run<'a>,
+    car: Car,
+    trace: Cow<'a, Trace>,
+    schedule: &'static str,
+}
+
+impl<'a> Prepared<'a> {
+    fn new(run: &'a Run, cycle: &'a Cycle) -> Self {
+        let CarTrace { trace, schedule } = run.vehicle.trace(cycle);
+        Prepared {
+            run,
+            car: run.vehicle.car(run.conditions.ambient_k),
+            trace,
+            schedule,
+        }
+    }
+
+    /// The manual box, if the car has one.
+    fn manual(&self) -> Option<&Manual> {
+        match &self.car.transmission {
+            Transmission::Manual(manual) => Some(manual),
+            Transmission::Cvt(_) => None,
+        }
+    }
+
+    /// Whether another run can be in one group with this one.
+    fn alike(&self, other: &Self) -> bool {
+        let (Some(own), Some(others)) = (self.manual(), other.manual()) else {
+            return false;
+        };
+        let (a, b) = (&self.car, &other.car);
+        let (from, to) = (&self.run.conditions, &other.run.conditions);
+        let same_trace = match (&self.trace, &other.trace) {
+            (Cow::Borrowed(a), Cow::Borrowed(b)) => std::ptr::eq(*a, *b),
+            (a, b) => a == b,
+        };
+        a.engine.start_stop.is_none()
+            && same_trace
+            && from.max_dt_s.to_bits() == to.max_dt_s.to_bits()
+            && matches!(from.start, Start::Warm) == matches!(to.start, Start::Warm)
+            && own.alike(others)
+            && a.engine.alike(&b.engine)
+            && a.network.alike(&b.network)
+            && a.oil.alike(&b.oil)
+            && a.engine_oil.alike(&b.engine_oil)
+    }
+}
+
+/// Drives a group of runs that are alike.
+fn together(level: Level, group: &[Prepared], phases: usize) -> Vec<Outcome> {
+    if wide(level) {
+        dispatch!(level, simd => in_eight(simd, group, phases))
+    } else {
+        dispatch!(level, simd => in_four(simd, group, phases))
+    }
+}
+
+#[inline(always)]
+fn in_eight<S: Simd>(simd: S, group: &[Prepared], phases: usize) -> Vec<Outcome> {
+    in_lanes(eight(simd), group, phases)
+}
+
+#[inline(always)]
+fn in_four<S: Simd>(simd: S, group: &[Prepared], phases: usize) -> Vec<Outcome> {
+    in_lanes(four(simd), group, phases)
+}
+
+/// A group in the lanes of a number; a lane without a run repeats the last one.
+#[inline(always)]
+fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome>
+where
+    f64: Left<R>,
+{
+    let of_lane: Vec<&Prepared> = (0..R::LANES)
+        .map(|lane| &group[lane.min(group.len() - 1)])
+        .collect();
+    let manual: Vec<&Manual> = of_lane.iter().filter_map(|run| run.manual()).collect();
+    let car = gathered(like, &of_lane, Manual::gather(like, &manual));
+    let trace = &*group[0].trace;
+    let gears = trace.gears(car.transmission.overall.len());
+    let (conditions, max_dt_s) = (group[0].run.conditions, group[0].run.conditions.max_dt_s);
+    let start_k = like.by_lane(|lane| match of_lane[lane].run.conditions.start {
+        Start::At(temp_k) => temp_k,
+        Start::Soak | Start::Warm => of_lane[lane].run.conditions.ambient_k,
+    });
+    let mut state = State::at(start_k);
+    if matches!(conditions.start, Start::Warm) {
+        simulate_together(&car, (trace, gears), max_dt_s, &mut state, &mut Unrecorded);
+        state.transmission = None;
+    }
+    let mut totals = Totals::like(like, phases);
+    simulate_together(&car, (trace, gears), max_dt_s, &mut state, &mut totals);
+    (0..group.len())
+        .map(|lane| Outcome {
+            totals: totals.of_run(lane),
+            rows: Vec::new(),
+            end: Heat {
+                node_k: state.heat.node_k.map(|temp_k| temp_k.lane(lane)),
+            },
+            gear_schedule: group[lane].schedule,
+        })
+        .collect()
+}
+
+/// The cars of a group as one, with their transmission.
+fn gathered<R: Real, T>(like: R, of: &[&Prepared], transmission: T) -> Car<R, T> {
+    fn part<R: Real, P: Gather>(like: R, of: &[&Prepared], part: fn(&Car) -> &P) -> P::Together<R> {
+        let parts: Vec<&P> = of.iter().map(|run| part(&run.car)).collect();
+        P::gather(like, &parts)
+    }
+    Car {
+        name: of[0].car.name.clone(),
+        road_load: part(like, of, |car| &car.road_load),
+        tyre: part(like, of, |car| &car.tyre),
+        transmission,
+        engine: part(like, of, |car| &car.engine),
+        network: part(like, of, |car| &car.network),
+        oil: part(like, of, |car| &car.oil),
+        engine_oil: part(like, of, |car| &car.engine_oil),
+        ambient_k: part(like, of, |car| &car.ambient_k),
+        charge: part(like, of, |car| &car.charge),
+        belt_heat_share: part(like, of, |car| &car.belt_heat_share),
+    }
+}
+
+/// Drops everything.
+struct Unrecorded;
+
+impl<R: Real> Recorder<R> for Unrecorded {
+    #[inline(always)]
+    fn record(&mut self, _: &Row<R>, _: &EnergyTerms<R>) {}
+}
+
+/// Drives a trace with its gears from a state on. No allocation a step.
+#[inline(always)]
+fn simulate_together<R: Real, T: Driveline<R>>(
+    car: &Car<R, T>,
+    (trace, gears): (&Trace, Option<&[GearCommand]>),
+    max_dt_s: f64,
+    state: &mut State<R, T::State>,
+    recorder: &mut impl Recorder<R>,
+) where
+    f64: Left<R>,
+{
+    trace.for_each_step(
+        max_dt_s,
+        #[inline(always)]
+        |step| {
+            let gear = gears.and_then(|gears| gears.get(step.interval).copied());
+            let (row, terms) = drive_step(car, &step, gear, state);
+            recorder.record(&row, &terms);
+        },
+    );
+}
+
+/// One step of cars without start-stop.
+#[inline(always)]
+fn drive_step<R: Real, T: Driveline<R>>(
+    car: &Car<R, T>,
+    step: &Step,
+    gear: Option<GearCommand>,
+    state: &mut State<R, T::State>,
+) -> (Row<R>, EnergyTerms<R>)
+where
+    f64: Left<R>,
+{
+    let wheel = wheel(car, step, &mut state.tyre_k);
+    let engine = engine(car, step, &wheel, &state.heat, &mut state.running);
+    let zero = state.tyre_k.filled(0.0);
+    let input = StepInput {
+        wheel: &wheel,
+        engine: &engine,
+        oil: &car.oil,
+        heat: &state.heat,
+        gear,
+        dt_s: step.dt_s,
+        engine_off: step.engine_off,
+        neutral_share: zero,
+    };
+    let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
+    let transmission = begun(car, step, &input, own, kinetic_j);
+    let mut output = StepOutput::like(zero);
+    zero.within(
+        #[inline(always)]
+        || {
+            car.transmission
+                .solve_into(&input, transmission, &mut output)
+        },
+    );
+    let past = (&mut state.kinetic_j, &mut state.running, state.tyre_k);
+    let electric = Electric::none(zero);
+    let (result, heat) = end(car, step, &input, (&mut output, &electric), past);
+    state.heat = heat;
+    result
+}
