@@ -44,7 +44,7 @@ use self::floors::Floors;
 use self::pulley_bearing::PulleyBearing;
 use self::pump::Pump;
 use self::seal_ring::SealRing;
-use self::selector::Selector;
+use self::selector::{Selector, SelectorSignals};
 use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::clamp_cause::ClampCause;
@@ -52,6 +52,7 @@ use super::component::{ByComponent, Component};
 use super::coupling::{Coupling, Launch, PartialLoss};
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
+use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
 use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
@@ -302,6 +303,27 @@ where
         }
     }
 
+    /// Share of a step that the box is in neutral after a rest, s, with an engine that has run since its start for a time, s (SE-1, SE-2); none
+    /// where the car moves, which is in drive.
+    #[inline(always)]
+    pub(super) fn neutral_share_after(
+        &self,
+        rested_s: f64,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> R {
+        if step.motion.speed_m_s > 0.0 {
+            return self.selector.neutral_after_s.filled(0.0);
+        }
+        self.selector.neutral_share(&SelectorSignals {
+            procedure_s: trace.map_or(0.0, Trace::selector_s),
+            running_s,
+            rested_s,
+            dt_s: step.dt_s,
+        })
+    }
+
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
     pub fn start<P: PrimeMover<R>>(
         &self,
@@ -430,6 +452,18 @@ where
     #[inline(always)]
     fn is_cvt(&self) -> bool {
         true
+    }
+
+    #[inline(always)]
+    fn neutral_share(
+        &self,
+        state: Option<&Self::State>,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> R {
+        let rested_s = state.map_or(0.0, |(_, past)| past.rested_s);
+        self.neutral_share_after(rested_s, trace, step, running_s)
     }
 
     #[inline(always)]
