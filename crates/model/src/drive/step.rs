@@ -20,8 +20,7 @@ use crate::road::WheelDemand;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
 use crate::transmission::cvt::Hold;
-use crate::transmission::cvt::selector::SelectorSignals;
-use crate::transmission::{Driveline, StepInput, StepOutput, Transmission, TransmissionState};
+use crate::transmission::{Driveline, StepInput, StepOutput, Transmission};
 
 /// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
 ///
@@ -100,12 +99,11 @@ impl<'a> Drive<'a> {
             gear,
             dt_s: step.dt_s,
             engine_off,
-            neutral_share: neutral_share(
-                car,
+            neutral_share: car.transmission.neutral_share(
+                state.transmission.as_ref(),
                 self.trace,
-                &state.running,
-                &state.transmission,
                 step,
+                state.running.since_s,
             ),
         };
         let transmission = begun(
@@ -137,29 +135,6 @@ impl<'a> Drive<'a> {
             own.hold = Some(*hold);
         }
         self.step(step)
-    }
-}
-
-/// Share of a step at rest that the box is in neutral (SE-1, SE-2).
-#[inline(always)]
-fn neutral_share(
-    car: &Car,
-    trace: Option<&Trace>,
-    running: &Running,
-    past: &Option<TransmissionState>,
-    step: &Step,
-) -> f64 {
-    if step.motion.speed_m_s > 0.0 {
-        return 0.0; // a car that moves is in drive
-    }
-    match &car.transmission {
-        Transmission::Cvt(cvt) => cvt.selector.neutral_share(&SelectorSignals {
-            procedure_s: trace.map_or(0.0, Trace::selector_s),
-            running_s: running.since_s,
-            rested_s: past.as_ref().map_or(0.0, |past| past.driveline.rested_s),
-            dt_s: step.dt_s,
-        }),
-        Transmission::Manual(_) => 0.0,
     }
 }
 

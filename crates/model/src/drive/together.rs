@@ -13,6 +13,7 @@ use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
 use crate::math::{Gather, Left, Level, Real, Simd, dispatch, eight, four};
 use crate::thermal::Heat;
+use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
 use crate::transmission::{Driveline, StepInput, StepOutput, Transmission};
 
@@ -104,10 +105,20 @@ impl<'a> Prepared<'a> {
         }
     }
 
+    /// The CVT, if the car has one.
+    fn cvt(&self) -> Option<&Cvt> {
+        match &self.car.transmission {
+            Transmission::Cvt(cvt) => Some(cvt),
+            Transmission::Manual(_) => None,
+        }
+    }
+
     /// Whether another run can be in one group with this one.
     fn alike(&self, other: &Self) -> bool {
-        let (Some(own), Some(others)) = (self.manual(), other.manual()) else {
-            return false;
+        let boxes = match (&self.car.transmission, &other.car.transmission) {
+            (Transmission::Manual(own), Transmission::Manual(others)) => own.alike(others),
+            (Transmission::Cvt(own), Transmission::Cvt(others)) => own.alike(others),
+            _ => false,
         };
         let (a, b) = (&self.car, &other.car);
         let (from, to) = (&self.run.conditions, &other.run.conditions);
@@ -119,7 +130,7 @@ impl<'a> Prepared<'a> {
             && same_trace
             && from.max_dt_s.to_bits() == to.max_dt_s.to_bits()
             && matches!(from.start, Start::Warm) == matches!(to.start, Start::Warm)
-            && own.alike(others)
+            && boxes
             && a.engine.alike(&b.engine)
             && a.network.alike(&b.network)
             && a.oil.alike(&b.oil)
@@ -155,10 +166,32 @@ where
     let of_lane: Vec<&Prepared> = (0..R::LANES)
         .map(|lane| &group[lane.min(group.len() - 1)])
         .collect();
-    let manual: Vec<&Manual> = of_lane.iter().filter_map(|run| run.manual()).collect();
-    let car = gathered(like, &of_lane, Manual::gather(like, &manual));
+    let manual: Option<Vec<&Manual>> = of_lane.iter().map(|run| run.manual()).collect();
+    let cvt: Option<Vec<&Cvt>> = of_lane.iter().map(|run| run.cvt()).collect();
+    if let Some(manual) = manual {
+        let car = gathered(like, &of_lane, Manual::gather(like, &manual));
+        let gears = group[0].trace.gears(car.transmission.overall.len());
+        in_cars(like, (&car, gears), &of_lane, (group, phases))
+    } else if let Some(cvt) = cvt {
+        let car = gathered(like, &of_lane, Cvt::gather(like, &cvt));
+        in_cars(like, (&car, None), &of_lane, (group, phases))
+    } else {
+        Vec::new() // no group holds boxes of both kinds
+    }
+}
+
+/// Drives the cars of a group, gathered, with the gears that the cycle prescribes.
+#[inline(always)]
+fn in_cars<R: Real, T: Driveline<R>>(
+    like: R,
+    (car, gears): (&Car<R, T>, Option<&[GearCommand]>),
+    of_lane: &[&Prepared],
+    (group, phases): (&[Prepared], usize),
+) -> Vec<Outcome>
+where
+    f64: Left<R>,
+{
     let trace = &*group[0].trace;
-    let gears = trace.gears(car.transmission.overall.len());
     let (conditions, max_dt_s) = (group[0].run.conditions, group[0].run.conditions.max_dt_s);
     let start_k = like.by_lane(|lane| match of_lane[lane].run.conditions.start {
         Start::At(temp_k) => temp_k,
@@ -166,11 +199,11 @@ where
     });
     let mut state = State::at(start_k);
     if matches!(conditions.start, Start::Warm) {
-        simulate_together(&car, (trace, gears), max_dt_s, &mut state, &mut Unrecorded);
+        simulate_together(car, (trace, gears), max_dt_s, &mut state, &mut Unrecorded);
         state.transmission = None;
     }
     let mut totals = Totals::like(like, phases);
-    simulate_together(&car, (trace, gears), max_dt_s, &mut state, &mut totals);
+    simulate_together(car, (trace, gears), max_dt_s, &mut state, &mut totals);
     (0..group.len())
         .map(|lane| Outcome {
             totals: totals.of_run(lane),
@@ -228,7 +261,7 @@ fn simulate_together<R: Real, T: Driveline<R>>(
         #[inline(always)]
         |step| {
             let gear = gears.and_then(|gears| gears.get(step.interval).copied());
-            let (row, terms) = drive_step(car, &step, gear, state);
+            let (row, terms) = drive_step(car, trace, &step, gear, state);
             recorder.record(&row, &terms);
         },
     );
@@ -238,6 +271,7 @@ fn simulate_together<R: Real, T: Driveline<R>>(
 #[inline(always)]
 fn drive_step<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
+    trace: &Trace,
     step: &Step,
     gear: Option<GearCommand>,
     state: &mut State<R, T::State>,
@@ -256,7 +290,12 @@ where
         gear,
         dt_s: step.dt_s,
         engine_off: step.engine_off,
-        neutral_share: zero,
+        neutral_share: car.transmission.neutral_share(
+            state.transmission.as_ref(),
+            Some(trace),
+            step,
+            state.running.since_s,
+        ),
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);

@@ -10,7 +10,7 @@
 
 use super::Curve;
 use super::elementary;
-use super::real::{Mask, Operand, Real};
+use super::real::{Mask, Operand, Own, Real};
 use fearless_simd::{Select, SimdBase, SimdFrom, SimdMask, mask64x4, mask64x8};
 use std::fmt::Debug;
 use std::ops::{BitAnd, BitOr, Not};
@@ -87,7 +87,7 @@ macro_rules! lanes {
 
         impl<S: Simd> Real for $vector<S> {
             type Mask = Answers<$mask<S>>;
-            type Each<T: Clone + Debug + PartialEq> = [T; $count];
+            type Each<T: Own> = [T; $count];
             const LANES: usize = $count;
 
             #[inline(always)]
@@ -122,17 +122,17 @@ macro_rules! lanes {
                 Answers($mask::from_bitmask(self.simd, bits))
             }
 
-            fn every<T: Clone + Debug + PartialEq>(f: impl FnMut(usize) -> T) -> [T; $count] {
+            fn every<T: Own>(f: impl FnMut(usize) -> T) -> [T; $count] {
                 std::array::from_fn(f)
             }
 
             #[inline(always)]
-            fn one<T: Clone + Debug + PartialEq>(of: &[T; $count], lane: usize) -> &T {
+            fn one<T: Own>(of: &[T; $count], lane: usize) -> &T {
                 &of[lane]
             }
 
             #[inline(always)]
-            fn one_mut<T: Clone + Debug + PartialEq>(of: &mut [T; $count], lane: usize) -> &mut T {
+            fn one_mut<T: Own>(of: &mut [T; $count], lane: usize) -> &mut T {
                 &mut of[lane]
             }
 
@@ -206,6 +206,9 @@ macro_rules! lanes {
 }
 
 lanes!(f64x4 mask64x4 4, f64x8 mask64x8 8);
+
+/// Most runs that are side by side.
+pub(crate) const MOST_LANES: usize = 8;
 
 /// Four zeros, from which other numbers take their lanes.
 #[inline(always)]

@@ -12,8 +12,8 @@ pub use curve::Curve;
 pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
 pub use lanes::{Answers, Gather, Level, Simd, dispatch, eight, f64x4, f64x8, four};
-pub(crate) use lanes::{gather, gather_each};
-pub use real::{Left, Mask, Operand, Real};
+pub(crate) use lanes::{MOST_LANES, gather, gather_each};
+pub use real::{Left, Mask, Operand, Own, Real};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
 #[inline(always)]

@@ -81,6 +81,11 @@ impl<R, C> Left<R> for C where
 {
 }
 
+/// What a lane can have of its own.
+pub trait Own: Clone + Debug + PartialEq + Send + Sync {}
+
+impl<T: Clone + Debug + PartialEq + Send + Sync> Own for T {}
+
 /// A number of the physics.
 pub trait Real:
     Copy
@@ -102,7 +107,7 @@ pub trait Real:
     type Mask: Mask;
 
     /// What each lane has of its own and no arithmetic works on, such as a curve.
-    type Each<T: Clone + Debug + PartialEq>: Clone + Debug + PartialEq;
+    type Each<T: Own>: Own;
 
     /// How many runs are side by side.
     const LANES: usize;
@@ -126,24 +131,20 @@ pub trait Real:
     fn ask(self, f: impl Fn(usize) -> bool) -> Self::Mask;
 
     /// A value for each lane.
-    fn every<T: Clone + Debug + PartialEq>(f: impl FnMut(usize) -> T) -> Self::Each<T>;
+    fn every<T: Own>(f: impl FnMut(usize) -> T) -> Self::Each<T>;
 
     /// The value of one lane.
-    fn one<T: Clone + Debug + PartialEq>(of: &Self::Each<T>, lane: usize) -> &T;
+    fn one<T: Own>(of: &Self::Each<T>, lane: usize) -> &T;
 
     /// The same, to be changed.
-    fn one_mut<T: Clone + Debug + PartialEq>(of: &mut Self::Each<T>, lane: usize) -> &mut T;
+    fn one_mut<T: Own>(of: &mut Self::Each<T>, lane: usize) -> &mut T;
 
     /// Lane by lane what a function of f64 gives.
     fn each(self, f: impl Fn(f64) -> f64) -> Self;
 
     /// Lane by lane what a function of f64 and of the lane's own value gives.
     #[inline(always)]
-    fn each_of<T: Clone + Debug + PartialEq>(
-        self,
-        of: &Self::Each<T>,
-        f: impl Fn(&T, f64) -> f64,
-    ) -> Self {
+    fn each_of<T: Own>(self, of: &Self::Each<T>, f: impl Fn(&T, f64) -> f64) -> Self {
         self.by_lane(
             #[inline(always)]
             |lane| f(Self::one(of, lane), self.lane(lane)),
@@ -248,7 +249,7 @@ pub trait Real:
 
 impl Real for f64 {
     type Mask = bool;
-    type Each<T: Clone + Debug + PartialEq> = T;
+    type Each<T: Own> = T;
     const LANES: usize = 1;
 
     #[inline(always)]
@@ -282,17 +283,17 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn every<T: Clone + Debug + PartialEq>(mut f: impl FnMut(usize) -> T) -> T {
+    fn every<T: Own>(mut f: impl FnMut(usize) -> T) -> T {
         f(0)
     }
 
     #[inline(always)]
-    fn one<T: Clone + Debug + PartialEq>(of: &T, _: usize) -> &T {
+    fn one<T: Own>(of: &T, _: usize) -> &T {
         of
     }
 
     #[inline(always)]
-    fn one_mut<T: Clone + Debug + PartialEq>(of: &mut T, _: usize) -> &mut T {
+    fn one_mut<T: Own>(of: &mut T, _: usize) -> &mut T {
         of
     }
 

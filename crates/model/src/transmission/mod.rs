@@ -18,6 +18,7 @@ use self::component::{Component, Part};
 use self::coupling::Coupling;
 use self::cvt::CvtState;
 use self::loss_factor::LossFactors;
+use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
 use crate::math::Real;
 use crate::prime_mover::PrimeMover;
@@ -53,6 +54,15 @@ pub trait Driveline<R: Real = f64> {
 
     /// True for a CVT, which drives the automatic trace.
     fn is_cvt(&self) -> bool;
+
+    /// Share of a step at rest that the box is in neutral (SE-1, SE-2); `running_s`: how long the engine has run since its start.
+    fn neutral_share(
+        &self,
+        state: Option<&Self::State>,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> R;
 
     /// Factor on the loss of its coupling (LC-6); none where it loses what its model says.
     fn coupling_factor(&self) -> Option<R>;
@@ -100,6 +110,23 @@ impl Driveline for Transmission {
     #[inline(always)]
     fn is_cvt(&self) -> bool {
         matches!(self, Transmission::Cvt(_))
+    }
+
+    #[inline(always)]
+    fn neutral_share(
+        &self,
+        state: Option<&TransmissionState>,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> f64 {
+        match self {
+            Transmission::Cvt(cvt) => {
+                let rested_s = state.map_or(0.0, |state| state.driveline.rested_s);
+                cvt.neutral_share_after(rested_s, trace, step, running_s)
+            }
+            Transmission::Manual(_) => 0.0,
+        }
     }
 
     #[inline(always)]
@@ -163,7 +190,7 @@ impl Transmission {
     #[inline]
     pub fn coupling(&self) -> &dyn Coupling {
         match self {
-            Transmission::Cvt(cvt) => &*cvt.coupling,
+            Transmission::Cvt(cvt) => &cvt.coupling,
             Transmission::Manual(manual) => &manual.coupling,
         }
     }

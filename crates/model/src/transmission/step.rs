@@ -32,7 +32,10 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub neutral_share: R,
 }
 
-impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
+impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R>
+where
+    f64: Left<R>,
+{
     /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
     #[inline(always)]
     pub(super) fn reach(&self, from_rad_s: R, load_nm: R) -> Reach<R> {

@@ -9,10 +9,9 @@
 //! | LC-7 | at least speed: LC-1 with w_e = max(idle, w_input) whatever the torque | derived: at a torque of the clutch fuel rises with the engine's speed; a clutch that is pressed by oil of its own needs no speed to carry a torque |
 //! | LC-4 | slip loss = T (w_engine - w_input) | derived: power balance |
 
-use super::{Coupling, CouplingLoad, EngineSide};
+use super::{Coupling, CouplingLoad, EngineSide, Launch};
 use crate::keys::{Values, keys};
 use crate::math::{Left, Mask, Real, gather, ramp};
-use std::sync::Arc;
 
 /// A friction clutch that slips at launch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,21 +62,20 @@ where
     #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         let overruns = output_nm.below(0.0);
-        let passed_nm = output_nm * output_rad_s / engine_rad_s;
+        let mut engine_nm = output_nm;
+        if overruns.any() {
+            engine_nm = R::pick(overruns, output_nm * output_rad_s / engine_rad_s, engine_nm);
+        }
         let slipping_nm = R::pick(overruns, output_nm.filled(0.0), output_nm);
         EngineSide {
-            engine_nm: R::pick(overruns, passed_nm, output_nm),
+            engine_nm,
             engine_rad_s,
             loss_w: slipping_nm * (engine_rad_s - output_rad_s), // LC-4, CV-6
         }
     }
 
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling<R>>> {
-        Some(Arc::new(FrictionClutch {
-            engage_rad_s: self.engage_rad_s.filled(0.0),
-            gain_nm_s2: self.gain_nm_s2.filled(f64::INFINITY),
-            ..*self
-        })) // LC-7
+    fn at_least_speed(&self) -> Option<Launch<R>> {
+        Some(Launch::clutch(self.of_least_speed()))
     }
 
     #[inline(always)]
@@ -102,6 +100,15 @@ impl<R: Real> FrictionClutch<R>
 where
     f64: Left<R>,
 {
+    /// The clutch whose engine is never faster than it has to be (LC-7).
+    pub(super) fn of_least_speed(&self) -> Self {
+        FrictionClutch {
+            engage_rad_s: self.engage_rad_s.filled(0.0),
+            gain_nm_s2: self.gain_nm_s2.filled(f64::INFINITY),
+            ..*self
+        } // LC-7
+    }
+
     /// LC-1, LC-5.
     #[inline(always)]
     fn steady_rad_s(&self, load: &CouplingLoad<R>) -> R {

@@ -4,10 +4,12 @@
 //! the engine's torque only through [`Coupling::engine_side`] and [`Coupling::output_nm`].
 
 mod friction_clutch;
+mod launch;
 mod partial_loss;
 mod torque_converter;
 
 pub use friction_clutch::FrictionClutch;
+pub use launch::Launch;
 pub use partial_loss::DriverClutch;
 pub(super) use partial_loss::PartialLoss;
 pub use torque_converter::{LockUp, TorqueConverter};
@@ -17,7 +19,6 @@ use self::torque_converter::TorqueConverterKeys;
 use crate::keys::{Choice, Key, Values, spec};
 use crate::math::{Left, Mask, Real, ramp};
 use std::fmt::Debug;
-use std::sync::Arc;
 
 const CLUTCH: Choice = Choice::new(
     "friction_clutch",
@@ -42,11 +43,11 @@ const fn launch(choices: &'static [Choice]) -> spec::Spec {
 }
 
 /// The coupling of a box; `creep_nm` is the default of a clutch's creep torque.
-pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Arc<dyn Coupling> {
+pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Launch {
     let (kind, own) = s.choose(key);
     match kind {
-        "torque_converter" => Arc::new(TorqueConverter::from_values(&own)),
-        _ => Arc::new(FrictionClutch::from_values(&own, creep_nm)),
+        "torque_converter" => Launch::other(TorqueConverter::from_values(&own)),
+        _ => Launch::clutch(FrictionClutch::from_values(&own, creep_nm)),
     }
 }
 
@@ -91,6 +92,18 @@ pub struct EngineSide<R: Real = f64> {
     pub engine_rad_s: R,
     /// Loss of the coupling, W.
     pub loss_w: R,
+}
+
+impl<R: Real> EngineSide<R> {
+    /// `yes` where the mask says so, else `no`.
+    #[inline(always)]
+    pub(super) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        EngineSide {
+            engine_nm: R::pick(mask, yes.engine_nm, no.engine_nm),
+            engine_rad_s: R::pick(mask, yes.engine_rad_s, no.engine_rad_s),
+            loss_w: R::pick(mask, yes.loss_w, no.loss_w),
+        }
+    }
 }
 
 /// What a coupling that locks by command looks at before a step.
@@ -225,7 +238,7 @@ where
 
     /// The same device with an engine that never is faster than it has to be while it slips (LC-7); none where speed and torque are bound to
     /// each other.
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling<R>>> {
+    fn at_least_speed(&self) -> Option<Launch<R>> {
         None
     }
 

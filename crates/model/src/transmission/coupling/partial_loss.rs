@@ -5,9 +5,8 @@
 //! | LC-6 | P_loss' = f P_loss, T_e' = T_e - (1 - f) P_loss/w_e, speeds and torques at the box as before; for f > 1 full load passes on less | derived: power balance of a coupling that loses a part; f = 0 passes power on at any ratio of speeds |
 
 use super::FrictionClutch;
-use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning};
+use super::{Coupling, CouplingLoad, EngineSide, Hold, Launch, LockSignals, Turning};
 use crate::math::{Left, Real, gather};
-use std::sync::Arc;
 
 /// The clutch of a manual box, which the driver opens, with factors on its loss.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,15 +19,17 @@ pub struct DriverClutch<R: Real = f64> {
 
 gather!(DriverClutch { clutch, factors });
 
-impl DriverClutch {
+impl<R: Real> DriverClutch<R> {
     /// A clutch that loses what its model says.
-    pub(super) fn new(clutch: FrictionClutch) -> Self {
+    pub(super) fn new(clutch: FrictionClutch<R>) -> Self {
         DriverClutch {
             clutch,
             factors: Vec::new(),
         }
     }
+}
 
+impl DriverClutch {
     /// Multiplies its loss by a factor.
     pub(crate) fn scale(&mut self, factor: f64) {
         if (factor - 1.0).abs() > 0.0 {
@@ -97,6 +98,13 @@ where
         self.clutch.overrun_share(output_rad_s, idle_rad_s)
     }
 
+    fn at_least_speed(&self) -> Option<Launch<R>> {
+        Some(Launch::Clutch(DriverClutch {
+            clutch: self.clutch.of_least_speed(),
+            factors: self.factors.clone(),
+        }))
+    }
+
     #[inline(always)]
     fn loss_factor(&self) -> Option<R> {
         let (first, others) = self.factors.split_first()?;
@@ -111,17 +119,20 @@ where
 /// A coupling whose loss is multiplied by a factor.
 #[derive(Clone, Debug)]
 pub(crate) struct PartialLoss {
-    inner: Arc<dyn Coupling>,
+    inner: Launch,
     factor: f64,
 }
 
 impl PartialLoss {
     /// A coupling with its loss times a factor; itself for 1.
-    pub fn of(inner: Arc<dyn Coupling>, factor: f64) -> Arc<dyn Coupling> {
-        if (factor - 1.0).abs() > 0.0 {
-            Arc::new(PartialLoss { inner, factor })
-        } else {
-            inner
+    pub fn of(inner: Launch, factor: f64) -> Launch {
+        match inner {
+            Launch::Clutch(mut clutch) => {
+                clutch.scale(factor);
+                Launch::Clutch(clutch)
+            }
+            inner if (factor - 1.0).abs() > 0.0 => Launch::other(PartialLoss { inner, factor }),
+            inner => inner,
         }
     }
 
@@ -209,7 +220,7 @@ impl Coupling for PartialLoss {
         self.inner.device()
     }
 
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+    fn at_least_speed(&self) -> Option<Launch> {
         let inner = self.inner.at_least_speed()?;
         Some(PartialLoss::of(inner, self.factor))
     }

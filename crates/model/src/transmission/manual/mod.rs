@@ -29,7 +29,7 @@ use super::coupling::{Coupling, DriverClutch};
 use super::gear_train::GearTrain;
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
-use crate::cycle::GearCommand;
+use crate::cycle::{GearCommand, Step, Trace};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::maps::LossMap;
@@ -97,6 +97,17 @@ where
     #[inline(always)]
     fn is_cvt(&self) -> bool {
         false
+    }
+
+    #[inline(always)]
+    fn neutral_share(
+        &self,
+        _: Option<&DrivelineState<R>>,
+        _: Option<&Trace>,
+        _: &Step,
+        _: f64,
+    ) -> R {
+        self.neutral_share.filled(0.0)
     }
 
     #[inline(always)]

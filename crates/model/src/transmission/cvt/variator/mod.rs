@@ -33,7 +33,7 @@ pub use slip::Slip;
 pub use tension::Tension;
 
 use crate::math::{Curve, Left, Real, gather};
-use crate::transmission::component::Component;
+use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
 /// The checked belt and pulleys.
@@ -175,9 +175,10 @@ impl<R: Real> BeltLosses<R> {
     }
 }
 
-impl BeltLosses {
+impl<R: Real> BeltLosses<R> {
     /// Each loss times its factor, slip with the loss that it makes (CV-7).
-    pub fn times(self, factor: &LossFactors) -> Self {
+    #[inline(always)]
+    pub fn times(self, factor: &ByComponent<R>) -> Self {
         let slips = factor[Component::BeltSlip];
         BeltLosses {
             band_nm: factor[Component::BeltBand] * self.band_nm,
@@ -324,7 +325,11 @@ where
 }
 
 /// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
-pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+#[inline(always)]
+pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R
+where
+    f64: Left<R>,
+{
     belt_losses(belt, at, load).capacity_nm
 }
 
