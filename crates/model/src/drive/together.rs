@@ -11,7 +11,7 @@ use super::step::{begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::math::{Gather, Left, Level, Real, Simd, dispatch, eight, four};
+use crate::math::{Gather, Left, Level, Real, Simd, eight, four};
 use crate::thermal::Heat;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
@@ -47,35 +47,30 @@ pub fn drive_each_on(level: Level, runs: &[Run], cycle: &Cycle) -> Vec<Outcome> 
             group.push(next);
         }
         rest = &rest[group.len()..];
-        match group.as_slice() {
-            [alone] => outcomes.push(drive_into(
-                alone.run.vehicle,
-                cycle,
-                &alone.run.conditions,
-                None,
-            )),
-            group => outcomes.extend(together(level, group, cycle.phases.len())),
-        }
+        let side_by_side = match group.as_slice() {
+            [_] => None,
+            group => together(level, group, cycle.phases.len()),
+        };
+        let alone = |one: &Prepared| {
+            let Run {
+                vehicle,
+                conditions,
+            } = one.run;
+            drive_into(vehicle, cycle, conditions, None)
+        };
+        outcomes.extend(side_by_side.unwrap_or_else(|| group.iter().map(alone).collect()));
     }
     outcomes
 }
 
-/// How many runs are side by side at a level.
+/// How many runs are side by side at a level: eight where the processor's vectors are wide.
 fn width(level: Level) -> usize {
-    if wide(level) { 8 } else { 4 }
-}
-
-/// Whether eight lanes pay: with the wide vectors of newer processors.
-fn wide(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        level.as_avx2().is_some()
+    if level.as_avx2().is_some() {
+        return 8;
     }
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    {
-        let _ = level;
-        false
-    }
+    let _ = level;
+    4
 }
 
 /// A run with its car for its ambient and its trace.
@@ -139,22 +134,46 @@ impl<'a> Prepared<'a> {
 }
 
 /// Drives a group of runs that are alike.
-fn together(level: Level, group: &[Prepared], phases: usize) -> Vec<Outcome> {
-    if wide(level) {
-        dispatch!(level, simd => in_eight(simd, group, phases))
-    } else {
-        dispatch!(level, simd => in_four(simd, group, phases))
+///
+/// Each level and width is code of its own: only the levels are here that make a difference, and none for other processors.
+fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outcome>> {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        if let Some(simd) = level.as_avx512() {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                || in_lanes(eight(simd), group, phases),
+            ));
+        }
+        if let Some(simd) = level.as_avx2() {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                || in_lanes(eight(simd), group, phases),
+            ));
+        }
+        if let Some(simd) = level.as_sse2() {
+            return Some(simd.vectorize(
+                #[inline(always)]
+                || in_lanes(four(simd), group, phases),
+            ));
+        }
     }
-}
-
-#[inline(always)]
-fn in_eight<S: Simd>(simd: S, group: &[Prepared], phases: usize) -> Vec<Outcome> {
-    in_lanes(eight(simd), group, phases)
-}
-
-#[inline(always)]
-fn in_four<S: Simd>(simd: S, group: &[Prepared], phases: usize) -> Vec<Outcome> {
-    in_lanes(four(simd), group, phases)
+    #[cfg(target_arch = "aarch64")]
+    if let Some(simd) = level.as_neon() {
+        return Some(simd.vectorize(
+            #[inline(always)]
+            || in_lanes(four(simd), group, phases),
+        ));
+    }
+    #[cfg(target_arch = "wasm32")]
+    if let Some(simd) = level.as_wasm_simd128() {
+        return Some(simd.vectorize(
+            #[inline(always)]
+            || in_lanes(four(simd), group, phases),
+        ));
+    }
+    let _ = (level, group, phases);
+    None
 }
 
 /// A group in the lanes of a number; a lane without a run repeats the last one.
