@@ -43,10 +43,12 @@ pub fn drive_each_on(level: Level, runs: &[Run], cycle: &Cycle) -> Vec<Outcome> 
         let (group, others) = take_group(left, width(level));
         left = others;
         let (places, group): (Vec<usize>, Vec<Prepared>) = group.into_iter().unzip();
-        let driven = match group.as_slice() {
-            [alone] => vec![alone.alone()],
+        let side_by_side = match group.as_slice() {
+            [_] => None,
             group => together(level, group, cycle.phases.len()),
         };
+        let alone = || group.iter().map(Prepared::alone).collect();
+        let driven: Vec<Outcome> = side_by_side.unwrap_or_else(alone);
         outcomes.extend(places.into_iter().zip(driven));
     }
     outcomes.sort_by_key(|(place, _)| *place);
@@ -157,38 +159,52 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Drives a group of runs that are alike. There are three copies of the physics here, and every one costs building time: with checks for debugging
-/// there is one, of four lanes; the bits are the same.
-#[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-fn together(level: Level, group: &[Prepared], phases: usize) -> Vec<Outcome> {
-    #[cfg(not(debug_assertions))]
+/// Drives a group of runs that are alike; nothing on a processor without vectors.
+///
+/// Each level and width is code of its own, and costs building time: only the levels are here that make a difference. With checks for debugging there
+/// is one, of four lanes; the bits are the same.
+fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outcome>> {
+    #[cfg(all(
+        any(target_arch = "x86", target_arch = "x86_64"),
+        not(debug_assertions)
+    ))]
     {
         if let Some(simd) = level.as_avx512() {
-            return simd.vectorize(
+            return Some(simd.vectorize(
                 #[inline(always)]
                 || in_lanes(crate::math::eight(simd), group, phases),
-            );
+            ));
         }
         if let Some(simd) = level.as_avx2() {
-            return simd.vectorize(
+            return Some(simd.vectorize(
                 #[inline(always)]
                 || in_lanes(crate::math::eight(simd), group, phases),
-            );
+            ));
         }
     }
-    match level.as_sse2() {
-        Some(simd) => simd.vectorize(
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(simd) = level.as_sse2() {
+        return Some(simd.vectorize(
             #[inline(always)]
             || in_lanes(four(simd), group, phases),
-        ),
-        None => group.iter().map(Prepared::alone).collect(),
+        ));
     }
-}
-
-/// Drives a group of runs that are alike.
-#[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-fn together(level: Level, group: &[Prepared], phases: usize) -> Vec<Outcome> {
-    crate::math::dispatch!(level, simd => in_lanes(four(simd), group, phases))
+    #[cfg(target_arch = "aarch64")]
+    if let Some(simd) = level.as_neon() {
+        return Some(simd.vectorize(
+            #[inline(always)]
+            || in_lanes(four(simd), group, phases),
+        ));
+    }
+    #[cfg(target_arch = "wasm32")]
+    if let Some(simd) = level.as_wasm_simd128() {
+        return Some(simd.vectorize(
+            #[inline(always)]
+            || in_lanes(four(simd), group, phases),
+        ));
+    }
+    let _ = (level, group, phases);
+    None
 }
 
 /// A group in the lanes of a number; a lane without a run repeats the last one.
