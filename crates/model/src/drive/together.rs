@@ -11,7 +11,7 @@ use super::step::{begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::math::{Gather, Left, Level, Real, four};
+use crate::math::{Gather, Left, Level, Real, Simd, four};
 use crate::thermal::Heat;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
