@@ -11,7 +11,7 @@ use super::step::{begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::math::{Gather, Left, Level, Real, Simd, eight, four};
+use crate::math::{Gather, Left, Level, Real, Simd, four};
 use crate::thermal::Heat;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
@@ -33,41 +33,60 @@ pub fn drive_each(runs: &[Run], cycle: &Cycle) -> Vec<Outcome> {
 
 /// The same with the instructions of a level.
 pub fn drive_each_on(level: Level, runs: &[Run], cycle: &Cycle) -> Vec<Outcome> {
-    let width = width(level);
-    let mut outcomes = Vec::with_capacity(runs.len());
-    let mut rest = runs;
-    while let [first, others @ ..] = rest {
-        let start = Prepared::new(first, cycle);
-        let mut group = vec![start];
-        for run in others.iter().take(width - 1) {
-            let next = Prepared::new(run, cycle);
-            if !group[0].alike(&next) {
-                break;
-            }
-            group.push(next);
-        }
-        rest = &rest[group.len()..];
+    let mut left: Vec<(usize, Prepared)> = runs
+        .iter()
+        .map(|run| Prepared::new(run, cycle))
+        .enumerate()
+        .collect();
+    let mut outcomes: Vec<(usize, Outcome)> = Vec::with_capacity(runs.len());
+    while !left.is_empty() {
+        let (group, others) = take_group(left, width(level));
+        left = others;
+        let (places, group): (Vec<usize>, Vec<Prepared>) = group.into_iter().unzip();
         let side_by_side = match group.as_slice() {
             [_] => None,
             group => together(level, group, cycle.phases.len()),
         };
-        let alone = |one: &Prepared| {
-            let Run {
-                vehicle,
-                conditions,
-            } = one.run;
-            drive_into(vehicle, cycle, conditions, None)
-        };
-        outcomes.extend(side_by_side.unwrap_or_else(|| group.iter().map(alone).collect()));
+        let alone = || group.iter().map(Prepared::alone).collect();
+        let driven: Vec<Outcome> = side_by_side.unwrap_or_else(alone);
+        outcomes.extend(places.into_iter().zip(driven));
     }
-    outcomes
+    outcomes.sort_by_key(|(place, _)| *place);
+    outcomes.into_iter().map(|(_, outcome)| outcome).collect()
 }
 
-/// How many runs are side by side at a level: eight where the processor's vectors are wide.
+/// A run with its place among those that were asked for.
+type Placed<'a> = (usize, Prepared<'a>);
+
+/// The first run with those that can be in one group with it, up to `most` in all, and the others in their order.
+fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
+    let mut group: Vec<Placed> = Vec::with_capacity(most);
+    let mut others = Vec::new();
+    for run in runs {
+        let joins = match group.first() {
+            Some((_, first)) => group.len() < most && first.alike(&run.1),
+            None => true,
+        };
+        if joins {
+            group.push(run);
+        } else {
+            others.push(run);
+        }
+    }
+    (group, others)
+}
+
+/// Most runs that are side by side.
+pub const MOST_TOGETHER: usize = 8;
+
+/// How many runs are side by side at a level: eight pay with the wide vectors of newer processors.
 fn width(level: Level) -> usize {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    #[cfg(all(
+        any(target_arch = "x86", target_arch = "x86_64"),
+        not(debug_assertions)
+    ))]
     if level.as_avx2().is_some() {
-        return 8;
+        return MOST_TOGETHER;
     }
     let _ = level;
     4
@@ -76,6 +95,7 @@ fn width(level: Level) -> usize {
 /// A run with its car for its ambient and its trace.
 struct Prepared<'a> {
     run: &'a Run<'a>,
+    cycle: &'a Cycle,
     car: Car,
     trace: Cow<'a, Trace>,
     schedule: &'static str,
@@ -86,10 +106,16 @@ impl<'a> Prepared<'a> {
         let CarTrace { trace, schedule } = run.vehicle.trace(cycle);
         Prepared {
             run,
+            cycle,
             car: run.vehicle.car(run.conditions.ambient_k),
             trace,
             schedule,
         }
+    }
+
+    /// The run by itself.
+    fn alone(&self) -> Outcome {
+        drive_into(self.run.vehicle, self.cycle, &self.run.conditions, None)
     }
 
     /// The manual box, if the car has one.
@@ -133,30 +159,35 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Drives a group of runs that are alike.
+/// Drives a group of runs that are alike; nothing on a processor without vectors.
 ///
-/// Each level and width is code of its own: only the levels are here that make a difference, and none for other processors.
+/// Each level and width is code of its own, and costs building time: only the levels are here that make a difference. With checks for debugging there
+/// is one, of four lanes; the bits are the same.
 fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outcome>> {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    #[cfg(all(
+        any(target_arch = "x86", target_arch = "x86_64"),
+        not(debug_assertions)
+    ))]
     {
         if let Some(simd) = level.as_avx512() {
             return Some(simd.vectorize(
                 #[inline(always)]
-                || in_lanes(eight(simd), group, phases),
+                || in_lanes(crate::math::eight(simd), group, phases),
             ));
         }
         if let Some(simd) = level.as_avx2() {
             return Some(simd.vectorize(
                 #[inline(always)]
-                || in_lanes(eight(simd), group, phases),
+                || in_lanes(crate::math::eight(simd), group, phases),
             ));
         }
-        if let Some(simd) = level.as_sse2() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || in_lanes(four(simd), group, phases),
-            ));
-        }
+    }
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(simd) = level.as_sse2() {
+        return Some(simd.vectorize(
+            #[inline(always)]
+            || in_lanes(four(simd), group, phases),
+        ));
     }
     #[cfg(target_arch = "aarch64")]
     if let Some(simd) = level.as_neon() {
@@ -217,12 +248,17 @@ where
         Start::Soak | Start::Warm => of_lane[lane].run.conditions.ambient_k,
     });
     let mut state = State::at(start_k);
-    if matches!(conditions.start, Start::Warm) {
-        simulate_together(car, (trace, gears), max_dt_s, &mut state, &mut Unrecorded);
-        state.transmission = None;
-    }
     let mut totals = Totals::like(like, phases);
-    simulate_together(car, (trace, gears), max_dt_s, &mut state, &mut totals);
+    let passes = match conditions.start {
+        Start::Warm => 2,
+        Start::Soak | Start::At(_) => 1,
+    };
+    // One call, so that the step is there once; what a first pass sums up is dropped.
+    for _ in 0..passes {
+        state.transmission = None;
+        totals = Totals::like(like, phases);
+        simulate_together(car, (trace, gears), max_dt_s, &mut state, &mut totals);
+    }
     (0..group.len())
         .map(|lane| Outcome {
             totals: totals.of_run(lane),
@@ -254,14 +290,6 @@ fn gathered<R: Real, T>(like: R, of: &[&Prepared], transmission: T) -> Car<R, T>
         charge: part(like, of, |car| &car.charge),
         belt_heat_share: part(like, of, |car| &car.belt_heat_share),
     }
-}
-
-/// Drops everything.
-struct Unrecorded;
-
-impl<R: Real> Recorder<R> for Unrecorded {
-    #[inline(always)]
-    fn record(&mut self, _: &Row<R>, _: &EnergyTerms<R>) {}
 }
 
 /// Drives a trace with its gears from a state on. No allocation a step.
