@@ -8,6 +8,7 @@ use cvtcycle::model::drive::{Car, Drive, State, own_trace};
 use cvtcycle::model::flags::Flags;
 use cvtcycle::model::keys::rad_s;
 use cvtcycle::model::transmission::Transmission;
+use cvtcycle::model::transmission::coupling::Coupling;
 use cvtcycle::model::transmission::cvt::Hold;
 use cvtcycle::study::optimum::{Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line};
 

@@ -18,8 +18,8 @@ mod tyre;
 pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
-use crate::cycle::{Motion, Step};
-use crate::math::{exp, ln};
+use crate::cycle::{Step, mean_powers};
+use crate::math::{Left, Mask, Operand, Real, exp, gather, ln};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -30,20 +30,29 @@ const CHARGE_REFERENCE_K: f64 = 298.15;
 
 /// The checked road load, coefficients in force for one ambient.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RoadLoad {
+pub struct RoadLoad<R: Real = f64> {
     /// f0, N.
-    pub f0_n: f64,
+    pub f0_n: R,
     /// f1, N s/m.
-    pub f1_n_per_m_s: f64,
+    pub f1_n_per_m_s: R,
     /// f2, N s2/m2.
-    pub f2_n_per_m_s2: f64,
+    pub f2_n_per_m_s2: R,
     /// Mass with payload, kg.
-    pub mass_kg: f64,
+    pub mass_kg: R,
     /// Mass with rotating parts, kg.
-    pub inertia_kg: f64,
+    pub inertia_kg: R,
     /// Dynamic tyre radius, m.
-    pub wheel_radius_m: f64,
+    pub wheel_radius_m: R,
 }
+
+gather!(RoadLoad {
+    f0_n,
+    f1_n_per_m_s,
+    f2_n_per_m_s2,
+    mass_kg,
+    inertia_kg,
+    wheel_radius_m
+});
 
 /// How the coefficients depend on ambient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,19 +86,19 @@ impl Ambient {
 
 /// Demand at the wheels in one step: means over the step, works over the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WheelDemand {
+pub struct WheelDemand<R: Real = f64> {
     /// Mean speed, m/s.
     pub speed_m_s: f64,
     /// Acceleration, m/s2.
     pub accel_m_s2: f64,
     /// Mean wheel speed, rad/s.
-    pub wheel_rad_s: f64,
+    pub wheel_rad_s: R,
     /// Mean power, W.
-    pub power_w: f64,
+    pub power_w: R,
     /// Work in the drive parts, J.
-    pub positive_j: f64,
+    pub positive_j: R,
     /// Work in the braking parts, J, negative.
-    pub negative_j: f64,
+    pub negative_j: R,
 }
 
 impl RoadLoad {
@@ -101,42 +110,56 @@ impl RoadLoad {
         }
         self
     }
+}
 
-    /// Mean power of a motion with a constant part of force `c`, W.
-    #[inline]
-    fn power_w(&self, c: f64, motion: &Motion) -> f64 {
-        c * motion.speed_m_s
-            + self.f1_n_per_m_s * motion.square_m2_s2
-            + self.f2_n_per_m_s2 * motion.cube_m3_s3 // RL-5
+/// Length of the road over its length on the map.
+fn along_the_road(grade: f64) -> f64 {
+    (1.0 + grade * grade).sqrt()
+}
+
+impl<R: Real> RoadLoad<R>
+where
+    f64: Left<R>,
+{
+    /// Mean power, W, with a constant part of force `c` and the means of speed, its square and its cube.
+    #[inline(always)]
+    fn power_w(&self, c: R, [speed, square, cube]: [impl Operand<R>; 3]) -> R {
+        let [speed, square, cube] = [speed.lifted(c), square.lifted(c), cube.lifted(c)];
+        c * speed + self.f1_n_per_m_s * square + self.f2_n_per_m_s2 * cube // RL-5
     }
 
     /// Speeds at which the force is zero, m/s, the lower first; NaN where there is none. Only a negative f1 has two.
-    #[inline]
-    fn zero_force_speeds(&self, c: f64) -> [f64; 2] {
+    #[inline(always)]
+    fn zero_force_speeds(&self, c: R) -> [R; 2] {
         let (f1, f2) = (self.f1_n_per_m_s, self.f2_n_per_m_s2);
-        if f2 <= 0.0 {
-            return [f64::NAN, -c / f1];
-        }
+        let (straight, falls) = (f2.at_most(0.0), f1.below(0.0));
         let root = (f1 * f1 - 4.0 * f2 * c).sqrt();
-        if f1 < 0.0 {
-            [2.0 * c / (root - f1), (root - f1) / (2.0 * f2)]
-        } else {
-            [f64::NAN, -2.0 * c / (f1 + root)]
-        }
+        let lower = R::pick(falls & !straight, 2.0 * c / (root - f1), c.filled(f64::NAN));
+        let upper = R::pick(falls, (root - f1) / (2.0 * f2), -2.0 * c / (f1 + root));
+        [lower, R::pick(straight, -c / f1, upper)]
     }
 
     /// What a step demands of the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
     #[inline(always)]
-    pub fn wheel(&self, step: &Step, extra_n: f64) -> WheelDemand {
+    pub fn wheel(&self, step: &Step, extra_n: R) -> WheelDemand<R> {
         let motion = &step.motion;
         if motion.speed_m_s <= 0.0 {
-            return WheelDemand::default();
+            let zero = extra_n.filled(0.0);
+            return WheelDemand {
+                speed_m_s: 0.0,
+                accel_m_s2: 0.0,
+                wheel_rad_s: zero,
+                power_w: zero,
+                positive_j: zero,
+                negative_j: zero,
+            };
         }
         let mut c = self.f0_n + extra_n + self.inertia_kg * motion.accel_m_s2;
         if step.grade.abs() > 0.0 {
-            c += self.mass_kg * GRAVITY_M_S2 * step.grade / (1.0 + step.grade * step.grade).sqrt(); // RL-1
+            c = c + self.mass_kg * GRAVITY_M_S2 * step.grade / along_the_road(step.grade); // RL-1
         }
-        let power_w = self.power_w(c, motion);
+        let powers = [motion.speed_m_s, motion.square_m2_s2, motion.cube_m3_s3];
+        let power_w = self.power_w(c, powers);
         let (positive_j, negative_j) = self.split_j(c, step, power_w * step.dt_s);
         WheelDemand {
             speed_m_s: motion.speed_m_s,
@@ -149,40 +172,40 @@ impl RoadLoad {
     }
 
     /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).
-    #[inline]
-    fn split_j(&self, c: f64, step: &Step, whole_j: f64) -> (f64, f64) {
+    #[inline(always)]
+    fn split_j(&self, c: R, step: &Step, whole_j: R) -> (R, R) {
         let (v0, v1) = (step.start_speed_m_s, step.end_speed_m_s);
-        let (mut drive_j, mut brake_j) = (0.0, 0.0);
-        let mut part = |work_j: f64| {
-            if work_j >= 0.0 {
-                drive_j += work_j;
-            } else {
-                brake_j += work_j;
-            }
-        };
+        let (mut drive_j, mut brake_j) = (c.filled(0.0), c.filled(0.0));
         let mut rest_j = whole_j;
         // With no part of the force negative there is nothing to split: most steps need no root.
-        if c < 0.0 || self.f1_n_per_m_s < 0.0 {
+        let splits = c.below(0.0) | self.f1_n_per_m_s.below(0.0);
+        if splits.any() {
             let [lower, upper] = self.zero_force_speeds(c);
             let rising = v0 < v1;
             let (low, high) = if rising { (v0, v1) } else { (v1, v0) };
-            let mut from = v0;
+            let mut from = c.filled(v0);
             for zero in if rising {
                 [lower, upper]
             } else {
                 [upper, lower]
             } {
-                if zero > low && zero < high {
+                let inside = splits & zero.above(low) & zero.below(high);
+                if inside.any() {
                     let time_s = (zero - from) / step.motion.accel_m_s2;
-                    let work_j = self.power_w(c, &Motion::between(from, zero, time_s)) * time_s;
-                    part(work_j);
-                    rest_j -= work_j;
-                    from = zero;
+                    let work_j = self.power_w(c, mean_powers(from, zero)) * time_s;
+                    let drives = work_j.reaches(0.0);
+                    drive_j = R::pick(inside & drives, drive_j + work_j, drive_j);
+                    brake_j = R::pick(inside & !drives, brake_j + work_j, brake_j);
+                    rest_j = R::pick(inside, rest_j - work_j, rest_j);
+                    from = R::pick(inside, zero, from);
                 }
             }
         }
-        part(rest_j);
-        (drive_j, brake_j)
+        let drives = rest_j.reaches(0.0);
+        (
+            R::pick(drives, drive_j + rest_j, drive_j),
+            R::pick(drives, brake_j, brake_j + rest_j),
+        )
     }
 }
 

@@ -35,4 +35,5 @@ mod smaller_points;
 mod start_stop;
 mod tables;
 mod targets;
+mod together;
 mod torque_converter;

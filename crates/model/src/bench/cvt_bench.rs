@@ -148,7 +148,7 @@ impl OnBench<'_> {
             pressure_pa: pa,
             secondary_n: cvt.secondary_clamp_n(pressure_pa, secondary_rad_s),
         };
-        let mut torques = PartTorques::default();
+        let mut torques = PartTorques::none(0.0);
         line.secondary(
             output,
             || line.final_drive(secondary_rad_s, output),

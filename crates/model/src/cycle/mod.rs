@@ -8,7 +8,7 @@ pub mod gtr15;
 mod trace;
 
 pub use gears::{GearColumns, GearCommand};
-pub use trace::{Interval, Motion, Step, Trace};
+pub use trace::{Interval, Motion, Step, Trace, mean_powers};
 
 /// How the fuel of the phases is put together to the cycle's one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! A speed trace: intervals over which speed is linear, and their division into steps.
 
 use super::gears::{GearColumns, GearCommand};
-use crate::math::{exp, larger, ln};
+use crate::math::{Left, Real, exp, larger, ln};
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,17 +117,29 @@ pub struct Motion {
     pub speed_power_07: f64,
 }
 
+/// Means of a speed that is linear from one value to another, of its square and of its cube.
+#[inline(always)]
+pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3]
+where
+    f64: Left<R>,
+{
+    [
+        0.5 * (v0 + v1),
+        (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,
+        (v0 + v1) * (v0 * v0 + v1 * v1) / 4.0,
+    ]
+}
+
 impl Motion {
     /// Speed linear from one value to another, m/s, within a time, s.
     #[inline]
     pub fn between(from_m_s: f64, to_m_s: f64, dt_s: f64) -> Self {
-        let (v0, v1) = (from_m_s, to_m_s);
-        let speed_m_s = 0.5 * (v0 + v1);
+        let [speed_m_s, square_m2_s2, cube_m3_s3] = mean_powers(from_m_s, to_m_s);
         Motion {
             speed_m_s,
-            accel_m_s2: (v1 - v0) / dt_s,
-            square_m2_s2: (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,
-            cube_m3_s3: (v0 + v1) * (v0 * v0 + v1 * v1) / 4.0,
+            accel_m_s2: (to_m_s - from_m_s) / dt_s,
+            square_m2_s2,
+            cube_m3_s3,
             speed_power_07: if speed_m_s > 0.0 {
                 exp(0.7 * ln(speed_m_s))
             } else {
@@ -158,6 +170,14 @@ pub struct Step {
     pub engine_off: bool,
     /// Index into [`Trace::intervals`] and into [`Trace::gears`].
     pub interval: usize,
+}
+
+impl Step {
+    /// Distance driven, m.
+    #[inline(always)]
+    pub fn distance_m(&self) -> f64 {
+        self.motion.speed_m_s * self.dt_s
+    }
 }
 
 /// What a car is asked to drive.
@@ -318,7 +338,7 @@ impl Trace {
     }
 
     /// Gives every step of [`Trace::steps`] to `take`, in order; two plain loops cost a drive less than the iterator.
-    #[inline]
+    #[inline(always)]
     pub fn for_each_step(&self, max_dt_s: f64, mut take: impl FnMut(Step)) {
         for (number, (interval, motion)) in self.intervals.iter().zip(&self.motions).enumerate() {
             let parts = interval.parts(max_dt_s);

@@ -6,29 +6,29 @@
 //! | LE-2 | transmission losses + heat to the engine = heat into the nodes = stored + given to the air | derived: first law |
 //! | LE-3 | error = \|in - out\| / sum of absolute terms, 0 for an empty row | contract |
 
-use crate::math::larger;
+use crate::math::{Left, Real};
 
 macro_rules! energy_terms {
     ($($term:ident: $doc:literal;)*) => {
         /// Terms of both balances in one row, W.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
-        pub struct EnergyTerms {
-            $(#[doc = $doc] pub $term: f64,)*
+        pub struct EnergyTerms<R: Real = f64> {
+            $(#[doc = $doc] pub $term: R,)*
         }
 
         /// Names of the terms, in the order of [`EnergyTerms::as_array`].
         pub const TERM_NAMES: [&str; [$($doc),*].len()] = [$(stringify!($term)),*];
 
-        impl EnergyTerms {
+        impl<R: Real> EnergyTerms<R> {
             /// The terms in the order of [`TERM_NAMES`].
-            #[inline]
-            pub fn as_array(&self) -> [f64; TERM_NAMES.len()] {
+            #[inline(always)]
+            pub fn as_array(&self) -> [R; TERM_NAMES.len()] {
                 [$(self.$term),*]
             }
 
             /// Terms from an array in the order of [`TERM_NAMES`].
-            #[inline]
-            pub fn from_array([$($term),*]: [f64; TERM_NAMES.len()]) -> Self {
+            #[inline(always)]
+            pub fn from_array([$($term),*]: [R; TERM_NAMES.len()]) -> Self {
                 EnergyTerms { $($term),* }
             }
         }
@@ -51,20 +51,26 @@ energy_terms! {
     electric_loss: "Losses of alternator, electric store and starter, those of the alternator's own load apart.";
 }
 
-#[inline]
-fn error(difference: f64, scale: f64) -> f64 {
-    if scale > 0.0 { difference / scale } else { 0.0 } // LE-3
+#[inline(always)]
+fn error<R: Real>(difference: R, scale: R) -> R {
+    R::pick(
+        scale.above(scale.filled(0.0)),
+        difference / scale,
+        scale.filled(0.0),
+    ) // LE-3
 }
 
-impl EnergyTerms {
+impl<R: Real> EnergyTerms<R>
+where
+    f64: Left<R>,
+{
     /// Relative error of the power ledger (LE-1).
-    #[inline]
-    pub fn power_error(&self) -> f64 {
-        let (from, to) = if self.wheels < 0.0 {
-            (-self.wheels, 0.0)
-        } else {
-            (0.0, self.wheels)
-        };
+    #[inline(always)]
+    pub fn power_error(&self) -> R {
+        let zero = self.wheels.filled(0.0);
+        let driven = zero.above(self.wheels);
+        let from = R::pick(driven, -self.wheels, zero);
+        let to = R::pick(driven, zero, self.wheels);
         let out = to
             + self.brake
             + self.accessories
@@ -87,20 +93,20 @@ impl EnergyTerms {
     }
 
     /// Relative error of the heat ledger (LE-2).
-    #[inline]
-    pub fn heat_error(&self) -> f64 {
+    #[inline(always)]
+    pub fn heat_error(&self) -> R {
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
         let balance = (self.node_heat - (self.stored + self.to_air)).abs();
         let handed = (self.losses + self.engine_heat - self.node_heat).abs();
-        error(larger(handed, balance), scale)
+        error(handed.most(balance), scale)
     }
 
     /// Adds another row's terms, weighted by its length, J.
-    #[inline]
-    pub fn add(&mut self, other: &EnergyTerms, dt_s: f64) {
+    #[inline(always)]
+    pub fn add(&mut self, other: &EnergyTerms<R>, dt_s: f64) {
         let mut sum = self.as_array();
         for (s, o) in sum.iter_mut().zip(other.as_array()) {
-            *s += o * dt_s;
+            *s = *s + o * dt_s;
         }
         *self = EnergyTerms::from_array(sum);
     }

@@ -9,6 +9,7 @@ mod run;
 mod simulate;
 mod step;
 mod stopping;
+mod together;
 mod totals;
 mod vehicle;
 
@@ -23,5 +24,6 @@ pub use run::{
 };
 pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};
+pub use together::{MOST_TOGETHER, Run, drive_each, drive_each_on};
 pub use totals::{Extreme, PhaseTotals, Totals};
 pub use vehicle::Vehicle;

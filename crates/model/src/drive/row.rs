@@ -1,15 +1,16 @@
 //! One row: everything that is known about one time step.
 
-use super::{Car, EnergyTerms};
+use super::EnergyTerms;
 use crate::cycle::Step;
 use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
+use crate::math::{Left, Real};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
-use crate::transmission::{StepInput, StepOutput};
+use crate::transmission::{StepInput, StepOutput, set_flag};
 
 /// Nodes with the highest temperature, K, that each of them may have; above it a row is too hot.
 pub const HIGHEST_K: [(usize, f64); 3] = [
@@ -20,7 +21,7 @@ pub const HIGHEST_K: [(usize, f64); 3] = [
 
 /// One time step: means over the step that ends at `time_s`; temperatures are those at its end.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Row {
+pub struct Row<R: Real = f64> {
     /// End of the step, s from the start of the cycle.
     pub time_s: f64,
     /// Length of the step, s.
@@ -34,119 +35,120 @@ pub struct Row {
     /// Distance in the step, m.
     pub distance_m: f64,
     /// Demanded mean torque at the driven wheels, Nm.
-    pub wheel_torque_nm: f64,
+    pub wheel_torque_nm: R,
     /// Demanded mean power at the driven wheels, W.
-    pub wheel_power_w: f64,
+    pub wheel_power_w: R,
     /// Demanded work in the drive parts of the step, J, never negative.
-    pub wheel_work_positive_j: f64,
+    pub wheel_work_positive_j: R,
     /// Demanded work in the braking parts of the step, J, never positive.
-    pub wheel_work_negative_j: f64,
+    pub wheel_work_negative_j: R,
     /// Power that could not be delivered, W.
-    pub deficit_w: f64,
+    pub deficit_w: R,
     /// Engine speed, rad/s.
-    pub engine_speed_rad_s: f64,
+    pub engine_speed_rad_s: R,
     /// Torque at the flywheel into the transmission, without rotating inertia, Nm.
-    pub engine_torque_nm: f64,
+    pub engine_torque_nm: R,
     /// Engine torque with accessories, without inertia, over full-load torque at that speed, 0..1.
-    pub throttle: f64,
+    pub throttle: R,
     /// Gear of a manual box; 0 neutral or CVT.
-    pub gear: u8,
+    pub gear: R::Each<u8>,
     /// Belt ratio I = R_sec / R_pri (thesis eq. 5); NaN for a manual box.
-    pub belt_ratio: f64,
+    pub belt_ratio: R,
     /// Engine speed over wheel speed; NaN at standstill.
-    pub overall_ratio: f64,
+    pub overall_ratio: R,
     /// Primary pressure, Pa; NaN for a manual box.
-    pub primary_pressure_pa: f64,
+    pub primary_pressure_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
-    pub secondary_pressure_pa: f64,
+    pub secondary_pressure_pa: R,
     /// What decided the secondary pressure (PC-5); of no meaning for a manual box.
-    pub clamp_cause: ClampCause,
+    pub clamp_cause: R::Each<ClampCause>,
     /// Belt slip as a fraction; NaN for a manual box.
-    pub slip: f64,
+    pub slip: R,
     /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
-    pub primary_nm: f64,
+    pub primary_nm: R,
     /// Torque that the secondary pulley gives to its shaft, Nm; NaN without a belt that turns.
-    pub secondary_nm: f64,
+    pub secondary_nm: R,
     /// Torque capacity over torque of the belt; infinite at zero torque; NaN for a manual box.
-    pub clamp_safety: f64,
+    pub clamp_safety: R,
     /// Loss power of each component, W, never negative.
-    pub loss_w: ByComponent<f64>,
+    pub loss_w: ByComponent<R>,
     /// Power of the accessories, W; charging of the electric store with it.
-    pub accessories_w: f64,
+    pub accessories_w: R,
     /// Power into the wheel brakes, W.
-    pub brake_w: f64,
+    pub brake_w: R,
     /// Change of rotating kinetic energy of engine and transmission over the step length, W.
-    pub kinetic_w: f64,
+    pub kinetic_w: R,
     /// Fuel mass flow, kg/s.
-    pub fuel_kg_s: f64,
+    pub fuel_kg_s: R,
     /// Fuel power (lower heating value), W.
-    pub fuel_power_w: f64,
+    pub fuel_power_w: R,
     /// Heat into the engine's thermal nodes, W.
-    pub engine_heat_w: f64,
+    pub engine_heat_w: R,
     /// Heat and unburnt fuel into the exhaust, W.
-    pub exhaust_w: f64,
+    pub exhaust_w: R,
     /// Coolant and block, K.
-    pub coolant_k: f64,
+    pub coolant_k: R,
     /// Engine oil, K.
-    pub engine_oil_k: f64,
+    pub engine_oil_k: R,
     /// Transmission oil in the sump, K.
-    pub sump_k: f64,
+    pub sump_k: R,
     /// Transmission case and shafts, K.
-    pub metal_k: f64,
+    pub metal_k: R,
     /// Belt, pulleys and the oil sprayed off them, K; NaN for a manual box.
-    pub belt_spray_k: f64,
+    pub belt_spray_k: R,
     /// Oil to the cooler, K; NaN without one.
-    pub cooler_in_k: f64,
+    pub cooler_in_k: R,
     /// Oil from the cooler, K; NaN without one.
-    pub cooler_out_k: f64,
+    pub cooler_out_k: R,
     /// Tyres, K.
-    pub tyre_k: f64,
+    pub tyre_k: R,
     /// Heat stored in the nodes, W.
-    pub stored_w: f64,
+    pub stored_w: R,
     /// Heat given to the air, W.
-    pub to_air_w: f64,
+    pub to_air_w: R,
     /// Power ledger: |in - out| over the sum of absolute terms.
-    pub power_ledger_error: f64,
+    pub power_ledger_error: R,
     /// Heat ledger: |in - stored - to air| over the sum of absolute terms.
-    pub heat_ledger_error: f64,
+    pub heat_ledger_error: R,
     /// What the implicit solve left, as a fraction of full-load torque.
-    pub solve_residual: f64,
+    pub solve_residual: R,
     /// Evaluations of the driveline that the implicit solve needed.
-    pub iterations: u16,
+    pub iterations: R::Each<u16>,
     /// States and departures from validity.
-    pub flags: Flags,
+    pub flags: R::Each<Flags>,
 }
 
-pub(super) type Input<'a> = StepInput<'a, EngineAtTemperature<'a>>;
+pub(super) type Input<'a, R = f64> = StepInput<'a, EngineAtTemperature<'a, R>, R>;
 
 /// Rotating energy and crank torque of a step.
-pub(super) struct Inertia {
-    pub crank_nm: f64,
-    pub accessories_nm: f64,
-    pub kinetic_w: f64,
+pub(super) struct Inertia<R: Real = f64> {
+    pub crank_nm: R,
+    pub accessories_nm: R,
+    pub kinetic_w: R,
     /// Power of a slower engine that neither its drag nor its load takes up (SI-4).
-    pub surplus_w: f64,
+    pub surplus_w: R,
 }
 
 /// Everything that a step computed.
-pub(super) struct Solved<'a> {
-    pub output: &'a StepOutput,
-    pub inertia: &'a Inertia,
-    pub burn: &'a Burn,
+pub(super) struct Solved<'a, R: Real = f64> {
+    pub output: &'a StepOutput<R>,
+    pub inertia: &'a Inertia<R>,
+    pub burn: &'a Burn<R>,
     /// Heat into each node, as the network received it.
-    pub power_w: [f64; NODES],
-    pub heat: &'a HeatStep,
+    pub power_w: [R; NODES],
+    pub heat: &'a HeatStep<R>,
     /// Store, starter and alternator of start-stop.
-    pub electric: &'a Electric,
-    pub tyre_k: f64,
+    pub electric: &'a Electric<R>,
+    pub tyre_k: R,
 }
 
 /// Energy terms of a step, each from the model that owns it.
-#[inline]
-fn terms(input: &Input, a: &Solved) -> EnergyTerms {
+#[inline(always)]
+fn terms<R: Real>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R>
+where
+    f64: Left<R>,
+{
     let (d, b, wheel) = (a.output, a.burn, input.wheel);
-    let node_heat: f64 = a.power_w.iter().sum();
-    let losses: f64 = d.loss_w.iter().sum();
     let engine_heat = b.to_coolant_w + b.to_oil_w;
     let shaft_w = a.inertia.accessories_nm * d.engine_rad_s;
     let accessories = shaft_w - a.electric.charging_w + a.electric.consumers_w;
@@ -155,11 +157,11 @@ fn terms(input: &Input, a: &Solved) -> EnergyTerms {
         wheels: wheel.power_w - d.deficit_w,
         brake: d.brake_w,
         accessories,
-        losses,
+        losses: shaft_w.sum_of(&d.loss_w.0),
         kinetic: a.inertia.kinetic_w,
         engine_heat,
         exhaust: b.exhaust_w,
-        node_heat,
+        node_heat: shaft_w.sum_of(&a.power_w),
         stored: a.heat.stored_w,
         to_air: a.heat.to_air_w,
         store: a.electric.store_w,
@@ -167,46 +169,51 @@ fn terms(input: &Input, a: &Solved) -> EnergyTerms {
     }
 }
 
-/// The row of a step with its energy terms.
+/// The row of a step with its energy terms; `is_cvt`: the car has a belt.
 #[inline(always)]
-pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, EnergyTerms) {
+pub(super) fn row<R: Real>(
+    is_cvt: bool,
+    step: &Step,
+    input: &Input<R>,
+    a: &Solved<R>,
+) -> (Row<R>, EnergyTerms<R>)
+where
+    f64: Left<R>,
+{
     let terms = terms(input, a);
     let (d, b, wheel) = (a.output, a.burn, input.wheel);
-    let mut flags = d.flags;
-    flags.set(Flags::FUEL_CUT, b.cut && d.engine_rad_s > 0.0);
-    flags.set(Flags::OUTSIDE_VALIDITY, b.outside);
+    let engine_rad_s = d.engine_rad_s;
+    let (zero, none) = (engine_rad_s.filled(0.0), engine_rad_s.filled(f64::NAN));
+    let mut flags = d.flags.clone();
+    let turns = engine_rad_s.above(0.0);
+    set_flag::<R>(&mut flags, Flags::FUEL_CUT, b.cut & turns);
+    set_flag::<R>(&mut flags, Flags::OUTSIDE_VALIDITY, b.outside);
     let t = &a.heat.heat.node_k;
-    let hot = |(node, most): &(usize, f64)| t[*node] > *most;
-    flags.set(Flags::TOO_HOT, HIGHEST_K.iter().any(hot));
+    let [first, second, third] = HIGHEST_K;
+    let hot = t[first.0].above(first.1) | t[second.0].above(second.1) | t[third.0].above(third.1);
+    set_flag::<R>(&mut flags, Flags::TOO_HOT, hot);
+    let rolls = wheel.wheel_rad_s.above(0.0);
     let row = Row {
         time_s: step.time_s,
         dt_s: step.dt_s,
         phase: step.phase,
         speed_m_s: wheel.speed_m_s,
         accel_m_s2: wheel.accel_m_s2,
-        distance_m: wheel.speed_m_s * step.dt_s,
-        wheel_torque_nm: if wheel.wheel_rad_s > 0.0 {
-            wheel.power_w / wheel.wheel_rad_s
-        } else {
-            0.0
-        },
+        distance_m: step.distance_m(),
+        wheel_torque_nm: R::pick(rolls, wheel.power_w / wheel.wheel_rad_s, zero),
         wheel_power_w: wheel.power_w,
         wheel_work_positive_j: wheel.positive_j,
         wheel_work_negative_j: wheel.negative_j,
         deficit_w: d.deficit_w,
-        engine_speed_rad_s: d.engine_rad_s,
+        engine_speed_rad_s: engine_rad_s,
         engine_torque_nm: d.shaft_nm,
         throttle: d.throttle,
-        gear: d.gear,
+        gear: d.gear.clone(),
         belt_ratio: d.belt_ratio,
-        overall_ratio: if wheel.wheel_rad_s > 0.0 {
-            d.engine_rad_s / wheel.wheel_rad_s
-        } else {
-            f64::NAN
-        },
+        overall_ratio: R::pick(rolls, engine_rad_s / wheel.wheel_rad_s, none),
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,
-        clamp_cause: d.clamp_cause,
+        clamp_cause: d.clamp_cause.clone(),
         slip: d.slip,
         primary_nm: d.primary_nm,
         secondary_nm: d.secondary_nm,
@@ -223,11 +230,7 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         engine_oil_k: t[ENGINE_OIL],
         sump_k: t[SUMP],
         metal_k: t[METAL],
-        belt_spray_k: if car.transmission.is_cvt() {
-            t[BELT]
-        } else {
-            f64::NAN
-        },
+        belt_spray_k: if is_cvt { t[BELT] } else { none },
         cooler_in_k: a.heat.cooler_in_k,
         cooler_out_k: a.heat.cooler_out_k,
         tyre_k: a.tyre_k,
@@ -236,7 +239,7 @@ pub(super) fn row(car: &Car, step: &Step, input: &Input, a: &Solved) -> (Row, En
         power_ledger_error: terms.power_error(),
         heat_ledger_error: terms.heat_error(),
         solve_residual: d.residual,
-        iterations: d.iterations,
+        iterations: d.iterations.clone(),
         flags,
     };
     (row, terms)

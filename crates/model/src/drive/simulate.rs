@@ -5,34 +5,41 @@ use super::{Car, EnergyTerms, Row};
 use crate::cycle::Trace;
 use crate::engine::Running;
 use crate::engine::start_stop::StartStopState;
+use crate::math::Real;
 use crate::thermal::Heat;
 use crate::transmission::TransmissionState;
 
 /// What a drive carries from step to step.
 #[derive(Clone, Copy, Debug)]
-pub struct State {
+pub struct State<R: Real = f64, S = TransmissionState> {
     /// Temperatures.
-    pub heat: Heat,
+    pub heat: Heat<R>,
     /// Transmission; none before the first step.
-    pub transmission: Option<TransmissionState>,
+    pub transmission: Option<S>,
     /// Rotating energy of engine and primary side, J; NaN before the first step.
-    pub kinetic_j: f64,
+    pub kinetic_j: R,
     /// What the engine did.
-    pub running: Running,
+    pub running: Running<R>,
     /// Temperature of the tyres, K.
-    pub tyre_k: f64,
+    pub tyre_k: R,
     /// What start-stop did.
     pub start_stop: StartStopState,
 }
 
-impl State {
+impl<R: Real, S> State<R, S> {
     /// Everything at one temperature, engine about to start.
-    pub fn at(temp_k: f64) -> Self {
+    pub fn at(temp_k: R) -> Self {
+        let zero = temp_k.filled(0.0);
         State {
             heat: Heat::uniform(temp_k),
             transmission: None,
-            kinetic_j: f64::NAN,
-            running: Running::STOPPED,
+            kinetic_j: temp_k.filled(f64::NAN),
+            running: Running {
+                since_s: 0.0,
+                start_k: zero,
+                speed_rad_s: zero,
+                wheel_rad_s: zero,
+            },
             tyre_k: temp_k,
             start_stop: StartStopState::default(),
         }
@@ -40,9 +47,9 @@ impl State {
 }
 
 /// Receives the rows of a drive in order.
-pub trait Recorder {
+pub trait Recorder<R: Real = f64> {
     /// One row and its energy terms.
-    fn record(&mut self, row: &Row, terms: &EnergyTerms);
+    fn record(&mut self, row: &Row<R>, terms: &EnergyTerms<R>);
 }
 
 /// Drives a trace from a state, gives every row to the recorder and returns the state at the end: a loop over [`Drive::step`].

@@ -12,15 +12,15 @@ use super::stopping::{Stopping, add_start};
 use super::{Car, EnergyTerms, Row, State};
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::engine::{Burn, Running};
+use crate::engine::{Burn, EngineAtTemperature, Running};
 use crate::flags::Flags;
-use crate::math::{clamp, smaller};
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
-use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatInput, HeatStep, METAL, NODES, SUMP};
+use crate::road::WheelDemand;
+use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::component::{ByComponent, Component, HeatTo};
 use crate::transmission::cvt::Hold;
-use crate::transmission::cvt::selector::SelectorSignals;
-use crate::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
+use crate::transmission::{Driveline, StepInput, StepOutput, Transmission};
 
 /// A car on its way: steps in, rows out, no allocation. [`simulate`](super::simulate) is a loop over [`Drive::step`].
 ///
@@ -80,33 +80,13 @@ impl<'a> Drive<'a> {
     #[inline(always)]
     pub fn step(&mut self, step: &Step) -> (Row, EnergyTerms) {
         let car = self.car;
-        let State {
-            heat,
-            transmission,
-            kinetic_j,
-            running,
-            tyre_k,
-            start_stop,
-        } = &mut self.state;
+        let state = &mut self.state;
         let gear = self.gears.and_then(|g| g.get(step.interval).copied());
-        let stopping = Stopping::new(car, self.trace, gear, step, heat, start_stop);
+        let start_stop = &mut state.start_stop;
+        let stopping = Stopping::new(car, self.trace, gear, step, &state.heat, start_stop);
         let engine_off = step.engine_off || stopping.as_ref().is_some_and(Stopping::stopped);
-        let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
-        *tyre_k = car
-            .tyre
-            .advance_k(*tyre_k, car.ambient_k, &step.motion, step.dt_s);
-        *running = running.started(heat.node_k[COOLANT]);
-        if !car.transmission.is_cvt() {
-            *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
-        }
-        let mut engine = car.engine.in_step(
-            heat.node_k[COOLANT],
-            heat.node_k[ENGINE_OIL],
-            &car.engine_oil,
-            car.charge,
-            running,
-            step.dt_s,
-        );
+        let wheel = wheel(car, step, &mut state.tyre_k);
+        let mut engine = engine(car, step, &wheel, &state.heat, &mut state.running);
         if let Some(stopping) = &stopping {
             engine.charging_w = stopping.charging_w(start_stop, step.dt_s);
         }
@@ -115,65 +95,35 @@ impl<'a> Drive<'a> {
             wheel: &wheel,
             engine: &engine,
             oil: &car.oil,
-            heat,
+            heat: &state.heat,
             gear,
             dt_s: step.dt_s,
             engine_off,
-            neutral_share: neutral_share(car, self.trace, running, transmission, step),
+            neutral_share: car.transmission.neutral_share(
+                state.transmission.as_ref(),
+                self.trace,
+                step,
+                state.running.since_s,
+            ),
         };
-        // Not `get_or_insert_with`, which is a call in every step.
-        let transmission = match transmission {
-            Some(state) => state,
-            none => none.insert(car.transmission.start(&input)),
-        };
-        if kinetic_j.is_nan() {
-            let w = transmission.driveline.engine_rad_s;
-            let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
-            *kinetic_j = if step.engine_off { 0.0 } else { idling };
-        }
+        let transmission = begun(
+            car,
+            step,
+            &input,
+            &mut state.transmission,
+            &mut state.kinetic_j,
+        );
         let mut output = StepOutput::at_rest();
         car.transmission
             .solve_into(&input, transmission, &mut output);
         let mut electric = Electric::default();
         if let Some(stopping) = &stopping {
             electric = stopping.electric(&input, (car, transmission), &mut output, start_stop);
-            *kinetic_j += electric.kinetic_w * step.dt_s;
+            state.kinetic_j += electric.kinetic_w * step.dt_s;
         }
-        let mut inertia = inertia(car, &input, &output, *kinetic_j);
-        spend(car, &mut output, inertia.surplus_w);
-        let mut burn = engine.burn(output.engine_rad_s, inertia.crank_nm);
-        if engine_off {
-            burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
-        }
-        // An engine at rest has no rotating energy, not even a rest of rounding.
-        *kinetic_j = if output.engine_rad_s <= 0.0 {
-            0.0
-        } else {
-            *kinetic_j + inertia.kinetic_w * step.dt_s
-        };
-        if electric.kinetic_w > 0.0 {
-            inertia.kinetic_w += electric.kinetic_w; // SS-4
-            add_start(&mut burn, &electric, car.engine.heating_value_j_kg);
-        }
-        let power_w = node_power(car, &output, &burn);
-        let heat_step = advance(car, power_w, &output, &input, step.motion.speed_power_07);
-        let result = row(
-            car,
-            step,
-            &input,
-            &Solved {
-                output: &output,
-                inertia: &inertia,
-                burn: &burn,
-                power_w,
-                heat: &heat_step,
-                tyre_k: *tyre_k,
-                electric: &electric,
-            },
-        );
-        *heat = heat_step.heat;
-        let speeds_rad_s = (output.engine_rad_s, wheel.wheel_rad_s);
-        *running = running.after(step.engine_off, step.dt_s, speeds_rad_s);
+        let past = (&mut state.kinetic_j, &mut state.running, state.tyre_k);
+        let (result, heat) = end(car, step, &input, (&mut output, &electric), past);
+        state.heat = heat;
         result
     }
 
@@ -188,58 +138,173 @@ impl<'a> Drive<'a> {
     }
 }
 
-/// Share of a step at rest that the box is in neutral (SE-1, SE-2).
+/// What a step demands of the wheels; the tyres warm up meanwhile.
 #[inline(always)]
-fn neutral_share(
-    car: &Car,
-    trace: Option<&Trace>,
-    running: &Running,
-    past: &Option<TransmissionState>,
+pub(super) fn wheel<R: Real, T>(car: &Car<R, T>, step: &Step, tyre_k: &mut R) -> WheelDemand<R>
+where
+    f64: Left<R>,
+{
+    let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
+    *tyre_k = car
+        .tyre
+        .advance_k(*tyre_k, car.ambient_k, &step.motion, step.dt_s);
+    wheel
+}
+
+/// The engine at the beginning of a step, after what it did before.
+#[inline(always)]
+pub(super) fn engine<'a, R: Real, T: Driveline<R>>(
+    car: &'a Car<R, T>,
     step: &Step,
-) -> f64 {
-    if step.motion.speed_m_s > 0.0 {
-        return 0.0; // a car that moves is in drive
+    wheel: &WheelDemand<R>,
+    heat: &Heat<R>,
+    running: &mut Running<R>,
+) -> EngineAtTemperature<'a, R>
+where
+    f64: Left<R>,
+{
+    *running = running.started(heat.node_k[COOLANT]);
+    if !car.transmission.is_cvt() {
+        *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
     }
-    match &car.transmission {
-        Transmission::Cvt(cvt) => cvt.selector.neutral_share(&SelectorSignals {
-            procedure_s: trace.map_or(0.0, Trace::selector_s),
-            running_s: running.since_s,
-            rested_s: past.as_ref().map_or(0.0, |past| past.driveline.rested_s),
-            dt_s: step.dt_s,
-        }),
-        Transmission::Manual(_) => 0.0,
+    car.engine.in_step(
+        heat.node_k[COOLANT],
+        heat.node_k[ENGINE_OIL],
+        &car.engine_oil,
+        car.charge,
+        running,
+        step.dt_s,
+    )
+}
+
+/// The transmission in a step; before its first one it begins, and with it the rotating energy.
+#[inline(always)]
+pub(super) fn begun<'s, R: Real, T: Driveline<R>>(
+    car: &Car<R, T>,
+    step: &Step,
+    input: &Input<R>,
+    transmission: &'s mut Option<T::State>,
+    kinetic_j: &mut R,
+) -> &'s mut T::State
+where
+    f64: Left<R>,
+{
+    // Not `get_or_insert_with`, which is a call in every step.
+    let transmission = match transmission {
+        Some(state) => state,
+        none => none.insert(car.transmission.start(input)),
+    };
+    let known = kinetic_j.reaches(*kinetic_j);
+    if !known.all() {
+        let w = T::engine_rad_s(transmission);
+        let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
+        let start_j = if step.engine_off {
+            w.filled(0.0)
+        } else {
+            idling
+        };
+        *kinetic_j = R::pick(known, *kinetic_j, start_j);
     }
+    transmission
+}
+
+/// What follows from a solved transmission: its row, its energy terms and the temperatures after the step; rotating energy and what the engine did are brought up to date.
+#[inline(always)]
+pub(super) fn end<R: Real, T: Driveline<R>>(
+    car: &Car<R, T>,
+    step: &Step,
+    input: &Input<R>,
+    (output, electric): (&mut StepOutput<R>, &Electric<R>),
+    (kinetic_j, running, tyre_k): (&mut R, &mut Running<R>, R),
+) -> ((Row<R>, EnergyTerms<R>), Heat<R>)
+where
+    f64: Left<R>,
+{
+    let mut inertia = inertia(car, input, output, *kinetic_j);
+    spend(car, output, inertia.surplus_w);
+    let mut burn = input.engine.burn(output.engine_rad_s, inertia.crank_nm);
+    if input.engine_off {
+        burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
+    }
+    // An engine at rest has no rotating energy, not even a rest of rounding.
+    let zero = output.engine_rad_s.filled(0.0);
+    let rests = zero.reaches(output.engine_rad_s);
+    let turning_j = *kinetic_j + inertia.kinetic_w * step.dt_s;
+    *kinetic_j = R::pick(rests, zero, turning_j);
+    let cranked = electric.kinetic_w.above(0.0);
+    if cranked.any() {
+        inertia.kinetic_w = inertia.kinetic_w + electric.kinetic_w; // SS-4
+        add_start(&mut burn, electric, car.engine.heating_value_j_kg);
+    }
+    let power_w = node_power(car, output, &burn);
+    let heat_step = advance(car, power_w, output, input, step.motion.speed_power_07);
+    let result = row(
+        car.transmission.is_cvt(),
+        step,
+        input,
+        &Solved {
+            output,
+            inertia: &inertia,
+            burn: &burn,
+            power_w,
+            heat: &heat_step,
+            tyre_k,
+            electric,
+        },
+    );
+    let speeds_rad_s = (output.engine_rad_s, input.wheel.wheel_rad_s);
+    *running = running.after(step.engine_off, step.dt_s, speeds_rad_s);
+    (result, heat_step.heat)
 }
 
 /// What a slower engine gives beyond its drag and load goes into a coupling that slips, else to the wheels.
 #[inline(always)]
-fn spend(car: &Car, output: &mut StepOutput, surplus_w: f64) {
-    if !output.flags.contains(Flags::CLUTCH_SLIPPING) {
+fn spend<R: Real, T: Driveline<R>>(car: &Car<R, T>, output: &mut StepOutput<R>, surplus_w: R)
+where
+    f64: Left<R>,
+{
+    let slips = output.has(Flags::CLUTCH_SLIPPING);
+    if !slips.any() {
         return give_back(output, surplus_w);
     }
     // A clutch that loses a part only passes on the rest (LC-6).
-    let lost = smaller(car.transmission.coupling().loss_factor(), 1.0);
-    output.loss_w[Component::LaunchClutch] += lost * surplus_w; // SI-4
-    give_back(output, (1.0 - lost) * surplus_w);
+    let lost = match car.transmission.coupling_factor() {
+        Some(factor) => factor.least(1.0),
+        None => surplus_w.filled(1.0),
+    };
+    let launch_w = output.loss_w[Component::LaunchClutch];
+    output.loss_w[Component::LaunchClutch] = R::pick(slips, launch_w + lost * surplus_w, launch_w); // SI-4
+    give_back(output, R::pick(slips, (1.0 - lost) * surplus_w, surplus_w));
 }
 
 /// Power of the slower engine that reaches the wheels: it makes up for a deficit, or the brakes take it.
 #[inline(always)]
-fn give_back(output: &mut StepOutput, surplus_w: f64) {
-    let helps_w = smaller(surplus_w, output.deficit_w);
-    output.deficit_w -= helps_w;
-    output.brake_w += surplus_w - helps_w; // SI-4
+fn give_back<R: Real>(output: &mut StepOutput<R>, surplus_w: R) {
+    let helps_w = surplus_w.least(output.deficit_w);
+    output.deficit_w = output.deficit_w - helps_w;
+    output.brake_w = output.brake_w + (surplus_w - helps_w); // SI-4
 }
 
 #[inline(always)]
-fn inertia(car: &Car, input: &Input, output: &StepOutput, kinetic_j: f64) -> Inertia {
+fn inertia<R: Real, T>(
+    car: &Car<R, T>,
+    input: &Input<R>,
+    output: &StepOutput<R>,
+    kinetic_j: R,
+) -> Inertia<R>
+where
+    f64: Left<R>,
+{
     let w = output.engine_rad_s;
-    if w <= 0.0 {
+    let zero = w.filled(0.0);
+    let rests = zero.reaches(w);
+    let stopped_w = -kinetic_j / input.dt_s;
+    if rests.all() {
         return Inertia {
-            crank_nm: 0.0,
-            accessories_nm: 0.0,
-            kinetic_w: -kinetic_j / input.dt_s,
-            surplus_w: 0.0,
+            crank_nm: zero,
+            accessories_nm: zero,
+            kinetic_w: stopped_w,
+            surplus_w: zero,
         };
     }
     let engine = input.engine;
@@ -247,28 +312,35 @@ fn inertia(car: &Car, input: &Input, output: &StepOutput, kinetic_j: f64) -> Ine
     let steady = output.shaft_nm + accessories_nm;
     let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / input.dt_s / w;
     // Faster takes what is left below full load, slower what drag is left; never less than nothing.
-    let torque = if wanted > 0.0 {
-        clamp(engine.full_load_nm(w) - steady, 0.0, wanted) // SI-2
-    } else {
-        clamp(-(steady + engine.own_drag_nm(w)), wanted, 0.0) // SI-2
-    };
-    let over = if wanted < 0.0 { torque - wanted } else { 0.0 };
+    let (faster, slower) = (wanted.above(0.0), zero.above(wanted));
+    let mut torque = zero;
+    if faster.any() {
+        torque = (engine.full_load_nm(w) - steady).held(0.0, wanted); // SI-2
+    }
+    if !faster.all() {
+        let braking = (-(steady + engine.own_drag_nm(w))).held(wanted, 0.0); // SI-2
+        torque = R::pick(faster, torque, braking);
+    }
+    let over = R::pick(slower, torque - wanted, zero);
     Inertia {
-        crank_nm: steady + torque,
-        accessories_nm,
-        kinetic_w: smaller(torque, wanted) * w,
-        surplus_w: over * w,
+        crank_nm: R::pick(rests, zero, steady + torque),
+        accessories_nm: R::pick(rests, zero, accessories_nm),
+        kinetic_w: R::pick(rests, stopped_w, torque.least(wanted) * w),
+        surplus_w: R::pick(rests, zero, over * w),
     } // SI-1
 }
 
 #[inline(always)]
-fn advance(
-    car: &Car,
-    power_w: [f64; NODES],
-    output: &StepOutput,
-    input: &Input,
+fn advance<R: Real, T>(
+    car: &Car<R, T>,
+    power_w: [R; NODES],
+    output: &StepOutput<R>,
+    input: &Input<R>,
     speed_power_07: f64,
-) -> HeatStep {
+) -> HeatStep<R>
+where
+    f64: Left<R>,
+{
     let sump_k = input.heat.node_k[SUMP];
     let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
     car.network.advance_in_wind(
@@ -289,10 +361,17 @@ fn advance(
 
 /// Heat into each node, W (SI-3).
 #[inline(always)]
-fn node_power(car: &Car, output: &StepOutput, burn: &Burn) -> [f64; NODES] {
+fn node_power<R: Real, T: Driveline<R>>(
+    car: &Car<R, T>,
+    output: &StepOutput<R>,
+    burn: &Burn<R>,
+) -> [R; NODES]
+where
+    f64: Left<R>,
+{
     let mut power = loss_heat_w(car, &output.loss_w);
-    power[COOLANT] += burn.to_coolant_w;
-    power[ENGINE_OIL] += burn.to_oil_w;
+    power[COOLANT] = power[COOLANT] + burn.to_coolant_w;
+    power[ENGINE_OIL] = power[ENGINE_OIL] + burn.to_oil_w;
     power
 }
 
@@ -312,25 +391,43 @@ const fn heating<const COUNT: usize>(to: HeatTo) -> [Component; COUNT] {
     found
 }
 
+/// The losses of some components, from `zero` on.
+#[inline(always)]
+fn sum<R: Real>(loss_w: &ByComponent<R>, zero: R, of: &[Component]) -> R {
+    let mut sum = zero;
+    for one in of {
+        sum = sum + loss_w[*one];
+    }
+    sum
+}
+
 /// Heat that the transmission's losses, W, put into each node, W (SI-3).
-#[inline]
-pub fn loss_heat_w(car: &Car, loss_w: &ByComponent<f64>) -> [f64; NODES] {
+#[inline(always)]
+pub fn loss_heat_w<R: Real, T: Driveline<R>>(car: &Car<R, T>, loss_w: &ByComponent<R>) -> [R; NODES]
+where
+    f64: Left<R>,
+{
     const BELT_HEAT: [Component; 6] = heating(HeatTo::Belt);
     const METAL_HEAT: [Component; 4] = heating(HeatTo::Metal);
     const COUPLING_HEAT: [Component; 1] = heating(HeatTo::Coupling);
     const SUMP_HEAT: [Component; 7] = heating(HeatTo::Sump);
     // First the sums of what goes the same way.
-    let sum = |of: &[Component]| of.iter().fold(0.0, |sum, one| sum + loss_w[*one]);
-    let (belt, metal) = (sum(&BELT_HEAT), sum(&METAL_HEAT));
-    let (coupling, sump) = (sum(&COUPLING_HEAT), sum(&SUMP_HEAT));
-    let mut power = [0.0; NODES];
+    let zero = car.belt_heat_share.filled(0.0);
+    let (belt, metal) = (
+        sum(loss_w, zero, &BELT_HEAT),
+        sum(loss_w, zero, &METAL_HEAT),
+    );
+    let coupling = sum(loss_w, zero, &COUPLING_HEAT);
+    let sump = sum(loss_w, zero, &SUMP_HEAT);
+    let mut power = [zero; NODES];
     power[BELT] = car.belt_heat_share * belt;
     power[METAL] = metal;
     power[SUMP] = sump + (1.0 - car.belt_heat_share) * belt;
-    power[if car.transmission.is_cvt() {
+    let node = if car.transmission.is_cvt() {
         SUMP
     } else {
         COOLANT
-    }] += coupling;
+    };
+    power[node] = power[node] + coupling;
     power
 }

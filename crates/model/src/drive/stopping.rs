@@ -5,7 +5,7 @@ use super::row::Input;
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::{Command, Conditions, Electric, StartStopState};
 use crate::engine::{Burn, StartStop};
-use crate::math::larger;
+use crate::math::{Real, larger};
 use crate::thermal::{COOLANT, Heat, SUMP};
 use crate::transmission::component::Component;
 use crate::transmission::{StepOutput, Transmission, TransmissionState};
@@ -99,10 +99,15 @@ impl<'a> Stopping<'a> {
 }
 
 /// Adds to what the engine burns the fuel of a start, and the heat of cranking.
-pub(super) fn add_start(burn: &mut Burn, electric: &Electric, heating_value_j_kg: f64) {
+#[inline(always)]
+pub(super) fn add_start<R: Real>(
+    burn: &mut Burn<R>,
+    electric: &Electric<R>,
+    heating_value_j_kg: R,
+) {
     let start_w = electric.start_kg_s * heating_value_j_kg;
-    burn.fuel_kg_s += electric.start_kg_s;
-    burn.fuel_w += start_w;
-    burn.exhaust_w += start_w; // SS-3, as EN-9
-    burn.to_coolant_w += electric.crank_w; // SS-4
+    burn.fuel_kg_s = burn.fuel_kg_s + electric.start_kg_s;
+    burn.fuel_w = burn.fuel_w + start_w;
+    burn.exhaust_w = burn.exhaust_w + start_w; // SS-3, as EN-9
+    burn.to_coolant_w = burn.to_coolant_w + electric.crank_w; // SS-4
 }

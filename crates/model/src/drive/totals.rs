@@ -1,34 +1,34 @@
 //! Sums of a run by phase, gathered row by row without keeping the rows.
 
-use super::{EnergyTerms, HIGHEST_K, Recorder, Row};
+use super::{EnergyTerms, HIGHEST_K, Recorder, Row, TERM_NAMES};
 use crate::flags::Flags;
-use crate::math::larger;
+use crate::math::{Left, Mask, Real};
 use crate::transmission::clamp_cause::ClampCause;
-use crate::transmission::component::ByComponent;
+use crate::transmission::component::{ByComponent, Component};
 
 /// Sums over one phase.
 #[derive(Clone, Debug, Default)]
-pub struct PhaseTotals {
+pub struct PhaseTotals<R: Real = f64> {
     /// Duration, s.
     pub duration_s: f64,
     /// Distance, m.
     pub distance_m: f64,
     /// Fuel, kg.
-    pub fuel_kg: f64,
+    pub fuel_kg: R,
     /// Fuel at standstill, kg.
-    pub standstill_fuel_kg: f64,
+    pub standstill_fuel_kg: R,
     /// Demanded wheel work in drive, J.
-    pub wheel_positive_j: f64,
+    pub wheel_positive_j: R,
     /// Demanded wheel work in braking, J.
-    pub wheel_negative_j: f64,
+    pub wheel_negative_j: R,
     /// Loss of each component, J.
-    pub loss_j: ByComponent<f64>,
+    pub loss_j: ByComponent<R>,
     /// Ledger terms, J.
-    pub terms: EnergyTerms,
+    pub terms: EnergyTerms<R>,
 }
 
 /// Largest value of the rows that were looked at, and when.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extreme {
     /// Value; minus infinity if no row was looked at.
     pub value: f64,
@@ -55,39 +55,39 @@ impl Extreme {
 
 /// Sums and extremes over a whole run.
 #[derive(Clone, Debug, Default)]
-pub struct Totals {
+pub struct Totals<R: Real = f64> {
     /// By phase index of the cycle.
-    pub phases: Vec<PhaseTotals>,
+    pub phases: Vec<PhaseTotals<R>>,
     /// Largest ledger error of any row, both ledgers.
-    pub ledger_error: f64,
+    pub ledger_error: R,
     /// Smallest clamp safety factor, infinite if never loaded.
-    pub min_clamp_safety: f64,
+    pub min_clamp_safety: R,
     /// Time of that row's end, s.
-    pub min_clamp_at_s: f64,
+    pub min_clamp_at_s: R,
     /// Time with each flag, s, in the order of [`Flags::NAMES`].
-    pub flag_s: [f64; Flags::NAMES.len()],
+    pub flag_s: R::Each<[f64; Flags::NAMES.len()]>,
     /// Moving time in which each cause decided the secondary pressure, s, in the order of [`ClampCause::NAMES`].
-    pub clamp_cause_s: [f64; ClampCause::NAMES.len()],
+    pub clamp_cause_s: R::Each<[f64; ClampCause::NAMES.len()]>,
     /// Worst missing power, W.
-    pub worst_deficit_w: f64,
+    pub worst_deficit_w: R,
     /// Torque at the wheels missing there, Nm.
-    pub worst_deficit_nm: f64,
+    pub worst_deficit_nm: R,
     /// End of the row with the worst deficit, s.
-    pub worst_deficit_at_s: f64,
+    pub worst_deficit_at_s: R,
     /// Highest engine speed of the rows above its limit, rad/s.
-    pub fastest_rad_s: Extreme,
+    pub fastest_rad_s: R::Each<Extreme>,
     /// Highest temperatures of the rows that are too hot, K, in the order of [`HIGHEST_K`].
-    pub hottest_k: [Extreme; HIGHEST_K.len()],
+    pub hottest_k: R::Each<[Extreme; HIGHEST_K.len()]>,
     /// End of the first row with a gear that the cycle does not prescribe, s.
-    pub wrong_gear_at_s: f64,
+    pub wrong_gear_at_s: R::Each<f64>,
     /// Time in which torque, speed, fuel or a temperature was no number, s.
-    pub not_finite_s: f64,
+    pub not_finite_s: R::Each<f64>,
     /// End of the first such row, s.
-    pub not_finite_at_s: f64,
+    pub not_finite_at_s: R::Each<f64>,
     /// Largest residual of the implicit solve.
-    pub worst_residual: f64,
+    pub worst_residual: R,
     /// Evaluations of the driveline.
-    pub evaluations: u64,
+    pub evaluations: R::Each<u64>,
     /// Rows.
     pub rows: u64,
 }
@@ -95,15 +95,7 @@ pub struct Totals {
 impl Totals {
     /// Empty sums for a number of phases.
     pub fn new(phases: usize) -> Self {
-        Totals {
-            phases: vec![PhaseTotals::default(); phases.max(1)],
-            min_clamp_safety: f64::INFINITY,
-            min_clamp_at_s: f64::NAN,
-            worst_deficit_at_s: f64::NAN,
-            wrong_gear_at_s: f64::NAN,
-            not_finite_at_s: f64::NAN,
-            ..Totals::default()
-        }
+        Totals::like(0.0, phases)
     }
 
     /// Seconds with a flag.
@@ -136,62 +128,6 @@ impl Totals {
         }
         sum
     }
-
-    #[inline(always)]
-    fn extremes(&mut self, row: &Row) {
-        let error = larger(row.power_ledger_error, row.heat_ledger_error);
-        // A ledger error that is not a number must not hide.
-        if error.is_nan() || error > self.ledger_error {
-            self.ledger_error = error;
-        }
-        if row.clamp_safety < self.min_clamp_safety {
-            (self.min_clamp_safety, self.min_clamp_at_s) = (row.clamp_safety, row.time_s);
-        }
-        if row.deficit_w > self.worst_deficit_w && row.flags.contains(Flags::MISSED_TRACE) {
-            (self.worst_deficit_w, self.worst_deficit_at_s) = (row.deficit_w, row.time_s);
-            self.worst_deficit_nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
-        }
-        if row.solve_residual.is_nan() || row.solve_residual > self.worst_residual {
-            self.worst_residual = row.solve_residual;
-        }
-        if row.flags.any(Flags::IMPOSSIBLE) {
-            let temps_k = [row.coolant_k, row.engine_oil_k, row.sump_k]; // in the order of HIGHEST_K
-            self.impossible(row.flags, row.time_s, row.engine_speed_rad_s, temps_k);
-        }
-        // One sum, so that a row pays for one test.
-        let sum = row.engine_torque_nm
-            + row.engine_speed_rad_s
-            + row.fuel_kg_s
-            + (row.coolant_k + row.engine_oil_k + row.sump_k + row.metal_k);
-        if !sum.is_finite() {
-            if self.not_finite_at_s.is_nan() {
-                self.not_finite_at_s = row.time_s;
-            }
-            self.not_finite_s += row.dt_s;
-        }
-    }
-
-    // Numbers and no row, so that none has to be put together for this rare case.
-    #[cold]
-    fn impossible(
-        &mut self,
-        flags: Flags,
-        at_s: f64,
-        engine_rad_s: f64,
-        temps_k: [f64; HIGHEST_K.len()],
-    ) {
-        if flags.contains(Flags::OVERSPEED) {
-            self.fastest_rad_s.see(engine_rad_s, at_s);
-        }
-        if flags.contains(Flags::TOO_HOT) {
-            for (extreme, temp_k) in self.hottest_k.iter_mut().zip(temps_k) {
-                extreme.see(temp_k, at_s);
-            }
-        }
-        if flags.contains(Flags::WRONG_GEAR) && self.wrong_gear_at_s.is_nan() {
-            self.wrong_gear_at_s = at_s;
-        }
-    }
 }
 
 impl PhaseTotals {
@@ -209,36 +145,223 @@ impl PhaseTotals {
     }
 }
 
-impl Recorder for Totals {
+impl<R: Real> PhaseTotals<R> {
+    /// Empty sums for the runs of a number.
+    fn like(zero: R) -> Self {
+        PhaseTotals {
+            duration_s: 0.0,
+            distance_m: 0.0,
+            fuel_kg: zero,
+            standstill_fuel_kg: zero,
+            wheel_positive_j: zero,
+            wheel_negative_j: zero,
+            loss_j: ByComponent([zero; Component::COUNT]),
+            terms: EnergyTerms::from_array([zero; TERM_NAMES.len()]),
+        }
+    }
+
+    /// Those of one run.
+    fn of_run(&self, run: usize) -> PhaseTotals {
+        PhaseTotals {
+            duration_s: self.duration_s,
+            distance_m: self.distance_m,
+            fuel_kg: self.fuel_kg.lane(run),
+            standstill_fuel_kg: self.standstill_fuel_kg.lane(run),
+            wheel_positive_j: self.wheel_positive_j.lane(run),
+            wheel_negative_j: self.wheel_negative_j.lane(run),
+            loss_j: self.loss_j.map(|loss| loss.lane(run)),
+            terms: EnergyTerms::from_array(self.terms.as_array().map(|term| term.lane(run))),
+        }
+    }
+}
+
+impl<R: Real> Totals<R> {
+    /// Empty sums for the runs of a number, for a number of phases.
+    pub fn like(number: R, phases: usize) -> Self {
+        let (zero, none) = (number.filled(0.0), number.filled(f64::NAN));
+        Totals {
+            phases: vec![PhaseTotals::like(zero); phases.max(1)],
+            ledger_error: zero,
+            min_clamp_safety: zero.filled(f64::INFINITY),
+            min_clamp_at_s: none,
+            flag_s: R::every(|_| [0.0; Flags::NAMES.len()]),
+            clamp_cause_s: R::every(|_| [0.0; ClampCause::NAMES.len()]),
+            worst_deficit_w: zero,
+            worst_deficit_nm: zero,
+            worst_deficit_at_s: none,
+            fastest_rad_s: R::every(|_| Extreme::default()),
+            hottest_k: R::every(|_| [Extreme::default(); HIGHEST_K.len()]),
+            wrong_gear_at_s: R::every(|_| f64::NAN),
+            not_finite_s: R::every(|_| 0.0),
+            not_finite_at_s: R::every(|_| f64::NAN),
+            worst_residual: zero,
+            evaluations: R::every(|_| 0),
+            rows: 0,
+        }
+    }
+
+    /// Those of one run.
+    pub fn of_run(&self, run: usize) -> Totals {
+        Totals {
+            phases: self.phases.iter().map(|phase| phase.of_run(run)).collect(),
+            ledger_error: self.ledger_error.lane(run),
+            min_clamp_safety: self.min_clamp_safety.lane(run),
+            min_clamp_at_s: self.min_clamp_at_s.lane(run),
+            flag_s: *R::one(&self.flag_s, run),
+            clamp_cause_s: *R::one(&self.clamp_cause_s, run),
+            worst_deficit_w: self.worst_deficit_w.lane(run),
+            worst_deficit_nm: self.worst_deficit_nm.lane(run),
+            worst_deficit_at_s: self.worst_deficit_at_s.lane(run),
+            fastest_rad_s: *R::one(&self.fastest_rad_s, run),
+            hottest_k: *R::one(&self.hottest_k, run),
+            wrong_gear_at_s: *R::one(&self.wrong_gear_at_s, run),
+            not_finite_s: *R::one(&self.not_finite_s, run),
+            not_finite_at_s: *R::one(&self.not_finite_at_s, run),
+            worst_residual: self.worst_residual.lane(run),
+            evaluations: *R::one(&self.evaluations, run),
+            rows: self.rows,
+        }
+    }
+}
+
+impl<R: Real> Totals<R>
+where
+    f64: Left<R>,
+{
+    #[inline(always)]
+    fn extremes(&mut self, row: &Row<R>) {
+        let at_s = row.deficit_w.filled(row.time_s);
+        let error = row.power_ledger_error.most(row.heat_ledger_error);
+        // A ledger error that is not a number must not hide.
+        let worse = error.above(self.ledger_error) | !error.reaches(error);
+        self.ledger_error = R::pick(worse, error, self.ledger_error);
+        let weaker = self.min_clamp_safety.above(row.clamp_safety);
+        self.min_clamp_safety = R::pick(weaker, row.clamp_safety, self.min_clamp_safety);
+        self.min_clamp_at_s = R::pick(weaker, at_s, self.min_clamp_at_s);
+        let lacks = row.deficit_w.above(self.worst_deficit_w);
+        if lacks.any() {
+            self.deficit(row, lacks, at_s);
+        }
+        let residual = row.solve_residual;
+        let worse = residual.above(self.worst_residual) | !residual.reaches(residual);
+        self.worst_residual = R::pick(worse, residual, self.worst_residual);
+        // One sum, so that a row pays for one test.
+        let sum = row.engine_torque_nm
+            + row.engine_speed_rad_s
+            + row.fuel_kg_s
+            + (row.coolant_k + row.engine_oil_k + row.sump_k + row.metal_k);
+        let is_finite = sum.filled(f64::MAX).reaches(sum.abs());
+        for run in 0..R::LANES {
+            if R::one(&row.flags, run).any(Flags::IMPOSSIBLE) {
+                let temps_k = [row.coolant_k, row.engine_oil_k, row.sump_k]; // in the order of HIGHEST_K
+                let speed_rad_s = row.engine_speed_rad_s.lane(run);
+                let temps_k = temps_k.map(|temp_k| temp_k.lane(run));
+                self.impossible(
+                    run,
+                    *R::one(&row.flags, run),
+                    row.time_s,
+                    speed_rad_s,
+                    temps_k,
+                );
+            }
+        }
+        if (!is_finite).any() {
+            for run in (0..R::LANES).filter(|run| !is_finite.lane(*run)) {
+                let first_s = R::one_mut(&mut self.not_finite_at_s, run);
+                *first_s = if first_s.is_nan() {
+                    row.time_s
+                } else {
+                    *first_s
+                };
+                lengthen(R::one_mut(&mut self.not_finite_s, run), row.dt_s);
+            }
+        }
+    }
+
+    /// The worst deficit of the runs that miss the trace.
+    #[inline(always)]
+    fn deficit(&mut self, row: &Row<R>, lacks: R::Mask, at_s: R) {
+        let misses = |run| R::one(&row.flags, run).contains(Flags::MISSED_TRACE);
+        let lacks = lacks & at_s.ask(misses);
+        let nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
+        self.worst_deficit_w = R::pick(lacks, row.deficit_w, self.worst_deficit_w);
+        self.worst_deficit_at_s = R::pick(lacks, at_s, self.worst_deficit_at_s);
+        self.worst_deficit_nm = R::pick(lacks, nm, self.worst_deficit_nm);
+    }
+
+    // Numbers and no row, so that none has to be put together for this rare case.
+    #[cold]
+    #[inline(never)]
+    fn impossible(
+        &mut self,
+        run: usize,
+        flags: Flags,
+        at_s: f64,
+        engine_rad_s: f64,
+        temps_k: [f64; HIGHEST_K.len()],
+    ) {
+        if flags.contains(Flags::OVERSPEED) {
+            R::one_mut(&mut self.fastest_rad_s, run).see(engine_rad_s, at_s);
+        }
+        if flags.contains(Flags::TOO_HOT) {
+            let hottest = R::one_mut(&mut self.hottest_k, run);
+            for (extreme, temp_k) in hottest.iter_mut().zip(temps_k) {
+                extreme.see(temp_k, at_s);
+            }
+        }
+        let first_s = R::one_mut(&mut self.wrong_gear_at_s, run);
+        if flags.contains(Flags::WRONG_GEAR) && first_s.is_nan() {
+            *first_s = at_s;
+        }
+    }
+}
+
+/// Adds to a time that is one run's own.
+#[inline(always)]
+fn lengthen(time_s: &mut f64, by_s: f64) {
+    *time_s += by_s;
+}
+
+impl<R: Real> Recorder<R> for Totals<R>
+where
+    f64: Left<R>,
+{
     // Within the loop, so that the parts of a row that no total looks at are never put together.
     #[inline(always)]
-    fn record(&mut self, row: &Row, terms: &EnergyTerms) {
+    fn record(&mut self, row: &Row<R>, terms: &EnergyTerms<R>) {
         let index = usize::from(row.phase).min(self.phases.len() - 1);
         let p = &mut self.phases[index];
-        p.duration_s += row.dt_s;
-        p.distance_m += row.distance_m;
-        p.fuel_kg += row.fuel_kg_s * row.dt_s;
+        lengthen(&mut p.duration_s, row.dt_s);
+        lengthen(&mut p.distance_m, row.distance_m);
+        let fuel_kg = row.fuel_kg_s * row.dt_s;
+        p.fuel_kg = p.fuel_kg + fuel_kg;
         if row.speed_m_s <= 0.0 {
-            p.standstill_fuel_kg += row.fuel_kg_s * row.dt_s;
+            p.standstill_fuel_kg = p.standstill_fuel_kg + fuel_kg;
         }
-        p.wheel_positive_j += row.wheel_work_positive_j;
-        p.wheel_negative_j += row.wheel_work_negative_j;
-        for (s, w) in p.loss_j.iter_mut().zip(row.loss_w) {
-            *s += w * row.dt_s;
+        p.wheel_positive_j = p.wheel_positive_j + row.wheel_work_positive_j;
+        p.wheel_negative_j = p.wheel_negative_j + row.wheel_work_negative_j;
+        for (s, w) in p.loss_j.iter_mut().zip(&row.loss_w) {
+            *s = *s + *w * row.dt_s;
         }
         p.terms.add(terms, row.dt_s);
-        if row.speed_m_s > 0.0 {
-            self.clamp_cause_s[row.clamp_cause as usize] += row.dt_s;
-        }
-        let mut left = row.flags.0;
-        while left != 0 {
-            let bit = left.trailing_zeros() as usize; // flags are in the order of their bits
-            if let Some(seconds) = self.flag_s.get_mut(bit) {
-                *seconds += row.dt_s;
+        for run in 0..R::LANES {
+            if row.speed_m_s > 0.0 {
+                let cause = *R::one(&row.clamp_cause, run) as usize;
+                lengthen(
+                    &mut R::one_mut(&mut self.clamp_cause_s, run)[cause],
+                    row.dt_s,
+                );
             }
-            left &= left - 1;
+            let mut left = R::one(&row.flags, run).0;
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize; // flags are in the order of their bits
+                if let Some(seconds) = R::one_mut(&mut self.flag_s, run).get_mut(bit) {
+                    lengthen(seconds, row.dt_s);
+                }
+                left &= left - 1;
+            }
+            *R::one_mut(&mut self.evaluations, run) += u64::from(*R::one(&row.iterations, run));
         }
-        self.evaluations += u64::from(row.iterations);
         self.rows += 1;
         self.extremes(row);
     }

@@ -12,115 +12,188 @@
 //! line that would leave these bounds below the engine's highest speed.
 
 use crate::maps::BsfcMap;
-use crate::math::clamp;
+use crate::math::{Gather, Left, Mask, Real, gather};
 
 const BAR: f64 = 1e5;
+/// Fuel over indicated work, both near zero, from which rounding explains that it is less.
+const ALMOST_ALL: f64 = 1.0 - 1e-6;
 /// Efficiency B that a line may have.
 pub const EFFICIENCY: std::ops::RangeInclusive<f64> = 0.05..=1.0;
 
 /// Coefficients of the extended Willans line, per displacement, in bar and m/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Willans {
+pub struct Willans<R: Real = f64> {
     /// a.
-    pub a: f64,
+    pub a: R,
     /// b, s/m.
-    pub b: f64,
+    pub b: R,
     /// c, s2/m2.
-    pub c: f64,
+    pub c: R,
     /// a2, 1/bar.
-    pub a2: f64,
+    pub a2: R,
     /// Friction at zero speed, bar, positive.
-    pub l: f64,
+    pub l: R,
     /// Friction over piston speed squared, bar s2/m2, positive.
-    pub l2: f64,
+    pub l2: R,
 }
+
+gather!(Willans { a, b, c, a2, l, l2 });
 
 /// A fuel model.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FuelModel {
+pub enum FuelModel<R: Real = f64> {
     /// Extended Willans line.
-    Willans(Willans),
+    Willans(Willans<R>),
     /// Measured map.
-    Map(BsfcMap),
+    Map(R::Each<BsfcMap>),
+}
+
+impl Gather for FuelModel {
+    type Together<R: Real> = FuelModel<R>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> FuelModel<R> {
+        match of[0] {
+            FuelModel::Willans(first) => {
+                let line = |model: &&'_ Self| match model {
+                    FuelModel::Willans(line) => *line,
+                    FuelModel::Map(_) => *first, // never in one group
+                };
+                let lines: Vec<Willans> = of.iter().map(line).collect();
+                FuelModel::Willans(Gather::gather(like, &lines.iter().collect::<Vec<_>>()))
+            }
+            FuelModel::Map(first) => FuelModel::Map(R::every(|run| match of[run] {
+                FuelModel::Map(map) => map.clone(),
+                FuelModel::Willans(_) => first.clone(), // never in one group
+            })),
+        }
+    }
+
+    fn lane<R: Real>(together: &FuelModel<R>, lane: usize) -> Self {
+        match together {
+            FuelModel::Willans(line) => FuelModel::Willans(Willans::lane(line, lane)),
+            FuelModel::Map(map) => FuelModel::Map(R::one(map, lane).clone()),
+        }
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (FuelModel::Willans(_), FuelModel::Willans(_)) => true,
+            (FuelModel::Map(_), FuelModel::Map(_)) => true,
+            _ => false,
+        }
+    }
 }
 
 /// Answer of a fuel model, mean effective pressures in Pa.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FuelPoint {
+pub struct FuelPoint<R: Real = f64> {
     /// Fuel mean effective pressure; 0 when fuel is cut.
-    pub fuel_pa: f64,
+    pub fuel_pa: R,
     /// Indicated mean effective pressure.
-    pub indicated_pa: f64,
+    pub indicated_pa: R,
     /// Outside the model's validity.
-    pub outside: bool,
+    pub outside: R::Mask,
 }
 
-impl FuelModel {
+impl<R: Real> FuelModel<R>
+where
+    f64: Left<R>,
+{
     /// Friction mean effective pressure of the hot engine, Pa.
-    #[inline]
-    pub fn hot_friction_pa(&self, piston_m_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn hot_friction_pa(&self, piston_m_s: R) -> R {
         match self {
             FuelModel::Willans(w) => (w.l + w.l2 * piston_m_s * piston_m_s) * BAR,
-            FuelModel::Map(m) => (m.friction.0 + m.friction.1 * piston_m_s * piston_m_s) * BAR,
+            FuelModel::Map(m) => {
+                let friction = piston_m_s.by_lane(|run| R::one(m, run).friction.0);
+                let per_square = piston_m_s.by_lane(|run| R::one(m, run).friction.1);
+                (friction + per_square * piston_m_s * piston_m_s) * BAR
+            }
         }
     }
 
     /// Fuel for a brake mean effective pressure with friction in force, both Pa.
-    #[inline]
+    #[inline(always)]
     pub fn fuel_mep(
         &self,
-        piston_m_s: f64,
-        speed_rad_s: f64,
-        brake_pa: f64,
-        friction_pa: f64,
-    ) -> FuelPoint {
+        piston_m_s: R,
+        speed_rad_s: R,
+        brake_pa: R,
+        friction_pa: R,
+    ) -> FuelPoint<R> {
         let need = brake_pa + friction_pa;
-        if need <= 0.0 {
+        let zero = need.filled(0.0);
+        let none = zero.reaches(need);
+        if none.all() {
             return FuelPoint {
-                fuel_pa: 0.0,
-                indicated_pa: 0.0,
-                outside: false,
+                fuel_pa: zero,
+                indicated_pa: zero,
+                outside: !none,
             };
         }
-        match self {
+        let point = match self {
             FuelModel::Willans(w) => w.fuel(piston_m_s, need),
-            FuelModel::Map(m) => {
-                let hot = self.hot_friction_pa(piston_m_s);
-                let (fuel_pa, inside) = m.at_speed(speed_rad_s, need - hot, hot); // BM-3
-                let possible = fuel_pa >= need;
-                // Below the map both go to zero together, up to rounding.
-                let outside = !inside || fuel_pa < need * (1.0 - 1e-6) - 1e-3;
-                FuelPoint {
-                    fuel_pa: if possible { fuel_pa } else { need },
-                    indicated_pa: need,
-                    outside,
-                }
-            }
+            FuelModel::Map(m) => self.of_map(m, piston_m_s, speed_rad_s, need),
+        };
+        FuelPoint {
+            fuel_pa: R::pick(none, zero, point.fuel_pa),
+            indicated_pa: R::pick(none, zero, point.indicated_pa),
+            outside: !none & point.outside,
+        }
+    }
+
+    /// Fuel of a measured map for an indicated mean effective pressure, Pa (BM-3).
+    #[inline(always)]
+    fn of_map(
+        &self,
+        map: &R::Each<BsfcMap>,
+        piston_m_s: R,
+        speed_rad_s: R,
+        need: R,
+    ) -> FuelPoint<R> {
+        let hot = self.hot_friction_pa(piston_m_s);
+        let brake_pa = need - hot; // BM-3
+        let found = R::every(|run| {
+            R::one(map, run).at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run))
+        });
+        let fuel_pa = need.by_lane(|run| R::one(&found, run).0);
+        let inside = need.ask(|run| R::one(&found, run).1);
+        // Below the map both go to zero together, up to rounding.
+        let short = fuel_pa.below(need * ALMOST_ALL - 1e-3);
+        FuelPoint {
+            fuel_pa: R::pick(fuel_pa.reaches(need), fuel_pa, need),
+            indicated_pa: need,
+            outside: !inside | short,
         }
     }
 }
 
-impl Willans {
+impl<R: Real> Willans<R>
+where
+    f64: Left<R>,
+{
     /// Indicated efficiency at no load, B.
-    #[inline]
-    pub fn efficiency(&self, piston_m_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn efficiency(&self, piston_m_s: R) -> R {
         self.a + (self.b + self.c * piston_m_s) * piston_m_s
     }
 
-    #[inline]
-    fn fuel(&self, piston_m_s: f64, need_pa: f64) -> FuelPoint {
+    #[inline(always)]
+    fn fuel(&self, piston_m_s: R, need_pa: R) -> FuelPoint<R> {
         let line = self.efficiency(piston_m_s);
-        let b = clamp(line, *EFFICIENCY.start(), *EFFICIENCY.end());
+        let (least, most) = (*EFFICIENCY.start(), *EFFICIENCY.end());
+        let b = line.held(least, most);
         let need = need_pa / BAR;
         let disc = b * b + 4.0 * self.a2 * need;
-        let turned = disc < 0.0;
-        let f = 2.0 * need / (b + if turned { 0.0 } else { disc.sqrt() }); // WI-1
+        let turned = disc.filled(0.0).above(disc);
+        let root = R::pick(turned, disc.filled(0.0), disc.sqrt());
+        let f = 2.0 * need / (b + root); // WI-1
         let indicated = (b + self.a2 * f) * f; // WI-2
-        let outside = turned || !EFFICIENCY.contains(&line);
+        let inside = line.reaches(least) & line.filled(most).reaches(line);
         FuelPoint {
             fuel_pa: f * BAR,
-            indicated_pa: if turned { need_pa } else { indicated * BAR },
-            outside,
+            indicated_pa: R::pick(turned, need_pa, indicated * BAR),
+            outside: turned | !inside,
         }
     }
 }

@@ -26,11 +26,16 @@ pub use start::Running;
 pub use start_stop::StartStop;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
-use crate::math::{Curve, clamp, exp, larger, ln, smaller};
+use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 
 /// Fuel power up to which none is burnt, W: a car whose demand is just the engine's own drag has some 1e-12 W of rounding, and a second of cut fuel would depend on the last bit.
 const NO_FUEL_W: f64 = 1e-3;
+
+/// Angle of the two turns of a four-stroke engine, rad.
+const FOUR_PI: f64 = 4.0 * std::f64::consts::PI;
+/// Torque taken up over the engine's own drag, up to which rounding explains it.
+const SAME_DRAG: f64 = 1.0 + 1e-4;
 
 /// Part of the full-load line that is left to an engine whose air does not carry its friction: keeps the throttle finite.
 const LEAST_FULL_LOAD: f64 = 0.02;
@@ -39,117 +44,126 @@ pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
 
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Engine {
+pub struct Engine<R: Real = f64> {
     /// Displacement, m3.
-    pub displacement_m3: f64,
+    pub displacement_m3: R,
     /// Stroke, m.
-    pub stroke_m: f64,
+    pub stroke_m: R,
     /// Rated power, W.
-    pub rated_w: f64,
+    pub rated_w: R,
     /// Full-load torque over speed, rad/s to Nm, at sea level.
-    pub full_load: Curve,
+    pub full_load: R::Each<Curve>,
     /// Largest speed, rad/s.
-    pub highest_rad_s: f64,
+    pub highest_rad_s: R,
     /// Moment of inertia of engine, flywheel and primary side, kg m2.
-    pub inertia_kg_m2: f64,
+    pub inertia_kg_m2: R,
     /// Largest torque that speeds up or slows down the rotating parts, Nm.
-    pub inertia_torque_nm: f64,
+    pub inertia_torque_nm: R,
     /// Idle speed hot, rad/s.
-    pub idle_hot_rad_s: f64,
+    pub idle_hot_rad_s: R,
     /// Idle speed cold, rad/s.
-    pub idle_cold_rad_s: f64,
+    pub idle_cold_rad_s: R,
     /// Coolant up to which idle is cold, K.
-    pub idle_cold_k: f64,
+    pub idle_cold_k: R,
     /// Coolant from which idle is hot, K.
-    pub idle_warm_k: f64,
+    pub idle_warm_k: R,
     /// Idle speed above that at a cold start, rad/s.
-    pub idle_after_start_rad_s: f64,
+    pub idle_after_start_rad_s: R,
     /// Time in which that falls to nothing, s.
-    pub idle_after_start_s: f64,
+    pub idle_after_start_s: R,
     /// Temperature at which friction is that of the warm engine, K.
-    pub hot_k: f64,
+    pub hot_k: R,
     /// Share s of hot friction that rubs in oil.
-    pub viscous_share: f64,
+    pub viscous_share: R,
     /// Exponent m of viscosity.
-    pub viscous_exponent: f64,
+    pub viscous_exponent: R,
     /// Viscosity of the reference oil in the warm engine, m2/s.
-    pub reference_m2_s: f64,
+    pub reference_m2_s: R,
     /// Temperature of the oil films between that of the oil (0) and the coolant (1).
-    pub film_coolant_share: f64,
+    pub film_coolant_share: R,
     /// Overrun drag over friction.
-    pub overrun_drag: f64,
+    pub overrun_drag: R,
     /// Enrichment e.
-    pub enrichment: f64,
+    pub enrichment: R,
     /// Fuel of a start at 0 degC and below, kg.
-    pub start_kg: f64,
+    pub start_kg: R,
     /// Time in which it is given, s.
-    pub start_s: f64,
+    pub start_s: R,
     /// Coolant from which fuel is cut in overrun, K.
-    pub cut_from_k: f64,
+    pub cut_from_k: R,
     /// Speed above which all of it is cut, rad/s.
-    pub cut_above_rad_s: f64,
+    pub cut_above_rad_s: R,
     /// Speed below which none is cut, rad/s.
-    pub fuel_back_rad_s: f64,
+    pub fuel_back_rad_s: R,
     /// Electrical load at the shaft, W.
-    pub electrical_w: f64,
+    pub electrical_w: R,
     /// Torque of pumps and belts, Nm.
-    pub accessory_nm: f64,
+    pub accessory_nm: R,
     /// Share of the waste heat in the exhaust at idle.
-    pub exhaust_idle: f64,
+    pub exhaust_idle: R,
     /// Share of the waste heat in the exhaust at the highest speed.
-    pub exhaust_fast: f64,
+    pub exhaust_fast: R,
     /// Share of friction heat that goes to the oil.
-    pub friction_to_oil: f64,
+    pub friction_to_oil: R,
     /// Lower heating value, J/kg.
-    pub heating_value_j_kg: f64,
+    pub heating_value_j_kg: R,
     /// Fuel density, kg/m3.
-    pub fuel_density_kg_m3: f64,
+    pub fuel_density_kg_m3: R,
     /// CO2 per fuel mass, kg/kg.
-    pub co2_kg_kg: f64,
+    pub co2_kg_kg: R,
     /// Fuel model.
-    pub fuel: FuelModel,
+    pub fuel: FuelModel<R>,
     /// Start-stop, if there is one.
     pub start_stop: Option<StartStop>,
 }
 
+gather! {
+    Engine {
+        displacement_m3, stroke_m, rated_w, full_load, highest_rad_s, inertia_kg_m2, inertia_torque_nm, idle_hot_rad_s, idle_cold_rad_s,
+        idle_cold_k, idle_warm_k, idle_after_start_rad_s, idle_after_start_s, hot_k, viscous_share, viscous_exponent, reference_m2_s,
+        film_coolant_share, overrun_drag, enrichment, start_kg, start_s, cut_from_k, cut_above_rad_s, fuel_back_rad_s, electrical_w,
+        accessory_nm, exhaust_idle, exhaust_fast, friction_to_oil, heating_value_j_kg, fuel_density_kg_m3, co2_kg_kg, fuel,
+    } same { start_stop }
+}
+
 /// The engine at one temperature state, in one air.
 #[derive(Clone, Copy, Debug)]
-pub struct EngineAtTemperature<'a> {
+pub struct EngineAtTemperature<'a, R: Real = f64> {
     /// The engine.
-    pub engine: &'a Engine,
+    pub engine: &'a Engine<R>,
     /// Friction over hot friction (EN-2).
-    pub friction_factor: f64,
+    pub friction_factor: R,
     /// Idle speed, rad/s (EN-1).
-    pub idle_rad_s: f64,
+    pub idle_rad_s: R,
     /// Fuel factor of enrichment (EN-3).
-    pub enrichment: f64,
+    pub enrichment: R,
     /// Fuel of the start, kg/s (EN-9).
-    pub start_kg_s: f64,
+    pub start_kg_s: R,
     /// Share of its own drag that the engine takes up in overrun, with fuel cut (EN-11).
-    pub cut_share: f64,
+    pub cut_share: R,
     /// Charge of the cylinders over that at 25 degC and sea level (EN-5).
-    pub charge: f64,
+    pub charge: R,
     /// Power at the alternator's shaft that charges the store of start-stop, W (EL-2).
-    pub charging_w: f64,
+    pub charging_w: R,
 }
 
 /// What the engine burns and rejects at one operating point, W unless said.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Burn {
+pub struct Burn<R: Real = f64> {
     /// Fuel mass flow, kg/s.
-    pub fuel_kg_s: f64,
+    pub fuel_kg_s: R,
     /// Fuel power.
-    pub fuel_w: f64,
+    pub fuel_w: R,
     /// Heat into coolant and block.
-    pub to_coolant_w: f64,
+    pub to_coolant_w: R,
     /// Heat into the engine oil.
-    pub to_oil_w: f64,
+    pub to_oil_w: R,
     /// Exhaust, sensible heat and unburnt fuel.
-    pub exhaust_w: f64,
+    pub exhaust_w: R,
     /// Whether fuel is cut off.
-    pub cut: bool,
+    pub cut: R::Mask,
     /// Whether the fuel model left its validity.
-    pub outside: bool,
+    pub outside: R::Mask,
 }
 
 impl Engine {
@@ -165,71 +179,6 @@ impl Engine {
             cut_share: 1.0,
             ..self.in_step(coolant_k, oil_k, oil, charge, &Running::LONG, 1.0)
         }
-    }
-
-    /// The engine in a step of `dt_s`, after what it did before.
-    #[inline(always)]
-    pub fn in_step(
-        &self,
-        coolant_k: f64,
-        oil_k: f64,
-        oil: &Lubricant,
-        charge: f64,
-        running: &Running,
-        dt_s: f64,
-    ) -> EngineAtTemperature<'_> {
-        let cold = clamp((60.0 + ZERO_DEGC_K - coolant_k) / 60.0, 0.0, 1.0);
-        EngineAtTemperature {
-            engine: self,
-            friction_factor: self.friction_factor(coolant_k, oil_k, oil),
-            idle_rad_s: self.idle_rad_s(coolant_k, running, dt_s),
-            enrichment: 1.0 + self.enrichment * cold, // EN-3
-            start_kg_s: self.start_kg_s(running, dt_s),
-            cut_share: self.cut_share(coolant_k, running),
-            charge,
-            charging_w: 0.0,
-        }
-    }
-
-    /// Idle speed, its mean over a step, rad/s.
-    #[inline(always)]
-    fn idle_rad_s(&self, coolant_k: f64, running: &Running, dt_s: f64) -> f64 {
-        let width = self.idle_warm_k - self.idle_cold_k;
-        let cold = clamp((self.idle_warm_k - coolant_k) / width, 0.0, 1.0);
-        let started = clamp((60.0 + ZERO_DEGC_K - running.start_k) / 30.0, 0.0, 1.0);
-        // Integral of 1 - t/t_a: half of what is spent, times t_a.
-        let fading = running.spending_per_s(self.idle_after_start_s, dt_s);
-        let raised = 0.5 * self.idle_after_start_s * fading * started;
-        self.idle_hot_rad_s
-            + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold
-            + self.idle_after_start_rad_s * raised // EN-1
-    }
-
-    /// Friction over that of the warm engine with the reference oil.
-    #[inline(always)]
-    fn friction_factor(&self, coolant_k: f64, oil_k: f64, oil: &Lubricant) -> f64 {
-        let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
-        let film_k = smaller(film_k, self.hot_k);
-        let thicker = oil.kinematic_m2_s(film_k) / self.reference_m2_s;
-        1.0 + self.viscous_share * (exp(self.viscous_exponent * ln(thicker)) - 1.0) // EN-2
-    }
-
-    /// Torque of a mean effective pressure (four-stroke), Nm.
-    #[inline]
-    pub fn torque_nm(&self, mep_pa: f64) -> f64 {
-        mep_pa * self.displacement_m3 / (4.0 * std::f64::consts::PI)
-    }
-
-    /// Mean effective pressure of a torque (four-stroke), Pa.
-    #[inline]
-    pub fn mep_pa(&self, torque_nm: f64) -> f64 {
-        torque_nm * 4.0 * std::f64::consts::PI / self.displacement_m3
-    }
-
-    /// Mean piston speed, m/s.
-    #[inline]
-    pub fn piston_m_s(&self, speed_rad_s: f64) -> f64 {
-        speed_rad_s * self.stroke_m / std::f64::consts::PI
     }
 
     /// Speed of the greatest full-load power, rad/s.
@@ -257,46 +206,119 @@ impl Engine {
     }
 }
 
-impl PrimeMover for EngineAtTemperature<'_> {
-    #[inline]
-    fn idle_rad_s(&self) -> f64 {
+impl<R: Real> Engine<R>
+where
+    f64: Left<R>,
+{
+    /// The engine in a step of `dt_s`, after what it did before.
+    #[inline(always)]
+    pub fn in_step(
+        &self,
+        coolant_k: R,
+        oil_k: R,
+        oil: &Lubricant<R>,
+        charge: R,
+        running: &Running<R>,
+        dt_s: f64,
+    ) -> EngineAtTemperature<'_, R> {
+        let cold = start::cold_share(coolant_k);
+        EngineAtTemperature {
+            engine: self,
+            friction_factor: self.friction_factor(coolant_k, oil_k, oil),
+            idle_rad_s: self.idle_rad_s(coolant_k, running, dt_s),
+            enrichment: 1.0 + self.enrichment * cold, // EN-3
+            start_kg_s: self.start_kg_s(running, dt_s),
+            cut_share: self.cut_share(coolant_k, running),
+            charge,
+            charging_w: coolant_k.filled(0.0),
+        }
+    }
+
+    /// Idle speed, its mean over a step, rad/s.
+    #[inline(always)]
+    fn idle_rad_s(&self, coolant_k: R, running: &Running<R>, dt_s: f64) -> R {
+        let width = self.idle_warm_k - self.idle_cold_k;
+        let cold = ((self.idle_warm_k - coolant_k) / width).held(0.0, 1.0);
+        let started = ((start::COLD_K - running.start_k) / 30.0).held(0.0, 1.0);
+        // Integral of 1 - t/t_a: half of what is spent, times t_a.
+        let fading = running.spending_per_s(self.idle_after_start_s, dt_s);
+        let raised = 0.5 * self.idle_after_start_s * fading * started;
+        self.idle_hot_rad_s
+            + (self.idle_cold_rad_s - self.idle_hot_rad_s) * cold
+            + self.idle_after_start_rad_s * raised // EN-1
+    }
+
+    /// Friction over that of the warm engine with the reference oil.
+    #[inline(always)]
+    fn friction_factor(&self, coolant_k: R, oil_k: R, oil: &Lubricant<R>) -> R {
+        let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
+        let film_k = film_k.least(self.hot_k);
+        let thicker = oil.kinematic_m2_s(film_k) / self.reference_m2_s;
+        1.0 + self.viscous_share * ((self.viscous_exponent * thicker.ln()).exp() - 1.0) // EN-2
+    }
+
+    /// Torque of a mean effective pressure (four-stroke), Nm.
+    #[inline(always)]
+    pub fn torque_nm(&self, mep_pa: R) -> R {
+        mep_pa * self.displacement_m3 / FOUR_PI
+    }
+
+    /// Mean effective pressure of a torque (four-stroke), Pa.
+    #[inline(always)]
+    pub fn mep_pa(&self, torque_nm: R) -> R {
+        torque_nm * 4.0 * std::f64::consts::PI / self.displacement_m3
+    }
+
+    /// Mean piston speed, m/s.
+    #[inline(always)]
+    pub fn piston_m_s(&self, speed_rad_s: R) -> R {
+        speed_rad_s * self.stroke_m / std::f64::consts::PI
+    }
+}
+
+impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R>
+where
+    f64: Left<R>,
+{
+    #[inline(always)]
+    fn idle_rad_s(&self) -> R {
         self.idle_rad_s
     }
 
-    #[inline]
-    fn max_rad_s(&self) -> f64 {
+    #[inline(always)]
+    fn max_rad_s(&self) -> R {
         self.engine.highest_rad_s
     }
 
-    #[inline]
-    fn rated_w(&self) -> f64 {
+    #[inline(always)]
+    fn rated_w(&self) -> R {
         self.engine.rated_w
     }
 
-    #[inline]
-    fn full_load_share(&self, speed_rad_s: f64) -> f64 {
-        self.full_load_nm(speed_rad_s) / self.engine.full_load.at(speed_rad_s)
+    #[inline(always)]
+    fn full_load_share(&self, speed_rad_s: R) -> R {
+        self.full_load_nm(speed_rad_s) / speed_rad_s.each_of(&self.engine.full_load, Curve::at)
     }
 
-    #[inline]
-    fn max_accel_rad_s2(&self) -> f64 {
+    #[inline(always)]
+    fn max_accel_rad_s2(&self) -> R {
         self.engine.inertia_torque_nm / self.engine.inertia_kg_m2
     }
 
     /// EN-12: the drag at idle is that of the slowest engine, so that none of it is missing on the way.
-    #[inline]
-    fn slowed_rad_s(&self, from_rad_s: f64, load_nm: f64, dt_s: f64) -> f64 {
+    #[inline(always)]
+    fn slowed_rad_s(&self, from_rad_s: R, load_nm: R, dt_s: f64) -> R {
         let drag_nm = self.own_drag_nm(self.idle_rad_s);
         let per_nm = dt_s / self.engine.inertia_kg_m2;
         let k = load_nm * per_nm;
         let b = 0.5 * k + drag_nm * per_nm;
         let square = b * b + from_rad_s * (from_rad_s - k);
-        larger(larger(square, 0.0).sqrt() - b, 0.0) // EN-12
+        (square.most(0.0).sqrt() - b).most(0.0) // EN-12
     }
 
-    #[inline]
-    fn full_load_nm(&self, speed_rad_s: f64) -> f64 {
-        let hot = self.engine.full_load.at(speed_rad_s);
+    #[inline(always)]
+    fn full_load_nm(&self, speed_rad_s: R) -> R {
+        let hot = speed_rad_s.each_of(&self.engine.full_load, Curve::at);
         let piston_m_s = self.engine.piston_m_s(speed_rad_s);
         let friction = self
             .engine
@@ -304,38 +326,39 @@ impl PrimeMover for EngineAtTemperature<'_> {
         // Written so that a warm engine in the reference air has its line to the bit.
         let now =
             hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
-        larger(now, LEAST_FULL_LOAD * hot) // EN-8
+        now.most(LEAST_FULL_LOAD * hot) // EN-8
     }
 
     /// EN-4: none at standstill.
-    #[inline]
-    fn accessories_nm(&self, speed_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn accessories_nm(&self, speed_rad_s: R) -> R {
         let least = 0.5 * self.engine.idle_hot_rad_s;
-        let w = larger(speed_rad_s, least);
-        if speed_rad_s > 0.0 {
-            (self.engine.electrical_w + self.charging_w) / w + self.engine.accessory_nm
-        } else {
-            0.0
-        } // EN-4
+        let w = speed_rad_s.most(least);
+        let turning_nm =
+            (self.engine.electrical_w + self.charging_w) / w + self.engine.accessory_nm;
+        R::pick(speed_rad_s.above(0.0), turning_nm, w.filled(0.0)) // EN-4
     }
 
     /// EN-7: in overrun with fuel cut off; where it is not cut, the engine burns what turns it and drags nothing (EN-11).
-    #[inline]
-    fn drag_nm(&self, speed_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn drag_nm(&self, speed_rad_s: R) -> R {
         self.cut_share * self.own_drag_nm(speed_rad_s) // EN-11
     }
 }
 
-impl EngineAtTemperature<'_> {
+impl<R: Real> EngineAtTemperature<'_, R>
+where
+    f64: Left<R>,
+{
     /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
-    #[inline]
-    pub fn own_drag_nm(&self, speed_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn own_drag_nm(&self, speed_rad_s: R) -> R {
         self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
     }
 
     /// Friction mean effective pressure at the present temperature, Pa.
-    #[inline]
-    pub fn friction_pa(&self, speed_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn friction_pa(&self, speed_rad_s: R) -> R {
         self.engine
             .fuel
             .hot_friction_pa(self.engine.piston_m_s(speed_rad_s))
@@ -344,48 +367,57 @@ impl EngineAtTemperature<'_> {
 
     /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.
     #[inline(always)]
-    pub fn burn(&self, speed_rad_s: f64, torque_nm: f64) -> Burn {
+    pub fn burn(&self, speed_rad_s: R, torque_nm: R) -> Burn<R> {
         let e = self.engine;
-        if speed_rad_s <= 0.0 {
-            return Burn::default();
+        let zero = speed_rad_s.filled(0.0);
+        let rests = zero.reaches(speed_rad_s);
+        if rests.all() {
+            return Burn {
+                fuel_kg_s: zero,
+                fuel_w: zero,
+                to_coolant_w: zero,
+                to_oil_w: zero,
+                exhaust_w: zero,
+                cut: !rests,
+                outside: !rests,
+            };
         }
         let brake_pa = e.mep_pa(torque_nm);
         let friction_pa = self.friction_pa(speed_rad_s);
-        let point = e.fuel.fuel_mep(
-            e.piston_m_s(speed_rad_s),
-            speed_rad_s,
-            brake_pa,
-            friction_pa,
-        );
-        let watts = e.displacement_m3 * speed_rad_s / (4.0 * std::f64::consts::PI);
+        let piston_m_s = e.piston_m_s(speed_rad_s);
+        let point = e
+            .fuel
+            .fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa);
+        let burns = point.fuel_pa.above(0.0);
+        let watts = e.displacement_m3 * speed_rad_s / FOUR_PI;
         let burnt = point.fuel_pa * watts;
         let indicated = point.indicated_pa * watts;
         // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
-        let friction = if point.fuel_pa > 0.0 {
-            friction_pa * watts
-        } else {
-            -brake_pa * watts
-        };
+        let friction = R::pick(burns, friction_pa * watts, -brake_pa * watts);
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
         let exhaust_share =
-            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * clamp(fast, 0.0, 1.0);
+            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * fast.held(0.0, 1.0);
         let waste = burnt - brake_pa * watts;
         // The exhaust has no more than the gas kept: nothing once fuel is cut.
-        let hot_gas = smaller(exhaust_share * waste, burnt - indicated);
+        let hot_gas = (exhaust_share * waste).least(burnt - indicated);
         let to_oil = e.friction_to_oil * friction;
         let start_w = self.start_kg_s * e.heating_value_j_kg;
         let fuel_w = burnt * self.enrichment + start_w;
+        // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
+        let drawn = zero.reaches(point.fuel_pa)
+            & (-torque_nm).above(self.own_drag_nm(speed_rad_s) * SAME_DRAG + 1e-3);
         Burn {
-            fuel_kg_s: fuel_w / e.heating_value_j_kg,
-            fuel_w,
-            to_coolant_w: waste - hot_gas - to_oil, // EN-6
-            to_oil_w: to_oil,
-            exhaust_w: hot_gas + (self.enrichment - 1.0) * burnt + start_w, // EN-9
-            cut: fuel_w <= NO_FUEL_W,
-            // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
-            outside: point.outside
-                || (point.fuel_pa <= 0.0
-                    && -torque_nm > self.own_drag_nm(speed_rad_s) * (1.0 + 1e-4) + 1e-3),
+            fuel_kg_s: R::pick(rests, zero, fuel_w / e.heating_value_j_kg),
+            fuel_w: R::pick(rests, zero, fuel_w),
+            to_coolant_w: R::pick(rests, zero, waste - hot_gas - to_oil), // EN-6
+            to_oil_w: R::pick(rests, zero, to_oil),
+            exhaust_w: R::pick(
+                rests,
+                zero,
+                hot_gas + (self.enrichment - 1.0) * burnt + start_w,
+            ), // EN-9
+            cut: !rests & zero.filled(NO_FUEL_W).reaches(fuel_w),
+            outside: !rests & (point.outside | drawn),
         }
     }
 }

@@ -9,19 +9,22 @@
 
 use super::Engine;
 use crate::fluid::ZERO_DEGC_K;
-use crate::math::{clamp, ramp, smaller};
+use crate::math::{Left, Mask, Real, both, ramp};
+
+/// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
+pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
 
 /// What the engine did before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Running {
+pub struct Running<R: Real = f64> {
     /// Time since the start, s: 0 at the start, infinite where it is long ago.
     pub since_s: f64,
     /// Coolant at the start, K.
-    pub start_k: f64,
+    pub start_k: R,
     /// Speed, rad/s.
-    pub speed_rad_s: f64,
+    pub speed_rad_s: R,
     /// Speed of the wheels, rad/s.
-    pub wheel_rad_s: f64,
+    pub wheel_rad_s: R,
 }
 
 impl Running {
@@ -39,10 +42,13 @@ impl Running {
         start_k: f64::INFINITY,
         ..Running::STOPPED
     };
+}
 
+impl<R: Real> Running<R> {
     /// The same with the coolant of the start, K, where it starts now.
     #[must_use]
-    pub fn started(self, coolant_k: f64) -> Running {
+    #[inline(always)]
+    pub fn started(self, coolant_k: R) -> Running<R> {
         if self.since_s > 0.0 {
             return self;
         }
@@ -54,13 +60,16 @@ impl Running {
 
     /// The same with an engine in gear slowed down as the wheels are in a step, so that EN-11 has no lag of a step.
     #[must_use]
-    pub fn rolled(self, wheel_rad_s: f64) -> Running {
-        if wheel_rad_s >= self.wheel_rad_s {
+    #[inline(always)]
+    pub fn rolled(self, wheel_rad_s: R) -> Running<R> {
+        let keeps = wheel_rad_s.reaches(self.wheel_rad_s);
+        if keeps.all() {
             return self;
         }
+        let slowed = self.speed_rad_s * wheel_rad_s / self.wheel_rad_s;
         Running {
-            speed_rad_s: self.speed_rad_s * wheel_rad_s / self.wheel_rad_s,
-            wheel_rad_s,
+            speed_rad_s: R::pick(keeps, self.speed_rad_s, slowed),
+            wheel_rad_s: R::pick(keeps, self.wheel_rad_s, wheel_rad_s),
             ..self
         }
     }
@@ -68,9 +77,15 @@ impl Running {
     /// After a step of a running engine, or of one that is off: `(engine_rad_s, wheel_rad_s)` are the speeds in the step.
     #[inline(always)]
     #[must_use]
-    pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (f64, f64)) -> Running {
+    pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (R, R)) -> Running<R> {
         if off {
-            return Running::STOPPED;
+            let zero = engine_rad_s.filled(0.0);
+            return Running {
+                since_s: 0.0,
+                start_k: zero,
+                speed_rad_s: zero,
+                wheel_rad_s: zero,
+            };
         }
         Running {
             since_s: self.since_s + dt_s,
@@ -79,37 +94,50 @@ impl Running {
             ..self
         }
     }
+}
 
+impl<R: Real> Running<R>
+where
+    f64: Left<R>,
+{
     /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
-    pub(super) fn spending_per_s(&self, within_s: f64, dt_s: f64) -> f64 {
-        if self.since_s >= within_s {
-            return 0.0; // all is spent
+    #[inline(always)]
+    pub(super) fn spending_per_s(&self, within_s: R, dt_s: f64) -> R {
+        let zero = within_s.filled(0.0);
+        let since = within_s.filled(self.since_s);
+        let over = since.reaches(within_s);
+        if over.all() {
+            return zero; // all is spent
         }
-        let spent = |since_s: f64| {
-            let u = smaller(since_s / within_s, 1.0);
-            u * (2.0 - u)
-        };
-        (spent(self.since_s + dt_s) - spent(self.since_s)) / dt_s
+        let u = both!(end => ([since, since + dt_s][end] / within_s).least(1.0));
+        let spent = both!(end => u[end] * (2.0 - u[end]));
+        R::pick(over, zero, (spent[1] - spent[0]) / dt_s)
     }
 }
 
 /// Share of the fuel of a start that it takes at a temperature of the coolant, K.
-#[inline]
-pub(super) fn cold_share(coolant_k: f64) -> f64 {
-    clamp((60.0 + ZERO_DEGC_K - coolant_k) / 60.0, 0.0, 1.0)
+#[inline(always)]
+pub(super) fn cold_share<R: Real>(coolant_k: R) -> R
+where
+    f64: Left<R>,
+{
+    ((COLD_K - coolant_k) / 60.0).held(0.0, 1.0)
 }
 
-impl Engine {
+impl<R: Real> Engine<R>
+where
+    f64: Left<R>,
+{
     /// Fuel of the start in a step, kg/s.
-    #[inline]
-    pub(super) fn start_kg_s(&self, running: &Running, dt_s: f64) -> f64 {
+    #[inline(always)]
+    pub(super) fn start_kg_s(&self, running: &Running<R>, dt_s: f64) -> R {
         let cold = cold_share(running.start_k);
         self.start_kg * cold * running.spending_per_s(self.start_s, dt_s) // EN-9
     }
 
     /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
-    #[inline]
-    pub(super) fn cut_share(&self, coolant_k: f64, running: &Running) -> f64 {
+    #[inline(always)]
+    pub(super) fn cut_share(&self, coolant_k: R, running: &Running<R>) -> R {
         let warm = ramp(coolant_k, self.cut_from_k, self.cut_from_k + 1.0);
         let speed = running.speed_rad_s;
         warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11

@@ -17,7 +17,7 @@
 
 use super::{Engine, EngineAtTemperature};
 use crate::keys::{Values, keys};
-use crate::math::{clamp, exp, larger, smaller};
+use crate::math::{Real, clamp, exp, larger, smaller};
 use crate::prime_mover::PrimeMover;
 
 /// The checked start-stop.
@@ -183,23 +183,41 @@ impl StartStop {
 
 /// Electric power of a step, W.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Electric {
+pub struct Electric<R: Real = f64> {
     /// Out of the store; negative into it.
-    pub store_w: f64,
+    pub store_w: R,
     /// Lost in alternator, store and starter.
-    pub loss_w: f64,
+    pub loss_w: R,
     /// Shaft power of charging, which is none of the accessories.
-    pub charging_w: f64,
+    pub charging_w: R,
     /// Consumers that the store feeds.
-    pub consumers_w: f64,
+    pub consumers_w: R,
     /// Rotating energy from the starter.
-    pub kinetic_w: f64,
+    pub kinetic_w: R,
     /// Heat of the engine that is cranked.
-    pub crank_w: f64,
+    pub crank_w: R,
     /// Fuel of a start beyond what the running engine burns, kg/s.
-    pub start_kg_s: f64,
+    pub start_kg_s: R,
     /// The electric pump.
-    pub pump_w: f64,
+    pub pump_w: R,
+}
+
+impl<R: Real> Electric<R> {
+    /// Without start-stop, for the runs of a number.
+    #[inline(always)]
+    pub fn none(number: R) -> Self {
+        let zero = number.filled(0.0);
+        Electric {
+            store_w: zero,
+            loss_w: zero,
+            charging_w: zero,
+            consumers_w: zero,
+            kinetic_w: zero,
+            crank_w: zero,
+            start_kg_s: zero,
+            pump_w: zero,
+        }
+    }
 }
 
 impl Electric {

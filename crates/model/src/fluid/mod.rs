@@ -22,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{Left, Real, both, larger};
+use crate::math::{Left, Real, both, gather};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -35,7 +35,7 @@ const MIN_DENSITY: f64 = 0.3;
 
 /// Friction that a fluid lends to the belt's contacts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction<R = f64> {
+pub struct Friction<R: Real = f64> {
     /// Boundary friction band on band and band on segment at 85 degC.
     pub band: R,
     /// Rise of the band friction with belt temperature, 1/K.
@@ -58,6 +58,8 @@ pub struct Friction<R = f64> {
     pub film_heating_w: R,
 }
 
+gather!(Friction { band, band_rise_per_k, segment, capacity, flank, half_n_m, film_exponent, half_thickness_m, film_heating_w } same { film });
+
 /// Exponent of thickness in FI-2.
 const THICKNESS_EXPONENT: f64 = 0.6;
 
@@ -66,7 +68,7 @@ const SHEARED_EXPONENT: f64 = 1.0 - THICKNESS_EXPONENT;
 
 /// Band friction at one state. Pairs are the innermost interface, band on segments, and each other one, band on band.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BandFriction<R = f64> {
+pub struct BandFriction<R: Real = f64> {
     /// Boundary friction (LU-4).
     pub mu: R,
     /// Share of the contact that the film carries, 0..1 (LU-5).
@@ -88,7 +90,7 @@ impl BandFriction {
 
 /// Logarithms of x = eta dv/N_half by interface as powers: x^q and x^0.4; zeros where nothing slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FilmPowers<R = f64> {
+pub struct FilmPowers<R: Real = f64> {
     /// x^q (LU-5).
     pub carried: [R; 2],
     /// x over x^0.6 (FI-2).
@@ -148,48 +150,54 @@ where
 
 /// A checked lubricant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lubricant {
+pub struct Lubricant<R: Real = f64> {
     /// Short name as in `--lubricant`.
     pub name: String,
     /// Name for people.
     pub title: String,
     /// Kinematic viscosity.
-    pub viscosity: Viscosity,
+    pub viscosity: Viscosity<R>,
     /// Density at 15 degC, kg/m3.
-    pub density15_kg_m3: f64,
+    pub density15_kg_m3: R,
     /// Friction in the belt's contacts.
-    pub friction: Friction,
+    pub friction: Friction<R>,
 }
+
+gather!(Lubricant { viscosity, density15_kg_m3, friction } same { name, title });
 
 /// Viscosity and density of an oil at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OilState {
+pub struct OilState<R: Real = f64> {
     /// Kinematic viscosity, m2/s.
-    pub kinematic_m2_s: f64,
+    pub kinematic_m2_s: R,
     /// Density, kg/m3.
-    pub density_kg_m3: f64,
+    pub density_kg_m3: R,
 }
 
 /// Validity range of the fluid models, K.
 pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
 
-impl Lubricant {
+impl<R: Real> Lubricant<R>
+where
+    f64: Left<R>,
+{
     /// Kinematic viscosity, m2/s (LU-1).
-    #[inline]
-    pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn kinematic_m2_s(&self, temp_k: R) -> R {
         self.viscosity.kinematic_m2_s(temp_k)
     }
 
     /// Density, kg/m3 (LU-2).
-    #[inline]
-    pub fn density_kg_m3(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn density_kg_m3(&self, temp_k: R) -> R {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
-        self.density15_kg_m3 * larger(MIN_DENSITY, share) // LU-2
+        self.density15_kg_m3 * share.filled(MIN_DENSITY).most(share) // LU-2
     }
 
     /// Viscosity and density.
-    pub fn state(&self, temp_k: f64) -> OilState {
+    #[inline(always)]
+    pub fn state(&self, temp_k: R) -> OilState<R> {
         OilState {
             kinematic_m2_s: self.kinematic_m2_s(temp_k),
             density_kg_m3: self.density_kg_m3(temp_k),
@@ -197,13 +205,14 @@ impl Lubricant {
     }
 
     /// Dynamic viscosity, Pa s.
-    #[inline]
-    pub fn dynamic_pa_s(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn dynamic_pa_s(&self, temp_k: R) -> R {
         self.kinematic_m2_s(temp_k) * self.density_kg_m3(temp_k)
     }
 
     /// Specific heat capacity, J/kgK (LU-3).
-    pub fn heat_capacity_j_kgk(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn heat_capacity_j_kgk(&self, temp_k: R) -> R {
         1000.0 * (1.685 + 0.0034 * (temp_k - ZERO_DEGC_K)) / (self.density15_kg_m3 / 1000.0).sqrt() // LU-3
     }
 }

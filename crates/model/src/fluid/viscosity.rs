@@ -1,6 +1,6 @@
 //! Kinematic viscosity in the coordinates of ASTM D341 (LU-1): straight lines between points, the end lines continued.
 
-use crate::math::{exp_each, ln, ln_each};
+use crate::math::{Left, Real, gather, ln};
 
 /// Steepest fall of ln ln(nu + 0.7) over ln T. Usual oils have 2.5 to 4; the steepest that is sold, a polyphenyl ether, 4.6. A slip of the pen
 /// beyond it would be solid in the cold.
@@ -8,14 +8,16 @@ const STEEPEST: f64 = 5.0;
 
 /// ln ln(nu + 0.7) against ln T: one line from two points, or a polyline through a table.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Viscosity {
+pub struct Viscosity<R: Real = f64> {
     /// ln T of the points, rising.
-    x: Vec<f64>,
+    x: Vec<R>,
     /// Value ln ln(nu + 0.7) of the points, nu in mm2/s.
-    w: Vec<f64>,
+    w: Vec<R>,
     /// Slope of the line that ends at each point; the first point has the second's.
-    slope: Vec<f64>,
+    slope: Vec<R>,
 }
+
+gather!(Viscosity { x, w, slope });
 
 impl Viscosity {
     /// From points (temperature K, kinematic viscosity m2/s).
@@ -53,29 +55,40 @@ impl Viscosity {
         }
         Ok(Viscosity { x, w, slope })
     }
+}
 
+impl<R: Real> Viscosity<R>
+where
+    f64: Left<R>,
+{
     /// Kinematic viscosity at a temperature, m2/s.
-    #[inline]
-    pub fn kinematic_m2_s(&self, temp_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn kinematic_m2_s(&self, temp_k: R) -> R {
         self.kinematic_each_m2_s([temp_k])[0]
     }
 
     /// Kinematic viscosity at several temperatures together, m2/s.
-    #[inline]
-    pub fn kinematic_each_m2_s<const N: usize>(&self, temp_k: [f64; N]) -> [f64; N] {
-        let w = ln_each(temp_k).map(|x| self.line(x));
-        exp_each(exp_each(w)).map(|nu| (nu - 0.7) * 1e-6) // LU-1
+    #[inline(always)]
+    pub fn kinematic_each_m2_s<const N: usize>(&self, temp_k: [R; N]) -> [R; N] {
+        let mut w = R::ln_each(temp_k);
+        for x in &mut w {
+            *x = self.line(*x);
+        }
+        let mut nu = R::exp_each(R::exp_each(w));
+        for nu in &mut nu {
+            *nu = (*nu - 0.7) * 1e-6; // LU-1
+        }
+        nu
     }
 
     /// ln ln(nu + 0.7) at ln T.
     #[inline(always)]
-    fn line(&self, x: f64) -> f64 {
-        let last = self.x.len() - 1;
-        let hi = if last == 1 {
-            1
-        } else {
-            self.x.partition_point(|&p| p <= x).clamp(1, last)
-        };
-        self.w[hi] + self.slope[hi] * (x - self.x[hi])
+    fn line(&self, x: R) -> R {
+        let mut line = self.w[1] + self.slope[1] * (x - self.x[1]);
+        for hi in 2..self.x.len() {
+            let beyond = x.reaches(self.x[hi - 1]);
+            line = R::pick(beyond, self.w[hi] + self.slope[hi] * (x - self.x[hi]), line);
+        }
+        line
     }
 }

@@ -4,13 +4,16 @@ mod circular;
 mod curve;
 mod elementary;
 mod grid;
+mod lanes;
 mod real;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
 pub use elementary::{exp, exp_each, ln, ln_each, tanh};
 pub use grid::{GRID_AXES, Grid};
-pub use real::{Left, Mask, Operand, Real};
+pub use lanes::{Answers, Gather, Level, Simd, dispatch, eight, f64x4, f64x8, four};
+pub(crate) use lanes::{MOST_LANES, gather, gather_each};
+pub use real::{Left, Mask, Operand, Own, Real};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
 #[inline(always)]
@@ -35,7 +38,7 @@ pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
 ///
 /// `from` and `to` may be in either order; equal ends give a step: 0 below them, 1 at them and above.
-#[inline]
+#[inline(always)]
 pub fn ramp<R: Real>(x: R, from: R, to: R) -> R
 where
     f64: Left<R>,
@@ -47,8 +50,11 @@ where
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).
-#[inline]
-pub fn smooth_ramp(x: f64, from: f64, to: f64) -> f64 {
+#[inline(always)]
+pub fn smooth_ramp<R: Real>(x: R, from: R, to: R) -> R
+where
+    f64: Left<R>,
+{
     let u = ramp(x, from, to);
     u * u * (3.0 - 2.0 * u)
 }
@@ -75,3 +81,14 @@ macro_rules! both {
     };
 }
 pub(crate) use both;
+
+/// `places!(i in 0, 1, 2 => of[i])`: the same at several places, as an array, as [`both`].
+macro_rules! places {
+    ($place:ident in $($number:literal),* => $value:expr) => {
+        [$({
+            let $place = $number;
+            $value
+        }),*]
+    };
+}
+pub(crate) use places;

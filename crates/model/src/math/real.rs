@@ -17,12 +17,39 @@ pub trait Mask:
 {
     /// Whether it is yes in any lane.
     fn any(self) -> bool;
+
+    /// Whether it is yes in every lane.
+    fn all(self) -> bool;
+
+    /// The answer of one lane.
+    fn lane(self, lane: usize) -> bool;
+
+    /// The answer of `yes` where it is yes, else that of `no`.
+    #[inline(always)]
+    fn then(self, yes: Self, no: Self) -> Self {
+        (self & yes) | (!self & no)
+    }
 }
 
 impl Mask for bool {
     #[inline(always)]
     fn any(self) -> bool {
         self
+    }
+
+    #[inline(always)]
+    fn all(self) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn lane(self, _: usize) -> bool {
+        self
+    }
+
+    #[inline(always)]
+    fn then(self, yes: bool, no: bool) -> bool {
+        if self { yes } else { no }
     }
 }
 
@@ -54,10 +81,18 @@ impl<R, C> Left<R> for C where
 {
 }
 
+/// What a lane can have of its own.
+pub trait Own: Clone + Debug + PartialEq + Send + Sync {}
+
+impl<T: Clone + Debug + PartialEq + Send + Sync> Own for T {}
+
 /// A number of the physics.
 pub trait Real:
     Copy
     + Debug
+    + Send
+    + Sync
+    + 'static
     + Neg<Output = Self>
     + Add<Output = Self>
     + Sub<Output = Self>
@@ -71,17 +106,59 @@ pub trait Real:
     /// Answer of a comparison.
     type Mask: Mask;
 
+    /// What each lane has of its own and no arithmetic works on, such as a curve.
+    type Each<T: Own>: Own;
+
+    /// How many runs are side by side.
+    const LANES: usize;
+
     /// A number in every lane that `self` has.
     fn filled(self, number: f64) -> Self;
 
+    /// A number for each lane that `self` has, from the lane's place.
+    fn by_lane(self, f: impl Fn(usize) -> f64) -> Self;
+
+    /// The number of one lane.
+    fn lane(self, lane: usize) -> f64;
+
+    /// The same with another number in one lane.
+    fn with_lane(self, lane: usize, number: f64) -> Self;
+
+    /// The same answer in every lane that `self` has.
+    fn answer(self, yes: bool) -> Self::Mask;
+
+    /// An answer for each lane that `self` has, from the lane's place.
+    fn ask(self, f: impl Fn(usize) -> bool) -> Self::Mask;
+
+    /// A value for each lane.
+    fn every<T: Own>(f: impl FnMut(usize) -> T) -> Self::Each<T>;
+
+    /// The value of one lane.
+    fn one<T: Own>(of: &Self::Each<T>, lane: usize) -> &T;
+
+    /// The same, to be changed.
+    fn one_mut<T: Own>(of: &mut Self::Each<T>, lane: usize) -> &mut T;
+
     /// Lane by lane what a function of f64 gives.
     fn each(self, f: impl Fn(f64) -> f64) -> Self;
+
+    /// Lane by lane what a function of f64 and of the lane's own value gives.
+    #[inline(always)]
+    fn each_of<T: Own>(self, of: &Self::Each<T>, f: impl Fn(&T, f64) -> f64) -> Self {
+        self.by_lane(
+            #[inline(always)]
+            |lane| f(Self::one(of, lane), self.lane(lane)),
+        )
+    }
 
     /// Where `self` is above the other; no where one is no number.
     fn above(self, other: impl Operand<Self>) -> Self::Mask;
 
     /// Where `self` is at or above the other; no where one is no number.
     fn reaches(self, other: impl Operand<Self>) -> Self::Mask;
+
+    /// Where both have the same bits.
+    fn is_same(self, other: Self) -> Self::Mask;
 
     /// `yes` where the mask says so, else `no`.
     fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self;
@@ -129,6 +206,12 @@ pub trait Real:
         self.each(elementary::ln)
     }
 
+    /// e to the power of several, the same bits as one by one: together they cost less.
+    fn exp_each<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
+
+    /// Natural logarithm of several, the same bits as one by one: together they cost less.
+    fn ln_each<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
+
     /// Hyperbolic tangent.
     #[inline(always)]
     fn tanh(self) -> Self {
@@ -140,14 +223,78 @@ pub trait Real:
     fn asin(self) -> Self {
         self.each(circular::asin)
     }
+
+    /// Where `self` is below the other; no where one is no number.
+    #[inline(always)]
+    fn below(self, other: impl Operand<Self>) -> Self::Mask {
+        other.lifted(self).above(self)
+    }
+
+    /// Where `self` is at or below the other; no where one is no number.
+    #[inline(always)]
+    fn at_most(self, other: impl Operand<Self>) -> Self::Mask {
+        other.lifted(self).reaches(self)
+    }
+
+    /// The sum of numbers in their order, as `Iterator::sum` has it.
+    #[inline(always)]
+    fn sum_of(self, numbers: &[Self]) -> Self {
+        let mut sum = self.filled(-0.0);
+        for number in numbers {
+            sum = sum + *number;
+        }
+        sum
+    }
 }
 
 impl Real for f64 {
     type Mask = bool;
+    type Each<T: Own> = T;
+    const LANES: usize = 1;
 
     #[inline(always)]
     fn filled(self, number: f64) -> f64 {
         number
+    }
+
+    #[inline(always)]
+    fn by_lane(self, f: impl Fn(usize) -> f64) -> f64 {
+        f(0)
+    }
+
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn with_lane(self, _: usize, number: f64) -> f64 {
+        number
+    }
+
+    #[inline(always)]
+    fn answer(self, yes: bool) -> bool {
+        yes
+    }
+
+    #[inline(always)]
+    fn ask(self, f: impl Fn(usize) -> bool) -> bool {
+        f(0)
+    }
+
+    #[inline(always)]
+    fn every<T: Own>(mut f: impl FnMut(usize) -> T) -> T {
+        f(0)
+    }
+
+    #[inline(always)]
+    fn one<T: Own>(of: &T, _: usize) -> &T {
+        of
+    }
+
+    #[inline(always)]
+    fn one_mut<T: Own>(of: &mut T, _: usize) -> &mut T {
+        of
     }
 
     #[inline(always)]
@@ -163,6 +310,11 @@ impl Real for f64 {
     #[inline(always)]
     fn reaches(self, other: impl Operand<f64>) -> bool {
         self >= other.lifted(self)
+    }
+
+    #[inline(always)]
+    fn is_same(self, other: f64) -> bool {
+        self.to_bits() == other.to_bits()
     }
 
     #[inline(always)]
@@ -183,6 +335,16 @@ impl Real for f64 {
     #[inline(never)]
     fn within<T>(self, part: impl FnOnce() -> T) -> T {
         part()
+    }
+
+    #[inline(always)]
+    fn exp_each<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
+        elementary::exp_each(x)
+    }
+
+    #[inline(always)]
+    fn ln_each<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
+        elementary::ln_each(x)
     }
 
     #[inline(always)]

@@ -10,54 +10,63 @@
 use super::GRAVITY_M_S2;
 use crate::cycle::Motion;
 use crate::keys::{Values, keys};
-use crate::math::larger;
+use crate::math::{Left, Real, gather};
 
 /// The checked tyres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tyre {
+pub struct Tyre<R: Real = f64> {
     /// Rolling resistance of the warm car, N; 0 without a tyre model.
-    pub warm_n: f64,
+    pub warm_n: R,
     /// Share of it that takes part in the measured load.
-    pub share: f64,
+    pub share: R,
     /// Rise per kelvin below the warm temperature, 1/K.
-    pub per_k: f64,
+    pub per_k: R,
     /// Temperature at which the road load holds, K.
-    pub warm_k: f64,
+    pub warm_k: R,
     /// Heat capacity of all tyres, J/K.
-    pub capacity_j_k: f64,
+    pub capacity_j_k: R,
     /// To the air at standstill, W/K.
-    pub still_w_k: f64,
+    pub still_w_k: R,
     /// To the air over road speed to the power of 0.7, W/K.
-    pub wind_w_k: f64,
+    pub wind_w_k: R,
 }
+
+gather!(Tyre {
+    warm_n,
+    share,
+    per_k,
+    warm_k,
+    capacity_j_k,
+    still_w_k,
+    wind_w_k
+});
 
 /// Least rolling resistance over that of the warm tyre.
 const LEAST: f64 = 0.5;
 
-impl Tyre {
+impl<R: Real> Tyre<R>
+where
+    f64: Left<R>,
+{
     /// Rolling resistance over that of the warm tyre.
-    #[inline]
-    fn ratio(&self, tyre_k: f64) -> f64 {
-        larger(1.0 + self.per_k * (self.warm_k - tyre_k), LEAST)
+    #[inline(always)]
+    fn ratio(&self, tyre_k: R) -> R {
+        (1.0 + self.per_k * (self.warm_k - tyre_k)).most(LEAST)
     }
 
     /// Force that tyres at a temperature add to the road load, N.
-    #[inline]
-    pub fn extra_n(&self, tyre_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn extra_n(&self, tyre_k: R) -> R {
         self.share * self.warm_n * (self.ratio(tyre_k) - 1.0) // RL-6
     }
 
     /// Temperature of the tyres at the end of a step, K.
-    #[inline]
-    pub fn advance_k(&self, tyre_k: f64, ambient_k: f64, motion: &Motion, dt_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn advance_k(&self, tyre_k: R, ambient_k: R, motion: &Motion, dt_s: f64) -> R {
         let ratio = self.ratio(tyre_k);
         let warm_w = self.warm_n * motion.speed_m_s;
         let air_w_k = self.still_w_k + self.wind_w_k * motion.speed_power_07;
-        let slope_w_k = if ratio > LEAST {
-            self.per_k * warm_w
-        } else {
-            0.0
-        };
+        let slope_w_k = R::pick(ratio.above(LEAST), self.per_k * warm_w, warm_w.filled(0.0));
         let surplus_w = warm_w * ratio - air_w_k * (tyre_k - ambient_k);
         tyre_k + surplus_w / (self.capacity_j_k / dt_s + air_w_k + slope_w_k) // RL-7
     }

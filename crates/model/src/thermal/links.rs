@@ -4,20 +4,24 @@
 //! and metal are left for Gauss. The matrix is symmetric and diagonally dominant, so no pivot is zero.
 
 use super::{BELT, COOLANT, ENGINE_OIL, METAL, NODES, SUMP};
+use crate::math::{Left, Real};
 
 /// Conductances between nodes, W/K.
-pub(super) struct Links {
-    pub coolant_oil: f64,
-    pub coolant_metal: f64,
-    pub coolant_sump: f64,
-    pub sump_metal: f64,
-    pub sump_belt: f64,
+pub(super) struct Links<R: Real = f64> {
+    pub coolant_oil: R,
+    pub coolant_metal: R,
+    pub coolant_sump: R,
+    pub sump_metal: R,
+    pub sump_belt: R,
 }
 
-impl Links {
+impl<R: Real> Links<R>
+where
+    f64: Left<R>,
+{
     /// Heat that flows into each node from the others, W.
     #[inline(always)]
-    pub fn flows_w(&self, t: &[f64; NODES]) -> [f64; NODES] {
+    pub fn flows_w(&self, t: &[R; NODES]) -> [R; NODES] {
         let into_oil = self.coolant_oil * (t[COOLANT] - t[ENGINE_OIL]);
         let into_belt = self.sump_belt * (t[SUMP] - t[BELT]);
         let sump_from_coolant = self.coolant_sump * (t[COOLANT] - t[SUMP]);
@@ -34,7 +38,7 @@ impl Links {
 
     /// Rise of the nodes: solves (own + links) rise = right, `own` the diagonal without links (TH-5).
     #[inline(always)]
-    pub fn rise_k(&self, own: &[f64; NODES], right: &[f64; NODES]) -> [f64; NODES] {
+    pub fn rise_k(&self, own: &[R; NODES], right: &[R; NODES]) -> [R; NODES] {
         let (oil, metal, exchanger) = (self.coolant_oil, self.coolant_metal, self.coolant_sump);
         // Leaves: what is left of the link after the leaf's own capacity and air.
         let oil_pivot = 1.0 / (own[ENGINE_OIL] + oil);

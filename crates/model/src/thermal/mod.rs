@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{clamp, exp, larger, ln, ramp, smaller};
+use crate::math::{Left, Mask, Real, exp, gather, ln, places, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -40,62 +40,74 @@ pub const BELT: usize = 4;
 
 /// The oil-to-air cooler.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Cooler {
+pub struct Cooler<R: Real = f64> {
     /// U at standstill, W/K.
-    pub still_w_k: f64,
+    pub still_w_k: R,
     /// U per road speed, W s/(K m).
-    pub per_speed_w_s_k_m: f64,
+    pub per_speed_w_s_k_m: R,
     /// Share of the pump's flow through the cooler.
-    pub flow_share: f64,
+    pub flow_share: R,
     /// Largest flow, m3/s.
-    pub highest_m3_s: f64,
+    pub highest_m3_s: R,
     /// Temperature below which the cooler is bypassed, K.
-    pub bypass_below_k: f64,
+    pub bypass_below_k: R,
 }
 
 /// The checked network.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Network {
+pub struct Network<R: Real = f64> {
     /// Heat capacities, J/K; 0 for an unused node.
-    pub capacity_j_k: [f64; NODES],
+    pub capacity_j_k: [R; NODES],
     /// Oil in the sump of the transmission, m3.
-    pub sump_oil_m3: f64,
+    pub sump_oil_m3: R,
     /// Coolant to engine oil, W/K.
-    pub coolant_oil_w_k: f64,
+    pub coolant_oil_w_k: R,
     /// Block to air at standstill and per speed.
-    pub block_air_w_k: f64,
+    pub block_air_w_k: R,
     /// Block to air per road speed, W s/(K m).
-    pub block_air_per_speed: f64,
+    pub block_air_per_speed: R,
     /// Engine oil pan to air at standstill, W/K.
-    pub pan_air_w_k: f64,
+    pub pan_air_w_k: R,
     /// Engine oil pan to air per road speed, W s/(K m).
-    pub pan_air_per_speed: f64,
+    pub pan_air_per_speed: R,
     /// Radiator fully open at standstill, W/K.
-    pub radiator_w_k: f64,
+    pub radiator_w_k: R,
     /// Radiator per road speed, W s/(K m).
-    pub radiator_per_speed: f64,
+    pub radiator_per_speed: R,
     /// Thermostat begins to open, K.
-    pub thermostat_from_k: f64,
+    pub thermostat_from_k: R,
     /// Thermostat fully open, K.
-    pub thermostat_to_k: f64,
+    pub thermostat_to_k: R,
     /// Transmission oil to metal, W/K.
-    pub oil_metal_w_k: f64,
+    pub oil_metal_w_k: R,
     /// Case to air at standstill, W/K.
-    pub case_air_w_k: f64,
+    pub case_air_w_k: R,
     /// Case to air times v^0.7, W/K.
-    pub case_air_per_speed: f64,
+    pub case_air_per_speed: R,
     /// Block to transmission metal through the bell housing, W/K.
-    pub bell_housing_w_k: f64,
+    pub bell_housing_w_k: R,
     /// Belt to transmission oil by spray with the pump at 2500 rpm, W/K (TH-8).
-    pub spray_w_k: f64,
+    pub spray_w_k: R,
     /// Coolant to transmission oil heat exchanger, W/K.
-    pub exchanger_w_k: f64,
+    pub exchanger_w_k: R,
     /// Coolant temperature from which the heat exchanger's valve opens, over 5 K, K.
-    pub exchanger_opens_k: f64,
+    pub exchanger_opens_k: R,
     /// Oil-to-air cooler.
-    pub cooler: Option<Cooler>,
+    pub cooler: Option<Cooler<R>>,
     /// Under-bonnet air: rise as a share of coolant over ambient.
-    pub under_bonnet: f64,
+    pub under_bonnet: R,
+}
+
+gather! {
+    Cooler { still_w_k, per_speed_w_s_k_m, flow_share, highest_m3_s, bypass_below_k }
+}
+
+gather! {
+    Network {
+        capacity_j_k, sump_oil_m3, coolant_oil_w_k, block_air_w_k, block_air_per_speed, pan_air_w_k, pan_air_per_speed, radiator_w_k,
+        radiator_per_speed, thermostat_from_k, thermostat_to_k, oil_metal_w_k, case_air_w_k, case_air_per_speed, bell_housing_w_k, spray_w_k,
+        exchanger_w_k, exchanger_opens_k, cooler, under_bonnet,
+    }
 }
 
 /// Share of a conductance that is left with nothing turning (TH-6).
@@ -106,14 +118,14 @@ pub const SPRAY_REFERENCE_RAD_S: f64 = crate::keys::rad_s(2500.0);
 
 /// Temperatures of the nodes, K.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Heat {
+pub struct Heat<R: Real = f64> {
     /// Node temperatures, K.
-    pub node_k: [f64; NODES],
+    pub node_k: [R; NODES],
 }
 
-impl Heat {
+impl<R: Real> Heat<R> {
     /// All nodes at one temperature.
-    pub fn uniform(temp_k: f64) -> Self {
+    pub fn uniform(temp_k: R) -> Self {
         Heat {
             node_k: [temp_k; NODES],
         }
@@ -122,19 +134,19 @@ impl Heat {
 
 /// What happens around the nodes in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeatInput {
+pub struct HeatInput<R: Real = f64> {
     /// Heat into the nodes, W.
-    pub power_w: [f64; NODES],
+    pub power_w: [R; NODES],
     /// Ambient temperature, K.
-    pub ambient_k: f64,
+    pub ambient_k: R,
     /// Road speed, m/s.
     pub speed_m_s: f64,
     /// Speed of the pump, rad/s.
-    pub pump_rad_s: f64,
+    pub pump_rad_s: R,
     /// Oil flow that the pump gives, m3/s.
-    pub oil_flow_m3_s: f64,
+    pub oil_flow_m3_s: R,
     /// Heat capacity flow of the oil per volume flow, J/(m3 K).
-    pub oil_volume_heat_j_m3k: f64,
+    pub oil_volume_heat_j_m3k: R,
     /// Whether engine and pumps turn.
     pub running: bool,
     /// Step, s.
@@ -143,60 +155,62 @@ pub struct HeatInput {
 
 /// Result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HeatStep {
+pub struct HeatStep<R: Real = f64> {
     /// Temperatures at its end.
-    pub heat: Heat,
+    pub heat: Heat<R>,
     /// Heat stored, W.
-    pub stored_w: f64,
+    pub stored_w: R,
     /// Heat given to the air, W.
-    pub to_air_w: f64,
+    pub to_air_w: R,
     /// Oil to the cooler, K; NaN without one.
-    pub cooler_in_k: f64,
+    pub cooler_in_k: R,
     /// Oil from the cooler, K; NaN without one.
-    pub cooler_out_k: f64,
+    pub cooler_out_k: R,
 }
 
 /// Conductances of one step.
-struct Now {
+struct Now<R: Real = f64> {
     /// Block, engine oil pan and transmission case to the air under the bonnet, W/K.
-    block_air_w_k: f64,
-    pan_air_w_k: f64,
-    case_air_w_k: f64,
+    block_air_w_k: R,
+    pan_air_w_k: R,
+    case_air_w_k: R,
     /// Air under the bonnet, K.
-    bonnet_k: f64,
+    bonnet_k: R,
     /// Between nodes, W/K.
-    links: Links,
+    links: Links<R>,
     /// Radiator heat now and its slope.
-    radiator: (f64, f64),
+    radiator: (R, R),
     /// Heat capacity flow through the cooler, W/K.
-    cooler_flow_w_k: f64,
+    cooler_flow_w_k: R,
     /// Cooler conductance, transmission oil to ambient air, W/K.
-    cooler_w_k: f64,
+    cooler_w_k: R,
 }
 
-impl Now {
+impl<R: Real> Now<R>
+where
+    f64: Left<R>,
+{
     /// Conductance of each node to its air, W/K; the radiator's slope is kept apart.
-    #[inline]
-    fn air_w_k(&self) -> [f64; NODES] {
+    #[inline(always)]
+    fn air_w_k(&self) -> [R; NODES] {
         [
             self.block_air_w_k,
             self.pan_air_w_k,
             self.cooler_w_k,
             self.case_air_w_k,
-            0.0,
+            self.cooler_w_k.filled(0.0),
         ]
     }
 
     /// Heat from each node to its air at the beginning of the step, W, that of the radiator included.
-    #[inline]
-    fn air_w(&self, t: &[f64; NODES], ambient_k: f64) -> [f64; NODES] {
-        let bonnet = |node: usize, w_k: f64| w_k * (t[node] - self.bonnet_k);
+    #[inline(always)]
+    fn air_w(&self, t: &[R; NODES], ambient_k: R) -> [R; NODES] {
         [
-            bonnet(COOLANT, self.block_air_w_k) + self.radiator.0,
-            bonnet(ENGINE_OIL, self.pan_air_w_k),
+            self.block_air_w_k * (t[COOLANT] - self.bonnet_k) + self.radiator.0,
+            self.pan_air_w_k * (t[ENGINE_OIL] - self.bonnet_k),
             self.cooler_w_k * (t[SUMP] - ambient_k),
-            bonnet(METAL, self.case_air_w_k),
-            0.0,
+            self.case_air_w_k * (t[METAL] - self.bonnet_k),
+            ambient_k.filled(0.0),
         ]
     }
 }
@@ -206,52 +220,78 @@ fn speed_power(v: f64) -> f64 {
     if v > 0.0 { exp(0.7 * ln(v)) } else { 0.0 }
 }
 
-impl Network {
+impl<R: Real> Network<R>
+where
+    f64: Left<R>,
+{
     /// Belt to transmission oil by spray at a pump speed, W/K (TH-8).
-    #[inline]
-    pub fn spray_now_w_k(&self, pump_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn spray_now_w_k(&self, pump_rad_s: R) -> R {
         let share = pump_rad_s / SPRAY_REFERENCE_RAD_S;
-        self.spray_w_k * larger(share, STILL) // TH-8
+        self.spray_w_k * share.most(STILL) // TH-8
     }
 
     #[inline(always)]
-    fn radiator(&self, coolant_k: f64, input: &HeatInput) -> (f64, f64) {
+    fn radiator(&self, coolant_k: R, input: &HeatInput<R>) -> (R, R) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
         let width = self.thermostat_to_k - self.thermostat_from_k;
-        let open = clamp((coolant_k - self.thermostat_from_k) / width, 0.0, 1.0);
+        let open = ((coolant_k - self.thermostat_from_k) / width).held(0.0, 1.0);
         let over = coolant_k - input.ambient_k;
         // A coolant that is colder than the air warms towards it: with the opening held, the step ends between the two (TH-9).
-        let slope = if open > 0.0 && open < 1.0 && over > 0.0 {
-            full * (open + over / width)
+        let opens = open.above(0.0) & open.filled(1.0).above(open) & over.above(0.0);
+        let flow = full * open;
+        let slope = if opens.any() {
+            R::pick(opens, full * (open + over / width), flow)
         } else {
-            full * open
+            flow
         };
-        (full * open * over, slope) // TH-2
+        (flow * over, slope) // TH-2
     }
 
     #[inline(always)]
-    fn cooler(&self, sump_k: f64, input: &HeatInput) -> (f64, f64) {
+    fn cooler(&self, sump_k: R, input: &HeatInput<R>) -> (R, R) {
+        let zero = sump_k.filled(0.0);
         let Some(c) = &self.cooler else {
-            return (0.0, 0.0);
+            return (zero, zero);
         };
         let flow = c.flow_share * input.oil_flow_m3_s;
-        let flow = smaller(flow, c.highest_m3_s);
+        let flow = flow.least(c.highest_m3_s);
         let carried = flow * input.oil_volume_heat_j_m3k;
-        let open = clamp((sump_k - c.bypass_below_k) / 2.0, 0.0, 1.0);
-        if carried <= 0.0 || open <= 0.0 {
-            return (carried, 0.0);
+        let open = ((sump_k - c.bypass_below_k) / 2.0).held(0.0, 1.0);
+        let passed = zero.reaches(carried) | zero.reaches(open);
+        if passed.all() {
+            return (carried, zero);
         }
         let u = c.still_w_k + c.per_speed_w_s_k_m * input.speed_m_s;
-        (carried, open * carried * (1.0 - exp(-u / carried))) // TH-3
+        let cools = open * carried * (1.0 - (-u / carried).exp());
+        (carried, R::pick(passed, zero, cools)) // TH-3
+    }
+
+    /// The heat exchanger between coolant and transmission oil, W/K, with the pumps at a share of their flow (TH-7).
+    #[inline(always)]
+    fn exchanger_now_w_k(&self, coolant_k: R, stirred: f64) -> R {
+        let there = self.exchanger_w_k.above(0.0);
+        let none = coolant_k.filled(0.0);
+        if !there.any() {
+            return none;
+        }
+        let opens_k = self.exchanger_opens_k;
+        let open = ramp(coolant_k, opens_k, opens_k + 5.0);
+        R::pick(there, stirred * self.exchanger_w_k * open, none) // TH-7
     }
 
     #[inline(always)]
-    fn now(&self, heat: &Heat, input: &HeatInput, speed_power_07: f64) -> Now {
+    fn now(&self, heat: &Heat<R>, input: &HeatInput<R>, speed_power_07: f64) -> Now<R> {
         let t = &heat.node_k;
         let v = input.speed_m_s;
         let (cooler_flow_w_k, cooler_w_k) = self.cooler(t[SUMP], input);
         let stirred = if input.running { 1.0 } else { STILL };
+        let pump_rad_s = if input.running {
+            input.pump_rad_s
+        } else {
+            input.pump_rad_s.filled(0.0)
+        };
         Now {
             block_air_w_k: self.block_air_w_k + self.block_air_per_speed * v,
             pan_air_w_k: self.pan_air_w_k + self.pan_air_per_speed * v,
@@ -260,19 +300,9 @@ impl Network {
             links: Links {
                 coolant_oil: stirred * self.coolant_oil_w_k,
                 coolant_metal: self.bell_housing_w_k,
-                coolant_sump: if self.exchanger_w_k > 0.0 {
-                    stirred
-                        * self.exchanger_w_k
-                        * ramp(
-                            t[COOLANT],
-                            self.exchanger_opens_k,
-                            self.exchanger_opens_k + 5.0,
-                        ) // TH-7
-                } else {
-                    0.0
-                },
+                coolant_sump: self.exchanger_now_w_k(t[COOLANT], stirred),
                 sump_metal: stirred * self.oil_metal_w_k,
-                sump_belt: self.spray_now_w_k(if input.running { input.pump_rad_s } else { 0.0 }),
+                sump_belt: self.spray_now_w_k(pump_rad_s),
             },
             radiator: self.radiator(t[COOLANT], input),
             cooler_flow_w_k,
@@ -281,33 +311,44 @@ impl Network {
     }
 
     /// Advances the nodes by one step (TH-5).
-    pub fn advance(&self, heat: &Heat, input: &HeatInput) -> HeatStep {
+    pub fn advance(&self, heat: &Heat<R>, input: &HeatInput<R>) -> HeatStep<R> {
         self.advance_in_wind(heat, input, speed_power(input.speed_m_s))
     }
 
     /// The same, with the road speed to the power of 0.7, which a trace knows.
     #[inline(always)]
-    pub fn advance_in_wind(&self, heat: &Heat, input: &HeatInput, speed_power_07: f64) -> HeatStep {
+    pub fn advance_in_wind(
+        &self,
+        heat: &Heat<R>,
+        input: &HeatInput<R>,
+        speed_power_07: f64,
+    ) -> HeatStep<R> {
         let mut now = self.now(heat, input, speed_power_07);
         let t = &heat.node_k;
-        let per_s = 1.0 / input.dt_s;
-        let capacity_w_k = self.capacity_j_k.map(|capacity| capacity * per_s);
+        let per_s = input.dt_s.recip();
+        let capacity_w_k = places!(i in 0, 1, 2, 3, 4 => self.capacity_j_k[i] * per_s);
         let (air_w_k, mut air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut rise = self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w));
         // Only beyond the end of the thermostat's ramp can both be: the step was too long for its slope.
-        if now.radiator.0 + now.radiator.1 * rise[COOLANT] < 0.0
-            && t[COOLANT] + rise[COOLANT] > input.ambient_k
-        {
-            now.radiator = (0.0, 0.0); // TH-9
+        let zero = input.ambient_k.filled(0.0);
+        let shuts = zero.above(now.radiator.0 + now.radiator.1 * rise[COOLANT])
+            & (t[COOLANT] + rise[COOLANT]).above(input.ambient_k);
+        if shuts.any() {
+            now.radiator.0 = R::pick(shuts, zero, now.radiator.0); // TH-9
+            now.radiator.1 = R::pick(shuts, zero, now.radiator.1);
             air_w = now.air_w(t, input.ambient_k);
-            rise = self.rise_shut_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w));
+            // Rare: kept out of the way of the other steps.
+            rise = zero.within(
+                #[inline(always)]
+                || self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w)),
+            );
         }
         let mut node_k = *t;
-        let (mut stored_w, mut to_air_w) = (0.0, now.radiator.1 * rise[COOLANT]);
+        let (mut stored_w, mut to_air_w) = (zero, now.radiator.1 * rise[COOLANT]);
         for i in 0..NODES {
-            node_k[i] += rise[i];
-            stored_w += capacity_w_k[i] * rise[i];
-            to_air_w += air_w[i] + air_w_k[i] * rise[i];
+            node_k[i] = node_k[i] + rise[i];
+            stored_w = stored_w + capacity_w_k[i] * rise[i];
+            to_air_w = to_air_w + (air_w[i] + air_w_k[i] * rise[i]);
         }
         let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);
         HeatStep {
@@ -323,50 +364,38 @@ impl Network {
     #[inline(always)]
     fn rise_k(
         &self,
-        now: &Now,
-        t: &[f64; NODES],
-        input: &HeatInput,
-        capacity_w_k: &[f64; NODES],
-        (air_w_k, air_w): (&[f64; NODES], &[f64; NODES]),
-    ) -> [f64; NODES] {
+        now: &Now<R>,
+        t: &[R; NODES],
+        input: &HeatInput<R>,
+        capacity_w_k: &[R; NODES],
+        (air_w_k, air_w): (&[R; NODES], &[R; NODES]),
+    ) -> [R; NODES] {
         let mut right = now.links.flows_w(t);
         let mut own = *capacity_w_k;
         for i in 0..NODES {
-            own[i] += air_w_k[i];
-            right[i] += input.power_w[i] - air_w[i];
+            own[i] = own[i] + air_w_k[i];
+            right[i] = right[i] + (input.power_w[i] - air_w[i]);
         }
-        own[COOLANT] += now.radiator.1;
-        if self.capacity_j_k[BELT] <= 0.0 {
-            own[BELT] += 1.0; // unused node: keeps its pivot above zero, changes nothing else
-            right[BELT] = 0.0;
+        own[COOLANT] = own[COOLANT] + now.radiator.1;
+        let zero = input.ambient_k.filled(0.0);
+        let unused = zero.reaches(self.capacity_j_k[BELT]);
+        if unused.any() {
+            // It keeps its pivot above zero and changes nothing else.
+            own[BELT] = R::pick(unused, own[BELT] + 1.0, own[BELT]);
+            right[BELT] = R::pick(unused, zero, right[BELT]);
         }
         now.links.rise_k(&own, &right)
     }
 
-    /// The same for the rare step in which the thermostat shuts (TH-9), kept out of the way of the others.
-    #[cold]
-    #[inline(never)]
-    fn rise_shut_k(
-        &self,
-        now: &Now,
-        t: &[f64; NODES],
-        input: &HeatInput,
-        capacity_w_k: &[f64; NODES],
-        air: (&[f64; NODES], &[f64; NODES]),
-    ) -> [f64; NODES] {
-        self.rise_k(now, t, input, capacity_w_k, air)
-    }
-
-    #[inline]
-    fn cooler_ends(&self, now: &Now, sump_k: f64, ambient_k: f64) -> (f64, f64) {
+    #[inline(always)]
+    fn cooler_ends(&self, now: &Now<R>, sump_k: R, ambient_k: R) -> (R, R) {
         if self.cooler.is_none() {
-            return (f64::NAN, f64::NAN);
+            let none = sump_k.filled(f64::NAN);
+            return (none, none);
         }
-        let effect = if now.cooler_flow_w_k > 0.0 {
-            now.cooler_w_k / now.cooler_flow_w_k
-        } else {
-            0.0
-        };
+        let flows = now.cooler_flow_w_k.above(0.0);
+        let effect = now.cooler_w_k / now.cooler_flow_w_k;
+        let effect = R::pick(flows, effect, sump_k.filled(0.0));
         (sump_k, sump_k - effect * (sump_k - ambient_k))
     }
 }

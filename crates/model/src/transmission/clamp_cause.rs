@@ -22,6 +22,17 @@ pub enum ClampCause {
 }
 
 impl ClampCause {
+    /// The cause as a number, which lanes can pick; [`ClampCause::of`] is the way back.
+    #[inline(always)]
+    pub(crate) const fn number(self) -> f64 {
+        self as u8 as f64
+    }
+
+    /// The cause of a number.
+    pub(crate) fn of(number: f64) -> Self {
+        Self::NAMES[number as usize].0
+    }
+
     /// All causes with their names in files.
     pub const NAMES: [(ClampCause, &'static str); 7] = [
         (ClampCause::Law, "law"),

@@ -2,6 +2,7 @@
 //!
 //! Columns of traces, benches and studies, fills of charts, the split of heat and the list of a car's components are made from it.
 
+use crate::math::{Gather, Real};
 use std::ops::{Index, IndexMut};
 
 /// The transmissions that have a component.
@@ -253,6 +254,23 @@ impl<T> ByComponent<T> {
     /// Another value made of each.
     pub fn map<U>(self, f: impl FnMut(T) -> U) -> ByComponent<U> {
         ByComponent(self.0.map(f))
+    }
+}
+
+impl<T: Gather> Gather for ByComponent<T> {
+    type Together<R: Real> = ByComponent<T::Together<R>>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+        let values: Vec<&[T; Component::COUNT]> = of.iter().map(|one| &one.0).collect();
+        ByComponent(Gather::gather(like, &values))
+    }
+
+    fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
+        ByComponent(Gather::lane::<R>(&together.0, lane))
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        self.0.alike(&other.0)
     }
 }
 

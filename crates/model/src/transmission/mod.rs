@@ -11,14 +11,18 @@ pub mod viscous_self_heating;
 pub mod manual;
 mod step;
 
+pub(crate) use step::set_flag;
 pub use step::{DrivelineState, StepInput, StepOutput};
 
 use self::component::{Component, Part};
 use self::coupling::Coupling;
 use self::cvt::CvtState;
 use self::loss_factor::LossFactors;
+use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
+use crate::math::Real;
 use crate::prime_mover::PrimeMover;
+use std::fmt::Debug;
 
 /// A transmission of either kind.
 #[derive(Clone, Debug)]
@@ -27,6 +31,108 @@ pub enum Transmission {
     Cvt(Box<cvt::Cvt>),
     /// Manual box.
     Manual(Box<manual::Manual>),
+}
+
+/// A transmission as the loop over a cycle sees it, of one run or of several side by side.
+pub trait Driveline<R: Real = f64> {
+    /// What it carries from step to step.
+    type State: Clone + Debug;
+
+    /// State at the beginning of a cycle.
+    fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State;
+
+    /// Solves one step, filling an output at rest: none is copied.
+    fn solve_into<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+        state: &mut Self::State,
+        output: &mut StepOutput<R>,
+    );
+
+    /// Engine speed before a step, rad/s.
+    fn engine_rad_s(state: &Self::State) -> R;
+
+    /// True for a CVT, which drives the automatic trace.
+    fn is_cvt(&self) -> bool;
+
+    /// Share of a step at rest that the box is in neutral (SE-1, SE-2); `running_s`: how long the engine has run since its start.
+    fn neutral_share(
+        &self,
+        state: Option<&Self::State>,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> R;
+
+    /// Factor on the loss of its coupling (LC-6); none where it loses what its model says.
+    fn coupling_factor(&self) -> Option<R>;
+}
+
+impl Driveline for Transmission {
+    type State = TransmissionState;
+
+    fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
+        match self {
+            Transmission::Cvt(cvt) => {
+                let (state, driveline) = cvt.start(input);
+                TransmissionState {
+                    cvt: Some(state),
+                    driveline,
+                }
+            }
+            Transmission::Manual(manual) => TransmissionState {
+                cvt: None,
+                driveline: manual.begin(input),
+            },
+        }
+    }
+
+    #[inline]
+    fn solve_into<P: PrimeMover>(
+        &self,
+        input: &StepInput<P>,
+        state: &mut TransmissionState,
+        output: &mut StepOutput,
+    ) {
+        let TransmissionState { cvt, driveline } = state;
+        match (self, cvt) {
+            (Transmission::Cvt(cvt), Some(own)) => cvt.solve(input, own, driveline, output),
+            (Transmission::Cvt(_), None) => (),
+            (Transmission::Manual(manual), _) => manual.solve(input, driveline, output),
+        }
+    }
+
+    #[inline(always)]
+    fn engine_rad_s(state: &TransmissionState) -> f64 {
+        state.driveline.engine_rad_s
+    }
+
+    #[inline(always)]
+    fn is_cvt(&self) -> bool {
+        matches!(self, Transmission::Cvt(_))
+    }
+
+    #[inline(always)]
+    fn neutral_share(
+        &self,
+        state: Option<&TransmissionState>,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> f64 {
+        match self {
+            Transmission::Cvt(cvt) => {
+                let rested_s = state.map_or(0.0, |state| state.driveline.rested_s);
+                cvt.neutral_share_after(rested_s, trace, step, running_s)
+            }
+            Transmission::Manual(_) => 0.0,
+        }
+    }
+
+    #[inline(always)]
+    fn coupling_factor(&self) -> Option<f64> {
+        self.coupling().loss_factor()
+    }
 }
 
 /// What a transmission carries from step to step.
@@ -41,19 +147,7 @@ pub struct TransmissionState {
 impl Transmission {
     /// State at the beginning of a cycle.
     pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
-        match self {
-            Transmission::Cvt(cvt) => {
-                let (state, driveline) = cvt.start(input);
-                TransmissionState {
-                    cvt: Some(state),
-                    driveline,
-                }
-            }
-            Transmission::Manual(manual) => TransmissionState {
-                cvt: None,
-                driveline: manual.start(input),
-            },
-        }
+        Driveline::start(self, input)
     }
 
     /// Solves one step.
@@ -65,22 +159,6 @@ impl Transmission {
         let mut output = StepOutput::at_rest();
         self.solve_into(input, state, &mut output);
         output
-    }
-
-    /// The same, filling an output at rest: none is copied.
-    #[inline]
-    pub fn solve_into<P: PrimeMover>(
-        &self,
-        input: &StepInput<P>,
-        state: &mut TransmissionState,
-        output: &mut StepOutput,
-    ) {
-        let TransmissionState { cvt, driveline } = state;
-        match (self, cvt) {
-            (Transmission::Cvt(cvt), Some(own)) => cvt.solve(input, own, driveline, output),
-            (Transmission::Cvt(_), None) => (),
-            (Transmission::Manual(manual), _) => manual.solve(input, driveline, output),
-        }
     }
 
     /// True for a CVT, which drives the automatic trace.
@@ -112,8 +190,8 @@ impl Transmission {
     #[inline]
     pub fn coupling(&self) -> &dyn Coupling {
         match self {
-            Transmission::Cvt(cvt) => &*cvt.coupling,
-            Transmission::Manual(manual) => &*manual.coupling,
+            Transmission::Cvt(cvt) => &cvt.coupling,
+            Transmission::Manual(manual) => &manual.coupling,
         }
     }
 
@@ -123,7 +201,7 @@ impl Transmission {
             Transmission::Cvt(cvt) => cvt.loss_factors(),
             Transmission::Manual(manual) => manual.loss_factors(),
         };
-        factors[Component::LaunchClutch] = self.coupling().loss_factor();
+        factors[Component::LaunchClutch] = self.coupling().loss_factor().unwrap_or(1.0);
         factors
     }
 

@@ -6,21 +6,22 @@ use super::coupling::Reach;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::Heat;
 
 /// What a driveline receives for a step.
 #[derive(Debug)]
-pub struct StepInput<'a, P> {
+pub struct StepInput<'a, P, R: Real = f64> {
     /// Demand at the wheels.
-    pub wheel: &'a WheelDemand,
+    pub wheel: &'a WheelDemand<R>,
     /// The engine at its present temperature.
     pub engine: &'a P,
     /// Transmission oil.
-    pub oil: &'a Lubricant,
+    pub oil: &'a Lubricant<R>,
     /// Temperatures at the beginning of the step.
-    pub heat: &'a Heat,
+    pub heat: &'a Heat<R>,
     /// Gear that the cycle prescribes, if it does.
     pub gear: Option<GearCommand>,
     /// Length of the step, s.
@@ -28,13 +29,16 @@ pub struct StepInput<'a, P> {
     /// True where the engine is switched off.
     pub engine_off: bool,
     /// Share of a step at rest that an automatic box is in neutral, 0..1 (SE-3).
-    pub neutral_share: f64,
+    pub neutral_share: R,
 }
 
-impl<P: PrimeMover> StepInput<'_, P> {
+impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R>
+where
+    f64: Left<R>,
+{
     /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
-    #[inline]
-    pub(super) fn reach(&self, from_rad_s: f64, load_nm: f64) -> Reach {
+    #[inline(always)]
+    pub(super) fn reach(&self, from_rad_s: R, load_nm: R) -> Reach<R> {
         Reach {
             from_rad_s,
             slowest_rad_s: self.engine.slowed_rad_s(from_rad_s, load_nm, self.dt_s),
@@ -45,17 +49,17 @@ impl<P: PrimeMover> StepInput<'_, P> {
 
 /// What a driveline keeps of the step before.
 #[derive(Clone, Copy, Debug)]
-pub struct DrivelineState {
+pub struct DrivelineState<R: Real = f64> {
     /// Manual box: gear engaged.
-    pub gear: u8,
+    pub gear: R::Each<u8>,
     /// Engine speed, rad/s.
-    pub engine_rad_s: f64,
+    pub engine_rad_s: R,
     /// Throttle, as a start for the solve.
-    pub throttle: f64,
+    pub throttle: R,
     /// Secondary pressure, Pa.
-    pub secondary_pa: f64,
+    pub secondary_pa: R,
     /// True where the coupling has locked.
-    pub coupled: bool,
+    pub coupled: R::Mask,
     /// True where the car stood still.
     pub stood: bool,
     /// Time that it has, s, with the engine running; kept by a CVT.
@@ -64,94 +68,175 @@ pub struct DrivelineState {
 
 /// What a driveline gives for a step, powers in W.
 #[derive(Clone, Copy, Debug)]
-pub struct StepOutput {
+pub struct StepOutput<R: Real = f64> {
     /// Engine speed, rad/s.
-    pub engine_rad_s: f64,
+    pub engine_rad_s: R,
     /// Torque at the flywheel into the transmission, without inertia, Nm.
-    pub shaft_nm: f64,
+    pub shaft_nm: R,
     /// Throttle 0..1.
-    pub throttle: f64,
+    pub throttle: R,
     /// Gear of a manual box, 0 otherwise.
-    pub gear: u8,
+    pub gear: R::Each<u8>,
     /// Belt ratio; NaN for a manual box.
-    pub belt_ratio: f64,
+    pub belt_ratio: R,
     /// Primary pressure, Pa; NaN for a manual box.
-    pub primary_pa: f64,
+    pub primary_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
-    pub secondary_pa: f64,
+    pub secondary_pa: R,
     /// What decided the secondary pressure; of no meaning for a manual box.
-    pub clamp_cause: ClampCause,
+    pub clamp_cause: R::Each<ClampCause>,
     /// Belt slip; NaN for a manual box.
-    pub slip: f64,
+    pub slip: R,
     /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
-    pub primary_nm: f64,
+    pub primary_nm: R,
     /// Torque that the secondary pulley gives to its shaft, Nm; NaN without a belt that turns.
-    pub secondary_nm: f64,
+    pub secondary_nm: R,
     /// Capacity over torque; NaN for a manual box.
-    pub clamp_safety: f64,
+    pub clamp_safety: R,
     /// Loss power of each component, W.
-    pub loss_w: ByComponent<f64>,
+    pub loss_w: ByComponent<R>,
     /// Loss of the alternator for an electric pump, W.
-    pub alternator_w: f64,
+    pub alternator_w: R,
     /// Power that the driveline gives to the wheels (negative: takes from them).
-    pub output_w: f64,
+    pub output_w: R,
     /// Power into the brakes.
-    pub brake_w: f64,
+    pub brake_w: R,
     /// Demanded power that could not be given.
-    pub deficit_w: f64,
+    pub deficit_w: R,
     /// Oil flow of the pump, m3/s.
-    pub oil_flow_m3_s: f64,
+    pub oil_flow_m3_s: R,
     /// Residual of the solve, a fraction.
-    pub residual: f64,
+    pub residual: R,
     /// Evaluations of the solve.
-    pub iterations: u16,
+    pub iterations: R::Each<u16>,
     /// Flags.
-    pub flags: Flags,
+    pub flags: R::Each<Flags>,
 }
 
 impl StepOutput {
     /// Nothing turns.
-    #[inline]
+    #[inline(always)]
     pub fn at_rest() -> Self {
+        StepOutput::like(0.0)
+    }
+}
+
+impl<R: Real> StepOutput<R>
+where
+    f64: Left<R>,
+{
+    /// Nothing turns in any of the runs of a number.
+    #[inline(always)]
+    pub fn like(number: R) -> Self {
+        let (zero, none) = (number.filled(0.0), number.filled(f64::NAN));
         StepOutput {
-            engine_rad_s: 0.0,
-            shaft_nm: 0.0,
-            throttle: 0.0,
-            gear: 0,
-            belt_ratio: f64::NAN,
-            primary_pa: f64::NAN,
-            secondary_pa: f64::NAN,
-            clamp_cause: ClampCause::Law,
-            slip: f64::NAN,
-            primary_nm: f64::NAN,
-            secondary_nm: f64::NAN,
-            clamp_safety: f64::NAN,
-            loss_w: ByComponent([0.0; Component::COUNT]),
-            alternator_w: 0.0,
-            output_w: 0.0,
-            brake_w: 0.0,
-            deficit_w: 0.0,
-            oil_flow_m3_s: 0.0,
-            residual: 0.0,
-            iterations: 0,
-            flags: Flags::default(),
+            engine_rad_s: zero,
+            shaft_nm: zero,
+            throttle: zero,
+            gear: R::every(|_| 0),
+            belt_ratio: none,
+            primary_pa: none,
+            secondary_pa: none,
+            clamp_cause: R::every(|_| ClampCause::Law),
+            slip: none,
+            primary_nm: none,
+            secondary_nm: none,
+            clamp_safety: none,
+            loss_w: ByComponent([zero; Component::COUNT]),
+            alternator_w: zero,
+            output_w: zero,
+            brake_w: zero,
+            deficit_w: zero,
+            oil_flow_m3_s: zero,
+            residual: zero,
+            iterations: R::every(|_| 0),
+            flags: R::every(|_| Flags::default()),
         }
     }
 
     /// Splits the difference between the power given and the power demanded into brake and deficit.
-    pub(super) fn split_brake_and_shortfall(&mut self, wheel: &WheelDemand, output_w: f64) {
-        self.output_w = output_w;
+    #[inline(always)]
+    pub(super) fn split_brake_and_shortfall(&mut self, wheel: &WheelDemand<R>, output_w: R) {
+        self.split_of(output_w.answer(true), wheel, output_w);
+    }
+
+    /// The same for the runs of a mask.
+    #[inline(always)]
+    pub(super) fn split_of(&mut self, runs: R::Mask, wheel: &WheelDemand<R>, output_w: R) {
         let over = output_w - wheel.power_w;
-        if over >= 0.0 {
-            self.brake_w = over;
-        } else {
-            self.deficit_w = -over;
-        }
+        let brakes = over.reaches(0.0);
+        self.output_w = R::pick(runs, output_w, self.output_w);
+        self.brake_w = R::pick(runs & brakes, over, self.brake_w);
+        self.deficit_w = R::pick(runs & !brakes, -over, self.deficit_w);
     }
 
     /// Adds a loss power.
-    #[inline]
-    pub(super) fn add_loss(&mut self, component: Component, watts: f64) {
-        self.loss_w[component] += watts;
+    #[inline(always)]
+    pub(super) fn add_loss(&mut self, component: Component, watts: R) {
+        self.loss_w[component] = self.loss_w[component] + watts;
+    }
+
+    /// Sets a flag where the mask says so.
+    #[inline(always)]
+    pub fn flag(&mut self, flag: Flags, on: R::Mask) {
+        set_flag::<R>(&mut self.flags, flag, on);
+    }
+
+    /// Where a flag is set.
+    #[inline(always)]
+    pub fn has(&self, flag: Flags) -> R::Mask {
+        let has = |run| R::one(&self.flags, run).contains(flag);
+        self.engine_rad_s.ask(has)
+    }
+
+    /// Takes over what another output has for the runs of a mask.
+    #[inline(always)]
+    pub(super) fn take(&mut self, runs: R::Mask, other: &StepOutput<R>) {
+        macro_rules! numbers {
+            ($($field:ident),*) => {
+                $(self.$field = R::pick(runs, other.$field, self.$field);)*
+            };
+        }
+        numbers!(
+            engine_rad_s,
+            shaft_nm,
+            throttle,
+            belt_ratio,
+            primary_pa,
+            secondary_pa,
+            slip
+        );
+        numbers!(
+            primary_nm,
+            secondary_nm,
+            clamp_safety,
+            alternator_w,
+            output_w,
+            brake_w
+        );
+        numbers!(deficit_w, oil_flow_m3_s, residual);
+        for (own, other) in self.loss_w.iter_mut().zip(&other.loss_w) {
+            *own = R::pick(runs, *other, *own);
+        }
+        for run in 0..R::LANES {
+            if runs.lane(run) {
+                *R::one_mut(&mut self.gear, run) = *R::one(&other.gear, run);
+                *R::one_mut(&mut self.clamp_cause, run) = *R::one(&other.clamp_cause, run);
+                *R::one_mut(&mut self.iterations, run) = *R::one(&other.iterations, run);
+                *R::one_mut(&mut self.flags, run) = *R::one(&other.flags, run);
+            }
+        }
+    }
+}
+
+/// Sets a flag of the runs where the mask says so.
+#[inline(always)]
+pub(crate) fn set_flag<R: Real>(flags: &mut R::Each<Flags>, flag: Flags, on: R::Mask) {
+    if R::LANES == 1 {
+        R::one_mut(flags, 0).set(flag, on.any());
+    } else if on.any() {
+        for run in 0..R::LANES {
+            R::one_mut(flags, run).set(flag, on.lane(run));
+        }
     }
 }

@@ -18,14 +18,16 @@
 //! The film is taken to be in step with its dissipation: it holds grams of oil, and is there within a second.
 
 use crate::keys::{Key, Values, spec};
-use crate::math::{Left, Real};
+use crate::math::{Left, Real, gather};
 
 /// Heating of a film by its own drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ViscousSelfHeating<R = f64> {
+pub struct ViscousSelfHeating<R: Real = f64> {
     /// Four over the dissipation that halves the drag, 1/W; 0 without heating.
     four_per_halving_w: R,
 }
+
+gather!(ViscousSelfHeating { four_per_halving_w });
 
 impl ViscousSelfHeating {
     /// No heating: the drag follows the viscosity of the sump.

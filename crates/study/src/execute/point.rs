@@ -1,6 +1,7 @@
 //! One point of a study: every car with the point's draw, and the rows that come of it.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::cars::{Binding, StudyCar, bound_of};
 use super::prepare::Study;
@@ -11,7 +12,7 @@ use cvtcycle_config::Problem;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
-use cvtcycle_model::drive::{Conditions, Row, Start, drive_into};
+use cvtcycle_model::drive::{Conditions, Outcome, Row, Run, Start, drive_each, drive_into};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Failure, RunSummary, Settings, compare, run_summary};
 
@@ -30,45 +31,117 @@ struct CarAtPoint<'a> {
 }
 
 impl Study {
-    /// Drives a point; the rows of its runs go into `traces`, if they are kept.
-    pub(super) fn point(
+    /// Drives some points, each car's runs side by side where rows are not looked at; the rows of their runs go into `traces`, if they are kept.
+    pub(super) fn points(
         &self,
-        point: u64,
+        points: Range<u64>,
         worker: &mut Worker,
         mut traces: Option<&mut Traces>,
-    ) -> Vec<PointRun> {
+    ) -> Vec<Vec<PointRun>> {
         let Plan {
             factors, design, ..
         } = &self.plan;
-        let value = |(f, factor): (usize, &Factor)| factor.value(design.level(factors, point, f));
-        let values: Vec<Option<FactorValue>> = factors.iter().enumerate().map(value).collect();
-        let mut subject: Option<RunSummary> = None;
-        let mut runs = Vec::with_capacity(self.cars.len());
-        for (index, car) in self.cars.iter().enumerate() {
-            if let Some(traces) = &mut traces {
-                traces.begin(point, car);
+        let of_point = |point: u64| -> Vec<Option<FactorValue>> {
+            let value =
+                |(f, factor): (usize, &Factor)| factor.value(design.level(factors, point, f));
+            factors.iter().enumerate().map(value).collect()
+        };
+        let values: Vec<Vec<Option<FactorValue>>> = points.clone().map(of_point).collect();
+        let mut subjects: Vec<Option<RunSummary>> = vec![None; values.len()];
+        let mut runs: Vec<Vec<PointRun>> = (values.iter())
+            .map(|_| Vec::with_capacity(self.cars.len()))
+            .collect();
+        // What looks at rows drives them one by one, each point with all its cars.
+        if traces.is_some() || self.sides.is_some() {
+            for (k, point) in points.enumerate() {
+                for (index, car) in self.cars.iter().enumerate() {
+                    if let Some(traces) = &mut traces {
+                        traces.begin(point, car);
+                    }
+                    let at = self.car_at(index, &values[k]);
+                    let (run, summary) =
+                        at.run(worker, subjects[k].as_ref(), traces.as_deref_mut());
+                    if index == 0 && self.sides.is_none() {
+                        subjects[k] = summary;
+                    }
+                    runs[k].push(run);
+                }
             }
-            let at = CarAtPoint {
-                study: self,
-                index,
-                car,
-                values: &values,
-            };
-            let (run, summary) = at.run(worker, subject.as_ref(), traces.as_deref_mut());
-            if index == 0 && self.sides.is_none() {
-                subject = summary;
+            return runs;
+        }
+        for index in 0..self.cars.len() {
+            let ready: Vec<Ready> = (values.iter())
+                .map(|values| self.car_at(index, values).ready(worker))
+                .collect();
+            let outcomes = self.drive_ready(&ready);
+            for (k, (ready, outcome)) in ready.into_iter().zip(outcomes).enumerate() {
+                let at = self.car_at(index, &values[k]);
+                let (run, summary) = match outcome {
+                    Some(outcome) => at.finished(ready, (&outcome, None), subjects[k].as_ref()),
+                    None => (at.refused(ready), None),
+                };
+                if index == 0 {
+                    subjects[k] = summary;
+                }
+                runs[k].push(run);
             }
-            runs.push(run);
         }
         runs
     }
+
+    /// Drives a point.
+    fn point(&self, point: u64) -> Vec<PointRun> {
+        let runs = self.points(point..point + 1, &mut Worker::default(), None);
+        runs.into_iter().flatten().collect()
+    }
+
+    fn car_at<'a>(&'a self, index: usize, values: &'a [Option<FactorValue>]) -> CarAtPoint<'a> {
+        CarAtPoint {
+            study: self,
+            index,
+            car: &self.cars[index],
+            values,
+        }
+    }
+
+    /// Drives what is ready, the runs of a cycle side by side; none for a car that is refused.
+    fn drive_ready(&self, ready: &[Ready]) -> Vec<Option<Outcome>> {
+        let mut outcomes: Vec<Option<Outcome>> = ready.iter().map(|_| None).collect();
+        for (number, cycle) in self.cycles.iter().enumerate() {
+            let mut places = Vec::new();
+            let mut runs = Vec::new();
+            for (place, ready) in ready.iter().enumerate() {
+                if let (Ok(setup), true) = (&ready.built, ready.cycle == number) {
+                    places.push(place);
+                    runs.push(Run {
+                        vehicle: setup,
+                        conditions: ready.conditions,
+                    });
+                }
+            }
+            for (place, outcome) in places.into_iter().zip(drive_each(&runs, cycle)) {
+                outcomes[place] = Some(outcome);
+            }
+        }
+        outcomes
+    }
+}
+
+/// A car at a point, built, with how it is driven.
+struct Ready {
+    factors: Vec<Option<FactorValue>>,
+    /// The car, or why there is none.
+    built: Result<Setup, String>,
+    /// Index of the cycle.
+    cycle: usize,
+    conditions: Conditions,
 }
 
 impl Study {
     /// A number of each car at the first point, with whether its run is fine; NaN where there is none.
     pub(crate) fn first_point(&self, output: &str) -> Vec<(f64, bool)> {
         let at = self.outputs.iter().position(|column| column.name == output);
-        let runs = self.point(0, &mut Worker::default(), None);
+        let runs = self.point(0);
         let number = |run: PointRun| {
             let number = at.and_then(|at| run.numbers.get(at).copied());
             (number.unwrap_or(f64::NAN), run.status == Status::Ok)
@@ -109,29 +182,50 @@ impl CarAtPoint<'_> {
         subject: Option<&RunSummary>,
         traces: Option<&mut Traces>,
     ) -> (PointRun, Option<RunSummary>) {
-        let outputs = &self.study.outputs;
-        let cycle = &self.study.cycles[self.cycle()];
-        let (factors, built) = self.build(worker);
-        let setup = match built {
-            Ok(setup) => setup,
-            Err(reason) => {
-                let run = PointRun {
-                    status: Status::NotRun(reason),
-                    factors,
-                    numbers: vec![f64::NAN; self.study.numbers()],
-                };
-                return (run, None);
-            }
+        let ready = self.ready(worker);
+        let cycle = &self.study.cycles[ready.cycle];
+        let Ok(setup) = &ready.built else {
+            return (self.refused(ready), None);
         };
-        let conditions = self.conditions();
         let mut sides = self.study.sides.map(SideEffects::new);
-        let outcome = match (traces, &mut sides) {
-            (None, None) => drive_into(&setup, cycle, &conditions, None),
-            (traces, sides) => {
-                let mut push = watched(cycle, traces, sides.as_mut());
-                drive_into(&setup, cycle, &conditions, Some(&mut push))
-            }
+        let outcome = {
+            let mut push = watched(cycle, traces, sides.as_mut());
+            drive_into(setup, cycle, &ready.conditions, Some(&mut push))
         };
+        self.finished(ready, (&outcome, sides.as_ref()), subject)
+    }
+
+    /// The car at the point, with what is asked of it.
+    fn ready(&self, worker: &mut Worker) -> Ready {
+        let (factors, built) = self.build(worker);
+        Ready {
+            factors,
+            built,
+            cycle: self.cycle(),
+            conditions: self.conditions(),
+        }
+    }
+
+    /// The run of a car that cannot be driven.
+    fn refused(&self, ready: Ready) -> PointRun {
+        PointRun {
+            status: Status::NotRun(ready.built.err().unwrap_or_default()),
+            factors: ready.factors,
+            numbers: vec![f64::NAN; self.study.numbers()],
+        }
+    }
+
+    /// The run of a car that has been driven.
+    fn finished(
+        &self,
+        ready: Ready,
+        (outcome, sides): (&Outcome, Option<&SideEffects>),
+        subject: Option<&RunSummary>,
+    ) -> (PointRun, Option<RunSummary>) {
+        let Ok(setup) = &ready.built else {
+            return (self.refused(ready), None);
+        };
+        let cycle = &self.study.cycles[ready.cycle];
         let formulation = self.option("formulation").map(FactorValue::to_string);
         let settings = Settings {
             formulation: formulation
@@ -140,19 +234,19 @@ impl CarAtPoint<'_> {
         };
         let named = Driven {
             name: &self.car.name,
-            setup: &setup,
-            outcome: &outcome,
+            setup,
+            outcome,
         };
         let summary = run_summary(cycle, &self.car.role, &settings, &named);
         let excess = subject.map(|subject| compare(subject, &summary));
         let status = status(&summary);
         let row = (summary, excess);
-        let numbers = outputs.iter().map(|column| column.number_of(&row));
-        let extra = sides.iter().flat_map(SideEffects::numbers);
+        let numbers = (self.study.outputs.iter()).map(|column| column.number_of(&row));
+        let extra = sides.into_iter().flat_map(SideEffects::numbers);
         let numbers = numbers.chain(extra).collect();
         let run = PointRun {
             status,
-            factors,
+            factors: ready.factors,
             numbers,
         };
         (run, Some(row.0))

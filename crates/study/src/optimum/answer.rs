@@ -10,6 +10,7 @@ use cvtcycle_model::drive::{
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::keys::{rad_s, rpm};
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use rayon::prelude::*;
 use serde::Serialize;

@@ -12,7 +12,7 @@ use cvtcycle_model::engine::{EngineAtTemperature, Running};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES, SUMP};
-use cvtcycle_model::transmission::coupling::LockSignals;
+use cvtcycle_model::transmission::coupling::{Coupling, LockSignals};
 use cvtcycle_model::transmission::cvt::WarmStart;
 use cvtcycle_model::transmission::cvt::controller::ClampLaw;
 use cvtcycle_model::transmission::cvt::variator::BeltAtRatio;

@@ -10,6 +10,7 @@ use cvtcycle_model::engine::EngineAtTemperature;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES};
+use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Hold;
 use rayon::prelude::*;
 

@@ -10,7 +10,7 @@ use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::math::{Curve, Grid};
 use cvtcycle_model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle_model::transmission::component::Component;
-use cvtcycle_model::transmission::coupling::CouplingLoad;
+use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad};
 use cvtcycle_model::transmission::cvt::controller::{ClampLaw, ClampSignals};
 use cvtcycle_model::transmission::cvt::floors::Floors;
 use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;

@@ -10,7 +10,7 @@ use cvtcycle_model::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use cvtcycle_model::road::WheelDemand;
 use cvtcycle_model::thermal::{Heat, NODES};
 use cvtcycle_model::transmission::component::Component;
-use cvtcycle_model::transmission::coupling::CouplingLoad;
+use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad};
 use cvtcycle_model::transmission::manual::{Manual, PartLosses, ShiftSpeeds};
 use cvtcycle_model::transmission::{StepInput, StepOutput, Transmission, TransmissionState};
 

@@ -14,6 +14,7 @@ use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::road::WheelDemand;
 use cvtcycle_model::thermal::{Heat, NODES};
 use cvtcycle_model::transmission::component::Component;
+use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
 use cvtcycle_model::transmission::cvt::pump::PumpKind;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, Geometry};

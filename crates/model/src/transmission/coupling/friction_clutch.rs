@@ -9,23 +9,29 @@
 //! | LC-7 | at least speed: LC-1 with w_e = max(idle, w_input) whatever the torque | derived: at a torque of the clutch fuel rises with the engine's speed; a clutch that is pressed by oil of its own needs no speed to carry a torque |
 //! | LC-4 | slip loss = T (w_engine - w_input) | derived: power balance |
 
-use super::{Coupling, CouplingLoad, EngineSide};
+use super::{Coupling, CouplingLoad, EngineSide, Launch};
 use crate::keys::{Values, keys};
-use crate::math::{exp, larger, ramp};
-use std::sync::Arc;
+use crate::math::{Left, Mask, Real, gather, ramp};
 
 /// A friction clutch that slips at launch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FrictionClutch {
+pub struct FrictionClutch<R: Real = f64> {
     /// Engine speed at which it begins to engage, rad/s.
-    pub engage_rad_s: f64,
+    pub engage_rad_s: R,
     /// Torque per square of speed above it, Nm s2/rad2.
-    pub gain_nm_s2: f64,
+    pub gain_nm_s2: R,
     /// Creep torque at standstill with the engine idling, Nm.
-    pub creep_nm: f64,
+    pub creep_nm: R,
     /// Input speed below which it opens in overrun, rad/s.
-    pub release_rad_s: f64,
+    pub release_rad_s: R,
 }
+
+gather!(FrictionClutch {
+    engage_rad_s,
+    gain_nm_s2,
+    creep_nm,
+    release_rad_s
+});
 
 /// Input speed over idle speed from which a coupled clutch does not slip (LC-5).
 const LOCKED_OVER_IDLE: f64 = 1.2;
@@ -33,57 +39,34 @@ const LOCKED_OVER_IDLE: f64 = 1.2;
 const CREEP_WIDTH_NM: f64 = 5.0;
 /// Speed that rounds off the square root at zero torque, rad/s (200 rpm).
 const ROUND_RAD_S: f64 = 20.944;
+/// Its square.
+const ROUND_SQUARED: f64 = ROUND_RAD_S * ROUND_RAD_S;
 
-impl Coupling for FrictionClutch {
+impl<R: Real> Coupling<R> for FrictionClutch<R>
+where
+    f64: Left<R>,
+{
     /// LC-1, LC-5: never below idle nor below the input shaft.
-    #[inline]
-    fn engine_rad_s(&self, load: &CouplingLoad) -> f64 {
-        let CouplingLoad {
-            output_nm,
-            output_rad_s,
-            idle_rad_s,
-            coupled,
-        } = *load;
-        if coupled && output_rad_s >= self.locked_from_rad_s(idle_rad_s) {
-            return output_rad_s;
-        }
-        let above = output_nm - self.creep_nm;
-        let mut speed = idle_rad_s;
-        if above > 0.0 {
-            let lift = if self.engage_rad_s > idle_rad_s {
-                self.engage_rad_s - idle_rad_s
-            } else {
-                0.0
-            };
-            speed += lift * (1.0 - exp(-above / CREEP_WIDTH_NM))
-                + (above / self.gain_nm_s2 + ROUND_RAD_S * ROUND_RAD_S).sqrt()
-                - ROUND_RAD_S; // LC-1
-        }
-        if speed <= output_rad_s {
-            return output_rad_s;
-        }
-        let slip_share = if coupled {
-            1.0 - ramp(output_rad_s, idle_rad_s, LOCKED_OVER_IDLE * idle_rad_s)
-        } else {
-            1.0
-        };
-        output_rad_s + slip_share * (speed - output_rad_s) // LC-5
+    #[inline(always)]
+    fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
+        self.steady_rad_s(load)
     }
 
-    #[inline]
-    fn locked_from_rad_s(&self, idle_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         LOCKED_OVER_IDLE * idle_rad_s
     }
 
     /// CV-6: in overrun the power passes unchanged, since a clutch whose engine still slows down from a higher speed can neither give
     /// nor take energy.
-    #[inline]
-    fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide {
-        let (engine_nm, slipping_nm) = if output_nm < 0.0 {
-            (output_nm * output_rad_s / engine_rad_s, 0.0)
-        } else {
-            (output_nm, output_nm)
-        };
+    #[inline(always)]
+    fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
+        let overruns = output_nm.below(0.0);
+        let mut engine_nm = output_nm;
+        if overruns.any() {
+            engine_nm = R::pick(overruns, output_nm * output_rad_s / engine_rad_s, engine_nm);
+        }
+        let slipping_nm = R::pick(overruns, output_nm.filled(0.0), output_nm);
         EngineSide {
             engine_nm,
             engine_rad_s,
@@ -91,29 +74,76 @@ impl Coupling for FrictionClutch {
         }
     }
 
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
-        Some(Arc::new(FrictionClutch {
-            engage_rad_s: 0.0,
-            gain_nm_s2: f64::INFINITY,
-            ..*self
-        })) // LC-7
+    fn at_least_speed(&self) -> Option<Launch<R>> {
+        Some(Launch::clutch(self.of_least_speed()))
     }
 
-    #[inline]
-    fn output_nm(&self, engine_nm: f64, _output_rad_s: f64, _engine_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn output_nm(&self, engine_nm: R, _output_rad_s: R, _engine_rad_s: R) -> R {
         engine_nm
     }
 
     #[inline(always)]
-    fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
-        self.creep_nm * (1.0 - ramp(output_rad_s, 0.0, idle_rad_s)) // LC-2
+    fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
+        self.creep_nm * (1.0 - ramp(output_rad_s, idle_rad_s.filled(0.0), idle_rad_s)) // LC-2
     }
 
     #[inline(always)]
-    fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
+    fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let from = 1.1 * idle_rad_s;
-        let to = larger(self.release_rad_s, from);
+        let to = self.release_rad_s.most(from);
         ramp(output_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
+    }
+}
+
+impl<R: Real> FrictionClutch<R>
+where
+    f64: Left<R>,
+{
+    /// The clutch whose engine is never faster than it has to be (LC-7).
+    pub(super) fn of_least_speed(&self) -> Self {
+        FrictionClutch {
+            engage_rad_s: self.engage_rad_s.filled(0.0),
+            gain_nm_s2: self.gain_nm_s2.filled(f64::INFINITY),
+            ..*self
+        } // LC-7
+    }
+
+    /// LC-1, LC-5.
+    #[inline(always)]
+    fn steady_rad_s(&self, load: &CouplingLoad<R>) -> R {
+        let CouplingLoad {
+            output_nm,
+            output_rad_s,
+            idle_rad_s,
+            coupled,
+        } = *load;
+        let locked = coupled & output_rad_s.reaches(LOCKED_OVER_IDLE * idle_rad_s);
+        if locked.all() {
+            return output_rad_s;
+        }
+        let above = output_nm - self.creep_nm;
+        let mut speed = idle_rad_s;
+        let pulls = above.above(0.0);
+        if pulls.any() {
+            let lifts = self.engage_rad_s.above(idle_rad_s);
+            let lift = R::pick(lifts, self.engage_rad_s - idle_rad_s, above.filled(0.0));
+            let raised = lift * (1.0 - (-above / CREEP_WIDTH_NM).exp())
+                + (above / self.gain_nm_s2 + ROUND_SQUARED).sqrt()
+                - ROUND_RAD_S; // LC-1
+            speed = R::pick(pulls, speed + raised, speed);
+        }
+        let slower = locked | speed.at_most(output_rad_s);
+        if slower.all() {
+            return output_rad_s;
+        }
+        let mut slip_share = above.filled(1.0);
+        if coupled.any() {
+            let stays = ramp(output_rad_s, idle_rad_s, LOCKED_OVER_IDLE * idle_rad_s);
+            slip_share = R::pick(coupled, 1.0 - stays, slip_share);
+        }
+        let slipping = output_rad_s + slip_share * (speed - output_rad_s); // LC-5
+        R::pick(slower, output_rad_s, slipping)
     }
 }
 

@@ -4,19 +4,21 @@
 //! the engine's torque only through [`Coupling::engine_side`] and [`Coupling::output_nm`].
 
 mod friction_clutch;
+mod launch;
 mod partial_loss;
 mod torque_converter;
 
 pub use friction_clutch::FrictionClutch;
+pub use launch::Launch;
+pub use partial_loss::DriverClutch;
 pub(super) use partial_loss::PartialLoss;
 pub use torque_converter::{LockUp, TorqueConverter};
 
 use self::friction_clutch::FrictionClutchKeys;
 use self::torque_converter::TorqueConverterKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{clamp, larger, ramp, smaller};
+use crate::math::{Left, Mask, Real, ramp};
 use std::fmt::Debug;
-use std::sync::Arc;
 
 const CLUTCH: Choice = Choice::new(
     "friction_clutch",
@@ -41,30 +43,37 @@ const fn launch(choices: &'static [Choice]) -> spec::Spec {
 }
 
 /// The coupling of a box; `creep_nm` is the default of a clutch's creep torque.
-pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Arc<dyn Coupling> {
+pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Launch {
     let (kind, own) = s.choose(key);
     match kind {
-        "torque_converter" => Arc::new(TorqueConverter::from_values(&own)),
-        _ => Arc::new(FrictionClutch::from_values(&own, creep_nm)),
+        "torque_converter" => Launch::other(TorqueConverter::from_values(&own)),
+        _ => Launch::clutch(FrictionClutch::from_values(&own, creep_nm)),
     }
+}
+
+/// The clutch of a manual box.
+pub(super) fn drivers_clutch<V: Values>(s: &V, key: &Key<'_>) -> DriverClutch {
+    let (_, own) = s.choose(key);
+    DriverClutch::new(FrictionClutch::from_values(&own, 0.0))
 }
 
 /// What the coupling is to pass on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CouplingLoad {
+pub struct CouplingLoad<R: Real = f64> {
     /// Torque into the box, Nm; negative in overrun.
-    pub output_nm: f64,
+    pub output_nm: R,
     /// Speed of the box's input shaft, rad/s.
-    pub output_rad_s: f64,
+    pub output_rad_s: R,
     /// Idle speed of the engine, rad/s.
-    pub idle_rad_s: f64,
+    pub idle_rad_s: R,
     /// True where the coupling had locked before the step.
-    pub coupled: bool,
+    pub coupled: R::Mask,
 }
 
-impl CouplingLoad {
+impl<R: Real> CouplingLoad<R> {
     /// A torque into the box, Nm, at its speed over an engine with an idle speed, rad/s.
-    pub fn new(output_nm: f64, output_rad_s: f64, idle_rad_s: f64, coupled: bool) -> Self {
+    #[inline(always)]
+    pub fn new(output_nm: R, output_rad_s: R, idle_rad_s: R, coupled: R::Mask) -> Self {
         CouplingLoad {
             output_nm,
             output_rad_s,
@@ -76,37 +85,49 @@ impl CouplingLoad {
 
 /// The engine's side of a coupling.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EngineSide {
+pub struct EngineSide<R: Real = f64> {
     /// Torque at the flywheel, Nm.
-    pub engine_nm: f64,
+    pub engine_nm: R,
     /// Engine speed, rad/s.
-    pub engine_rad_s: f64,
+    pub engine_rad_s: R,
     /// Loss of the coupling, W.
-    pub loss_w: f64,
+    pub loss_w: R,
+}
+
+impl<R: Real> EngineSide<R> {
+    /// `yes` where the mask says so, else `no`.
+    #[inline(always)]
+    pub(super) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        EngineSide {
+            engine_nm: R::pick(mask, yes.engine_nm, no.engine_nm),
+            engine_rad_s: R::pick(mask, yes.engine_rad_s, no.engine_rad_s),
+            loss_w: R::pick(mask, yes.loss_w, no.loss_w),
+        }
+    }
 }
 
 /// What a coupling that locks by command looks at before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LockSignals {
+pub struct LockSignals<R: Real = f64> {
     /// Mean road speed of the step, m/s.
     pub speed_m_s: f64,
     /// Oil in the sump, K.
-    pub sump_k: f64,
+    pub sump_k: R,
     /// Speed of the box's input shaft, rad/s.
-    pub output_rad_s: f64,
+    pub output_rad_s: R,
     /// Idle speed of the engine, rad/s.
-    pub idle_rad_s: f64,
+    pub idle_rad_s: R,
 }
 
 /// How a coupling holds engine and box together in a step, decided before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct Hold<R: Real = f64> {
     /// True where it had locked, or locks by command.
-    pub coupled: bool,
+    pub coupled: R::Mask,
     /// Output speed from which it stays locked, rad/s; infinite where it is open.
-    pub locked_from_rad_s: f64,
+    pub locked_from_rad_s: R,
     /// Speed by which the engine is faster where it is locked, rad/s.
-    pub slip_rad_s: f64,
+    pub slip_rad_s: R,
 }
 
 impl Hold {
@@ -120,39 +141,50 @@ impl Hold {
 
 /// The speeds around a coupling, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turning {
+pub struct Turning<R: Real = f64> {
     /// The box's input shaft.
-    pub output_rad_s: f64,
+    pub output_rad_s: R,
     /// The engine.
-    pub engine_rad_s: f64,
+    pub engine_rad_s: R,
     /// The idling engine.
-    pub idle_rad_s: f64,
+    pub idle_rad_s: R,
     /// True where the coupling is locked.
-    pub locked: bool,
+    pub locked: R::Mask,
 }
 
 /// 1 where the engine is no faster than the box, falling to 0 at 2 % more: a slipping coupling whose engine is faster cannot take torque from
 /// the box; faded, so that a solve sees no step.
-fn together(at: &Turning) -> f64 {
-    if at.engine_rad_s > at.output_rad_s {
-        1.0 - ramp(at.engine_rad_s / at.output_rad_s, 1.0, 1.02)
-    } else {
-        1.0
+#[inline(always)]
+fn together<R: Real>(at: &Turning<R>) -> R
+where
+    f64: Left<R>,
+{
+    let one = at.engine_rad_s.filled(1.0);
+    let ahead = at.engine_rad_s.above(at.output_rad_s);
+    if !ahead.any() {
+        return one;
     }
+    let over = at.engine_rad_s / at.output_rad_s;
+    let faded = 1.0 - ramp(over, one, one.filled(1.02));
+    R::pick(ahead, faded, one)
 }
 
 /// A coupling between engine and box.
-pub trait Coupling: Debug + Send + Sync {
+pub trait Coupling<R: Real = f64>: Debug + Send + Sync
+where
+    f64: Left<R>,
+{
     /// Engine speed in steady state for a torque into the box, rad/s.
-    fn engine_rad_s(&self, load: &CouplingLoad) -> f64;
+    fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R;
 
     /// Lowest engine speed over a box that turns at a speed, rad/s. A clutch cannot give energy back: its engine is never slower.
-    fn min_engine_rad_s(&self, output_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn min_engine_rad_s(&self, output_rad_s: R) -> R {
         output_rad_s
     }
 
     /// Output speed from which a locked coupling stays locked, rad/s; infinite for one that never locks.
-    fn locked_from_rad_s(&self, idle_rad_s: f64) -> f64;
+    fn locked_from_rad_s(&self, idle_rad_s: R) -> R;
 
     /// True for a coupling that locks by command. Any other has locked once engine and box turn together, and the box stays in low until then.
     fn by_command(&self) -> bool {
@@ -160,47 +192,53 @@ pub trait Coupling: Debug + Send + Sync {
     }
 
     /// How it holds engine and box together in a step; `past`: it had locked before.
-    fn hold(&self, now: &LockSignals, past: bool) -> Hold {
-        if past {
-            Hold {
-                coupled: true,
-                locked_from_rad_s: self.locked_from_rad_s(now.idle_rad_s),
-                slip_rad_s: 0.0,
-            }
-        } else {
-            Hold::OPEN
+    #[inline(always)]
+    fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
+        let idle_rad_s = now.idle_rad_s;
+        let never = idle_rad_s.filled(f64::INFINITY);
+        Hold {
+            coupled: past,
+            locked_from_rad_s: R::pick(past, self.locked_from_rad_s(idle_rad_s), never),
+            slip_rad_s: idle_rad_s.filled(0.0),
         }
     }
 
     /// The engine's side where the coupling is locked, with the slip of [`Coupling::hold`].
-    fn locked_side(&self, output_nm: f64, output_rad_s: f64, _slip_rad_s: f64) -> EngineSide {
+    #[inline(always)]
+    fn locked_side(&self, output_nm: R, output_rad_s: R, _slip_rad_s: R) -> EngineSide<R> {
         self.engine_side(output_nm, output_rad_s, output_rad_s)
     }
 
     /// The engine's side for a torque into the box at known speeds; `output_nm` over its torque is the torque ratio.
-    fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide;
+    fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R>;
 
     /// Torque into the box for a torque of the driving engine, Nm: the inverse of [`Coupling::engine_side`].
-    fn output_nm(&self, engine_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> f64;
+    fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R;
 
     /// Torque into the box that the idling engine passes on, Nm.
-    fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64;
+    fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R;
 
     /// Share of the engine's overrun torque that the coupling carries, 0..1.
-    fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64;
+    fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R;
 
     /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
-    fn min_output_nm(&self, at: &Turning, absorbed_nm: f64) -> f64 {
-        if at.output_rad_s < at.idle_rad_s {
-            return self.creep_nm(at.output_rad_s, at.idle_rad_s);
+    #[inline(always)]
+    fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
+        let creeps = at.output_rad_s.below(at.idle_rad_s);
+        let mut least_nm = absorbed_nm.filled(0.0);
+        if creeps.any() {
+            least_nm = self.creep_nm(at.output_rad_s, at.idle_rad_s);
         }
-        let share = self.overrun_share(at.output_rad_s, at.idle_rad_s);
-        -together(at) * share * absorbed_nm
+        if !creeps.all() {
+            let share = self.overrun_share(at.output_rad_s, at.idle_rad_s);
+            least_nm = R::pick(creeps, least_nm, -together(at) * share * absorbed_nm);
+        }
+        least_nm
     }
 
     /// The same device with an engine that never is faster than it has to be while it slips (LC-7); none where speed and torque are bound to
     /// each other.
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+    fn at_least_speed(&self) -> Option<Launch<R>> {
         None
     }
 
@@ -209,47 +247,52 @@ pub trait Coupling: Debug + Send + Sync {
         CLUTCH.name
     }
 
-    /// Factor on its loss (LC-6).
-    fn loss_factor(&self) -> f64 {
-        1.0
+    /// Factor on its loss (LC-6); none where it loses what its model says.
+    #[inline(always)]
+    fn loss_factor(&self) -> Option<R> {
+        None
     }
 
     /// The engine's side for a torque into the box, its speed the one of steady state as far as `reach` has it.
-    fn solve(&self, load: &CouplingLoad, reach: &Reach) -> EngineSide {
+    #[inline(always)]
+    fn solve(&self, load: &CouplingLoad<R>, reach: &Reach<R>) -> EngineSide<R> {
         let reached = reach.nearest(self.engine_rad_s(load));
         let least = self.min_engine_rad_s(load.output_rad_s);
-        let engine_rad_s = larger(reached, least);
-        self.engine_side(load.output_nm, load.output_rad_s, engine_rad_s)
+        self.engine_side(load.output_nm, load.output_rad_s, reached.most(least))
     }
 }
 
 /// Speeds that the inertia of a free engine allows within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reach {
+pub struct Reach<R: Real = f64> {
     /// Speed before the step, rad/s.
-    pub from_rad_s: f64,
+    pub from_rad_s: R,
     /// Speed to which it falls without fuel, rad/s.
-    pub slowest_rad_s: f64,
+    pub slowest_rad_s: R,
     /// Speed to which it can rise, rad/s.
-    pub fastest_rad_s: f64,
+    pub fastest_rad_s: R,
 }
 
-impl Reach {
+impl<R: Real> Reach<R>
+where
+    f64: Left<R>,
+{
     /// The nearest speed within reach, rad/s.
-    #[inline]
-    pub fn nearest(&self, wanted_rad_s: f64) -> f64 {
-        clamp(wanted_rad_s, self.slowest_rad_s, self.fastest_rad_s)
+    #[inline(always)]
+    pub fn nearest(&self, wanted_rad_s: R) -> R {
+        wanted_rad_s.held(self.slowest_rad_s, self.fastest_rad_s)
     }
 
     /// Mean over the step of how much faster the engine is than at its end, to which it slows down as fast as it can, rad/s.
-    #[inline]
-    pub fn mean_excess_rad_s(&self, end_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn mean_excess_rad_s(&self, end_rad_s: R) -> R {
         let fall = self.from_rad_s - end_rad_s;
         let most = self.from_rad_s - self.slowest_rad_s;
-        if fall > 0.0 && most > 0.0 {
-            0.5 * fall * smaller(fall / most, 1.0) // EN-12
-        } else {
-            0.0
+        let falls = fall.above(0.0) & most.above(0.0);
+        let none = fall.filled(0.0);
+        if !falls.any() {
+            return none;
         }
+        R::pick(falls, 0.5 * fall * (fall / most).least(1.0), none) // EN-12
     }
 }

@@ -4,34 +4,164 @@
 //! |---|---|---|
 //! | LC-6 | P_loss' = f P_loss, T_e' = T_e - (1 - f) P_loss/w_e, speeds and torques at the box as before; for f > 1 full load passes on less | derived: power balance of a coupling that loses a part; f = 0 passes power on at any ratio of speeds |
 
-use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning};
-use std::sync::Arc;
+use super::FrictionClutch;
+use super::{Coupling, CouplingLoad, EngineSide, Hold, Launch, LockSignals, Turning};
+use crate::math::{Left, Real, gather};
+
+/// The clutch of a manual box, which the driver opens, with factors on its loss.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DriverClutch<R: Real = f64> {
+    /// The clutch.
+    pub clutch: FrictionClutch<R>,
+    /// Factors on its loss, one after the other (LC-6).
+    pub factors: Vec<R>,
+}
+
+gather!(DriverClutch { clutch, factors });
+
+impl<R: Real> DriverClutch<R> {
+    /// A clutch that loses what its model says.
+    pub(super) fn new(clutch: FrictionClutch<R>) -> Self {
+        DriverClutch {
+            clutch,
+            factors: Vec::new(),
+        }
+    }
+}
+
+impl DriverClutch {
+    /// Multiplies its loss by a factor.
+    pub(crate) fn scale(&mut self, factor: f64) {
+        if (factor - 1.0).abs() > 0.0 {
+            self.factors.push(factor);
+        }
+    }
+}
+
+impl<R: Real> DriverClutch<R>
+where
+    f64: Left<R>,
+{
+    /// The engine's side with the first of the factors.
+    #[inline(always)]
+    fn side(
+        &self,
+        factors: usize,
+        output_nm: R,
+        [output_rad_s, engine_rad_s]: [R; 2],
+    ) -> EngineSide<R> {
+        let mut side = (self.clutch).engine_side(output_nm, output_rad_s, engine_rad_s);
+        for factor in &self.factors[..factors] {
+            side = side.with_loss_times(*factor);
+        }
+        side
+    }
+}
+
+impl<R: Real> Coupling<R> for DriverClutch<R>
+where
+    f64: Left<R>,
+{
+    #[inline(always)]
+    fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
+        self.clutch.engine_rad_s(load)
+    }
+
+    #[inline(always)]
+    fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
+        self.clutch.locked_from_rad_s(idle_rad_s)
+    }
+
+    #[inline(always)]
+    fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
+        self.side(self.factors.len(), output_nm, [output_rad_s, engine_rad_s])
+    }
+
+    /// A clutch without loss does not pass on more at full load; one with more loss passes on less, in proportion.
+    #[inline(always)]
+    fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
+        let mut most_nm = (self.clutch).output_nm(engine_nm, output_rad_s, engine_rad_s);
+        for number in 0..self.factors.len() {
+            let needed = self.side(number + 1, most_nm, [output_rad_s, engine_rad_s]);
+            most_nm = passed_nm(most_nm, needed.engine_nm, engine_nm);
+        }
+        most_nm
+    }
+
+    #[inline(always)]
+    fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
+        self.clutch.creep_nm(output_rad_s, idle_rad_s)
+    }
+
+    #[inline(always)]
+    fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
+        self.clutch.overrun_share(output_rad_s, idle_rad_s)
+    }
+
+    fn at_least_speed(&self) -> Option<Launch<R>> {
+        Some(Launch::Clutch(DriverClutch {
+            clutch: self.clutch.of_least_speed(),
+            factors: self.factors.clone(),
+        }))
+    }
+
+    #[inline(always)]
+    fn loss_factor(&self) -> Option<R> {
+        let (first, others) = self.factors.split_first()?;
+        let mut product = *first;
+        for factor in others {
+            product = *factor * product;
+        }
+        Some(product)
+    }
+}
 
 /// A coupling whose loss is multiplied by a factor.
 #[derive(Clone, Debug)]
 pub(crate) struct PartialLoss {
-    inner: Arc<dyn Coupling>,
+    inner: Launch,
     factor: f64,
 }
 
 impl PartialLoss {
     /// A coupling with its loss times a factor; itself for 1.
-    pub fn of(inner: Arc<dyn Coupling>, factor: f64) -> Arc<dyn Coupling> {
-        if (factor - 1.0).abs() > 0.0 {
-            Arc::new(PartialLoss { inner, factor })
-        } else {
-            inner
+    pub fn of(inner: Launch, factor: f64) -> Launch {
+        match inner {
+            Launch::Clutch(mut clutch) => {
+                clutch.scale(factor);
+                Launch::Clutch(clutch)
+            }
+            inner if (factor - 1.0).abs() > 0.0 => Launch::other(PartialLoss { inner, factor }),
+            inner => inner,
         }
     }
 
     /// The engine's side with a part of the loss.
     fn part(&self, side: EngineSide) -> EngineSide {
+        side.with_loss_times(self.factor)
+    }
+}
+
+impl<R: Real> EngineSide<R>
+where
+    f64: Left<R>,
+{
+    /// The engine's side with the loss times a factor.
+    #[inline(always)]
+    fn with_loss_times(self, factor: R) -> Self {
         EngineSide {
-            engine_nm: side.engine_nm - (1.0 - self.factor) * side.loss_w / side.engine_rad_s, // LC-6
-            loss_w: self.factor * side.loss_w, // LC-6
-            ..side
+            engine_nm: self.engine_nm - (1.0 - factor) * self.loss_w / self.engine_rad_s, // LC-6
+            loss_w: factor * self.loss_w,                                                 // LC-6
+            ..self
         }
     }
+}
+
+/// Torque into the box, Nm, of which the engine gives no more than its own, where it would need another.
+#[inline(always)]
+fn passed_nm<R: Real>(most_nm: R, needed_nm: R, engine_nm: R) -> R {
+    let lacks = needed_nm.above(engine_nm) & engine_nm.above(engine_nm.filled(0.0));
+    R::pick(lacks, most_nm * engine_nm / needed_nm, most_nm) // LC-6
 }
 
 impl Coupling for PartialLoss {
@@ -71,11 +201,7 @@ impl Coupling for PartialLoss {
         let needed_nm = self
             .engine_side(most_nm, output_rad_s, engine_rad_s)
             .engine_nm;
-        if needed_nm > engine_nm && engine_nm > 0.0 {
-            most_nm * engine_nm / needed_nm // LC-6
-        } else {
-            most_nm
-        }
+        passed_nm(most_nm, needed_nm, engine_nm)
     }
 
     fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
@@ -94,12 +220,12 @@ impl Coupling for PartialLoss {
         self.inner.device()
     }
 
-    fn at_least_speed(&self) -> Option<Arc<dyn Coupling>> {
+    fn at_least_speed(&self) -> Option<Launch> {
         let inner = self.inner.at_least_speed()?;
         Some(PartialLoss::of(inner, self.factor))
     }
 
-    fn loss_factor(&self) -> f64 {
-        self.factor * self.inner.loss_factor()
+    fn loss_factor(&self) -> Option<f64> {
+        Some(self.factor * self.inner.loss_factor().unwrap_or(1.0))
     }
 }

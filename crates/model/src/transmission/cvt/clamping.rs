@@ -4,28 +4,43 @@ use super::Cvt;
 use super::controller::{ClampLaw, PressurePoint};
 use super::floors::Held;
 use super::variator::{BeltAtRatio, BeltLoad, belt_state};
-use crate::math::{larger, smaller};
+use crate::math::{Left, Real};
 use crate::transmission::clamp_cause::ClampCause;
 
 /// Steps of the slip-limited law's walk from its lowest pressure to the cap.
 const SLIP_STEPS: u32 = 32;
 
 /// The belt that a clamp law looks at.
-pub(super) struct Clamping<'a> {
-    pub cvt: &'a Cvt,
-    pub at: &'a BeltAtRatio,
-    pub load: &'a BeltLoad,
-    pub secondary_rad_s: f64,
+pub(super) struct Clamping<'a, R: Real = f64> {
+    pub cvt: &'a Cvt<R>,
+    pub at: &'a BeltAtRatio<R>,
+    pub load: &'a BeltLoad<R>,
+    pub secondary_rad_s: R,
     /// Logarithm of the force ratio that the shift needs (PC-5).
-    pub force_log: f64,
+    pub force_log: R,
 }
 
-impl Clamping<'_> {
-    /// Secondary pressure that a law and PC-5 demand, Pa, not yet below the cap, and which of them.
+impl<R: Real> Clamping<'_, R>
+where
+    f64: Left<R>,
+{
+    /// Secondary pressure that a law and PC-5 demand, Pa, not yet below the cap, and the number of the cause.
     #[inline(never)]
-    pub fn pressure_pa(&self, law: &ClampLaw) -> (f64, ClampCause) {
+    pub fn pressure_pa(&self, law: &ClampLaw<R>) -> (R, R) {
+        self.force_log.within(
+            #[inline(always)]
+            || self.by_law_pa(law),
+        )
+    }
+
+    #[inline(always)]
+    fn by_law_pa(&self, law: &ClampLaw<R>) -> (R, R) {
         match *law {
-            ClampLaw::Map(_) => (f64::NAN, ClampCause::Law), // looks at the engine only
+            // Looks at the engine only.
+            ClampLaw::Map(_) => {
+                let none = self.force_log.filled(f64::NAN);
+                (none, none.filled(ClampCause::Law.number()))
+            }
             ClampLaw::TorqueFollowing {
                 safety,
                 least_torque_nm,
@@ -37,56 +52,65 @@ impl Clamping<'_> {
                 least_torque_nm,
             } => {
                 let (least_pa, cause) = self.for_torque_pa(safety, least_torque_nm);
-                let pressure_pa = self.for_slip_pa(slip, least_pa);
-                if pressure_pa > least_pa {
-                    (pressure_pa, ClampCause::Law)
-                } else {
-                    (least_pa, cause)
-                }
+                // Run by run: each walks its own way.
+                let pressure_pa = slip.by_lane(|lane| self.for_slip_pa(lane, slip, least_pa));
+                let slips = pressure_pa.above(least_pa);
+                let by_law = cause.filled(ClampCause::Law.number());
+                (
+                    R::pick(slips, pressure_pa, least_pa),
+                    R::pick(slips, by_law, cause),
+                )
             }
         }
     }
 
     /// Pressure of the table, or that of the cause that needs more (PC-6, PC-5); without a table that of the torque.
-    fn of_table_pa(&self) -> (f64, ClampCause) {
-        let held = self.held(1.0, self.load.output_torque_nm.abs());
-        let at = PressurePoint::of_belt(
-            self.load.output_torque_nm,
-            self.at.geometry.ratio,
-            self.secondary_rad_s,
-        );
-        let table = self.cvt.pressure_table.as_ref();
-        held.above(table.map_or_else(|| held.of_torque_pa(), |table| table.pressure_pa(&at))) // PC-6
+    #[inline(always)]
+    fn of_table_pa(&self) -> (R, R) {
+        let torque_nm = self.load.output_torque_nm;
+        let held = self.held(torque_nm.filled(1.0), torque_nm.abs());
+        let Some(tables) = &self.cvt.pressure_table else {
+            return held.above(held.of_torque_pa());
+        };
+        let ratio = self.at.geometry.ratio;
+        held.above(torque_nm.by_lane(|lane| {
+            let (torque_nm, speed) = (torque_nm.lane(lane), self.secondary_rad_s.lane(lane));
+            let at = PressurePoint::of_belt(torque_nm, ratio.lane(lane), speed);
+            R::one(tables, lane).pressure_pa(&at)
+        })) // PC-6
     }
 
     /// Pressure for the torque with a safety factor, or that of the cause that needs more (PC-3, PC-5).
-    fn for_torque_pa(&self, safety: f64, least_nm: f64) -> (f64, ClampCause) {
-        let torque = larger(self.load.output_torque_nm.abs(), least_nm);
+    #[inline(always)]
+    fn for_torque_pa(&self, safety: R, least_nm: R) -> (R, R) {
+        let torque = self.load.output_torque_nm.abs().most(least_nm);
         let held = self.held(safety, torque);
         held.above(held.of_torque_pa())
     }
 
     /// The belt at a torque with a safety factor, Nm (PC-3).
-    fn held(&self, safety: f64, torque: f64) -> Held<'_> {
+    #[inline(always)]
+    fn held(&self, safety: R, torque: R) -> Held<'_, R> {
         let (cvt, at, load) = (self.cvt, self.at, self.load);
         let formulation = cvt.belt.formulation;
         let segment = formulation.segment_friction(load.segment_friction);
         let mu = formulation.capacity_friction(segment, load.capacity_friction);
-        let weaker = smaller(at.thrust_ratio, 1.0);
+        let weaker = at.thrust_ratio.least(1.0);
         let force = safety * torque * cvt.belt.cos_wedge
             / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
         Held {
             cvt,
             at,
             load,
-            own_n: cvt.secondary_clamp_n(0.0, self.secondary_rad_s),
+            own_n: cvt.secondary_clamp_n(force.filled(0.0), self.secondary_rad_s),
             need_n: force,
             force_log: self.force_log,
         }
     }
 
-    /// Slip at a pressure, Pa.
-    fn slip(&self, pressure_pa: f64) -> f64 {
+    /// Slip of a run at a pressure, Pa.
+    fn slip(&self, lane: usize, pressure_pa: f64) -> f64 {
+        let pressure_pa = self.force_log.filled(pressure_pa);
         let load = BeltLoad {
             secondary_clamp_n: self
                 .cvt
@@ -97,40 +121,49 @@ impl Clamping<'_> {
             .losses
             .slip_total
             .abs()
+            .lane(lane)
     }
 
-    fn for_slip_pa(&self, limit: f64, least_pa: f64) -> f64 {
-        let floor = least_pa;
-        if floor >= self.cvt.cap_pa || self.slip(floor) <= limit {
-            return floor;
-        }
-        // Slip falls with clamping force until the stretch of the bands outweighs the grip, then rises: walk up to the first
-        // pressure that meets the limit, or to the least slip where none does.
-        let step = (self.cvt.cap_pa - floor) / f64::from(SLIP_STEPS);
-        let at_step = |k: u32| floor + step * f64::from(k);
-        let mut best = (self.slip(floor), 0);
-        for k in 1..=SLIP_STEPS {
-            let now = self.slip(at_step(k));
-            if now <= limit {
-                return bisect(at_step(k - 1), at_step(k), |pa| self.slip(pa) > limit);
-            }
-            best = if now < best.0 { (now, k) } else { best };
-        }
-        let (low, high) = (
-            at_step(best.1.saturating_sub(1)),
-            at_step(if best.1 < SLIP_STEPS {
-                best.1 + 1
-            } else {
-                SLIP_STEPS
-            }),
-        );
-        let least = least_of(low, high, |pa| self.slip(pa));
-        if self.slip(least) <= limit {
-            bisect(low, least, |pa| self.slip(pa) > limit)
-        } else {
-            least
-        } // PC-4
+    /// The pressure of a run, Pa, for its limit of slip.
+    fn for_slip_pa(&self, lane: usize, limit: R, least_pa: R) -> f64 {
+        let (cap_pa, limit) = (self.cvt.cap_pa.lane(lane), limit.lane(lane));
+        least_for_slip_pa(limit, (least_pa.lane(lane), cap_pa), |pa| {
+            self.slip(lane, pa)
+        })
     }
+}
+
+/// The lowest pressure from a floor to the cap, Pa, at which a slip is within its limit, or that of least slip (PC-4).
+fn least_for_slip_pa(limit: f64, (floor, cap_pa): (f64, f64), slip: impl Fn(f64) -> f64) -> f64 {
+    if floor >= cap_pa || slip(floor) <= limit {
+        return floor;
+    }
+    // Slip falls with clamping force until the stretch of the bands outweighs the grip, then rises: walk up to the first
+    // pressure that meets the limit, or to the least slip where none does.
+    let step = (cap_pa - floor) / f64::from(SLIP_STEPS);
+    let at_step = |k: u32| floor + step * f64::from(k);
+    let mut best = (slip(floor), 0);
+    for k in 1..=SLIP_STEPS {
+        let now = slip(at_step(k));
+        if now <= limit {
+            return bisect(at_step(k - 1), at_step(k), |pa| slip(pa) > limit);
+        }
+        best = if now < best.0 { (now, k) } else { best };
+    }
+    let (low, high) = (
+        at_step(best.1.saturating_sub(1)),
+        at_step(if best.1 < SLIP_STEPS {
+            best.1 + 1
+        } else {
+            SLIP_STEPS
+        }),
+    );
+    let least = least_of(low, high, &slip);
+    if slip(least) <= limit {
+        bisect(low, least, |pa| slip(pa) > limit)
+    } else {
+        least
+    } // PC-4
 }
 
 /// Where `above` changes from true at `low` to false at `high`.

@@ -12,45 +12,59 @@
 //! q n_p. Without n_p the drag is T_f at every speed.
 
 use crate::keys::{Values, keys};
-use crate::math::smaller;
+use crate::math::{Left, Real, gather};
 
 /// Clearance at which `drag_nm` holds, m.
 pub const CLEARANCE_M: f64 = 0.3e-3;
 
 /// The checked reverse clutch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClutchDrag {
+pub struct ClutchDrag<R: Real = f64> {
     /// Torque at reference viscosity and clearance, Nm.
-    pub drag_nm: f64,
+    pub drag_nm: R,
     /// Exponent of viscosity.
-    pub exponent: f64,
+    pub exponent: R,
     /// Largest torque of the film, Nm.
-    pub cap_nm: f64,
+    pub cap_nm: R,
     /// Speed of the largest drag with the normal oil feed, rad/s; `None`: no dependence on speed.
-    pub peak_rad_s: Option<f64>,
+    pub peak_rad_s: Option<R>,
     /// Clearance of a pair of plates, m.
-    pub clearance_m: f64,
+    pub clearance_m: R,
     /// Oil feed over the normal one.
-    pub oil_share: f64,
+    pub oil_share: R,
     /// Constant torque of the set's bearings, Nm.
-    pub set_nm: f64,
+    pub set_nm: R,
     /// Their torque over speed at reference viscosity, Nm s.
-    pub set_nm_s: f64,
+    pub set_nm_s: R,
 }
 
-impl ClutchDrag {
+gather!(ClutchDrag {
+    drag_nm,
+    exponent,
+    cap_nm,
+    peak_rad_s,
+    clearance_m,
+    oil_share,
+    set_nm,
+    set_nm_s
+});
+
+impl<R: Real> ClutchDrag<R>
+where
+    f64: Left<R>,
+{
     /// Torque, Nm, with the power (nu/nu_80)^m known, at a speed of the primary, rad/s (CD-1 to CD-3).
-    #[inline]
-    pub fn torque_nm(&self, power: f64, primary_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn torque_nm(&self, power: R, primary_rad_s: R) -> R {
         let set_nm = self.set_nm + self.set_nm_s * power * primary_rad_s; // CD-3
         self.film_nm(power, primary_rad_s) + set_nm
     }
 
     /// Torque of the film between the plates, Nm (CD-1, CD-2).
-    #[inline]
-    fn film_nm(&self, power: f64, primary_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn film_nm(&self, power: R, primary_rad_s: R) -> R {
         let film_nm = self.drag_nm * power * (CLEARANCE_M / self.clearance_m);
-        let film_nm = smaller(film_nm, self.cap_nm); // CD-1
+        let film_nm = film_nm.least(self.cap_nm); // CD-1
         let Some(peak_rad_s) = self.peak_rad_s else {
             return film_nm;
         };

@@ -7,6 +7,7 @@ use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
 use crate::fluid::{Lubricant, OilState};
 use crate::maps::MapPoint;
+use crate::math::{Left, MOST_LANES, Real};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
@@ -48,14 +49,17 @@ pub(crate) enum Shaft {
 
 /// Powers of viscosity in the drags of the shafts, (nu/nu_80)^m with the exponent of each.
 #[derive(Clone, Copy)]
-pub(crate) struct ViscosityPowers {
-    pub shaft: f64,
-    pub clutch: f64,
+pub(crate) struct ViscosityPowers<R: Real = f64> {
+    pub shaft: R,
+    pub clutch: R,
 }
 
-impl ViscosityPowers {
+impl<R: Real> ViscosityPowers<R>
+where
+    f64: Left<R>,
+{
     /// The powers at a viscosity.
-    pub fn new(cvt: &Cvt, nu_m2_s: f64) -> Self {
+    pub fn new(cvt: &Cvt<R>, nu_m2_s: R) -> Self {
         ViscosityPowers {
             shaft: viscosity_power(nu_m2_s, cvt.shaft_drag.exponent),
             clutch: viscosity_power(nu_m2_s, cvt.clutch_drag.exponent),
@@ -63,37 +67,44 @@ impl ViscosityPowers {
     }
 
     /// Their logarithms, from ln(nu/nu_80).
-    #[inline]
-    pub fn exponents(cvt: &Cvt, log_nu: f64) -> [f64; 2] {
-        [cvt.shaft_drag.exponent, cvt.clutch_drag.exponent].map(|exponent| exponent * log_nu)
+    #[inline(always)]
+    pub fn exponents(cvt: &Cvt<R>, log_nu: R) -> [R; 2] {
+        [
+            cvt.shaft_drag.exponent * log_nu,
+            cvt.clutch_drag.exponent * log_nu,
+        ]
     }
 }
 
 /// Bearings and seal rings of the pulleys at one ratio.
 #[derive(Clone, Copy)]
-pub(crate) struct PulleyShafts {
+pub(crate) struct PulleyShafts<R: Real = f64> {
     /// Radial force on each shaft per clamping force of the secondary; 0 without a belt that pulls (PB-1).
-    pull_per_clamp: f64,
+    pull_per_clamp: R,
     /// Torque of the rings over the pressure of their cylinder, Nm/Pa; 0 without pressure (SR-1).
-    ring_per_pa: f64,
+    ring_per_pa: R,
 }
 
-impl PulleyShafts {
+impl<R: Real> PulleyShafts<R>
+where
+    f64: Left<R>,
+{
     /// What the parts in the box leave of them. The printed forms know neither, and a measured map of the belt holds the bearings.
-    #[inline]
-    pub fn new(cvt: &Cvt, at: &BeltAtRatio, parts: Parts) -> Self {
+    #[inline(always)]
+    pub fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, parts: Parts) -> Self {
+        let none = at.direction.filled(0.0);
         let counted = cvt.belt.formulation.by_statics();
         let pulled = counted && parts.belt && !cvt.has_map(Component::BeltMap);
         PulleyShafts {
             pull_per_clamp: if pulled {
                 PulleyBearing::pull_per_clamp(&cvt.belt, at)
             } else {
-                0.0
+                none
             },
             ring_per_pa: if counted && parts.pump && parts.seal_rings {
                 cvt.seal_ring.torque_per_pa()
             } else {
-                0.0
+                none
             },
         }
     }
@@ -101,97 +112,138 @@ impl PulleyShafts {
 
 /// The CVT at one ratio and oil temperature: what depends on neither torque, pressure nor speed.
 #[derive(Clone, Copy)]
-pub(crate) struct Driveline<'a> {
-    pub cvt: &'a Cvt,
-    pub at: &'a BeltAtRatio,
+pub(crate) struct Driveline<'a, R: Real = f64> {
+    pub cvt: &'a Cvt<R>,
+    pub at: &'a BeltAtRatio<R>,
     pub parts: Parts,
-    pub viscosity: ViscosityPowers,
-    pub pump: PumpAtTemperature,
-    pub shafts: PulleyShafts,
+    pub viscosity: ViscosityPowers<R>,
+    pub pump: PumpAtTemperature<R>,
+    pub shafts: PulleyShafts<R>,
     /// Factor of the clamp map at the ratio (PC-1).
-    pub radius_factor: f64,
+    pub radius_factor: R,
     /// Logarithm of the force ratio that the shift needs (PC-5).
-    pub force_log: f64,
+    pub force_log: R,
     /// Transmission oil, K.
-    pub oil_k: f64,
+    pub oil_k: R,
     /// The same oil.
-    pub oil: OilState,
+    pub oil: OilState<R>,
     /// Losses that are not those of the models, if there are any.
-    pub changes: Option<&'a LossChanges>,
+    pub changes: Option<&'a LossChanges<R>>,
 }
 
 /// What turns with the engine's shaft, at its speed.
 #[derive(Clone, Copy)]
-pub(crate) struct EngineShaft<'a> {
-    pub rad_s: f64,
-    pub pump: TurningPump<'a>,
+pub(crate) struct EngineShaft<'a, R: Real = f64> {
+    pub rad_s: R,
+    pub pump: TurningPump<'a, R>,
     /// Drag of the input shaft by its model, Nm.
-    drag_nm: f64,
+    drag_nm: R,
 }
 
 /// How the secondary is clamped.
 #[derive(Clone, Copy)]
-pub(crate) struct Clamp {
+pub(crate) struct Clamp<R: Real = f64> {
     /// Pressure of the secondary, Pa.
-    pub pressure_pa: f64,
+    pub pressure_pa: R,
     /// Force of the secondary, N.
-    pub secondary_n: f64,
+    pub secondary_n: R,
 }
 
 /// Torques of all parts at one operating point, Nm, each at its own shaft.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PartTorques {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PartTorques<R: Real = f64> {
     /// Loss of the final drive, at the secondary.
-    pub final_drive: f64,
+    pub final_drive: R,
     /// At the secondary pulley, bearing and rings of its shaft with it: what the belt carries.
-    pub secondary: f64,
+    pub secondary: R,
     /// Bearings of the pulley shafts, primary and secondary.
-    pub bearing: [f64; 2],
+    pub bearing: [R; 2],
     /// Seal rings of the pulleys, primary and secondary.
-    pub ring: [f64; 2],
+    pub ring: [R; 2],
     /// Belt, by part.
-    pub belt: BeltLosses,
+    pub belt: BeltLosses<R>,
     /// Belt, where a map replaces its parts.
-    pub belt_map: Option<f64>,
+    pub belt_map: Option<R>,
     /// The whole box, where a map replaces all of it, at the flywheel (MP-3).
-    pub box_map: Option<f64>,
-    pub clutch: f64,
-    pub pump: f64,
+    pub box_map: Option<R>,
+    pub clutch: R,
+    pub pump: R,
     /// Loss of the alternator for an electric pump.
-    pub alternator: f64,
-    pub shaft: f64,
+    pub alternator: R,
+    pub shaft: R,
 }
 
-impl PartTorques {
+impl<R: Real> PartTorques<R>
+where
+    f64: Left<R>,
+{
+    /// None; `like` has the lanes.
+    #[inline(always)]
+    pub fn none(like: R) -> Self {
+        let none = like.filled(0.0);
+        PartTorques {
+            final_drive: none,
+            secondary: none,
+            bearing: [none; 2],
+            ring: [none; 2],
+            belt: BeltLosses {
+                band_nm: none,
+                film_nm: none,
+                slip_nm: none,
+                wedge_nm: none,
+                penetration_nm: none,
+                slip_total: none,
+                capacity_nm: none,
+                gross_slip: like.answer(false),
+            },
+            belt_map: None,
+            box_map: None,
+            clutch: none,
+            pump: none,
+            alternator: none,
+            shaft: none,
+        }
+    }
+
     /// Parts that turn with the primary, the belt apart, Nm at the primary.
-    #[inline]
-    pub fn primary_nm(&self) -> f64 {
+    #[inline(always)]
+    pub fn primary_nm(&self) -> R {
         self.clutch + self.bearing[0] + self.ring[0]
     }
 
     /// Slip and loss torque of the belt, Nm at the primary: a map has no slip.
-    #[inline]
-    pub fn belt_in_force(&self) -> (f64, f64) {
+    #[inline(always)]
+    pub fn belt_in_force(&self) -> (R, R) {
         match self.belt_map {
-            Some(loss) => (0.0, loss),
+            Some(loss) => (loss.filled(0.0), loss),
             None => (self.belt.slip_total, self.belt.sum_nm()),
         }
     }
 
     /// Parts that turn with the engine, Nm at the flywheel.
-    #[inline]
-    pub fn engine_nm(&self) -> f64 {
-        self.pump + self.shaft + self.alternator + self.box_map.unwrap_or(0.0)
+    #[inline(always)]
+    pub fn engine_nm(&self) -> R {
+        self.pump + self.shaft + self.alternator + self.box_map_nm()
+    }
+
+    /// Loss of a box that is a map, Nm at the flywheel; 0 without one.
+    #[inline(always)]
+    fn box_map_nm(&self) -> R {
+        self.box_map.unwrap_or_else(
+            #[inline(always)]
+            || self.pump.filled(0.0),
+        )
     }
 
     /// Torque at the flywheel with that of the coupling, Nm.
-    pub fn flywheel_nm(&self, coupling_nm: f64) -> f64 {
-        coupling_nm + self.pump + self.shaft + self.alternator + self.box_map.unwrap_or(0.0)
+    #[inline(always)]
+    pub fn flywheel_nm(&self, coupling_nm: R) -> R {
+        coupling_nm + self.pump + self.shaft + self.alternator + self.box_map_nm()
     }
 
     /// Gives every loss torque with its component and shaft.
     #[inline(always)]
-    pub fn for_each_loss(&self, mut give: impl FnMut(Component, Shaft, f64)) {
+    pub fn for_each_loss(&self, mut give: impl FnMut(Component, Shaft, R)) {
         if let Some(loss) = self.box_map {
             return give(Component::BoxMap, Shaft::Engine, loss);
         }
@@ -222,12 +274,16 @@ impl PartTorques {
 }
 
 /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
-pub(super) fn final_drive(
-    cvt: &Cvt,
-    secondary_rad_s: f64,
-    demand_nm: f64,
-    oil: OilState,
-) -> TurningTrain {
+#[inline(always)]
+pub(super) fn final_drive<R: Real>(
+    cvt: &Cvt<R>,
+    secondary_rad_s: R,
+    demand_nm: R,
+    oil: OilState<R>,
+) -> TurningTrain<R>
+where
+    f64: Left<R>,
+{
     let train = &cvt.final_drive.train;
     let turning = train.turning(secondary_rad_s, demand_nm, oil);
     match cvt.changes.as_deref() {
@@ -238,13 +294,16 @@ pub(super) fn final_drive(
     }
 }
 
-impl<'a> Driveline<'a> {
+impl<'a, R: Real> Driveline<'a, R>
+where
+    f64: Left<R>,
+{
     /// The box with some of its parts at an oil temperature, K.
     pub fn new(
-        cvt: &'a Cvt,
-        at: &'a BeltAtRatio,
-        oil: &Lubricant,
-        oil_k: f64,
+        cvt: &'a Cvt<R>,
+        at: &'a BeltAtRatio<R>,
+        oil: &Lubricant<R>,
+        oil_k: R,
         parts: Parts,
     ) -> Self {
         let state = oil.state(oil_k);
@@ -257,7 +316,7 @@ impl<'a> Driveline<'a> {
             pump: cvt.pump.at(eta_pa_s),
             shafts: PulleyShafts::new(cvt, at, parts),
             radius_factor: cvt.radius_factor(at),
-            force_log: 0.0,
+            force_log: oil_k.filled(0.0),
             oil_k,
             oil: state,
             changes: cvt.changes.as_deref(),
@@ -265,28 +324,41 @@ impl<'a> Driveline<'a> {
     }
 
     /// Loss that a component's map gives at a speed, torque and pressure, times the component's factor, Nm; clears `inside` outside the map.
-    fn mapped(
-        &self,
-        component: Component,
-        (speed_rad_s, torque_nm, pressure_pa): (f64, f64, f64),
-        inside: &mut bool,
-    ) -> Option<f64> {
+    #[inline(always)]
+    fn mapped(&self, component: Component, at: (R, R, R), inside: &mut R::Mask) -> Option<R> {
         let changes = self.changes?;
         let map = changes.maps[component].as_ref()?;
-        let (loss, within) = map.loss_nm(&MapPoint {
-            ratio: self.at.geometry.ratio,
-            input_speed_rad_s: speed_rad_s,
-            torque_nm,
-            pressure_pa,
-            oil_k: self.oil_k,
-        });
-        *inside &= within;
+        let loss = self.looked_up(at, inside, |lane, point| R::one(map, lane).loss_nm(point));
         Some(changes.factor[component] * loss) // CV-7
     }
 
+    /// What the maps of the runs give at a speed, torque and pressure, one by one; clears `inside` outside a map.
+    fn looked_up(
+        &self,
+        (speed_rad_s, torque_nm, pressure_pa): (R, R, R),
+        inside: &mut R::Mask,
+        of: impl Fn(usize, &MapPoint) -> (f64, bool),
+    ) -> R {
+        let (mut loss, mut within) = (torque_nm, [true; MOST_LANES]);
+        for (lane, within) in within.iter_mut().enumerate().take(R::LANES) {
+            let point = MapPoint {
+                ratio: self.at.geometry.ratio.lane(lane),
+                input_speed_rad_s: speed_rad_s.lane(lane),
+                torque_nm: torque_nm.lane(lane),
+                pressure_pa: pressure_pa.lane(lane),
+                oil_k: self.oil_k.lane(lane),
+            };
+            let nm;
+            (nm, *within) = of(lane, &point);
+            loss = loss.with_lane(lane, nm);
+        }
+        *inside = *inside & loss.ask(|lane| within[lane]);
+        loss
+    }
+
     /// A model's loss torque, Nm, with the component's factor.
-    #[inline]
-    fn scaled(&self, component: Component, model_nm: f64) -> f64 {
+    #[inline(always)]
+    fn scaled(&self, component: Component, model_nm: R) -> R {
         match self.changes {
             Some(changes) => changes.factor[component] * model_nm, // CV-7
             None => model_nm,
@@ -294,21 +366,23 @@ impl<'a> Driveline<'a> {
     }
 
     /// Loss torque of a component, Nm: of its map at a speed, torque and pressure, else of its model.
-    #[inline]
+    #[inline(always)]
     fn loss_nm(
         &self,
         component: Component,
-        at: (f64, f64, f64),
-        inside: &mut bool,
-        model_nm: impl FnOnce() -> f64,
-    ) -> f64 {
-        self.mapped(component, at, inside)
-            .unwrap_or_else(|| self.scaled(component, model_nm()))
+        at: (R, R, R),
+        inside: &mut R::Mask,
+        model_nm: impl FnOnce() -> R,
+    ) -> R {
+        match self.mapped(component, at, inside) {
+            Some(loss) => loss,
+            None => self.scaled(component, model_nm()),
+        }
     }
 
     /// Losses and slip of the belt.
     #[inline(always)]
-    pub fn belt_losses(&self, load: &BeltLoad) -> BeltLosses {
+    pub fn belt_losses(&self, load: &BeltLoad<R>) -> BeltLosses<R> {
         let losses = belt_losses(&self.cvt.belt, self.at, load);
         match self.changes {
             Some(changes) => losses.times(&changes.factor), // CV-7
@@ -317,7 +391,7 @@ impl<'a> Driveline<'a> {
     }
 
     /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
-    pub fn final_drive(&self, secondary_rad_s: f64, demand_nm: f64) -> TurningTrain {
+    pub fn final_drive(&self, secondary_rad_s: R, demand_nm: R) -> TurningTrain<R> {
         final_drive(self.cvt, secondary_rad_s, demand_nm, self.oil)
     }
 
@@ -326,12 +400,12 @@ impl<'a> Driveline<'a> {
     #[inline(always)]
     pub fn secondary(
         &self,
-        output_nm: f64,
-        drive: impl FnOnce() -> TurningTrain,
-        (primary_rad_s, secondary_rad_s): (f64, f64),
-        clamp: &Clamp,
-        inside: &mut bool,
-        torques: &mut PartTorques,
+        output_nm: R,
+        drive: impl FnOnce() -> TurningTrain<R>,
+        (primary_rad_s, secondary_rad_s): (R, R),
+        clamp: &Clamp<R>,
+        inside: &mut R::Mask,
+        torques: &mut PartTorques<R>,
     ) {
         *torques = self.through(
             output_nm,
@@ -347,12 +421,12 @@ impl<'a> Driveline<'a> {
     #[inline(always)]
     pub fn through(
         &self,
-        output_nm: f64,
-        drive: impl FnOnce() -> TurningTrain,
-        (primary_rad_s, secondary_rad_s): (f64, f64),
-        pressure_pa: f64,
-        inside: &mut bool,
-    ) -> PartTorques {
+        output_nm: R,
+        drive: impl FnOnce() -> TurningTrain<R>,
+        (primary_rad_s, secondary_rad_s): (R, R),
+        pressure_pa: R,
+        inside: &mut R::Mask,
+    ) -> PartTorques<R> {
         let through_nm = if self.parts.final_drive && !self.is_mapped() {
             let at = (primary_rad_s, output_nm, pressure_pa);
             match self.mapped(Component::FinalDrive, at, inside) {
@@ -365,100 +439,101 @@ impl<'a> Driveline<'a> {
         PartTorques {
             final_drive: through_nm - output_nm,
             secondary: through_nm,
-            ..PartTorques::default()
+            ..PartTorques::none(output_nm)
         }
     }
 
     /// Adds bearing and rings of the secondary's shaft to its torque.
     #[inline(always)]
-    pub fn turn_secondary(&self, torques: &mut PartTorques, clamp: &Clamp) {
+    pub fn turn_secondary(&self, torques: &mut PartTorques<R>, clamp: &Clamp<R>) {
         if self.parts.belt && !self.is_mapped() {
             torques.bearing[1] = self.bearing_nm(1, clamp);
             if !self.cvt.has_map(Component::SealRing) {
                 let nm = self.shafts.ring_per_pa * clamp.pressure_pa;
                 torques.ring[1] = self.scaled(Component::SealRing, nm);
             }
-            torques.secondary += torques.bearing[1] + torques.ring[1];
+            torques.secondary = torques.secondary + (torques.bearing[1] + torques.ring[1]);
         }
     }
 
     /// Torque of the bearing on a pulley's shaft, Nm (PB-2).
-    #[inline]
-    fn bearing_nm(&self, pulley: usize, clamp: &Clamp) -> f64 {
+    #[inline(always)]
+    fn bearing_nm(&self, pulley: usize, clamp: &Clamp<R>) -> R {
         let pull_n = self.shafts.pull_per_clamp * clamp.secondary_n;
         let nm = self.cvt.pulley_bearing.torque_nm(pulley, pull_n);
         self.scaled(Component::PulleyBearing, nm)
     }
 
     /// Torque of the primary's rings, Nm, or of those of both pulleys where a map has them (SR-1).
-    #[inline]
-    fn primary_ring_nm(&self, primary_rad_s: f64, clamp: &Clamp, inside: &mut bool) -> f64 {
+    #[inline(always)]
+    fn primary_ring_nm(&self, primary_rad_s: R, clamp: &Clamp<R>, inside: &mut R::Mask) -> R {
+        let none = primary_rad_s.filled(0.0);
         if !self.parts.pump {
-            return 0.0;
+            return none;
         }
-        let at = (primary_rad_s, 0.0, clamp.pressure_pa);
-        self.loss_nm(Component::SealRing, at, inside, || {
-            self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
-        })
+        let at = (primary_rad_s, none, clamp.pressure_pa);
+        self.loss_nm(
+            Component::SealRing,
+            at,
+            inside,
+            #[inline(always)]
+            || self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at),
+        )
     }
 
     /// Whether a map is in the place of all losses of the box (MP-3).
-    #[inline]
+    #[inline(always)]
     fn is_mapped(&self) -> bool {
         self.changes
             .is_some_and(|changes| changes.maps[Component::BoxMap].is_some())
     }
 
     /// Sets the loss of a box that is replaced by a map to that at rest, where it is known (MP-3).
-    pub fn rest(&self, torques: &mut PartTorques) {
-        let at_rest = self.changes.and_then(|changes| {
-            let factor = changes.factor[Component::BoxMap];
-            changes.at_rest_nm.map(|nm| factor * nm)
-        });
-        torques.box_map = torques.box_map.map(|loss| at_rest.unwrap_or(loss)); // MP-3
+    pub fn rest(&self, torques: &mut PartTorques<R>) {
+        if let (Some(changes), Some(loss)) = (self.changes, &mut torques.box_map)
+            && let Some(nm) = changes.at_rest_nm
+        {
+            *loss = changes.factor[Component::BoxMap] * nm; // MP-3
+        }
     }
 
     /// Loss of a box that is replaced by a map, Nm at the flywheel, for a torque behind it at the secondary (MP-3).
-    #[inline]
-    fn box_map_nm(&self, secondary_nm: f64, engine_rad_s: f64, inside: &mut bool) -> Option<f64> {
+    #[inline(always)]
+    fn box_map_nm(&self, secondary_nm: R, engine_rad_s: R, inside: &mut R::Mask) -> Option<R> {
         let changes = self.changes?;
         let map = changes.maps[Component::BoxMap].as_ref()?;
-        let behind = MapPoint {
-            ratio: self.at.geometry.ratio,
-            input_speed_rad_s: engine_rad_s,
-            torque_nm: secondary_nm * self.at.prepared.inv_ratio,
-            pressure_pa: 0.0,
-            oil_k: self.oil_k,
-        };
-        let (loss, within) = map.loss_behind_nm(&behind, changes.factor[Component::BoxMap]);
-        *inside &= within;
-        Some(loss) // MP-3
+        let factor = changes.factor[Component::BoxMap];
+        let behind_nm = secondary_nm * self.at.prepared.inv_ratio;
+        let at = (engine_rad_s, behind_nm, behind_nm.filled(0.0));
+        Some(self.looked_up(at, inside, |lane, behind| {
+            R::one(map, lane).loss_behind_nm(behind, factor.lane(lane))
+        })) // MP-3
     }
 
     /// Loss of a belt that is replaced by a map, Nm at the primary.
-    #[inline]
+    #[inline(always)]
     pub fn belt_map_nm(
         &self,
-        secondary_nm: f64,
-        primary_rad_s: f64,
-        pressure_pa: f64,
-        inside: &mut bool,
-    ) -> Option<f64> {
+        secondary_nm: R,
+        primary_rad_s: R,
+        pressure_pa: R,
+        inside: &mut R::Mask,
+    ) -> Option<R> {
         if self.is_mapped() {
-            return Some(0.0); // MP-3
+            return Some(secondary_nm.filled(0.0)); // MP-3
         }
         let at = (primary_rad_s, secondary_nm, pressure_pa);
         self.mapped(Component::BeltMap, at, inside)
     }
 
     /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed and a clamping force.
-    #[inline]
+    #[inline(always)]
     pub fn turn_primary(
         &self,
-        torques: &mut PartTorques,
-        primary_rad_s: f64,
-        clamp: &Clamp,
-        inside: &mut bool,
+        torques: &mut PartTorques<R>,
+        primary_rad_s: R,
+        clamp: &Clamp<R>,
+        inside: &mut R::Mask,
     ) {
         if self.is_mapped() {
             return;
@@ -466,17 +541,21 @@ impl<'a> Driveline<'a> {
         torques.bearing[0] = self.bearing_nm(0, clamp);
         torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
-            let at = (primary_rad_s, 0.0, clamp.pressure_pa);
+            let at = (primary_rad_s, primary_rad_s.filled(0.0), clamp.pressure_pa);
             let clutch = &self.cvt.clutch_drag;
-            torques.clutch = self.loss_nm(Component::ClutchDrag, at, inside, || {
-                clutch.torque_nm(self.viscosity.clutch, primary_rad_s)
-            });
+            torques.clutch = self.loss_nm(
+                Component::ClutchDrag,
+                at,
+                inside,
+                #[inline(always)]
+                || clutch.torque_nm(self.viscosity.clutch, primary_rad_s),
+            );
         }
     }
 
     /// What turns with the engine's shaft at a speed.
     #[inline(always)]
-    pub fn engine_shaft(&self, rad_s: f64) -> EngineShaft<'_> {
+    pub fn engine_shaft(&self, rad_s: R) -> EngineShaft<'_, R> {
         EngineShaft {
             rad_s,
             pump: self.turning_pump(rad_s),
@@ -486,7 +565,7 @@ impl<'a> Driveline<'a> {
 
     /// The pump at a speed of the engine.
     #[inline(always)]
-    pub fn turning_pump(&self, engine_rad_s: f64) -> TurningPump<'_> {
+    pub fn turning_pump(&self, engine_rad_s: R) -> TurningPump<'_, R> {
         self.cvt.pump.turning(&self.pump, engine_rad_s)
     }
 
@@ -494,18 +573,25 @@ impl<'a> Driveline<'a> {
     #[inline(always)]
     pub fn turn_engine(
         &self,
-        torques: &mut PartTorques,
-        shaft: &EngineShaft,
-        pressure_pa: f64,
-        shift_flow_m3_s: f64,
-        inside: &mut bool,
-    ) -> PumpState {
-        let at = (shaft.rad_s, 0.0, pressure_pa);
-        let mut state = PumpState::default();
+        torques: &mut PartTorques<R>,
+        shaft: &EngineShaft<R>,
+        pressure_pa: R,
+        shift_flow_m3_s: R,
+        inside: &mut R::Mask,
+    ) -> PumpState<R> {
+        let at = (shaft.rad_s, pressure_pa.filled(0.0), pressure_pa);
+        let mut state = PumpState::none(pressure_pa);
         if self.parts.pump {
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = shaft.pump.state(pressure_pa, need);
-            state.torque_nm = self.loss_nm(Component::Pump, at, inside, || state.torque_nm);
+            let by_model = state.torque_nm;
+            state.torque_nm = self.loss_nm(
+                Component::Pump,
+                at,
+                inside,
+                #[inline(always)]
+                || by_model,
+            );
         }
         torques.box_map = self.box_map_nm(torques.secondary, shaft.rad_s, inside);
         if torques.box_map.is_some() {
@@ -513,23 +599,31 @@ impl<'a> Driveline<'a> {
         }
         torques.pump = state.torque_nm;
         torques.alternator = state.alternator_share * state.torque_nm; // EP-2
-        torques.shaft = self.loss_nm(Component::InputShaft, at, inside, || shaft.drag_nm);
+        torques.shaft = self.loss_nm(
+            Component::InputShaft,
+            at,
+            inside,
+            #[inline(always)]
+            || shaft.drag_nm,
+        );
         state
     }
 
     /// The pressure that the circuit holds of the one that the clamp law sets, Pa, and whether the pump's flow is what limits it (PU-6). A pump
     /// that is a measured map says nothing of its flow: it holds any pressure.
-    #[inline]
-    pub fn held_pa(&self, set_pa: f64, pump: &TurningPump, shift_flow_m3_s: f64) -> (f64, bool) {
+    #[inline(always)]
+    pub fn held_pa(&self, set_pa: R, pump: &TurningPump<R>, shift_flow_m3_s: R) -> (R, R::Mask) {
         let most_pa = pump.deliverable_pa(shift_flow_m3_s);
-        let short = set_pa > most_pa;
-        let limits = short && !self.cvt.has_map(Component::Pump);
-        (if limits { most_pa } else { set_pa }, short)
+        let short = set_pa.above(most_pa);
+        if self.cvt.has_map(Component::Pump) {
+            return (set_pa, short);
+        }
+        (R::pick(short, most_pa, set_pa), short)
     }
 
     /// Signals of the clamp law.
-    #[inline]
-    pub fn signals(&self, throttle: f64, engine_rad_s: f64) -> ClampSignals {
+    #[inline(always)]
+    pub fn signals(&self, throttle: R, engine_rad_s: R) -> ClampSignals<R> {
         ClampSignals {
             throttle,
             engine_rad_s,

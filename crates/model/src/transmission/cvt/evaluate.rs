@@ -8,10 +8,9 @@ use super::Shifting;
 use super::controller::ClampLaw;
 use super::driveline::{Clamp, Driveline, PartTorques};
 use super::variator::BeltLoad;
-use crate::math::{clamp, larger};
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
-use crate::transmission::clamp_cause::ClampCause;
-use crate::transmission::coupling::{CouplingLoad, EngineSide, Hold, Reach, Turning};
+use crate::transmission::coupling::{Coupling, CouplingLoad, EngineSide, Hold, Reach, Turning};
 use crate::transmission::gear_train::TurningTrain;
 use crate::transmission::step::StepInput;
 
@@ -21,104 +20,161 @@ pub(super) const TOLERANCE: f64 = 1e-7;
 pub(super) const MAX_EVALUATIONS: u16 = 60;
 
 /// Everything of a step that does not change during the solve.
-pub(super) struct Step<'a, P> {
-    pub line: Driveline<'a>,
-    pub input: &'a StepInput<'a, P>,
-    pub secondary_rad_s: f64,
+pub(super) struct Step<'a, P, R: Real = f64> {
+    pub line: Driveline<'a, R>,
+    pub input: &'a StepInput<'a, P, R>,
+    pub secondary_rad_s: R,
     /// The final drive at the speed and the demand of the wheels.
-    pub drive: TurningTrain,
-    pub load: BeltLoad,
-    pub shift_flow_m3_s: f64,
+    pub drive: TurningTrain<R>,
+    pub load: BeltLoad<R>,
+    pub shift_flow_m3_s: R,
     /// True where pump flow held the shift back.
-    pub shift_held: bool,
+    pub shift_held: R::Mask,
     /// What the ratio control keeps.
-    pub shifting: Shifting,
+    pub shifting: Shifting<R>,
     /// Engine speeds within reach.
-    pub reach: Reach,
+    pub reach: Reach<R>,
     /// Clamp law in force.
-    pub clamp: &'a ClampLaw,
+    pub clamp: &'a ClampLaw<R>,
     /// Secondary pressure before the step, Pa.
-    pub pressure_before_pa: f64,
+    pub pressure_before_pa: R,
     /// How the coupling holds engine and primary together.
-    pub hold: Hold,
+    pub hold: Hold<R>,
 }
 
 /// Unknowns of the solve.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Guess {
-    pub output_nm: f64,
-    pub slip: f64,
-    pub engine_rad_s: f64,
-    pub pressure_pa: f64,
+#[derive(Clone, Copy)]
+pub(super) struct Guess<R: Real = f64> {
+    pub output_nm: R,
+    pub slip: R,
+    pub engine_rad_s: R,
+    pub pressure_pa: R,
 }
 
-impl Guess {
+impl<R: Real> Guess<R>
+where
+    f64: Left<R>,
+{
     /// The middle between two guesses.
-    pub(super) fn halfway(&self, other: &Guess) -> Guess {
-        let mid = |a: f64, b: f64| 0.5 * (a + b);
+    #[inline(always)]
+    pub(super) fn halfway(&self, other: &Self) -> Self {
         Guess {
-            output_nm: mid(self.output_nm, other.output_nm),
-            slip: mid(self.slip, other.slip),
-            engine_rad_s: mid(self.engine_rad_s, other.engine_rad_s),
-            pressure_pa: mid(self.pressure_pa, other.pressure_pa),
+            output_nm: 0.5 * (self.output_nm + other.output_nm),
+            slip: 0.5 * (self.slip + other.slip),
+            engine_rad_s: 0.5 * (self.engine_rad_s + other.engine_rad_s),
+            pressure_pa: 0.5 * (self.pressure_pa + other.pressure_pa),
+        }
+    }
+
+    /// `yes` where the mask says so, else `no`.
+    #[inline(always)]
+    pub(super) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        Guess {
+            output_nm: R::pick(mask, yes.output_nm, no.output_nm),
+            slip: R::pick(mask, yes.slip, no.slip),
+            engine_rad_s: R::pick(mask, yes.engine_rad_s, no.engine_rad_s),
+            pressure_pa: R::pick(mask, yes.pressure_pa, no.pressure_pa),
+        }
+    }
+
+    /// All zero; `like` has the lanes.
+    #[inline(always)]
+    pub(super) fn none(like: R) -> Self {
+        let none = like.filled(0.0);
+        Guess {
+            output_nm: none,
+            slip: none,
+            engine_rad_s: none,
+            pressure_pa: none,
         }
     }
 }
 
 /// One evaluation: torques that follow from a guess, and what engine speed and pressure follow from them.
-#[derive(Default)]
-pub(super) struct Point {
+pub(super) struct Point<R: Real = f64> {
     /// The guess with slip and engine speed in force.
-    pub guess: Guess,
+    pub guess: Guess<R>,
     /// Slip for which the belt was evaluated.
-    pub slip_guessed: f64,
-    pub next_engine_rad_s: f64,
-    pub next_pressure_pa: f64,
-    pub clamp_cause: ClampCause,
-    pub throttle: f64,
+    pub slip_guessed: R,
+    pub next_engine_rad_s: R,
+    pub next_pressure_pa: R,
+    /// Number of the cause that decided the pressure.
+    pub clamp_cause: R,
+    pub throttle: R,
     /// Full load at the next engine speed, Nm.
-    pub full_load_nm: f64,
-    pub torques: PartTorques,
-    pub secondary_rad_s: f64,
-    pub primary_rad_s: f64,
-    pub primary_nm: f64,
+    pub full_load_nm: R,
+    pub torques: PartTorques<R>,
+    pub secondary_rad_s: R,
+    pub primary_rad_s: R,
+    pub primary_nm: R,
     /// Torque that the coupling passes on, at the primary, Nm.
-    pub passed_nm: f64,
+    pub passed_nm: R,
     /// Speed of the primary with the coupling locked, rad/s.
-    pub over_rad_s: f64,
+    pub over_rad_s: R,
     /// Torque of all losses between coupling and flywheel, Nm at the flywheel.
-    pub spin_nm: f64,
+    pub spin_nm: R,
     /// Torque that is passed on above the one that the engine's limit gives, Nm.
-    pub miss_nm: f64,
-    pub flywheel_nm: f64,
+    pub miss_nm: R,
+    pub flywheel_nm: R,
     /// Loss of the coupling, W.
-    pub coupling_w: f64,
-    pub flow_limited: bool,
-    pub oil_flow_m3_s: f64,
-    pub inside_maps: bool,
+    pub coupling_w: R,
+    pub flow_limited: R::Mask,
+    pub oil_flow_m3_s: R,
+    pub inside_maps: R::Mask,
     /// True where the coupling holds engine and primary together (LC-5).
-    pub locked: bool,
+    pub locked: R::Mask,
 }
 
-impl Point {
-    /// Largest change of the unknowns by the evaluation.
-    #[inline]
-    pub(super) fn moved(&self) -> f64 {
-        let g = &self.guess;
-        let mut most = (g.pressure_pa / self.next_pressure_pa - 1.0).abs();
-        let engine = if self.locked {
-            0.0
-        } else {
-            (g.engine_rad_s / self.next_engine_rad_s - 1.0).abs()
-        };
-        for d in [(g.slip - self.slip_guessed).abs(), engine] {
-            most = larger(d, most);
+impl<R: Real> Point<R>
+where
+    f64: Left<R>,
+{
+    /// Before the first evaluation; `like` has the lanes.
+    #[inline(always)]
+    pub(super) fn none(like: R) -> Self {
+        let (none, no) = (like.filled(0.0), like.answer(false));
+        Point {
+            guess: Guess::none(like),
+            slip_guessed: none,
+            next_engine_rad_s: none,
+            next_pressure_pa: none,
+            clamp_cause: none,
+            throttle: none,
+            full_load_nm: none,
+            torques: PartTorques::none(like),
+            secondary_rad_s: none,
+            primary_rad_s: none,
+            primary_nm: none,
+            passed_nm: none,
+            over_rad_s: none,
+            spin_nm: none,
+            miss_nm: none,
+            flywheel_nm: none,
+            coupling_w: none,
+            flow_limited: no,
+            oil_flow_m3_s: none,
+            inside_maps: no,
+            locked: no,
         }
-        most
+    }
+
+    /// Largest change of the unknowns by the evaluation.
+    #[inline(always)]
+    pub(super) fn moved(&self) -> R {
+        let g = &self.guess;
+        let pressure = (g.pressure_pa / self.next_pressure_pa - 1.0).abs();
+        let slip = (g.slip - self.slip_guessed).abs();
+        let mut engine = slip.filled(0.0);
+        if !self.locked.all() {
+            let moved = (g.engine_rad_s / self.next_engine_rad_s - 1.0).abs();
+            engine = R::pick(self.locked, engine, moved);
+        }
+        engine.most(slip.most(pressure))
     }
 
     /// The guess that follows without a secant.
-    pub(super) fn next(&self) -> Guess {
+    #[inline(always)]
+    pub(super) fn next(&self) -> Guess<R> {
         Guess {
             engine_rad_s: self.next_engine_rad_s,
             pressure_pa: self.next_pressure_pa,
@@ -128,40 +184,67 @@ impl Point {
 }
 
 /// The box between the wheels and the engine at a guess, the parts that turn with the engine's shaft apart.
-pub(super) struct Chain {
+pub(super) struct Chain<R: Real = f64> {
     /// The belt's load, its torque apart.
-    pub load: BeltLoad,
+    pub load: BeltLoad<R>,
     /// Slip in force.
-    pub slip: f64,
-    pub secondary_rad_s: f64,
-    pub primary_rad_s: f64,
-    pub primary_nm: f64,
+    pub slip: R,
+    pub secondary_rad_s: R,
+    pub primary_rad_s: R,
+    pub primary_nm: R,
     /// Torque that the coupling passes on, at the primary, Nm.
-    pub passed_nm: f64,
+    pub passed_nm: R,
     /// Speed of the primary with the coupling locked, rad/s.
-    pub over_rad_s: f64,
+    pub over_rad_s: R,
     /// Torque of the losses between the coupling and the engine's shaft, Nm at the engine.
-    pub between_nm: f64,
+    pub between_nm: R,
     /// The engine's side of the coupling.
-    pub side: EngineSide,
-    pub locked: bool,
+    pub side: EngineSide<R>,
+    pub locked: R::Mask,
 }
 
-/// The limit of the engine that fixes the output torque.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Limit {
-    /// None: the wheels get what they demand.
-    None,
+/// The limit of the engine that fixes the output torque: none where neither is true, and the wheels get what they demand.
+#[derive(Clone, Copy)]
+pub(super) struct Limit<M> {
     /// The least primary torque (CV-3).
-    EngineDrag,
+    pub engine_drag: M,
     /// Full load (CV-4).
-    FullLoad,
+    pub full_load: M,
 }
 
-impl<P: PrimeMover> Step<'_, P> {
+impl<M: Mask> Limit<M> {
+    /// No limit; `no` in every lane.
+    #[inline(always)]
+    pub(super) fn none(no: M) -> Self {
+        Limit {
+            engine_drag: no,
+            full_load: no,
+        }
+    }
+
+    /// Where there is a limit.
+    #[inline(always)]
+    pub(super) fn binds(&self) -> M {
+        self.engine_drag | self.full_load
+    }
+
+    /// `yes` where the mask says so, else `no`.
+    #[inline(always)]
+    pub(super) fn pick(mask: M, yes: &Self, no: &Self) -> Self {
+        Limit {
+            engine_drag: mask.then(yes.engine_drag, no.engine_drag),
+            full_load: mask.then(yes.full_load, no.full_load),
+        }
+    }
+}
+
+impl<P: PrimeMover<R>, R: Real> Step<'_, P, R>
+where
+    f64: Left<R>,
+{
     /// Primary speed at a slip, rad/s (CV-1).
-    #[inline]
-    pub(super) fn primary_rad_s(&self, slip: f64) -> f64 {
+    #[inline(always)]
+    pub(super) fn primary_rad_s(&self, slip: R) -> R {
         self.line.at.geometry.ratio * self.secondary_rad_s / (1.0 - slip) // CV-1
     }
 
@@ -169,16 +252,17 @@ impl<P: PrimeMover> Step<'_, P> {
     #[inline(always)]
     fn turn_box(
         &self,
-        g: &Guess,
-        primary_rad_s: f64,
-        clamp: &Clamp,
-        load: impl FnOnce(f64) -> BeltLoad,
-        inside: &mut bool,
-        torques: &mut PartTorques,
+        g: &Guess<R>,
+        primary_rad_s: R,
+        clamp: &Clamp<R>,
+        load: &BeltLoad<R>,
+        inside: &mut R::Mask,
+        torques: &mut PartTorques<R>,
     ) {
         let line = &self.line;
         line.secondary(
             g.output_nm,
+            #[inline(always)]
             || self.drive,
             (primary_rad_s, self.secondary_rad_s),
             clamp,
@@ -186,7 +270,10 @@ impl<P: PrimeMover> Step<'_, P> {
             torques,
         );
         let secondary_nm = torques.secondary;
-        torques.belt = line.belt_losses(&load(secondary_nm));
+        torques.belt = line.belt_losses(&BeltLoad {
+            output_torque_nm: secondary_nm,
+            ..*load
+        });
         torques.belt_map = line.belt_map_nm(secondary_nm, primary_rad_s, clamp.pressure_pa, inside);
         line.turn_primary(torques, primary_rad_s, clamp, inside);
     }
@@ -195,11 +282,11 @@ impl<P: PrimeMover> Step<'_, P> {
     #[inline(always)]
     fn launch_ahead(
         &self,
-        g: &Guess,
-        limit: Limit,
-        inside: &mut bool,
-        torques: &mut PartTorques,
-    ) -> Chain {
+        g: &Guess<R>,
+        limit: &Limit<R::Mask>,
+        inside: &mut R::Mask,
+        torques: &mut PartTorques<R>,
+    ) -> Chain<R> {
         let (line, cvt) = (&self.line, self.line.cvt);
         let belt_rad_s = self.primary_rad_s(g.slip);
         let clamp = Clamp {
@@ -211,11 +298,7 @@ impl<P: PrimeMover> Step<'_, P> {
             secondary_clamp_n: clamp.secondary_n,
             ..self.load
         };
-        let with = |output_torque_nm: f64| BeltLoad {
-            output_torque_nm,
-            ..load
-        };
-        self.turn_box(g, belt_rad_s, &clamp, with, inside, torques);
+        self.turn_box(g, belt_rad_s, &clamp, &load, inside, torques);
         let (slip, belt_nm) = torques.belt_in_force();
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
@@ -231,7 +314,7 @@ impl<P: PrimeMover> Step<'_, P> {
             primary_nm,
             passed_nm: primary_nm,
             over_rad_s: primary_rad_s,
-            between_nm: 0.0,
+            between_nm: primary_nm.filled(0.0),
             side: self.engine_side(g, limit, (primary_nm, primary_rad_s), locked),
             locked,
         }
@@ -241,32 +324,52 @@ impl<P: PrimeMover> Step<'_, P> {
     ///
     /// Under a limit of the engine, pressure and engine speed follow from the torque of that limit, not from the one that the guessed
     /// output torque gives: so the two unknowns do not disturb each other.
-    pub(super) fn evaluate(&self, g: &Guess, limit: Limit, point: &mut Point) {
-        if self.line.cvt.launch_behind {
-            return self.evaluate_behind(g, limit, point);
-        }
-        let mut inside_maps = true;
-        let chain = self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques);
-        self.follow(g, limit, chain, inside_maps, point);
+    #[inline(never)]
+    pub(super) fn evaluate(&self, g: &Guess<R>, limit: &Limit<R::Mask>, point: &mut Point<R>) {
+        g.slip.within(
+            #[inline(always)]
+            || {
+                let mut inside_maps = g.slip.answer(true);
+                let chain = if self.line.cvt.launch_behind {
+                    self.launch_behind(g, limit, &mut inside_maps, &mut point.torques)
+                } else {
+                    self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques)
+                };
+                self.follow(g, limit, chain, inside_maps, point);
+            },
+        );
     }
 
-    /// The same with a clutch behind the variator.
-    #[inline(never)]
-    fn evaluate_behind(&self, g: &Guess, limit: Limit, point: &mut Point) {
-        let mut inside_maps = true;
-        let chain = self.launch_behind(g, limit, &mut inside_maps, &mut point.torques);
-        self.follow(g, limit, chain, inside_maps, point);
+    /// Torque that the coupling passes on under a limit, Nm: that of the chain where there is none.
+    #[inline(always)]
+    fn wanted_nm(
+        &self,
+        limit: &Limit<R::Mask>,
+        passed_nm: R,
+        turning: &Turning<R>,
+        spin_nm: R,
+    ) -> R {
+        let mut wanted_nm = passed_nm;
+        if limit.engine_drag.any() {
+            let least_nm = self.min_passed_nm(turning, spin_nm);
+            wanted_nm = R::pick(limit.engine_drag, least_nm, wanted_nm);
+        }
+        if limit.full_load.any() {
+            let most_nm = self.max_passed_nm(turning, spin_nm);
+            wanted_nm = R::pick(limit.full_load, most_nm, wanted_nm);
+        }
+        wanted_nm
     }
 
     /// What follows from the torques up to the engine, which are in the point: those of its own shaft, and engine speed, throttle and pressure under a limit.
     #[inline(always)]
     fn follow(
         &self,
-        g: &Guess,
-        limit: Limit,
-        chain: Chain,
-        mut inside_maps: bool,
-        point: &mut Point,
+        g: &Guess<R>,
+        limit: &Limit<R::Mask>,
+        chain: Chain<R>,
+        mut inside_maps: R::Mask,
+        point: &mut Point<R>,
     ) {
         let (line, cvt, engine) = (&self.line, self.line.cvt, self.input.engine);
         let torques = &mut point.torques;
@@ -282,30 +385,34 @@ impl<P: PrimeMover> Step<'_, P> {
         );
         let spin_nm = torques.engine_nm() + chain.between_nm;
         let turning = self.turning(over_rad_s, engine_rad_s);
-        let wanted_nm = match limit {
-            Limit::None => chain.passed_nm,
-            Limit::EngineDrag => self.min_passed_nm(&turning, spin_nm),
-            Limit::FullLoad => self.max_passed_nm(&turning, spin_nm),
-        };
+        let wanted_nm = self.wanted_nm(limit, chain.passed_nm, &turning, spin_nm);
         let flywheel_nm = own.engine_nm + spin_nm; // CV-2, CV-6
-        let (wanted_flywheel_nm, next_engine_rad_s, next_pump) = if limit == Limit::None {
-            (flywheel_nm, engine_rad_s, shaft.pump)
-        } else {
+        let (mut wanted_flywheel_nm, mut next_engine_rad_s) = (flywheel_nm, engine_rad_s);
+        let mut next_pump = shaft.pump;
+        let bound = limit.binds();
+        if bound.any() {
             let speeds = (over_rad_s, engine_rad_s);
             let (nm, rad_s) = self.under_limit(wanted_nm, speeds, chain.locked, spin_nm);
-            (nm, rad_s, line.turning_pump(rad_s))
-        };
+            wanted_flywheel_nm = R::pick(bound, nm, wanted_flywheel_nm);
+            next_engine_rad_s = R::pick(bound, rad_s, next_engine_rad_s);
+            next_pump = line.turning_pump(next_engine_rad_s);
+        }
         let crank_nm = wanted_flywheel_nm + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
-        let throttle = clamp(crank_nm / full_load_nm, 0.0, 1.0);
+        let throttle = (crank_nm / full_load_nm).held(0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
         let secondary_nm = torques.secondary;
-        let load = || BeltLoad {
-            output_torque_nm: secondary_nm,
-            ..chain.load
-        };
-        let (set_pa, clamp_cause) =
-            cvt.pressure_by(self.clamp, &signals, line.at, load, chain.secondary_rad_s);
+        let (set_pa, clamp_cause) = cvt.pressure_by(
+            self.clamp,
+            &signals,
+            line.at,
+            #[inline(always)]
+            || BeltLoad {
+                output_torque_nm: secondary_nm,
+                ..chain.load
+            },
+            chain.secondary_rad_s,
+        );
         let (next_pressure_pa, flow_limited) =
             line.held_pa(set_pa, &next_pump, self.shift_flow_m3_s);
         point.guess = Guess {
@@ -338,21 +445,26 @@ impl<P: PrimeMover> Step<'_, P> {
     #[inline(always)]
     fn under_limit(
         &self,
-        passed_nm: f64,
-        (over_rad_s, engine_rad_s): (f64, f64),
-        locked: bool,
-        spin_nm: f64,
-    ) -> (f64, f64) {
+        passed_nm: R,
+        (over_rad_s, engine_rad_s): (R, R),
+        locked: R::Mask,
+        spin_nm: R,
+    ) -> (R, R) {
         let coupling = &self.line.cvt.coupling;
-        let (side, next) = if locked {
+        let (mut engine_nm, mut next) = (passed_nm, engine_rad_s);
+        if !locked.all() {
+            engine_nm = coupling
+                .engine_side(passed_nm, over_rad_s, engine_rad_s)
+                .engine_nm;
+            next = self.free_engine(passed_nm, over_rad_s).engine_rad_s;
+        }
+        if locked.any() {
             let slip_rad_s = self.hold.slip_rad_s;
             let side = coupling.locked_side(passed_nm, over_rad_s, slip_rad_s);
-            (side, engine_rad_s)
-        } else {
-            let side = coupling.engine_side(passed_nm, over_rad_s, engine_rad_s);
-            (side, self.free_engine(passed_nm, over_rad_s).engine_rad_s)
-        };
-        (side.engine_nm + spin_nm, next)
+            engine_nm = R::pick(locked, side.engine_nm, engine_nm);
+            next = R::pick(locked, engine_rad_s, next);
+        }
+        (engine_nm + spin_nm, next)
     }
 
     /// The engine's side of the coupling at a guess. A clutch has its engine never slower than the primary, and at the same speed while
@@ -360,35 +472,44 @@ impl<P: PrimeMover> Step<'_, P> {
     #[inline(always)]
     pub(super) fn engine_side(
         &self,
-        g: &Guess,
-        limit: Limit,
-        (primary_nm, primary_rad_s): (f64, f64),
-        locked: bool,
-    ) -> EngineSide {
+        g: &Guess<R>,
+        limit: &Limit<R::Mask>,
+        (primary_nm, primary_rad_s): (R, R),
+        locked: R::Mask,
+    ) -> EngineSide<R> {
         let coupling = &self.line.cvt.coupling;
-        if locked {
-            return coupling.locked_side(primary_nm, primary_rad_s, self.hold.slip_rad_s);
-        }
-        if limit == Limit::None {
-            return self.free_engine(primary_nm, primary_rad_s); // at once: nothing before it feels the engine's speed
-        }
-        let least = coupling.min_engine_rad_s(primary_rad_s);
-        let engine_rad_s = if g.engine_rad_s > least {
-            g.engine_rad_s
-        } else {
-            least
+        let mut side = EngineSide {
+            engine_nm: primary_nm,
+            engine_rad_s: primary_rad_s,
+            loss_w: primary_nm,
         };
-        coupling.engine_side(primary_nm, primary_rad_s, engine_rad_s)
+        let bound = limit.binds() & !locked;
+        if !(bound | locked).all() {
+            side = self.free_engine(primary_nm, primary_rad_s); // at once: nothing before it feels the engine's speed
+        }
+        if bound.any() {
+            let engine_rad_s = g
+                .engine_rad_s
+                .most(coupling.min_engine_rad_s(primary_rad_s));
+            let guessed = coupling.engine_side(primary_nm, primary_rad_s, engine_rad_s);
+            side = EngineSide::pick(bound, &guessed, &side);
+        }
+        if locked.any() {
+            let held = coupling.locked_side(primary_nm, primary_rad_s, self.hold.slip_rad_s);
+            side = EngineSide::pick(locked, &held, &side);
+        }
+        side
     }
 
     /// True where the coupling holds engine and primary together (LC-5).
-    #[inline]
-    pub(super) fn locked(&self, primary_rad_s: f64) -> bool {
-        primary_rad_s >= self.hold.locked_from_rad_s
+    #[inline(always)]
+    pub(super) fn locked(&self, primary_rad_s: R) -> R::Mask {
+        primary_rad_s.reaches(self.hold.locked_from_rad_s)
     }
 
     /// Engine over a slipping coupling, within the speeds that its inertia allows.
-    fn free_engine(&self, primary_nm: f64, primary_rad_s: f64) -> EngineSide {
+    #[inline(always)]
+    fn free_engine(&self, primary_nm: R, primary_rad_s: R) -> EngineSide<R> {
         let load = CouplingLoad {
             output_nm: primary_nm,
             output_rad_s: primary_rad_s,
@@ -399,7 +520,8 @@ impl<P: PrimeMover> Step<'_, P> {
     }
 
     /// The speeds around the coupling.
-    pub(super) fn turning(&self, primary_rad_s: f64, engine_rad_s: f64) -> Turning {
+    #[inline(always)]
+    pub(super) fn turning(&self, primary_rad_s: R, engine_rad_s: R) -> Turning<R> {
         Turning {
             output_rad_s: primary_rad_s,
             engine_rad_s,
@@ -409,20 +531,23 @@ impl<P: PrimeMover> Step<'_, P> {
     }
 
     /// Least torque that engine and coupling pass on, Nm at the primary, with all between them taking `spin_nm` (CV-3).
-    pub(super) fn min_passed_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
+    #[inline(always)]
+    pub(super) fn min_passed_nm(&self, at: &Turning<R>, spin_nm: R) -> R {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let absorbed_nm = engine.drag_nm(w) + engine.accessories_nm(w) + spin_nm;
         self.line.cvt.coupling.min_output_nm(at, absorbed_nm)
     }
 
     /// Largest torque passed on at full load, Nm at the primary (CV-4).
-    pub(super) fn max_passed_nm(&self, at: &Turning, spin_nm: f64) -> f64 {
+    #[inline(always)]
+    pub(super) fn max_passed_nm(&self, at: &Turning<R>, spin_nm: R) -> R {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let engine_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - spin_nm;
-        if at.locked {
+        if at.locked.all() {
             return engine_nm;
         }
         let coupling = &self.line.cvt.coupling;
-        coupling.output_nm(engine_nm, at.output_rad_s, w)
+        let passed_nm = coupling.output_nm(engine_nm, at.output_rad_s, w);
+        R::pick(at.locked, engine_nm, passed_nm)
     }
 }

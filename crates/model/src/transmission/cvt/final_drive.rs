@@ -8,16 +8,19 @@
 //! The bearings of the secondary's own shaft are those of the pulley.
 
 use crate::keys::Values;
+use crate::math::{Real, gather};
 use crate::transmission::gear_train::{GearParts, GearTrain};
 
 /// The checked final drive.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FinalDrive {
+pub struct FinalDrive<R: Real = f64> {
     /// Speed of the secondary over that of the wheels (CV-1).
-    pub ratio: f64,
+    pub ratio: R,
     /// Its gears, bearings and seals (FD-1, FD-2).
-    pub train: GearTrain,
+    pub train: GearTrain<R>,
 }
+
+gather!(FinalDrive { ratio, train });
 
 impl FinalDrive {
     /// The final drive from the values of its table, its ratio and that of its first stage, in its oil.

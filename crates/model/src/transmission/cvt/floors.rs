@@ -11,22 +11,22 @@
 use super::Cvt;
 use super::variator::{BeltAtRatio, BeltLoad};
 use crate::keys::{Values, keys};
-use crate::math::exp;
+use crate::math::{Left, Mask, Real, gather};
 use crate::transmission::clamp_cause::ClampCause;
 
 /// The checked floors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Floors {
+pub struct Floors<R: Real = f64> {
     /// Pressure that valves, cooler and lubrication need, Pa.
-    pub control_pa: f64,
+    pub control_pa: R,
     /// Pressure against the return spring of the forward clutch, Pa.
-    pub clutch_return_pa: f64,
+    pub clutch_return_pa: R,
     /// Pressure for a torque through that clutch, Pa/Nm.
-    pub clutch_pa_per_nm: f64,
+    pub clutch_pa_per_nm: R,
     /// Least tension of a strand, N.
-    pub strand_n: f64,
+    pub strand_n: R,
     /// Creep c: rate of ln I per angle of the primary and logarithm of the force ratio, 1/rad.
-    pub creep_per_rad: f64,
+    pub creep_per_rad: R,
 }
 
 impl Floors {
@@ -40,46 +40,65 @@ impl Floors {
             creep_per_rad: f64::INFINITY,
         }
     }
+}
 
+gather!(Floors {
+    control_pa,
+    clutch_return_pa,
+    clutch_pa_per_nm,
+    strand_n,
+    creep_per_rad
+});
+
+impl<R: Real> Floors<R>
+where
+    f64: Left<R>,
+{
     /// Logarithm of the force ratio over tau that shifts ln I at a rate: positive towards low, negative towards high, 0 at rest.
-    #[inline]
-    pub fn force_log(&self, rate_per_s: f64, primary_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn force_log(&self, rate_per_s: R, primary_rad_s: R) -> R {
         let creep = primary_rad_s * self.creep_per_rad;
-        if creep > 0.0 { rate_per_s / creep } else { 0.0 }
+        R::pick(creep.above(0.0), rate_per_s / creep, creep.filled(0.0))
     }
 }
 
 /// The belt that the floors look at.
-pub(super) struct Held<'a> {
-    pub cvt: &'a Cvt,
-    pub at: &'a BeltAtRatio,
-    pub load: &'a BeltLoad,
+pub(super) struct Held<'a, R: Real = f64> {
+    pub cvt: &'a Cvt<R>,
+    pub at: &'a BeltAtRatio<R>,
+    pub load: &'a BeltLoad<R>,
     /// Force of the secondary without pressure, N.
-    pub own_n: f64,
+    pub own_n: R,
     /// Force that the torque needs, N (PC-3).
-    pub need_n: f64,
+    pub need_n: R,
     /// Logarithm of the force ratio over tau that the shift needs.
-    pub force_log: f64,
+    pub force_log: R,
 }
 
-impl Held<'_> {
+impl<R: Real> Held<'_, R>
+where
+    f64: Left<R>,
+{
     /// The pressure that each cause needs, Pa (PC-5).
-    fn each_pa(&self) -> [(f64, ClampCause); 5] {
+    #[inline(always)]
+    fn each_pa(&self) -> [(R, ClampCause); 5] {
         let (cvt, floors) = (self.cvt, &self.cvt.floors);
-        let pressure_pa = |force_n: f64| (force_n - self.own_n) / cvt.secondary_piston_m2;
+        let zero = self.own_n.filled(0.0);
         let primary_nm = self.load.output_torque_nm.abs() * self.at.prepared.inv_ratio;
         let strands_n = floors.strand_n * self.at.geometry.secondary_wrap_rad;
-        let (mut down_pa, mut up_pa) = (0.0, 0.0);
-        if self.force_log > 0.0 {
-            down_pa = pressure_pa(self.need_n * exp(self.force_log));
-        } else if self.force_log < 0.0 {
-            let ratio = self.at.thrust_ratio * exp(-self.force_log);
+        let (mut down_pa, mut up_pa) = (zero, zero);
+        let (down, up) = (self.force_log.above(0.0), zero.above(self.force_log));
+        if down.any() {
+            let pressed_pa = self.pressure_pa(self.need_n * self.force_log.exp());
+            down_pa = R::pick(down, pressed_pa, zero);
+        }
+        if up.any() {
+            let ratio = self.at.thrust_ratio * (-self.force_log).exp();
             let left_m2 = cvt.primary_piston_m2 - ratio * cvt.secondary_piston_m2;
-            up_pa = if left_m2 > 0.0 {
-                ratio * self.own_n / left_m2
-            } else {
-                f64::INFINITY
-            };
+            let enough = left_m2.above(0.0);
+            let most = zero.filled(f64::INFINITY);
+            let pressed_pa = R::pick(enough, ratio * self.own_n / left_m2, most);
+            up_pa = R::pick(up, pressed_pa, zero);
         }
         [
             (floors.control_pa, ClampCause::Control),
@@ -88,7 +107,7 @@ impl Held<'_> {
                 ClampCause::Clutch,
             ),
             (
-                pressure_pa(strands_n / (2.0 * cvt.belt.tan_wedge)),
+                self.pressure_pa(strands_n / (2.0 * cvt.belt.tan_wedge)),
                 ClampCause::Belt,
             ),
             (down_pa, ClampCause::ShiftDown),
@@ -96,18 +115,28 @@ impl Held<'_> {
         ] // PC-5
     }
 
-    /// Pressure for the force that the torque needs, Pa.
-    pub fn of_torque_pa(&self) -> f64 {
-        (self.need_n - self.own_n) / self.cvt.secondary_piston_m2
+    /// Pressure for a force, Pa.
+    #[inline(always)]
+    fn pressure_pa(&self, force_n: R) -> R {
+        (force_n - self.own_n) / self.cvt.secondary_piston_m2
     }
 
-    /// The larger of a law's pressure, Pa, and what each cause needs.
-    pub fn above(&self, law_pa: f64) -> (f64, ClampCause) {
-        self.each_pa()
-            .into_iter()
-            .fold((law_pa, ClampCause::Law), |most, floor| {
-                if floor.0 > most.0 { floor } else { most }
-            })
+    /// Pressure for the force that the torque needs, Pa.
+    #[inline(always)]
+    pub fn of_torque_pa(&self) -> R {
+        self.pressure_pa(self.need_n)
+    }
+
+    /// The larger of a law's pressure, Pa, and what each cause needs, with the number of the cause.
+    #[inline(always)]
+    pub fn above(&self, law_pa: R) -> (R, R) {
+        let mut most = (law_pa, law_pa.filled(ClampCause::Law.number()));
+        for (floor_pa, cause) in self.each_pa() {
+            let binds = floor_pa.above(most.0);
+            most.0 = R::pick(binds, floor_pa, most.0);
+            most.1 = R::pick(binds, most.1.filled(cause.number()), most.1);
+        }
+        most
     }
 }
 

@@ -143,7 +143,7 @@ impl Cvt {
             floors,
             cap_pa,
             low_radius_m: low.primary_radius_m,
-            launch_behind: launch_behind(s, &*launch, changes.as_deref()),
+            launch_behind: launch_behind(s, &launch, changes.as_deref()),
             coupling: launch,
             selector: Selector::from_values(&s.table("selector")),
             full_load_route,

@@ -12,21 +12,24 @@
 use super::driveline::{Clamp, PartTorques};
 use super::evaluate::{Chain, Guess, Limit, Step};
 use super::variator::BeltLoad;
-use crate::math::larger;
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::BELT;
-use crate::transmission::coupling::EngineSide;
+use crate::transmission::coupling::{Coupling, EngineSide};
 
-impl<P: PrimeMover> Step<'_, P> {
+impl<P: PrimeMover<R>, R: Real> Step<'_, P, R>
+where
+    f64: Left<R>,
+{
     /// From the wheels through a clutch behind the variator to the engine.
     #[inline(always)]
     pub(super) fn launch_behind(
         &self,
-        g: &Guess,
-        limit: Limit,
-        inside: &mut bool,
-        torques: &mut PartTorques,
-    ) -> Chain {
+        g: &Guess<R>,
+        limit: &Limit<R::Mask>,
+        inside: &mut R::Mask,
+        torques: &mut PartTorques<R>,
+    ) -> Chain<R> {
         let (line, cvt) = (&self.line, self.line.cvt);
         let over_rad_s = self.primary_rad_s(g.slip);
         *torques = self.behind_clutch(g, over_rad_s, inside);
@@ -60,14 +63,19 @@ impl<P: PrimeMover> Step<'_, P> {
         let over_rad_s = self.primary_rad_s(slip);
         let (locked, referred) = (self.locked(over_rad_s), self.at_primary(slip));
         let passed_nm = clutch_nm * referred; // LO-2
-        let side = if locked {
-            cvt.coupling
-                .locked_side(passed_nm, over_rad_s, self.hold.slip_rad_s)
-        } else {
+        let mut side = first;
+        if !locked.all() {
             let least = cvt.coupling.min_engine_rad_s(over_rad_s);
-            cvt.coupling
-                .engine_side(passed_nm, over_rad_s, larger(w, least))
-        };
+            side = cvt
+                .coupling
+                .engine_side(passed_nm, over_rad_s, w.most(least));
+        }
+        if locked.any() {
+            let held = cvt
+                .coupling
+                .locked_side(passed_nm, over_rad_s, self.hold.slip_rad_s);
+            side = EngineSide::pick(locked, &held, &side);
+        }
         torques.secondary =
             self.shaft_nm(clutch_nm, &side, slip) + (torques.bearing[1] + torques.ring[1]);
         let primary_nm = torques.secondary * referred + belt_nm + torques.primary_nm();
@@ -86,58 +94,66 @@ impl<P: PrimeMover> Step<'_, P> {
     }
 
     /// Torque at the primary over that at the secondary at a slip, without losses.
-    #[inline]
-    fn at_primary(&self, slip: f64) -> f64 {
+    #[inline(always)]
+    fn at_primary(&self, slip: R) -> R {
         (1.0 - slip) * self.line.at.prepared.inv_ratio
     }
 
     /// The torque that the clutch gives to its output: what the final drive takes, or at rest what creeps.
     #[inline(always)]
-    fn behind_clutch(&self, g: &Guess, over_rad_s: f64, inside: &mut bool) -> PartTorques {
-        if self.secondary_rad_s > 0.0 {
+    fn behind_clutch(&self, g: &Guess<R>, over_rad_s: R, inside: &mut R::Mask) -> PartTorques<R> {
+        // All runs of a group are at rest together.
+        if self.secondary_rad_s.above(0.0).any() {
             let speeds = (over_rad_s, self.secondary_rad_s);
             let line = &self.line;
-            return line.through(g.output_nm, || self.drive, speeds, g.pressure_pa, inside);
+            return line.through(
+                g.output_nm,
+                #[inline(always)]
+                || self.drive,
+                speeds,
+                g.pressure_pa,
+                inside,
+            );
         }
         let idle_rad_s = self.input.engine.idle_rad_s();
         let in_drive = 1.0 - self.input.neutral_share;
-        let creep_nm = in_drive * self.line.cvt.coupling.creep_nm(0.0, idle_rad_s); // SE-3
+        let creep_nm = in_drive
+            * self
+                .line
+                .cvt
+                .coupling
+                .creep_nm(idle_rad_s.filled(0.0), idle_rad_s); // SE-3
         PartTorques {
             secondary: creep_nm / self.at_primary(g.slip), // LO-4
-            ..PartTorques::default()
+            ..PartTorques::none(creep_nm)
         }
     }
 
     /// True where the engine turns as fast as the locked clutch has it.
-    #[inline]
-    fn together(&self, side: &EngineSide, slip: f64) -> bool {
-        side.engine_rad_s <= self.primary_rad_s(slip)
+    #[inline(always)]
+    fn together(&self, side: &EngineSide<R>, slip: R) -> R::Mask {
+        self.primary_rad_s(slip).reaches(side.engine_rad_s)
     }
 
     /// Torque of the clutch at the secondary's shaft, Nm.
-    #[inline]
-    fn shaft_nm(&self, clutch_nm: f64, side: &EngineSide, slip: f64) -> f64 {
-        if self.together(side, slip) {
-            clutch_nm
-        } else {
-            side.engine_nm / self.at_primary(slip)
-        }
+    #[inline(always)]
+    fn shaft_nm(&self, clutch_nm: R, side: &EngineSide<R>, slip: R) -> R {
+        let slipping_nm = side.engine_nm / self.at_primary(slip);
+        R::pick(self.together(side, slip), clutch_nm, slipping_nm)
     }
 
     /// Speed of the secondary, rad/s (LO-1).
-    #[inline]
-    fn behind_belt_rad_s(&self, side: &EngineSide, slip: f64) -> f64 {
-        if self.together(side, slip) {
-            self.secondary_rad_s
-        } else {
-            side.engine_rad_s * self.at_primary(slip) // LO-1
-        }
+    #[inline(always)]
+    fn behind_belt_rad_s(&self, side: &EngineSide<R>, slip: R) -> R {
+        let slipping = side.engine_rad_s * self.at_primary(slip); // LO-1
+        R::pick(self.together(side, slip), self.secondary_rad_s, slipping)
     }
 
     /// The unloaded belt at the engine's speed.
     #[inline(always)]
-    fn turning_load(&self, side: &EngineSide, slip: f64) -> BeltLoad {
-        if self.together(side, slip) {
+    fn turning_load(&self, side: &EngineSide<R>, slip: R) -> BeltLoad<R> {
+        let together = self.together(side, slip);
+        if together.all() {
             return self.load;
         }
         let (line, oil) = (&self.line, self.input.oil);
@@ -148,6 +164,8 @@ impl<P: PrimeMover> Step<'_, P> {
             .belt
             .sliding_m_s(line.at.geometry.ratio, primary_rad_s);
         let band = oil.friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
-        BeltLoad::unloaded(&oil.friction, band, line.at.prepared.film_area_m2, sliding)
+        let film_area_m2 = line.at.prepared.film_area_m2;
+        let slipping = BeltLoad::unloaded(&oil.friction, band, film_area_m2, sliding);
+        BeltLoad::pick(together, &self.load, &slipping)
     }
 }

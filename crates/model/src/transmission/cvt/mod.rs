@@ -44,16 +44,17 @@ use self::floors::Floors;
 use self::pulley_bearing::PulleyBearing;
 use self::pump::Pump;
 use self::seal_ring::SealRing;
-use self::selector::Selector;
+use self::selector::{Selector, SelectorSignals};
 use self::shaft_drag::ShaftDrag;
 use self::variator::{Belt, BeltAtRatio, BeltLoad};
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
-use super::coupling::{Coupling, PartialLoss};
+use super::coupling::{Coupling, Launch, PartialLoss};
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
+use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::{Curve, exp, larger, ln};
+use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
@@ -62,20 +63,34 @@ use std::sync::Arc;
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 
 /// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1).
-pub fn viscosity_power(nu_m2_s: f64, exponent: f64) -> f64 {
-    exp(exponent * ln(nu_m2_s / NU_REFERENCE_M2_S))
+pub fn viscosity_power<R: Real>(nu_m2_s: R, exponent: R) -> R
+where
+    f64: Left<R>,
+{
+    (exponent * (nu_m2_s / NU_REFERENCE_M2_S).ln()).exp()
+}
+
+/// Power in W of a torque in Nm at a speed in rad/s: two numbers of one run, where numbers are otherwise those of several.
+fn product_of(torque_nm: f64, speed_rad_s: f64) -> f64 {
+    torque_nm * speed_rad_s
 }
 
 /// Losses that are not those of the models.
 #[derive(Clone, Debug)]
-pub struct LossChanges {
+pub struct LossChanges<R: Real = f64> {
     /// Measured maps in place of models.
-    pub maps: ByComponent<Option<LossMap>>,
+    pub maps: ByComponent<Option<R::Each<LossMap>>>,
     /// Factors on the losses (CV-7).
-    pub factor: LossFactors,
+    pub factor: ByComponent<R>,
     /// Loss of a box that is a map with the car at rest, Nm, where it is known (MP-3).
-    pub at_rest_nm: Option<f64>,
+    pub at_rest_nm: Option<R>,
 }
+
+gather!(LossChanges {
+    maps,
+    factor,
+    at_rest_nm
+});
 
 impl Default for LossChanges {
     fn default() -> Self {
@@ -89,191 +104,233 @@ impl Default for LossChanges {
 
 /// The checked CVT.
 #[derive(Clone, Debug)]
-pub struct Cvt {
+pub struct Cvt<R: Real = f64> {
     /// Final drive.
-    pub final_drive: FinalDrive,
+    pub final_drive: FinalDrive<R>,
     /// Belt and pulleys.
-    pub belt: Belt,
+    pub belt: Belt<R>,
     /// Secondary piston area, m2.
-    pub secondary_piston_m2: f64,
+    pub secondary_piston_m2: R,
     /// Primary piston area, m2.
-    pub primary_piston_m2: f64,
+    pub primary_piston_m2: R,
     /// Spring force on the secondary, N.
-    pub spring_n: f64,
+    pub spring_n: R,
     /// Uncompensated share of the centrifugal head times rho (r_o4 - r_i4) pi/4, N s2/rad2.
-    pub centrifugal_n_s2: f64,
+    pub centrifugal_n_s2: R,
     /// Pump.
-    pub pump: Pump,
+    pub pump: Pump<R>,
     /// Input shaft.
-    pub shaft_drag: ShaftDrag,
+    pub shaft_drag: ShaftDrag<R>,
     /// Reverse clutch.
-    pub clutch_drag: ClutchDrag,
+    pub clutch_drag: ClutchDrag<R>,
     /// Bearings of the pulley shafts under the belt's pull.
-    pub pulley_bearing: PulleyBearing,
+    pub pulley_bearing: PulleyBearing<R>,
     /// Rings that seal the oil feed of a pulley.
-    pub seal_ring: SealRing,
+    pub seal_ring: SealRing<R>,
     /// Ratio control.
-    pub ratio: RatioControl,
+    pub ratio: RatioControl<R>,
     /// Clamp law.
-    pub clamp: ClampLaw,
+    pub clamp: ClampLaw<R>,
     /// Table of the law that is one (PC-6).
-    pub pressure_table: Option<Arc<PressureTable>>,
+    pub pressure_table: Option<R::Each<Arc<PressureTable>>>,
     /// Exponent of the primary radius in the clamp map.
-    pub radius_exponent: f64,
+    pub radius_exponent: R,
     /// Causes of a smallest secondary pressure.
-    pub floors: Floors,
+    pub floors: Floors<R>,
     /// Largest secondary pressure, Pa.
-    pub cap_pa: f64,
+    pub cap_pa: R,
     /// Primary radius in low, m.
-    pub low_radius_m: f64,
+    pub low_radius_m: R,
     /// Launch device.
-    pub coupling: Arc<dyn Coupling>,
+    pub coupling: Launch<R>,
     /// True where that is a clutch behind the variator, so that belt and pulleys turn with the engine (LO-1).
     pub launch_behind: bool,
     /// Selector at rest.
-    pub selector: Selector,
+    pub selector: Selector<R>,
     /// Engine speed for a power at full load, W to rad/s.
-    pub full_load_route: Curve,
+    pub full_load_route: R::Each<Curve>,
     /// Losses that are not those of the models, if there are any.
-    pub changes: Option<Box<LossChanges>>,
+    pub changes: Option<Box<LossChanges<R>>>,
     /// Share of belt loss that heats the belt node.
-    pub belt_heat_share: f64,
+    pub belt_heat_share: R,
+}
+
+gather! {
+    Cvt {
+        final_drive, belt, secondary_piston_m2, primary_piston_m2, spring_n, centrifugal_n_s2, pump, shaft_drag, clutch_drag, pulley_bearing,
+        seal_ring, ratio, clamp, pressure_table, radius_exponent, floors, cap_pa, low_radius_m, coupling, selector, full_load_route, changes,
+        belt_heat_share,
+    } same { launch_behind }
 }
 
 /// What the CVT keeps of the step before.
-#[derive(Clone, Copy, Debug)]
-pub struct CvtState {
+#[derive(Clone, Debug)]
+pub struct CvtState<R: Real = f64> {
     /// Belt at the ratio in force.
-    pub belt: BeltAtRatio,
+    pub belt: BeltAtRatio<R>,
     /// Start of the solve.
-    pub warm_start: WarmStart,
+    pub warm_start: WarmStart<R>,
     /// What the ratio control keeps of the step before.
-    pub shifting: Shifting,
+    pub shifting: Shifting<R>,
     /// What the next step is held at, if it is.
-    pub hold: Option<Hold>,
+    pub hold: Option<Hold<R>>,
 }
+
+impl Copy for CvtState {}
 
 /// What is imposed on a CVT in a step, in place of its controller (RC-12).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hold {
+pub struct Hold<R: Real = f64> {
     /// Belt ratio at the end of the step; the one before at rest.
-    pub ratio: f64,
+    pub ratio: R,
     /// Clamp law; that of the box without one.
-    pub clamp: Option<ClampLaw>,
+    pub clamp: Option<ClampLaw<R>>,
 }
 
 /// What the ratio control keeps of the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shifting {
+pub struct Shifting<R: Real = f64> {
     /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
-    pub direction: i8,
+    pub direction: R::Each<i8>,
     /// Share of rated power that gentle driving looks at (RC-9).
-    pub share: f64,
+    pub share: R,
 }
 
-impl CvtState {
+impl<R: Real> CvtState<R>
+where
+    f64: Left<R>,
+{
     /// A belt at a ratio before its first step.
-    pub fn new(belt: BeltAtRatio) -> Self {
+    pub fn new(belt: BeltAtRatio<R>) -> Self {
+        let like = belt.direction;
         CvtState {
             belt,
-            warm_start: WarmStart::default(),
-            shifting: Shifting::default(),
+            warm_start: WarmStart::new(like),
+            shifting: Shifting {
+                direction: R::every(|_| 0),
+                share: like.filled(0.0),
+            },
             hold: None,
         }
     }
 }
 
-impl Cvt {
+impl<R: Real> Cvt<R>
+where
+    f64: Left<R>,
+{
     /// Clamping force of the secondary at a pressure, N (VA-3).
-    #[inline]
-    pub fn secondary_clamp_n(&self, pressure_pa: f64, secondary_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn secondary_clamp_n(&self, pressure_pa: R, secondary_rad_s: R) -> R {
         pressure_pa * self.secondary_piston_m2
             + self.spring_n
             + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
     }
 
     /// Pressure of the primary for a clamping force of the secondary, Pa (TE-1).
-    #[inline]
-    pub fn primary_pa(&self, secondary_clamp_n: f64, at: &BeltAtRatio) -> f64 {
+    #[inline(always)]
+    pub fn primary_pa(&self, secondary_clamp_n: R, at: &BeltAtRatio<R>) -> R {
         secondary_clamp_n * at.thrust_ratio / self.primary_piston_m2
     }
 
     /// Lowest engine speed at which full load gives a power, rad/s (RC-3). The hot line knows it at once; what air and cold friction leave of
     /// that line falls with speed, so three passes from the speed of greatest power settle it.
-    #[inline]
-    pub fn full_load_rad_s<P: PrimeMover>(&self, engine: &P, power_w: f64) -> f64 {
-        if power_w <= 0.0 {
-            return self.full_load_route.at(0.0);
+    #[inline(always)]
+    pub fn full_load_rad_s<P: PrimeMover<R>>(&self, engine: &P, power_w: R) -> R {
+        let zero = power_w.filled(0.0);
+        let none = zero.reaches(power_w);
+        if none.all() {
+            return zero.each_of(&self.full_load_route, Curve::at);
         }
         let mut speed = self.ratio.highest_rad_s;
         for _ in 0..3 {
             let before = speed;
-            speed = (self.full_load_route).at(power_w / engine.full_load_share(before)); // RC-3
-            if speed.to_bits() == before.to_bits() {
+            let share = engine.full_load_share(before);
+            speed = (power_w / share).each_of(&self.full_load_route, Curve::at); // RC-3
+            if (none | speed.is_same(before)).all() {
                 break; // settled: another pass gives the same
             }
+        }
+        if none.any() {
+            let least = zero.each_of(&self.full_load_route, Curve::at);
+            speed = R::pick(none, least, speed);
         }
         speed
     }
 
     /// Speed that the shift map has for a share of rated power, rad/s (RC-14); none without one.
-    #[inline]
-    fn mapped_rad_s<P: PrimeMover>(&self, input: &StepInput<P>, share: f64) -> Option<f64> {
-        let map = self.ratio.shift_map.as_ref()?;
+    #[inline(always)]
+    fn mapped_rad_s<P: PrimeMover<R>>(&self, input: &StepInput<P, R>, share: R) -> Option<R> {
+        let maps = self.ratio.shift_map.as_ref()?;
         let engine = input.engine;
-        let at = ShiftPoint {
-            speed_m_s: input.wheel.speed_m_s,
-            secondary_rad_s: self.final_drive.ratio * input.wheel.wheel_rad_s,
-            power_w: share * engine.rated_w(),
-            efficiency: self.ratio.route_efficiency,
-        };
-        Some(map.target_rad_s(&at, |speed| engine.full_load_nm(speed) * speed))
+        let secondary_rad_s = self.final_drive.ratio * input.wheel.wheel_rad_s;
+        let power_w = share * engine.rated_w();
+        Some(share.by_lane(|lane| {
+            let at = ShiftPoint {
+                speed_m_s: input.wheel.speed_m_s,
+                secondary_rad_s: secondary_rad_s.lane(lane),
+                power_w: power_w.lane(lane),
+                efficiency: self.ratio.route_efficiency.lane(lane),
+            };
+            R::one(maps, lane).target_rad_s(&at, |speed| {
+                let full_load_nm = engine.full_load_nm(share.filled(speed));
+                product_of(full_load_nm.lane(lane), speed)
+            })
+        }))
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
-    pub fn radius_factor(&self, at: &BeltAtRatio) -> f64 {
-        exp(self.radius_exponent * ln(self.low_radius_m / at.geometry.primary_radius_m))
+    pub fn radius_factor(&self, at: &BeltAtRatio<R>) -> R {
+        (self.radius_exponent * (self.low_radius_m / at.geometry.primary_radius_m).ln()).exp()
     }
 
     /// True where a measured map replaces the model of a component.
+    #[inline(always)]
     pub fn has_map(&self, component: Component) -> bool {
         self.changes
             .as_ref()
             .is_some_and(|changes| changes.maps[component].is_some())
     }
 
-    /// Factors on the losses of the box (CV-7), the coupling apart.
-    pub fn loss_factors(&self) -> LossFactors {
-        self.changes
-            .as_ref()
-            .map_or(UNCHANGED, |changes| changes.factor)
-    }
-
-    /// Multiplies each loss by a factor (CV-7, LC-6).
-    pub fn scale_losses(&mut self, factors: &LossFactors) {
-        let launch = factors[Component::LaunchClutch];
-        self.coupling = PartialLoss::of(Arc::clone(&self.coupling), launch);
-        let mut own = product(&self.loss_factors(), factors);
-        own[Component::LaunchClutch] = 1.0; // the coupling has it
-        if loss_factor::changes(&own) || self.changes.is_some() {
-            self.changes.get_or_insert_default().factor = own;
-        }
-    }
-
     /// Speed of the primary at the beginning of a step, rad/s, at a ratio over a secondary that has a speed once the clutch has locked.
-    #[inline]
-    fn primary_rad_s(&self, ratio: f64, secondary_rad_s: f64, past: &DrivelineState) -> f64 {
+    #[inline(always)]
+    fn primary_rad_s(&self, ratio: R, secondary_rad_s: R, past: &DrivelineState<R>) -> R {
         let locked = ratio * secondary_rad_s;
-        if self.launch_behind && !past.coupled {
-            larger(past.engine_rad_s, locked) // LO-1
+        if self.launch_behind {
+            R::pick(past.coupled, locked, past.engine_rad_s.most(locked)) // LO-1
         } else {
             locked
         }
     }
 
+    /// Share of a step that the box is in neutral after a rest, s, with an engine that has run since its start for a time, s (SE-1, SE-2); none
+    /// where the car moves, which is in drive.
+    #[inline(always)]
+    pub(super) fn neutral_share_after(
+        &self,
+        rested_s: f64,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> R {
+        if step.motion.speed_m_s > 0.0 {
+            return self.selector.neutral_after_s.filled(0.0);
+        }
+        self.selector.neutral_share(&SelectorSignals {
+            procedure_s: trace.map_or(0.0, Trace::selector_s),
+            running_s,
+            rested_s,
+            dt_s: step.dt_s,
+        })
+    }
+
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
-    pub fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> (CvtState, DrivelineState) {
+    pub fn start<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+    ) -> (CvtState<R>, DrivelineState<R>) {
         let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
+        let zero = secondary.filled(0.0);
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
@@ -288,32 +345,150 @@ impl Cvt {
             mapped_rad_s: self.mapped_rad_s(input, share),
             cold_rad_s: (self.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
             ratio_before: self.ratio.low,
-            flow_down_per_s: 0.0,
-            flow_up_per_s: 0.0,
-            coupled: true,
-            last_direction: 0,
-            free_up_to_rad_s: 0.0,
+            flow_down_per_s: zero,
+            flow_up_per_s: zero,
+            coupled: zero.answer(true),
+            last_direction: R::every(|_| 0),
+            free_up_to_rad_s: zero,
             dt_s: input.dt_s,
         };
-        let ratio = if secondary > 0.0 {
-            (self.ratio.target_rad_s(&demand) / secondary).clamp(self.ratio.high, self.ratio.low)
-        } else {
-            self.ratio.low
-        };
+        let rolls = secondary.above(0.0);
+        let target = self.ratio.target_rad_s(&demand) / secondary;
+        let in_range = target.held(self.ratio.high, self.ratio.low);
+        let ratio = R::pick(rolls, in_range, self.ratio.low);
         let idle = input.engine.idle_rad_s();
         let primary = ratio * secondary;
         let mut own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
         own.shifting.share = share;
         let driveline = DrivelineState {
-            gear: 0,
-            engine_rad_s: larger(primary, idle),
-            throttle: 0.1,
+            gear: R::every(|_| 0),
+            engine_rad_s: primary.most(idle),
+            throttle: zero.filled(0.1),
             secondary_pa: self.floors.control_pa,
-            coupled: primary > idle,
-            stood: secondary <= 0.0,
+            coupled: primary.above(idle),
+            stood: zero.reaches(secondary).all(),
             rested_s: 0.0,
         };
         (own, driveline)
+    }
+
+    /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and the number of the cause that decided it; `load` is called by
+    /// the laws that use the belt.
+    #[inline(always)]
+    fn pressure_by(
+        &self,
+        law: &ClampLaw<R>,
+        signals: &ClampSignals<R>,
+        at: &BeltAtRatio<R>,
+        load: impl FnOnce() -> BeltLoad<R>,
+        secondary_rad_s: R,
+    ) -> (R, R) {
+        let (wanted, cause) = match law {
+            ClampLaw::Map(map) => {
+                let by_law = secondary_rad_s.filled(ClampCause::Law.number());
+                (map.pressure_pa(signals), by_law)
+            }
+            law => Clamping {
+                cvt: self,
+                at,
+                load: &load(),
+                secondary_rad_s,
+                force_log: signals.force_log,
+            }
+            .pressure_pa(law),
+        };
+        let (capped, open) = (
+            wanted.above(self.cap_pa),
+            wanted.above(self.floors.control_pa),
+        );
+        let number = |of: ClampCause| cause.filled(of.number());
+        let held_pa = R::pick(open, wanted, self.floors.control_pa);
+        let held_by = R::pick(open, cause, number(ClampCause::Control));
+        (
+            R::pick(capped, self.cap_pa, held_pa),
+            R::pick(capped, number(ClampCause::Cap), held_by),
+        )
+    }
+
+    /// Solves one step (CV-1 to CV-5); fills an output at rest.
+    #[inline(always)]
+    pub(super) fn solve<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+        own: &mut CvtState<R>,
+        past: &mut DrivelineState<R>,
+        output: &mut StepOutput<R>,
+    ) {
+        solve::solve(self, input, own, past, output);
+    }
+}
+
+impl<R: Real> super::Driveline<R> for Cvt<R>
+where
+    f64: Left<R>,
+{
+    type State = (CvtState<R>, DrivelineState<R>);
+
+    #[inline(always)]
+    fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State {
+        Cvt::start(self, input)
+    }
+
+    #[inline(always)]
+    fn solve_into<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+        (own, past): &mut Self::State,
+        output: &mut StepOutput<R>,
+    ) {
+        self.solve(input, own, past, output);
+    }
+
+    #[inline(always)]
+    fn engine_rad_s((_, past): &Self::State) -> R {
+        past.engine_rad_s
+    }
+
+    #[inline(always)]
+    fn is_cvt(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn neutral_share(
+        &self,
+        state: Option<&Self::State>,
+        trace: Option<&Trace>,
+        step: &Step,
+        running_s: f64,
+    ) -> R {
+        let rested_s = state.map_or(0.0, |(_, past)| past.rested_s);
+        self.neutral_share_after(rested_s, trace, step, running_s)
+    }
+
+    #[inline(always)]
+    fn coupling_factor(&self) -> Option<R> {
+        self.coupling.loss_factor()
+    }
+}
+
+impl Cvt {
+    /// Factors on the losses of the box (CV-7), the coupling apart.
+    pub fn loss_factors(&self) -> LossFactors {
+        self.changes
+            .as_ref()
+            .map_or(UNCHANGED, |changes| changes.factor)
+    }
+
+    /// Multiplies each loss by a factor (CV-7, LC-6).
+    pub fn scale_losses(&mut self, factors: &LossFactors) {
+        let launch = factors[Component::LaunchClutch];
+        self.coupling = PartialLoss::of(self.coupling.clone(), launch);
+        let mut own = product(&self.loss_factors(), factors);
+        own[Component::LaunchClutch] = 1.0; // the coupling has it
+        if loss_factor::changes(&own) || self.changes.is_some() {
+            self.changes.get_or_insert_default().factor = own;
+        }
     }
 
     /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and what decided it; `load` is called by the laws that use the belt.
@@ -325,47 +500,8 @@ impl Cvt {
         load: impl FnOnce() -> BeltLoad,
         secondary_rad_s: f64,
     ) -> (f64, ClampCause) {
-        self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s)
-    }
-
-    /// The same by any law.
-    #[inline(always)]
-    fn pressure_by(
-        &self,
-        law: &ClampLaw,
-        signals: &ClampSignals,
-        at: &BeltAtRatio,
-        load: impl FnOnce() -> BeltLoad,
-        secondary_rad_s: f64,
-    ) -> (f64, ClampCause) {
-        let (wanted, cause) = match law {
-            ClampLaw::Map(map) => (map.pressure_pa(signals), ClampCause::Law),
-            law => Clamping {
-                cvt: self,
-                at,
-                load: &load(),
-                secondary_rad_s,
-                force_log: signals.force_log,
-            }
-            .pressure_pa(law),
-        };
-        if wanted > self.cap_pa {
-            (self.cap_pa, ClampCause::Cap)
-        } else if wanted > self.floors.control_pa {
-            (wanted, cause)
-        } else {
-            (self.floors.control_pa, ClampCause::Control)
-        }
-    }
-
-    /// Solves one step (CV-1 to CV-5); fills an output at rest.
-    pub(super) fn solve<P: PrimeMover>(
-        &self,
-        input: &StepInput<P>,
-        own: &mut CvtState,
-        past: &mut DrivelineState,
-        output: &mut StepOutput,
-    ) {
-        solve::solve(self, input, own, past, output);
+        let (pressure_pa, cause) =
+            self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s);
+        (pressure_pa, ClampCause::of(cause))
     }
 }

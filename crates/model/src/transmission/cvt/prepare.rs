@@ -7,14 +7,18 @@ use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, Hold, NU_REFERENCE_M2_S, Shifting};
 use crate::fluid::{FilmPowers, OilState};
-use crate::math::{exp_each, larger, ln, ln_each, pair};
+use crate::math::{Left, Mask, Real, both};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, SUMP};
-use crate::transmission::coupling::LockSignals;
+use crate::transmission::coupling::{Coupling, LockSignals};
 use crate::transmission::step::{DrivelineState, StepInput};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
-fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
+#[inline(always)]
+fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R)
+where
+    f64: Left<R>,
+{
     let slope = g.secondary_radius_slope_m();
     let primary = (g.secondary_radius_m - slope) / g.ratio;
     let travel = 2.0 * cvt.belt.tan_wedge;
@@ -25,49 +29,54 @@ fn sheave_volumes_m3(cvt: &Cvt, g: &Geometry) -> (f64, f64) {
 }
 
 /// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
-pub(super) type Before<'a> = (&'a Geometry, Shifting, &'a Option<Hold>);
+pub(super) type Before<'a, R> = (&'a Geometry<R>, &'a Shifting<R>, &'a Option<Hold<R>>);
 
 /// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
-struct Route {
-    pump: PumpAtTemperature,
-    efficiency: f64,
+struct Route<R: Real> {
+    pump: PumpAtTemperature<R>,
+    efficiency: R,
     /// Direction that a small change must not turn round; 0 in a kick-down (RC-7).
-    last_direction: i8,
+    last_direction: R::Each<i8>,
 }
 
 /// Outcome of the shift.
-struct Shift {
-    ratio: f64,
+struct Shift<R: Real> {
+    ratio: R,
     /// Rate of ln I, 1/s.
-    rate_per_s: f64,
-    flow_m3_s: f64,
+    rate_per_s: R,
+    flow_m3_s: R,
     /// True where pump flow held it back.
-    held: bool,
+    held: R::Mask,
     /// What the control keeps.
-    kept: Shifting,
+    kept: Shifting<R>,
 }
 
-fn shift<P: PrimeMover>(
-    cvt: &Cvt,
-    input: &StepInput<P>,
-    past: &DrivelineState,
-    (before, kept, held): Before,
-    route: Route,
-) -> Shift {
-    let share = cvt.ratio.filtered_share(
-        kept.share,
-        input.wheel.power_w / input.engine.rated_w(),
-        input.dt_s,
-    );
+#[inline(always)]
+fn shift<P: PrimeMover<R>, R: Real>(
+    cvt: &Cvt<R>,
+    input: &StepInput<P, R>,
+    past: &DrivelineState<R>,
+    (before, kept, held): Before<R>,
+    route: Route<R>,
+) -> Shift<R>
+where
+    f64: Left<R>,
+{
+    let asked = input.wheel.power_w / input.engine.rated_w();
+    let share = cvt.ratio.filtered_share(kept.share, asked, input.dt_s);
     let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
     let primary_rad_s = cvt.primary_rad_s(before.ratio, secondary_rad_s, past);
-    if primary_rad_s <= 0.0 {
+    let zero = share.filled(0.0);
+    if zero.reaches(primary_rad_s).all() {
         return Shift {
             ratio: before.ratio,
-            rate_per_s: 0.0,
-            flow_m3_s: 0.0,
-            held: false,
-            kept: Shifting { share, ..kept },
+            rate_per_s: zero,
+            flow_m3_s: zero,
+            held: zero.answer(false),
+            kept: Shifting {
+                share,
+                direction: kept.direction.clone(),
+            },
         }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
@@ -75,7 +84,7 @@ fn shift<P: PrimeMover>(
         .pump
         .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
-    let free = larger(free, 0.0);
+    let free = free.most(0.0);
     let demand = RatioDemand {
         secondary_rad_s,
         primary_rad_s,
@@ -88,55 +97,60 @@ fn shift<P: PrimeMover>(
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
-        coupled: past.coupled || cvt.coupling.by_command(),
+        coupled: past.coupled | zero.answer(cvt.coupling.by_command()),
         last_direction: route.last_direction,
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
     let (ratio, change, short) = match held {
-        Some(hold) => (hold.ratio, ln(hold.ratio / before.ratio), false), // RC-12
+        Some(hold) => (
+            hold.ratio,
+            (hold.ratio / before.ratio).ln(),
+            zero.answer(false),
+        ), // RC-12
         None => cvt.ratio.step(&demand),
     };
-    let volume = if change > 0.0 {
-        down_m3 * change
-    } else {
-        -up_m3 * change
-    };
+    let volume = R::pick(change.above(0.0), down_m3 * change, -up_m3 * change);
     Shift {
         ratio,
         rate_per_s: change / input.dt_s,
         flow_m3_s: volume / input.dt_s,
         held: short,
         kept: Shifting {
-            direction: direction_after(change, kept.direction),
+            direction: direction_after(change, &kept.direction),
             share,
         },
     }
 }
 
 /// Powers and exponentials of a step.
-struct Powers {
-    viscosity: ViscosityPowers,
-    viscous_factor: f64,
-    radius_factor: f64,
-    films: FilmPowers,
+struct Powers<R: Real> {
+    viscosity: ViscosityPowers<R>,
+    viscous_factor: R,
+    radius_factor: R,
+    films: FilmPowers<R>,
 }
 
 /// What they are powers of.
-struct Bases {
-    nu_m2_s: f64,
-    eta_pa_s: f64,
-    film_loads: [f64; 2],
-    film_exponents: [f64; 2],
+struct Bases<R> {
+    nu_m2_s: R,
+    eta_pa_s: R,
+    film_loads: [R; 2],
+    film_exponents: [R; 2],
 }
 
-impl Powers {
+impl<R: Real> Powers<R>
+where
+    f64: Left<R>,
+{
     /// All of a step together: five logarithms, then eight exponentials.
     #[inline(always)]
-    fn new(cvt: &Cvt, at: &BeltAtRatio, b: &Bases) -> Self {
-        let slides = b.film_loads.map(|x| x > 0.0);
-        let films = pair(|i| if slides[i] { b.film_loads[i] } else { 1.0 });
-        let [nu, pump, inner, outer, radius] = ln_each([
+    fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, b: &Bases<R>) -> Self {
+        let loads = b.film_loads;
+        let none = b.nu_m2_s.filled(0.0);
+        let slides = both!(i => loads[i].above(0.0));
+        let films = both!(i => R::pick(slides[i], loads[i], loads[i].filled(1.0)));
+        let [nu, pump, inner, outer, radius] = R::ln_each([
             b.nu_m2_s / NU_REFERENCE_M2_S,
             b.eta_pa_s / ETA_REFERENCE_PA_S,
             films[0],
@@ -154,7 +168,7 @@ impl Powers {
             outer_carried,
             inner_sheared,
             outer_sheared,
-        ] = exp_each([
+        ] = R::exp_each([
             shaft,
             clutch,
             cvt.pump.viscous_exponent * pump,
@@ -164,14 +178,19 @@ impl Powers {
             sheared * inner,
             sheared * outer,
         ]);
-        let sliding = |powers: [f64; 2]| pair(|i| if slides[i] { powers[i] } else { 0.0 });
         Powers {
             viscosity: ViscosityPowers { shaft, clutch },
             viscous_factor,
             radius_factor,
             films: FilmPowers {
-                carried: sliding([inner_carried, outer_carried]),
-                sheared: sliding([inner_sheared, outer_sheared]),
+                carried: [
+                    R::pick(slides[0], inner_carried, none),
+                    R::pick(slides[1], outer_carried, none),
+                ],
+                sheared: [
+                    R::pick(slides[0], inner_sheared, none),
+                    R::pick(slides[1], outer_sheared, none),
+                ],
             },
         }
     }
@@ -179,14 +198,35 @@ impl Powers {
 
 /// Prepares a step: shifts from the geometry and what the control kept `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
 #[inline(never)]
-pub(super) fn prepare<'a, P: PrimeMover>(
-    cvt: &'a Cvt,
-    input: &'a StepInput<'a, P>,
-    past: &DrivelineState,
-    before: Before<'a>,
-    belt: &'a mut BeltAtRatio,
-    efficiency: f64,
-) -> Step<'a, P> {
+pub(super) fn prepare<'a, P: PrimeMover<R>, R: Real>(
+    cvt: &'a Cvt<R>,
+    input: &'a StepInput<'a, P, R>,
+    past: &DrivelineState<R>,
+    before: Before<'a, R>,
+    belt: &'a mut BeltAtRatio<R>,
+    efficiency: R,
+) -> Step<'a, P, R>
+where
+    f64: Left<R>,
+{
+    efficiency.within(
+        #[inline(always)]
+        || prepared(cvt, input, past, before, belt, efficiency),
+    )
+}
+
+#[inline(always)]
+fn prepared<'a, P: PrimeMover<R>, R: Real>(
+    cvt: &'a Cvt<R>,
+    input: &'a StepInput<'a, P, R>,
+    past: &DrivelineState<R>,
+    before: Before<'a, R>,
+    belt: &'a mut BeltAtRatio<R>,
+    efficiency: R,
+) -> Step<'a, P, R>
+where
+    f64: Left<R>,
+{
     let (oil, friction) = (input.oil, &input.oil.friction);
     let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
     let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
@@ -196,18 +236,23 @@ pub(super) fn prepare<'a, P: PrimeMover>(
     };
     let eta_sump = nu_sump * sump.density_kg_m3;
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
-    let inlet = cvt.pump.with_factor(eta_sump, 1.0);
+    let inlet = cvt.pump.with_factor(eta_sump, eta_sump.filled(1.0));
     let route = Route {
         pump: inlet,
         efficiency,
-        last_direction: if efficiency < cvt.ratio.route_efficiency {
-            0
-        } else {
-            before.1.direction
+        last_direction: {
+            let kicks = cvt.ratio.route_efficiency.above(efficiency);
+            R::every(
+                #[inline(always)]
+                |lane| match kicks.lane(lane) {
+                    true => 0,
+                    false => *R::one(&before.1.direction, lane),
+                },
+            )
         },
     };
     let shift = shift(cvt, input, past, before, route);
-    if shift.ratio.to_bits() != belt.geometry.ratio.to_bits() {
+    if !shift.ratio.is_same(belt.geometry.ratio).all() {
         *belt = BeltAtRatio::new(&cvt.belt, shift.ratio);
     }
     let at = &*belt;
@@ -266,7 +311,7 @@ pub(super) fn prepare<'a, P: PrimeMover>(
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,
         shifting: shift.kept,
-        reach: input.reach(past.engine_rad_s, 0.0),
+        reach: input.reach(past.engine_rad_s, sump_k.filled(0.0)),
         clamp: before
             .2
             .as_ref()

@@ -11,27 +11,33 @@
 
 use super::variator::{Belt, BeltAtRatio};
 use crate::keys::{Values, keys};
+use crate::math::{Left, Real, gather};
 
 /// The checked bearings.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PulleyBearing {
+pub struct PulleyBearing<R: Real = f64> {
     /// Friction at the bore.
-    pub friction: f64,
+    pub friction: R,
     /// Bore on the shafts of primary and secondary, m.
-    pub bore_m: [f64; 2],
+    pub bore_m: [R; 2],
 }
 
-impl PulleyBearing {
+gather!(PulleyBearing { friction, bore_m });
+
+impl<R: Real> PulleyBearing<R>
+where
+    f64: Left<R>,
+{
     /// Radial force on each shaft per clamping force of the secondary (PB-1).
-    #[inline]
-    pub fn pull_per_clamp(belt: &Belt, at: &BeltAtRatio) -> f64 {
+    #[inline(always)]
+    pub fn pull_per_clamp(belt: &Belt<R>, at: &BeltAtRatio<R>) -> R {
         let lean = at.geometry.strut_m / belt.centre_distance_m;
         2.0 * belt.tan_wedge * at.prepared.clamps_per_wrap * lean // PB-1
     }
 
     /// Torque on the shaft of the primary (0) or the secondary (1) under a radial force, Nm (PB-2).
-    #[inline]
-    pub fn torque_nm(&self, pulley: usize, pull_n: f64) -> f64 {
+    #[inline(always)]
+    pub fn torque_nm(&self, pulley: usize, pull_n: R) -> R {
         self.friction * pull_n * (0.5 * self.bore_m[pulley]) // PB-2
     }
 }

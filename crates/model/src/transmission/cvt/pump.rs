@@ -18,69 +18,132 @@
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{clamp, exp, ln, smaller, smooth_ramp};
+use crate::math::{Gather, Left, Real, gather, smooth_ramp};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// How the displacement follows the need for flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PumpKind {
+pub enum PumpKind<R: Real = f64> {
     /// All of it, always.
     Fixed,
     /// Two cavities: the second one is switched off when the first suffices.
     DualCavity {
         /// Share of the displacement in the cavity that always works.
-        share: f64,
+        share: R,
     },
     /// Stroke follows the need.
     Variable {
         /// Smallest share of the displacement.
-        least: f64,
+        least: R,
     },
     /// Driven by a motor, whose power comes from the alternator.
-    Electric(ElectricPump),
+    Electric(ElectricPump<R>),
+}
+
+impl Gather for PumpKind {
+    type Together<R: Real> = PumpKind<R>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> PumpKind<R> {
+        let number = |f: fn(&PumpKind) -> f64| like.by_lane(|lane| f(of[lane]));
+        match of[0] {
+            PumpKind::Fixed => PumpKind::Fixed,
+            PumpKind::DualCavity { .. } => PumpKind::DualCavity {
+                share: number(|kind| kind.numbers()[0]),
+            },
+            PumpKind::Variable { .. } => PumpKind::Variable {
+                least: number(|kind| kind.numbers()[0]),
+            },
+            PumpKind::Electric(_) => PumpKind::Electric(ElectricPump {
+                efficiency: number(|kind| kind.numbers()[0]),
+                alternator: number(|kind| kind.numbers()[1]),
+                fastest_rad_s: number(|kind| kind.numbers()[2]),
+            }),
+        }
+    }
+
+    fn lane<R: Real>(together: &PumpKind<R>, lane: usize) -> Self {
+        match together {
+            PumpKind::Fixed => PumpKind::Fixed,
+            PumpKind::DualCavity { share } => PumpKind::DualCavity {
+                share: share.lane(lane),
+            },
+            PumpKind::Variable { least } => PumpKind::Variable {
+                least: least.lane(lane),
+            },
+            PumpKind::Electric(of) => PumpKind::Electric(Gather::lane(of, lane)),
+        }
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+}
+
+impl PumpKind {
+    /// The numbers of a kind, in their order.
+    fn numbers(&self) -> [f64; 3] {
+        match self {
+            PumpKind::Fixed => [0.0; 3],
+            PumpKind::DualCavity { share: x } | PumpKind::Variable { least: x } => [*x, 0.0, 0.0],
+            PumpKind::Electric(of) => [of.efficiency, of.alternator, of.fastest_rad_s],
+        }
+    }
 }
 
 /// Motor and alternator of an electric pump.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElectricPump {
+pub struct ElectricPump<R: Real = f64> {
     /// Hydraulic over electric power.
-    pub efficiency: f64,
+    pub efficiency: R,
     /// Electric over shaft power of the alternator.
-    pub alternator: f64,
+    pub alternator: R,
     /// Largest speed, rad/s.
-    pub fastest_rad_s: f64,
+    pub fastest_rad_s: R,
 }
+
+gather!(ElectricPump {
+    efficiency,
+    alternator,
+    fastest_rad_s
+});
 
 /// The checked pump.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pump {
+pub struct Pump<R: Real = f64> {
     /// Kind.
-    pub kind: PumpKind,
+    pub kind: PumpKind<R>,
     /// Displacement, m3/rad.
-    pub displacement_m3_rad: f64,
+    pub displacement_m3_rad: R,
     /// Coulomb coefficient C_f.
-    pub friction: f64,
+    pub friction: R,
     /// Viscous coefficient C_v.
-    pub viscous: f64,
+    pub viscous: R,
     /// Exponent m of viscosity.
-    pub viscous_exponent: f64,
+    pub viscous_exponent: R,
     /// Heating of the films in its gaps (FH-1).
-    pub heating: ViscousSelfHeating,
+    pub heating: ViscousSelfHeating<R>,
     /// Pressure drop of strainer and suction line over flow at reference viscosity, Pa s/m3; 0 without one (PU-5).
-    pub inlet_pa_s_m3: f64,
+    pub inlet_pa_s_m3: R,
     /// Depression at the inlet that fills no further: air pressure less vapour, dissolved air and height, Pa (PU-5).
-    pub inlet_depression_pa: f64,
+    pub inlet_depression_pa: R,
     /// Constant torque T_c, Nm.
-    pub constant_nm: f64,
+    pub constant_nm: R,
     /// Pressure drop between pump and secondary, Pa.
-    pub line_drop_pa: f64,
+    pub line_drop_pa: R,
     /// Pressure against which idle displacement turns, Pa.
-    pub residual_pa: f64,
+    pub residual_pa: R,
     /// Lubrication flow, m3/s.
-    pub lubrication_m3_s: f64,
+    pub lubrication_m3_s: R,
     /// Leakage per pressure at 80 degC viscosity, m3/(s Pa).
-    pub leakage_m3_s_pa: f64,
+    pub leakage_m3_s_pa: R,
+}
+
+gather! {
+    Pump {
+        kind, displacement_m3_rad, friction, viscous, viscous_exponent, heating, inlet_pa_s_m3, inlet_depression_pa, constant_nm, line_drop_pa,
+        residual_pa, lubrication_m3_s, leakage_m3_s_pa,
+    }
 }
 
 /// Pressure that is left of a flow that does not cover lubrication and shift, Pa (PU-6).
@@ -94,27 +157,30 @@ pub const ETA_REFERENCE_PA_S: f64 = 0.010;
 
 /// What the pump's oil does at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PumpAtTemperature {
+pub struct PumpAtTemperature<R: Real = f64> {
     /// Factor (eta/eta_r)^m of PU-1.
-    pub viscous_factor: f64,
+    pub viscous_factor: R,
     /// One over the largest flow that the inlet passes, s/m3; 0 without a bound (PU-5).
-    pub inv_inlet_flow: f64,
+    pub inv_inlet_flow: R,
     /// Flow into lubrication, m3/s (PU-2).
-    pub lubrication_m3_s: f64,
+    pub lubrication_m3_s: R,
     /// Leakage per pressure, m3/(s Pa) (PU-2).
-    pub leakage_m3_s_pa: f64,
+    pub leakage_m3_s_pa: R,
 }
 
-impl PumpAtTemperature {
+impl<R: Real> PumpAtTemperature<R>
+where
+    f64: Left<R>,
+{
     /// Flow that is needed without shifting, m3/s (PU-2).
-    #[inline]
-    pub fn need_m3_s(&self, secondary_pa: f64) -> f64 {
+    #[inline(always)]
+    pub fn need_m3_s(&self, secondary_pa: R) -> R {
         self.lubrication_m3_s + secondary_pa * self.leakage_m3_s_pa // PU-2
     }
 
     /// Flow that is drawn of the flow of a displacement, m3/s (PU-5).
-    #[inline]
-    pub fn drawn_m3_s(&self, flow_m3_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn drawn_m3_s(&self, flow_m3_s: R) -> R {
         let x = flow_m3_s * self.inv_inlet_flow;
         let square = x * x;
         flow_m3_s / (1.0 + square * square).sqrt().sqrt() // PU-5
@@ -122,24 +188,42 @@ impl PumpAtTemperature {
 }
 
 /// State of the pump at one operating point.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PumpState {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PumpState<R: Real = f64> {
     /// Torque at the pump shaft, Nm; of an electric pump, that of its power at the engine's.
-    pub torque_nm: f64,
+    pub torque_nm: R,
     /// Torque that the alternator loses for it, over that torque.
-    pub alternator_share: f64,
+    pub alternator_share: R,
     /// Theoretical flow, m3/s.
-    pub flow_m3_s: f64,
+    pub flow_m3_s: R,
     /// Flow drawn by the displacement that works against pressure, m3/s.
-    pub working_m3_s: f64,
+    pub working_m3_s: R,
     /// Whether the flow that the whole displacement draws falls short of the need.
-    pub flow_limited: bool,
+    pub flow_limited: R::Mask,
 }
 
-impl Pump {
+impl<R: Real> PumpState<R> {
+    /// Of no pump; `like` has the lanes.
+    #[inline(always)]
+    pub fn none(like: R) -> Self {
+        let none = like.filled(0.0);
+        PumpState {
+            torque_nm: none,
+            alternator_share: none,
+            flow_m3_s: none,
+            working_m3_s: none,
+            flow_limited: like.answer(false),
+        }
+    }
+}
+
+impl<R: Real> Pump<R>
+where
+    f64: Left<R>,
+{
     /// Flow of the whole displacement with an engine at a speed, m3/s.
-    #[inline]
-    pub fn full_flow_m3_s(&self, engine_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn full_flow_m3_s(&self, engine_rad_s: R) -> R {
         let speed_rad_s = match &self.kind {
             PumpKind::Electric(electric) => electric.fastest_rad_s,
             _ => engine_rad_s,
@@ -148,25 +232,26 @@ impl Pump {
     }
 
     /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
-    pub fn steady_need_m3_s(&self, secondary_pa: f64, eta_pa_s: f64) -> f64 {
-        self.with_factor(eta_pa_s, 1.0).need_m3_s(secondary_pa)
+    pub fn steady_need_m3_s(&self, secondary_pa: R, eta_pa_s: R) -> R {
+        self.with_factor(eta_pa_s, eta_pa_s.filled(1.0))
+            .need_m3_s(secondary_pa)
     }
 
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
-    #[inline]
+    #[inline(always)]
     pub fn deliverable_pa(
         &self,
-        now: &PumpAtTemperature,
-        speed_rad_s: f64,
-        shift_flow_m3_s: f64,
-    ) -> f64 {
+        now: &PumpAtTemperature<R>,
+        speed_rad_s: R,
+        shift_flow_m3_s: R,
+    ) -> R {
         self.turning(now, speed_rad_s)
             .deliverable_pa(shift_flow_m3_s)
     }
 
     /// The pump with an engine at a speed, in its oil.
     #[inline(always)]
-    pub fn turning(&self, now: &PumpAtTemperature, speed_rad_s: f64) -> TurningPump<'_> {
+    pub fn turning(&self, now: &PumpAtTemperature<R>, speed_rad_s: R) -> TurningPump<'_, R> {
         let flow_m3_s = self.full_flow_m3_s(speed_rad_s);
         let viscous_nm = self.viscous
             * ETA_REFERENCE_PA_S
@@ -184,39 +269,35 @@ impl Pump {
     }
 
     /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
-    #[inline]
-    pub fn at(&self, eta_pa_s: f64) -> PumpAtTemperature {
-        self.with_factor(
-            eta_pa_s,
-            exp(self.viscous_exponent * ln(eta_pa_s / ETA_REFERENCE_PA_S)),
-        )
+    #[inline(always)]
+    pub fn at(&self, eta_pa_s: R) -> PumpAtTemperature<R> {
+        let log = (eta_pa_s / ETA_REFERENCE_PA_S).ln();
+        self.with_factor(eta_pa_s, (self.viscous_exponent * log).exp())
     }
 
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
-    #[inline]
-    pub fn with_factor(&self, eta_pa_s: f64, viscous_factor: f64) -> PumpAtTemperature {
+    #[inline(always)]
+    pub fn with_factor(&self, eta_pa_s: R, viscous_factor: R) -> PumpAtTemperature<R> {
         let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
         PumpAtTemperature {
             viscous_factor,
             inv_inlet_flow: drop_pa_s_m3 / self.inlet_depression_pa, // PU-5
-            lubrication_m3_s: self.lubrication_m3_s * smaller(ETA_THICK_PA_S / eta_pa_s, 1.0), // PU-2
+            lubrication_m3_s: self.lubrication_m3_s * (ETA_THICK_PA_S / eta_pa_s).least(1.0), // PU-2
             leakage_m3_s_pa: self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s, // PU-2
         }
     }
 
     /// Share of the displacement that works against pressure (PU-4), from the flow that all of it draws.
-    fn share(&self, need_m3_s: f64, drawn_m3_s: f64) -> f64 {
-        let wanted = if drawn_m3_s > 0.0 {
-            need_m3_s / drawn_m3_s
-        } else {
-            1.0
-        };
+    #[inline(always)]
+    fn share(&self, need_m3_s: R, drawn_m3_s: R) -> R {
+        let whole = drawn_m3_s.filled(1.0);
+        let wanted = R::pick(drawn_m3_s.above(0.0), need_m3_s / drawn_m3_s, whole);
         match self.kind {
-            PumpKind::Fixed | PumpKind::Electric(_) => 1.0,
+            PumpKind::Fixed | PumpKind::Electric(_) => whole,
             PumpKind::DualCavity { share } => {
                 share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share)
             } // PU-4
-            PumpKind::Variable { least } => clamp(wanted, least, 1.0), // PU-4
+            PumpKind::Variable { least } => wanted.held(least, 1.0), // PU-4
         }
     }
 
@@ -224,11 +305,11 @@ impl Pump {
     #[inline(always)]
     pub fn state(
         &self,
-        now: &PumpAtTemperature,
-        speed_rad_s: f64,
-        secondary_pa: f64,
-        need_m3_s: f64,
-    ) -> PumpState {
+        now: &PumpAtTemperature<R>,
+        speed_rad_s: R,
+        secondary_pa: R,
+        need_m3_s: R,
+    ) -> PumpState<R> {
         self.turning(now, speed_rad_s)
             .state(secondary_pa, need_m3_s)
     }
@@ -236,39 +317,39 @@ impl Pump {
 
 /// The pump at a speed in its oil: what depends on neither pressure nor need is known.
 #[derive(Clone, Copy, Debug)]
-pub struct TurningPump<'a> {
-    pump: &'a Pump,
-    now: PumpAtTemperature,
-    speed_rad_s: f64,
+pub struct TurningPump<'a, R: Real = f64> {
+    pump: &'a Pump<R>,
+    now: PumpAtTemperature<R>,
+    speed_rad_s: R,
     /// Flow of the whole displacement, and what it draws, m3/s.
-    flow_m3_s: f64,
-    drawn_m3_s: f64,
+    flow_m3_s: R,
+    drawn_m3_s: R,
     /// The second term of PU-1.
-    viscous_nm: f64,
+    viscous_nm: R,
 }
 
-impl TurningPump<'_> {
+impl<R: Real> TurningPump<'_, R>
+where
+    f64: Left<R>,
+{
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
     #[inline(always)]
-    pub fn deliverable_pa(&self, shift_flow_m3_s: f64) -> f64 {
+    pub fn deliverable_pa(&self, shift_flow_m3_s: R) -> R {
         let now = &self.now;
         let spare = self.drawn_m3_s - now.lubrication_m3_s - shift_flow_m3_s;
-        if spare > LEAST_PA * now.leakage_m3_s_pa {
-            spare / now.leakage_m3_s_pa
-        } else {
-            LEAST_PA
-        } // PU-6
+        let enough = spare.above(LEAST_PA * now.leakage_m3_s_pa);
+        R::pick(enough, spare / now.leakage_m3_s_pa, spare.filled(LEAST_PA)) // PU-6
     }
 
     /// Torque and flow at a pressure and a need (PU-1, PU-4).
     #[inline(always)]
-    pub fn state(&self, secondary_pa: f64, need_m3_s: f64) -> PumpState {
+    pub fn state(&self, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
         let (pump, drawn) = (self.pump, self.drawn_m3_s);
         if let PumpKind::Electric(of) = &pump.kind {
             return self.electric(of, secondary_pa, need_m3_s);
         }
-        let (share, working) = if pump.kind == PumpKind::Fixed {
-            (1.0, drawn)
+        let (share, working) = if matches!(pump.kind, PumpKind::Fixed) {
+            (drawn.filled(1.0), drawn)
         } else {
             let share = pump.share(need_m3_s, drawn);
             (share, self.now.drawn_m3_s(share * self.flow_m3_s))
@@ -280,24 +361,25 @@ impl TurningPump<'_> {
             + pump.constant_nm; // PU-1
         PumpState {
             torque_nm: torque,
-            alternator_share: 0.0,
+            alternator_share: drawn.filled(0.0),
             flow_m3_s: self.flow_m3_s,
             working_m3_s: working,
-            flow_limited: need_m3_s > drawn,
+            flow_limited: need_m3_s.above(drawn),
         }
     }
 
     /// An electric pump (EP-2).
-    fn electric(&self, of: &ElectricPump, secondary_pa: f64, need_m3_s: f64) -> PumpState {
+    #[inline(always)]
+    fn electric(&self, of: &ElectricPump<R>, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
         let most_m3_s = self.drawn_m3_s;
-        let working_m3_s = smaller(need_m3_s, most_m3_s);
+        let working_m3_s = need_m3_s.least(most_m3_s);
         let electric_w = (secondary_pa + self.pump.line_drop_pa) * working_m3_s / of.efficiency; // EP-2
         PumpState {
             torque_nm: electric_w / self.speed_rad_s,
             alternator_share: 1.0 / of.alternator - 1.0,
             flow_m3_s: working_m3_s,
             working_m3_s,
-            flow_limited: need_m3_s > most_m3_s,
+            flow_limited: need_m3_s.above(most_m3_s),
         }
     }
 }

@@ -8,27 +8,39 @@
 //! (Gronitzki and Poll 2007): no term of viscosity or speed. Valid for p >= 0.
 
 use crate::keys::{Values, keys};
+use crate::math::{Left, Real, gather};
 use std::f64::consts::PI;
 
 /// The checked rings of one pulley; both have the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SealRing {
+pub struct SealRing<R: Real = f64> {
     /// Friction of a ring on its groove.
-    pub friction: f64,
+    pub friction: R,
     /// Rings.
-    pub rings: f64,
+    pub rings: R,
     /// Diameter, m.
-    pub diameter_m: f64,
+    pub diameter_m: R,
     /// Width of the flank, m.
-    pub flank_m: f64,
+    pub flank_m: R,
     /// Share of the pressure that presses.
-    pub pressed_share: f64,
+    pub pressed_share: R,
 }
 
-impl SealRing {
+gather!(SealRing {
+    friction,
+    rings,
+    diameter_m,
+    flank_m,
+    pressed_share
+});
+
+impl<R: Real> SealRing<R>
+where
+    f64: Left<R>,
+{
     /// Torque over the pressure of a cylinder, Nm/Pa (SR-1).
-    #[inline]
-    pub fn torque_per_pa(&self) -> f64 {
+    #[inline(always)]
+    pub fn torque_per_pa(&self) -> R {
         let flank_m2 = PI * self.diameter_m * self.flank_m;
         self.rings * self.friction * self.pressed_share * flank_m2 * (0.5 * self.diameter_m) // SR-1
     }

@@ -1,7 +1,7 @@
 //! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
-use crate::math::{clamp, larger};
+use crate::math::{Left, Mask, Real};
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
@@ -20,56 +20,84 @@ const ALIKE_M_S2: f64 = 1e-3;
 
 /// Slopes at the last evaluations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slopes {
+pub struct Slopes<R: Real = f64> {
     /// Pressure demand of the clamp law against the present pressure.
-    pub pressure: f64,
+    pub pressure: R,
     /// Slip against pressure, 1/Pa.
-    pub slip_per_pa: f64,
+    pub slip_per_pa: R,
     /// Primary torque against output torque over ratio.
-    pub torque: f64,
+    pub torque: R,
 }
 
 /// How losses and slip went on over steps of equal acceleration: what the next such step begins with.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Trend {
+pub struct Trend<R: Real = f64> {
     /// Acceleration of the last step, m/s2.
     accel_m_s2: f64,
     /// Steps before it with the same acceleration.
     alike: u32,
     /// Flywheel torque above output torque over ratio, Nm.
-    loss: Series,
-    slip: Series,
+    loss: Series<R>,
+    slip: Series<R>,
 }
 
 /// What a solve begins with, from the step before.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct WarmStart {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WarmStart<R: Real = f64> {
     /// Losses and slip.
-    pub trend: Trend,
+    pub trend: Trend<R>,
     /// Slopes of the secants.
-    pub slopes: Slopes,
+    pub slopes: Slopes<R>,
     /// True where the engine's drag fixed the output torque.
-    pub overrun: bool,
+    pub overrun: R::Mask,
+}
+
+impl<R: Real> WarmStart<R> {
+    /// Before the first step; `like` has the lanes.
+    pub fn new(like: R) -> Self {
+        WarmStart {
+            trend: Trend::new(like),
+            slopes: Slopes::new(like),
+            overrun: like.answer(false),
+        }
+    }
+}
+
+impl Default for WarmStart {
+    fn default() -> Self {
+        WarmStart::new(0.0)
+    }
 }
 
 /// Last value of a smooth series and its differences.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Series {
-    value: f64,
-    first: f64,
-    second: f64,
+struct Series<R: Real = f64> {
+    value: R,
+    first: R,
+    second: R,
 }
 
-impl Series {
-    /// The value that follows, with as many differences as there are steps alike before the last.
-    #[inline]
-    fn next(&self, alike: u32) -> f64 {
-        let first = if alike > 0 { self.first } else { 0.0 };
-        self.value + first + if alike > 1 { self.second } else { 0.0 }
+impl<R: Real> Series<R> {
+    /// A value without a past.
+    fn new(value: R) -> Self {
+        let none = value.filled(0.0);
+        Series {
+            value,
+            first: none,
+            second: none,
+        }
     }
 
-    #[inline]
-    fn push(&mut self, value: f64) {
+    /// The value that follows, with as many differences as there are steps alike before the last.
+    #[inline(always)]
+    fn next(&self, alike: u32) -> R {
+        let none = self.value.filled(0.0);
+        let first = if alike > 0 { self.first } else { none };
+        self.value + first + if alike > 1 { self.second } else { none }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, value: R) {
         let first = value - self.value;
         *self = Series {
             value,
@@ -79,33 +107,47 @@ impl Series {
     }
 }
 
-impl Trend {
-    /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
-    #[inline]
-    pub(super) fn next(&self, accel_m_s2: f64) -> (f64, f64) {
-        let alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
+impl<R: Real> Trend<R> {
+    /// Nothing is known; `like` has the lanes.
+    fn new(like: R) -> Self {
+        let none = Series::new(like.filled(0.0));
+        Trend {
+            accel_m_s2: 0.0,
+            alike: 0,
+            loss: none,
+            slip: none,
+        }
+    }
+
+    /// Steps alike before one with an acceleration, m/s2.
+    #[inline(always)]
+    fn alike(&self, accel_m_s2: f64) -> u32 {
+        if is_alike(accel_m_s2, self.accel_m_s2) {
             self.alike
         } else {
             0
-        };
+        }
+    }
+
+    /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
+    #[inline(always)]
+    pub(super) fn next(&self, accel_m_s2: f64) -> (R, R) {
+        let alike = self.alike(accel_m_s2);
         (self.slip.next(alike), self.loss.next(alike))
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
     pub(super) fn reset_at_standstill(&mut self) {
         *self = Trend {
-            loss: Series {
-                value: self.loss.value,
-                ..Series::default()
-            },
-            ..Trend::default()
+            loss: Series::new(self.loss.value),
+            ..Trend::new(self.loss.value)
         };
     }
 
     /// Takes a solved step.
-    #[inline]
-    pub(super) fn push(&mut self, accel_m_s2: f64, slip: f64, loss_nm: f64) {
-        self.alike = if (accel_m_s2 - self.accel_m_s2).abs() < ALIKE_M_S2 {
+    #[inline(always)]
+    pub(super) fn push(&mut self, accel_m_s2: f64, slip: R, loss_nm: R) {
+        self.alike = if is_alike(accel_m_s2, self.accel_m_s2) {
             self.alike.saturating_add(1)
         } else {
             0
@@ -116,60 +158,85 @@ impl Trend {
     }
 }
 
+/// Whether two accelerations, m/s2, are the same but for rounding.
+#[inline(always)]
+fn is_alike(a_m_s2: f64, b_m_s2: f64) -> bool {
+    (a_m_s2 - b_m_s2).abs() < ALIKE_M_S2
+}
+
 impl Default for Slopes {
-    /// Before anything is known: pressure acts on nothing, torque passes without loss.
     fn default() -> Self {
+        Slopes::new(0.0)
+    }
+}
+
+impl<R: Real> Slopes<R> {
+    /// Before anything is known: pressure acts on nothing, torque passes without loss. `like` has the lanes.
+    pub fn new(like: R) -> Self {
         Slopes {
-            pressure: 0.0,
-            slip_per_pa: 0.0,
-            torque: 1.0,
+            pressure: like.filled(0.0),
+            slip_per_pa: like.filled(0.0),
+            torque: like.filled(1.0),
         }
     }
 }
 
-impl Slopes {
-    /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it.
-    #[inline]
+impl<R: Real> Slopes<R>
+where
+    f64: Left<R>,
+{
+    /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it. `open`: over a
+    /// torque converter that is not locked.
+    #[inline(always)]
     pub(super) fn update(
         &mut self,
-        (before, before_next_pa): (&Guess, f64),
-        now: &Point,
-        open: bool,
+        (before, before_next_pa): (&Guess<R>, R),
+        now: &Point<R>,
+        open: R::Mask,
     ) {
-        let most_gain = if open { MAX_GAIN_OPEN } else { MAX_GAIN };
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
-        if step_pa.abs() > SECANT_FROM_PA {
-            self.pressure = clamp(
-                (now.next_pressure_pa - before_next_pa) / step_pa,
-                -most_gain,
-                most_gain,
-            );
-            if now.guess.output_nm.to_bits() == before.output_nm.to_bits() {
-                let most = MAX_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
-                self.slip_per_pa = clamp((now.guess.slip - before.slip) / step_pa, -most, most);
-            }
+        let moved = step_pa.abs().above(SECANT_FROM_PA);
+        if !moved.any() {
+            return;
+        }
+        let most_gain = R::pick(
+            open,
+            step_pa.filled(MAX_GAIN_OPEN),
+            step_pa.filled(MAX_GAIN),
+        );
+        let gain = (now.next_pressure_pa - before_next_pa) / step_pa;
+        self.pressure = R::pick(moved, gain.held(-most_gain, most_gain), self.pressure);
+        let alone = moved & now.guess.output_nm.is_same(before.output_nm);
+        if alone.any() {
+            let most = MAX_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
+            let slope = ((now.guess.slip - before.slip) / step_pa).held(-most, most);
+            self.slip_per_pa = R::pick(alone, slope, self.slip_per_pa);
         }
     }
 
     /// Pressure at which the line through an evaluation meets its fixed point, Pa (CV-5).
-    #[inline]
-    pub(super) fn pressure_pa(&self, now: &Point) -> f64 {
+    #[inline(always)]
+    pub(super) fn pressure_pa(&self, now: &Point<R>) -> R {
         let p = now.guess.pressure_pa;
         p + (now.next_pressure_pa - p) / (1.0 - self.pressure)
     }
 }
 
 /// Secant on the output torque where the engine binds it.
-pub(super) struct TorqueSecant {
+pub(super) struct TorqueSecant<R: Real> {
     /// Belt ratio: without loss the slope of primary against output torque is its inverse.
-    ratio: f64,
+    ratio: R,
     /// Output torque that is always allowed, Nm.
-    allowed_nm: f64,
-    last: Option<(f64, f64)>,
+    allowed_nm: R,
+    last: Option<(R, R)>,
 }
 
-impl TorqueSecant {
-    pub fn new(ratio: f64, first_nm: f64) -> Self {
+impl<R: Real> TorqueSecant<R>
+where
+    f64: Left<R>,
+{
+    #[inline(always)]
+    pub fn new(ratio: R, first_nm: R) -> Self {
         TorqueSecant {
             ratio,
             allowed_nm: first_nm.abs(),
@@ -178,20 +245,29 @@ impl TorqueSecant {
     }
 
     /// Next output torque after an evaluation, and whether it moves no more for the bound
-    /// of the belt: the belt carries no more than its capacity, whatever the engine could take or give (VA-2).
-    pub fn next_nm(&mut self, now: &Point, slopes: &mut Slopes, plain: bool) -> (f64, bool) {
+    /// of the belt: the belt carries no more than its capacity, whatever the engine could take or give (VA-2). `bound` where the engine binds it.
+    #[inline(always)]
+    pub fn next_nm(
+        &mut self,
+        now: &Point<R>,
+        slopes: &mut Slopes<R>,
+        plain: bool,
+        bound: R::Mask,
+    ) -> (R, R::Mask) {
         let (x, miss_nm) = (now.guess.output_nm, now.miss_nm);
-        if let Some((x0, miss0)) = self.last
-            && (x - x0).abs() > SECANT_FROM_NM
-        {
-            slopes.torque = clamp((miss_nm - miss0) / (x - x0) * self.ratio, 0.5, 2.0);
+        if let Some((x0, miss0)) = self.last {
+            let moved = bound & (x - x0).abs().above(SECANT_FROM_NM);
+            if moved.any() {
+                let slope = ((miss_nm - miss0) / (x - x0) * self.ratio).held(0.5, 2.0);
+                slopes.torque = R::pick(moved, slope, slopes.torque);
+            }
         }
         self.last = Some((x, miss_nm));
-        let slope = if plain { 1.0 } else { slopes.torque };
+        let slope = if plain { x.filled(1.0) } else { slopes.torque };
         let carried = 1.05 * now.torques.belt.capacity_nm;
-        let carried = larger(carried, self.allowed_nm);
-        let next = clamp(x - miss_nm * self.ratio / slope, -carried, carried); // CV-5
-        (next, (next - x).abs() <= 1e-9 * carried)
+        let carried = carried.most(self.allowed_nm);
+        let next = (x - miss_nm * self.ratio / slope).held(-carried, carried); // CV-5
+        (next, (1e-9 * carried).reaches((next - x).abs()))
     }
 }
 

@@ -9,15 +9,15 @@
 //! A car that moves is in drive, so a cycle that begins at once has no neutral.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{clamp, larger};
+use crate::math::{Left, Real, clamp, gather};
 
 /// The checked selector.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Selector {
+pub struct Selector<R: Real = f64> {
     /// True where it is moved when the procedure of the cycle says so.
     pub by_cycle: bool,
     /// Time at rest from which the box is in neutral, s; infinite for a box that stays in drive.
-    pub neutral_after_s: f64,
+    pub neutral_after_s: R,
 }
 
 /// What the selector looks at in a step at rest.
@@ -33,17 +33,27 @@ pub struct SelectorSignals {
     pub dt_s: f64,
 }
 
-impl Selector {
+gather!(Selector { neutral_after_s } same { by_cycle });
+
+impl SelectorSignals {
+    /// Share of a step for which the procedure of the cycle has the box in neutral, and the time at rest with the step, s.
+    fn started(&self) -> (f64, f64) {
+        let share = clamp((self.procedure_s - self.running_s) / self.dt_s, 0.0, 1.0); // SE-1
+        (share, self.rested_s + self.dt_s)
+    }
+}
+
+impl<R: Real> Selector<R>
+where
+    f64: Left<R>,
+{
     /// Share of a step at rest that the box is in neutral, 0..1.
-    #[inline]
-    pub fn neutral_share(&self, now: &SelectorSignals) -> f64 {
-        let started = if self.by_cycle {
-            clamp((now.procedure_s - now.running_s) / now.dt_s, 0.0, 1.0) // SE-1
-        } else {
-            0.0
-        };
-        let late_s = now.rested_s + now.dt_s - self.neutral_after_s;
-        larger(clamp(late_s / now.dt_s, 0.0, 1.0), started) // SE-2
+    #[inline(always)]
+    pub fn neutral_share(&self, now: &SelectorSignals) -> R {
+        let (started, rested_s) = now.started();
+        let started = if self.by_cycle { started } else { 0.0 };
+        let late_s = rested_s - self.neutral_after_s;
+        (late_s / now.dt_s).held(0.0, 1.0).most(started) // SE-2
     }
 }
 

@@ -8,25 +8,36 @@
 //! extrapolated, bounded by the heating of its film (FH-1). Unmeasured there.
 
 use crate::keys::{Values, keys};
+use crate::math::{Left, Real, gather};
 use crate::transmission::viscous_self_heating::{SELF_HEATING, ViscousSelfHeating};
 
 /// The checked input shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShaftDrag {
+pub struct ShaftDrag<R: Real = f64> {
     /// Constant c0, Nm.
-    pub constant_nm: f64,
+    pub constant_nm: R,
     /// Slope c1 at reference viscosity, Nm s/rad.
-    pub viscous_nm_s: f64,
+    pub viscous_nm_s: R,
     /// Exponent of viscosity.
-    pub exponent: f64,
+    pub exponent: R,
     /// Heating of its films (FH-1).
-    pub heating: ViscousSelfHeating,
+    pub heating: ViscousSelfHeating<R>,
 }
 
-impl ShaftDrag {
+gather!(ShaftDrag {
+    constant_nm,
+    viscous_nm_s,
+    exponent,
+    heating
+});
+
+impl<R: Real> ShaftDrag<R>
+where
+    f64: Left<R>,
+{
     /// Torque, Nm, at a speed, rad/s, with the power (nu/nu_80)^m known (IS-1).
-    #[inline]
-    pub fn torque_nm(&self, power: f64, speed_rad_s: f64) -> f64 {
+    #[inline(always)]
+    pub fn torque_nm(&self, power: R, speed_rad_s: R) -> R {
         self.constant_nm
             + self
                 .heating

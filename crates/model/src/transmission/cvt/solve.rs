@@ -2,6 +2,9 @@
 //!
 //! An evaluation leaves mainly one number open, the pressure; its fixed point is found by a secant with the slope that the step
 //! before ended with. Where the engine limits it, a second secant finds the output torque.
+//!
+//! Several runs side by side are solved in lockstep, each by its own way: a lane that is done, or that a run of evaluations does not concern, keeps
+//! its guess and its limit, and an evaluation of the same guess gives the same point. So only the few numbers that steer a lane are held by masks.
 
 use super::controller::ClampLaw;
 use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
@@ -11,8 +14,9 @@ use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
 use crate::flags::Flags;
-use crate::math::{clamp, larger, smaller};
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
+use crate::transmission::coupling::Coupling;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
 /// Evaluations after which a run goes on without secants and in half steps: slower, and stable for steeper couplings.
@@ -26,67 +30,82 @@ const CLEARLY: f64 = 0.02;
 /// ... and how far it may still be from its fixed point: so near, no torque moves by as much.
 const NEAR: f64 = 0.02;
 
-impl<P: PrimeMover> Step<'_, P> {
+impl<P: PrimeMover<R>, R: Real> Step<'_, P, R>
+where
+    f64: Left<R>,
+{
     /// The limit that a point at the demanded torque violates; violations within `margin_nm` are ignored.
-    fn violated(&self, p: &Point, margin_nm: f64) -> Limit {
-        let above_idle = p.over_rad_s >= self.input.engine.idle_rad_s();
-        if above_idle && p.passed_nm >= 0.0 && p.throttle < 1.0 {
-            return Limit::None; // CV-3 is below zero here, CV-4 above
+    #[inline(always)]
+    fn violated(&self, p: &Point<R>, margin_nm: R) -> Limit<R::Mask> {
+        let above_idle = p.over_rad_s.reaches(self.input.engine.idle_rad_s());
+        let partly = p.throttle.filled(1.0).above(p.throttle);
+        let open = !(above_idle & p.passed_nm.reaches(0.0) & partly);
+        let mut limit = Limit::none(margin_nm.answer(false));
+        if !open.any() {
+            return limit; // CV-3 is below zero here, CV-4 above
         }
         let at = self.turning(p.over_rad_s, p.guess.engine_rad_s);
-        if p.passed_nm < self.min_passed_nm(&at, p.spin_nm) - margin_nm {
-            Limit::EngineDrag
-        } else if p.passed_nm > self.max_passed_nm(&at, p.spin_nm) + margin_nm {
-            Limit::FullLoad
-        } else {
-            Limit::None
+        let least_nm = self.min_passed_nm(&at, p.spin_nm) - margin_nm;
+        limit.engine_drag = open & least_nm.above(p.passed_nm);
+        let open = open & !limit.engine_drag;
+        if open.any() {
+            let most_nm = self.max_passed_nm(&at, p.spin_nm) + margin_nm;
+            limit.full_load = open & p.passed_nm.above(most_nm);
         }
+        limit
     }
 
     /// The route's efficiency for another try, after one with `efficiency` that full load does not give (RC-7).
-    fn kick_down(&self, efficiency: f64, p: &Point) -> f64 {
+    #[inline(always)]
+    fn kick_down(&self, efficiency: R, p: &Point<R>) -> R {
         let w = p.guess.engine_rad_s;
         let asked_w = (p.flywheel_nm + self.input.engine.accessories_nm(w)) * w;
         let had = self.input.wheel.power_w / asked_w;
-        larger(KICK_DOWN * smaller(had, efficiency), MIN_ROUTE_EFFICIENCY) // RC-7
+        (KICK_DOWN * had.least(efficiency)).most(MIN_ROUTE_EFFICIENCY) // RC-7
     }
 
     /// Slip and loss torque in Nm that go on as in the steps before.
-    fn extrapolated(&self, warm_start: &WarmStart) -> (f64, f64) {
+    #[inline(always)]
+    fn extrapolated(&self, warm_start: &WarmStart<R>) -> (R, R) {
         let (slip, loss_nm) = warm_start.trend.next(self.input.wheel.accel_m_s2);
         (self.possible(slip), loss_nm)
     }
 
     /// The nearest slip that the belt can have: a line through slips leads anywhere, and at a slip of 1 no speed belongs to it (CV-1).
-    fn possible(&self, slip: f64) -> f64 {
+    #[inline(always)]
+    fn possible(&self, slip: R) -> R {
         let most = 2.0 * self.line.cvt.belt.slip_bound;
-        clamp(slip, -most, most)
+        slip.held(-most, most)
     }
 
     /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
-    fn first_guess(&self, warm_start: &WarmStart) -> Guess {
+    #[inline(always)]
+    fn first_guess(&self, warm_start: &WarmStart<R>) -> Guess<R> {
         let (slip, loss_nm) = self.extrapolated(warm_start);
         let engine_rad_s = self.first_engine_rad_s(slip);
         let output_nm = self.input.wheel.power_w / self.secondary_rad_s;
         let engine = self.input.engine;
         let flywheel = output_nm / self.line.at.geometry.ratio + loss_nm;
-        let throttle = clamp(
-            (flywheel + engine.accessories_nm(engine_rad_s)) / engine.full_load_nm(engine_rad_s),
-            0.0,
-            1.0,
-        );
+        let crank_nm = flywheel + engine.accessories_nm(engine_rad_s);
+        let throttle = (crank_nm / engine.full_load_nm(engine_rad_s)).held(0.0, 1.0);
         let signals = self.line.signals(throttle, engine_rad_s);
-        let load = || BeltLoad {
-            output_torque_nm: output_nm,
-            ..self.load
-        };
         let pressure_pa = match self.clamp {
             ClampLaw::SlipLimited { .. } => self.pressure_before_pa,
             _ => {
                 let cvt = self.line.cvt;
                 let speed = self.secondary_rad_s;
-                cvt.pressure_by(self.clamp, &signals, self.line.at, load, speed)
-                    .0
+                cvt.pressure_by(
+                    self.clamp,
+                    &signals,
+                    self.line.at,
+                    #[inline(always)]
+                    || BeltLoad {
+                        output_torque_nm: output_nm,
+                        ..self.load
+                    },
+                    speed,
+                )
+                .0
             }
         };
         Guess {
@@ -97,17 +116,16 @@ impl<P: PrimeMover> Step<'_, P> {
         }
     }
 
-    fn first_engine_rad_s(&self, slip: f64) -> f64 {
+    #[inline(always)]
+    fn first_engine_rad_s(&self, slip: R) -> R {
         let primary = self.primary_rad_s(slip);
-        if self.locked(primary) || primary > self.reach.from_rad_s {
-            primary
-        } else {
-            self.reach.from_rad_s
-        }
+        let from = self.reach.from_rad_s;
+        R::pick(self.locked(primary) | primary.above(from), primary, from)
     }
 
     /// Output torque at which the engine's least torque is likely to be the limit: its drag with the losses that are expected, Nm.
-    fn likely_overrun_nm(&self, warm_start: &WarmStart) -> f64 {
+    #[inline(always)]
+    fn likely_overrun_nm(&self, warm_start: &WarmStart<R>) -> R {
         let engine = self.input.engine;
         let (slip, loss_nm) = self.extrapolated(warm_start);
         let w = self.first_engine_rad_s(slip);
@@ -116,129 +134,196 @@ impl<P: PrimeMover> Step<'_, P> {
             * (share * (engine.drag_nm(w) + engine.accessories_nm(w)) + loss_nm)
     }
 
-    /// Solves with the output torque fixed by `limit`, from a first guess; the result is in `work.point`. A run at the demanded
-    /// torque that may leave ends early where the engine clearly cannot.
-    fn run(&self, first: &Guess, limit: Limit, may_leave: bool, work: &mut Work) {
-        let mut guess = *first;
-        let mut last: Option<(Guess, f64)> = None;
-        let mut torque = TorqueSecant::new(self.line.at.geometry.ratio, first.output_nm);
+    /// Solves the lanes of `runs` with the output torque fixed by `limit`, from a first guess; the result is in `work.point`. A run at the
+    /// demanded torque that may leave ends early where the engine clearly cannot.
+    #[inline(never)]
+    fn run(
+        &self,
+        first: &Guess<R>,
+        limit: &Limit<R::Mask>,
+        may_leave: bool,
+        runs: R::Mask,
+        work: &mut Work<R>,
+    ) {
+        work.guess = Guess::pick(runs, first, &work.guess);
+        work.limit = Limit::pick(runs, limit, &work.limit);
+        first.slip.within(
+            #[inline(always)]
+            || self.iterate(may_leave, runs, work),
+        );
+    }
+
+    /// Evaluates until no lane of `busy` moves any more.
+    #[inline(always)]
+    fn iterate(&self, may_leave: bool, mut busy: R::Mask, work: &mut Work<R>) {
+        let by_command = self.line.cvt.coupling.by_command();
+        let mut last: Option<(Guess<R>, R)> = None;
+        let mut torque = TorqueSecant::new(self.line.at.geometry.ratio, work.guess.output_nm);
         let mut count = 0;
         loop {
-            self.evaluate(&guess, limit, &mut work.point);
+            self.evaluate(&work.guess, &work.limit, &mut work.point);
             let point = &work.point;
             count += 1;
-            work.residual = point.moved();
+            work.count = R::pick(busy, work.count + 1.0, work.count);
+            let mut residual = point.moved();
             if let Some((before, before_next_pa)) = &last {
-                let open = !point.locked && self.line.cvt.coupling.by_command();
+                let open = !point.locked & residual.answer(by_command);
                 work.slopes.update((before, *before_next_pa), point, open);
             }
-            let scale = larger(point.full_load_nm, 1.0);
+            let scale = point.full_load_nm.most(1.0);
             let damped = count > DAMPED_FROM;
-            let mut next_nm = guess.output_nm;
-            if limit != Limit::None {
-                let stopped;
-                (next_nm, stopped) = torque.next_nm(point, &mut work.slopes, damped);
+            let mut next_nm = work.guess.output_nm;
+            let bound = work.limit.binds() & busy;
+            if bound.any() {
+                let (bound_nm, stopped) = torque.next_nm(point, &mut work.slopes, damped, bound);
+                next_nm = R::pick(bound, bound_nm, next_nm);
                 let relative = point.miss_nm.abs() / scale;
-                work.residual = if relative > work.residual && !stopped {
-                    relative
-                } else {
-                    work.residual
-                };
+                let larger = bound & relative.above(residual) & !stopped;
+                residual = R::pick(larger, relative, residual);
             }
-            let done =
-                work.residual <= TOLERANCE || count >= MAX_EVALUATIONS || work.residual.is_nan();
-            if done
-                || (may_leave
-                    && work.residual < NEAR
-                    && self.violated(point, CLEARLY * scale) != Limit::None)
-            {
-                work.count += count;
+            work.residual = R::pick(busy, residual, work.residual);
+            busy = busy & residual.above(TOLERANCE); // no where it is no number
+            if may_leave && busy.any() {
+                let near = busy & residual.filled(NEAR).above(residual);
+                if near.any() {
+                    let violated = self.violated(point, CLEARLY * scale).binds();
+                    busy = busy & !(near & violated);
+                }
+            }
+            if count >= MAX_EVALUATIONS || !busy.any() {
                 return;
             }
             last = Some((point.guess, point.next_pressure_pa));
-            let cvt = self.line.cvt;
-            let least_pa = smaller(cvt.floors.control_pa, point.next_pressure_pa);
-            let pressure_pa = clamp(work.slopes.pressure_pa(point), least_pa, cvt.cap_pa); // CV-5
-            let slip = point.guess.slip
-                + work.slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
-            guess = Guess {
-                output_nm: next_nm,
-                slip: self.possible(slip), // CV-5
-                engine_rad_s: point.next_engine_rad_s,
-                pressure_pa,
-            };
-            if damped {
-                guess = guess.halfway(&Guess {
-                    slip: point.slip_guessed,
-                    ..point.guess
-                });
-            }
+            let next = self.next_guess(next_nm, damped, point, &work.slopes);
+            work.guess = Guess::pick(busy, &next, &work.guess);
         }
     }
 
-    /// Finds the limit that fixes the output torque, and solves with it. The engine's drag is the limit exactly when it leaves more at
-    /// the output than the wheels demand, full load when it leaves less; so a limit may be tried before it is certain: in overrun that
-    /// of the step before, else that of a run at the demand that ends early. `None`: full load is the limit, and is not wanted yet.
+    /// The guess that follows from an evaluation by the secants, or damped half the way to it.
+    #[inline(always)]
+    fn next_guess(
+        &self,
+        next_nm: R,
+        damped: bool,
+        point: &Point<R>,
+        slopes: &Slopes<R>,
+    ) -> Guess<R> {
+        let cvt = self.line.cvt;
+        let least_pa = cvt.floors.control_pa.least(point.next_pressure_pa);
+        let pressure_pa = slopes.pressure_pa(point).held(least_pa, cvt.cap_pa); // CV-5
+        let slip = point.guess.slip + slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
+        let guess = Guess {
+            output_nm: next_nm,
+            slip: self.possible(slip), // CV-5
+            engine_rad_s: point.next_engine_rad_s,
+            pressure_pa,
+        };
+        if damped {
+            return guess.halfway(&Guess {
+                slip: point.slip_guessed,
+                ..point.guess
+            });
+        }
+        guess
+    }
+
+    /// Finds the limit that fixes the output torque of the lanes of `open`, and solves with it. The engine's drag is the limit exactly when
+    /// it leaves more at the output than the wheels demand, full load when it leaves less; so a limit may be tried before it is certain: in
+    /// overrun that of the step before, else that of a run at the demand that ends early. The lanes for which full load is the limit, and is
+    /// not wanted yet.
+    #[inline(always)]
     fn limited(
         &self,
-        warm_start: &WarmStart,
-        full_load_wanted: bool,
-        work: &mut Work,
-    ) -> Option<Limit> {
+        warm_start: &WarmStart<R>,
+        full_load_wanted: R::Mask,
+        mut open: R::Mask,
+        work: &mut Work<R>,
+    ) -> R::Mask {
         let guess = self.first_guess(warm_start);
         let demand_nm = guess.output_nm;
-        if warm_start.overrun && self.input.wheel.power_w < 0.0 {
+        let no = demand_nm.answer(false);
+        let mut short = no;
+        let power_w = self.input.wheel.power_w;
+        let overrun = open & warm_start.overrun & power_w.filled(0.0).above(power_w);
+        if overrun.any() {
             let near = Guess {
                 output_nm: self.likely_overrun_nm(warm_start),
                 ..guess
             };
-            self.run(&near, Limit::EngineDrag, false, work);
-            if work.point.guess.output_nm > demand_nm {
-                return Some(Limit::EngineDrag);
-            }
+            let drag = Limit {
+                engine_drag: overrun,
+                full_load: no,
+            };
+            self.run(&near, &drag, false, overrun, work);
+            open = open & !(overrun & work.point.guess.output_nm.above(demand_nm));
         }
         let mut may_leave = true;
-        loop {
-            self.run(&guess, Limit::None, may_leave, work);
-            let limit = self.violated(&work.point, 0.0);
-            if limit == Limit::None {
-                return Some(limit);
-            }
-            if limit == Limit::FullLoad && !full_load_wanted {
+        while open.any() {
+            self.run(&guess, &Limit::none(no), may_leave, open, work);
+            let limit = self.violated(&work.point, demand_nm.filled(0.0));
+            open = open & limit.binds();
+            let lacks = open & limit.full_load & !full_load_wanted;
+            if lacks.any() {
                 if may_leave {
-                    self.run(&work.point.next(), Limit::None, false, work); // for what was asked of the engine
+                    let next = work.point.next();
+                    self.run(&next, &Limit::none(no), false, lacks, work); // for what was asked of the engine
                 }
-                return None;
+                short = short | lacks;
+                open = open & !lacks;
+            }
+            if !open.any() {
+                break;
             }
             let from = work.point.next();
-            self.run(&from, limit, false, work);
-            let x = work.point.guess.output_nm;
-            if !may_leave
-                || (limit == Limit::EngineDrag && x > demand_nm)
-                || (limit == Limit::FullLoad && x < demand_nm)
-            {
-                return Some(limit);
+            self.run(&from, &limit, false, open, work);
+            if !may_leave {
+                break;
             }
+            let x = work.point.guess.output_nm;
+            let settled =
+                (limit.engine_drag & x.above(demand_nm)) | (limit.full_load & demand_nm.above(x));
+            open = open & !settled;
             may_leave = false;
         }
+        short
     }
 }
 
 /// Effort and success of the solve.
-#[derive(Default)]
-struct Work {
-    /// The last evaluation.
-    point: Point,
-    count: u16,
-    residual: f64,
-    slopes: Slopes,
+struct Work<R: Real> {
+    /// The last evaluation, and the guess and the limit that it is of.
+    point: Point<R>,
+    guess: Guess<R>,
+    limit: Limit<R::Mask>,
+    /// Evaluations.
+    count: R,
+    residual: R,
+    slopes: Slopes<R>,
 }
 
-impl Work {
-    /// How a solve with a limit ended.
-    fn outcome(&self, limit: Limit) -> Outcome {
+impl<R: Real> Work<R>
+where
+    f64: Left<R>,
+{
+    /// Before the first evaluation, with the slopes of the step before.
+    #[inline(always)]
+    fn new(slopes: Slopes<R>) -> Self {
+        let like = slopes.pressure;
+        Work {
+            point: Point::none(like),
+            guess: Guess::none(like),
+            limit: Limit::none(like.answer(false)),
+            count: like.filled(0.0),
+            residual: like.filled(0.0),
+            slopes,
+        }
+    }
+
+    /// How the solve ended.
+    #[inline(always)]
+    fn outcome(&self) -> Outcome<R> {
         Outcome {
-            limit,
+            limit: self.limit,
             residual: self.residual,
             evaluations: self.count,
         }
@@ -246,32 +331,38 @@ impl Work {
 }
 
 /// The engine is off.
-fn engine_off<P: PrimeMover>(
-    input: &StepInput<P>,
-    ratio: f64,
-    past: &mut DrivelineState,
-    rest: &mut StepOutput,
-) {
+fn engine_off<P: PrimeMover<R>, R: Real>(
+    input: &StepInput<P, R>,
+    ratio: R,
+    past: &mut DrivelineState<R>,
+    rest: &mut StepOutput<R>,
+) where
+    f64: Left<R>,
+{
+    let none = ratio.filled(0.0);
     past.engine_rad_s = input.engine.idle_rad_s(); // the starter brings it back there
     past.stood = true;
     past.rested_s = 0.0;
-    past.coupled = false;
+    past.coupled = none.answer(false);
     rest.belt_ratio = ratio;
-    rest.secondary_pa = 0.0;
-    rest.primary_pa = 0.0;
-    rest.slip = 0.0;
-    rest.clamp_safety = f64::INFINITY;
-    rest.flags.set(Flags::ENGINE_OFF, true);
+    rest.secondary_pa = none;
+    rest.primary_pa = none;
+    rest.slip = none;
+    rest.clamp_safety = none.filled(f64::INFINITY);
+    rest.flag(Flags::ENGINE_OFF, none.answer(true));
 }
 
 /// Solves one step of the CVT; the belt of `own` follows the ratio, and an output at rest is filled.
-pub(super) fn solve<P: PrimeMover>(
-    cvt: &Cvt,
-    input: &StepInput<P>,
-    own: &mut CvtState,
-    past: &mut DrivelineState,
-    output: &mut StepOutput,
-) {
+#[inline(always)]
+pub(super) fn solve<P: PrimeMover<R>, R: Real>(
+    cvt: &Cvt<R>,
+    input: &StepInput<P, R>,
+    own: &mut CvtState<R>,
+    past: &mut DrivelineState<R>,
+    output: &mut StepOutput<R>,
+) where
+    f64: Left<R>,
+{
     let CvtState {
         belt,
         warm_start,
@@ -283,47 +374,61 @@ pub(super) fn solve<P: PrimeMover>(
     if input.engine_off {
         return engine_off(input, before.ratio, past, output);
     }
-    let mut work = Work::default();
+    let mut work = Work::new(warm_start.slopes);
     let mut efficiency = cvt.ratio.route_efficiency;
-    work.slopes = warm_start.slopes;
-    let mut tried_ratio = f64::NAN;
+    let (yes, no) = (efficiency.answer(true), efficiency.answer(false));
+    let mut tried_ratio = efficiency.filled(f64::NAN);
+    let mut trying = yes;
     loop {
-        let step = prepare(
-            cvt,
-            input,
-            past,
-            (&before, *shifting, &hold),
-            belt,
-            efficiency,
-        );
-        if step.secondary_rad_s <= 0.0 {
-            *shifting = step.shifting;
+        let before = (&before, &*shifting, &hold);
+        let step = prepare(cvt, input, past, before, belt, efficiency);
+        // All runs of a group are at rest together.
+        if !step.secondary_rad_s.above(0.0).any() {
             if !cvt.launch_behind {
-                return standstill(&step, past, warm_start, output);
+                standstill(&step, past, warm_start, output);
+                *shifting = step.shifting;
+                return;
             }
             let guess = Guess {
-                output_nm: 0.0,
-                slip: 0.0,
+                output_nm: efficiency.filled(0.0),
+                slip: efficiency.filled(0.0),
                 engine_rad_s: past.engine_rad_s,
                 pressure_pa: past.secondary_pa,
             };
-            step.run(&guess, Limit::None, false, &mut work); // LO-4
-            let outcome = work.outcome(Limit::None);
-            return finish(&step, &work.point, (past, warm_start), &outcome, output);
+            step.run(&guess, &Limit::none(no), false, yes, &mut work); // LO-4
+            finish(
+                &step,
+                &work.point,
+                (past, warm_start),
+                &work.outcome(),
+                output,
+            );
+            *shifting = step.shifting;
+            return;
         }
         let ratio = step.line.at.geometry.ratio;
-        let again = ratio.to_bits() == tried_ratio.to_bits();
-        let last = again || efficiency <= MIN_ROUTE_EFFICIENCY;
-        let full_load_wanted = last || hold.is_some();
-        let Some(limit) = step.limited(warm_start, full_load_wanted, &mut work) else {
-            tried_ratio = ratio;
-            efficiency = step.kick_down(efficiency, &work.point);
-            continue; // kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7)
-        };
+        let last = ratio.is_same(tried_ratio)
+            | efficiency.filled(MIN_ROUTE_EFFICIENCY).reaches(efficiency)
+            | efficiency.answer(hold.is_some());
+        let short = step.limited(warm_start, last, trying, &mut work);
+        if short.any() {
+            // Kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7).
+            tried_ratio = R::pick(short, ratio, tried_ratio);
+            let lower = step.kick_down(efficiency, &work.point);
+            efficiency = R::pick(short, lower, efficiency);
+            trying = short;
+            continue;
+        }
         warm_start.slopes = work.slopes;
+        warm_start.overrun = work.limit.engine_drag;
+        finish(
+            &step,
+            &work.point,
+            (past, warm_start),
+            &work.outcome(),
+            output,
+        );
         *shifting = step.shifting;
-        warm_start.overrun = limit == Limit::EngineDrag;
-        let outcome = work.outcome(limit);
-        return finish(&step, &work.point, (past, warm_start), &outcome, output);
+        return;
     }
 }

@@ -11,7 +11,7 @@
 //! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
 //! before the torques are.
 
-use crate::math::{cos, exp, exp_each, larger, ln, ln_each, smaller, tan};
+use crate::math::{Left, Real, cos, exp, gather, larger, ln, tan};
 use std::f64::consts::PI;
 
 /// Normal pressure angle, rad.
@@ -47,18 +47,26 @@ pub struct Teeth {
 
 /// A mesh at its ratio, in a train.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mesh {
+pub struct Mesh<R: Real = f64> {
     /// H_V (GM-1).
-    pub loss_factor: f64,
+    pub loss_factor: R,
     /// Speed of the pinion over that of the train's first shaft.
-    pinion_turns: f64,
+    pinion_turns: R,
     /// Pitch radius of the pinion, m.
-    pitch_radius_m: f64,
+    pitch_radius_m: R,
     /// Load of the teeth for a torque at the train's first shaft, N/mm per Nm.
-    line_load_per_nm: f64,
+    line_load_per_nm: R,
     /// What of GM-2 follows from the wheels and the oil's kind.
-    friction_factor: f64,
+    friction_factor: R,
 }
+
+gather!(Mesh {
+    loss_factor,
+    pinion_turns,
+    pitch_radius_m,
+    line_load_per_nm,
+    friction_factor
+});
 
 impl Stage {
     /// Ratio of wheel to pinion: an overdrive turned round.
@@ -114,44 +122,58 @@ impl Stage {
     }
 }
 
-impl Mesh {
+impl<R: Real> Mesh<R>
+where
+    f64: Left<R>,
+{
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
-    pub fn friction(&self, first_rad_s: f64, torque_nm: f64, log_eta: f64) -> f64 {
+    pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::frictions([self], first_rad_s, torque_nm, log_eta)[0]
     }
 
     /// The same of several meshes of a train.
     #[inline(always)]
     fn frictions<const COUNT: usize>(
-        meshes: [&Mesh; COUNT],
-        first_rad_s: f64,
-        torque_nm: f64,
-        log_eta: f64,
-    ) -> [f64; COUNT] {
-        let loads = meshes.map(|mesh| {
+        meshes: [&Mesh<R>; COUNT],
+        first_rad_s: R,
+        torque_nm: R,
+        log_eta: R,
+    ) -> [R; COUNT] {
+        let mut logs = [torque_nm; COUNT];
+        for (mesh, log) in meshes.iter().zip(&mut logs) {
             let load = torque_nm.abs() * mesh.line_load_per_nm;
             let pitch_m_s = first_rad_s * mesh.pinion_turns * mesh.pitch_radius_m;
-            larger(load, LEAST_LINE_LOAD_N_MM) / larger(pitch_m_s, LEAST_PITCH_M_S)
-        });
-        let powers = exp_each(ln_each(loads).map(|log| 0.2 * log - 0.05 * log_eta));
-        std::array::from_fn(|k| smaller(meshes[k].friction_factor * powers[k], MAX_FRICTION)) // GM-2
+            *log = load.most(LEAST_LINE_LOAD_N_MM) / pitch_m_s.most(LEAST_PITCH_M_S);
+        }
+        logs = R::ln_each(logs);
+        for log in &mut logs {
+            *log = 0.2 * *log - 0.05 * log_eta;
+        }
+        let mut frictions = R::exp_each(logs);
+        for (mesh, friction) in meshes.iter().zip(&mut frictions) {
+            *friction = (mesh.friction_factor * *friction).least(MAX_FRICTION); // GM-2
+        }
+        frictions
     }
 
     /// Lost shares of the power through several meshes of a train (GM-3).
     #[inline(always)]
     pub fn shares<const COUNT: usize>(
-        meshes: [&Mesh; COUNT],
-        first_rad_s: f64,
-        torque_nm: f64,
-        log_eta: f64,
-    ) -> [f64; COUNT] {
-        let frictions = Mesh::frictions(meshes, first_rad_s, torque_nm, log_eta);
-        std::array::from_fn(|k| frictions[k] * meshes[k].loss_factor) // GM-3
+        meshes: [&Mesh<R>; COUNT],
+        first_rad_s: R,
+        torque_nm: R,
+        log_eta: R,
+    ) -> [R; COUNT] {
+        let mut shares = Mesh::frictions(meshes, first_rad_s, torque_nm, log_eta);
+        for (mesh, share) in meshes.iter().zip(&mut shares) {
+            *share = *share * mesh.loss_factor; // GM-3
+        }
+        shares
     }
 
     /// Lost share of the power through the mesh (GM-3).
-    pub fn share(&self, first_rad_s: f64, torque_nm: f64, log_eta: f64) -> f64 {
+    pub fn share(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::shares([self], first_rad_s, torque_nm, log_eta)[0]
     }
 }

@@ -22,10 +22,12 @@ use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
 use crate::fluid::OilState;
 use crate::keys::RPM;
-use crate::math::{larger, ln_each};
+use crate::math::{Left, Mask, Real, gather, larger};
 
 /// Largest share of the power that a train loses under load.
 const MAX_SHARE: f64 = 0.1;
+/// From rad/s and m2/s to rpm and mm2/s, for their product (BR-1).
+const MICRO_RPM: f64 = 1e6 / RPM;
 
 /// The parts of a train, whatever the ratios of its stages.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,43 +52,51 @@ pub struct GearParts {
 
 /// A train at the ratios of its stages.
 #[derive(Clone, Debug, PartialEq)]
-pub struct GearTrain {
-    meshes: [Mesh; 2],
-    bearings: Vec<TrainBearing>,
+pub struct GearTrain<R: Real = f64> {
+    meshes: [Mesh<R>; 2],
+    bearings: Vec<TrainBearing<R>>,
     /// Factor of the churners at the speed of shaft 0 (CH-1).
-    churning: f64,
+    churning: R,
     /// Lip seals, at shaft 0, Nm.
-    seal_nm: f64,
+    seal_nm: R,
     /// Lost in the bearings under the load of both stages (BR-3).
-    bearing_share: f64,
+    bearing_share: R,
 }
+
+gather!(GearTrain {
+    meshes,
+    bearings,
+    churning,
+    seal_nm,
+    bearing_share
+});
 
 /// A train at a speed, an oil and a demand: what does not depend on the torque that passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TurningTrain {
+pub struct TurningTrain<R: Real = f64> {
     /// Bearings without load, at shaft 0, Nm.
-    pub bearing_nm: f64,
+    pub bearing_nm: R,
     /// Churning, at shaft 0, Nm.
-    pub churning_nm: f64,
+    pub churning_nm: R,
     /// Lip seals, at shaft 0, Nm.
-    pub seal_nm: f64,
+    pub seal_nm: R,
     /// Share of the power that the teeth lose.
-    pub mesh_share: f64,
+    pub mesh_share: R,
     /// Share of the power that the bearings lose under load.
-    pub bearing_share: f64,
+    pub bearing_share: R,
 }
 
 /// Loss torques of a train at shaft 0, Nm, or a factor on each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TrainLosses {
+pub struct TrainLosses<R: Real = f64> {
     /// Teeth.
-    pub mesh: f64,
+    pub mesh: R,
     /// Bearings, without load and under it.
-    pub bearing: f64,
+    pub bearing: R,
     /// Churning.
-    pub churning: f64,
+    pub churning: R,
     /// Lip seals.
-    pub seal: f64,
+    pub seal: R,
 }
 
 impl GearParts {
@@ -133,41 +143,47 @@ impl GearParts {
     }
 }
 
-impl GearTrain {
+impl<R: Real> GearTrain<R>
+where
+    f64: Left<R>,
+{
     /// The train at a speed of shaft 0 in its oil, with the torque at shaft 0 that the demanded power gives (GT-1).
-    pub fn turning(&self, first_rad_s: f64, demand_nm: f64, oil: OilState) -> TurningTrain {
-        if first_rad_s <= 0.0 {
-            return TurningTrain::default();
+    #[inline(always)]
+    pub fn turning(&self, first_rad_s: R, demand_nm: R, oil: OilState<R>) -> TurningTrain<R> {
+        let rests = first_rad_s.filled(0.0).reaches(first_rad_s);
+        if rests.all() {
+            return TurningTrain::at_rest(first_rad_s);
         }
-        let [log_nu, log_eta, log_n, log_first] = ln_each([
+        let [log_nu, log_eta, log_n, log_first] = R::ln_each([
             oil.kinematic_m2_s,
             1e3 * oil.kinematic_m2_s * oil.density_kg_m3,
-            first_rad_s * (1e6 / RPM),
+            first_rad_s * MICRO_RPM,
             first_rad_s,
         ]);
         let powers = bearing::film_powers(log_nu + log_n);
-        let bearing_nm = (self.bearings.iter()).map(|b| b.torque_nm(first_rad_s, powers));
+        let mut bearing_nm = first_rad_s.filled(-0.0);
+        for bearing in &self.bearings {
+            bearing_nm = bearing_nm + bearing.torque_nm(first_rad_s, powers); // GT-1
+        }
         let [first, second] = Mesh::shares(self.meshes.each_ref(), first_rad_s, demand_nm, log_eta);
         let mesh_share = first + second;
         let share = mesh_share + self.bearing_share;
-        let held = if share > MAX_SHARE {
-            MAX_SHARE / share
-        } else {
-            1.0
-        };
+        let held = R::pick(share.above(MAX_SHARE), MAX_SHARE / share, share.filled(1.0));
+        let churning_nm = churning::torque_nm(self.churning, oil.density_kg_m3, log_first, log_nu);
+        let turns = |value: R| R::pick(rests, value.filled(0.0), value);
         TurningTrain {
-            bearing_nm: bearing_nm.sum(), // GT-1
-            churning_nm: churning::torque_nm(self.churning, oil.density_kg_m3, log_first, log_nu),
-            seal_nm: self.seal_nm,
-            mesh_share: held * mesh_share,
-            bearing_share: held * self.bearing_share,
+            bearing_nm: turns(bearing_nm),
+            churning_nm: turns(churning_nm),
+            seal_nm: turns(self.seal_nm),
+            mesh_share: turns(held * mesh_share),
+            bearing_share: turns(held * self.bearing_share),
         }
     }
 }
 
-impl TrainLosses {
+impl<R: Real> TrainLosses<R> {
     /// The same number for each.
-    pub const fn all(number: f64) -> Self {
+    pub const fn all(number: R) -> Self {
         TrainLosses {
             mesh: number,
             bearing: number,
@@ -177,9 +193,26 @@ impl TrainLosses {
     }
 }
 
-impl TurningTrain {
+impl<R: Real> TurningTrain<R>
+where
+    f64: Left<R>,
+{
+    /// Nothing is lost; `like` has the lanes.
+    #[inline(always)]
+    pub(crate) fn at_rest(like: R) -> Self {
+        let none = like.filled(0.0);
+        TurningTrain {
+            bearing_nm: none,
+            churning_nm: none,
+            seal_nm: none,
+            mesh_share: none,
+            bearing_share: none,
+        }
+    }
+
     /// Each loss times its factor (CV-7, MB-6).
-    pub fn times(&self, factor: &TrainLosses) -> Self {
+    #[inline(always)]
+    pub fn times(&self, factor: &TrainLosses<R>) -> Self {
         TurningTrain {
             bearing_nm: factor.bearing * self.bearing_nm,
             churning_nm: factor.churning * self.churning_nm,
@@ -190,44 +223,37 @@ impl TurningTrain {
     }
 
     /// Torque without load, at shaft 0, Nm (GT-1).
-    #[inline]
-    pub fn no_load_nm(&self) -> f64 {
+    #[inline(always)]
+    pub fn no_load_nm(&self) -> R {
         self.bearing_nm + self.churning_nm + self.seal_nm // GT-1
     }
 
     /// Share of the power that is lost under load (GT-2).
-    #[inline]
-    pub fn share(&self) -> f64 {
+    #[inline(always)]
+    pub fn share(&self) -> R {
         self.mesh_share + self.bearing_share
     }
 
     /// Torque at shaft 0 for a torque behind the train, both at the speed of shaft 0, Nm (GT-2).
-    #[inline]
-    pub fn input_nm(&self, output_nm: f64) -> f64 {
+    #[inline(always)]
+    pub fn input_nm(&self, output_nm: R) -> R {
         let (through, kept) = (output_nm + self.no_load_nm(), 1.0 - self.share());
-        if through >= 0.0 {
-            through / kept
-        } else {
-            through * kept
-        } // GT-2
+        R::pick(through.reaches(0.0), through / kept, through * kept) // GT-2
     }
 
     /// Torque behind the train for a torque at shaft 0: the inverse of GT-2.
-    #[inline]
-    pub fn output_nm(&self, input_nm: f64) -> f64 {
+    #[inline(always)]
+    pub fn output_nm(&self, input_nm: R) -> R {
         let kept = 1.0 - self.share();
-        let through = if input_nm >= 0.0 {
-            input_nm * kept
-        } else {
-            input_nm / kept
-        };
+        let through = R::pick(input_nm.reaches(0.0), input_nm * kept, input_nm / kept);
         through - self.no_load_nm() // GT-2
     }
 
     /// Losses by part for a torque behind the train; their sum is the torque before it less the one behind it.
-    pub fn losses(&self, output_nm: f64) -> TrainLosses {
+    #[inline(always)]
+    pub fn losses(&self, output_nm: R) -> TrainLosses<R> {
         let through_nm = (output_nm + self.no_load_nm()).abs();
-        let larger_nm = larger(through_nm, self.input_nm(output_nm).abs());
+        let larger_nm = through_nm.most(self.input_nm(output_nm).abs());
         TrainLosses {
             mesh: self.mesh_share * larger_nm,
             bearing: self.bearing_nm + self.bearing_share * larger_nm,

@@ -3,44 +3,66 @@
 use super::Manual;
 use crate::fluid::OilState;
 use crate::maps::{LossMap, MapPoint};
+use crate::math::{Left, Mask, Real};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
 /// Losses by component, Nm at the input shaft.
-pub type PartLosses = [(Component, f64); 5];
+pub type PartLosses<R = f64> = [(Component, R); 5];
 
 /// The box in a gear at a speed and an oil temperature: what does not depend on the torque that passes is known.
-pub struct Engaged<'a> {
-    map: Option<&'a LossMap>,
+pub struct Engaged<'a, R: Real = f64> {
+    map: Option<&'a R::Each<LossMap>>,
     /// Factor on the loss of the map.
-    map_factor: f64,
+    map_factor: R,
     gear: u8,
-    input_rad_s: f64,
-    oil_k: f64,
+    input_rad_s: R,
+    oil_k: R,
     /// Nothing where a map holds the losses.
-    train: TurningTrain,
+    train: TurningTrain<R>,
 }
 
 /// The box at a torque, Nm at the input shaft.
-pub(super) struct Loaded {
-    pub output_nm: f64,
-    pub input_nm: f64,
-    pub losses_nm: PartLosses,
-    pub inside_map: bool,
+pub(super) struct Loaded<R: Real = f64> {
+    pub output_nm: R,
+    pub input_nm: R,
+    pub losses_nm: PartLosses<R>,
+    pub inside_map: R::Mask,
 }
 
-impl Manual {
+impl<R: Real> Loaded<R> {
+    /// This one where the mask says so, else the other.
+    #[inline(always)]
+    pub fn or(self, chosen: R::Mask, other: Loaded<R>) -> Loaded<R> {
+        let mut losses_nm = self.losses_nm;
+        for (own, other) in losses_nm.iter_mut().zip(other.losses_nm) {
+            own.1 = R::pick(chosen, own.1, other.1);
+        }
+        Loaded {
+            output_nm: R::pick(chosen, self.output_nm, other.output_nm),
+            input_nm: R::pick(chosen, self.input_nm, other.input_nm),
+            losses_nm,
+            inside_map: chosen.then(self.inside_map, other.inside_map),
+        }
+    }
+}
+
+impl<R: Real> Manual<R>
+where
+    f64: Left<R>,
+{
     /// The box in a gear at a speed of its input shaft, in its oil at a temperature, K, with the torque at that shaft that the demanded power
     /// gives.
+    #[inline(always)]
     pub fn engaged(
         &self,
         gear: u8,
-        input_rad_s: f64,
-        demand_nm: f64,
-        (oil, oil_k): (OilState, f64),
-    ) -> Engaged<'_> {
+        input_rad_s: R,
+        demand_nm: R,
+        (oil, oil_k): (OilState<R>, R),
+    ) -> Engaged<'_, R> {
         let train = match self.map {
-            Some(_) => TurningTrain::default(),
+            Some(_) => TurningTrain::at_rest(input_rad_s),
             None => self.trains[usize::from(gear) - 1].turning(input_rad_s, demand_nm, oil),
         };
         let (train, map_factor) = match &self.factor {
@@ -53,7 +75,7 @@ impl Manual {
                 };
                 (train.times(&parts), factor[Component::BoxMap]) // MB-6
             }
-            None => (train, 1.0),
+            None => (train, input_rad_s.filled(1.0)),
         };
         Engaged {
             map: self.map.as_ref(),
@@ -67,7 +89,8 @@ impl Manual {
 }
 
 /// Losses of a train, or of a whole box.
-fn by_component(train: TrainLosses, map_nm: f64) -> PartLosses {
+#[inline(always)]
+fn by_component<R: Real>(train: TrainLosses<R>, map_nm: R) -> PartLosses<R> {
     [
         (Component::GearMesh, train.mesh),
         (Component::Bearing, train.bearing),
@@ -78,32 +101,45 @@ fn by_component(train: TrainLosses, map_nm: f64) -> PartLosses {
 }
 
 /// Sum of the losses, Nm.
-pub(super) fn sum_nm(losses: &PartLosses) -> f64 {
-    losses.iter().map(|(_, nm)| nm).sum()
+#[inline(always)]
+pub(super) fn sum_nm<R: Real>(losses: &PartLosses<R>) -> R {
+    let [(_, first), (_, second), (_, third), (_, fourth), (_, fifth)] = *losses;
+    first + second + third + fourth + fifth
 }
 
-impl Engaged<'_> {
+impl<R: Real> Engaged<'_, R>
+where
+    f64: Left<R>,
+{
     /// Losses for an output torque referred to the input, Nm (MB-1 to MB-4), and whether the map, if there is one, holds the point.
-    pub fn losses_nm(&self, output_nm: f64) -> (PartLosses, bool) {
+    #[inline(always)]
+    pub fn losses_nm(&self, output_nm: R) -> (PartLosses<R>, R::Mask) {
+        let zero = output_nm.filled(0.0);
         match self.map {
-            Some(map) => {
-                let (loss, inside) = self.map_loss(map, output_nm);
-                (by_component(TrainLosses::default(), loss), inside)
+            Some(maps) => {
+                let (loss, inside) = self.map_loss(maps, output_nm);
+                (by_component(TrainLosses::all(zero), loss), inside)
             }
-            None => (by_component(self.train.losses(output_nm), 0.0), true),
+            None => {
+                let losses = by_component(self.train.losses(output_nm), zero);
+                (losses, zero.answer(true))
+            }
         }
     }
 
     /// Losses of the box with nothing on its input shaft, or the map's without torque.
-    pub(super) fn unloaded_nm(&self) -> PartLosses {
-        match self.map {
-            Some(map) => by_component(TrainLosses::default(), self.map_loss(map, 0.0).0),
-            None => by_component(self.train.losses(-self.train.no_load_nm()), 0.0),
-        }
+    #[inline(always)]
+    pub(super) fn unloaded_nm(&self) -> PartLosses<R> {
+        let output_nm = match self.map {
+            Some(_) => self.input_rad_s.filled(0.0),
+            None => -self.train.no_load_nm(),
+        };
+        self.losses_nm(output_nm).0
     }
 
     /// Input torque and losses for an output torque referred to the input (MB-1).
-    pub(super) fn at(&self, output_nm: f64) -> Loaded {
+    #[inline(always)]
+    pub(super) fn at(&self, output_nm: R) -> Loaded<R> {
         let (losses_nm, inside_map) = self.losses_nm(output_nm);
         let input_nm = match self.map {
             Some(_) => output_nm + sum_nm(&losses_nm),
@@ -119,14 +155,44 @@ impl Engaged<'_> {
 
     /// Output torque referred to the input for an input torque, and how often losses were asked: the inverse of MB-1, by secant where a map is
     /// used.
-    pub(super) fn output_for(&self, input_nm: f64) -> (f64, u16) {
-        let Some(map) = self.map else {
-            return (self.train.output_nm(input_nm), 1);
+    #[inline(always)]
+    pub(super) fn output_for(&self, input_nm: R) -> (R, R::Each<u16>) {
+        let Some(maps) = self.map else {
+            return (self.train.output_nm(input_nm), R::every(|_| 1));
         };
+        let found = R::every(|run| self.output_by_map(R::one(maps, run), input_nm.lane(run), run));
+        let output_nm = input_nm.by_lane(|run| R::one(&found, run).0);
+        (output_nm, R::every(|run| R::one(&found, run).1))
+    }
+
+    /// Loss of a measured map, whose torque axis is the input torque, for an output torque (MP-4).
+    #[inline(always)]
+    fn map_loss(&self, maps: &R::Each<LossMap>, output_nm: R) -> (R, R::Mask) {
+        let found = R::every(|run| self.map_loss_of(R::one(maps, run), output_nm.lane(run), run));
+        let loss_nm = output_nm.by_lane(|run| R::one(&found, run).0);
+        (loss_nm, output_nm.ask(|run| R::one(&found, run).1))
+    }
+}
+
+impl<R: Real> Engaged<'_, R> {
+    /// Loss of the map of one run.
+    fn map_loss_of(&self, map: &LossMap, output_nm: f64, run: usize) -> (f64, bool) {
+        let behind = MapPoint {
+            ratio: f64::from(self.gear),
+            input_speed_rad_s: self.input_rad_s.lane(run),
+            torque_nm: output_nm,
+            pressure_pa: 0.0,
+            oil_k: self.oil_k.lane(run),
+        };
+        map.loss_behind_nm(&behind, self.map_factor.lane(run)) // MB-6
+    }
+
+    /// Output torque referred to the input for an input torque of one run with a map, by secant.
+    fn output_by_map(&self, map: &LossMap, input_nm: f64, run: usize) -> (f64, u16) {
         let mut x = input_nm;
         let mut count = 0;
         while count < 60 {
-            let miss = x + self.map_loss(map, x).0 - input_nm;
+            let miss = x + self.map_loss_of(map, x, run).0 - input_nm;
             count += 1;
             if miss.abs() <= 1e-10 * (1.0 + input_nm.abs()) {
                 break;
@@ -134,17 +200,5 @@ impl Engaged<'_> {
             x -= miss;
         }
         (x, count)
-    }
-
-    /// Loss of a measured map, whose torque axis is the input torque, for an output torque (MP-4).
-    fn map_loss(&self, map: &LossMap, output_nm: f64) -> (f64, bool) {
-        let behind = MapPoint {
-            ratio: f64::from(self.gear),
-            input_speed_rad_s: self.input_rad_s,
-            torque_nm: output_nm,
-            pressure_pa: 0.0,
-            oil_k: self.oil_k,
-        };
-        map.loss_behind_nm(&behind, self.map_factor) // MB-6
     }
 }

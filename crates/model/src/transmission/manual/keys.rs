@@ -67,7 +67,7 @@ impl Manual {
                 .map(|ratios| parts.train(ratios))
                 .collect(),
             neutral_share: s.number(&MANUAL.neutral_share),
-            coupling: coupling::from_values(s, &MANUAL.launch, 0.0),
+            coupling: coupling::drivers_clutch(s, &MANUAL.launch),
             map,
             factor: None,
         };

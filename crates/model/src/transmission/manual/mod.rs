@@ -23,38 +23,101 @@ pub use gears::ShiftSpeeds;
 pub use keys::ManualKeys;
 
 use self::step::ManualStep;
-use super::component::Component;
-use super::coupling::{Coupling, PartialLoss};
+use super::Driveline;
+use super::component::{ByComponent, Component};
+use super::coupling::{Coupling, DriverClutch};
 use super::gear_train::GearTrain;
 use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
-use crate::cycle::GearCommand;
+use crate::cycle::{GearCommand, Step, Trace};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::maps::LossMap;
-use crate::math::larger;
+use crate::math::{Left, Mask, Real, gather, gather_each};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::SUMP;
-use std::sync::Arc;
 
 /// The checked manual box.
 #[derive(Clone, Debug)]
-pub struct Manual {
+pub struct Manual<R: Real = f64> {
     /// Overall ratios from first gear, engine speed over wheel speed.
-    pub overall: Vec<f64>,
+    pub overall: Vec<R>,
     /// Gear and final drive in each gear, from first.
-    pub trains: Vec<GearTrain>,
+    pub trains: Vec<GearTrain<R>>,
     /// Share of the load-independent losses in top gear that turns in neutral.
-    pub neutral_share: f64,
+    pub neutral_share: R,
     /// Shift speeds where the cycle prescribes no gears.
-    pub shifts: ShiftSpeeds,
+    pub shifts: R::Each<ShiftSpeeds>,
     /// Coupling to the engine.
-    pub coupling: Arc<dyn Coupling>,
+    pub coupling: DriverClutch<R>,
     /// Measured map of the whole box in place of bearings, churning, seals and mesh.
-    pub map: Option<LossMap>,
+    pub map: Option<R::Each<LossMap>>,
     /// Factors on the losses (MB-6), if there are any.
-    pub factor: Option<Box<LossFactors>>,
+    pub factor: Option<Box<ByComponent<R>>>,
 }
+
+gather_each!(ShiftSpeeds, LossMap);
+
+gather!(Manual {
+    overall,
+    trains,
+    neutral_share,
+    shifts,
+    coupling,
+    map,
+    factor
+});
+
+impl<R: Real> Driveline<R> for Manual<R>
+where
+    f64: Left<R>,
+{
+    type State = DrivelineState<R>;
+
+    #[inline(always)]
+    fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> DrivelineState<R> {
+        self.begin(input)
+    }
+
+    #[inline(always)]
+    fn solve_into<P: PrimeMover<R>>(
+        &self,
+        input: &StepInput<P, R>,
+        state: &mut DrivelineState<R>,
+        output: &mut StepOutput<R>,
+    ) {
+        self.solve(input, state, output);
+    }
+
+    #[inline(always)]
+    fn engine_rad_s(state: &DrivelineState<R>) -> R {
+        state.engine_rad_s
+    }
+
+    #[inline(always)]
+    fn is_cvt(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn neutral_share(
+        &self,
+        _: Option<&DrivelineState<R>>,
+        _: Option<&Trace>,
+        _: &Step,
+        _: f64,
+    ) -> R {
+        self.neutral_share.filled(0.0)
+    }
+
+    #[inline(always)]
+    fn coupling_factor(&self) -> Option<R> {
+        self.coupling.loss_factor()
+    }
+}
+
+/// Speed of the input shaft over idle speed below which the driver of a car that slows down opens the clutch (MB-5).
+const LEAST_OVER_IDLE: f64 = 1.05;
 
 impl Manual {
     /// Factors on the losses of the box (MB-6), the coupling apart.
@@ -65,132 +128,200 @@ impl Manual {
     /// Multiplies each loss by a factor (MB-6, LC-6).
     pub fn scale_losses(&mut self, factors: &LossFactors) {
         let launch = factors[Component::LaunchClutch];
-        self.coupling = PartialLoss::of(Arc::clone(&self.coupling), launch);
+        self.coupling.scale(launch);
         let mut own = product(&self.loss_factors(), factors);
         own[Component::LaunchClutch] = 1.0; // the coupling has it
         self.factor = loss_factor::changes(&own).then(|| Box::new(own));
     }
+}
 
+/// What a driver does with the box in a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Action {
+    /// Drives in a gear.
+    Engaged(u8),
+    /// Rolls with the clutch open in a gear, 0 the highest.
+    Coasting(u8),
+    /// Stands in neutral.
+    Neutral,
+}
+
+impl<R: Real> Manual<R> {
+    /// The command of the shift speeds of a run (MB-5).
+    fn shifted<P: PrimeMover<R>>(
+        &self,
+        step: &StepInput<P, R>,
+        before: u8,
+        run: usize,
+    ) -> GearCommand {
+        let wheel = step.wheel;
+        let shifts = R::one(&self.shifts, run);
+        let gear = shifts.for_speed(wheel.speed_m_s, before, self.overall.len());
+        let input = self.overall[usize::from(gear) - 1].lane(run) * wheel.wheel_rad_s.lane(run);
+        let idle = step.engine.idle_rad_s().lane(run);
+        if wheel.power_w.lane(run) <= 0.0 && input < LEAST_OVER_IDLE * idle {
+            GearCommand::Declutched(gear)
+        } else {
+            GearCommand::InGear(gear)
+        }
+    }
+}
+
+impl<R: Real> Manual<R>
+where
+    f64: Left<R>,
+{
     /// State at the beginning of a cycle.
-    pub fn start<P: PrimeMover>(&self, step: &StepInput<P>) -> DrivelineState {
-        let gear = if step.wheel.wheel_rad_s > 0.0 {
-            self.shifts
-                .for_speed(step.wheel.speed_m_s, 1, self.overall.len())
-        } else {
-            0
-        };
-        let input = if gear > 0 {
-            self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s
-        } else {
-            0.0
-        };
+    #[inline(always)]
+    pub(super) fn begin<P: PrimeMover<R>>(&self, step: &StepInput<P, R>) -> DrivelineState<R> {
+        let wheel = step.wheel;
+        let rolls = wheel.wheel_rad_s.above(0.0);
+        let count = self.overall.len();
+        let gear = R::every(|run| {
+            if rolls.lane(run) {
+                R::one(&self.shifts, run).for_speed(wheel.speed_m_s, 1, count)
+            } else {
+                0
+            }
+        });
+        let input = self.input_rad_s(&gear, wheel.wheel_rad_s);
         let idle = step.engine.idle_rad_s();
+        let zero = idle.filled(0.0);
         DrivelineState {
             gear,
-            engine_rad_s: larger(input, idle),
-            throttle: 0.0,
-            secondary_pa: 0.0,
-            coupled: input > idle,
+            engine_rad_s: input.most(idle),
+            throttle: zero,
+            secondary_pa: zero,
+            coupled: input.above(idle),
             stood: true,
             rested_s: 0.0,
         }
     }
 
-    /// Command in force: the cycle's, else from the shift speeds (MB-5).
-    fn command<P: PrimeMover>(&self, step: &StepInput<P>, state: &DrivelineState) -> GearCommand {
-        let count = self.overall.len();
-        match step.gear {
-            Some(GearCommand::Change(g)) => GearCommand::InGear(g),
-            Some(GearCommand::InGear(g)) if usize::from(g) > count => {
-                GearCommand::InGear(count as u8)
+    /// Speed of the input shaft in the gear of each run, rad/s; 0 without one.
+    #[inline(always)]
+    fn input_rad_s(&self, gear: &R::Each<u8>, wheel_rad_s: R) -> R {
+        let first = *R::one(gear, 0);
+        if (1..R::LANES).all(|run| *R::one(gear, run) == first) {
+            return match usize::from(first).checked_sub(1) {
+                Some(place) => self.overall[place] * wheel_rad_s,
+                None => wheel_rad_s.filled(0.0),
+            };
+        }
+        let ratio = wheel_rad_s.by_lane(|run| {
+            let place = usize::from(*R::one(gear, run)).checked_sub(1);
+            place.map_or(0.0, |place| self.overall[place].lane(run))
+        });
+        ratio * wheel_rad_s
+    }
+
+    /// What the driver of a run does: what the cycle commands, else what the shift speeds say (MB-5).
+    #[inline(always)]
+    fn action<P: PrimeMover<R>>(
+        &self,
+        step: &StepInput<P, R>,
+        before: u8,
+        rolls: bool,
+        run: usize,
+    ) -> Action {
+        let count = self.overall.len() as u8;
+        let command = match step.gear {
+            Some(GearCommand::Change(gear)) => GearCommand::InGear(gear),
+            Some(GearCommand::InGear(gear)) => GearCommand::InGear(gear.min(count)),
+            Some(GearCommand::Declutched(gear)) => GearCommand::Declutched(gear.min(count)),
+            Some(GearCommand::Neutral) => GearCommand::Neutral,
+            None if !rolls => GearCommand::Neutral,
+            None => self.shifted(step, before, run),
+        };
+        match command {
+            GearCommand::InGear(gear) | GearCommand::Change(gear) if rolls && gear > 0 => {
+                Action::Engaged(gear)
             }
-            Some(GearCommand::Declutched(g)) if usize::from(g) > count => {
-                GearCommand::Declutched(count as u8)
-            }
-            Some(command) => command,
-            None if step.wheel.wheel_rad_s <= 0.0 => GearCommand::Neutral,
-            None => {
-                let gear = self
-                    .shifts
-                    .for_speed(step.wheel.speed_m_s, state.gear, count);
-                let input = self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s;
-                if step.wheel.power_w <= 0.0 && input < 1.05 * step.engine.idle_rad_s() {
-                    GearCommand::Declutched(gear)
-                } else {
-                    GearCommand::InGear(gear)
-                }
-            }
+            GearCommand::Neutral if !rolls => Action::Neutral,
+            GearCommand::Declutched(gear)
+            | GearCommand::InGear(gear)
+            | GearCommand::Change(gear) => Action::Coasting(gear),
+            GearCommand::Neutral => Action::Coasting(before),
         }
     }
 
-    /// True where the cycle has no gear in force, and one was needed to drive the car faster.
-    fn is_wrong_gear<P: PrimeMover>(step: &StepInput<P>, output: &StepOutput) -> bool {
+    /// Where the cycle has no gear in force, and one was needed to drive the car faster.
+    #[inline(always)]
+    fn is_wrong_gear<P: PrimeMover<R>>(step: &StepInput<P, R>, output: &StepOutput<R>) -> R::Mask {
         let no_gear = matches!(
             step.gear,
             Some(GearCommand::Neutral | GearCommand::Declutched(_))
         );
-        let engaged = !output.flags.contains(Flags::CLUTCH_OPEN);
-        no_gear && engaged && step.wheel.power_w > 0.0 && step.wheel.accel_m_s2 > 0.0
+        if no_gear && step.wheel.accel_m_s2 > 0.0 {
+            !output.has(Flags::CLUTCH_OPEN) & step.wheel.power_w.above(0.0)
+        } else {
+            output.engine_rad_s.answer(false)
+        }
     }
 
     /// Solves one step; fills an output at rest.
-    pub(super) fn solve<P: PrimeMover>(
+    #[inline(always)]
+    pub(super) fn solve<P: PrimeMover<R>>(
         &self,
-        step: &StepInput<P>,
-        state: &mut DrivelineState,
-        output: &mut StepOutput,
+        step: &StepInput<P, R>,
+        state: &mut DrivelineState<R>,
+        output: &mut StepOutput<R>,
     ) {
+        let yes = step.wheel.wheel_rad_s.answer(true);
         if step.engine_off {
             state.engine_rad_s = step.engine.idle_rad_s(); // the starter brings it back there
             state.stood = true;
-            state.coupled = false;
-            output.flags.set(Flags::ENGINE_OFF, true);
+            state.coupled = !yes;
+            output.flag(Flags::ENGINE_OFF, yes);
             return;
         }
+        let sump_k = step.heat.node_k[SUMP];
         let at = ManualStep {
             manual: self,
             step,
             state,
-            oil: step.oil.state(step.heat.node_k[SUMP]),
+            oil: step.oil.state(sump_k),
         };
-        match self.command(step, state) {
-            GearCommand::InGear(gear) | GearCommand::Change(gear)
-                if step.wheel.wheel_rad_s > 0.0 && gear > 0 =>
-            {
-                at.engaged(gear, output);
-            }
-            GearCommand::Neutral if step.wheel.wheel_rad_s <= 0.0 => at.neutral(output),
-            GearCommand::Declutched(gear)
-            | GearCommand::InGear(gear)
-            | GearCommand::Change(gear) => at.coasting(gear, output),
-            GearCommand::Neutral => at.coasting(state.gear, output),
-        }
-        output.flags.set(
+        // The road speed is that of all runs.
+        let rolls = step.wheel.wheel_rad_s.above(0.0).any();
+        let actions = R::every(
+            #[inline(always)]
+            |run| self.action(step, *R::one(&state.gear, run), rolls, run),
+        );
+        at.act(&actions, output);
+        output.flag(
             Flags::OVERSPEED,
-            output.engine_rad_s > step.engine.max_rad_s(),
+            output.engine_rad_s.above(step.engine.max_rad_s()),
         );
-        let wrong_gear = Self::is_wrong_gear(step, output);
-        output.flags.set(Flags::WRONG_GEAR, wrong_gear);
-        output.flags.set(
-            Flags::OUTSIDE_VALIDITY,
-            !VALID_K.contains(&step.heat.node_k[SUMP]),
-        );
-        state.gear = if output.gear > 0 {
-            output.gear
-        } else {
-            state.gear
-        };
+        output.flag(Flags::WRONG_GEAR, Self::is_wrong_gear(step, output));
+        let (coldest_k, hottest_k) = (*VALID_K.start(), *VALID_K.end());
+        let valid = sump_k.reaches(coldest_k) & sump_k.at_most(hottest_k);
+        output.flag(Flags::OUTSIDE_VALIDITY, !valid);
+        self.keep(step, state, output);
+    }
+
+    /// Keeps of a step what the next one needs.
+    #[inline(always)]
+    fn keep<P: PrimeMover<R>>(
+        &self,
+        step: &StepInput<P, R>,
+        state: &mut DrivelineState<R>,
+        output: &StepOutput<R>,
+    ) {
+        for run in 0..R::LANES {
+            let gear = *R::one(&output.gear, run);
+            let kept = R::one_mut(&mut state.gear, run);
+            *kept = if gear > 0 { gear } else { *kept };
+        }
         state.engine_rad_s = output.engine_rad_s;
-        let turning = output.gear > 0 && !output.flags.contains(Flags::CLUTCH_OPEN);
+        let in_gear = output.residual.ask(|run| *R::one(&output.gear, run) > 0);
+        let turning = in_gear & !output.has(Flags::CLUTCH_OPEN);
         // A clutch that was locked and slips after a change up only has the engine come down: it is no launch (LC-5), unless the box is slower
         // than the idling engine, where LC-5 lets both slip alike.
-        let input_rad_s = match output.gear {
-            0 => 0.0,
-            gear => self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s,
-        };
-        let locks = input_rad_s >= step.engine.idle_rad_s();
-        let slips = output.flags.contains(Flags::CLUTCH_SLIPPING);
-        state.coupled = turning && (!slips || (state.coupled && locks));
-        state.stood = step.wheel.wheel_rad_s <= 0.0;
+        let input_rad_s = self.input_rad_s(&output.gear, step.wheel.wheel_rad_s);
+        let locks = input_rad_s.reaches(step.engine.idle_rad_s());
+        let slips = output.has(Flags::CLUTCH_SLIPPING);
+        state.coupled = turning & (!slips | (state.coupled & locks));
+        state.stood = step.wheel.wheel_rad_s.at_most(0.0).any(); // the road speed is that of all runs
     }
 }

@@ -1,27 +1,75 @@
 //! One step of the manual box: engaged, declutched or in neutral.
 
 use super::engaged::sum_nm;
-use super::{Engaged, Manual, PartLosses};
+use super::{Action, Engaged, Manual, PartLosses};
 use crate::flags::Flags;
 use crate::fluid::OilState;
-use crate::math::{clamp, larger, smaller};
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
-use crate::transmission::coupling::{CouplingLoad, Turning};
+use crate::transmission::coupling::{Coupling, CouplingLoad, Turning};
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
 
+/// Speed over that of the box from which a coupling slips, but for rounding.
+const SLIPS_FROM: f64 = 1.0 + 1e-9;
+
 /// The box in a step, in its oil.
-pub(super) struct ManualStep<'a, P> {
-    pub manual: &'a Manual,
-    pub step: &'a StepInput<'a, P>,
-    pub state: &'a DrivelineState,
-    pub oil: OilState,
+pub(super) struct ManualStep<'a, P, R: Real = f64> {
+    pub manual: &'a Manual<R>,
+    pub step: &'a StepInput<'a, P, R>,
+    pub state: &'a DrivelineState<R>,
+    pub oil: OilState<R>,
 }
 
-impl<P: PrimeMover> ManualStep<'_, P> {
+impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R>
+where
+    f64: Left<R>,
+{
+    /// What the drivers do: each kind of it once for all runs, of which those take it over that do it.
+    #[inline(always)]
+    pub fn act(&self, actions: &R::Each<Action>, output: &mut StepOutput<R>) {
+        let like = self.oil.density_kg_m3;
+        if R::LANES == 1 {
+            return self.act_alike(*R::one(actions, 0), output);
+        }
+        let mut left = like.answer(true);
+        for run in 0..R::LANES {
+            if !left.lane(run) {
+                continue;
+            }
+            let action = *R::one(actions, run);
+            let alike = left
+                & like.ask(
+                    #[inline(always)]
+                    |run| *R::one(actions, run) == action,
+                );
+            let mut of_action = StepOutput::like(like);
+            self.act_alike(action, &mut of_action);
+            if alike.all() {
+                *output = of_action;
+                return;
+            }
+            output.take(alike, &of_action);
+            left = left & !alike;
+        }
+    }
+
+    /// What all drivers do alike.
+    #[inline(always)]
+    fn act_alike(&self, action: Action, output: &mut StepOutput<R>) {
+        match action {
+            Action::Engaged(gear) => {
+                self.engaged(gear, self.oil.density_kg_m3.answer(true), output);
+            }
+            Action::Coasting(gear) => self.coasting(gear, output),
+            Action::Neutral => self.neutral(output),
+        }
+    }
+
     /// The box in a gear at an input speed and a demanded torque.
-    fn box_in(&self, gear: u8, input_rad_s: f64, demand_nm: f64) -> Engaged<'_> {
+    #[inline(always)]
+    fn box_in(&self, gear: u8, input_rad_s: R, demand_nm: R) -> Engaged<'_, R> {
         let oil_k = self.step.heat.node_k[SUMP];
         self.manual
             .engaged(gear, input_rad_s, demand_nm, (self.oil, oil_k))
@@ -33,23 +81,28 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     }
 
     /// Speed of the free engine at the end of the step, rad/s.
-    fn free_engine_rad_s(&self) -> f64 {
+    #[inline(always)]
+    fn free_engine_rad_s(&self) -> R {
+        let before_rad_s = self.state.engine_rad_s;
         self.step
-            .reach(self.state.engine_rad_s, 0.0)
+            .reach(before_rad_s, before_rad_s.filled(0.0))
             .nearest(self.step.engine.idle_rad_s())
     }
 
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
-    pub fn coasting(&self, gear: u8, output: &mut StepOutput) {
+    #[inline(always)]
+    fn coasting(&self, gear: u8, output: &mut StepOutput<R>) {
         self.declutched(gear, output);
-        if output.deficit_w > 0.0 {
-            self.engaged(gear.max(1), output);
+        let lags = output.deficit_w.above(0.0);
+        if lags.any() {
+            self.engaged(gear.max(1), lags, output);
         }
     }
 
-    pub fn neutral(&self, output: &mut StepOutput) {
+    #[inline(always)]
+    fn neutral(&self, output: &mut StepOutput<R>) {
         let w = self.free_engine_rad_s();
-        let losses = self.box_in(self.top(), w, 0.0).unloaded_nm();
+        let losses = self.box_in(self.top(), w, w.filled(0.0)).unloaded_nm();
         let share = self.manual.neutral_share;
         output.engine_rad_s = w;
         output.shaft_nm = share * sum_nm(&losses);
@@ -58,133 +111,168 @@ impl<P: PrimeMover> ManualStep<'_, P> {
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
-    fn declutched(&self, gear: u8, output: &mut StepOutput) {
+    #[inline(always)]
+    fn declutched(&self, gear: u8, output: &mut StepOutput<R>) {
         let gear = if gear == 0 { self.top() } else { gear };
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
-        let losses = self.box_in(gear, input, 0.0).unloaded_nm();
+        let losses = self.box_in(gear, input, input.filled(0.0)).unloaded_nm();
         output.engine_rad_s = self.free_engine_rad_s();
-        output.gear = gear;
-        output.flags.set(Flags::CLUTCH_OPEN, true);
-        if input > 0.0 {
+        output.gear = R::every(|_| gear);
+        output.flag(Flags::CLUTCH_OPEN, input.answer(true));
+        let turns = input.above(0.0);
+        if turns.any() {
             let output_nm = -sum_nm(&losses);
             lose(output, &losses, input);
-            output.split_brake_and_shortfall(self.step.wheel, output_nm * input);
+            output.split_of(turns, self.step.wheel, output_nm * input);
         }
         let full_load_nm = self.step.engine.full_load_nm(output.engine_rad_s);
         self.set_throttle(output, full_load_nm);
     }
 
-    /// The box in a gear, or in a lower one where that lacks torque; fills the output anew.
-    pub fn engaged(&self, gear: u8, output: &mut StepOutput) {
-        let mut gear = gear;
-        while self.in_gear(gear, output) && self.may_shift_down(gear) {
-            gear -= 1;
+    /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
+    fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
+        let like = self.oil.density_kg_m3;
+        like.within(
+            #[inline(always)]
+            || {
+                let (mut gear, mut open) = (gear, runs);
+                loop {
+                    let mut other = StepOutput::like(like);
+                    let alone = R::LANES == 1;
+                    let lacks = self.in_gear(gear, if alone { &mut *output } else { &mut other });
+                    if !alone {
+                        output.take(open, &other);
+                    }
+                    open = open & lacks;
+                    if !open.any() {
+                        break;
+                    }
+                    open = open & self.may_shift_down(gear);
+                    if !open.any() {
+                        break;
+                    }
+                    gear -= 1;
+                }
+            },
+        );
+    }
+
+    /// Where there is a gear below, and the engine may turn as fast as the wheels would have it there.
+    #[inline(always)]
+    fn may_shift_down(&self, gear: u8) -> R::Mask {
+        let wheel_rad_s = self.step.wheel.wheel_rad_s;
+        match usize::from(gear).checked_sub(2) {
+            Some(below) => {
+                (self.manual.overall[below] * wheel_rad_s).below(self.step.engine.max_rad_s())
+            }
+            None => wheel_rad_s.answer(false),
         }
     }
 
-    /// True where there is a gear below, and the engine may turn as fast as the wheels would have it there.
-    fn may_shift_down(&self, gear: u8) -> bool {
-        let below = usize::from(gear).checked_sub(2);
-        below.is_some_and(|below| {
-            self.manual.overall[below] * self.step.wheel.wheel_rad_s < self.step.engine.max_rad_s()
-        })
-    }
-
     /// Sets the throttle, for the engine's full load at its speed.
-    fn set_throttle(&self, output: &mut StepOutput, full_load_nm: f64) {
+    #[inline(always)]
+    fn set_throttle(&self, output: &mut StepOutput<R>, full_load_nm: R) {
         let engine = self.step.engine;
         let crank_nm = output.shaft_nm + engine.accessories_nm(output.engine_rad_s);
         let share = crank_nm / full_load_nm;
-        output.throttle = clamp(share, 0.0, 1.0);
-        output
-            .flags
-            .set(Flags::OUTSIDE_VALIDITY, share > FULL_LOAD_LIMIT);
+        output.throttle = share.held(0.0, 1.0);
+        output.flag(Flags::OUTSIDE_VALIDITY, share.above(FULL_LOAD_LIMIT));
     }
 
-    /// The box in a gear: the torque demanded, or the one at the engine's limit. True where the gear lacks torque; it does too where only an
+    /// The box in a gear: the torque demanded, or the one at the engine's limit. Yes where the gear lacks torque; it does too where only an
     /// engine that still comes down from a lower gear has enough.
-    fn in_gear(&self, gear: u8, output: &mut StepOutput) -> bool {
+    #[inline(always)]
+    fn in_gear(&self, gear: u8, output: &mut StepOutput<R>) -> R::Mask {
         let (engine, wheel) = (self.step.engine, self.step.wheel);
+        let coupling = &self.manual.coupling;
         let input = self.manual.overall[usize::from(gear) - 1] * wheel.wheel_rad_s;
         let demand_nm = wheel.power_w / input;
         let engaged = self.box_in(gear, input, demand_nm);
         let mut at = engaged.at(demand_nm); // MB-1
         let mut speed = self.engine_speed(at.input_nm, input);
         let w = speed.end_rad_s;
-        let accessories_nm = engine.accessories_nm(w);
-        let absorbed_nm = engine.drag_nm(w) + accessories_nm;
+        let absorbed_nm = engine.drag_nm(w) + engine.accessories_nm(w);
         let turning = Turning {
             output_rad_s: input,
             engine_rad_s: w,
             idle_rad_s: engine.idle_rad_s(),
-            locked: false,
+            locked: w.answer(false),
         };
-        let least = self.manual.coupling.min_output_nm(&turning, absorbed_nm);
+        let least = coupling.min_output_nm(&turning, absorbed_nm);
         let mut full_load_nm = engine.full_load_nm(w);
-        let most_at = |w: f64| {
-            // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
-            let engine_nm = larger(engine.full_load_nm(w) - engine.accessories_nm(w), 0.0);
-            self.manual.coupling.output_nm(engine_nm, input, w)
-        };
-        let most = most_at(w);
-        let lacks_torque = at.input_nm > most || at.input_nm > most_at(speed.settled_rad_s);
-        let limit = if at.input_nm < least {
-            Some(least)
-        } else if at.input_nm > most {
-            Some(most)
-        } else {
-            None
-        };
+        let most = self.most_nm(input, w, full_load_nm);
+        let mut lacks_torque = at.input_nm.above(most);
+        let settled = speed.settled_rad_s;
+        if (settled.above(w) | w.above(settled)).any() {
+            let settled_nm = self.most_nm(input, settled, engine.full_load_nm(settled));
+            lacks_torque = lacks_torque | at.input_nm.above(settled_nm);
+        }
+        let below = at.input_nm.below(least);
+        let above = at.input_nm.above(most);
+        let limited = below | above;
         *output = StepOutput {
-            gear,
-            iterations: 1,
-            ..StepOutput::at_rest()
+            gear: R::every(|_| gear),
+            iterations: R::every(|_| 1),
+            ..StepOutput::like(input)
         };
-        if let Some(torque) = limit {
-            output.flags.set(Flags::MISSED_TRACE, at.input_nm > most);
-            let output_nm;
-            (output_nm, output.iterations) = engaged.output_for(torque);
-            at = engaged.at(output_nm);
-            output.residual = (at.input_nm - torque).abs() / full_load_nm;
-            if torque <= least {
-                speed = self.engine_speed(torque, input);
-                full_load_nm = engine.full_load_nm(speed.end_rad_s);
+        if limited.any() {
+            output.flag(Flags::MISSED_TRACE, above);
+            let torque = R::pick(below, least, most);
+            let (output_nm, iterations) = engaged.output_for(torque);
+            for run in (0..R::LANES).filter(|run| limited.lane(*run)) {
+                *R::one_mut(&mut output.iterations, run) = *R::one(&iterations, run);
+            }
+            let held = engaged.at(output_nm);
+            let residual = (held.input_nm - torque).abs() / full_load_nm;
+            output.residual = R::pick(limited, residual, output.residual);
+            at = held.or(limited, at);
+            let drags = limited & torque.at_most(least);
+            if drags.any() {
+                speed = self.engine_speed(torque, input).or(drags, speed);
+                let dragged_nm = engine.full_load_nm(speed.end_rad_s);
+                full_load_nm = R::pick(drags, dragged_nm, full_load_nm);
             }
         }
         let w = speed.end_rad_s;
         output.engine_rad_s = w;
-        let side = self.manual.coupling.engine_side(at.input_nm, input, w);
+        let side = coupling.engine_side(at.input_nm, input, w);
         output.shaft_nm = side.engine_nm;
         output.add_loss(Component::LaunchClutch, side.loss_w);
         lose(output, &at.losses_nm, input);
-        if limit.is_some() {
-            output.split_brake_and_shortfall(wheel, at.output_nm * input);
-        } else {
-            output.output_w = wheel.power_w;
+        output.output_w = wheel.power_w;
+        if limited.any() {
+            output.split_of(limited, wheel, at.output_nm * input);
         }
-        let flags = &mut output.flags;
-        flags.set(
-            Flags::CLUTCH_SLIPPING,
-            w > input * (1.0 + 1e-9) && at.input_nm > 0.0,
-        );
-        flags.set(Flags::OVERRUN, at.input_nm < 0.0);
-        flags.set(Flags::OUTSIDE_VALIDITY, !at.inside_map);
-        flags.set(Flags::NOT_CONVERGED, output.residual > 1e-8);
+        let slips = w.above(input * SLIPS_FROM) & at.input_nm.above(0.0);
+        output.flag(Flags::CLUTCH_SLIPPING, slips);
+        output.flag(Flags::OVERRUN, at.input_nm.below(0.0));
+        output.flag(Flags::OUTSIDE_VALIDITY, !at.inside_map);
+        output.flag(Flags::NOT_CONVERGED, output.residual.above(1e-8));
         self.set_throttle(output, full_load_nm);
         // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it. Where that lags at
         // full load nothing else may: no more than full load is passed on.
         let mean_rad_s = w + speed.excess_rad_s;
-        let at_mean = (self.manual.coupling).engine_side(at.input_nm, input, mean_rad_s);
+        let at_mean = coupling.engine_side(at.input_nm, input, mean_rad_s);
         let room_nm = full_load_nm - engine.accessories_nm(w) - side.engine_nm;
-        let on_the_way_w = smaller(at_mean.loss_w - side.loss_w, larger(room_nm, 0.0) * w);
-        output.shaft_nm += on_the_way_w / w;
+        let on_the_way_w = (at_mean.loss_w - side.loss_w).least(room_nm.most(0.0) * w);
+        output.shaft_nm = output.shaft_nm + on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
         lacks_torque
     }
 
+    /// Torque into the box at the engine's full load, Nm, at speeds of box and engine.
+    #[inline(always)]
+    fn most_nm(&self, input_rad_s: R, engine_rad_s: R, full_load_nm: R) -> R {
+        let engine = self.step.engine;
+        // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
+        let engine_nm = (full_load_nm - engine.accessories_nm(engine_rad_s)).most(0.0);
+        (self.manual.coupling).output_nm(engine_nm, input_rad_s, engine_rad_s)
+    }
+
     /// Engine speed over the coupling in this step: at once that of a faster box; over a slower one, as after a change up, the coupling slips
     /// until the engine's rotating energy is spent.
-    fn engine_speed(&self, input_nm: f64, input_rad_s: f64) -> EngineSpeed {
+    #[inline(always)]
+    fn engine_speed(&self, input_nm: R, input_rad_s: R) -> EngineSpeed<R> {
         let wanted = self.manual.coupling.engine_rad_s(&CouplingLoad {
             output_nm: input_nm,
             output_rad_s: input_rad_s,
@@ -194,29 +282,45 @@ impl<P: PrimeMover> ManualStep<'_, P> {
         let least = self.manual.coupling.min_engine_rad_s(input_rad_s);
         let before_rad_s = self.state.engine_rad_s;
         // What passes on at full load is no more than that; the rest of a demand is missing.
-        let passed_nm = clamp(input_nm, 0.0, self.step.engine.full_load_nm(before_rad_s));
+        let passed_nm = input_nm.held(0.0, self.step.engine.full_load_nm(before_rad_s));
         let reach = self.step.reach(before_rad_s, passed_nm);
-        let end_rad_s = larger(reach.nearest(wanted), least);
+        let end_rad_s = reach.nearest(wanted).most(least);
         EngineSpeed {
             end_rad_s,
-            settled_rad_s: larger(wanted, least),
+            settled_rad_s: wanted.most(least),
             excess_rad_s: reach.mean_excess_rad_s(end_rad_s),
         }
     }
 }
 
 /// Engine speed over a coupling in a step, rad/s.
-struct EngineSpeed {
+struct EngineSpeed<R> {
     /// At the end of the step.
-    end_rad_s: f64,
+    end_rad_s: R,
     /// On which it settles.
-    settled_rad_s: f64,
+    settled_rad_s: R,
     /// Mean over the step above that at its end, of an engine that comes down.
-    excess_rad_s: f64,
+    excess_rad_s: R,
 }
 
-fn lose(output: &mut StepOutput, losses_nm: &PartLosses, speed: f64) {
+impl<R: Real> EngineSpeed<R> {
+    /// This one where the mask says so, else the other.
+    #[inline(always)]
+    fn or(self, chosen: R::Mask, other: EngineSpeed<R>) -> EngineSpeed<R> {
+        EngineSpeed {
+            end_rad_s: R::pick(chosen, self.end_rad_s, other.end_rad_s),
+            settled_rad_s: R::pick(chosen, self.settled_rad_s, other.settled_rad_s),
+            excess_rad_s: R::pick(chosen, self.excess_rad_s, other.excess_rad_s),
+        }
+    }
+}
+
+#[inline(always)]
+fn lose<R: Real>(output: &mut StepOutput<R>, losses_nm: &PartLosses<R>, speed: R)
+where
+    f64: Left<R>,
+{
     for (component, nm) in losses_nm {
-        output.add_loss(*component, nm * speed);
+        output.add_loss(*component, *nm * speed);
     }
 }

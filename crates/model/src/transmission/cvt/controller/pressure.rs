@@ -11,85 +11,166 @@
 
 use super::pressure_table::{PressureTable, TableKeys, pressure_table};
 use crate::keys::{Choice, Key, Values, keys};
-use crate::math::ramp;
+use crate::math::{Gather, Left, Real, gather, ramp};
 use std::sync::Arc;
 
 /// The Rover's law.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapLaw {
+pub struct MapLaw<R: Real = f64> {
     /// Pressure in low at closed throttle, Pa.
-    pub base_pa: f64,
+    pub base_pa: R,
     /// Rise to full throttle, Pa.
-    pub throttle_pa: f64,
+    pub throttle_pa: R,
     /// Rise per kelvin below 80 degC, 1/K.
-    pub cold_per_k: f64,
+    pub cold_per_k: R,
     /// Factor at and below the slow speed.
-    pub slow_factor: f64,
+    pub slow_factor: R,
     /// Speed of the slow factor, rad/s.
-    pub slow_rad_s: f64,
+    pub slow_rad_s: R,
     /// Speed at which the factor is 1, rad/s.
-    pub full_rad_s: f64,
+    pub full_rad_s: R,
     /// Fall of the factor with speed above it, s/rad.
-    pub fall_s: f64,
+    pub fall_s: R,
 }
 
 /// The clamp law in force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ClampLaw {
+pub enum ClampLaw<R: Real = f64> {
     /// PC-1.
-    Map(MapLaw),
+    Map(MapLaw<R>),
     /// PC-3 with safety factor.
     TorqueFollowing {
         /// Safety factor S.
-        safety: f64,
+        safety: R,
         /// Smallest torque that is clamped for, Nm.
-        least_torque_nm: f64,
+        least_torque_nm: R,
     },
     /// PC-4 with slip limit.
     SlipLimited {
         /// Largest slip.
-        slip: f64,
+        slip: R,
         /// Safety factor below which the law never goes.
-        safety: f64,
+        safety: R,
         /// Smallest torque that is clamped for, Nm.
-        least_torque_nm: f64,
+        least_torque_nm: R,
     },
     /// PC-6, with the table of the box.
     Table,
 }
 
-/// What the law looks at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ClampSignals {
-    /// Throttle 0..1.
-    pub throttle: f64,
-    /// Engine speed, rad/s.
-    pub engine_rad_s: f64,
-    /// Oil temperature, K.
-    pub oil_k: f64,
-    /// (r_low/r_p)^a of the ratio in force.
-    pub radius_factor: f64,
-    /// Logarithm of the force ratio that the shift needs, positive towards low (PC-5).
-    pub force_log: f64,
+gather!(MapLaw {
+    base_pa,
+    throttle_pa,
+    cold_per_k,
+    slow_factor,
+    slow_rad_s,
+    full_rad_s,
+    fall_s
+});
+
+/// The numbers of a law that looks at the belt: its slip, safety and least torque.
+fn numbers(law: &ClampLaw) -> [f64; 3] {
+    match *law {
+        ClampLaw::TorqueFollowing {
+            safety,
+            least_torque_nm,
+        } => [0.0, safety, least_torque_nm],
+        ClampLaw::SlipLimited {
+            slip,
+            safety,
+            least_torque_nm,
+        } => [slip, safety, least_torque_nm],
+        ClampLaw::Map(_) | ClampLaw::Table => [0.0; 3],
+    }
 }
 
-impl MapLaw {
+impl Gather for ClampLaw {
+    type Together<R: Real> = ClampLaw<R>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> ClampLaw<R> {
+        let map = |law: &&ClampLaw| match law {
+            ClampLaw::Map(map) => Some(*map),
+            _ => None,
+        };
+        let maps: Option<Vec<MapLaw>> = of.iter().map(map).collect();
+        if let Some(maps) = maps {
+            let each: Vec<_> = maps.iter().collect();
+            return ClampLaw::Map(Gather::gather(like, &each));
+        }
+        let each = of.iter().map(|law| numbers(law)).collect::<Vec<_>>();
+        let [slip, safety, least_torque_nm] =
+            Gather::gather(like, &each.iter().collect::<Vec<_>>());
+        match of[0] {
+            ClampLaw::TorqueFollowing { .. } => ClampLaw::TorqueFollowing {
+                safety,
+                least_torque_nm,
+            },
+            ClampLaw::SlipLimited { .. } => ClampLaw::SlipLimited {
+                slip,
+                safety,
+                least_torque_nm,
+            },
+            ClampLaw::Map(_) | ClampLaw::Table => ClampLaw::Table,
+        }
+    }
+
+    fn lane<R: Real>(together: &ClampLaw<R>, lane: usize) -> Self {
+        match together {
+            ClampLaw::Map(map) => ClampLaw::Map(Gather::lane(map, lane)),
+            ClampLaw::TorqueFollowing {
+                safety,
+                least_torque_nm,
+            } => ClampLaw::TorqueFollowing {
+                safety: safety.lane(lane),
+                least_torque_nm: least_torque_nm.lane(lane),
+            },
+            ClampLaw::SlipLimited {
+                slip,
+                safety,
+                least_torque_nm,
+            } => ClampLaw::SlipLimited {
+                slip: slip.lane(lane),
+                safety: safety.lane(lane),
+                least_torque_nm: least_torque_nm.lane(lane),
+            },
+            ClampLaw::Table => ClampLaw::Table,
+        }
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+}
+
+/// What the law looks at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClampSignals<R: Real = f64> {
+    /// Throttle 0..1.
+    pub throttle: R,
+    /// Engine speed, rad/s.
+    pub engine_rad_s: R,
+    /// Oil temperature, K.
+    pub oil_k: R,
+    /// (r_low/r_p)^a of the ratio in force.
+    pub radius_factor: R,
+    /// Logarithm of the force ratio that the shift needs, positive towards low (PC-5).
+    pub force_log: R,
+}
+
+impl<R: Real> MapLaw<R>
+where
+    f64: Left<R>,
+{
     /// Pressure before the cap, Pa (PC-1, PC-2).
     #[inline(always)]
-    pub fn pressure_pa(&self, s: &ClampSignals) -> f64 {
+    pub fn pressure_pa(&self, s: &ClampSignals<R>) -> R {
         let rise = self.slow_factor
             + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
         let over = s.engine_rad_s - self.full_rad_s;
-        let fallen = if over > 0.0 {
-            rise - self.fall_s * over
-        } else {
-            rise
-        };
-        let fast = if fallen > self.slow_factor || over <= 0.0 {
-            fallen
-        } else {
-            self.slow_factor
-        }; // PC-2
+        let is_over = over.above(0.0);
+        let fallen = R::pick(is_over, rise - self.fall_s * over, rise);
+        let falls = fallen.above(self.slow_factor) | over.filled(0.0).reaches(over);
+        let fast = R::pick(falls, fallen, self.slow_factor); // PC-2
         fast * (self.base_pa + self.throttle_pa * s.throttle)
             * s.radius_factor
             * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1

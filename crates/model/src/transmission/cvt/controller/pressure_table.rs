@@ -6,7 +6,7 @@
 
 use crate::keys::file_table::{FileColumn, FileRows, FileTable};
 use crate::keys::{Bound, Values, keys};
-use crate::math::{GRID_AXES, Grid};
+use crate::math::{GRID_AXES, Grid, gather_each};
 use std::sync::Arc;
 
 keys! {
@@ -45,6 +45,8 @@ pub static PRESSURE_TABLE: FileTable = FileTable {
 pub struct PressureTable {
     grid: Grid,
 }
+
+gather_each!(Arc<PressureTable>);
 
 /// Where the table is read.
 #[derive(Clone, Copy, Debug, PartialEq)]

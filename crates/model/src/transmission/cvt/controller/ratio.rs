@@ -20,77 +20,105 @@
 
 use super::shift_map::{ShiftMap, shift_map};
 use crate::keys::{Bound, Choice, Values, curve, keys};
-use crate::math::{Curve, clamp, exp, larger, ln, ramp, smaller};
+use crate::math::{Curve, Left, Mask, Real, gather, ramp};
 use std::sync::Arc;
 
 /// The checked controller.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RatioControl {
+pub struct RatioControl<R: Real = f64> {
     /// Lowest gear: largest belt ratio.
-    pub low: f64,
+    pub low: R,
     /// Highest gear: smallest belt ratio.
-    pub high: f64,
+    pub high: R,
     /// Speed in gentle acceleration, rad/s.
-    pub gentle_rad_s: f64,
+    pub gentle_rad_s: R,
     /// Share of rated power in gentle acceleration.
-    pub gentle_share: f64,
+    pub gentle_share: R,
     /// Rise of speed over the share of rated power above it, rad/s.
-    pub rise_rad_s: f64,
+    pub rise_rad_s: R,
     /// Speed without power and in overrun, rad/s.
-    pub overrun_rad_s: f64,
+    pub overrun_rad_s: R,
     /// Highest target speed: that of the engine's greatest power, rad/s.
-    pub highest_rad_s: f64,
+    pub highest_rad_s: R,
     /// Wheel power over engine power that RC-3 reckons with.
-    pub route_efficiency: f64,
+    pub route_efficiency: R,
     /// Rate towards high, 1/s in ln I.
-    pub up_per_s: f64,
+    pub up_per_s: R,
     /// Rate towards low, 1/s in ln I.
-    pub down_per_s: f64,
+    pub down_per_s: R,
     /// Primary speed from which the full rates hold, rad/s.
-    pub rate_speed_rad_s: f64,
+    pub rate_speed_rad_s: R,
     /// Change of ln I from which the ratio turns round.
-    pub hysteresis: f64,
+    pub hysteresis: R,
     /// Time constant of the demand that gentle driving looks at, s; 0 without a filter.
-    pub filter_s: f64,
+    pub filter_s: R,
     /// Lines in place of gentle driving, if there are any.
-    pub line: Option<Box<OperatingLine>>,
+    pub line: Option<Box<OperatingLine<R>>>,
     /// A table in place of gentle driving, if there is one; lines come before it.
-    pub shift_map: Option<Arc<ShiftMap>>,
+    pub shift_map: Option<R::Each<Arc<ShiftMap>>>,
     /// What a cold car adds to the target.
-    pub cold: ColdRise,
+    pub cold: ColdRise<R>,
+}
+
+gather! {
+    RatioControl {
+        low, high, gentle_rad_s, gentle_share, rise_rad_s, overrun_rad_s, highest_rad_s, route_efficiency, up_per_s, down_per_s,
+        rate_speed_rad_s, hysteresis, filter_s, line, shift_map, cold,
+    }
 }
 
 /// Target speeds in place of RC-1 and RC-2 (RC-13).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct OperatingLine {
+#[derive(Clone, Debug, PartialEq)]
+pub struct OperatingLine<R: Real = f64> {
     /// Engine speed over the share of rated power asked for, rad/s.
-    pub drive: Option<Curve>,
+    pub drive: Option<R::Each<Curve>>,
     /// Engine speed over road speed in m/s while no power is asked for, rad/s.
-    pub overrun: Option<Curve>,
+    pub overrun: Option<R::Each<Curve>>,
 }
 
-impl OperatingLine {
-    /// The target at a demand, rad/s, where a line has it.
-    fn target_rad_s(&self, d: &RatioDemand) -> Option<f64> {
-        let (line, x) = if d.power_w > 0.0 {
-            (&self.drive, d.share)
-        } else {
-            (&self.overrun, d.speed_m_s)
-        };
+gather!(OperatingLine { drive, overrun });
+
+impl Default for OperatingLine {
+    fn default() -> Self {
+        OperatingLine {
+            drive: None,
+            overrun: None,
+        }
+    }
+}
+
+impl<R: Real> OperatingLine<R>
+where
+    f64: Left<R>,
+{
+    /// The target at a demand, rad/s, where a line has it, else `other`.
+    #[inline(always)]
+    fn target_rad_s(&self, d: &RatioDemand<R>, other: R) -> R {
         let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
-        line.as_ref().map(|line| larger(line.at(x), locked_rad_s)) // RC-13
+        let drives = d.power_w.above(0.0);
+        let mut target = other;
+        if let Some(line) = &self.drive {
+            let own = d.share.each_of(line, Curve::at).most(locked_rad_s); // RC-13
+            target = R::pick(drives, own, target);
+        }
+        if let Some(line) = &self.overrun {
+            let speed = d.share.filled(d.speed_m_s);
+            let own = speed.each_of(line, Curve::at).most(locked_rad_s); // RC-13
+            target = R::pick(drives, target, own);
+        }
+        target
     }
 }
 
 /// What a cold car adds to the target of engine speed (RC-11).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ColdRise {
+pub struct ColdRise<R: Real = f64> {
     /// Rise in full, rad/s.
-    pub rise_rad_s: f64,
+    pub rise_rad_s: R,
     /// Temperature up to which it is in full, K.
-    pub from_k: f64,
+    pub from_k: R,
     /// Temperature from which there is none, K.
-    pub to_k: f64,
+    pub to_k: R,
     /// True where the sump's temperature counts, false for the coolant's.
     pub by_sump: bool,
 }
@@ -103,10 +131,17 @@ impl ColdRise {
         to_k: 1.0,
         by_sump: false,
     };
+}
 
+gather!(ColdRise { rise_rad_s, from_k, to_k } same { by_sump });
+
+impl<R: Real> ColdRise<R>
+where
+    f64: Left<R>,
+{
     /// The rise at the temperatures of coolant and sump, K, rad/s.
-    #[inline]
-    pub fn at(&self, coolant_k: f64, sump_k: f64) -> f64 {
+    #[inline(always)]
+    pub fn at(&self, coolant_k: R, sump_k: R) -> R {
         let temp_k = if self.by_sump { sump_k } else { coolant_k };
         self.rise_rad_s * (1.0 - ramp(temp_k, self.from_k, self.to_k)) // RC-11
     }
@@ -114,134 +149,139 @@ impl ColdRise {
 
 /// What the controller looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RatioDemand {
+pub struct RatioDemand<R: Real = f64> {
     /// Speed of the secondary once the clutch has locked, rad/s.
-    pub secondary_rad_s: f64,
+    pub secondary_rad_s: R,
     /// Speed of the primary, rad/s.
-    pub primary_rad_s: f64,
+    pub primary_rad_s: R,
     /// Road speed, m/s.
     pub speed_m_s: f64,
     /// Wheel power asked for, W.
-    pub power_w: f64,
+    pub power_w: R,
     /// Share of rated power that RC-1 and RC-2 look at (RC-9).
-    pub share: f64,
+    pub share: R,
     /// Lowest speed at which full load gives the power asked for, rad/s.
-    pub full_load_rad_s: f64,
+    pub full_load_rad_s: R,
     /// What the shift map has for it, rad/s (RC-14); none without one.
-    pub mapped_rad_s: Option<f64>,
+    pub mapped_rad_s: Option<R>,
     /// What a cold car adds to the target, rad/s.
-    pub cold_rad_s: f64,
+    pub cold_rad_s: R,
     /// Ratio before the step.
-    pub ratio_before: f64,
+    pub ratio_before: R,
     /// Limit from pump flow towards low, 1/s.
-    pub flow_down_per_s: f64,
+    pub flow_down_per_s: R,
     /// Limit from pump flow towards high, 1/s.
-    pub flow_up_per_s: f64,
+    pub flow_up_per_s: R,
     /// Whether the launch clutch has locked.
-    pub coupled: bool,
+    pub coupled: R::Mask,
     /// Direction of the last change: 1 towards low, -1 towards high, 0 before the first.
-    pub last_direction: i8,
+    pub last_direction: R::Each<i8>,
     /// Primary speed up to which the ratio turns round at once, rad/s.
-    pub free_up_to_rad_s: f64,
+    pub free_up_to_rad_s: R,
     /// Step, s.
     pub dt_s: f64,
 }
 
-impl RatioControl {
+impl<R: Real> RatioControl<R>
+where
+    f64: Left<R>,
+{
     /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13, RC-14).
-    pub fn target_rad_s(&self, d: &RatioDemand) -> f64 {
-        let line = self.line.as_ref().and_then(|line| line.target_rad_s(d));
-        let given = line.or_else(|| {
-            let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
-            d.mapped_rad_s.map(|mapped| larger(mapped, locked_rad_s)) // RC-14
-        });
-        let mut speed = given.unwrap_or_else(|| self.gentle_target_rad_s(d.share));
-        if d.cold_rad_s > 0.0 {
-            speed += d.cold_rad_s * clamp(d.share / LEAST_GENTLE_SHARE, 0.0, 1.0); // RC-11
+    #[inline(always)]
+    pub fn target_rad_s(&self, d: &RatioDemand<R>) -> R {
+        let mut speed = match d.mapped_rad_s {
+            Some(mapped) => mapped.most(ABOVE_LOCK * d.free_up_to_rad_s), // RC-14
+            None => self.gentle_target_rad_s(d.share),
+        };
+        if let Some(line) = &self.line {
+            speed = line.target_rad_s(d, speed);
         }
-        if d.power_w > 0.0 && d.full_load_rad_s > speed {
-            speed = d.full_load_rad_s; // RC-3
+        let cold = d.cold_rad_s.above(0.0);
+        if cold.any() {
+            let raised = speed + d.cold_rad_s * (d.share / LEAST_GENTLE_SHARE).held(0.0, 1.0); // RC-11
+            speed = R::pick(cold, raised, speed);
         }
-        smaller(speed, self.highest_rad_s)
+        let binds = d.power_w.above(0.0) & d.full_load_rad_s.above(speed);
+        R::pick(binds, d.full_load_rad_s, speed) // RC-3
+            .least(self.highest_rad_s)
     }
 
     /// Target at a share of rated power, rad/s.
-    #[inline]
-    fn gentle_target_rad_s(&self, share: f64) -> f64 {
-        let drive = clamp(
-            share / larger(self.gentle_share, LEAST_GENTLE_SHARE),
-            0.0,
-            1.0,
-        );
-        let mut speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
-        if share > self.gentle_share {
-            speed += self.rise_rad_s * (share - self.gentle_share); // RC-1
-        }
-        speed
+    #[inline(always)]
+    fn gentle_target_rad_s(&self, share: R) -> R {
+        let drive = (share / self.gentle_share.most(LEAST_GENTLE_SHARE)).held(0.0, 1.0);
+        let speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
+        let risen = speed + self.rise_rad_s * (share - self.gentle_share); // RC-1
+        R::pick(share.above(self.gentle_share), risen, speed)
     }
 
     /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
-    #[inline]
-    pub fn filtered_share(&self, before: f64, asked: f64, dt_s: f64) -> f64 {
-        if self.filter_s > 0.0 {
-            before + (asked - before) * (1.0 - exp(-dt_s / self.filter_s)) // RC-9
-        } else {
-            asked
+    #[inline(always)]
+    pub fn filtered_share(&self, before: R, asked: R, dt_s: f64) -> R {
+        let filters = self.filter_s.above(0.0);
+        if !filters.any() {
+            return asked;
         }
+        let filtered = before + (asked - before) * (1.0 - (-dt_s / self.filter_s).exp()); // RC-9
+        R::pick(filters, filtered, asked)
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
-    pub fn step(&self, d: &RatioDemand) -> (f64, f64, bool) {
+    #[inline(always)]
+    pub fn step(&self, d: &RatioDemand<R>) -> (R, R, R::Mask) {
         let before = d.ratio_before;
-        if d.primary_rad_s <= 0.0 {
-            return (before, 0.0, false); // RC-4
+        let zero = before.filled(0.0);
+        let rests = zero.reaches(d.primary_rad_s); // RC-4
+        if rests.all() {
+            return (before, zero, before.answer(false));
         }
-        let wanted = clamp(
-            self.target_rad_s(d) / d.secondary_rad_s,
-            self.high,
-            self.low,
-        );
-        let wanted = if !d.coupled && wanted < before {
-            before
-        } else {
-            wanted
-        }; // RC-6
-        if wanted.to_bits() == before.to_bits() {
-            return (before, 0.0, false);
+        let wanted = (self.target_rad_s(d) / d.secondary_rad_s).held(self.high, self.low);
+        let too_early = !d.coupled & before.above(wanted); // RC-6
+        let wanted = R::pick(too_early, before, wanted);
+        let mut stays = rests | wanted.is_same(before);
+        if stays.all() {
+            return (before, zero, before.answer(false));
         }
-        let change = ln(wanted / before);
-        if self.stays(d, wanted, change) {
-            return (before, 0.0, false); // RC-10
+        let change = (wanted / before).ln();
+        stays = stays | self.stays(d, wanted, change); // RC-10
+        if stays.all() {
+            return (before, zero, before.answer(false));
         }
-        let pace = clamp(d.primary_rad_s / self.rate_speed_rad_s, 0.0, 1.0);
-        let (mut up, mut down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
-        let short_of_flow =
-            (change > 0.0 && d.flow_down_per_s < down && change > d.flow_down_per_s * d.dt_s)
-                || (change < 0.0 && d.flow_up_per_s < up && -change > d.flow_up_per_s * d.dt_s);
-        up = smaller(d.flow_up_per_s, up);
-        down = smaller(d.flow_down_per_s, down); // RC-5
+        let pace = (d.primary_rad_s / self.rate_speed_rad_s).held(0.0, 1.0);
+        let (up, down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
+        let (flow_up, flow_down) = (d.flow_up_per_s, d.flow_down_per_s);
+        let short_down =
+            change.above(0.0) & down.above(flow_down) & change.above(flow_down * d.dt_s);
+        let short_up = zero.above(change) & up.above(flow_up) & (-change).above(flow_up * d.dt_s);
+        let (up, down) = (flow_up.least(up), flow_down.least(down)); // RC-5
         let (least, most) = (-up * d.dt_s, down * d.dt_s);
-        if least <= change && change <= most {
-            return (wanted, change, short_of_flow);
+        let free = change.reaches(least) & most.reaches(change);
+        let (mut ratio, mut made) = (wanted, change);
+        if !(free | stays).all() {
+            let held = change.held(least, most);
+            let moved = (before * held.exp()).held(self.high, self.low);
+            ratio = R::pick(free, wanted, moved);
+            made = R::pick(free, change, held);
         }
-        let change = clamp(change, least, most);
         (
-            clamp(before * exp(change), self.high, self.low),
-            change,
-            short_of_flow,
+            R::pick(stays, before, ratio),
+            R::pick(stays, zero, made),
+            !stays & (short_down | short_up),
         )
     }
-}
 
-impl RatioControl {
     /// True where a change of ln I is a reversal too small to be made (RC-10).
-    fn stays(&self, d: &RatioDemand, wanted: f64, change: f64) -> bool {
-        let reversal = f64::from(d.last_direction) * change < 0.0;
-        reversal
-            && change.abs() <= self.hysteresis
-            && self.high < wanted
-            && wanted < self.low
-            && d.ratio_before * d.secondary_rad_s > d.free_up_to_rad_s
+    #[inline(always)]
+    fn stays(&self, d: &RatioDemand<R>, wanted: R, change: R) -> R::Mask {
+        let direction = change.by_lane(
+            #[inline(always)]
+            |lane| f64::from(*R::one(&d.last_direction, lane)),
+        );
+        change.filled(0.0).above(direction * change)
+            & self.hysteresis.reaches(change.abs())
+            & wanted.above(self.high)
+            & self.low.above(wanted)
+            & (d.ratio_before * d.secondary_rad_s).above(d.free_up_to_rad_s)
     }
 }
 
@@ -258,14 +298,16 @@ const LEAST_GENTLE_SHARE: f64 = 0.01;
 const LEAST_CHANGE: f64 = 1e-4;
 
 /// Direction of the last change, after a change of ln I (RC-10).
-pub fn direction_after(change: f64, last_direction: i8) -> i8 {
-    if change > LEAST_CHANGE {
-        1
-    } else if change < -LEAST_CHANGE {
-        -1
-    } else {
-        last_direction
-    }
+#[inline(always)]
+pub fn direction_after<R: Real>(change: R, last_direction: &R::Each<i8>) -> R::Each<i8> {
+    R::every(
+        #[inline(always)]
+        |lane| match change.lane(lane) {
+            change if change > LEAST_CHANGE => 1,
+            change if change < -LEAST_CHANGE => -1,
+            _ => *R::one(last_direction, lane),
+        },
+    )
 }
 
 keys! {

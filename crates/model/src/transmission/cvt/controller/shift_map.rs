@@ -6,7 +6,7 @@
 
 use crate::keys::file_table::{FileColumn, FileRows, FileTable};
 use crate::keys::{Bound, Key, Values};
-use crate::math::{clamp, larger};
+use crate::math::{clamp, gather_each, larger};
 use std::sync::Arc;
 
 /// Range of engine speeds and input speeds.
@@ -60,6 +60,8 @@ pub struct ShiftMap {
     /// True where the values are belt ratios.
     is_ratio: bool,
 }
+
+gather_each!(Arc<ShiftMap>);
 
 /// Where the table is read.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! The belt at one ratio: what every operating point there has in common.
 
 use super::{Belt, Geometry, bands, deflection};
-use crate::math::{Left, Real, both, ramp};
+use crate::math::{Curve, Left, Real, both, gather, ramp};
 
 /// The belt at one ratio: everything that does not depend on torque or pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltAtRatio<R = f64> {
+pub struct BeltAtRatio<R: Real = f64> {
     /// Geometry.
     pub geometry: Geometry<R>,
     /// Direction of the tension step, -1 in low, +1 in high (TE-6).
@@ -18,7 +18,7 @@ pub struct BeltAtRatio<R = f64> {
 
 /// Coefficients of one ratio, so that an operating point costs few divisions; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Prepared<R = f64> {
+pub struct Prepared<R: Real = f64> {
     /// Contact arcs, m.
     pub arc_m: [R; 2],
     /// Segments in the wraps.
@@ -63,6 +63,21 @@ pub struct Prepared<R = f64> {
     pub capacity_m: R,
     /// One over the width of the blend between the loading branches, 1/N.
     pub per_blend_n: R,
+}
+
+gather!(BeltAtRatio {
+    geometry,
+    direction,
+    thrust_ratio,
+    prepared
+});
+
+gather! {
+    Prepared {
+        arc_m, count, normal_per_clamp, shoulder_per_step, band_gap_m_n, strut_gap_m_n, slide_m, outer_part, coated_part, shoulder_rad,
+        film_area_m2, film_levers_m, stop, wedge_half_cot, wedge_per_m, penetration, inv_segments, inv_ratio, inv_secondary_radius,
+        clamps_per_wrap, capacity_m, per_blend_n,
+    }
 }
 
 impl<R: Real> Prepared<R>
@@ -117,7 +132,7 @@ where
         let log = ratio.ln();
         let direction = -(log / belt.unity_width).tanh(); // TE-6
         let thrust_ratio = match &belt.thrust_ratio {
-            Some(curve) => log.each(|log| curve.at(log)),
+            Some(curve) => log.each_of(curve, Curve::at),
             None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
         };
         BeltAtRatio {

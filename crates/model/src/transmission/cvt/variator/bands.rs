@@ -108,7 +108,7 @@ where
 }
 
 /// Adopted band speed of a formulation as `travel_m` takes it (BT-1, BT-7).
-pub fn speed_share<R>(belt: &Belt<R>) -> f64 {
+pub fn speed_share<R: Real>(belt: &Belt<R>) -> f64 {
     if belt.formulation.by_statics() {
         -0.5
     } else {

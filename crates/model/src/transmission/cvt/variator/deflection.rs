@@ -15,7 +15,7 @@ use crate::math::{Left, Real, both};
 
 /// Wedge and penetration losses at the primary shaft, Nm; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Deflection<R = f64> {
+pub struct Deflection<R: Real = f64> {
     /// Wedging at entry and exit.
     pub wedge_nm: [R; 2],
     /// Penetration.

@@ -10,12 +10,12 @@
 //! Symbols: X centre distance, L belt length, all m; angles rad. Valid for ratios 0.3 to 3.3 of the shipped belt; the configured
 //! limits lie within. f is convex and rising in R, so Newton from the series start needs at most three steps.
 
-use crate::math::{Left, Mask, Real};
+use crate::math::{Left, Mask, Real, gather};
 use std::f64::consts::PI;
 
 /// Geometry of the belt at one ratio.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Geometry<R = f64> {
+pub struct Geometry<R: Real = f64> {
     /// Belt ratio I = R_sec / R_pri.
     pub ratio: R,
     /// Primary running radius, m.
@@ -29,6 +29,15 @@ pub struct Geometry<R = f64> {
     /// Length of one free strut, m.
     pub strut_m: R,
 }
+
+gather!(Geometry {
+    ratio,
+    primary_radius_m,
+    secondary_radius_m,
+    primary_wrap_rad,
+    secondary_wrap_rad,
+    strut_m
+});
 
 /// Square of pi.
 const PI_SQUARED: f64 = PI * PI;

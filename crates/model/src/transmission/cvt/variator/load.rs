@@ -6,7 +6,7 @@ use crate::math::{Left, Real};
 
 /// What acts on the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BeltLoad<R = f64> {
+pub struct BeltLoad<R: Real = f64> {
     /// Primary speed, rad/s.
     pub primary_speed_rad_s: R,
     /// Torque at the secondary pulley, Nm; negative in overrun.
@@ -47,6 +47,27 @@ where
             segment_friction: friction.segment,
             capacity_friction: friction.capacity,
             flank_friction: friction.flank,
+        }
+    }
+}
+
+impl<R: Real> BeltLoad<R> {
+    /// `yes` where the mask says so, else `no`: loads of the same fluid.
+    #[inline(always)]
+    pub(in crate::transmission::cvt) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        let of = |yes: R, no: R| R::pick(mask, yes, no);
+        let pair = |yes: [R; 2], no: [R; 2]| [of(yes[0], no[0]), of(yes[1], no[1])];
+        BeltLoad {
+            primary_speed_rad_s: of(yes.primary_speed_rad_s, no.primary_speed_rad_s),
+            output_torque_nm: of(yes.output_torque_nm, no.output_torque_nm),
+            secondary_clamp_n: of(yes.secondary_clamp_n, no.secondary_clamp_n),
+            band: BandFriction {
+                mu: of(yes.band.mu, no.band.mu),
+                film_share: pair(yes.band.film_share, no.band.film_share),
+                shear_pa: pair(yes.band.shear_pa, no.band.shear_pa),
+            },
+            film_n: pair(yes.film_n, no.film_n),
+            ..*yes
         }
     }
 }

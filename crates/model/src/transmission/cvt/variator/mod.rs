@@ -32,13 +32,13 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::math::{Curve, Left, Real};
-use crate::transmission::component::Component;
+use crate::math::{Curve, Left, Real, gather};
+use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
 /// The checked belt and pulleys.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Belt<R = f64> {
+pub struct Belt<R: Real = f64> {
     /// Centre distance of the pulleys, m.
     pub centre_distance_m: R,
     /// Length of the belt, m.
@@ -84,9 +84,17 @@ pub struct Belt<R = f64> {
     /// Bound of each pulley's slip.
     pub slip_bound: R,
     /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
-    pub thrust_ratio: Option<Curve>,
+    pub thrust_ratio: Option<R::Each<Curve>>,
     /// Reading of the thesis.
     pub formulation: Formulation,
+}
+
+gather! {
+    Belt {
+        centre_distance_m, length_m, segment_thickness_m, cos_wedge, tan_wedge, band_count, band_thickness_m, band_width_m, band_offset_m,
+        shoulder_friction, mass_kg_m, band_mass_kg_m, youngs_pa, strut_area_m2, initial_gap_m, primary_compliance_per_n,
+        secondary_compliance_per_n, stop_from_ratio, stop_to_ratio, unity_width, blend_n, slip_bound, thrust_ratio,
+    } same { formulation }
 }
 
 impl<R: Real> Belt<R>
@@ -167,9 +175,10 @@ impl<R: Real> BeltLosses<R> {
     }
 }
 
-impl BeltLosses {
+impl<R: Real> BeltLosses<R> {
     /// Each loss times its factor, slip with the loss that it makes (CV-7).
-    pub fn times(self, factor: &LossFactors) -> Self {
+    #[inline(always)]
+    pub fn times(self, factor: &ByComponent<R>) -> Self {
         let slips = factor[Component::BeltSlip];
         BeltLosses {
             band_nm: factor[Component::BeltBand] * self.band_nm,
@@ -316,7 +325,11 @@ where
 }
 
 /// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
-pub fn belt_capacity_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+#[inline(always)]
+pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R
+where
+    f64: Left<R>,
+{
     belt_losses(belt, at, load).capacity_nm
 }
 

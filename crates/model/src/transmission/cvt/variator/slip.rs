@@ -78,7 +78,7 @@ where
 
 /// What the slip equations of both branches look at; pairs are primary, secondary.
 #[derive(Clone, Copy)]
-pub(super) struct Contact<'a, R = f64> {
+pub(super) struct Contact<'a, R: Real = f64> {
     pub belt: &'a Belt<R>,
     pub at: &'a BeltAtRatio<R>,
     /// Extension of the band pack and initial gap, m.

@@ -20,7 +20,7 @@ use crate::math::{Left, Real};
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tension<R = f64> {
+pub struct Tension<R: Real = f64> {
     /// Axial clamping force, primary, N.
     pub primary_clamp_n: R,
     /// Axial clamping force, secondary, N.

@@ -1,0 +1,405 @@
+//! Several runs side by side: 4 or 8 numbers in the processor's vectors, and records of them gathered from one record a run.
+//!
+//! [`f64x4`] and [`f64x8`] are [`Real`]: an equation that is written over `R` works on a whole group of runs. Which instructions the processor
+//! has is found at run time; [`dispatch`] calls a function once for the best of them, and every part that is inlined into it, or called by
+//! [`Real::within`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
+//! lane by lane in f64.
+//!
+//! A record has its lanes by [`gather!`](crate::math::gather), one line beside the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
+//! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::alike`] says which records can be in one group.
+
+use super::Curve;
+use super::elementary;
+use super::real::{Mask, Operand, Own, Real};
+use fearless_simd::{Select, SimdBase, SimdFrom, SimdMask, mask64x4, mask64x8};
+use std::fmt::Debug;
+use std::ops::{BitAnd, BitOr, Not};
+
+pub use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
+
+/// Yes or no, for each lane of a vector of the processor.
+#[derive(Clone, Copy)]
+pub struct Answers<M>(M);
+
+macro_rules! lanes {
+    ($($vector:ident $mask:ident $count:literal),*) => {$(
+        impl<S: Simd> BitAnd for Answers<$mask<S>> {
+            type Output = Self;
+            #[inline(always)]
+            fn bitand(self, other: Self) -> Self {
+                Answers(self.0 & other.0)
+            }
+        }
+
+        impl<S: Simd> BitOr for Answers<$mask<S>> {
+            type Output = Self;
+            #[inline(always)]
+            fn bitor(self, other: Self) -> Self {
+                Answers(self.0 | other.0)
+            }
+        }
+
+        impl<S: Simd> Not for Answers<$mask<S>> {
+            type Output = Self;
+            #[inline(always)]
+            fn not(self) -> Self {
+                Answers(!self.0)
+            }
+        }
+
+        impl<S: Simd> Debug for Answers<$mask<S>> {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.debug_list()
+                    .entries((0..$count).map(|lane| self.lane(lane)))
+                    .finish()
+            }
+        }
+
+        impl<S: Simd> PartialEq for Answers<$mask<S>> {
+            fn eq(&self, other: &Self) -> bool {
+                self.0.to_bitmask() == other.0.to_bitmask()
+            }
+        }
+
+        impl<S: Simd> Mask for Answers<$mask<S>> {
+            #[inline(always)]
+            fn any(self) -> bool {
+                self.0.any_true()
+            }
+
+            #[inline(always)]
+            fn all(self) -> bool {
+                self.0.all_true()
+            }
+
+            #[inline(always)]
+            fn lane(self, lane: usize) -> bool {
+                (self.0.to_bitmask() >> lane) & 1 == 1
+            }
+        }
+
+        impl<S: Simd> Operand<$vector<S>> for f64 {
+            #[inline(always)]
+            fn lifted(self, like: $vector<S>) -> $vector<S> {
+                like.filled(self)
+            }
+        }
+
+        impl<S: Simd> Real for $vector<S> {
+            type Mask = Answers<$mask<S>>;
+            type Each<T: Own> = [T; $count];
+            const LANES: usize = $count;
+
+            #[inline(always)]
+            fn filled(self, number: f64) -> Self {
+                Self::splat(self.simd, number)
+            }
+
+            #[inline(always)]
+            fn by_lane(self, f: impl Fn(usize) -> f64) -> Self {
+                Self::from_fn(self.simd, f)
+            }
+
+            #[inline(always)]
+            fn lane(self, lane: usize) -> f64 {
+                self[lane]
+            }
+
+            #[inline(always)]
+            fn with_lane(mut self, lane: usize, number: f64) -> Self {
+                self[lane] = number;
+                self
+            }
+
+            #[inline(always)]
+            fn answer(self, yes: bool) -> Self::Mask {
+                Answers($mask::splat(self.simd, yes))
+            }
+
+            #[inline(always)]
+            fn ask(self, f: impl Fn(usize) -> bool) -> Self::Mask {
+                let bits = (0..$count).fold(0, |bits, lane| bits | (u64::from(f(lane)) << lane));
+                Answers($mask::from_bitmask(self.simd, bits))
+            }
+
+            #[inline(always)]
+            fn every<T: Own>(f: impl FnMut(usize) -> T) -> [T; $count] {
+                std::array::from_fn(f)
+            }
+
+            #[inline(always)]
+            fn one<T: Own>(of: &[T; $count], lane: usize) -> &T {
+                &of[lane]
+            }
+
+            #[inline(always)]
+            fn one_mut<T: Own>(of: &mut [T; $count], lane: usize) -> &mut T {
+                &mut of[lane]
+            }
+
+            #[inline(always)]
+            fn each(self, f: impl Fn(f64) -> f64) -> Self {
+                Self::from_fn(self.simd, #[inline(always)] |lane| f(self[lane]))
+            }
+
+            #[inline(always)]
+            fn above(self, other: impl Operand<Self>) -> Self::Mask {
+                Answers(self.simd_gt(other.lifted(self)))
+            }
+
+            #[inline(always)]
+            fn reaches(self, other: impl Operand<Self>) -> Self::Mask {
+                Answers(self.simd_ge(other.lifted(self)))
+            }
+
+            #[inline(always)]
+            fn is_same(self, other: Self) -> Self::Mask {
+                self.ask(#[inline(always)] |lane| self[lane].to_bits() == other[lane].to_bits())
+            }
+
+            #[inline(always)]
+            fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self {
+                mask.0.select(yes, no)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <Self as SimdBase<S>>::abs(self)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                <Self as fearless_simd::SimdFloat<S>>::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn within<T>(self, part: impl FnOnce() -> T) -> T {
+                self.simd.vectorize(part)
+            }
+
+            #[inline(always)]
+            fn exp(self) -> Self {
+                Self::simd_from(self.simd, elementary::exp_each::<$count>(self.into()))
+            }
+
+            #[inline(always)]
+            fn ln(self) -> Self {
+                Self::simd_from(self.simd, elementary::ln_each::<$count>(self.into()))
+            }
+
+            #[inline(always)]
+            fn exp_each<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
+                for x in &mut x {
+                    *x = x.exp();
+                }
+                x
+            }
+
+            #[inline(always)]
+            fn ln_each<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
+                for x in &mut x {
+                    *x = x.ln();
+                }
+                x
+            }
+        }
+    )*};
+}
+
+lanes!(f64x4 mask64x4 4, f64x8 mask64x8 8);
+
+/// Most runs that are side by side.
+pub(crate) const MOST_LANES: usize = 8;
+
+/// Four zeros, from which other numbers take their lanes.
+#[inline(always)]
+pub fn four<S: Simd>(simd: S) -> f64x4<S> {
+    f64x4::splat(simd, 0.0)
+}
+
+/// Eight zeros.
+#[inline(always)]
+pub fn eight<S: Simd>(simd: S) -> f64x8<S> {
+    f64x8::splat(simd, 0.0)
+}
+
+/// A record of one run that several runs side by side can have together.
+pub trait Gather: Sized {
+    /// The record of all of them.
+    type Together<R: Real>;
+
+    /// The record of the runs of a group, one for each lane of `like`; they are [`Gather::alike`].
+    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R>;
+
+    /// The record of one run out of that of a group.
+    fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self;
+
+    /// Whether two records can be in one group: what its runs share is the same in them.
+    fn alike(&self, other: &Self) -> bool;
+}
+
+impl Gather for f64 {
+    type Together<R: Real> = R;
+
+    fn gather<R: Real>(like: R, of: &[&f64]) -> R {
+        like.by_lane(|lane| *of[lane])
+    }
+
+    fn lane<R: Real>(together: &R, lane: usize) -> f64 {
+        together.lane(lane)
+    }
+
+    fn alike(&self, _: &f64) -> bool {
+        true
+    }
+}
+
+impl Gather for bool {
+    type Together<R: Real> = R::Mask;
+
+    fn gather<R: Real>(like: R, of: &[&bool]) -> R::Mask {
+        like.ask(|lane| *of[lane])
+    }
+
+    fn lane<R: Real>(together: &R::Mask, lane: usize) -> bool {
+        together.lane(lane)
+    }
+
+    fn alike(&self, _: &bool) -> bool {
+        true
+    }
+}
+
+/// What is looked up lane by lane.
+macro_rules! gather_each {
+    ($($name:ty),* $(,)?) => {$(
+        impl $crate::math::Gather for $name {
+            type Together<R: $crate::math::Real> = R::Each<$name>;
+
+            fn gather<R: $crate::math::Real>(_: R, of: &[&Self]) -> R::Each<$name> {
+                R::every(|lane| of[lane].clone())
+            }
+
+            fn lane<R: $crate::math::Real>(together: &R::Each<$name>, lane: usize) -> Self {
+                R::one(together, lane).clone()
+            }
+
+            fn alike(&self, _: &Self) -> bool {
+                true
+            }
+        }
+    )*};
+}
+pub(crate) use gather_each;
+
+gather_each!(Curve);
+
+impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
+    type Together<R: Real> = [T::Together<R>; COUNT];
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+        std::array::from_fn(|k| {
+            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            T::gather(like, &each)
+        })
+    }
+
+    fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
+        std::array::from_fn(|k| T::lane(&together[k], lane))
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        self.iter().zip(other).all(|(a, b)| a.alike(b))
+    }
+}
+
+impl<T: Gather> Gather for Vec<T> {
+    type Together<R: Real> = Vec<T::Together<R>>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+        let part = |k: usize| {
+            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            T::gather(like, &each)
+        };
+        (0..of[0].len()).map(part).collect()
+    }
+
+    fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
+        together.iter().map(|part| T::lane(part, lane)).collect()
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        self.len() == other.len() && self.iter().zip(other).all(|(a, b)| a.alike(b))
+    }
+}
+
+impl<T: Gather> Gather for Option<T> {
+    type Together<R: Real> = Option<T::Together<R>>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+        let each: Option<Vec<&T>> = of.iter().map(|one| one.as_ref()).collect();
+        each.map(|each| T::gather(like, &each))
+    }
+
+    fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
+        together.as_ref().map(|one| T::lane(one, lane))
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Some(a), Some(b)) => a.alike(b),
+            (None, None) => true,
+            _ => false,
+        }
+    }
+}
+
+impl<T: Gather> Gather for Box<T> {
+    type Together<R: Real> = Box<T::Together<R>>;
+
+    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+        let each: Vec<&T> = of.iter().map(|one| &***one).collect();
+        Box::new(T::gather(like, &each))
+    }
+
+    fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
+        Box::new(T::lane(together, lane))
+    }
+
+    fn alike(&self, other: &Self) -> bool {
+        (**self).alike(other)
+    }
+}
+
+/// `gather!(Name { own, fields } same { shared, fields });`: lanes for a struct `Name<R = f64>`, whose first fields each run has of its own.
+macro_rules! gather {
+    ($name:ident { $($own:ident),* $(,)? } $(same { $($same:ident),* $(,)? })?) => {
+        impl $crate::math::Gather for $name {
+            type Together<R: $crate::math::Real> = $name<R>;
+
+            fn gather<R: $crate::math::Real>(like: R, of: &[&Self]) -> $name<R> {
+                $name {
+                    $($own: {
+                        let each: Vec<_> = of.iter().map(|one| &one.$own).collect();
+                        $crate::math::Gather::gather(like, &each)
+                    },)*
+                    $($($same: of[0].$same.clone(),)*)?
+                }
+            }
+
+            fn lane<R: $crate::math::Real>(together: &$name<R>, lane: usize) -> Self {
+                $name {
+                    $($own: $crate::math::Gather::lane::<R>(&together.$own, lane),)*
+                    $($($same: together.$same.clone(),)*)?
+                }
+            }
+
+            fn alike(&self, other: &Self) -> bool {
+                true
+                    $(&& $crate::math::Gather::alike(&self.$own, &other.$own))*
+                    $($(&& self.$same == other.$same)*)?
+            }
+        }
+    };
+}
+pub(crate) use gather;

@@ -1,0 +1,89 @@
+//! Cars in lockstep: each run has the bits that it has alone.
+//!
+//! Truth: the same text with f64, one run after another.
+
+use crate::common::try_car;
+use cvtcycle_config::cycle::embedded;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_model::cycle::Cycle;
+use cvtcycle_model::drive::{Conditions, Outcome, Run, Start, drive, drive_each};
+
+/// Numbers of the car that move every part of the drive, each by its own steps.
+const VARIED: [(&str, f64, f64); 12] = [
+    ("road_load.mass_kg", 950.0, 60.0),
+    ("road_load.wheel_radius_m", 0.27, 0.004),
+    ("road_load.form.coefficients.f0_n", 4.0, 13.0),
+    ("road_load.tyre.warm_degc", 30.0, 3.0),
+    ("engine.displacement_cc", 1400.0, 51.0),
+    ("engine.inertia_kg_m2", 0.15, 0.021),
+    ("engine.idle.hot_rpm", 760.0, 17.0),
+    ("engine.friction.overrun_factor", 1.0, 0.11),
+    ("engine.friction.viscous_share", 0.3, 0.05),
+    ("engine.fuel.cut_from_degc", 20.0, 9.0),
+    ("engine.fuel.start_g", 0.0, 1.5),
+    ("engine.accessory_nm", 0.1, 0.07),
+];
+
+/// Cars of one family, no two alike.
+fn family(vehicle: &str, count: usize) -> Vec<Setup> {
+    let car = |k: usize| {
+        let set: Vec<String> = (VARIED.iter().enumerate())
+            .map(|(i, (key, from, step))| {
+                let steps = (k * (2 * i + 1)) % 7;
+                format!("{key}={}", from + step * steps as f64)
+            })
+            .collect();
+        try_car(vehicle, &set).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    (0..count).map(car).collect()
+}
+
+/// Every number of an outcome; the shortest digits that give an f64 back are as good as its bits.
+fn numbers(outcome: &Outcome) -> String {
+    format!("{:?} {:?}", outcome.totals, outcome.end)
+}
+
+fn assert_alone(cars: &[Setup], cycle: &Cycle, conditions: impl Fn(usize) -> Conditions) {
+    let runs: Vec<Run> = (cars.iter().enumerate())
+        .map(|(k, car)| Run {
+            vehicle: car,
+            conditions: conditions(k),
+        })
+        .collect();
+    let together = drive_each(&runs, cycle);
+    assert_eq!(together.len(), runs.len());
+    for (k, (run, outcome)) in runs.iter().zip(&together).enumerate() {
+        let alone = drive(run.vehicle, cycle, &run.conditions);
+        assert_eq!(numbers(outcome), numbers(&alone), "run {k}");
+        assert_eq!(outcome.gear_schedule, alone.gear_schedule);
+    }
+}
+
+const COLD: Conditions = Conditions {
+    ambient_k: 266.15,
+    start: Start::Soak,
+    max_dt_s: 1.0,
+    keep_rows: false,
+};
+
+/// Gears of the cycle, a whole group and a remainder.
+#[test]
+fn manual_cars_in_lockstep_have_their_own_bits() {
+    let cycle = embedded("ece15_eudc").unwrap();
+    assert_alone(&family("rover_216_5mt", 19), &cycle, |_| COLD);
+}
+
+/// Shift speeds that differ, other ambients and starts in one group.
+#[test]
+fn gears_of_their_own_and_starts_of_their_own() {
+    let cycle = embedded("udds").unwrap();
+    let start = |k: usize| match k % 2 {
+        0 => Start::Soak,
+        _ => Start::At(280.0 + 5.0 * k as f64),
+    };
+    assert_alone(&family("rover_216_5mt", 9), &cycle, |k| Conditions {
+        ambient_k: 260.0 + 5.0 * k as f64,
+        start: start(k),
+        ..COLD
+    });
+}
