@@ -9,7 +9,7 @@
 //! so that heat in = stored + to the air + to the cooler holds to rounding. Nothing drives the output shaft.
 
 use super::conditions::Conditions;
-use crate::bench::{Bench, BenchAnswer, BenchPoint};
+use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint};
 use crate::drive::loss_heat_w;
 use crate::math::exp;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network, SUMP};
@@ -202,9 +202,9 @@ pub fn on_the_rig(car: &Network) -> Network {
 /// The rig while a transient runs.
 struct Running<'a> {
     bench: &'a Bench,
+    at_ratio: AtRatio<'a>,
     conditions: &'a Conditions,
     network: Network,
-    ratio: f64,
     heat: Heat,
     time_s: f64,
 }
@@ -216,8 +216,8 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
     let mut running = Running {
         bench,
         conditions,
+        at_ratio: bench.at_ratio(ratio),
         network: on_the_rig(&bench.car().network),
-        ratio,
         heat,
         time_s: 0.0,
     };
@@ -266,7 +266,6 @@ impl Running<'_> {
     fn moment(&self, branch: Branch) -> Moment {
         let t = &self.heat.node_k;
         let point = BenchPoint {
-            ratio: self.ratio,
             input_rad_s: self.conditions.transient.speed_rad_s,
             throttle: self.conditions.throttle,
             sump_k: t[SUMP],
@@ -278,7 +277,7 @@ impl Running<'_> {
             branch,
             sump_k: t[SUMP],
             metal_k: t[METAL],
-            answer: self.bench.solve(&point),
+            answer: self.at_ratio.solve(&point),
         }
     }
 
