@@ -38,6 +38,8 @@ pub(super) struct Inputs {
     pub frame: Arc<Frame>,
     /// In the order of [`Target::CAR`].
     pub files: [CarFile; 3],
+    /// A car of the program's own, with nothing changed.
+    is_shipped: bool,
 }
 
 /// What a reading of a car's documents needs besides them.
@@ -61,7 +63,11 @@ impl Inputs {
     pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
         let is_twin = is_twin(word);
-        Inputs::of(&file, &text, Box::new(disk), options, is_twin)
+        let inputs = Inputs::of(&file, &text, Box::new(disk), options, is_twin)?;
+        Ok(Inputs {
+            is_shipped: !is_twin && !is_path(word) && options.change_nothing(),
+            ..inputs
+        })
     }
 
     /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
@@ -131,6 +137,7 @@ impl Inputs {
         Ok(Inputs {
             frame: Arc::new(frame),
             files: [vehicle, oil, engine_oil],
+            is_shipped: false,
         })
     }
 
@@ -139,6 +146,7 @@ impl Inputs {
         Inputs {
             frame: Arc::clone(&self.frame),
             files,
+            is_shipped: false,
         }
     }
 
@@ -193,6 +201,7 @@ impl Inputs {
                 .map(|source| (source.input.to_string(), source.text.clone()))
                 .collect(),
             fluids: self.frame.fluids.clone(),
+            is_shipped: self.is_shipped,
         }
     }
 }
