@@ -48,14 +48,14 @@ pub fn push_plain(text: &mut String, x: f64) {
     debug_assert!(done.is_ok());
 }
 
-/// Appends what `{x:?}` gives: as [`push_plain`], with a point in whole numbers, and with an exponent below 1e-5 and from 1e16 on.
+/// Appends what `{x:?}` gives: as [`push_plain`], with a point in whole numbers, and with an exponent below 1e-4 and from 1e16 on.
 pub fn push_debug(text: &mut String, x: f64) {
     let size = x.abs();
     if let Some(whole) = whole(x) {
         push_whole(text, whole);
         text.push_str(".0");
-    } else if (SMALL..LARGE).contains(&size) && has_one_nearest(x) {
-        push_digits(text, x);
+    } else if (10.0 * SMALL..LARGE).contains(&size) && has_one_nearest(x) {
+        text.push_str(zmij::Buffer::new().format_finite(x));
     } else {
         // Writing into a String cannot fail.
         let done = write!(text, "{x:?}");
