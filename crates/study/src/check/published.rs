@@ -8,11 +8,15 @@ use super::{COMMON, embedded_rows};
 pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
     let quoted = [subject, cycle].map(|word| format!("\"{word}\""));
     let is_about = |row: &&str| {
-        let mut lines = row.lines().filter(|line| line.starts_with("about = "));
+        let mut lines = row
+            .split(ABOUT)
+            .skip(1)
+            .filter_map(|rest| rest.lines().next());
         lines.any(|line| quoted.iter().all(|word| line.contains(word.as_str())))
     };
     let files: Vec<(&str, Vec<&str>)> = embedded_rows()
         .iter()
+        .filter(|(_, text)| text.contains(ABOUT))
         .map(|(name, text)| (*name, text.split(ROW).filter(is_about).collect()))
         .filter(|(_, rows): &(_, Vec<&str>)| !rows.is_empty())
         .collect();
@@ -38,6 +42,8 @@ pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
     .collect()
 }
 
+/// The beginning of the line that says which run a row is about.
+const ABOUT: &str = "\nabout = ";
 /// The beginning of a row.
 const ROW: &str = "\n[[row]]\n";
 /// The beginning of a tolerance or a source.
