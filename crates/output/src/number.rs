@@ -18,6 +18,10 @@ const MANY_FIGURES: f64 = 1e15;
 pub fn push_exact(text: &mut String, x: f64) {
     let x = x + 0.0;
     let size = x.abs();
+    if let Some(whole) = whole(x) {
+        push_whole(text, whole);
+        return;
+    }
     if has_one_nearest(x) {
         push_digits(text, x);
         return;
@@ -32,12 +36,51 @@ pub fn push_exact(text: &mut String, x: f64) {
 
 /// Appends what `{x}` gives: the shortest decimal that reads back to the same number, without an exponent.
 pub fn push_plain(text: &mut String, x: f64) {
+    if let Some(whole) = whole(x) {
+        push_whole(text, whole);
+        return;
+    }
     if x.abs() >= SMALL && has_one_nearest(x) {
         push_digits(text, x);
         return;
     }
     let done = write!(text, "{x}");
     debug_assert!(done.is_ok());
+}
+
+/// Appends what `{x:?}` gives: as [`push_plain`], with a point in whole numbers, and with an exponent below 1e-4 and from 1e16 on.
+pub fn push_debug(text: &mut String, x: f64) {
+    let size = x.abs();
+    if let Some(whole) = whole(x) {
+        push_whole(text, whole);
+        text.push_str(".0");
+    } else if (10.0 * SMALL..LARGE).contains(&size) && has_one_nearest(x) {
+        text.push_str(zmij::Buffer::new().format_finite(x));
+    } else {
+        // Writing into a String cannot fail.
+        let done = write!(text, "{x:?}");
+        debug_assert!(done.is_ok());
+    }
+}
+
+/// A number that is whole, not negative and not too large; none for a zero with a sign.
+fn whole(x: f64) -> Option<u32> {
+    let whole = x as u32;
+    (f64::from(whole).to_bits() == x.to_bits()).then_some(whole)
+}
+
+fn push_whole(text: &mut String, mut whole: u32) {
+    let mut digits = [b'0'; 10];
+    let mut at = digits.len();
+    loop {
+        at -= 1;
+        digits[at] += (whole % 10) as u8;
+        whole /= 10;
+        if whole == 0 {
+            break;
+        }
+    }
+    text.extend(digits[at..].iter().map(|digit| char::from(*digit)));
 }
 
 /// Whether no two shortest decimals can be equally near to a number: of these `zmij` takes the even one and the standard library the larger. A number that
@@ -133,8 +176,22 @@ mod tests {
     /// Truth: the standard library's own digits. The numbers are all bit patterns in turn, then those of tables: few decimals, any size.
     #[test]
     fn the_digits_are_those_of_the_standard_library() {
-        let ends = [0.0, -0.0, 1.0, SMALL, LARGE, 5e-324, f64::MAX, f64::NAN];
-        let ends = ends.into_iter().flat_map(|x: f64| [x, -x, x.next_down()]);
+        let ends = [
+            0.0,
+            -0.0,
+            1.0,
+            10.0,
+            1e9,
+            4_294_967_295.0,
+            SMALL,
+            LARGE,
+            5e-324,
+            f64::MAX,
+            f64::NAN,
+        ];
+        let ends = ends
+            .into_iter()
+            .flat_map(|x: f64| [x, -x, x.next_down(), x + 1.0]);
         let bits = |k: u64| k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let any = (0..200_000).map(|k| f64::from_bits(bits(k)));
         let sized = |k: u64| (bits(k) >> 40) as f64 * 10_f64.powi((k % 40) as i32 - 24);
@@ -146,6 +203,9 @@ mod tests {
             push_exact(&mut text, x);
             push_plain(&mut plain, x);
             assert_eq!(plain, format!("{x}"));
+            plain.clear();
+            push_debug(&mut plain, x);
+            assert_eq!(plain, format!("{x:?}"));
             let size = x.abs();
             let with_exponent = size > 0.0 && size.is_finite() && !(SMALL..LARGE).contains(&size);
             match with_exponent {

@@ -1,7 +1,7 @@
 //! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
 
 use crate::files::{hex, sha256};
-use crate::number::{finite, push_plain};
+use crate::number::{finite, push_debug, push_plain};
 use crate::record::{
     CarRecord, Change, CycleRecord, FileRecord, FuelMapRecord, SpeedLine, ValueRecord,
 };
@@ -77,11 +77,24 @@ fn cycle_text(cycle: &Cycle) -> String {
             text += if row.engine_off { "1\n" } else { "0\n" };
         }
         for (column, commands) in trace.gear_columns() {
-            let commands: Vec<String> = commands.iter().map(GearCommand::to_string).collect();
-            text += &format!("{column} = {}\n", commands.join(","));
+            text += &format!("{column} = ");
+            for (k, command) in commands.iter().enumerate() {
+                text += if k > 0 { "," } else { "" };
+                push_command(&mut text, *command);
+            }
+            text.push('\n');
         }
     }
     text
+}
+
+/// Appends a command as its `Display` has it, without the cost of formatting for the commonest.
+fn push_command(text: &mut String, command: GearCommand) {
+    match command {
+        GearCommand::InGear(gear @ 0..=9) => text.push(char::from(b'0' + gear)),
+        GearCommand::Neutral => text.push_str("0 PM"),
+        _ => text.push_str(&command.to_string()),
+    }
 }
 
 /// Hash of a whole checked car: of the text of its values and maps.
@@ -96,9 +109,16 @@ fn car_text(setup: &Setup) -> String {
         let names = info.key.starts_with("vehicle.") || info.key.ends_with(".title");
         !names && !info.value.is_empty()
     };
-    let line = |info: &KeyInfo| match info.si {
-        Some(si) => format!("{} = {si:?}\n", info.key),
-        None => format!("{} = {}\n", info.key, info.value),
+    let line = |info: &KeyInfo| {
+        let mut line = String::with_capacity(info.key.len() + info.value.len() + 32);
+        line += &info.key;
+        line += " = ";
+        match info.si {
+            Some(si) => push_debug(&mut line, si),
+            None => line += &info.value,
+        }
+        line.push('\n');
+        line
     };
     let mut lines: Vec<String> = setup.keys.iter().filter(is_value).map(line).collect();
     lines.sort_unstable();
@@ -174,6 +194,12 @@ fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, 
         formulation: options.formulation,
         ..Options::default()
     };
+    if setup.origin.is_shipped {
+        return Ok(Reference {
+            same: setup.keys.len(),
+            setup: setup.clone(),
+        });
+    }
     let names = embedded_vehicles().iter().map(|(name, _)| *name);
     let names = names.filter(|name| is_path(word) || is_twin(word) || *name == word);
     let mut best: Option<Reference> = None;

@@ -1,11 +1,15 @@
 //! The files of a run: traces, plots, and the inputs that it was made from. A report is made of them.
 
+use std::io::Write;
+
+use rayon::prelude::*;
+
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::drive::{Conditions, fuel_map};
 use cvtcycle_output::History;
-use cvtcycle_output::files::{OutputDir, Sums};
+use cvtcycle_output::files::{FileWriter, OutputDir, Sums};
 use cvtcycle_output::provenance::{car_record, cycle_record};
 use cvtcycle_output::record::{Manifest, Record, SCHEMA};
 use cvtcycle_output::summary::{Driven, Summary};
@@ -13,7 +17,7 @@ use cvtcycle_output::trace::{columns_for, write_trace};
 use cvtcycle_study::sensitivity::{Named, sensitivity};
 use cvtcycle_study::store::write_trace_parquet;
 
-use crate::charts::{self, PlotRun};
+use crate::charts::{self, Picture, PlotRun};
 
 /// Formats of the traces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,48 +54,65 @@ pub fn write(
         true => std::slice::from_ref(&cycle.name),
         false => &cycle.phases,
     };
-    let histories = driven.iter().map(|car| {
+    let histories = driven.par_iter().map(|car| {
         let transmission = car.setup.transmission();
         let columns = columns_for(transmission.is_cvt(), &transmission.components());
         let history = History::of(&car.outcome.rows, &columns, phases);
-        (columns, history)
+        (columns, history, fuel_map(car.setup))
     });
     let histories: Vec<_> = histories.collect();
-    let mut runs = Vec::new();
-    for ((car, run), (columns, history)) in driven.iter().zip(&summary.runs).zip(&histories) {
+    let plots = driven.iter().zip(&summary.runs).zip(&histories);
+    let plots = plots.map(|((car, run), (_, history, fuel_map))| PlotRun {
+        name: car.name,
+        history,
+        fuel_map: Some(fuel_map.clone()),
+        group_fuel: charts::group_fuel(run),
+    });
+    let plots: Vec<PlotRun> = plots.collect();
+    let mut files: Vec<(String, FileWriter)> = Vec::new();
+    for ((car, plot), (columns, ..)) in driven.iter().zip(&plots).zip(&histories) {
         let (name, rows) = (car.name, &car.outcome.rows);
         if format != TraceFormat::Parquet {
-            dir.write(&format!("trace_{name}.csv"), |out| {
-                write_trace(out, columns, rows, phases)
-            })?;
+            let write = |out: &mut (dyn Write + Send)| write_trace(out, columns, rows, phases);
+            files.push((format!("trace_{name}.csv"), Box::new(write)));
         }
         if format != TraceFormat::Csv {
-            dir.write(&format!("trace_{name}.parquet"), |out| {
-                write_trace_parquet(out, columns, rows, phases, &summary.manifest.run)
-            })?;
+            let run = &summary.manifest.run;
+            let write = move |out: &mut (dyn Write + Send)| {
+                write_trace_parquet(out, columns, rows, phases, run)
+            };
+            files.push((format!("trace_{name}.parquet"), Box::new(write)));
         }
-        let plot = PlotRun {
-            name,
-            history,
-            fuel_map: Some(fuel_map(car.setup)),
-            group_fuel: charts::group_fuel(run),
-        };
-        let pressure = history
-            .is_cvt()
-            .then(|| ("pressure", charts::pressure(&plot)));
-        let plots = [
-            Some(("driveline", charts::driveline(&plot))),
-            pressure,
-            Some(("temperatures", charts::temperatures(&plot))),
-            Some(("losses", charts::losses(&plot))),
-            Some(("operating_points", charts::operating_points(&plot))),
-        ];
-        for (kind, picture) in plots.into_iter().flatten() {
-            dir.put(&format!("{kind}_{name}.svg"), picture.svg)?;
+        for (kind, picture) in PLOTS {
+            if kind == "pressure" && !plot.history.is_cvt() {
+                continue;
+            }
+            let file = format!("{kind}_{name}.svg");
+            files.push((file, svg(move || picture(plot))));
         }
-        runs.push(plot);
     }
-    dir.put("fuel_comparison.svg", charts::fuel_bars(&runs).svg)
+    files.push((
+        "fuel_comparison.svg".to_owned(),
+        svg(|| charts::fuel_bars(&plots)),
+    ));
+    dir.write_all(files)
+}
+
+/// Makes the picture of a run.
+type Plot = fn(&PlotRun) -> Picture;
+
+/// The pictures of a run; that of the pressure of a CVT alone.
+const PLOTS: [(&str, Plot); 5] = [
+    ("driveline", charts::driveline),
+    ("pressure", charts::pressure),
+    ("temperatures", charts::temperatures),
+    ("losses", charts::losses),
+    ("operating_points", charts::operating_points),
+];
+
+/// Writes a picture that is made when its file is.
+fn svg<'a>(picture: impl FnOnce() -> Picture + Send + 'a) -> FileWriter<'a> {
+    Box::new(move |out| out.write_all(picture().svg.as_bytes()))
 }
 
 /// Inputs of a run: the words that made it, its cars, and with `sensitive` the effect of each value of each car.
@@ -106,7 +127,7 @@ pub fn record(
     sensitive: bool,
 ) -> Result<Record, Problems> {
     let records = cars
-        .iter()
+        .par_iter()
         .map(|(car, setup)| car_record(&car.name, &car.word, &car.options, setup));
     let named: Vec<Named> = cars.iter().map(|(car, _)| car.clone()).collect();
     Ok(Record {

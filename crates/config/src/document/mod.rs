@@ -256,7 +256,10 @@ impl Document {
         match self.parent(span) {
             _ if span.is_set() => "override".to_owned(),
             Some(parent) => parent.from.clone(),
-            None => format!("line {}", self.place(span).line),
+            None => {
+                let line = self.sources[span.source].line_number(&span.range);
+                format!("line {line}")
+            }
         }
     }
 

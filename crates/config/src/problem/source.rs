@@ -77,6 +77,14 @@ impl Source {
         }
     }
 
+    /// Line of that place, 0 where the input has none.
+    pub fn line_number(&self, range: &Range<usize>) -> usize {
+        match self.input {
+            Input::File(_) => self.line(self.clamp(range.start)) + 1,
+            _ => 0,
+        }
+    }
+
     /// Number of line ends before a byte; looked up, since a file may have as many problems as lines.
     fn line(&self, at: usize) -> usize {
         let newlines = || {

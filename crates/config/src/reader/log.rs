@@ -85,20 +85,18 @@ impl Log {
 /// Dotted path of an entry; names with unusual characters are quoted, so that a dot within a name
 /// does not look like a table.
 pub(crate) fn join(path: &str, name: &str) -> String {
-    let bare = !name.is_empty()
-        && name
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-');
-    let name = if bare {
-        name.to_string()
-    } else {
-        format!("{name:?}")
-    };
-    if path.is_empty() {
-        name
-    } else {
-        format!("{path}.{name}")
+    let mut joined = String::with_capacity(path.len() + name.len() + 1);
+    if !path.is_empty() {
+        joined += path;
+        joined.push('.');
     }
+    let is_bare = |b: u8| b.is_ascii_alphanumeric() || b == b'_' || b == b'-';
+    if !name.is_empty() && name.bytes().all(is_bare) {
+        joined += name;
+    } else {
+        joined += &format!("{name:?}");
+    }
+    joined
 }
 
 pub(crate) fn last(path: &str) -> &str {

@@ -38,6 +38,8 @@ pub(super) struct Inputs {
     pub frame: Arc<Frame>,
     /// In the order of [`Target::CAR`].
     pub files: [CarFile; 3],
+    /// A car of the program's own, with nothing changed.
+    is_shipped: bool,
 }
 
 /// What a reading of a car's documents needs besides them.
@@ -61,7 +63,11 @@ impl Inputs {
     pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
         let is_twin = is_twin(word);
-        Inputs::of(&file, &text, Box::new(disk), options, is_twin)
+        let inputs = Inputs::of(&file, &text, Box::new(disk), options, is_twin)?;
+        Ok(Inputs {
+            is_shipped: !is_twin && !is_path(word) && options.change_nothing(),
+            ..inputs
+        })
     }
 
     /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
@@ -131,6 +137,7 @@ impl Inputs {
         Ok(Inputs {
             frame: Arc::new(frame),
             files: [vehicle, oil, engine_oil],
+            is_shipped: false,
         })
     }
 
@@ -139,6 +146,7 @@ impl Inputs {
         Inputs {
             frame: Arc::clone(&self.frame),
             files,
+            is_shipped: false,
         }
     }
 
@@ -193,6 +201,7 @@ impl Inputs {
                 .map(|source| (source.input.to_string(), source.text.clone()))
                 .collect(),
             fluids: self.frame.fluids.clone(),
+            is_shipped: self.is_shipped,
         }
     }
 }
@@ -413,6 +422,8 @@ impl Read {
 pub(super) struct Anew {
     road_load: bool,
     engine: bool,
+    transmission: bool,
+    thermal: bool,
     /// Any other table of the vehicle's file.
     vehicle: bool,
     oil: bool,
@@ -428,14 +439,25 @@ impl Anew {
             (Target::EngineOil, _) => &mut self.engine_oil,
             (_, ROAD_LOAD) => &mut self.road_load,
             (_, ENGINE) => &mut self.engine,
+            (_, TRANSMISSION) => &mut self.transmission,
+            (_, THERMAL) => &mut self.thermal,
             _ => &mut self.vehicle,
         };
         *part = true;
     }
 
-    /// Whether the driveline and the thermal network have other values: the oil fills them, and the engine limits the control.
+    /// Whether the thermal network has other values, which the oil fills.
+    fn network(&self) -> bool {
+        self.vehicle || self.thermal || self.oil
+    }
+
+    /// Whether the transmission has other values than the oil in the sump: the same oil is in it, and the engine limits the control.
+    fn transmission(&self) -> bool {
+        self.vehicle || self.transmission || self.engine || self.oil
+    }
+
     fn driveline(&self) -> bool {
-        self.vehicle || self.oil || self.engine
+        self.network() || self.transmission()
     }
 }
 
@@ -456,6 +478,8 @@ fn kept<'e>(earlier: Option<&Earlier<'e>>, is_new: impl Fn(&Anew) -> bool) -> Op
 /// Tables of a vehicle's file that are a part of the car by themselves.
 const ROAD_LOAD: &str = "road_load";
 const ENGINE: &str = "engine";
+const TRANSMISSION: &str = "transmission";
+const THERMAL: &str = "thermal";
 
 /// What the `[vehicle]` table says.
 #[derive(Clone, Debug)]
@@ -501,7 +525,7 @@ pub(super) fn parts<V: Values>(
     };
     let (network, transmission) = match kept(earlier, Anew::driveline) {
         Some(of) => (of.car.network.clone(), of.car.transmission.clone()),
-        None => driveline(root, &engine, &oil, formulation),
+        None => driveline(root, &engine, &oil, formulation, earlier),
     };
     let belt_heat_share = match &transmission {
         Transmission::Cvt(cvt) => cvt.belt_heat_share,
@@ -528,20 +552,23 @@ fn driveline<V: Values>(
     engine: &Engine,
     oil: &Lubricant,
     formulation: Formulation,
+    earlier: Option<&Earlier<'_>>,
 ) -> (Network, Transmission) {
     let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
+    let network = match kept(earlier, Anew::network) {
+        Some(of) => of.car.network.clone(),
+        None => Network::from_values(&root.table(THERMAL), kind == "cvt", oil),
+    };
     // The gears of the transmission turn in the oil of the network's sump.
-    let network = Network::from_values(&root.table("thermal"), kind == "cvt", oil);
-    let transmission = match kind {
-        "cvt" => {
-            let filled = (oil, network.sump_oil_m3);
-            let cvt = Cvt::from_values(&section, engine, filled, formulation);
+    let sump_oil_m3 = network.sump_oil_m3;
+    let as_full = |of: &&Read| of.car.network.sump_oil_m3.to_bits() == sump_oil_m3.to_bits();
+    let transmission = match kept(earlier, Anew::transmission).filter(as_full) {
+        Some(of) => of.car.transmission.clone(),
+        None if kind == "cvt" => {
+            let cvt = Cvt::from_values(&section, engine, (oil, sump_oil_m3), formulation);
             Transmission::Cvt(Box::new(cvt))
         }
-        _ => {
-            let manual = Manual::from_values(&section, network.sump_oil_m3);
-            Transmission::Manual(Box::new(manual))
-        }
+        None => Transmission::Manual(Box::new(Manual::from_values(&section, sump_oil_m3))),
     };
     (network, transmission)
 }

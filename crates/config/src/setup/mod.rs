@@ -83,6 +83,8 @@ pub struct Origin {
     pub parents: Vec<(String, String)>,
     /// Name or path of transmission oil and engine oil.
     pub fluids: [String; 2],
+    /// Whether the program carries all of its files, and nothing else was asked for.
+    pub is_shipped: bool,
 }
 
 impl Setup {
@@ -194,6 +196,14 @@ pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, D
 pub const TWIN: &str = "twin";
 
 impl Options {
+    /// Whether they change nothing of a car.
+    #[must_use]
+    pub fn change_nothing(&self) -> bool {
+        let own = Options::default();
+        let files = self.lubricant.is_none() && self.engine_oil.is_none();
+        files && self.set.is_empty() && self.formulation == own.formulation
+    }
+
     /// Those of the twin of a car with these: it has another transmission oil, and all else of the car.
     #[must_use]
     pub fn of_twin(&self, named_by: NamedBy) -> Options {

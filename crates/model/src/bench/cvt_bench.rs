@@ -91,6 +91,8 @@ struct OnBench<'a> {
     point: &'a BenchPoint,
     line: Driveline<'a>,
     printed: bool,
+    /// The belt at its temperature, where that is held.
+    held: Option<BeltLoad>,
 }
 
 /// One pass with the result of the pass before.
@@ -106,14 +108,27 @@ struct Pass {
     inside_maps: bool,
 }
 
-/// Solves one operating point of a CVT.
-pub(super) fn solve(car: &Car, cvt: &Cvt, point: &BenchPoint, printed: bool) -> BenchAnswer {
-    let at = BeltAtRatio::new(&cvt.belt, point.ratio);
+/// The belt at a temperature, K, without torque and clamping force.
+fn turning(car: &Car, cvt: &Cvt, point: &BenchPoint, belt_k: f64) -> BeltLoad {
+    let (ratio, primary_rad_s) = (point.ratio, point.input_rad_s);
+    BeltLoad::turning(&cvt.belt, &car.oil, belt_k, ratio, primary_rad_s)
+}
+
+/// Solves one operating point of a CVT, whose belt is at the ratio of the point.
+pub(super) fn solve(
+    car: &Car,
+    cvt: &Cvt,
+    at: &BeltAtRatio,
+    point: &BenchPoint,
+    printed: bool,
+) -> BenchAnswer {
+    let turning = |belt_k| turning(car, cvt, point, belt_k);
     let this = OnBench {
         car,
         point,
         printed,
-        line: Driveline::new(cvt, &at, &car.oil, point.sump_k, point.parts),
+        line: Driveline::new(cvt, at, &car.oil, point.sump_k, point.parts),
+        held: point.belt_k.map(turning),
     };
     let mut unknown = Unknown {
         slip: 0.0,
@@ -238,10 +253,11 @@ impl OnBench<'_> {
 
     fn load(&self, u: &Unknown, output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         let (cvt, p) = (self.line.cvt, self.point);
+        let turning = || turning(self.car, cvt, p, u.belt_k);
         BeltLoad {
             output_torque_nm,
             secondary_clamp_n,
-            ..BeltLoad::turning(&cvt.belt, &self.car.oil, u.belt_k, p.ratio, p.input_rad_s)
+            ..self.held.unwrap_or_else(turning)
         }
     }
 

@@ -17,7 +17,7 @@ use crate::fluid::VALID_K;
 use crate::transmission::Transmission;
 use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
-use crate::transmission::cvt::variator::Formulation;
+use crate::transmission::cvt::variator::{BeltAtRatio, Formulation};
 use crate::transmission::manual::Manual;
 
 /// A transmission on the bench.
@@ -72,9 +72,17 @@ impl Bench {
 
     /// Solves one operating point.
     pub fn solve(&self, p: &BenchPoint) -> BenchAnswer {
-        match &self.car.transmission {
-            Transmission::Cvt(cvt) => cvt_bench::solve(&self.car, cvt, p, self.printed),
-            Transmission::Manual(manual) => self.solve_manual(manual, p),
+        self.at_ratio(p.ratio).solve(p)
+    }
+
+    /// The bench at a belt ratio, or with a gear engaged.
+    pub fn at_ratio(&self, ratio: f64) -> AtRatio<'_> {
+        AtRatio {
+            bench: self,
+            ratio,
+            belt: self
+                .cvt()
+                .map(|cvt| (cvt, BeltAtRatio::new(&cvt.belt, ratio))),
         }
     }
 
@@ -108,5 +116,50 @@ impl Bench {
             oil_flow_m3_s: 0.0,
             flags,
         }
+    }
+}
+
+/// A bench at one ratio: what depends on nothing else is known.
+#[derive(Clone, Debug)]
+pub struct AtRatio<'a> {
+    bench: &'a Bench,
+    ratio: f64,
+    /// The CVT and its belt, if it is one.
+    belt: Option<(&'a Cvt, BeltAtRatio)>,
+}
+
+impl AtRatio<'_> {
+    /// Solves one operating point, at this ratio whatever its own is.
+    pub fn solve(&self, p: &BenchPoint) -> BenchAnswer {
+        let (bench, ratio) = (self.bench, self.ratio);
+        let p = BenchPoint { ratio, ..*p };
+        match (&self.belt, &bench.car.transmission) {
+            (Some((cvt, at)), _) => cvt_bench::solve(&bench.car, cvt, at, &p, bench.printed),
+            (None, Transmission::Manual(manual)) => bench.solve_manual(manual, &p),
+            (None, Transmission::Cvt(_)) => unreachable!("a CVT has a belt"),
+        }
+    }
+}
+
+/// A bench that keeps its ratio from point to point.
+#[derive(Clone, Debug)]
+pub struct KeptRatio<'a> {
+    at: AtRatio<'a>,
+}
+
+impl<'a> KeptRatio<'a> {
+    /// The bench at a first ratio.
+    pub fn new(bench: &'a Bench, ratio: f64) -> Self {
+        KeptRatio {
+            at: bench.at_ratio(ratio),
+        }
+    }
+
+    /// The bench at a ratio.
+    pub fn at(&mut self, ratio: f64) -> &AtRatio<'a> {
+        if self.at.ratio.to_bits() != ratio.to_bits() {
+            self.at = self.at.bench.at_ratio(ratio);
+        }
+        &self.at
     }
 }

@@ -35,8 +35,9 @@ impl Bench {
             throttle,
             ..*point
         };
+        let bench = self.at_ratio(point.ratio);
         for _ in 0..MAX_PASSES {
-            let miss = self.solve(&found).input_nm - wanted_nm;
+            let miss = bench.solve(&found).input_nm - wanted_nm;
             if miss.abs() <= MET * (1.0 + wanted_nm.abs()) {
                 break;
             }

@@ -11,6 +11,6 @@ pub mod transmission;
 pub mod variator;
 
 pub use crate::transmission::cvt::Parts;
-pub use held_point::Bench;
+pub use held_point::{AtRatio, Bench, KeptRatio};
 pub use limits::solvable_ratios;
 pub use point::{BenchAnswer, BenchPoint};

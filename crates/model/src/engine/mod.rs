@@ -28,6 +28,7 @@ pub use start_stop::StartStop;
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
+use std::cell::RefCell;
 
 /// Fuel power up to which none is burnt, W: a car whose demand is just the engine's own drag has some 1e-12 W of rounding, and a second of cut fuel would depend on the last bit.
 const NO_FUEL_W: f64 = 1e-3;
@@ -41,6 +42,11 @@ const SAME_DRAG: f64 = 1.0 + 1e-4;
 const LEAST_FULL_LOAD: f64 = 0.02;
 /// Highest temperature of the coolant, K: a half-and-half mix of water and glycol boils at 129 degC with 1 bar over ambient.
 pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
+
+thread_local! {
+    /// Bits of idle and highest speed, full-load line, and what [`Engine::speed_for_power`] makes of them.
+    static ROUTE: RefCell<Option<([u64; 2], Curve, Curve)>> = const { RefCell::new(None) };
+}
 
 /// The checked engine.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,8 +195,21 @@ impl Engine {
             .map_or(self.highest_rad_s, |p| p.1)
     }
 
-    /// Lowest speed, on a fine grid, at which full load gives a power; as a curve power W to speed rad/s.
+    /// Lowest speed, on a fine grid, at which full load gives a power; as a curve power W to speed rad/s. The last one of the thread is kept:
+    /// cars of a study that differ in other parts have it in common.
     pub fn speed_for_power(&self) -> Curve {
+        let ends = [self.idle_hot_rad_s, self.highest_rad_s].map(f64::to_bits);
+        ROUTE.with_borrow_mut(|kept| match kept {
+            Some((of, line, route)) if *of == ends && *line == self.full_load => route.clone(),
+            _ => {
+                let route = self.route();
+                *kept = Some((ends, self.full_load.clone(), route.clone()));
+                route
+            }
+        })
+    }
+
+    fn route(&self) -> Curve {
         let lo = self.idle_hot_rad_s;
         let mut points: Vec<(f64, f64)> = vec![(0.0, lo)];
         let mut best = 0.0;

@@ -12,7 +12,7 @@ use tempfile::NamedTempFile;
 use cvtcycle_config::{Argument, Problem, Setting};
 
 pub use lock::{DirLock, sync_directory};
-pub use set::{FileSet, complete, settle};
+pub use set::{FileSet, FileWriter, complete, settle};
 pub use sum::{Sum, Summing, Sums, hex, sha256, sum_of};
 
 /// The files that mark a directory as one of an earlier run or calibration.
@@ -87,10 +87,28 @@ impl OutputDir {
         name: &str,
         f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
     ) -> Result<(), Problem> {
-        self.check_name(name)?;
+        self.check_name(name, &[])?;
         let written = self.set.write(Path::new(name), f);
         let sum = written.map_err(|error| self.cannot_write(name, &error))?;
         self.sums.insert(name.to_owned(), hex(&sum));
+        Ok(())
+    }
+
+    /// Writes several files, each as [`OutputDir::write`] does, at the same time. They are listed in this order, whichever is ready first.
+    ///
+    /// # Errors
+    /// As there, of the first file in this order.
+    pub fn write_all(&mut self, files: Vec<(String, FileWriter)>) -> Result<(), Problem> {
+        let (names, writers): (Vec<String>, Vec<FileWriter>) = files.into_iter().unzip();
+        for (k, name) in names.iter().enumerate() {
+            self.check_name(name, &names[..k])?;
+        }
+        let paths = names.iter().map(Path::new);
+        let written = self.set.write_all(paths.zip(writers).collect());
+        for (name, sum) in names.into_iter().zip(written) {
+            let sum = sum.map_err(|error| self.cannot_write(&name, &error))?;
+            self.sums.insert(name, hex(&sum));
+        }
         Ok(())
     }
 
@@ -132,7 +150,8 @@ impl OutputDir {
         Ok(paths)
     }
 
-    fn check_name(&self, name: &str) -> Result<(), Problem> {
+    /// Checks the name of a file that is not yet one of the set, after others that are not either.
+    fn check_name(&self, name: &str, others: &[String]) -> Result<(), Problem> {
         if !set::is_plain_name(name) || name.contains(['/', '\\', ':']) {
             let message = format!("`{name}` cannot be the name of an output file");
             let hint = "rename the vehicle or cycle that gives the file its name";
@@ -141,7 +160,8 @@ impl OutputDir {
         // Not all file systems tell upper from lower case.
         let lower = name.to_lowercase();
         let is_same = |other: &Path| other.to_string_lossy().to_lowercase() == lower;
-        if self.set.names().any(is_same) {
+        let mut names = self.set.names().chain(others.iter().map(Path::new));
+        if names.any(is_same) {
             let message = format!("two files of the run would be named {name}");
             let hint = "give every vehicle of the run a name of its own";
             return Err(problem(&self.path, &message, hint));

@@ -8,6 +8,7 @@ use std::fs;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use cvtcycle_config::bounded;
@@ -32,6 +33,9 @@ pub struct FileSet {
     // Last: the files go while no other process may write.
     lock: DirLock,
 }
+
+/// Writes the contents of a file.
+pub type FileWriter<'a> = Box<dyn FnOnce(&mut (dyn Write + Send)) -> io::Result<()> + Send + 'a>;
 
 /// A file that could not be put into place, and why.
 type Unplaced = (PathBuf, io::Error);
@@ -88,6 +92,19 @@ impl FileSet {
         let (temporary, sum) = self.temporary(f)?;
         self.files.push((temporary, name.to_path_buf()));
         Ok(sum)
+    }
+
+    /// The same for several files, at the same time; checksums in their order.
+    pub fn write_all(&mut self, files: Vec<(&Path, FileWriter)>) -> Vec<io::Result<Sum>> {
+        let this = &*self;
+        let written = files.into_par_iter();
+        let written: Vec<_> = written.map(|(name, f)| (name, this.temporary(f))).collect();
+        let mut keep = |(name, written): (&Path, io::Result<(PathBuf, Sum)>)| {
+            let (temporary, sum) = written?;
+            self.files.push((temporary, name.to_path_buf()));
+            Ok(sum)
+        };
+        written.into_iter().map(&mut keep).collect()
     }
 
     /// Lets an earlier file go with the commit.

@@ -8,6 +8,7 @@ use super::source::{Kind, Source};
 use super::tables;
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
+use cvtcycle_config::setup::catalogue;
 use cvtcycle_config::{Place, Problem, Section};
 use cvtcycle_model::keys::{Key, Values};
 
@@ -173,8 +174,6 @@ pub fn complete(s: &Section, row: &ValidationRow) {
 pub struct FileNames<'a> {
     /// Sources of computed values.
     pub sources: &'a [Source],
-    /// Keys of the vehicle files.
-    pub keys: &'a [String],
 }
 
 impl Names for FileNames<'_> {
@@ -190,7 +189,7 @@ impl Names for FileNames<'_> {
     }
 
     fn keys(&self) -> &[String] {
-        self.keys
+        catalogue::known_names()
     }
 }
 

@@ -3,13 +3,13 @@
 use std::collections::HashMap;
 
 use super::checks::{FileNames, complete, expression, printed};
+use super::expr::Names;
 use super::keys::{ABOUT, CAUSE, FILE, ROW, TOLERANCE};
 use super::rows::{About, Cause, RowFile, Tolerance, ValidationRow};
 use super::rule::{Group, Printed, Verdict};
 use super::source::{self, Source};
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
-use cvtcycle_config::setup::catalogue;
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::Values;
@@ -104,7 +104,6 @@ fn file(
         tolerances: &read.tolerances,
         names: FileNames {
             sources: &read.sources,
-            keys: catalogue::known_names(),
         },
     };
     for document in &rows {
@@ -255,8 +254,9 @@ impl Head<'_> {
 
     fn fitted(&self, s: &Section) -> Vec<String> {
         let keys = s.texts(&ROW.fitted_to);
-        for key in keys.iter().filter(|key| !self.names.keys.contains(key)) {
-            let known = self.names.keys.iter().map(String::as_str);
+        let known = || self.names.keys();
+        for key in keys.iter().filter(|key| !known().contains(key)) {
+            let known = known().iter().map(String::as_str);
             let hint = did_you_mean(key, known).unwrap_or_default();
             let message = format!("there is no parameter `{key}`");
             let allowed = "keys of a vehicle or lubricant";

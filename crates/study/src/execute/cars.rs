@@ -83,7 +83,8 @@ pub struct StudyCar {
     pub(super) bindings: Vec<Binding>,
     /// Of each factor what is done with its value afterwards.
     then: Vec<Vec<Override>>,
-    clip: bool,
+    /// Of each factor the range in which its values are held, where the plan says so.
+    held: Vec<Option<Bound>>,
     options: Options,
     variants: Vec<OnceLock<Result<CarVariant, Problems>>>,
 }
@@ -112,7 +113,7 @@ impl StudyCar {
             idle: Vec::new(),
             bindings: Vec::new(),
             then: vec![Vec::new(); plan.factors.len()],
-            clip: plan.clip,
+            held: held(plan),
             options,
             variants: Vec::new(),
         };
@@ -147,7 +148,7 @@ impl StudyCar {
             idle: Vec::new(),
             bindings: Vec::new(),
             then,
-            clip: plan.clip,
+            held: held(plan),
             options,
             variants: Vec::new(),
         };
@@ -217,15 +218,9 @@ impl StudyCar {
     }
 
     /// As [`StudyCar::drawn`], held in the range of the key where the plan says so.
-    pub(super) fn resolved(
-        &self,
-        (index, factor): (usize, &Factor),
-        acts: Acts,
-        base: f64,
-        number: f64,
-    ) -> f64 {
-        let value = self.drawn(index, acts, base, number);
-        match bound_of(factor).filter(|_| self.clip) {
+    pub(super) fn resolved(&self, factor: usize, acts: Acts, base: f64, number: f64) -> f64 {
+        let value = self.drawn(factor, acts, base, number);
+        match self.held[factor] {
             Some(bound) => clipped(value, bound),
             None => value,
         }
@@ -344,6 +339,12 @@ fn options(base: &Base, subject: bool) -> Options {
         formulation: base.formulation,
         named_by: NamedBy::File,
     }
+}
+
+fn held(plan: &Plan) -> Vec<Option<Bound>> {
+    let factors = plan.factors.iter();
+    let held = factors.map(|factor| bound_of(factor).filter(|_| plan.clip));
+    held.collect()
 }
 
 /// Range of the numbers of a factor's key, in its unit.

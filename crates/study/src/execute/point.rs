@@ -292,10 +292,9 @@ impl CarAtPoint<'_> {
     fn resolve(&self, f: usize, base: Option<f64>) -> Option<FactorValue> {
         let value = self.values[f].as_ref();
         let own = &self.study.plan.base;
-        let factor = (f, &self.study.plan.factors[f]);
         let number = |acts: Acts, base: f64| match value {
             Some(FactorValue::Number(x)) => {
-                FactorValue::Number(self.car.resolved(factor, acts, base, *x))
+                FactorValue::Number(self.car.resolved(f, acts, base, *x))
             }
             Some(word) => word.clone(),
             None => FactorValue::Number(base),

@@ -1,7 +1,7 @@
 //! Steady tests: torque loss and secondary pressure at held speed, oil temperature, ratio and load (thesis 5.3.1, 5.3.4).
 
 use super::conditions::Conditions;
-use crate::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use crate::bench::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 
 /// Which points are tested.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,21 +63,23 @@ pub struct SteadyPoint {
     pub answer: BenchAnswer,
 }
 
-fn solved(bench: &Bench, set: BenchPoint) -> SteadyPoint {
+fn solved(bench: &mut KeptRatio, set: BenchPoint) -> SteadyPoint {
     SteadyPoint {
         set,
-        answer: bench.solve(&set),
+        answer: bench.at(set.ratio).solve(&set),
     }
 }
 
 /// The maps without load, by ratio, then temperature, then speed.
 pub fn steady(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<SteadyPoint> {
-    plan.points(c).map(|p| solved(bench, p)).collect()
+    let mut bench = KeptRatio::new(bench, c.low_ratio);
+    plan.points(c).map(|p| solved(&mut bench, p)).collect()
 }
 
 /// The maps under load, by ratio, then temperature, then output torque, then speed.
 pub fn loaded(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<SteadyPoint> {
     let mut points = Vec::new();
+    let mut bench = KeptRatio::new(bench, c.low_ratio);
     for &ratio in &plan.ratios {
         let speeds = plan.speeds(c, ratio);
         for &sump_k in &plan.oil_k {
@@ -90,7 +92,7 @@ pub fn loaded(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<SteadyPoint> {
                     throttle: c.throttle,
                     ..BenchPoint::default()
                 };
-                points.extend(speeds.iter().map(|w| solved(bench, at(w))));
+                points.extend(speeds.iter().map(|w| solved(&mut bench, at(w))));
             }
         }
     }
@@ -116,10 +118,11 @@ impl TwoBoxes {
 /// The maps without load of both boxes.
 pub fn second_box(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<TwoBoxes> {
     let factor = c.pressure.second_box;
+    let mut bench = KeptRatio::new(bench, c.low_ratio);
     let both = |p: BenchPoint| TwoBoxes {
-        first: solved(bench, p),
+        first: solved(&mut bench, p),
         second: solved(
-            bench,
+            &mut bench,
             BenchPoint {
                 pressure_factor: factor,
                 parts: Parts::ALL,

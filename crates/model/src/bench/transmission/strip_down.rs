@@ -13,7 +13,7 @@
 
 use super::conditions::Conditions;
 use super::steady::Plan;
-use crate::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 use crate::transmission::component::Component;
 
 /// Stages of the sequence.
@@ -182,15 +182,22 @@ pub fn strip_down(bench: &Bench, c: &Conditions, plan: &Plan) -> Vec<StripDown> 
         return Vec::new();
     };
     let displacement_m3_rad = cvt.pump.displacement_m3_rad;
+    let low = bench.at_ratio(c.low_ratio);
+    let mut own = KeptRatio::new(bench, c.low_ratio);
     plan.points(c)
-        .map(|set| sequence(bench, c, set, displacement_m3_rad))
+        .map(|set| sequence([own.at(set.ratio), &low], c, set, displacement_m3_rad))
         .collect()
 }
 
-fn sequence(bench: &Bench, c: &Conditions, set: BenchPoint, displacement_m3_rad: f64) -> StripDown {
-    let at = |stage: Stage, ratio: f64| {
+/// The sequence at a point; on the bench at its ratio, and in low.
+fn sequence(
+    [own, low]: [&AtRatio; 2],
+    c: &Conditions,
+    set: BenchPoint,
+    displacement_m3_rad: f64,
+) -> StripDown {
+    let at = |stage: Stage, bench: &AtRatio| {
         bench.solve(&BenchPoint {
-            ratio,
             parts: stage.parts(),
             pressure_factor: stage.factor(c),
             ..set
@@ -199,16 +206,16 @@ fn sequence(bench: &Bench, c: &Conditions, set: BenchPoint, displacement_m3_rad:
     // After the belt is out, nothing but the pressure knows of the ratio: the clutch is tested in low only (RT-4).
     let ratio_of = |stage: Stage| {
         if (stage as usize) < Stage::ClutchRemoved as usize {
-            set.ratio
+            own
         } else {
-            c.low_ratio
+            low
         }
     };
     let stages = Stage::ALL.map(|stage| at(stage, ratio_of(stage)));
     let [complete, no_drive, no_belt, no_clutch, shaft] = &stages;
-    let low_no_belt = at(Stage::BeltRemoved, c.low_ratio);
+    let low_no_belt = at(Stage::BeltRemoved, low);
     // The belt at the pressure of the second test, but with the final drive's torque.
-    let between = bench.solve(&BenchPoint {
+    let between = own.solve(&BenchPoint {
         pressure_pa: Some(no_drive.secondary_pa),
         ..set
     });

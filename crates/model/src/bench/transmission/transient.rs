@@ -9,7 +9,7 @@
 //! so that heat in = stored + to the air + to the cooler holds to rounding. Nothing drives the output shaft.
 
 use super::conditions::Conditions;
-use crate::bench::{Bench, BenchAnswer, BenchPoint};
+use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint};
 use crate::drive::loss_heat_w;
 use crate::math::exp;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network, SUMP};
@@ -86,45 +86,51 @@ pub struct Loop {
     pub complete: bool,
     /// Whether the sump only warms while warming and only cools while cooling.
     monotone: bool,
+    /// Sump, K, and total loss, Nm, of each second: searched again and again.
+    line: Vec<(f64, f64)>,
+    /// The first second of cooling.
+    cooling: usize,
 }
 
 impl Loop {
     /// Torque loss on a branch at a sump temperature, Nm, between neighbouring seconds; none where the branch does not come by.
     pub fn loss_nm(&self, branch: Branch, sump_k: f64) -> Option<f64> {
-        self.at(branch, sump_k, |m| m.answer.total_nm())
+        let (before, share) = self.passed(branch, sump_k)?;
+        let [(_, from), (_, to)] = [self.line[before], self.line[before + 1]];
+        Some(from + share * (to - from))
     }
 
     /// Anything on a branch at a sump temperature.
     pub fn at(&self, branch: Branch, sump_k: f64, of: impl Fn(&Moment) -> f64) -> Option<f64> {
-        let cooling = self
-            .moments
-            .partition_point(|m| m.branch == Branch::Warming);
-        let on = if branch == Branch::Warming {
-            &self.moments[..cooling]
-        } else {
-            &self.moments[cooling..]
+        let (before, share) = self.passed(branch, sump_k)?;
+        let [from, to] = [&self.moments[before], &self.moments[before + 1]].map(of);
+        Some(from + share * (to - from))
+    }
+
+    /// The second after which a branch first passes a sump temperature, and the share of the next one.
+    fn passed(&self, branch: Branch, sump_k: f64) -> Option<(usize, f64)> {
+        let rising = branch == Branch::Warming;
+        let (first, on) = match rising {
+            true => (0, &self.line[..self.cooling]),
+            false => (self.cooling, &self.line[self.cooling..]),
         };
         // Where the sump goes one way only, the first pair around the temperature is found by bisection.
         let from = if self.monotone {
-            let rising = branch == Branch::Warming;
-            on.partition_point(|m| {
-                if rising {
-                    m.sump_k < sump_k
-                } else {
-                    m.sump_k > sump_k
-                }
-            })
-            .saturating_sub(1)
+            on.partition_point(|(k, _)| if rising { *k < sump_k } else { *k > sump_k })
+                .saturating_sub(1)
         } else {
             0
         };
-        on[from..].windows(2).find_map(|w| {
-            let (a, b) = (w[0].sump_k, w[1].sump_k);
-            let share = (sump_k - a) / (b - a);
-            (0.0..=1.0)
-                .contains(&share)
-                .then(|| of(&w[0]) + share * (of(&w[1]) - of(&w[0])))
-        })
+        on[from..]
+            .windows(2)
+            .zip(from..)
+            .find_map(|(pair, before)| {
+                let (a, b) = (pair[0].0, pair[1].0);
+                let share = (sump_k - a) / (b - a);
+                (0.0..=1.0)
+                    .contains(&share)
+                    .then_some((first + before, share))
+            })
     }
 
     /// Cooling over warming at a sump temperature, Nm.
@@ -202,9 +208,9 @@ pub fn on_the_rig(car: &Network) -> Network {
 /// The rig while a transient runs.
 struct Running<'a> {
     bench: &'a Bench,
+    at_ratio: AtRatio<'a>,
     conditions: &'a Conditions,
     network: Network,
-    ratio: f64,
     heat: Heat,
     time_s: f64,
 }
@@ -216,8 +222,8 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
     let mut running = Running {
         bench,
         conditions,
+        at_ratio: bench.at_ratio(ratio),
         network: on_the_rig(&bench.car().network),
-        ratio,
         heat,
         time_s: 0.0,
     };
@@ -232,14 +238,21 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
         energy: LoopEnergy::default(),
         complete: true,
         monotone: true,
+        line: Vec::new(),
+        cooling: 0,
     };
     for (branch, until_k) in [
         (Branch::Warming, test.end_k),
         (Branch::Cooling, test.start_k),
     ] {
         let began = running.time_s;
+        if branch == Branch::Cooling {
+            result.cooling = result.moments.len();
+        }
         loop {
             let moment = running.moment(branch);
+            let total_nm = moment.answer.total_nm();
+            result.line.push((moment.sump_k, total_nm));
             result.moments.push(moment);
             let there = if branch == Branch::Warming {
                 moment.sump_k >= until_k
@@ -266,7 +279,6 @@ impl Running<'_> {
     fn moment(&self, branch: Branch) -> Moment {
         let t = &self.heat.node_k;
         let point = BenchPoint {
-            ratio: self.ratio,
             input_rad_s: self.conditions.transient.speed_rad_s,
             throttle: self.conditions.throttle,
             sump_k: t[SUMP],
@@ -278,7 +290,7 @@ impl Running<'_> {
             branch,
             sump_k: t[SUMP],
             metal_k: t[METAL],
-            answer: self.bench.solve(&point),
+            answer: self.at_ratio.solve(&point),
         }
     }
 

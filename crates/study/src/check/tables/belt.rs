@@ -1,6 +1,6 @@
 //! The belt alone as a table.
 
-use super::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use super::{Column, Marks, Rows, combinations, numbers, rpm};
 use crate::check::expr::Table;
 use crate::check::source::{Kind, Source};
 use crate::points::{GivenFriction, belt_k, belt_load};
@@ -163,14 +163,17 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         ..cvt.belt.clone()
     };
     let columns = columns();
-    let rows = combinations(&axes).into_iter().map(|x| {
+    let points = combinations(&axes);
+    let mut rows = Rows::new(columns.len(), points.len());
+    for x in points {
         let solved = solve(x, cvt, &belt, setup.oils().0);
-        TableRow {
+        let marks = Marks {
             gross: solved.point.status != PointStatus::Ok,
-            ..TableRow::new(numbers(&columns, &solved))
-        }
-    });
-    Ok(from_rows(columns.len(), rows))
+            ..Marks::default()
+        };
+        rows.add(numbers(&columns, &solved), &marks);
+    }
+    Ok(rows.table())
 }
 
 fn solve(x: Vec<f64>, cvt: &Cvt, belt: &Belt, oil: &Lubricant) -> Solved {

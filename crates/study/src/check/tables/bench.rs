@@ -3,12 +3,12 @@
 use std::sync::LazyLock;
 
 use super::belt;
-use super::{Column, TableRow, combinations, from_rows, numbers, rpm};
+use super::{Column, Marks, Rows, combinations, numbers, rpm};
 use crate::check::expr::{Table, truth};
 use crate::check::keys::BENCH;
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::Key;
@@ -64,15 +64,21 @@ fn efficiency(p: &BenchPoint, a: &BenchAnswer) -> f64 {
     }
 }
 
-/// The row of a solved point, with further numbers before its own.
-pub(super) fn row(head: impl IntoIterator<Item = f64>, solved: &Solved) -> TableRow {
+/// Adds the row of a solved point, with further numbers before its own.
+pub(super) fn add(rows: &mut Rows, head: impl IntoIterator<Item = f64>, solved: &Solved) {
     let (_, answer) = solved;
     let own = numbers(&COLUMNS, solved).chain(answer.loss_nm);
-    TableRow {
+    let marks = Marks {
         gross: answer.flags.contains(Flags::GROSS_SLIP),
         outside: answer.flags.contains(Flags::OUTSIDE_VALIDITY),
-        ..TableRow::new(head.into_iter().chain(own))
-    }
+        ..Marks::default()
+    };
+    rows.add(head.into_iter().chain(own), &marks);
+}
+
+/// Number of columns.
+pub(super) fn width() -> usize {
+    COLUMNS.len() + LOSSES.len()
 }
 
 /// What sets a point, in the order in which [`point`] takes the values.
@@ -133,10 +139,16 @@ pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> 
     for point in points {
         fits(&bench, point.ratio)?;
     }
-    let rows = points
-        .iter()
-        .map(|point| row([], &(*point, bench.solve(point))));
-    Ok(from_rows(COLUMNS.len() + LOSSES.len(), rows))
+    let mut rows = Rows::new(width(), points.len());
+    let Some(first) = points.first() else {
+        return Ok(rows.table());
+    };
+    let mut bench = KeptRatio::new(&bench, first.ratio);
+    for point in points {
+        let answer = bench.at(point.ratio).solve(point);
+        add(&mut rows, [], &(*point, answer));
+    }
+    Ok(rows.table())
 }
 
 /// An error if the box does not have this ratio or gear.

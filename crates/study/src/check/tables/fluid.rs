@@ -1,6 +1,6 @@
 //! A fluid over temperature as a table.
 
-use super::{Column, TableRow, from_rows, numbers};
+use super::{Column, Marks, Rows, numbers};
 use crate::check::expr::Table;
 use crate::check::keys::FLUID;
 use crate::check::source::Source;
@@ -24,8 +24,11 @@ pub fn columns<'a>() -> Vec<Column<Point<'a>>> {
 /// All temperatures of the source for the transmission oil.
 pub fn table(source: &Source, setup: &Setup) -> Table {
     let oil = setup.oils().0;
-    let temperatures = source.axis(&FLUID.temp_degc).into_iter();
+    let temperatures = source.axis(&FLUID.temp_degc);
     let columns = columns();
-    let rows = temperatures.map(|k| TableRow::new(numbers(&columns, &(oil, k))));
-    from_rows(columns.len(), rows)
+    let mut rows = Rows::new(columns.len(), temperatures.len());
+    for k in temperatures {
+        rows.add(numbers(&columns, &(oil, k)), &Marks::default());
+    }
+    rows.table()
 }

@@ -45,9 +45,8 @@ pub fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// A row of a table.
-pub struct TableRow {
-    pub numbers: Vec<f64>,
+/// What counts of a row besides its numbers.
+pub struct Marks {
     pub weight: f64,
     /// The belt slips grossly.
     pub gross: bool,
@@ -55,10 +54,9 @@ pub struct TableRow {
     pub outside: bool,
 }
 
-impl TableRow {
-    pub fn new(numbers: impl Iterator<Item = f64>) -> Self {
-        TableRow {
-            numbers: numbers.collect(),
+impl Default for Marks {
+    fn default() -> Self {
+        Marks {
             weight: 1.0,
             gross: false,
             outside: false,
@@ -66,22 +64,39 @@ impl TableRow {
     }
 }
 
-/// A table of `count` columns.
-pub fn from_rows(count: usize, rows: impl Iterator<Item = TableRow>) -> Table {
-    let room = rows.size_hint().1.unwrap_or(0);
-    let mut table = Table {
-        columns: (0..count).map(|_| Vec::with_capacity(room)).collect(),
-        ..Table::default()
-    };
-    for row in rows {
-        for (column, x) in table.columns.iter_mut().zip(row.numbers) {
+/// A table that is made row by row.
+pub struct Rows {
+    table: Table,
+}
+
+impl Rows {
+    /// None yet of so many columns, with room for so many rows.
+    pub fn new(columns: usize, room: usize) -> Self {
+        Rows {
+            table: Table {
+                columns: (0..columns).map(|_| Vec::with_capacity(room)).collect(),
+                weight: Vec::with_capacity(room),
+                gross: Vec::with_capacity(room),
+                outside: Vec::with_capacity(room),
+            },
+        }
+    }
+
+    /// Adds a row, a number for each column.
+    pub fn add(&mut self, numbers: impl Iterator<Item = f64>, marks: &Marks) {
+        let table = &mut self.table;
+        for (column, x) in table.columns.iter_mut().zip(numbers) {
             column.push(x);
         }
-        table.weight.push(row.weight);
-        table.gross.push(row.gross);
-        table.outside.push(row.outside);
+        table.weight.push(marks.weight);
+        table.gross.push(marks.gross);
+        table.outside.push(marks.outside);
     }
-    table
+
+    /// The table.
+    pub fn table(self) -> Table {
+        self.table
+    }
 }
 
 /// Names of the columns of a kind of source, or of its totals.

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::bench;
-use super::{TableRow, from_rows, rpm};
+use super::{Marks, Rows, rpm};
 use crate::check::expr::{Table, truth};
 use crate::check::keys::{STRIP_DOWN, TRANSIENT};
 use crate::check::source::Source;
@@ -45,7 +45,7 @@ pub fn transients(
     let bench = Bench::new(setup);
     let ratios = source.axis(&TRANSIENT.ratio);
     cvt_only(&bench, &ratios)?;
-    let mut rows = Vec::new();
+    let mut rows = Rows::new(OF_MOMENT.len() + bench::width(), 0);
     for ratio in ratios {
         let result = transient(&bench, conditions, ratio);
         for m in &result.moments {
@@ -62,10 +62,10 @@ pub fn transients(
                 m.metal_k - ZERO_DEGC_K,
                 result.gap_nm(m.sump_k).unwrap_or(f64::NAN),
             ];
-            rows.push(bench::row(head, &(point, m.answer)));
+            bench::add(&mut rows, head, &(point, m.answer));
         }
     }
-    Ok(from_rows(transient_columns().len(), rows.into_iter()))
+    Ok(rows.table())
 }
 
 /// The box taken apart, a row a point.
@@ -83,17 +83,18 @@ pub fn strip_downs(
         torques_nm: own.torques_nm,
     };
     cvt_only(&bench, &plan.ratios)?;
-    let found = strip_down(&bench, conditions, &plan).into_iter();
-    let rows = found.map(|found| {
+    let found = strip_down(&bench, conditions, &plan);
+    let mut rows = Rows::new(OF_POINT.len() + PIECES.len(), found.len());
+    for found in found {
         let set = &found.set;
         let head = [set.ratio, rpm(set.input_rad_s), set.sump_k - ZERO_DEGC_K];
         let pieces = Piece::ALL.iter().flat_map(|piece| {
             let f = found.piece(*piece);
             [f.corrected_nm, f.true_nm, f.interaction_nm()]
         });
-        TableRow::new(head.into_iter().chain(pieces))
-    });
-    Ok(from_rows(strip_down_columns().len(), rows))
+        rows.add(head.into_iter().chain(pieces), &Marks::default());
+    }
+    Ok(rows.table())
 }
 
 fn cvt_only(bench: &Bench, ratios: &[f64]) -> Result<(), String> {

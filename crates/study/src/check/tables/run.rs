@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::LazyLock;
 
-use super::{Column, TableRow, from_rows, names, numbers};
+use super::{Column, Marks, Rows, names, numbers};
 use crate::check::expr::{Table, truth};
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
@@ -137,8 +137,8 @@ pub fn trace(source: &Source, driven: &Driven) -> Table {
     let wanted = driven.phases(source);
     let (mut launch, mut since_launch_s, mut at_rest) = (0.0, f64::NAN, true);
     let more = more();
-    // Row by row into the table, so that there is no second copy of all.
-    let rows = driven.outcome.rows.iter().filter_map(|row| {
+    let mut rows = Rows::new(columns().len(), driven.outcome.rows.len());
+    for row in &driven.outcome.rows {
         let moving = row.speed_m_s > 0.0;
         if moving && at_rest {
             (launch, since_launch_s) = (launch + 1.0, 0.0);
@@ -151,29 +151,34 @@ pub fn trace(source: &Source, driven: &Driven) -> Table {
             launch,
             since_launch_s,
         };
-        wanted.contains(&row.phase).then(|| step(&more, &state))
-    });
-    from_rows(columns().len(), rows)
+        if wanted.contains(&row.phase) {
+            add(&mut rows, &more, &state);
+        }
+    }
+    rows.table()
 }
 
-fn step<'a>(more: &[Column<Step<'a>>], step: &Step<'a>) -> TableRow {
+fn add<'a>(rows: &mut Rows, more: &[Column<Step<'a>>], step: &Step<'a>) {
     let flags = step.row.flags;
     let trace = COLUMNS.iter().map(|column| column.number_of(step.row));
     let set = Flags::NAMES
         .iter()
         .map(|(flag, _)| truth(flags.contains(*flag)));
-    TableRow {
+    let marks = Marks {
         weight: step.row.dt_s,
         gross: flags.contains(Flags::GROSS_SLIP),
         outside: flags.contains(Flags::OUTSIDE_VALIDITY) || flags.any(Flags::IMPOSSIBLE),
-        ..TableRow::new(trace.chain(set).chain(numbers(more, step)))
-    }
+    };
+    rows.add(trace.chain(set).chain(numbers(more, step)), &marks);
 }
 
 /// The totals of a run as a table of one row.
 pub fn totals(source: &Source, driven: &Driven) -> Table {
     let sum = driven.outcome.totals.over(&driven.phases(source));
     let losses = sum.loss_j.iter().map(|j| j / 1e3);
-    let row = TableRow::new(numbers(&of_totals(), &(driven, &sum)).chain(losses));
-    from_rows(total_columns().len(), [row].into_iter())
+    let columns = of_totals();
+    let mut rows = Rows::new(columns.len() + LOSSES.len(), 1);
+    let set = (driven, &sum);
+    rows.add(numbers(&columns, &set).chain(losses), &Marks::default());
+    rows.table()
 }

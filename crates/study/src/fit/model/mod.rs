@@ -7,6 +7,7 @@
 
 mod cars;
 mod evaluation;
+mod known;
 
 use std::sync::{Mutex, PoisonError};
 
@@ -15,6 +16,7 @@ use super::solve::{Parameter, Prior, Residuals};
 use cars::Cars;
 use cvtcycle_config::Problems;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
+use known::Known;
 
 pub use evaluation::Prediction;
 
@@ -29,6 +31,7 @@ pub struct Model<'p> {
     /// Index of the common error of each group among the parameters.
     common: Vec<Option<usize>>,
     pool: Mutex<Vec<Vec<Variant>>>,
+    known: Known,
 }
 
 impl<'p> Model<'p> {
@@ -55,6 +58,7 @@ impl<'p> Model<'p> {
             parameters,
             common,
             pool: Mutex::default(),
+            known: Known::default(),
         })
     }
 
@@ -94,11 +98,17 @@ impl<'p> Model<'p> {
         own.chain(common.map(|(k, _)| unit_of(k))).collect()
     }
 
-    /// Computes all observations.
+    /// Computes all observations, once for each set of values of the cars.
     ///
     /// # Errors
     /// Why one of them has no number at these values.
     pub fn predict(&self, values: &[f64]) -> Result<Prediction, String> {
+        let cars = &values[..self.plan.parameters.len().min(values.len())];
+        let count = self.plan.observations.len();
+        self.known.once(cars, count, || self.compute(cars))
+    }
+
+    fn compute(&self, values: &[f64]) -> Result<Prediction, String> {
         let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = pool().pop();
         let benches = taken.unwrap_or_else(|| {

@@ -10,7 +10,7 @@ use crate::check::source::{self, Source, relative_to};
 use crate::check::{COMMON, CandidateVehicle, embedded_rows};
 use crate::fit::solve::Options;
 use cvtcycle_config::ProblemKind::{self, Duplicate, Missing};
-use cvtcycle_config::setup::{Kind, NamedBy, catalogue, text_of};
+use cvtcycle_config::setup::{Kind, NamedBy, text_of};
 use cvtcycle_config::{Document, Place, Problem, Problems, Reader, Section, near};
 use cvtcycle_model::keys::Values;
 
@@ -90,10 +90,7 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
     plan.views.push(sources.clone());
     plan.views
         .extend(rows.iter().map(|file| file.sources.clone()));
-    let names = FileNames {
-        sources: &sources,
-        keys: catalogue::known_names(),
-    };
+    let names = FileNames { sources: &sources };
     for document in &data {
         let context = Context {
             names: &names,

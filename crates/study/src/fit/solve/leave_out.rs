@@ -7,7 +7,9 @@
 use rayon::prelude::*;
 
 use super::fit::fit;
+use super::jacobian::jacobian;
 use super::objective::{EvalError, Objective, wrong_count};
+use super::starts::starts;
 use super::types::{Fit, FitEnd, Options, Parameter, Residuals};
 use crate::Progress;
 
@@ -46,6 +48,15 @@ impl Residuals for Without<'_> {
     }
 }
 
+/// Evaluates the model where all folds begin, and for their first Jacobian: a model that knows what it has computed has it ready for each of
+/// them, and no two threads wait for the same numbers. Whatever fails here fails in the folds.
+fn meet(objective: &Objective) {
+    let first = starts(objective.parameters, 1, 0).swap_remove(0);
+    if let Ok(point) = objective.at(first) {
+        let _ = jacobian(objective, &point);
+    }
+}
+
 /// One fold for each group, in ascending order (CA-19); `groups` has the group of each residual, a residual beyond its end has group 0.
 /// Each fold starts at the solution only (moved off its bounds, CA-4), whatever `options.starts` says: it finds the minimum next to the
 /// solution. With one group only there is nothing left to fit to, and the fold has that failure.
@@ -70,6 +81,7 @@ pub fn leave_out(
         starts: 1,
         ..*options
     };
+    meet(&Objective::new(model, &parameters, progress));
     let fold = |group: usize| {
         let kept = (0..model.count()).filter(|i| group_of(*i) != group);
         let kept = kept.collect();
