@@ -1,6 +1,7 @@
 //! `run`: a vehicle and its baselines on one cycle.
 
 mod files;
+mod losses;
 mod tables;
 
 pub use tables::failures;

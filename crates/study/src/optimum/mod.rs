@@ -3,14 +3,19 @@
 //!
 //! | module | contents | labels |
 //! |---|---|---|
-//! | `program` | the dynamic program, without physics | DP-1, DP-3, DP-6 |
+//! | `place` | a place between two nodes | DP-6 |
+//! | `program` | the dynamic program, without physics | DP-1, DP-3 |
+//! | `scene` | a car on the steps of a trace | |
 //! | `node` | the numbers of a step at one ratio | |
 //! | `nodes` | what engine and box do in a step at a ratio | DP-4, DP-13, DP-14 |
+//! | `table` | every ratio of a grid in every step | |
+//! | `stage` | which ratios a step may have under limits | DP-5 |
 //! | `stages` | the car on its trace as stages of the program | DP-2, DP-5 |
 //! | `reference` | a drive with its states, and the worth of heat | DP-7, DP-8 |
 //! | `line` | curves of engine speed over demand and road speed, improved by driving | DP-12 |
 //! | `limits` | what each limit costs, and which one cannot be held | |
 //! | `file` | the line as a vehicle file | |
+//! | `question` | what is asked, and the answer in numbers | |
 //! | `answer` | all of it for a car, its clamp laws and a cycle | |
 //!
 //! | label | statement | status |
@@ -29,17 +34,22 @@ mod limits;
 mod line;
 mod node;
 mod nodes;
+mod place;
 mod program;
+mod question;
 mod reference;
+mod scene;
+mod stage;
 mod stages;
+mod table;
 
-pub use answer::{
-    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, LockFloor, NoAnswer, Question,
-    TIGHT, answer,
-};
+pub use answer::{TIGHT, answer};
 pub use file::ReadFrom;
 pub use limits::{Infeasible, LimitName, Unheld};
 pub use line::{Line, LineFit, fit_line};
+pub use question::{
+    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, LockFloor, NoAnswer, Question,
+};
 
 use cvtcycle_model::cycle::{Step, Trace};
 use cvtcycle_model::drive::{Car, Row, State};
@@ -49,10 +59,11 @@ use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 use rayon::prelude::*;
 
 use self::node::Mode;
-use self::nodes::Scene;
 use self::program::{Controls, Path, least};
 use self::reference::Reference;
-use self::stages::{Problem, Table};
+use self::scene::Scene;
+use self::stages::Problem;
+use self::table::Table;
 
 /// Largest change of the driven fuel between two sets of temperatures that is taken for settled.
 const SETTLED: f64 = 2e-4;
