@@ -22,8 +22,8 @@ use serde::Serialize;
 use super::{Execute, threads, vehicles};
 use crate::args::problems::{bad_value, cite};
 use crate::args::{
-    AmbientArgs, ColumnsArgs, CycleArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
-    ThreadArgs, VehicleArgs, cycles, number,
+    AmbientArgs, ColumnsArgs, CycleArgs, DrivingArgs, Names, OutArgs, OutputArgs, ThreadArgs,
+    VehicleArgs, cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use limits::{LEAST_RPM, Numbers, infeasible};
@@ -59,9 +59,7 @@ pub struct OptimumArgs {
     #[command(flatten)]
     ambient: AmbientArgs,
     #[command(flatten)]
-    drive: DriveArgs,
-    #[command(flatten)]
-    formulation: FormulationArgs,
+    driving: DrivingArgs,
     /// Least engine speed with the clutch locked, rpm
     #[arg(
         long,
@@ -160,12 +158,12 @@ impl Execute for OptimumArgs {
         let columns = self.columns.get(problems);
         let cycle = problems.take(self.own_cycle(&columns));
         let elsewhere = self.elsewhere(&columns, problems);
-        let formulation = self.formulation.get(problems);
+        let formulation = self.driving.formulation.get(problems);
         let options = self.car.options(formulation, problems);
         let setup = problems.take(setup::load(&self.car.vehicle, &options));
         let hint = "a manual box has gears; `study` varies its shift speeds";
         self.car.need_cvt(setup.as_ref(), hint, problems);
-        let (start, dt_s) = self.drive.get(problems);
+        let (start, dt_s) = self.driving.drive.get(problems);
         let least = number("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
         let least = problems.take(least);
         let numbers = self.numbers((dt_s, least), problems);

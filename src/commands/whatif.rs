@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
-use cvtcycle::config::setup::{AMBIENT, Kind};
 use cvtcycle::report::document::Document;
 use cvtcycle::report::live::{LiveSection, Scene, State};
 use cvtcycle::report::write::{Form, Target};
@@ -13,15 +12,15 @@ use cvtcycle::report::write::{Form, Target};
 use super::Execute;
 use super::vehicles::{self, Baselines};
 use crate::args::problems::of_car;
-use crate::args::{
-    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, number,
-};
+use crate::args::{AmbientArgs, ComparisonArgs, DrivingArgs, OutArgs, OutputArgs, VehicleArgs};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Arguments of `whatif`.
 #[derive(Args, Clone, Debug)]
 #[command(
     mut_arg("out", |out| out.value_name("FILE.html").help("The page [default: whatif.html]")),
+    mut_arg("vehicle", |vehicle| vehicle.long(None)),
+    mut_arg("set", |set| set.help("Override one value of this vehicle, whatever the levers are at; repeatable")),
     after_help = "\
 Examples:
   cvtcycle whatif --ambient -10
@@ -33,29 +32,14 @@ as well. It computes fuel, losses and temperatures as levers are moved, and the 
 values when they rest. Its command prints the same numbers here. A browser without WebAssembly shows the car as it is."
 )]
 pub struct WhatifArgs {
-    /// Vehicle
-    #[arg(value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
-    vehicle: String,
-    /// Transmission oil of this vehicle [default: from the vehicle file]
-    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Lubricant.names()), hide_possible_values = true)]
-    lubricant: Option<String>,
-    /// Override one value of this vehicle, whatever the levers are at; repeatable
-    #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    #[command(flatten)]
+    car: VehicleArgs,
     #[command(flatten)]
     comparison: ComparisonArgs,
-    /// Ambient temperature, degC, -40 to 60
-    #[arg(
-        long,
-        value_name = "DEGC",
-        default_value = "25",
-        allow_hyphen_values = true
-    )]
-    ambient: String,
     #[command(flatten)]
-    drive: DriveArgs,
+    ambient: AmbientArgs,
     #[command(flatten)]
-    formulation: FormulationArgs,
+    driving: DrivingArgs,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
@@ -67,27 +51,22 @@ impl Execute for WhatifArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let cycle = problems.take(cycle::find(&self.comparison.cycle.word));
-        let formulation = self.formulation.get(problems);
-        let car = VehicleArgs {
-            vehicle: self.vehicle.clone(),
-            lubricant: self.lubricant.clone(),
-            set: self.set.clone(),
-        };
+        let formulation = self.driving.formulation.get(problems);
         let comparison = (&self.comparison, Baselines::OfFile);
         let mut found = Problems::new();
-        let cars = vehicles::load(&car, comparison, formulation, &mut found);
+        let cars = vehicles::load(&self.car, comparison, formulation, &mut found);
         problems.append(found.map(of_car));
-        let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
-        let (start, dt_s) = self.drive.get(problems);
+        let ambient = self.ambient.get(problems);
+        let (start, dt_s) = self.driving.drive.get(problems);
         let file = self.out.out.clone();
         let file = file.unwrap_or_else(|| PathBuf::from("whatif.html"));
         let target = problems.take(Target::new(&file, Form::Html, self.out.force));
         cycle?;
         let (subject, baselines) = cars.split_first()?;
         let scene = Scene {
-            vehicle: self.vehicle.clone(),
+            vehicle: self.car.vehicle.clone(),
             baselines: baselines.iter().map(|car| car.word.clone()).collect(),
-            set: self.set.clone(),
+            set: self.car.set.clone(),
             set_all: self.comparison.set_all.clone(),
             engine_oil: self.comparison.engine_oil.clone(),
             start: start?.1.text(),
@@ -96,7 +75,7 @@ impl Execute for WhatifArgs {
             state: State {
                 cycle: self.comparison.cycle.word.clone(),
                 ambient_degc: ambient?,
-                lubricant: self.lubricant.clone(),
+                lubricant: self.car.lubricant.clone(),
                 ..State::default()
             },
             first_figure: 1,

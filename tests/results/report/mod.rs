@@ -90,6 +90,14 @@ fn run(place: &Place, dir: &str, more: &[&str]) {
     place.done(&[&words[..], more].concat());
 }
 
+/// A cold run with its report.
+fn reported() -> Place {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    place.done(&["report", "cold"]);
+    place
+}
+
 /// The ambient matrix of the same cycle.
 fn matrix(place: &Place, dir: &str) {
     place.done(&[
@@ -179,9 +187,7 @@ fn the_page_says_what_the_summary_says() {
 /// Two cars of one short name keep the names of their files: a table with two equal heads says nothing.
 #[test]
 fn cars_have_their_short_names_where_these_are_their_own() {
-    let place = Place::new();
-    run(&place, "cold", &[]);
-    place.done(&["report", "cold"]);
+    let place = reported();
     let page = place.text("cold/report.html");
     assert!(
         page.contains(">CVT</th>") || page.contains(">CVT <"),
@@ -348,9 +354,7 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
 
 #[test]
 fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
-    let place = Place::new();
-    run(&place, "cold", &[]);
-    place.done(&["report", "cold"]);
+    let place = reported();
     let first = place.text("cold/report.html");
     place.refused(&["report", "cold"], 2, &["is there already", "--force"]);
     place.done(&["report", "cold", "--force"]);

@@ -93,6 +93,17 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
+/// Names of the columns of the runs of a study, without units, and its rows.
+fn exported(dir: &Path) -> (Vec<String>, Vec<csv::StringRecord>) {
+    let words = ["study", "export", "out", "--out", "runs.csv"];
+    ends(dir, &words, 0);
+    let mut reader = csv::Reader::from_path(dir.join("runs.csv")).unwrap();
+    let heads = reader.headers().unwrap().iter();
+    let heads = heads.map(|head| head.split(" [").next().unwrap().to_owned());
+    let heads = heads.collect();
+    (heads, reader.records().map(Result::unwrap).collect())
+}
+
 fn parts(dir: &Path) -> usize {
     let Ok(entries) = fs::read_dir(dir.join("parts")) else {
         return 0;
@@ -328,25 +339,11 @@ values = [2.2, 2.417]
         failed + 3
     );
     assert!(words.contains(&message), "{message} is not in {words}");
-    ends(
-        dir.path(),
-        &["study", "export", "out", "--out", "runs.csv"],
-        0,
-    );
-    let mut reader = csv::Reader::from_path(dir.path().join("runs.csv")).unwrap();
-    let heads: Vec<String> = reader
-        .headers()
-        .unwrap()
-        .iter()
-        .map(str::to_owned)
-        .collect();
+    let (heads, records) = exported(dir.path());
     let at = |name: &str| {
-        heads
-            .iter()
-            .position(|h| h.split(" [").next() == Some(name))
-            .unwrap_or_else(|| panic!("{name} in {heads:?}"))
+        let place = heads.iter().position(|head| head == name);
+        place.unwrap_or_else(|| panic!("{name} in {heads:?}"))
     };
-    let records: Vec<_> = reader.records().map(Result::unwrap).collect();
     assert_eq!(records.len(), 24);
     for record in &records {
         let bad = record[at("role")] == *"subject"
@@ -425,19 +422,7 @@ values = ["dexron_iii"]
         &["study", "plan.toml", "--out", "out", "--quiet"],
         0,
     );
-    ends(
-        dir.path(),
-        &["study", "export", "out", "--out", "runs.csv"],
-        0,
-    );
-    let mut reader = csv::Reader::from_path(dir.path().join("runs.csv")).unwrap();
-    let heads: Vec<String> = reader
-        .headers()
-        .unwrap()
-        .iter()
-        .map(|h| h.split(" [").next().unwrap().to_owned())
-        .collect();
-    let records: Vec<_> = reader.records().map(Result::unwrap).collect();
+    let (heads, records) = exported(dir.path());
     for (point, (offset, clamp)) in [
         ("2", "torque_following"),
         ("2", "map"),

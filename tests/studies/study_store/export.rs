@@ -11,6 +11,8 @@ use cvtcycle::study::store::{Kind, Rows, Values};
 use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
 use tempfile::TempDir;
 
+use crate::parts::write_runs;
+
 use super::{PLAN, RUN, head, heads, manifest, manifest_of, rows, whole, write_part};
 
 const PARTS: usize = 3;
@@ -85,17 +87,7 @@ fn a_byte_order_mark_is_written_where_a_letter_is_beyond_ascii() {
         let rows = Rows {
             values: vec![Values::Text(vec!["x".into(), word.into()])],
         };
-        study
-            .write_part(
-                0,
-                &[PartTable {
-                    name: "runs",
-                    columns: &columns,
-                    rows: &rows,
-                    metadata: &[],
-                }],
-            )
-            .unwrap();
+        write_runs(&study, 0, &columns, &rows);
         exported(&path, "runs", &path.join("out.csv")).unwrap();
         let bytes = fs::read(path.join("out.csv")).unwrap();
         assert_eq!(bytes.starts_with(b"\xEF\xBB\xBFword\n"), marked, "{name}");
@@ -238,17 +230,7 @@ fn what_excel_cannot_hold_is_refused_before_anything_is_written() {
         let rows = Rows {
             values: vec![Values::Count(vec![7; n])],
         };
-        study
-            .write_part(
-                part,
-                &[PartTable {
-                    name: "runs",
-                    columns: &columns,
-                    rows: &rows,
-                    metadata: &[],
-                }],
-            )
-            .unwrap();
+        write_runs(&study, part, &columns, &rows);
     }
     let problem = exported(&path, "runs", &dir.path().join("runs.xlsx")).unwrap_err();
     assert!(
