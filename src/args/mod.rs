@@ -10,7 +10,7 @@ pub use groups::{
     AmbientArgs, AmbientsArgs, ColumnsArgs, ComparisonArgs, ConfidenceArgs, CycleArgs, DriveArgs,
     DrivingArgs, FormulationArgs, ThreadArgs, VehicleArgs,
 };
-pub use output::{JsonArgs, OutArgs, OutputArgs, TableOutputArgs};
+pub use output::{JsonArgs, OutArgs, OutputArgs, ResultArgs, TableOutputArgs};
 
 use std::ops::RangeInclusive;
 use std::path::absolute;

@@ -61,6 +61,15 @@ impl OutputArgs {
     }
 }
 
+/// Where the results of a command go, and in which form.
+#[derive(Args, Clone, Debug)]
+pub struct ResultArgs {
+    #[command(flatten)]
+    pub out: OutArgs,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
 /// Form of a table of points on standard output.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct TableOutputArgs {

@@ -15,7 +15,7 @@ use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles};
 use super::{Execute, run, threads};
 use crate::args::problems::bad_value;
 use crate::args::{
-    AmbientsArgs, DrivingArgs, Names, OutArgs, OutputArgs, ThreadArgs, names_of, number, one_of,
+    AmbientsArgs, DrivingArgs, Names, ResultArgs, ThreadArgs, names_of, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -72,9 +72,7 @@ pub struct AttributeArgs {
     #[command(flatten)]
     threads: ThreadArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 /// Checked input of an attribution.
@@ -115,7 +113,7 @@ impl Execute for AttributeArgs {
         let pairs = problems.take(one_of("--pairs", &self.pairs, &PAIRS));
         let threads = self.threads.given(problems);
         problems.take(threads::begin(threads));
-        let out = self.out.dir(problems);
+        let out = self.results.out.dir(problems);
         Some(AttributePlan {
             cars: cars.driven(start, dt_s)?,
             ambients_degc: ambients_degc?,
@@ -145,7 +143,7 @@ impl Execute for AttributeArgs {
         })?;
         let results = Results::new(json, failures(&summary), files);
         let tables = || tables::tables(&summary, &plan.cars.cycle, self.by_phase, terminal.stdout);
-        Ok(results.output(&self.output, tables))
+        Ok(results.output(&self.results.output, tables))
     }
 }
 

@@ -22,8 +22,8 @@ use serde::Serialize;
 use super::{Execute, threads, vehicles};
 use crate::args::problems::{bad_value, cite};
 use crate::args::{
-    AmbientArgs, ColumnsArgs, CycleArgs, DrivingArgs, Names, OutArgs, OutputArgs, ThreadArgs,
-    VehicleArgs, cycles, number,
+    AmbientArgs, ColumnsArgs, CycleArgs, DrivingArgs, Names, ResultArgs, ThreadArgs, VehicleArgs,
+    cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use limits::{LEAST_RPM, Numbers, infeasible};
@@ -118,9 +118,7 @@ pub struct OptimumArgs {
     #[command(flatten)]
     threads: ThreadArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 /// Checked input.
@@ -175,7 +173,7 @@ impl Execute for OptimumArgs {
         }
         let given = self.threads.given(problems);
         problems.take(threads::begin(given));
-        let out = self.out.dir(problems);
+        let out = self.results.out.dir(problems);
         let (numbers, start) = (numbers?, start?);
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
         let cycle = cycle::for_car(&self.cycle.word, cycle?, &own);
@@ -216,7 +214,7 @@ impl Execute for OptimumArgs {
             launch_at_idle: !self.own_clamp,
             least_speeds_rpm: &LEAST_SPEEDS_RPM,
         };
-        let dir = self.out.out.as_deref();
+        let dir = self.results.out.out.as_deref();
         let from = ReadFrom {
             vehicle: &self.car.vehicle,
             options: &plan.options,
@@ -248,7 +246,9 @@ impl Execute for OptimumArgs {
         })?;
         let failures = summary.answer.failures.clone();
         let results = Results::new(json, failures, files);
-        Ok(results.output(&self.output, || tables::text(&summary, terminal.stdout)))
+        Ok(results.output(&self.results.output, || {
+            tables::text(&summary, terminal.stdout)
+        }))
     }
 }
 

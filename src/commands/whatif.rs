@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
+use cvtcycle::config::setup::Kind;
 use cvtcycle::report::document::Document;
 use cvtcycle::report::live::{LiveSection, Scene, State};
 use cvtcycle::report::write::{Form, Target};
@@ -12,15 +13,13 @@ use cvtcycle::report::write::{Form, Target};
 use super::Execute;
 use super::vehicles::{self, Baselines};
 use crate::args::problems::of_car;
-use crate::args::{AmbientArgs, ComparisonArgs, DrivingArgs, OutArgs, OutputArgs, VehicleArgs};
+use crate::args::{AmbientArgs, ComparisonArgs, DrivingArgs, Names, ResultArgs, VehicleArgs};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Arguments of `whatif`.
 #[derive(Args, Clone, Debug)]
 #[command(
     mut_arg("out", |out| out.value_name("FILE.html").help("The page [default: whatif.html]")),
-    mut_arg("vehicle", |vehicle| vehicle.long(None)),
-    mut_arg("set", |set| set.help("Override one value of this vehicle, whatever the levers are at; repeatable")),
     after_help = "\
 Examples:
   cvtcycle whatif --ambient -10
@@ -32,8 +31,15 @@ as well. It computes fuel, losses and temperatures as levers are moved, and the 
 values when they rest. Its command prints the same numbers here. A browser without WebAssembly shows the car as it is."
 )]
 pub struct WhatifArgs {
-    #[command(flatten)]
-    car: VehicleArgs,
+    /// Vehicle
+    #[arg(value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
+    vehicle: String,
+    /// Transmission oil of this vehicle [default: from the vehicle file]
+    #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Lubricant.names()), hide_possible_values = true)]
+    lubricant: Option<String>,
+    /// Override one value of this vehicle, whatever the levers are at; repeatable
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<String>,
     #[command(flatten)]
     comparison: ComparisonArgs,
     #[command(flatten)]
@@ -41,9 +47,7 @@ pub struct WhatifArgs {
     #[command(flatten)]
     driving: DrivingArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 impl Execute for WhatifArgs {
@@ -52,21 +56,26 @@ impl Execute for WhatifArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let cycle = problems.take(cycle::find(&self.comparison.cycle.word));
         let formulation = self.driving.formulation.get(problems);
+        let car = VehicleArgs {
+            vehicle: self.vehicle.clone(),
+            lubricant: self.lubricant.clone(),
+            set: self.set.clone(),
+        };
         let comparison = (&self.comparison, Baselines::OfFile);
         let mut found = Problems::new();
-        let cars = vehicles::load(&self.car, comparison, formulation, &mut found);
+        let cars = vehicles::load(&car, comparison, formulation, &mut found);
         problems.append(found.map(of_car));
         let ambient = self.ambient.get(problems);
         let (start, dt_s) = self.driving.drive.get(problems);
-        let file = self.out.out.clone();
+        let file = self.results.out.out.clone();
         let file = file.unwrap_or_else(|| PathBuf::from("whatif.html"));
-        let target = problems.take(Target::new(&file, Form::Html, self.out.force));
+        let target = problems.take(Target::new(&file, Form::Html, self.results.out.force));
         cycle?;
         let (subject, baselines) = cars.split_first()?;
         let scene = Scene {
-            vehicle: self.car.vehicle.clone(),
+            vehicle: car.vehicle,
             baselines: baselines.iter().map(|car| car.word.clone()).collect(),
-            set: self.car.set.clone(),
+            set: car.set,
             set_all: self.comparison.set_all.clone(),
             engine_oil: self.comparison.engine_oil.clone(),
             start: start?.1.text(),
@@ -75,7 +84,7 @@ impl Execute for WhatifArgs {
             state: State {
                 cycle: self.comparison.cycle.word.clone(),
                 ambient_degc: ambient?,
-                lubricant: self.car.lubricant.clone(),
+                lubricant: car.lubricant,
                 ..State::default()
             },
             first_figure: 1,
@@ -97,6 +106,6 @@ impl Execute for WhatifArgs {
         let page = page.unwrap_or_default();
         let json = json_text(&serde_json::json!({ "page": page }))?;
         let results = Results::new(json, Vec::new(), WrittenFiles::default());
-        Ok(results.output(&self.output, || format!("{page}\n")))
+        Ok(results.output(&self.results.output, || format!("{page}\n")))
     }
 }

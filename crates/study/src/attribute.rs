@@ -87,6 +87,28 @@ pub enum Pairs {
 type Fuel = Vec<f64>;
 
 /// Prices of the losses of a car; `base` are its numbers as it is. The runs are driven on all threads, and summed in one order.
+///
+/// ```
+/// use cvtcycle_config::cycle;
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::drive::{Conditions, Start, drive};
+/// use cvtcycle_output::summary::{Driven, Settings, run_summary};
+/// use cvtcycle_study::attribute::{Attribution, Depth, attribute};
+/// let setup = load("rover_216_cvt", &Options::default())?;
+/// let cycle = cycle::find("constant_50")?;
+/// let conditions = Conditions { ambient_k: 263.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
+/// let outcome = drive(&setup, &cycle, &conditions);
+/// let driven = Driven { name: "rover", setup: &setup, outcome: &outcome };
+/// let settings = Settings::default();
+/// let base = run_summary(&cycle, "subject", &settings, &driven);
+/// // Half of each loss in turn.
+/// let of = Attribution { setup: &setup, cycle: &cycle, conditions, settings: &settings, factor: 0.5, depth: Depth::default() };
+/// let price = attribute(&of, &base);
+/// let parts: f64 = price.losses.values().filter_map(|loss| loss.saved.percent).sum();
+/// let rest = price.interaction.percent.expect("a number");
+/// assert!((parts + rest - price.together.percent.expect("a number")).abs() < 1e-9);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn attribute(of: &Attribution, base: &RunSummary) -> PriceSummary {
     let runs = Runs::new(of, base);
     let design = Design::new(of, base);

@@ -7,7 +7,7 @@ use cvtcycle_model::transmission::loss_factor::LossFactors;
 use cvtcycle_output::Component;
 use cvtcycle_output::number::{finite, plain};
 use cvtcycle_output::summary::{
-    Driven, LossPrice, Named, PairPrice, RunSummary, Saving, run_summary,
+    Driven, Failure, LossPrice, Named, PairPrice, RunSummary, Saving, run_summary,
 };
 use rayon::prelude::*;
 
@@ -16,7 +16,7 @@ pub(super) struct Burnt {
     pub(super) fuel: Fuel,
     /// Energy at the wheels, kJ.
     pub(super) wheels_kj: f64,
-    failures: Vec<String>,
+    failures: Vec<Failure>,
 }
 
 impl Burnt {
@@ -26,7 +26,7 @@ impl Burnt {
         Burnt {
             fuel: fuel.map(|litres| litres.unwrap_or(f64::NAN)).collect(),
             wheels_kj: run.ledger_kj.get("wheels").unwrap_or(f64::NAN),
-            failures: run.failures.iter().map(|failure| failure.brief()).collect(),
+            failures: run.failures.clone(),
         }
     }
 }
@@ -144,20 +144,13 @@ impl<'a> Runs<'a> {
         let names = components.iter().map(|c| c.name()).chain(["all losses"]);
         let changed = names.zip(single.iter().chain(all));
         let new = |(name, run): (&str, &Burnt)| {
-            let before: Vec<&str> = self.base.failures.iter().map(|text| check(text)).collect();
-            let found = run
-                .failures
-                .iter()
-                .filter(|text| !before.contains(&check(text)));
+            let before = &self.base.failures;
+            let is_new = |failure: &&Failure| before.iter().all(|own| own.check != failure.check);
+            let found = run.failures.iter().filter(is_new);
             found
-                .map(|text| format!("{with}{name}: {text}"))
+                .map(|failure| format!("{with}{name}: {}", failure.brief()))
                 .collect::<Vec<_>>()
         };
         changed.flat_map(new).collect()
     }
-}
-
-/// The name of the check that a text of a failure begins with.
-fn check(text: &str) -> &str {
-    text.split(' ').next().unwrap_or(text)
 }

@@ -26,6 +26,25 @@ struct Change<'r> {
 ///
 /// # Errors
 /// All problems of plan, cars, levers and combinations.
+///
+/// ```
+/// use cvtcycle_study::levers::{Combine, LeverFile, LeverRequest, prepare};
+/// let text = "[[lever]]\nname = \"lighter\"\nset = [\"road_load.mass_kg*=0.9\"]\n";
+/// let study = prepare(&LeverRequest {
+///     levers: LeverFile::read("own.toml", text)?.levers,
+///     vehicles: vec!["rover_216_cvt".to_owned()],
+///     ambients_degc: vec![-10.0, 25.0],
+///     cycle: "ece15".to_owned(),
+///     start: "soak".to_owned(),
+///     dt_s: 1.0,
+///     engine_oil: None,
+///     draws: None,
+///     combine: Combine::None,
+///     heard_rpm: 1300.0,
+/// })?;
+/// assert_eq!(study.cars.len(), 4, "the car as it is and the lighter one, at both temperatures");
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn prepare(request: &LeverRequest) -> Result<Study, Problems> {
     let mut problems = Problems::new();
     let plan = problems.take(plan_of(request));

@@ -5,8 +5,8 @@ use cvtcycle_model::thermal::NODES;
 
 use super::reference::Reference;
 use super::scene::Scene;
+use super::stage::Table;
 use super::stages::Problem;
-use super::table::Table;
 use super::{Limits, Task, least_path};
 
 /// A limit.

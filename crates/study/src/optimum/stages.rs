@@ -17,8 +17,7 @@ use super::place::Place;
 use super::program::{Path, Stages};
 use super::reference::Reference;
 use super::scene::{Scene, free_law};
-use super::stage::{Driven, IN_LOW, Stage, stage};
-use super::table::Table;
+use super::stage::{Driven, IN_LOW, Stage, Table, stage};
 
 /// Of so many ratios one is enough where the ratio hardly matters.
 const SPARSE: usize = 16;

@@ -5,7 +5,6 @@ mod engine;
 
 use std::f64::consts::PI;
 
-use super::coast_down::{DRAG, SOURCE};
 use super::tyre::tyre;
 use super::{Answers, NUMBERS, meaning};
 use crate::document::units::{
@@ -72,6 +71,17 @@ pub(super) const PLAIN: [(&str, &str, Units); 9] = [
 ];
 
 const BEYOND_RATED_RPM: f64 = 400.0;
+
+/// No-load drag of a CVT in f0 and f1 of a coast-down in neutral, with the keys that take it off (RL-9).
+const DRAG: [(&str, &str); 2] = [
+    ("road_load.form.coefficients.driveline_f0_n", "27.0"),
+    (
+        "road_load.form.coefficients.driveline_f1_n_per_kmh",
+        "-0.13",
+    ),
+];
+/// Where it is from.
+const SOURCE: &str = "RL-9: through CVT over manual of the same car, 30 16 11 16 N at 20 50 80 110 km/h (sd 21 to 31, 23 pairs of US lists)";
 
 /// The numbers that are given.
 struct Given<'a> {
