@@ -212,7 +212,7 @@ struct Solved {
 ///     grade: 0.0,
 ///     engine_off: false,
 /// };
-/// let cycle = Cycle::from_intervals("gentle", (0..6).map(interval).collect())?;
+/// let cycle = Cycle::from_intervals("gentle", (0..6).map(interval).collect()).expect("rising");
 /// let trace = cycle.trace_for(true);
 /// let steps: Vec<_> = trace.steps(1.0).collect();
 /// let cvt = cvt(&car).expect("a CVT");
