@@ -3,8 +3,8 @@
 //!
 //! | module | contents | labels |
 //! |---|---|---|
-//! | `place` | a place between two nodes | DP-6 |
-//! | `program` | the dynamic program, without physics | DP-1, DP-3 |
+//! | `place` | a place between two nodes, and the value there | |
+//! | `program` | the dynamic program, without physics | DP-1, DP-3, DP-6 |
 //! | `scene` | a car on the steps of a trace | |
 //! | `node` | the numbers of a step at one ratio | |
 //! | `nodes` | what engine and box do in a step at a ratio | DP-4, DP-13, DP-14 |
@@ -207,7 +207,7 @@ struct Solved {
 ///     start_s: k.into(),
 ///     end_s: (k + 1).into(),
 ///     start_speed_m_s: 12.0 + 0.3 * f64::from(k),
-///     end_speed_m_s: 12.3 + 0.3 * f64::from(k),
+///     end_speed_m_s: 12.0 + 0.3 * f64::from(k + 1),
 ///     phase: 0,
 ///     grade: 0.0,
 ///     engine_off: false,

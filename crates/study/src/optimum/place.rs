@@ -1,8 +1,4 @@
-//! A place between two nodes of a stage.
-//!
-//! | label | statement | status |
-//! |---|---|---|
-//! | DP-6 | between a node from which the end cannot be reached and another, V is infinite; at the other it is its own | derived: an infinite value is no number to go between |
+//! A place between two nodes of a stage, and the value there (DP-6 of `program`).
 
 /// Places nearer than this are one.
 pub const NEAR: f64 = 1e-12;

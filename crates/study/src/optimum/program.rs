@@ -7,6 +7,7 @@
 //! |---|---|---|
 //! | DP-1 | V_t(x) = min over u of c_t(x, u) + V_{t+1}(u), V_N = 0; u from x within reach | source: Bellman 1957 |
 //! | DP-3 | u: every node within reach, both ends of reach, and x itself; V linear between nodes | derived: nodes alone leave an error of first order in their distance |
+//! | DP-6 | between a node from which the end cannot be reached and another, V is infinite; at the other it is its own | derived: an infinite value is no number to go between |
 
 use super::place::{NEAR, Place};
 
