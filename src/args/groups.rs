@@ -1,18 +1,14 @@
 //! Groups of options, each option declared once. A command flattens the groups that it takes.
 
-use std::path::{Path, PathBuf};
-
-use clap::{Args, ValueEnum};
+use clap::Args;
 use cvtcycle::config::csv::Columns;
-use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{
     self, AMBIENT, Kind, Options, START, STEP, Setup, TWIN, baseline_of,
 };
-use cvtcycle::config::{Bound, Problem, Problems, cycle};
+use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::drive::Start;
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::statistics::Confidence;
 
@@ -107,6 +103,15 @@ impl DriveArgs {
         let start = problems.take(start(&self.start));
         (start, problems.take(number("--dt", &self.dt, STEP, "dt_s")))
     }
+}
+
+/// How cars are driven, and with which belt model.
+#[derive(Args, Clone, Debug)]
+pub struct DrivingArgs {
+    #[command(flatten)]
+    pub drive: DriveArgs,
+    #[command(flatten)]
+    pub formulation: FormulationArgs,
 }
 
 /// Ambient temperature.
@@ -248,12 +253,6 @@ pub struct ComparisonArgs {
 }
 
 impl ComparisonArgs {
-    /// Reads the cycle.
-    pub fn cycle(&self, columns: &ColumnsArgs, problems: &mut Problems) -> Option<Cycle> {
-        let columns = columns.get(problems);
-        problems.take(cycle::open(&self.cycle.word, &columns))
-    }
-
     /// Names of the baselines: those given, else those of the file of the vehicle.
     pub fn baselines(
         &self,
@@ -281,91 +280,6 @@ impl ComparisonArgs {
     /// The baselines given, without `none`.
     pub fn named_baselines(&self) -> impl Iterator<Item = &String> {
         self.baseline.iter().filter(|name| *name != "none")
-    }
-}
-
-/// Where the files go.
-#[derive(Args, Clone, Debug)]
-pub struct OutArgs {
-    /// Write the results as files into this directory
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Replace the results of an earlier run there
-    #[arg(long)]
-    pub force: bool,
-}
-
-impl OutArgs {
-    /// Creates the output directory, if one is given.
-    pub fn dir(&self, problems: &mut Problems) -> Option<OutputDir> {
-        let path = self.path(problems)?;
-        problems.take(OutputDir::create(path, self.force))
-    }
-
-    /// The path, if one is given.
-    pub fn path(&self, problems: &mut Problems) -> Option<&Path> {
-        if self.force && self.out.is_none() {
-            let message = "there is no --out whose files could be replaced";
-            problems.add(problem("--force", message, "add --out"));
-        }
-        self.out.as_deref()
-    }
-}
-
-/// Form of the result on standard output, for commands without a quiet form.
-#[derive(Args, Clone, Copy, Debug)]
-pub struct JsonArgs {
-    /// Print one JSON object
-    #[arg(long)]
-    pub json: bool,
-}
-
-/// Form of the result on standard output.
-#[derive(Args, Clone, Copy, Debug)]
-pub struct OutputArgs {
-    #[command(flatten)]
-    json: JsonArgs,
-    /// Print problems only, no tables and no progress
-    #[arg(long, short)]
-    pub quiet: bool,
-}
-
-impl OutputArgs {
-    /// Whether a JSON object is printed.
-    pub fn json(&self) -> bool {
-        self.json.json
-    }
-}
-
-/// Form of a table of points on standard output.
-#[derive(Args, Clone, Copy, Debug)]
-pub struct TableOutputArgs {
-    /// What to print: a table for people, or CSV with all columns
-    #[arg(
-        long,
-        value_enum,
-        value_name = "FORMAT",
-        default_value = "table",
-        conflicts_with = "json"
-    )]
-    format: TableFormat,
-    #[command(flatten)]
-    pub output: OutputArgs,
-}
-
-/// Forms of a table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum TableFormat {
-    /// A table for people
-    Table,
-    /// All columns as CSV
-    Csv,
-}
-
-impl TableOutputArgs {
-    /// True if JSON or CSV is printed, which is written as it is made.
-    pub fn is_streamed(&self) -> bool {
-        self.output.json() || self.format == TableFormat::Csv
     }
 }
 

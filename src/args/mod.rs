@@ -2,13 +2,15 @@
 
 pub mod groups;
 pub mod input_kind;
+pub mod output;
 pub mod problems;
 pub mod ranges;
 
 pub use groups::{
     AmbientArgs, AmbientsArgs, ColumnsArgs, ComparisonArgs, ConfidenceArgs, CycleArgs, DriveArgs,
-    FormulationArgs, JsonArgs, OutArgs, OutputArgs, TableOutputArgs, ThreadArgs, VehicleArgs,
+    DrivingArgs, FormulationArgs, ThreadArgs, VehicleArgs,
 };
+pub use output::{JsonArgs, OutArgs, OutputArgs, ResultArgs, TableOutputArgs};
 
 use std::ops::RangeInclusive;
 use std::path::absolute;

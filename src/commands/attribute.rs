@@ -4,23 +4,18 @@ mod files;
 mod tables;
 
 use clap::Args;
-use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::{Bound, Problems};
-use cvtcycle::model::drive::{Conditions, Start};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
-use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
-use cvtcycle::output::summary::{SCHEMA, Settings, StartWord, Summary, summarise};
+use cvtcycle::output::summary::{SCHEMA, Summary, summarise};
 use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use serde::Serialize;
 
-use super::vehicles::{self, Baselines, RunVehicle};
+use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles};
 use super::{Execute, run, threads};
 use crate::args::problems::bad_value;
 use crate::args::{
-    AmbientsArgs, ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs,
-    OutputArgs, ThreadArgs, VehicleArgs, names_of, number, one_of,
+    AmbientsArgs, DrivingArgs, Names, ResultArgs, ThreadArgs, names_of, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -52,17 +47,11 @@ the fuel, or a tenth of the smaller price."
 )]
 pub struct AttributeArgs {
     #[command(flatten)]
-    car: VehicleArgs,
-    #[command(flatten)]
-    comparison: ComparisonArgs,
-    #[command(flatten)]
-    columns: ColumnsArgs,
+    cars: ComparedArgs,
     #[command(flatten)]
     ambients: AmbientsArgs,
     #[command(flatten)]
-    drive: DriveArgs,
-    #[command(flatten)]
-    formulation: FormulationArgs,
+    driving: DrivingArgs,
     /// Factor on each loss, 0 to 5: 0 is without it, 0.5 is half of it
     #[arg(
         long,
@@ -83,19 +72,13 @@ pub struct AttributeArgs {
     #[command(flatten)]
     threads: ThreadArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 /// Checked input of an attribution.
 pub struct AttributePlan {
-    cycle: Cycle,
-    vehicles: Vec<RunVehicle>,
+    cars: ComparedVehicles,
     ambients_degc: Vec<f64>,
-    start: (Start, StartWord),
-    dt_s: f64,
-    formulation: Formulation,
     factor: f64,
     depth: Depth,
     out: Option<OutputDir>,
@@ -116,13 +99,10 @@ impl Execute for AttributeArgs {
     type Plan = AttributePlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<AttributePlan> {
-        let cycle = self.comparison.cycle(&self.columns, problems);
-        let formulation = self.formulation.get(problems);
-        let comparison = (&self.comparison, Baselines::Named);
-        let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
-        let cycle = vehicles::own_cycle(&self.comparison.cycle.word, cycle, &vehicles);
+        let DrivingArgs { drive, formulation } = &self.driving;
+        let cars = self.cars.load(Baselines::Named, formulation, problems);
         let ambients_degc = self.ambients.get(problems);
-        let (start, dt_s) = self.drive.get(problems);
+        let (start, dt_s) = drive.get(problems);
         let factor = problems.take(number("--factor", &self.factor, FACTOR, "factor"));
         if factor.is_some_and(|factor| (factor - 1.0).abs() <= 0.0) {
             let message = "with a factor of 1 nothing would change";
@@ -133,14 +113,10 @@ impl Execute for AttributeArgs {
         let pairs = problems.take(one_of("--pairs", &self.pairs, &PAIRS));
         let threads = self.threads.given(problems);
         problems.take(threads::begin(threads));
-        let out = self.out.dir(problems);
+        let out = self.results.out.dir(problems);
         Some(AttributePlan {
-            cycle: cycle?,
-            vehicles,
+            cars: cars.driven(start, dt_s)?,
             ambients_degc: ambients_degc?,
-            start: start?,
-            dt_s: dt_s?,
-            formulation,
             factor: factor?,
             depth: Depth {
                 alone: true,
@@ -166,31 +142,20 @@ impl Execute for AttributeArgs {
             Ok("")
         })?;
         let results = Results::new(json, failures(&summary), files);
-        let tables = || tables::tables(&summary, &plan.cycle, self.by_phase, terminal.stdout);
-        Ok(results.output(&self.output, tables))
+        let tables = || tables::tables(&summary, &plan.cars.cycle, self.by_phase, terminal.stdout);
+        Ok(results.output(&self.results.output, tables))
     }
 }
 
 impl AttributeArgs {
     /// The runs at one ambient temperature, with their prices.
     fn priced(&self, plan: &AttributePlan, ambient_degc: f64) -> Summary {
-        let (cycle, vehicles) = (&plan.cycle, &plan.vehicles);
-        let conditions = Conditions {
-            ambient_k: ambient_degc + ZERO_DEGC_K,
-            start: plan.start.0,
-            max_dt_s: plan.dt_s,
-            keep_rows: false,
-        };
-        let settings = Settings {
-            dt_s: plan.dt_s,
-            formulation: plan.formulation.name().to_owned(),
-            set: self.car.set.clone(),
-            set_all: self.comparison.set_all.clone(),
-            strict: false,
-        };
-        let outcomes = vehicles::drive_all(vehicles, cycle, &conditions);
+        let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
+        let conditions = plan.cars.conditions(ambient_degc, false);
+        let settings = plan.cars.settings(&self.cars, false);
+        let outcomes = plan.cars.drive(&conditions);
         let driven = vehicles::driven(vehicles, &outcomes);
-        let start = plan.start.1.clone();
+        let start = plan.cars.start.1.clone();
         let mut summary = summarise(cycle, ambient_degc, start, settings.clone(), &driven);
         for (run, car) in summary.runs.iter_mut().zip(vehicles) {
             let of = Attribution {

@@ -13,7 +13,7 @@ use super::study::execution::StudyRunArgs;
 use super::study::levers::LeverResults;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{bad_value, cite, did_you_mean, in_options};
-use crate::args::{AmbientsArgs, DriveArgs, Names, count, cycles, number};
+use crate::args::{AmbientsArgs, CycleArgs, DriveArgs, Names, count, number};
 use crate::print::{CommandResult, Terminal};
 
 /// Allowed speed below which a loaded engine is heard and felt, rpm.
@@ -45,9 +45,8 @@ pub struct LeversArgs {
     /// Vehicle; repeatable
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
     vehicle: Vec<String>,
-    /// Cycle: a name, constant_V (V in km/h, 600 s), or a CSV file
-    #[arg(long, value_name = "NAME|FILE.csv", default_value = "ece15_eudc", value_parser = Names(cycles), hide_possible_values = true)]
-    cycle: String,
+    #[command(flatten)]
+    cycle: CycleArgs,
     #[command(flatten)]
     ambients: AmbientsArgs,
     #[command(flatten)]
@@ -101,7 +100,7 @@ impl Execute for LeversArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
         self.run.begin(problems);
         let levers = self.levers(problems);
-        let cycle = problems.take(cycle::find(&self.cycle));
+        let cycle = problems.take(cycle::find(&self.cycle.word));
         let ambients = self.ambients.get(problems);
         let (start, dt_s) = self.drive.get(problems);
         let draws = self.draws(problems);
@@ -112,7 +111,7 @@ impl Execute for LeversArgs {
             levers: levers?,
             vehicles: self.vehicle.clone(),
             ambients_degc: ambients?,
-            cycle: self.cycle.clone(),
+            cycle: self.cycle.word.clone(),
             start: start?.1.text(),
             dt_s: dt_s?,
             engine_oil: self.engine_oil.clone(),

@@ -1,5 +1,6 @@
 //! `optimum`: the least fuel that any controller of ratio and clamp can burn, and the operating line near it.
 
+mod limits;
 mod tables;
 
 use std::path::Path;
@@ -8,39 +9,25 @@ use clap::Args;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, Options, Setup};
-use cvtcycle::config::{Bound, Problems, cycle};
+use cvtcycle::config::{Problems, cycle};
 use cvtcycle::model::drive::{Conditions, Start};
 use cvtcycle::model::fluid::ZERO_DEGC_K;
-use cvtcycle::model::keys::rpm;
 use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
-use cvtcycle::output::Row;
 use cvtcycle::output::files::OutputDir;
-use cvtcycle::output::number::fixed;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, StartWord};
-use cvtcycle::study::optimum::{
-    self, Answer, Infeasible, LawCar, LimitName, NoAnswer, Question, ReadFrom, Unheld,
-};
+use cvtcycle::study::optimum::{self, Answer, LawCar, NoAnswer, Question, ReadFrom};
 use serde::Serialize;
 
 use super::{Execute, threads, vehicles};
 use crate::args::problems::{bad_value, cite};
 use crate::args::{
-    AmbientArgs, ColumnsArgs, CycleArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs,
-    ThreadArgs, VehicleArgs, count, cycles, number,
+    AmbientArgs, ColumnsArgs, CycleArgs, DrivingArgs, Names, ResultArgs, ThreadArgs, VehicleArgs,
+    cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
+use limits::{LEAST_RPM, Numbers, infeasible};
 
-/// Allowed least engine speed, rpm.
-const LEAST_RPM: Bound = Bound::closed(300.0, 8000.0);
-/// Allowed share of full load that is kept, per cent.
-const RESERVE: Bound = Bound::closed(0.0, 90.0);
-/// Allowed least safety factor.
-const SAFETY: Bound = Bound::closed(1.0, 10.0);
-/// Allowed largest slip, per cent.
-const SLIP: Bound = Bound::closed(0.1, 20.0);
-/// Fewest and most ratios of the grid.
-const GRID: std::ops::RangeInclusive<u64> = 49..=769;
 /// Least engine speeds for which the bound is printed, rpm.
 const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
 
@@ -72,9 +59,7 @@ pub struct OptimumArgs {
     #[command(flatten)]
     ambient: AmbientArgs,
     #[command(flatten)]
-    drive: DriveArgs,
-    #[command(flatten)]
-    formulation: FormulationArgs,
+    driving: DrivingArgs,
     /// Least engine speed with the clutch locked, rpm
     #[arg(
         long,
@@ -133,9 +118,7 @@ pub struct OptimumArgs {
     #[command(flatten)]
     threads: ThreadArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 /// Checked input.
@@ -150,18 +133,6 @@ pub struct OptimumPlan {
     start: StartWord,
     numbers: Numbers,
     out: Option<OutputDir>,
-}
-
-/// Numbers of the question.
-#[derive(Clone, Copy, Debug, Serialize)]
-struct Numbers {
-    ambient_degc: f64,
-    dt_s: f64,
-    least_rpm: f64,
-    reserve_percent: f64,
-    safety: f64,
-    max_slip_percent: f64,
-    ratios: usize,
 }
 
 /// The object of `--json` and `summary.json`.
@@ -185,12 +156,12 @@ impl Execute for OptimumArgs {
         let columns = self.columns.get(problems);
         let cycle = problems.take(self.own_cycle(&columns));
         let elsewhere = self.elsewhere(&columns, problems);
-        let formulation = self.formulation.get(problems);
+        let formulation = self.driving.formulation.get(problems);
         let options = self.car.options(formulation, problems);
         let setup = problems.take(setup::load(&self.car.vehicle, &options));
         let hint = "a manual box has gears; `study` varies its shift speeds";
         self.car.need_cvt(setup.as_ref(), hint, problems);
-        let (start, dt_s) = self.drive.get(problems);
+        let (start, dt_s) = self.driving.drive.get(problems);
         let least = number("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
         let least = problems.take(least);
         let numbers = self.numbers((dt_s, least), problems);
@@ -202,7 +173,7 @@ impl Execute for OptimumArgs {
         }
         let given = self.threads.given(problems);
         problems.take(threads::begin(given));
-        let out = self.out.dir(problems);
+        let out = self.results.out.dir(problems);
         let (numbers, start) = (numbers?, start?);
         let own = setup.filter(|setup| setup.transmission().is_cvt())?;
         let cycle = cycle::for_car(&self.cycle.word, cycle?, &own);
@@ -243,7 +214,7 @@ impl Execute for OptimumArgs {
             launch_at_idle: !self.own_clamp,
             least_speeds_rpm: &LEAST_SPEEDS_RPM,
         };
-        let dir = self.out.out.as_deref();
+        let dir = self.results.out.out.as_deref();
         let from = ReadFrom {
             vehicle: &self.car.vehicle,
             options: &plan.options,
@@ -275,7 +246,9 @@ impl Execute for OptimumArgs {
         })?;
         let failures = summary.answer.failures.clone();
         let results = Results::new(json, failures, files);
-        Ok(results.output(&self.output, || tables::text(&summary, terminal.stdout)))
+        Ok(results.output(&self.results.output, || {
+            tables::text(&summary, terminal.stdout)
+        }))
     }
 }
 
@@ -311,53 +284,6 @@ impl OptimumArgs {
         };
         let words = self.prove.iter().filter(others);
         words.filter_map(&mut open).collect()
-    }
-
-    fn numbers(
-        &self,
-        (dt_s, least): (Option<f64>, Option<f64>),
-        problems: &mut Problems,
-    ) -> Option<Numbers> {
-        let ambient = self.ambient.get(problems);
-        let mut take = |option: &str, text: &str, range: Bound, suffix: &str| {
-            problems.take(number(option, text, range, suffix))
-        };
-        let reserve = take("--reserve", &self.reserve, RESERVE, "reserve_percent");
-        let safety = take("--safety", &self.safety, SAFETY, "safety");
-        let slip = take("--max-slip", &self.max_slip, SLIP, "slip_percent");
-        let ratios = problems.take(count("--grid", &self.grid, GRID));
-        if ratios.is_some_and(|n| n % 4 != 1) {
-            let message = "the grid is compared with one of half and of a quarter of its ratios";
-            let allowed = "49, 53, 57 to 769";
-            let hint = "four times a number, and one: 49, 97, 193";
-            problems.add(bad_value("--grid", &self.grid, allowed, message, hint));
-        }
-        Some(Numbers {
-            ambient_degc: ambient?,
-            dt_s: dt_s?,
-            least_rpm: least?,
-            reserve_percent: reserve?,
-            safety: safety?,
-            max_slip_percent: slip?,
-            ratios: usize::try_from(ratios?).ok()?,
-        })
-    }
-
-    fn check_least(&self, setup: &Setup, least_rpm: Option<f64>, problems: &mut Problems) {
-        let engine = setup.engine();
-        let [idle, peak] = [engine.idle_hot_rad_s, engine.peak_power_rad_s()].map(rpm);
-        if least_rpm.is_some_and(|least_rpm| !(idle..=peak).contains(&least_rpm)) {
-            let allowed = format!("{} to {} rpm", fixed(idle, 0), fixed(peak, 0));
-            let message = "the least engine speed is outside those in which the engine is driven";
-            let hint = "above idle speed, up to that of greatest power";
-            problems.add(bad_value(
-                "--least-rpm",
-                &self.least_rpm,
-                &allowed,
-                message,
-                hint,
-            ));
-        }
     }
 
     fn check_cycle(&self, cycle: &Cycle, dt_s: f64, problems: &mut Problems) {
@@ -414,52 +340,4 @@ fn law_of(setup: &Setup) -> &'static str {
         Some(ClampLaw::Table) => "table",
         Some(ClampLaw::Map(_)) | None => "map",
     }
-}
-
-/// The limits that cannot be held, where, and how much of each can be.
-fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
-    if why.unheld.is_empty() {
-        let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
-        let hint = "another cycle, or a car that can follow it";
-        return bad_value("--cycle", &of.cycle.word, "", &message, hint).into();
-    }
-    let problem = |limit: &Unheld| {
-        let (option, value) = match limit.name {
-            LimitName::LeastSpeed => ("--least-rpm", &of.least_rpm),
-            LimitName::Reserve => ("--reserve", &of.reserve),
-            LimitName::ShiftRate => ("--vehicle", &of.car.vehicle),
-        };
-        let allowed = match (limit.name, limit.most) {
-            (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),
-            (LimitName::Reserve, Some(share)) => format!("at most {} %", floored(100.0 * share)),
-            _ => "faster shifts".to_owned(),
-        };
-        let instead = why.instead.iter().map(|other| match other {
-            LimitName::LeastSpeed => "a lower --least-rpm",
-            LimitName::Reserve => "a smaller --reserve",
-            LimitName::ShiftRate => "faster shifts (up_per_s, down_per_s)",
-        });
-        let instead: Vec<&str> = instead.collect();
-        let hint = match instead.is_empty() {
-            true => String::new(),
-            false => format!("{} would do as well", instead.join(" or ")),
-        };
-        let message = format!("no ratio holds this limit {}", place(&limit.row));
-        bad_value(option, value, &allowed, &message, &hint)
-    };
-    why.unheld.iter().map(problem).collect()
-}
-
-/// A number with one decimal, rounded down.
-fn floored(x: f64) -> String {
-    fixed((10.0 * x).floor() / 10.0, 1)
-}
-
-fn place(row: &Row) -> String {
-    format!(
-        "at {} s ({} km/h, {} kW at the wheels)",
-        fixed(row.time_s, 1),
-        fixed(3.6 * row.speed_m_s, 1),
-        fixed(row.wheel_power_w / 1e3, 1)
-    )
 }

@@ -10,7 +10,7 @@ use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{Names, OutArgs, OutputArgs, names_of, one_of};
+use crate::args::{Names, ResultArgs, names_of, one_of};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 
@@ -51,9 +51,7 @@ pub struct ReportArgs {
     #[arg(long, value_name = "FORM", value_parser = Names(|| names_of(&Form::NAMES)), hide_possible_values = true)]
     format: Option<String>,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 impl ReportArgs {
@@ -86,7 +84,7 @@ impl Execute for ReportArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         problems.take(threads::begin(None));
-        let out = self.out.out.as_deref();
+        let out = self.results.out.out.as_deref();
         let form = match &self.format {
             Some(word) => problems
                 .take(one_of("--format", word, &Form::NAMES))
@@ -103,7 +101,7 @@ impl Execute for ReportArgs {
                 .first()?
                 .join(format!("report.{}", form.endings()[0])),
         };
-        let target = problems.take(Target::new(&file, form, self.out.force));
+        let target = problems.take(Target::new(&file, form, self.results.out.force));
         let mut document = document?.shown(self.full);
         if self.live {
             document.live = Some(self.live_section(&document, form, problems)?);
@@ -123,6 +121,6 @@ impl Execute for ReportArgs {
         let (json, warnings) = (json_text(&json)?, document.warnings.clone());
         let results = Results::new(json, warnings, WrittenFiles::default());
         let table = || format!("{report}\n{} figures next to it\n", figures.len());
-        Ok(results.output(&self.output, table))
+        Ok(results.output(&self.results.output, table))
     }
 }

@@ -1,6 +1,7 @@
 //! `run`: a vehicle and its baselines on one cycle.
 
 mod files;
+mod losses;
 mod tables;
 
 pub use tables::failures;
@@ -9,24 +10,21 @@ use std::ops::RangeInclusive;
 
 use clap::Args;
 use cvtcycle::config::Problems;
-use cvtcycle::config::cycle::Cycle;
-use cvtcycle::model::drive::{Conditions, Start};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
-use cvtcycle::output::summary::{Settings, StartWord, name_run};
+use cvtcycle::output::summary::{StartWord, name_run};
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
 use cvtcycle::study::run::{RunQuestion, summary};
 use cvtcycle::study::words::drawn::{differences, prepare};
 
-use super::vehicles::{self, Baselines, RunVehicle};
+use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::{overrides, problem};
 use crate::args::{
-    AmbientArgs, ColumnsArgs, ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs,
-    OutputArgs, VehicleArgs, count_if_given, names_of, one_of, word_of_plan,
+    AmbientArgs, DrivingArgs, Names, OutArgs, OutputArgs, count_if_given, names_of, one_of,
+    word_of_plan,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::report::run_files::{self, TraceFormat};
@@ -52,17 +50,11 @@ Examples:
 )]
 pub struct RunArgs {
     #[command(flatten)]
-    car: VehicleArgs,
-    #[command(flatten)]
-    comparison: ComparisonArgs,
-    #[command(flatten)]
-    columns: ColumnsArgs,
+    cars: ComparedArgs,
     #[command(flatten)]
     ambient: AmbientArgs,
     #[command(flatten)]
-    drive: DriveArgs,
-    #[command(flatten)]
-    formulation: FormulationArgs,
+    driving: DrivingArgs,
     /// Drive each vehicle again without each loss for the fuel that it costs: always, never, or auto (unless the cycle has more
     /// than 20 000 steps)
     #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
@@ -91,12 +83,8 @@ pub struct RunArgs {
 
 /// Checked input of a run.
 pub struct RunPlan {
-    cycle: Cycle,
-    vehicles: Vec<RunVehicle>,
+    cars: ComparedVehicles,
     ambient_degc: f64,
-    start: (Start, StartWord),
-    dt_s: f64,
-    formulation: Formulation,
     format: TraceFormat,
     price: When,
     draws: Option<Study>,
@@ -113,7 +101,12 @@ impl RunArgs {
         problems: &mut Problems,
     ) -> Option<Base> {
         let (_, baselines) = vehicles.split_first()?;
-        let refused = match (baselines.is_empty(), &self.columns.columns) {
+        let ComparedArgs {
+            car,
+            comparison,
+            columns,
+        } = &self.cars;
+        let refused = match (baselines.is_empty(), &columns.columns) {
             (true, _) => Some(("there is no baseline", "name one: --baseline twin")),
             (false, Some(_)) => Some((
                 "the draws have no --columns",
@@ -125,18 +118,18 @@ impl RunArgs {
             problems.add(problem("--draws", message, hint));
             return None;
         }
-        let named = self.comparison.named_baselines();
+        let named = comparison.named_baselines();
         let named: Vec<String> = named.map(|name| word_of_plan(name)).collect();
         Some(Base {
-            vehicle: word_of_plan(&self.car.vehicle),
+            vehicle: word_of_plan(&car.vehicle),
             baselines: (!named.is_empty()).then_some(named),
-            cycle: word_of_plan(&self.comparison.cycle.word),
+            cycle: word_of_plan(&comparison.cycle.word),
             ambient_degc,
             start: start.text(),
-            lubricant: self.car.lubricant.as_deref().map(word_of_plan),
-            engine_oil: self.comparison.engine_oil.as_deref().map(word_of_plan),
-            set: overrides("--set", &self.car.set, problems),
-            set_all: overrides("--set-all", &self.comparison.set_all, problems),
+            lubricant: car.lubricant.as_deref().map(word_of_plan),
+            engine_oil: comparison.engine_oil.as_deref().map(word_of_plan),
+            set: overrides("--set", &car.set, problems),
+            set_all: overrides("--set-all", &comparison.set_all, problems),
             dt_s,
             formulation,
         })
@@ -147,13 +140,10 @@ impl Execute for RunArgs {
     type Plan = RunPlan;
 
     fn plan(&self, problems: &mut Problems) -> Option<RunPlan> {
-        let cycle = self.comparison.cycle(&self.columns, problems);
-        let formulation = self.formulation.get(problems);
-        let comparison = (&self.comparison, Baselines::OfFile);
-        let vehicles = vehicles::load(&self.car, comparison, formulation, problems);
-        let cycle = vehicles::own_cycle(&self.comparison.cycle.word, cycle, &vehicles);
+        let DrivingArgs { drive, formulation } = &self.driving;
+        let cars = self.cars.load(Baselines::OfFile, formulation, problems);
         let ambient = self.ambient.get(problems);
-        let (start, dt_s) = self.drive.get(problems);
+        let (start, dt_s) = drive.get(problems);
         let format = problems.take(one_of("--format", &self.format, &TraceFormat::NAMES));
         let when = |option: &str, word: &str| one_of(option, word, &When::NAMES);
         let price = problems.take(when("--price", &self.price));
@@ -164,25 +154,22 @@ impl Execute for RunArgs {
         let wanted = count_if_given("--draws", self.draws.as_ref(), DRAWS, problems);
         let draws = match (wanted, ambient, &start, dt_s) {
             (Some(n), Some(degc), Some((_, start)), Some(dt_s)) if problems.is_empty() => {
-                let base = self.base((degc, start, dt_s, formulation), &vehicles, problems);
-                let is_cvt = vehicles[0].setup.transmission().is_cvt();
+                let how = (degc, start, dt_s, cars.formulation);
+                let base = self.base(how, &cars.vehicles, problems);
+                let is_cvt = cars.vehicles[0].setup.transmission().is_cvt();
                 base.and_then(|base| problems.take(prepare(base, n, is_cvt)))
             }
             _ => None,
         };
         if self.out.out.is_some() {
-            let kept = cycle.as_ref().zip(dt_s);
-            let kept = kept.map(|(cycle, dt_s)| vehicles::kept_steps(&vehicles, cycle, dt_s));
+            let kept = cars.cycle.as_ref().zip(dt_s);
+            let kept = kept.map(|(cycle, dt_s)| vehicles::kept_steps(&cars.vehicles, cycle, dt_s));
             kept.and_then(|kept| problems.take(kept));
         }
         let out = self.out.dir(problems);
         Some(RunPlan {
-            cycle: cycle?,
-            vehicles,
+            cars: cars.driven(start, dt_s)?,
             ambient_degc: ambient?,
-            start: start?,
-            dt_s: dt_s?,
-            formulation,
             format: format?,
             price: price?,
             draws,
@@ -193,29 +180,17 @@ impl Execute for RunArgs {
 
     fn run(&self, mut plan: RunPlan, terminal: Terminal) -> CommandResult {
         let out = plan.out.take();
-        let (cycle, vehicles) = (&plan.cycle, &plan.vehicles);
-        let conditions = Conditions {
-            ambient_k: plan.ambient_degc + ZERO_DEGC_K,
-            start: plan.start.0,
-            max_dt_s: plan.dt_s,
-            keep_rows: out.is_some(),
-        };
-        let outcomes = vehicles::drive_all(vehicles, cycle, &conditions);
+        let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
+        let conditions = plan.cars.conditions(plan.ambient_degc, out.is_some());
+        let outcomes = plan.cars.drive(&conditions);
         let driven = vehicles::driven(vehicles, &outcomes);
-        let settings = Settings {
-            dt_s: plan.dt_s,
-            formulation: plan.formulation.name().to_owned(),
-            set: self.car.set.clone(),
-            set_all: self.comparison.set_all.clone(),
-            strict: self.strict,
-        };
         let question = RunQuestion {
             cycle,
             conditions,
             ambient_degc: plan.ambient_degc,
-            start: plan.start.1,
-            settings,
-            price: plan.price.wanted(cycle, plan.dt_s),
+            start: plan.cars.start.1.clone(),
+            settings: plan.cars.settings(&self.cars, self.strict),
+            price: plan.price.wanted(cycle, plan.cars.dt_s),
         };
         let mut summary = summary(&question, &driven);
         if let Some(study) = &plan.draws {

@@ -1,6 +1,7 @@
 //! `study`: many runs.
 
 mod ambient;
+mod effects;
 pub mod execution;
 mod export;
 pub mod levers;

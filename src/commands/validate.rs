@@ -14,7 +14,7 @@ use cvtcycle::study::check::{
 
 use super::{Execute, threads};
 use crate::args::problems::{bad_value, did_you_mean, overrides, problem};
-use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, VehicleArgs, bytes, names_of, one_of};
+use crate::args::{Names, ResultArgs, ThreadArgs, VehicleArgs, bytes, names_of, one_of};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
@@ -71,9 +71,7 @@ pub struct ValidateArgs {
     #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(|| names_of(&FORMS)), hide_possible_values = true, conflicts_with = "json")]
     format: String,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 /// Form of standard output.
@@ -127,7 +125,7 @@ impl Execute for ValidateArgs {
         if !files.is_empty() {
             self.check_filters(&files, problems);
         }
-        let out = self.out.dir(problems);
+        let out = self.results.out.dir(problems);
         if !self.only_rows {
             self.check_vehicle(problems);
         }
@@ -178,7 +176,7 @@ impl Execute for ValidateArgs {
                     Some(power) => tables::power(&report, power, terminal.stdout),
                     None => tables::tables(&report, self.rows_shown(), terminal.stdout),
                 };
-                return Ok(results.output(&self.output, tables));
+                return Ok(results.output(&self.results.output, tables));
             }
             (ValidationForm::Csv, Some(power)) => {
                 String::from_utf8_lossy(&power.csv()).into_owned()
@@ -218,7 +216,8 @@ impl ValidateArgs {
     /// What changes of the cars do to the rows; none if it was stopped.
     fn power_of(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
         let changes = Perturbations::of(files, &report.candidate);
-        let progress = Progress::counted("changes", changes.count() as u64, self.output.quiet);
+        let progress =
+            Progress::counted("changes", changes.count() as u64, self.results.output.quiet);
         let power = changes.power(files, report, &progress);
         progress.finish();
         power

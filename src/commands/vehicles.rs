@@ -1,15 +1,17 @@
 //! The vehicles that are driven: the subject with its overrides, then the baselines.
 
+use clap::Args;
 use cvtcycle::config::bounded;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
-use cvtcycle::model::drive::{Conditions, Outcome, drive};
+use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
+use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::output::summary::Driven;
+use cvtcycle::output::summary::{Driven, Settings, StartWord};
 
 use crate::args::problems::{assigned, overrides};
-use crate::args::{ComparisonArgs, VehicleArgs};
+use crate::args::{ColumnsArgs, ComparisonArgs, FormulationArgs, VehicleArgs};
 
 /// A vehicle of a run.
 pub struct RunVehicle {
@@ -23,12 +25,104 @@ pub struct RunVehicle {
     pub options: Options,
 }
 
-/// All vehicles on the cycle.
-pub fn drive_all(vehicles: &[RunVehicle], cycle: &Cycle, conditions: &Conditions) -> Vec<Outcome> {
-    let outcomes = vehicles
-        .iter()
-        .map(|car| drive(&car.setup, cycle, conditions));
-    outcomes.collect()
+/// The vehicles that are compared, and their cycle.
+#[derive(Args, Clone, Debug)]
+pub struct ComparedArgs {
+    #[command(flatten)]
+    pub car: VehicleArgs,
+    #[command(flatten)]
+    pub comparison: ComparisonArgs,
+    #[command(flatten)]
+    pub columns: ColumnsArgs,
+}
+
+impl ComparedArgs {
+    /// Reads the cycle and the vehicles.
+    pub fn load(
+        &self,
+        baselines: Baselines,
+        formulation: &FormulationArgs,
+        problems: &mut Problems,
+    ) -> Loaded {
+        let word = &self.comparison.cycle.word;
+        let columns = self.columns.get(problems);
+        let cycle = problems.take(cycle::open(word, &columns));
+        let formulation = formulation.get(problems);
+        let vehicles = load(
+            &self.car,
+            (&self.comparison, baselines),
+            formulation,
+            problems,
+        );
+        Loaded {
+            cycle: own_cycle(word, cycle, &vehicles),
+            vehicles,
+            formulation,
+        }
+    }
+}
+
+/// Vehicles and their cycle as they were read; what has a problem is missing.
+pub struct Loaded {
+    pub cycle: Option<Cycle>,
+    pub vehicles: Vec<RunVehicle>,
+    pub formulation: Formulation,
+}
+
+impl Loaded {
+    /// With how they are driven: their start, and the longest step, s.
+    pub fn driven(
+        self,
+        start: Option<(Start, StartWord)>,
+        dt_s: Option<f64>,
+    ) -> Option<ComparedVehicles> {
+        Some(ComparedVehicles {
+            cycle: self.cycle?,
+            vehicles: self.vehicles,
+            start: start?,
+            dt_s: dt_s?,
+            formulation: self.formulation,
+        })
+    }
+}
+
+/// Vehicles that are compared on a cycle, subject first.
+pub struct ComparedVehicles {
+    pub cycle: Cycle,
+    pub vehicles: Vec<RunVehicle>,
+    pub start: (Start, StartWord),
+    pub dt_s: f64,
+    pub formulation: Formulation,
+}
+
+impl ComparedVehicles {
+    /// How they are driven at an ambient temperature.
+    pub fn conditions(&self, ambient_degc: f64, keep_rows: bool) -> Conditions {
+        Conditions {
+            ambient_k: ambient_degc + ZERO_DEGC_K,
+            start: self.start.0,
+            max_dt_s: self.dt_s,
+            keep_rows,
+        }
+    }
+
+    /// What was asked for, as a summary has it.
+    pub fn settings(&self, of: &ComparedArgs, strict: bool) -> Settings {
+        Settings {
+            dt_s: self.dt_s,
+            formulation: self.formulation.name().to_owned(),
+            set: of.car.set.clone(),
+            set_all: of.comparison.set_all.clone(),
+            strict,
+        }
+    }
+
+    /// All of them on the cycle.
+    pub fn drive(&self, conditions: &Conditions) -> Vec<Outcome> {
+        let outcomes = self.vehicles.iter();
+        let outcomes = outcomes.map(|car| drive(&car.setup, &self.cycle, conditions));
+        outcomes.collect()
+    }
 }
 
 /// The vehicles with their outcomes, for a summary.
@@ -134,7 +228,7 @@ pub fn load(
 }
 
 /// The cycle of a word for the subject, whose class chooses among the WLTC.
-pub fn own_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
+fn own_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
     let cycle = cycle?;
     Some(match vehicles.first() {
         Some(subject) => cycle::for_car(word, cycle, &subject.setup),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
-use cvtcycle::config::setup::{AMBIENT, Kind};
+use cvtcycle::config::setup::Kind;
 use cvtcycle::report::document::Document;
 use cvtcycle::report::live::{LiveSection, Scene, State};
 use cvtcycle::report::write::{Form, Target};
@@ -13,9 +13,7 @@ use cvtcycle::report::write::{Form, Target};
 use super::Execute;
 use super::vehicles::{self, Baselines};
 use crate::args::problems::of_car;
-use crate::args::{
-    ComparisonArgs, DriveArgs, FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, number,
-};
+use crate::args::{AmbientArgs, ComparisonArgs, DrivingArgs, Names, ResultArgs, VehicleArgs};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Arguments of `whatif`.
@@ -44,22 +42,12 @@ pub struct WhatifArgs {
     set: Vec<String>,
     #[command(flatten)]
     comparison: ComparisonArgs,
-    /// Ambient temperature, degC, -40 to 60
-    #[arg(
-        long,
-        value_name = "DEGC",
-        default_value = "25",
-        allow_hyphen_values = true
-    )]
-    ambient: String,
     #[command(flatten)]
-    drive: DriveArgs,
+    ambient: AmbientArgs,
     #[command(flatten)]
-    formulation: FormulationArgs,
+    driving: DrivingArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 impl Execute for WhatifArgs {
@@ -67,7 +55,7 @@ impl Execute for WhatifArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let cycle = problems.take(cycle::find(&self.comparison.cycle.word));
-        let formulation = self.formulation.get(problems);
+        let formulation = self.driving.formulation.get(problems);
         let car = VehicleArgs {
             vehicle: self.vehicle.clone(),
             lubricant: self.lubricant.clone(),
@@ -77,17 +65,17 @@ impl Execute for WhatifArgs {
         let mut found = Problems::new();
         let cars = vehicles::load(&car, comparison, formulation, &mut found);
         problems.append(found.map(of_car));
-        let ambient = problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"));
-        let (start, dt_s) = self.drive.get(problems);
-        let file = self.out.out.clone();
+        let ambient = self.ambient.get(problems);
+        let (start, dt_s) = self.driving.drive.get(problems);
+        let file = self.results.out.out.clone();
         let file = file.unwrap_or_else(|| PathBuf::from("whatif.html"));
-        let target = problems.take(Target::new(&file, Form::Html, self.out.force));
+        let target = problems.take(Target::new(&file, Form::Html, self.results.out.force));
         cycle?;
         let (subject, baselines) = cars.split_first()?;
         let scene = Scene {
-            vehicle: self.vehicle.clone(),
+            vehicle: car.vehicle,
             baselines: baselines.iter().map(|car| car.word.clone()).collect(),
-            set: self.set.clone(),
+            set: car.set,
             set_all: self.comparison.set_all.clone(),
             engine_oil: self.comparison.engine_oil.clone(),
             start: start?.1.text(),
@@ -96,7 +84,7 @@ impl Execute for WhatifArgs {
             state: State {
                 cycle: self.comparison.cycle.word.clone(),
                 ambient_degc: ambient?,
-                lubricant: self.lubricant.clone(),
+                lubricant: car.lubricant,
                 ..State::default()
             },
             first_figure: 1,
@@ -118,6 +106,6 @@ impl Execute for WhatifArgs {
         let page = page.unwrap_or_default();
         let json = json_text(&serde_json::json!({ "page": page }))?;
         let results = Results::new(json, Vec::new(), WrittenFiles::default());
-        Ok(results.output(&self.output, || format!("{page}\n")))
+        Ok(results.output(&self.results.output, || format!("{page}\n")))
     }
 }

@@ -7,34 +7,7 @@ use cvtcycle_model::keys::{Bound, Choice, Column, Key, Kind, Presence, Values, s
 
 /// As the methods of [`Values`], with the parts of a key in place of the key.
 #[allow(dead_code, reason = "each test crate uses a part of it")]
-pub trait Loose: Sized {
-    fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64;
-    fn number_or(&self, key: &str, allowed: Bound, default: f64, doc: &str) -> f64;
-    fn optional_number(&self, key: &str, allowed: Bound, doc: &str) -> Option<f64>;
-    fn integer_or(&self, key: &str, range: RangeInclusive<i64>, default: i64, doc: &str) -> i64;
-    fn boolean_or(&self, key: &str, default: bool, doc: &str) -> bool;
-    fn text(&self, key: &str, doc: &str) -> String;
-    fn text_or(&self, key: &str, default: &str, doc: &str) -> String;
-    fn word_or(
-        &self,
-        key: &str,
-        words: &[&'static str],
-        default: &'static str,
-        doc: &str,
-    ) -> &'static str;
-    fn choose(
-        &self,
-        key: &str,
-        options: &[&'static str],
-        default: Option<&'static str>,
-        doc: &str,
-    ) -> (&'static str, Self);
-    fn numbers(&self, key: &str, each: Bound, length: RangeInclusive<usize>, doc: &str)
-    -> Vec<f64>;
-    fn rows(&self, key: &str, columns: &[Column<'_>], doc: &str) -> Vec<Vec<f64>>;
-}
-
-impl Loose for Section<'_> {
+pub trait Loose: Values {
     fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {
         Values::number(self, &Key::new(key, spec::within(allowed), doc))
     }
@@ -45,16 +18,16 @@ impl Loose for Section<'_> {
     }
 
     fn optional_number(&self, key: &str, allowed: Bound, doc: &str) -> Option<f64> {
-        self.optional(&Key::new(key, spec::within(allowed), doc))
+        Values::optional(self, &Key::new(key, spec::within(allowed), doc))
     }
 
     fn integer_or(&self, key: &str, range: RangeInclusive<i64>, default: i64, doc: &str) -> i64 {
         let spec = spec::integer(*range.start(), *range.end(), default);
-        self.integer(&Key::new(key, spec, doc))
+        Values::integer(self, &Key::new(key, spec, doc))
     }
 
     fn boolean_or(&self, key: &str, default: bool, doc: &str) -> bool {
-        self.flag(&Key::new(key, spec::flag(default), doc))
+        Values::flag(self, &Key::new(key, spec::flag(default), doc))
     }
 
     fn text(&self, key: &str, doc: &str) -> String {
@@ -108,6 +81,8 @@ impl Loose for Section<'_> {
         Values::rows(self, &Key::new(key, spec, doc)).unwrap_or_default()
     }
 }
+
+impl Loose for Section<'_> {}
 
 /// Options without keys of their own.
 fn choices(words: &[&'static str]) -> Vec<Choice> {

@@ -1,4 +1,4 @@
-//! Folders of results, compared file by file.
+//! Folders of results: compared file by file, and the finished parts of a study.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -35,4 +35,16 @@ pub fn same(a: &Path, b: &Path) {
     for (name, bytes) in &a {
         assert!(*bytes == b[name], "{} differs", name.display());
     }
+}
+
+/// Number of finished parts in the folder of a study.
+#[must_use]
+pub fn parts(study: &Path) -> usize {
+    let Ok(entries) = fs::read_dir(study.join("parts")) else {
+        return 0;
+    };
+    let names = entries.map(|entry| entry.unwrap().file_name());
+    names
+        .filter(|name| name.to_string_lossy().ends_with(".sha256"))
+        .count()
 }

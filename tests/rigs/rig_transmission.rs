@@ -249,7 +249,7 @@ fn points_outside_validity_are_flagged() {
 /// Ran, but a check failed.
 #[test]
 fn an_open_loop_is_exit_code_one() {
-    let (code, out, err) = run(&[
+    let words = [
         "--test",
         "transient",
         "--ratio",
@@ -258,22 +258,13 @@ fn an_open_loop_is_exit_code_one() {
         "rig.cooler.coolant_degc=19",
         "--set",
         "rig.transient.end_degc=60",
-    ]);
+    ];
+    let (code, out, err) = run(&words);
     assert!(
         code == 1 && err.contains("check failed: the transient at low stops on its way"),
         "{code} {out} {err}"
     );
-    let (code, out, err) = run(&[
-        "--quiet",
-        "--test",
-        "transient",
-        "--ratio",
-        "low",
-        "--set",
-        "rig.cooler.coolant_degc=19",
-        "--set",
-        "rig.transient.end_degc=60",
-    ]);
+    let (code, out, err) = run(&[&["--quiet"], &words[..]].concat());
     assert!(
         code == 1 && out.is_empty() && err.contains("check failed"),
         "{code} {out} {err}"

@@ -2,7 +2,6 @@
 //! the same study put together in another way.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Mutex;
 
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{Override, Problem, Problems};
@@ -15,9 +14,10 @@ use cvtcycle::study::levers::{
 use cvtcycle::study::plan::{Factor, Level, Plan};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::store::{Rows, Values};
-use cvtcycle::study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource};
+use cvtcycle::study::{NoProgress, Study, StudyManifest, StudyTable, TableSource};
 
 use crate::common::{at, cycle};
+use crate::parts::Shelf;
 
 const CVT: &str = "rover_216_cvt";
 const FUEL: &str = "headline_fuel_l_per_100km";
@@ -26,16 +26,6 @@ const FUEL: &str = "headline_fuel_l_per_100km";
 struct Table {
     columns: Vec<Head>,
     parts: BTreeMap<u64, Rows>,
-}
-
-#[derive(Default)]
-struct Shelf(Mutex<BTreeMap<u64, Rows>>);
-
-impl PartWriter for Shelf {
-    fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
-        self.0.lock().unwrap().insert(part, runs.clone());
-        Ok(())
-    }
 }
 
 impl TableSource for Table {

@@ -30,6 +30,7 @@ mod optimum;
 mod levers;
 mod order_of_factors;
 mod parquet_readers;
+mod parts;
 mod sensitivity;
 mod study;
 mod study_design;

@@ -1,14 +1,15 @@
 //! The order of factors and of their values is no physics: a grid in another order has the same rows.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Mutex;
 
-use cvtcycle::config::{Problem, Problems, render};
+use cvtcycle::config::{Problems, render};
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::store::{Rows, Values};
-use cvtcycle::study::{End, NoProgress, PartWriter, Study};
+use cvtcycle::study::store::Values;
+use cvtcycle::study::{End, NoProgress, Study};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
+
+use crate::parts::Shelf;
 
 /// Keys that the CVT has, with values that are accepted in any combination.
 const KEYS: [(&str, &str, [f64; 2]); 9] = [
@@ -97,16 +98,6 @@ fn plan(factors: &[Factor]) -> String {
         )
     };
     head.to_owned() + &factors.iter().map(factor).collect::<String>()
-}
-
-#[derive(Default)]
-struct Shelf(Mutex<BTreeMap<u64, Rows>>);
-
-impl PartWriter for Shelf {
-    fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
-        self.0.lock().unwrap().insert(part, runs.clone());
-        Ok(())
-    }
 }
 
 fn cell(values: &Values, at: usize) -> String {

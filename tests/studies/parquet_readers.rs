@@ -15,14 +15,13 @@ use cvtcycle::output::trace::columns_for;
 use cvtcycle::output::trace::write_trace;
 use cvtcycle::study::store::{Format, export};
 use cvtcycle::study::store::{Head, Kind, Rows, Values};
-use cvtcycle::study::store::{
-    PartTable, Study, StudyDir, write_csv, write_parquet, write_trace_parquet,
-};
+use cvtcycle::study::store::{Study, StudyDir, write_csv, write_parquet, write_trace_parquet};
 use serde_json::json;
 use tempfile::TempDir;
 
 #[allow(dead_code, reason = "shared with other tests")]
 use crate::fixtures;
+use crate::parts::write_runs;
 
 /// Compares `TABLE.parquet` with `TABLE.csv` cell by cell, and its metadata with `TABLE.json`.
 const COMPARE: &str = r#"
@@ -296,19 +295,7 @@ fn val_pyarrow_finds_the_cells_of_a_trace_and_of_an_export() {
         json!({ "layout": { "parts": 3, "tables": ["runs"], "csv": false }, "title": "Öl" })
             .to_string();
     let parts = StudyDir::create(&study, manifest.as_bytes(), b"", false).unwrap();
-    (0..3).for_each(|k| {
-        parts
-            .write_part(
-                k,
-                &[PartTable {
-                    name: "runs",
-                    columns: &columns,
-                    rows: &rows,
-                    metadata: &[],
-                }],
-            )
-            .unwrap()
-    });
+    (0..3).for_each(|k| write_runs(&parts, k, &columns, &rows));
     let base = dir.path().join("export");
     for (ending, format) in [("csv", Format::Csv), ("parquet", Format::Parquet)] {
         let mut out = OutputFile::create(base.with_extension(ending), false).unwrap();

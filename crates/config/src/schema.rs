@@ -6,7 +6,7 @@ use cvtcycle_model::files::{HEAD, HeadKeys};
 use cvtcycle_model::keys::{Bound, Choice, Key, Kind, Presence, Quantity, Repeat, Table};
 use serde_json::{Map, Value, json};
 
-use crate::reader::value::{COLUMNS, STATUSES};
+use crate::reader::origin::{COLUMNS, STATUSES};
 
 /// The schema of a kind of file: its name in the title, and its keys.
 ///

@@ -2,15 +2,18 @@
 //!
 //! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
 
+mod grid;
+
+pub use grid::{Axis, LossGrid, MAX_POINTS};
+
 use std::io::{self, Write};
 
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::{Bound, to_si};
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, solvable_ratios};
+use cvtcycle_config::to_si;
+use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 
-use crate::number::plain;
 use crate::provenance::car_sha256;
 use crate::record::Manifest;
 use crate::table::{Cell, Column, Scope, json_columns, write_csv, write_json};
@@ -20,179 +23,6 @@ use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
-
-/// Most points of a grid.
-pub const MAX_POINTS: usize = 1_000_000;
-
-/// What a grid can vary, outermost first: the last one runs fastest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(usize)]
-pub enum Axis {
-    /// Belt ratio, or gear of a manual box.
-    Ratio,
-    /// Oil in the sump, degC.
-    Sump,
-    /// Belt and spray, degC; in steady state over the sump where it is not given.
-    Belt,
-    /// Throttle that the clamp law sees.
-    Throttle,
-    /// Secondary pressure, bar; the clamp law's where it is not given.
-    Pressure,
-    /// Torque at the output shaft, Nm; not given where that at the input shaft is.
-    Torque,
-    /// Torque at the input shaft, Nm; in a CVT the clamp law sees it over full load as throttle.
-    InputTorque,
-    /// Speed of the input shaft, rpm.
-    Speed,
-}
-
-impl Axis {
-    /// Number of axes.
-    pub const COUNT: usize = 8;
-    /// All axes, outermost first.
-    pub const ALL: [Axis; Self::COUNT] = [
-        Axis::Ratio,
-        Axis::Sump,
-        Axis::Belt,
-        Axis::Throttle,
-        Axis::Pressure,
-        Axis::Torque,
-        Axis::InputTorque,
-        Axis::Speed,
-    ];
-
-    /// Range of its values, and the suffix of a key with its unit; ratios and gears depend on the transmission.
-    pub fn range(self) -> (Bound, &'static str) {
-        // Where the fluid models hold.
-        let temp = Bound::closed(-40.0, 160.0);
-        match self {
-            Axis::Ratio => (Bound::any(), ""),
-            Axis::Sump | Axis::Belt => (temp, "_degc"),
-            Axis::Throttle => (Bound::closed(0.0, 1.0), ""),
-            Axis::Pressure => (Bound::closed(0.0, 100.0), "_bar"),
-            Axis::Torque | Axis::InputTorque => (Bound::closed(-5000.0, 5000.0), "_nm"),
-            Axis::Speed => (Bound::open_low(0.0, 10_000.0), "_rpm"),
-        }
-    }
-
-    /// As [`Axis::range`], for a transmission: ratios at which the belt fits around both pulleys, or gears that there are.
-    pub fn range_in(self, transmission: &Transmission) -> (Bound, &'static str) {
-        match (self, transmission) {
-            (Axis::Ratio, Transmission::Cvt(cvt)) => {
-                let (low, high) = solvable_ratios(&cvt.belt);
-                (Bound::closed(low, high), "")
-            }
-            (Axis::Ratio, Transmission::Manual(manual)) => {
-                (Bound::closed(1.0, manual.overall.len() as f64), "")
-            }
-            _ => self.range(),
-        }
-    }
-
-    /// Title of a plot's axis and heading of a table's column.
-    fn names(self, cvt: bool) -> (&'static str, &'static str) {
-        match self {
-            Axis::Ratio if cvt => ("Belt ratio", "ratio"),
-            Axis::Ratio => ("Gear", "gear"),
-            Axis::Sump => ("Oil in the sump [\u{b0}C]", "sump \u{b0}C"),
-            Axis::Belt => ("Belt and spray [\u{b0}C]", "belt \u{b0}C"),
-            Axis::Throttle => ("Throttle", "throttle"),
-            Axis::Pressure => ("Secondary pressure [bar]", "bar"),
-            Axis::Torque => ("Torque at the output shaft [Nm]", "Nm out"),
-            Axis::InputTorque => ("Torque at the input shaft [Nm]", "Nm in"),
-            Axis::Speed => ("Input speed [rpm]", "rpm"),
-        }
-    }
-
-    /// Title of a plot's axis.
-    pub fn title(self, cvt: bool) -> &'static str {
-        self.names(cvt).0
-    }
-
-    /// Heading of a table's column.
-    pub fn short(self, cvt: bool) -> &'static str {
-        self.names(cvt).1
-    }
-
-    /// A value of the axis, without its unit.
-    pub fn text(self, x: f64) -> String {
-        match self {
-            Axis::Ratio => plain((x * 1e3).round() / 1e3),
-            _ => plain(x),
-        }
-    }
-
-    /// A value of the axis in words.
-    pub fn words(self, cvt: bool, x: f64) -> String {
-        let text = self.text(x);
-        match self {
-            Axis::Ratio | Axis::Throttle => format!("{} {text}", self.short(cvt)),
-            Axis::Sump => format!("sump {text} \u{b0}C"),
-            Axis::Belt => format!("belt {text} \u{b0}C"),
-            Axis::Pressure | Axis::Speed => format!("{text} {}", self.short(cvt)),
-            Axis::Torque => format!("{text} Nm at the output"),
-            Axis::InputTorque => format!("{text} Nm at the input"),
-        }
-    }
-}
-
-/// Values of all axes, each in the unit of its column. Empty: not given, for belt temperature, pressure, and one of the torques only.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LossGrid {
-    /// Values by [`Axis`].
-    pub values: [Vec<f64>; Axis::COUNT],
-}
-
-impl LossGrid {
-    /// Values of one axis.
-    pub fn of(&self, axis: Axis) -> &[f64] {
-        &self.values[axis as usize]
-    }
-
-    /// Axes with more than one value, outermost first.
-    pub fn varied(&self) -> Vec<Axis> {
-        let mut axes = Axis::ALL.to_vec();
-        axes.retain(|axis| self.of(*axis).len() > 1);
-        axes
-    }
-
-    /// Number of points, as a float: it may exceed what can be counted.
-    pub fn size(&self) -> f64 {
-        self.values.iter().map(|v| v.len().max(1) as f64).product()
-    }
-
-    /// Number of points of a grid that is not too large.
-    pub fn len(&self) -> usize {
-        self.values.iter().map(|v| v.len().max(1)).product()
-    }
-
-    /// Whether there is no point; never, since an axis without values counts as one.
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
-    /// Index of the value of each axis at a point.
-    pub fn indices(&self, mut index: usize) -> [usize; Axis::COUNT] {
-        let mut out = [0; Axis::COUNT];
-        for (place, values) in out.iter_mut().zip(&self.values).rev() {
-            let count = values.len().max(1);
-            *place = index % count;
-            index /= count;
-        }
-        out
-    }
-
-    /// The values of a point, NaN where an axis is not given.
-    pub fn at(&self, index: usize) -> [f64; Axis::COUNT] {
-        let indices = self.indices(index);
-        std::array::from_fn(|k| self.values[k].get(indices[k]).copied().unwrap_or(f64::NAN))
-    }
-
-    /// Solves all points one after the other.
-    pub fn rows<'a>(&'a self, bench: &'a Bench) -> impl Iterator<Item = LossRow> + 'a {
-        (0..self.len()).map(|index| LossRow::new(bench, self.at(index)))
-    }
-}
 
 /// One solved point.
 #[derive(Clone, Copy, Debug)]
@@ -219,6 +49,13 @@ pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
         sump_k: to_si("_degc", value(Axis::Sump)),
         belt_k: given(Axis::Belt, "_degc"),
         ..BenchPoint::default()
+    }
+}
+
+impl LossGrid {
+    /// Solves all points one after the other.
+    pub fn rows<'a>(&'a self, bench: &'a Bench) -> impl Iterator<Item = LossRow> + 'a {
+        (0..self.len()).map(|index| LossRow::new(bench, self.at(index)))
     }
 }
 

@@ -7,6 +7,7 @@ mod alike;
 mod failure;
 mod known;
 mod maps_left;
+mod phases;
 mod price;
 mod run;
 
@@ -14,8 +15,9 @@ pub use alike::{Difference, differences, words as likeness};
 pub use failure::{Deficit, Failure};
 pub use known::{Contradiction, DrawnDifference};
 pub use maps_left::{MapLeft, find_maps_left};
+pub use phases::PhaseSummary;
 pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
-pub use run::{PhaseSummary, RunSummary, Solve, run_summary};
+pub use run::{RunSummary, Solve, run_summary};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};

@@ -18,9 +18,11 @@
 //! ```
 
 mod text;
+mod text_columns;
 mod write;
 
-pub use text::{TextColumns, TextTable, cut, line_width, paragraphs, set_line_width, wrapped};
+pub use text::{TextTable, cut, line_width, paragraphs, set_line_width, wrapped};
+pub use text_columns::TextColumns;
 pub use write::{CsvWriter, csv_bytes, json_columns, json_row, json_rows, write_csv, write_json};
 
 use std::borrow::Cow;

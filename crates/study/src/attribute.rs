@@ -14,24 +14,23 @@
 //! better than the mean one. A loss warms the oil, so that its removal makes the others larger: J > 0 in the cold. Less load lowers the clamping
 //! pressure of a law by throttle: J < 0 of pump and belt.
 
+mod runs;
 mod words;
 
 pub use words::answer;
 
 use std::collections::BTreeSet;
 
-use rayon::prelude::*;
+use runs::{Burnt, Runs, minus};
 
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{Conditions, MOST_TOGETHER, Outcome, Run, Vehicle, drive_each};
+use cvtcycle_model::drive::Conditions;
 use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_model::transmission::loss_factor::LossFactors;
 use cvtcycle_output::Component;
-use cvtcycle_output::number::{finite, fixed, plain};
-use cvtcycle_output::summary::{
-    Driven, LossPrice, Named, PairPrice, PriceSummary, RunSummary, Saving, Settings, run_summary,
-};
+use cvtcycle_output::number::fixed;
+use cvtcycle_output::summary::{PairPrice, PriceSummary, RunSummary, Settings};
 
 /// A component that loses less over the whole cycle has no price, kJ.
 const LEAST_KJ: f64 = 1e-3;
@@ -87,31 +86,29 @@ pub enum Pairs {
 /// Fuel of a drive: the headline, then that of each group of phases, L/100 km; NaN without distance.
 type Fuel = Vec<f64>;
 
-/// A drive with changed losses.
-struct Burnt {
-    fuel: Fuel,
-    /// Energy at the wheels, kJ.
-    wheels_kj: f64,
-    failures: Vec<String>,
-}
-
-impl Burnt {
-    fn of(run: &RunSummary) -> Self {
-        let phases = run.phases.iter().map(|phase| phase.fuel_l_per_100km);
-        let fuel = std::iter::once(run.headline_fuel()).chain(phases);
-        Burnt {
-            fuel: fuel.map(|litres| litres.unwrap_or(f64::NAN)).collect(),
-            wheels_kj: run.ledger_kj.get("wheels").unwrap_or(f64::NAN),
-            failures: run.failures.iter().map(|failure| failure.brief()).collect(),
-        }
-    }
-}
-
-fn minus(a: &[f64], b: &[f64]) -> Fuel {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
-}
-
 /// Prices of the losses of a car; `base` are its numbers as it is. The runs are driven on all threads, and summed in one order.
+///
+/// ```
+/// use cvtcycle_config::cycle;
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::drive::{Conditions, Start, drive};
+/// use cvtcycle_output::summary::{Driven, Settings, run_summary};
+/// use cvtcycle_study::attribute::{Attribution, Depth, attribute};
+/// let setup = load("rover_216_cvt", &Options::default())?;
+/// let cycle = cycle::find("constant_50")?;
+/// let conditions = Conditions { ambient_k: 263.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
+/// let outcome = drive(&setup, &cycle, &conditions);
+/// let driven = Driven { name: "rover", setup: &setup, outcome: &outcome };
+/// let settings = Settings::default();
+/// let base = run_summary(&cycle, "subject", &settings, &driven);
+/// // Half of each loss in turn.
+/// let of = Attribution { setup: &setup, cycle: &cycle, conditions, settings: &settings, factor: 0.5, depth: Depth::default() };
+/// let price = attribute(&of, &base);
+/// let parts: f64 = price.losses.values().filter_map(|loss| loss.saved.percent).sum();
+/// let rest = price.interaction.percent.expect("a number");
+/// assert!((parts + rest - price.together.percent.expect("a number")).abs() < 1e-9);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn attribute(of: &Attribution, base: &RunSummary) -> PriceSummary {
     let runs = Runs::new(of, base);
     let design = Design::new(of, base);
@@ -240,142 +237,6 @@ impl Attribution<'_> {
         }
         notes
     }
-}
-
-/// The drives of one car.
-struct Runs<'a> {
-    of: &'a Attribution<'a>,
-    numbers: &'a RunSummary,
-    base: Burnt,
-}
-
-impl<'a> Runs<'a> {
-    fn new(of: &'a Attribution<'a>, numbers: &'a RunSummary) -> Self {
-        let base = Burnt::of(numbers);
-        Runs { of, numbers, base }
-    }
-
-    /// Drives with each of the factors on the losses; the results in their order.
-    fn drive<const LISTS: usize>(&self, changed: [Vec<LossFactors>; LISTS]) -> [Vec<Burnt>; LISTS] {
-        let of = self.of;
-        let conditions = Conditions {
-            keep_rows: false,
-            ..of.conditions
-        };
-        // Some at a time, which are driven side by side.
-        let some = |factors: &[LossFactors]| -> Vec<Burnt> {
-            let cars: Vec<Vehicle> = (factors.iter())
-                .map(|factors| of.setup.with_losses_times(factors))
-                .collect();
-            let runs: Vec<Run> = (cars.iter())
-                .map(|vehicle| Run {
-                    vehicle,
-                    conditions,
-                })
-                .collect();
-            let burnt = |outcome: &Outcome| {
-                let driven = Driven {
-                    name: &self.numbers.vehicle,
-                    setup: of.setup,
-                    outcome,
-                };
-                let role = &self.numbers.role;
-                Burnt::of(&run_summary(of.cycle, role, of.settings, &driven))
-            };
-            drive_each(&runs, of.cycle).iter().map(burnt).collect()
-        };
-        let counts = changed.each_ref().map(Vec::len);
-        let burnt: Vec<Vec<Burnt>> = (changed.concat())
-            .par_chunks(MOST_TOGETHER)
-            .map(some)
-            .collect();
-        let burnt: Vec<Burnt> = burnt.into_iter().flatten().collect();
-        let mut burnt = burnt.into_iter();
-        counts.map(|count| burnt.by_ref().take(count).collect())
-    }
-
-    /// Fuel saved by a change (AT-1, AT-2).
-    fn saved(&self, run: &Burnt) -> Fuel {
-        minus(&self.base.fuel, &run.fuel) // AT-1, AT-2
-    }
-
-    fn saving(&self, saved: &[f64]) -> Saving {
-        let phases = self.numbers.phases.iter().zip(saved.iter().skip(1));
-        Saving {
-            l_per_100km: finite(saved[0]),
-            percent: finite(100.0 * saved[0] / self.base.fuel[0]),
-            phases: phases
-                .map(|(phase, litres)| (&*phase.name, finite(*litres)))
-                .collect::<Named>(),
-        }
-    }
-
-    fn loss(&self, own: Component, price: &[f64], alone: Option<Saving>) -> LossPrice {
-        let loss_kj = self.numbers.loss_kj.get(own.name());
-        let percent = |kj: f64| finite(100.0 * kj / self.numbers.fuel_energy_kj);
-        LossPrice {
-            group: own.group().name().to_owned(),
-            loss_kj,
-            energy_percent: loss_kj.and_then(percent),
-            saved: self.saving(price),
-            alone,
-        }
-    }
-
-    /// Two losses with their own prices, from a drive with both changed (AT-4).
-    fn pair(&self, [(a, of_a), (b, of_b)]: [(Component, &[f64]); 2], both: &Burnt) -> PairPrice {
-        let more = minus(&minus(&self.saved(both), of_a), of_b); // AT-4
-        PairPrice {
-            a: a.name().to_owned(),
-            b: b.name().to_owned(),
-            a_with_b: finite(of_a[0]),
-            a_without_b: finite(of_a[0] + more[0]), // AT-4
-            b_with_a: finite(of_b[0]),
-            b_without_a: finite(of_b[0] + more[0]), // AT-4
-            interaction: self.saving(&more),
-        }
-    }
-
-    /// Shares of groups from the drives of all their sets, in the order of the bits of a set (AT-6).
-    fn shares(&self, groups: &[LossGroup], sets: &[Burnt]) -> Vec<(String, Saving)> {
-        let worth: Vec<Fuel> = sets.iter().map(|run| self.saved(run)).collect();
-        let shares = shapley(groups.len(), &worth);
-        let named = groups.iter().zip(&shares);
-        named
-            .map(|(group, share)| (group.name().to_owned(), self.saving(share)))
-            .collect()
-    }
-
-    /// Checks that the car fails without a loss only.
-    fn new_failures(
-        &self,
-        components: &[Component],
-        single: &[Burnt],
-        all: &[Burnt],
-    ) -> Vec<String> {
-        let with = match self.of.factor {
-            factor if factor > 0.0 => format!("with {} times ", plain(factor)),
-            _ => "without ".to_owned(),
-        };
-        let names = components.iter().map(|c| c.name()).chain(["all losses"]);
-        let changed = names.zip(single.iter().chain(all));
-        let new = |(name, run): (&str, &Burnt)| {
-            let before: Vec<&str> = self.base.failures.iter().map(|text| check(text)).collect();
-            let found = run
-                .failures
-                .iter()
-                .filter(|text| !before.contains(&check(text)));
-            found
-                .map(|text| format!("{with}{name}: {text}"))
-                .collect::<Vec<_>>()
-        };
-        changed.flat_map(new).collect()
-    }
-}
-
-/// The name of the check that a text of a failure begins with.
-fn check(text: &str) -> &str {
-    text.split(' ').next().unwrap_or(text)
 }
 
 /// Shapley's share of each player in the worth of all sets, by the bits of a set; each worth is a list of numbers (AT-6).

@@ -228,6 +228,19 @@ impl<'a> Driven<'a> {
 }
 
 /// Drives all tests of a label with steps of at most some time, s.
+///
+/// ```
+/// use cvtcycle_config::cycle::find;
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_study::label::{Cars, Cycles, figures};
+/// let car = load("civic_20_cvt", &Options::default())?;
+/// let [ftp75, hwfet, us06] = [find("ftp75")?, find("hwfet")?, find("us06")?];
+/// let [sc03, wltc] = [find("sc03")?, find("wltc_class3b")?];
+/// let cycles = Cycles { ftp75: &ftp75, hwfet: &hwfet, us06: &us06, sc03: &sc03, wltc: &wltc };
+/// let figures = figures(&Cars { mild: &car, cold: &car, hot: &car }, &cycles, 1.0);
+/// assert!(figures.tests.bags[0] > figures.tests.bags[2], "the cold bag");
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn figures(cars: &Cars, cycles: &Cycles, max_dt_s: f64) -> Figures {
     let run = |car, cycle, degc, start| Driven::new((car, cycle), degc, start, max_dt_s);
     let city = run(cars.mild, cycles.ftp75, 24.0, Start::Soak);

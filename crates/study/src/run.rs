@@ -25,6 +25,31 @@ pub struct RunQuestion<'a> {
 }
 
 /// The summary of cars that have been driven; the first is the subject.
+///
+/// ```
+/// use cvtcycle_config::cycle;
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::drive::{Conditions, Start, drive};
+/// use cvtcycle_output::summary::{Driven, Settings, StartWord};
+/// use cvtcycle_study::run::{RunQuestion, summary};
+/// let setup = load("rover_216_cvt", &Options::default())?;
+/// let cycle = cycle::find("constant_50")?;
+/// let conditions = Conditions { ambient_k: 263.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
+/// let outcome = drive(&setup, &cycle, &conditions);
+/// let driven = [Driven { name: "rover", setup: &setup, outcome: &outcome }];
+/// let question = RunQuestion {
+///     cycle: &cycle,
+///     conditions,
+///     ambient_degc: -10.0,
+///     start: StartWord::Word("soak".to_owned()),
+///     settings: Settings::default(),
+///     price: true,
+/// };
+/// let summary = summary(&question, &driven);
+/// let price = summary.runs[0].price.as_ref().expect("asked for");
+/// assert!(price.together.percent > price.losses["pump"].saved.percent);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
     let (cycle, settings) = (of.cycle, &of.settings);
     let start = of.start.clone();

@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 
 use crate::args::problems::bad_value;
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{FormulationArgs, Names, OutArgs, OutputArgs, VehicleArgs, names_of, one_of};
+use crate::args::{FormulationArgs, Names, ResultArgs, VehicleArgs, names_of, one_of};
 use crate::commands::Execute;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -65,9 +65,7 @@ pub struct RigTransmissionArgs {
     #[command(flatten)]
     formulation: FormulationArgs,
     #[command(flatten)]
-    out: OutArgs,
-    #[command(flatten)]
-    output: OutputArgs,
+    results: ResultArgs,
 }
 
 /// Checked input of the tests.
@@ -105,7 +103,7 @@ impl Execute for RigTransmissionArgs {
         if let (Some(setup), Some(points)) = (&setup, &points) {
             check_ratios(setup, points, problems);
         }
-        let out = self.out.dir(problems);
+        let out = self.results.out.dir(problems);
         Some(RigPlan {
             test: test?,
             setup: setup?,
@@ -134,7 +132,7 @@ impl Execute for RigTransmissionArgs {
             Ok("")
         })?;
         let results = Results::new(json, failures, files);
-        Ok(results.output(&self.output, || {
+        Ok(results.output(&self.results.output, || {
             tables::tables(&plan, &found, terminal.stdout)
         }))
     }

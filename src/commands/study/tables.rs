@@ -4,28 +4,20 @@ use std::path::{Path, PathBuf};
 
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::ambient::Matrix;
-use cvtcycle::study::answer::{Ended, Information, LeastOf, OutputAnswer};
-use cvtcycle::study::execute::outputs::EXCESS;
+use cvtcycle::study::answer::{Ended, OutputAnswer};
 use cvtcycle::study::plan::Design;
-use cvtcycle::study::statistics::{
-    Confidence, Estimate, FactorIndices, Group, Groups, SobolIndices, Summary, Tornado, of_hundred,
-};
+use cvtcycle::study::statistics::{Summary, of_hundred};
 use cvtcycle::study::words::study::sentences;
 use cvtcycle::study::{Answer, StudyManifest};
 
+use super::effects::factors;
 use crate::print::colour::Paint;
 use crate::print::sections;
-use cvtcycle::output::number::{NONE, fixed, plain, signed};
+use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
 
-/// Number of factors that are listed for an output.
-const MAX_FACTORS: usize = 10;
-/// Number of factors above chance that are listed.
-const MAX_CAUSES: usize = 5;
 /// Number of reasons of failed runs that are listed.
 pub const MAX_REASONS: usize = 5;
-/// Rows and columns of a matrix that fit on a page.
-const MATRIX: [usize; 2] = [40, 10];
 
 /// All results of a study for people.
 pub fn tables(study: &StudyResults, paint: Paint) -> String {
@@ -202,188 +194,6 @@ fn ranges(answer: &Answer, first: impl Fn(&OutputAnswer, &str) -> String) -> Str
         }
     }
     table.text()
-}
-
-/// Factors of the first output of the subject, and of the difference to each baseline.
-fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
-    let Some(first) = answer.outputs.first() else {
-        return String::new();
-    };
-    let is_first = |o: &OutputAnswer| o.output == first.output && o.car == first.car;
-    let is_shown = |o: &&OutputAnswer| o.output == EXCESS || is_first(o);
-    let section = |o: &OutputAnswer| {
-        let heading = format!("Effects on {} ({}), {}", o.output, o.unit, o.car);
-        (heading, effects(o, outline, answer.confidence))
-    };
-    sections(answer.outputs.iter().filter(is_shown).map(section), paint)
-}
-
-fn effects(output: &OutputAnswer, outline: &StudyManifest, confidence: Confidence) -> String {
-    let known = output.information.as_ref();
-    let known = known.map_or_else(String::new, |of| information(of, confidence, &output.unit));
-    match (output.sobol.last(), &output.tornado) {
-        (Some(indices), _) => sobol(outline, indices, confidence) + &known,
-        (None, Some(of)) => tornado(of),
-        // A matrix has all that the means of its rows and columns have.
-        (None, None) if output.matrix.is_some() => grid(output),
-        (None, None) => known + &rank(output) + &levels(output),
-    }
-}
-
-/// The matrix of a grid of two factors, its smallest numbers marked.
-fn grid(output: &OutputAnswer) -> String {
-    let Some(matrix) = &output.matrix else {
-        return String::new();
-    };
-    let [of_rows, of_columns] = &matrix.factors;
-    let (high, wide) = (matrix.rows.len(), matrix.columns.len());
-    if wide > MATRIX[1] || high > MATRIX[0] {
-        return format!("  {of_rows} by {of_columns}: {high} by {wide} numbers, in matrix.csv\n");
-    }
-    let mut table = TextTable::new(&("l".to_owned() + &"r".repeat(wide))).indented();
-    let columns = matrix.columns.iter().cloned();
-    table.row(
-        [format!("{of_rows} \\ {of_columns}")]
-            .into_iter()
-            .chain(columns),
-    );
-    for (i, (name, row)) in matrix.rows.iter().zip(&matrix.cells).enumerate() {
-        let cell = |(k, x): (usize, &Option<f64>)| {
-            let mark = if matrix.least.contains(&[i, k]) {
-                "*"
-            } else {
-                ""
-            };
-            format!("{mark}{}", fixed(*x, 3))
-        };
-        let cells = row.iter().enumerate().map(cell);
-        table.row([name.clone()].into_iter().chain(cells));
-    }
-    let of = match matrix.least_of {
-        LeastOf::All => "",
-        LeastOf::Row => " of its row",
-        LeastOf::Column => " of its column",
-    };
-    format!("{}  * least{of}\n", table.text())
-}
-
-/// Every level of each factor, the widest swing first.
-fn tornado(tornado: &Tornado) -> String {
-    let mut table = TextTable::new("llrrr").indented();
-    table.row(["factor", "level", "value", "effect", "swing"]);
-    for bar in &tornado.bars {
-        for (k, level) in bar.entries.iter().enumerate() {
-            let [name, swing] = match k {
-                0 => [bar.name.clone(), fixed(bar.swing, 3)],
-                _ => [String::new(), String::new()],
-            };
-            let (value, effect) = (fixed(level.output, 3), signed(level.effect, 3));
-            table.row([name, level.label.clone(), value, effect, swing]);
-        }
-    }
-    let base = fixed(tornado.base, 3);
-    format!("  base {base}\n{}", table.text())
-}
-
-/// What knowing a factor would leave of the spread: the factors above chance, and how many are not.
-fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
-    let mut table = TextTable::new("lrrl").indented();
-    let left = format!("sd left, {unit}");
-    table.row(["if this were known", "% of variance", &left, "next test"]);
-    let causes: Vec<_> = of.causes().take(MAX_CAUSES).collect();
-    for factor in &causes {
-        let (share, left) = (
-            fixed(100.0 * factor.share.value, 0),
-            fixed(factor.sd_left.value, 3),
-        );
-        table.row([factor.name.clone(), share, left, factor.test.clone()]);
-    }
-    let rest = of.factors.len() - causes.len();
-    let (percent, level) = (fixed(100.0 * of.noise, 1), confidence.percent());
-    let noise = format!(
-        "by groups of draws the largest of as many idle factors stays below {percent} % of the variance in {level} of 100 cases"
-    );
-    let [sd, head] = [fixed(of.sd, 3), wrapped(&noise, "  ")];
-    let more = match (causes.len(), rest) {
-        (_, 0) => String::new(),
-        (0, n) => format!("  none of {n} factors is above chance\n"),
-        (_, n) => format!("  {n} others: each less, or no more than chance gives\n"),
-    };
-    let rows = if causes.is_empty() {
-        String::new()
-    } else {
-        table.text()
-    };
-    format!("  sd now {sd} {unit}\n{rows}{more}{head}")
-}
-
-fn rank(output: &OutputAnswer) -> String {
-    let Some(rank) = &output.rank else {
-        return String::new();
-    };
-    let factors = rank.factors.iter().zip(&rank.of.factors);
-    let mut list: Vec<(&String, &Estimate)> =
-        factors.map(|(name, f)| (name, &f.spearman)).collect();
-    list.sort_by(|a, b| b.1.value.abs().total_cmp(&a.1.value.abs()));
-    let end = |e: &Estimate, k: usize| signed(e.interval.map(|ends| ends[k]), 2);
-    TextColumns::new()
-        .left("factor", |(name, _): &(&String, &Estimate)| (*name).clone())
-        .right("rank correlation", |(_, e)| signed(e.value, 2))
-        .right("from", |(_, e)| end(e, 0))
-        .right("to", |(_, e)| end(e, 1))
-        .table(list.iter().take(MAX_FACTORS))
-        .indented()
-        .text()
-}
-
-fn levels(output: &OutputAnswer) -> String {
-    let table = |(name, levels): &(String, Groups)| {
-        TextColumns::new()
-            .left(name, |g: &Group| g.label.clone())
-            .right("n", |g| g.n.to_string())
-            .number("mean", 3, |g| g.mean)
-            .number("min", 3, |g| g.min)
-            .number("max", 3, |g| g.max)
-            .table(&levels.groups)
-            .indented()
-            .text()
-    };
-    output.levels.iter().map(table).collect()
-}
-
-fn sobol(outline: &StudyManifest, indices: &SobolIndices, confidence: Confidence) -> String {
-    let head = format!("{} % interval", confidence.percent());
-    let factors = outline.plan.factors.iter().zip(&indices.factors);
-    let known = factors.filter(|(_, of)| of.total.value.is_finite());
-    let mut ranked: Vec<(String, &FactorIndices)> = known
-        .map(|(factor, of)| (factor.name.clone(), of))
-        .collect();
-    ranked.sort_by(|a, b| b.1.total.value.abs().total_cmp(&a.1.total.value.abs()));
-    if ranked.is_empty() {
-        return "  the output does not vary\n".to_owned();
-    }
-    let span = |e: &Estimate| match e.interval {
-        Some([a, b]) => format!("{} .. {}", fixed(a, 3), fixed(b, 3)),
-        None => NONE.to_owned(),
-    };
-    let rows = &ranked[..ranked.len().min(MAX_FACTORS)];
-    let mut text = TextColumns::new()
-        .left("factor", |(name, _): &(String, &FactorIndices)| {
-            name.clone()
-        })
-        .number("first order", 3, |(_, f)| f.first.value)
-        .right(&head, |(_, f)| span(&f.first))
-        .number("total", 3, |(_, f)| f.total.value)
-        .right(&head, |(_, f)| span(&f.total))
-        .table(rows)
-        .indented()
-        .text();
-    let rest = ranked.len().saturating_sub(MAX_FACTORS);
-    if rest > 0 {
-        text += &format!("  {rest} more factors have a smaller total index\n");
-    }
-    let sum = fixed(indices.sum_first.value, 3);
-    text + &format!("  sum of first-order indices {sum}\n")
 }
 
 /// Failed runs with their reasons, as one message; none if all are good.

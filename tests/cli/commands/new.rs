@@ -17,7 +17,16 @@ const NUMBERS: [(&str, &str); 9] = [
     ("torque", "172@4000"),
     ("ratio-low", "2.6"),
 ];
-/// The same as answers, in the order of the questions; before them class and box.
+/// The least that makes a car.
+const LEAST: [&str; 6] = [
+    "new",
+    "a",
+    "--displacement",
+    "1.8l",
+    "--power",
+    "132hp@6000",
+];
+/// The catalogue numbers as answers, in the order of the questions; before them class and box.
 const ANSWERS: &str =
     "\n\n3000lb\n105\n0.55\n0.0305\n215/55 R16\n1.8l\n104kW@6400\n172@4000\n\n\n\n2.6\n";
 
@@ -356,18 +365,10 @@ fn a_map_that_is_left_for_long_is_a_headline() {
 #[test]
 fn the_usual_box_is_named() {
     let dir = tempfile::tempdir().unwrap();
-    let words = [
-        "new",
-        "a",
-        "--displacement",
-        "1.8l",
-        "--power",
-        "132hp@6000",
-    ];
-    let usual = stdout(&run_in(dir.path(), &words));
+    let usual = stdout(&run_in(dir.path(), &LEAST));
     let line = "box: box_cvt_clutch, with a wet launch clutch; most CVTs from 2010 on have a torque converter: --box box_cvt_converter\n";
     assert!(usual.contains(line), "{usual}");
-    let named = [&words[..], &["--box", "box_cvt_clutch", "--force"]].concat();
+    let named = [&LEAST[..], &["--box", "box_cvt_clutch", "--force"]].concat();
     assert!(!stdout(&run_in(dir.path(), &named)).contains("box:"));
 }
 
@@ -375,15 +376,7 @@ fn the_usual_box_is_named() {
 #[test]
 fn a_file_in_the_wrong_place_is_known() {
     let dir = tempfile::tempdir().unwrap();
-    let words = [
-        "new",
-        "a",
-        "--displacement",
-        "1.8l",
-        "--power",
-        "132hp@6000",
-    ];
-    assert_eq!(run_in(dir.path(), &words).status.code(), Some(0));
+    assert_eq!(run_in(dir.path(), &LEAST).status.code(), Some(0));
     let map = "# a map\ninput_speed_rpm,torque_loss_nm\n600,1\n3000,2\n";
     fs::write(dir.path().join("pump.csv"), map).unwrap();
     for (words, part) in [

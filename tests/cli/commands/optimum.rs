@@ -36,24 +36,7 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
     let summary: Value = serde_json::from_str(&file("summary.json")).unwrap();
     let number = |path: &str| summary.pointer(path).and_then(Value::as_f64).unwrap();
     let said = number("/line/l_per_100km");
-    let run = [
-        "run",
-        "--cycle",
-        "ece15",
-        "--dt",
-        "0.25",
-        "--start",
-        "80",
-        "--baseline",
-        "none",
-        "--price",
-        "never",
-        "--json",
-        "--vehicle",
-        "best/rover_216_cvt_line.toml",
-    ];
-    let run: Value = serde_json::from_str(&stdout(&run_in(dir.path(), &run))).unwrap();
-    let burnt = run["runs"][0]["fuel_l_per_100km"].as_f64().unwrap();
+    let burnt = driven(dir.path(), "best/rover_216_cvt_line.toml", "80");
     assert!((burnt / said - 1.0).abs() < 1e-12, "{burnt} {said}");
     let elsewhere = summary["line"]["elsewhere"].as_array().unwrap();
     assert_eq!(elsewhere.len(), 1, "{elsewhere:?}");

@@ -1,6 +1,6 @@
 //! Names: of files that are no text, and in files that lead elsewhere.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::fs;
 use std::os::unix::ffi::OsStringExt;
 use std::path::Path;
@@ -198,23 +198,11 @@ fn names_of_vehicle_files_become_plain_names() {
         let dir = folder();
         fs::copy(car, dir.path().join(name)).unwrap();
         let word = format!("./{name}");
-        let list = [
-            "run",
-            "--cycle",
-            "minute.csv",
-            "--baseline",
-            "none",
-            "--sensitivity",
-            "never",
-            "--quiet",
-            "--out",
-            "o",
-            "--vehicle",
-            &word,
-        ];
+        let words = "run --cycle minute.csv --baseline none --sensitivity never --quiet --out o";
+        let list = words.split(' ').chain(["--vehicle", &word]);
         let output = Command::new(bin())
             .current_dir(dir.path())
-            .args(list.map(OsStr::new))
+            .args(list)
             .output()
             .unwrap();
         assert_eq!(

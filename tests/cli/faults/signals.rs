@@ -8,6 +8,8 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
+use crate::tree::parts;
+
 use super::{ends, folder, made, program, same, stderr, tree, words};
 
 const TERM: i32 = 15;
@@ -33,22 +35,6 @@ fn send(child: &Child, signal: &str) {
             .unwrap()
             .success()
     );
-}
-
-fn parts(dir: &Path) -> usize {
-    let Ok(entries) = fs::read_dir(dir.join("parts")) else {
-        return 0;
-    };
-    entries
-        .filter(|entry| {
-            entry
-                .as_ref()
-                .unwrap()
-                .file_name()
-                .to_string_lossy()
-                .ends_with(".sha256")
-        })
-        .count()
 }
 
 /// SIGTERM and SIGHUP to a study end it at once, by the signal (143 and 129 in a shell); SIGINT at the next run, with 130 (tests/studies/study).

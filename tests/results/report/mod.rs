@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test may stop at once")]
 
 mod forms;
+mod joined;
 mod refused;
 
 use std::fs;
@@ -88,6 +89,14 @@ fn run(place: &Place, dir: &str, more: &[&str]) {
         dir,
     ];
     place.done(&[&words[..], more].concat());
+}
+
+/// A cold run with its report.
+fn reported() -> Place {
+    let place = Place::new();
+    run(&place, "cold", &[]);
+    place.done(&["report", "cold"]);
+    place
 }
 
 /// The ambient matrix of the same cycle.
@@ -179,9 +188,7 @@ fn the_page_says_what_the_summary_says() {
 /// Two cars of one short name keep the names of their files: a table with two equal heads says nothing.
 #[test]
 fn cars_have_their_short_names_where_these_are_their_own() {
-    let place = Place::new();
-    run(&place, "cold", &[]);
-    place.done(&["report", "cold"]);
+    let place = reported();
     let page = place.text("cold/report.html");
     assert!(
         page.contains(">CVT</th>") || page.contains(">CVT <"),
@@ -348,9 +355,7 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
 
 #[test]
 fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
-    let place = Place::new();
-    run(&place, "cold", &[]);
-    place.done(&["report", "cold"]);
+    let place = reported();
     let first = place.text("cold/report.html");
     place.refused(&["report", "cold"], 2, &["is there already", "--force"]);
     place.done(&["report", "cold", "--force"]);
@@ -505,20 +510,9 @@ fn names_and_remarks_are_shown_as_text() {
         "cover.toml",
         "author = \"<i>me</i>\"\n[remarks]\nanswer = \"<img src=x onerror=alert(2)> | *so*\"\n",
     );
-    place.done(&[
-        "run",
-        "--cycle",
-        "ece15",
-        "--vehicle",
-        "own.toml",
-        "--baseline",
-        "none",
-        "--sensitivity",
-        "never",
-        "--quiet",
-        "--out",
-        "own",
-    ]);
+    let words = "run --cycle ece15 --vehicle own.toml --baseline none --sensitivity never --quiet";
+    let words: Vec<&str> = words.split(' ').chain(["--out", "own"]).collect();
+    place.done(&words);
     place.done(&["report", "own", "--cover", "cover.toml"]);
     let page = place.text("own/report.html");
     for bad in ["<script>alert", "<b>bold", "<i>me", "<img src=x"] {
@@ -536,89 +530,4 @@ fn names_and_remarks_are_shown_as_text() {
         text.matches("](report_figures/").count(),
         drawings(&page).len()
     );
-}
-
-/// Outside truth: the difference of the two summaries.
-#[test]
-fn val_two_runs_differ_by_what_their_summaries_differ() {
-    let place = Place::new();
-    run(&place, "a", &[]);
-    run(
-        &place,
-        "b",
-        &["--set", "transmission.cvt.pump.displacement_cc_rev=12"],
-    );
-    place.done(&["report", "a", "b", "--out", "ab.html"]);
-    let page = place.text("ab.html");
-    let words = words_of(&page);
-    let fuel = |dir: &str| -> f64 {
-        let summary: Value =
-            serde_json::from_str(&place.text(&format!("{dir}/summary.json"))).unwrap();
-        summary["runs"][0]["fuel_l_per_100km"].as_f64().unwrap()
-    };
-    let (a, b) = (fuel("a"), fuel("b"));
-    assert!(
-        b > a
-            && words.contains(&format!("{:.3} L/100 km or", b - a))
-            && words.contains("more than that of a"),
-        "{a} {b}"
-    );
-    assert!(words.contains("transmission.cvt.pump.displacement_cc_rev") && words.contains(" 12 "));
-    // The terms add up to the fuel's difference in kJ: the table under the bars.
-    let figure = &page[page.find("id=\"fig-difference\"").unwrap()..];
-    let table = &figure[figure.find("<tbody>").unwrap()..figure.find("</tbody>").unwrap()];
-    assert!(
-        table.matches("<tr").count() > 12,
-        "every component and term has a row"
-    );
-
-    place.done(&[
-        "run",
-        "--cycle",
-        "eudc",
-        "--baseline",
-        "none",
-        "--sensitivity",
-        "never",
-        "--quiet",
-        "--out",
-        "other",
-    ]);
-    place.refused(
-        &["report", "a", "other"],
-        2,
-        &["ece15", "eudc", "runs of one cycle"],
-    );
-    matrix(&place, "matrix");
-    place.refused(&["report", "a", "matrix"], 2, &["not two runs", "--with"]);
-}
-
-#[test]
-fn studies_and_validation_come_into_the_report_of_a_run() {
-    let place = Place::new();
-    run(&place, "cold", &[]);
-    matrix(&place, "cold/matrix");
-    place.done(&["validate", "--chapter", "C", "--quiet", "--out", "check"]);
-    place.done(&["report", "cold", "--with", "check"]);
-    let words = words_of(&place.text("cold/report.html"));
-    assert!(
-        words.contains("Ambient temperatures")
-            && words.contains("Validation")
-            && words.contains("printed numbers")
-    );
-    place.refused(&["report", "check"], 2, &["cvtcycle validate", "--with"]);
-
-    place.done(&["report", "cold/matrix"]);
-    assert!(drawings(&place.text("cold/matrix/report.html")).len() >= 3);
-    // Half a study: reported as far as it is whole.
-    let mark = fs::read_dir(place.path().join("cold/matrix/parts"))
-        .unwrap()
-        .map(|e| e.unwrap().path());
-    let mark = mark
-        .filter(|path| path.extension().is_some_and(|e| e == "sha256"))
-        .max()
-        .unwrap();
-    fs::remove_file(mark).unwrap();
-    place.refused(&["report", "cold/matrix", "--force"], 1, &["not finished"]);
-    assert!(words_of(&place.text("cold/matrix/report.html")).contains("is not finished"));
 }

@@ -11,9 +11,19 @@ use cvtcycle::study::store::{Kind, Rows, Values};
 use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
 use tempfile::TempDir;
 
+use crate::parts::write_runs;
+
 use super::{PLAN, RUN, head, heads, manifest, manifest_of, rows, whole, write_part};
 
 const PARTS: usize = 3;
+/// Names of its columns with their units.
+const HEADER: [&str; 5] = [
+    "run",
+    "vehicle",
+    "fuel_l_per_100km [L/100 km]",
+    "transmission.cvt.belt.band_offset_mm [mm]",
+    "reason",
+];
 
 fn exported(study: &Path, table: &str, to: &Path) -> Result<Exported, cvtcycle::config::Problem> {
     let format = Format::of(to)?;
@@ -59,14 +69,7 @@ fn csv_has_units_in_its_header_and_all_rows() {
     let (_dir, file) = to("runs.csv");
     let text = fs::read(&file).unwrap();
     let mut reader = csv::Reader::from_reader(&text[..]);
-    let header = [
-        "run",
-        "vehicle",
-        "fuel_l_per_100km [L/100 km]",
-        "transmission.cvt.belt.band_offset_mm [mm]",
-        "reason",
-    ];
-    assert_eq!(reader.headers().unwrap(), &header[..]);
+    assert_eq!(reader.headers().unwrap(), &HEADER[..]);
     let found: Vec<Vec<String>> = reader
         .records()
         .map(|record| record.unwrap().iter().map(str::to_owned).collect())
@@ -85,17 +88,7 @@ fn a_byte_order_mark_is_written_where_a_letter_is_beyond_ascii() {
         let rows = Rows {
             values: vec![Values::Text(vec!["x".into(), word.into()])],
         };
-        study
-            .write_part(
-                0,
-                &[PartTable {
-                    name: "runs",
-                    columns: &columns,
-                    rows: &rows,
-                    metadata: &[],
-                }],
-            )
-            .unwrap();
+        write_runs(&study, 0, &columns, &rows);
         exported(&path, "runs", &path.join("out.csv")).unwrap();
         let bytes = fs::read(path.join("out.csv")).unwrap();
         assert_eq!(bytes.starts_with(b"\xEF\xBB\xBFword\n"), marked, "{name}");
@@ -186,15 +179,8 @@ fn a_workbook_has_numbers_as_numbers_and_words_as_words() {
     let (dir, file) = to("runs.xlsx");
     let found = sheet(&file, "xl/worksheets/sheet1.xml");
     let mut wanted: Vec<(String, bool, String)> = Vec::new();
-    let header = [
-        "run",
-        "vehicle",
-        "fuel_l_per_100km [L/100 km]",
-        "transmission.cvt.belt.band_offset_mm [mm]",
-        "reason",
-    ];
     wanted.extend(
-        header
+        HEADER
             .iter()
             .zip("ABCDE".chars())
             .map(|(name, letter)| (format!("{letter}1"), false, (*name).to_owned())),
@@ -238,17 +224,7 @@ fn what_excel_cannot_hold_is_refused_before_anything_is_written() {
         let rows = Rows {
             values: vec![Values::Count(vec![7; n])],
         };
-        study
-            .write_part(
-                part,
-                &[PartTable {
-                    name: "runs",
-                    columns: &columns,
-                    rows: &rows,
-                    metadata: &[],
-                }],
-            )
-            .unwrap();
+        write_runs(&study, part, &columns, &rows);
     }
     let problem = exported(&path, "runs", &dir.path().join("runs.xlsx")).unwrap_err();
     assert!(

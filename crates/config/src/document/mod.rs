@@ -4,6 +4,7 @@ pub(crate) mod overrides;
 pub(crate) mod patched;
 mod shape;
 pub(crate) mod syntax;
+pub(crate) mod target;
 pub(crate) mod units;
 
 use std::cell::Cell;

@@ -1,63 +1,19 @@
 //! Overrides: values put over those of the files, or what is done with them: `KEY=VALUE`, `KEY*=FACTOR`, `KEY+=DIFFERENCE`. The text is
 //! parsed once; a relative one has its value when it meets a document.
-use std::collections::HashMap;
 use std::fmt;
 use std::str::FromStr;
-use std::sync::{Arc, OnceLock};
 
 use serde::{Serialize, Serializer};
 use toml::de::DeValue;
 
+use crate::document::target::{KeyPath, Target, path_of, row};
 use crate::document::{Document, Node, Span, Value, convert};
 use crate::problem::place::Input;
 use crate::problem::{Problem, Problems};
-use cvtcycle_model::files;
-use cvtcycle_model::keys::{Key, Presence, Table};
-
-/// Dotted key, taken apart.
-pub type KeyPath = Arc<[Box<str>]>;
+use cvtcycle_model::keys::{Key, Presence};
 
 /// Tables that a key may be nested in; more than any input has, few enough to recurse over.
 const MAX_DEPTH: usize = 32;
-
-/// The file that an override goes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Target {
-    /// The vehicle.
-    Vehicle,
-    /// The transmission oil: keys that begin with `lubricant.`.
-    Lubricant,
-    /// The engine oil: keys that begin with `engine_oil.`.
-    EngineOil,
-    /// The transmission rig: keys that begin with `rig.`.
-    Rig,
-}
-
-impl Target {
-    /// The files of a car.
-    pub const CAR: [Target; 3] = [Target::Vehicle, Target::Lubricant, Target::EngineOil];
-
-    /// What its keys begin with, besides their path in the file.
-    #[must_use]
-    pub const fn prefix(self) -> &'static str {
-        match self {
-            Target::Lubricant => "lubricant.",
-            Target::EngineOil => "engine_oil.",
-            Target::Vehicle | Target::Rig => "",
-        }
-    }
-
-    /// The file of a key, and the key in it.
-    #[must_use]
-    pub fn of(key: &str) -> (Target, &str) {
-        let fluid = |target: Target| Some((target, key.strip_prefix(target.prefix())?));
-        let fluids = fluid(Target::Lubricant).or_else(|| fluid(Target::EngineOil));
-        fluids.unwrap_or(match key.starts_with("rig.") {
-            true => (Target::Rig, key),
-            false => (Target::Vehicle, key),
-        })
-    }
-}
 
 /// What a number does with the value of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -320,43 +276,6 @@ fn convert_text(text: &str) -> Value {
         |_| Value::Text(text.to_owned()),
         |parsed| convert(parsed.get_ref()),
     )
-}
-
-/// The names of a dotted key.
-pub(crate) fn path_of(key: &str) -> KeyPath {
-    key.split('.').map(|name| name.trim().into()).collect()
-}
-
-/// The row of a key, with the prefix of its file; none of an unknown key.
-fn row(key: &str) -> Option<&'static Key<'static>> {
-    static ROWS: OnceLock<HashMap<String, &'static Key<'static>>> = OnceLock::new();
-    let known = ROWS.get_or_init(|| rows().collect());
-    let own = key.strip_prefix(Target::EngineOil.prefix());
-    let key = own.map_or_else(
-        || key.to_owned(),
-        |own| format!("{}{own}", Target::Lubricant.prefix()),
-    );
-    known.get(&key).copied()
-}
-
-/// The rows of all tables with their dotted keys.
-pub(crate) fn rows() -> impl Iterator<Item = (String, &'static Key<'static>)> {
-    let tables = [
-        ("", files::VEHICLE),
-        (Target::Lubricant.prefix(), files::LUBRICANT),
-        ("", files::RIG),
-    ];
-    let tables = tables.into_iter();
-    tables.flat_map(|(prefix, table)| rows_of(prefix, &table))
-}
-
-/// The rows of a table with their dotted keys.
-pub(crate) fn rows_of(prefix: &str, table: &Table) -> Vec<(String, &'static Key<'static>)> {
-    let mut rows = Vec::new();
-    table.walk("", &mut |path, key| {
-        rows.push((format!("{prefix}{path}"), key))
-    });
-    rows
 }
 
 fn no_override(text: &str, key: &str, message: String) -> Problem {

@@ -1,6 +1,7 @@
 //! A document with values put over those of the file: overrides before it is read, and numbers that are changed and put back many times.
 
-use crate::document::overrides::{KeyPath, Override};
+use crate::document::overrides::Override;
+use crate::document::target::KeyPath;
 use crate::document::{Document, Entry, Node, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::place::Input;

@@ -2,8 +2,9 @@
 use crate::document::{Node, Table, Value};
 use crate::problem::Problem;
 use crate::reader::log::join;
+use crate::reader::origin::Found;
 use crate::reader::section::Section;
-use crate::reader::value::{Found, Lookup, default_option, options};
+use crate::reader::value::{Lookup, default_option, options};
 use cvtcycle_model::keys::Key;
 
 /// How the choice came out.

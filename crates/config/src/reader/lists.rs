@@ -7,8 +7,9 @@ use crate::document::overrides::Override;
 use crate::document::{Node, Value};
 use crate::problem::Problem;
 use crate::reader::log::join;
+use crate::reader::origin::Found;
 use crate::reader::section::Section;
-use crate::reader::value::{Found, Lookup};
+use crate::reader::value::Lookup;
 use cvtcycle_model::keys::{Bound, Column, Key, Kind, Quantity, count};
 
 impl<'r> Section<'r> {

@@ -5,6 +5,7 @@ mod choice;
 pub mod lists;
 pub(crate) mod log;
 pub mod maps;
+pub(crate) mod origin;
 pub(crate) mod raw_value;
 pub(crate) mod section;
 pub(crate) mod unknown;

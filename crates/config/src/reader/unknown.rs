@@ -2,7 +2,7 @@
 use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
-use crate::document::overrides::rows_of;
+use crate::document::target::rows_of;
 use crate::document::{Document, Entry, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{is_suggestion, similarity, suggestion};

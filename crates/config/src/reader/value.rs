@@ -1,99 +1,16 @@
 //! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
-use std::borrow::Cow;
 use std::fmt::Display;
 
 use crate::document::syntax::number_with_unit;
 use crate::document::units::{decimal_comma, number_hint};
-use crate::document::{Document, Entry, Node, Span, Table, Value};
+use crate::document::{Node, Span, Value};
 use crate::problem::Problem;
-use crate::problem::near::{did_you_mean, one_of, suggest};
+use crate::problem::near::suggest;
 use crate::problem::place::Place;
 use crate::reader::log::{KeyInfo, join};
+use crate::reader::origin::{COLUMNS, Found};
 use crate::reader::section::Section;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
-
-/// What a value's status may be in a file.
-pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
-/// Fields of a value with its origin.
-const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
-/// The one that only names of CSV files have: which of their columns is which.
-pub(crate) const COLUMNS: &str = "columns";
-
-/// Status and source of what an override gives.
-const SET: (&str, &str) = ("set", "command line");
-
-/// A value as found, with its origin.
-pub(crate) struct Found<'r> {
-    pub node: &'r Node,
-    pub status: &'r str,
-    pub source: &'r str,
-    pub note: Cow<'r, str>,
-}
-
-impl<'r> Found<'r> {
-    /// A value of a file, of one that it inherits from, or of an override, without what it says about itself.
-    pub fn new(document: &'r Document, node: &'r Node, own: &'r str) -> Self {
-        let (status, source) = match document.parent(&node.span) {
-            _ if node.span.is_set() => SET,
-            Some(parent) => (parent.status, parent.words.as_str()),
-            None => (own, ""),
-        };
-        Found {
-            node,
-            status,
-            source,
-            note: Cow::Borrowed(""),
-        }
-    }
-
-    /// As set by an override.
-    pub fn set(self) -> Self {
-        let (status, source) = SET;
-        Found {
-            status,
-            source,
-            ..self
-        }
-    }
-
-    /// Adds what the value says about itself. What an inherited one says is a remark: it is true of the car that it was written for.
-    fn add(&mut self, own: Origin<'r>, is_inherited: bool) {
-        if is_inherited {
-            self.note = Cow::Owned(own.words());
-            return;
-        }
-        if !own.status.is_empty() && self.status != "set" {
-            self.status = own.status;
-        }
-        (self.source, self.note) = (own.source, Cow::Borrowed(own.note));
-    }
-}
-
-/// What a value says about itself; empty where it does not.
-#[derive(Default)]
-struct Origin<'r> {
-    status: &'r str,
-    source: &'r str,
-    note: &'r str,
-}
-
-impl Origin<'_> {
-    /// In one line: "there assumed: the usual fill; 5 l in the manual".
-    fn words(&self) -> String {
-        let there = match self.status {
-            "" => String::new(),
-            status => format!("there {status}"),
-        };
-        let parts = [(&*there, ": "), (self.source, "; "), (self.note, "")].into_iter();
-        let mut text = String::new();
-        let mut before = "";
-        for (part, after) in parts.filter(|(part, _)| !part.is_empty()) {
-            text = text + before + part;
-            before = after;
-        }
-        text
-    }
-}
 
 /// Value at a key.
 pub(crate) enum Lookup<'r> {
@@ -240,54 +157,6 @@ impl<'r> Section<'r> {
             found.add(own, is_inherited && found.status != "set");
         }
         Lookup::Found(found)
-    }
-
-    /// Reads status, source and note of the value, and the columns of a CSV file.
-    fn origin(&self, key: &str, table: &'r Table, is_csv: bool) -> Origin<'r> {
-        let fields = &FIELDS[..FIELDS.len() - usize::from(!is_csv)];
-        let mut own = Origin::default();
-        for (name, entry) in table.entries.iter().filter(|(name, _)| *name != "value") {
-            let text = match &entry.node.value {
-                Value::Text(text) => text.as_str(),
-                _ => "",
-            };
-            match name.as_str() {
-                "status" => own.status = self.check_status(key, &entry.node, text),
-                COLUMNS if !is_csv => self.unknown_field(key, (name, entry), fields),
-                "source" | "note" | COLUMNS if !matches!(entry.node.value, Value::Text(_)) => {
-                    self.wrong_type(&format!("{key}.{name}"), &entry.node, "text");
-                }
-                "source" => own.source = text,
-                "note" => own.note = text,
-                COLUMNS => {}
-                _ => self.unknown_field(key, (name, entry), fields),
-            }
-        }
-        own
-    }
-
-    /// Reports an entry of a value with its origin that is none of its fields.
-    fn unknown_field(&self, key: &str, (name, entry): (&str, &Entry), fields: &[&str]) {
-        let message = format!("unknown field `{name}` in `{}`", join(&self.path, key));
-        let problem = Problem::unknown_key(message)
-            .names_key()
-            .allowed(fields.join(", "))
-            .hint(suggest(name, fields));
-        self.report(&entry.key, key, problem);
-    }
-
-    /// The status, where it is a known one.
-    fn check_status(&self, key: &str, node: &Node, text: &'r str) -> &'r str {
-        if STATUSES.contains(&text) {
-            return text;
-        }
-        let message = format!("`{}` has no known status", join(&self.path, key));
-        let problem = Problem::unknown_name(message)
-            .names_key()
-            .allowed(one_of(&STATUSES))
-            .hint(did_you_mean(text, STATUSES).unwrap_or_default());
-        self.report(&node.span, key, problem);
-        ""
     }
 
     /// Completes what is known about a key with the value that was given.

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use super::inputs::{head, parts};
 use super::like::resolve;
 use super::{Disk, Kind};
-use crate::document::overrides::{rows, rows_of};
+use crate::document::target::{rows, rows_of};
 use crate::files::embedded;
 use crate::setup::rig;
 use crate::{Document, KeyInfo, Reader, Target};

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::inputs::{Anew, Earlier, Inputs, Read, wrong_keys};
 use super::{Files, Options, Setup};
-use crate::document::overrides::path_of;
+use crate::document::target::path_of;
 use crate::{
     Document, Input, KeyInfo, KeyPath, Override, PatchedDocument, Problem, Problems, Reader,
     Target, unit_of,

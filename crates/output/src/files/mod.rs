@@ -1,6 +1,8 @@
 //! The files of a run: all of them appear under their names, or none.
+mod journal;
 mod lock;
 mod set;
+mod steps;
 mod sum;
 
 use std::fs;
@@ -11,8 +13,9 @@ use tempfile::NamedTempFile;
 
 use cvtcycle_config::{Argument, Problem, Setting};
 
+pub use journal::{complete, settle};
 pub use lock::{DirLock, sync_directory};
-pub use set::{FileSet, FileWriter, complete, settle};
+pub use set::{FileSet, FileWriter};
 pub use sum::{Sum, Summing, Sums, hex, sha256, sum_of};
 
 /// The files that mark a directory as one of an earlier run or calibration.
@@ -152,7 +155,7 @@ impl OutputDir {
 
     /// Checks the name of a file that is not yet one of the set, after others that are not either.
     fn check_name(&self, name: &str, others: &[String]) -> Result<(), Problem> {
-        if !set::is_plain_name(name) || name.contains(['/', '\\', ':']) {
+        if !journal::is_plain_name(name) || name.contains(['/', '\\', ':']) {
             let message = format!("`{name}` cannot be the name of an output file");
             let hint = "rename the vehicle or cycle that gives the file its name";
             return Err(problem(&self.path, &message, hint));

@@ -8,18 +8,15 @@ use std::fs;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
+use cvtcycle_config::Problem;
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use cvtcycle_config::bounded;
-use cvtcycle_config::{Problem, ProblemKind};
-
-use super::lock::{DirLock, is_there, sync_directory};
+use super::journal::{Journal, SCHEMA, complete};
+use super::lock::{DirLock, is_there};
+use super::steps::{Step, Unplaced, carry_out};
 use super::sum::{Sum, Summing};
-use super::{JOURNAL, failed, is_temporary, problem, temporary_in};
+use super::{JOURNAL, temporary_in};
 use crate::BUILD;
-
-const SCHEMA: u32 = 1;
 
 /// Files of a directory that get their names together: names in it, or in a folder in it. Dropped before [`FileSet::commit`], it removes them.
 #[derive(Debug)]
@@ -36,29 +33,6 @@ pub struct FileSet {
 
 /// Writes the contents of a file.
 pub type FileWriter<'a> = Box<dyn FnOnce(&mut (dyn Write + Send)) -> io::Result<()> + Send + 'a>;
-
-/// A file that could not be put into place, and why.
-type Unplaced = (PathBuf, io::Error);
-
-/// What puts files into place; each can be undone.
-#[derive(Debug)]
-enum Step {
-    Folder(PathBuf),
-    Rename(PathBuf, PathBuf),
-    Sync(PathBuf),
-    Remove(PathBuf),
-}
-
-/// What is being put into place.
-#[derive(Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Journal {
-    schema: u32,
-    build: String,
-    /// Temporary name and name of each file.
-    files: Vec<(String, String)>,
-    remove: Vec<String>,
-}
 
 impl FileSet {
     /// Begins a set in a locked directory, after what another process was putting into place there.
@@ -225,185 +199,13 @@ impl Drop for FileSet {
     }
 }
 
-impl Step {
-    fn run(&self) -> io::Result<()> {
-        match self {
-            Step::Folder(path) => fs::create_dir(path),
-            Step::Rename(from, to) => fs::rename(from, to),
-            Step::Remove(path) => fs::remove_file(path),
-            Step::Sync(path) => {
-                sync_directory(path);
-                Ok(())
-            }
-        }
-    }
-
-    fn undo(&self) -> io::Result<()> {
-        match self {
-            Step::Folder(path) => fs::remove_dir(path),
-            Step::Rename(from, to) => fs::rename(to, from),
-            Step::Remove(_) | Step::Sync(_) => Ok(()),
-        }
-    }
-
-    /// The file that it is about, by its own name.
-    fn subject(&self) -> &Path {
-        match self {
-            Step::Rename(from, to) if has_temporary_name(to) => from,
-            Step::Folder(path) | Step::Rename(_, path) | Step::Remove(path) | Step::Sync(path) => {
-                path
-            }
-        }
-    }
-}
-
-fn has_temporary_name(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default();
-    is_temporary(&name.to_string_lossy())
-}
-
-/// Takes all steps or, if one fails, none: the way back ends with the journal, so that it may be interrupted as well.
-fn carry_out(steps: &[Step]) -> Result<(), Unplaced> {
-    for (done, step) in steps.iter().enumerate() {
-        if let Err(error) = step.run() {
-            // If one way back is closed the journal stays, and the next command completes the set.
-            drop(steps[..done].iter().rev().try_for_each(Step::undo));
-            return Err((step.subject().to_path_buf(), error));
-        }
-    }
-    Ok(())
-}
-
-/// Completes what a process that was killed was putting into place in a directory, if it holds such a set. Needs no lock where there is none.
-///
-/// # Errors
-/// A problem of `--out`: another process writes there, the directory cannot be written, or the journal is damaged.
-pub fn settle(dir: &Path) -> Result<(), Problem> {
-    if !is_there(&dir.join(JOURNAL)) {
-        return Ok(());
-    }
-    let lock = DirLock::wait(dir)?;
-    complete(&lock)?;
-    lock.sweep(dir);
-    Ok(())
-}
-
-/// The same for a process that holds the lock.
-///
-/// # Errors
-/// A problem of `--out`: the directory cannot be written, or another user wrote the journal, or it is damaged.
-pub fn complete(lock: &DirLock) -> Result<(), Problem> {
-    let root = lock.path();
-    let file = root.join(JOURNAL);
-    if !is_there(&file) {
-        return Ok(());
-    }
-    let name = root.display();
-    let interrupted =
-        format!("a command was interrupted while it put its files into place in {name}");
-    let failed = |error: io::Error| {
-        let hint = "make the directory writable, or write the results anew in another one";
-        failed(root, &interrupted, &error).hint(hint)
-    };
-    let is_own = is_own(root, &file).map_err(failed)?;
-    if !is_own {
-        let hint = "repeat the command as the user who ran it";
-        return Err(problem(root, &interrupted, hint));
-    }
-    let Some(journal) = Journal::read(root, &file) else {
-        let message = format!("{JOURNAL} in {name} is damaged");
-        let hint = "remove it, and write the results anew in another directory";
-        return Err(problem(root, &message, hint).kind(ProblemKind::Damaged));
-    };
-    journal
-        .complete(root)
-        .and_then(|()| fs::remove_file(&file))
-        .map_err(failed)
-}
-
-impl Journal {
-    /// Reads a journal, whose author may be unknown; none if it is not one that this program wrote.
-    fn read(root: &Path, file: &Path) -> Option<Self> {
-        let is_plain = |path: &Path| fs::symlink_metadata(path).map(|found| found.is_file());
-        if !is_plain(file).ok()? {
-            return None;
-        }
-        let bytes = bounded::read_file(file, bounded::CHECKSUMS).ok()?;
-        let journal: Journal = serde_json::from_slice(&bytes).ok()?;
-        let is_written = |name: &str| {
-            is_temporary(name) && is_plain_name(name) && is_plain(&root.join(name)).unwrap_or(true)
-        };
-        let (temporary, names): (Vec<_>, Vec<_>) = journal.files.iter().cloned().unzip();
-        let fits = journal.schema == SCHEMA
-            && temporary.iter().all(|name| is_written(name))
-            && names
-                .iter()
-                .chain(&journal.remove)
-                .all(|name| is_place(root, name));
-        fits.then_some(journal)
-    }
-
-    /// Does what is left of it.
-    fn complete(&self, root: &Path) -> io::Result<()> {
-        let mut folders = BTreeSet::from([root.to_path_buf()]);
-        for (temporary, name) in &self.files {
-            let (temporary, target) = (root.join(temporary), root.join(name));
-            let folder = target.parent().unwrap_or(root).to_path_buf();
-            // Else it has its name already.
-            if is_there(&temporary) {
-                if !is_there(&folder) {
-                    fs::create_dir(&folder)?;
-                }
-                fs::rename(temporary, target)?;
-            }
-            folders.insert(folder);
-        }
-        for name in &self.remove {
-            match fs::remove_file(root.join(name)) {
-                Err(error) if error.kind() != ErrorKind::NotFound => return Err(error),
-                _ => {}
-            }
-        }
-        folders.iter().for_each(|folder| sync_directory(folder));
-        Ok(())
-    }
-}
-
-/// Whether a name leads nowhere else.
-pub(super) fn is_plain_name(name: &str) -> bool {
-    Path::new(name).file_name().is_some_and(|last| last == name)
-}
-
-/// Whether a name is that of a file in the directory, or in a folder in it that is no link.
-fn is_place(root: &Path, name: &str) -> bool {
-    let is_own = |name: &str| is_plain_name(name) && !is_temporary(name) && name != JOURNAL;
-    match name.split_once('/') {
-        None => is_own(name),
-        Some((folder, name)) => {
-            let found = fs::symlink_metadata(root.join(folder));
-            is_own(folder) && is_own(name) && found.map_or(true, |found| found.is_dir())
-        }
-    }
-}
-
-/// Whether the user of this process wrote a file: only then is done what it says.
-#[cfg(unix)]
-fn is_own(root: &Path, file: &Path) -> io::Result<bool> {
-    use std::os::unix::fs::MetadataExt;
-    let mine = temporary_in(root)?.as_file().metadata()?.uid();
-    Ok(fs::symlink_metadata(file)?.uid() == mine)
-}
-
-#[cfg(not(unix))]
-fn is_own(root: &Path, _: &Path) -> io::Result<bool> {
-    temporary_in(root).map(|_| true)
-}
-
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
 
+    use super::super::settle;
     use super::*;
+    use cvtcycle_config::ProblemKind;
 
     type Tree = BTreeMap<String, String>;
 

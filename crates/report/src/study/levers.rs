@@ -5,7 +5,8 @@ use cvtcycle_study::execute::side_effects::{FLOOR, LUGGING};
 use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
 use cvtcycle_study::words::decimals;
 
-use super::{conditions, ended_badly, reproduce, unfinished};
+use super::conditions::{conditions, reproduce};
+use super::{ended_badly, unfinished};
 use crate::document::{Block, Document, ReportTable, Section};
 use crate::number::{NONE, Quantity, degc, grouped, signed};
 use crate::results::StudyResults;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{label, values};
+use super::levels::{label, values};
 use crate::plan::{Design, Plan};
 
 /// An output at every pair of levels of two factors.

@@ -3,30 +3,30 @@
 pub mod ambient;
 mod grid;
 mod information;
+mod levels;
+mod output;
 mod range;
 mod study_table;
 mod tables;
 
 pub use grid::{GridMatrix, LeastOf};
 pub use information::{Information, KnownFactor};
+pub use output::{OutputAnswer, Ranked};
 pub use range::Range;
 pub use study_table::{StudyTable, TableSource};
 pub use tables::tables;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use serde::Serialize;
 
 use crate::design::{Role, saltelli_role};
 use crate::execute::outputs::EXCESS;
-use crate::plan::{Design, Factor, FactorValue, Plan};
-use crate::statistics::{
-    Blocks, Bootstrap, Confidence, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
-    TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
-};
+use crate::plan::Design;
+use crate::statistics::{Confidence, Share, Summary};
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
+use output::{output, pick};
 pub(crate) use study_table::Status;
 
 /// Version of an [`Answer`] as JSON. 2: intervals of any confidence under one name, ends in place of moments where the points are no sample.
@@ -91,57 +91,6 @@ pub struct Comparison {
     pub excess_range: Option<Range>,
     /// Pairs in which the subject uses more.
     pub worse: Share,
-}
-
-/// One output of one car.
-#[derive(Clone, Debug, Serialize)]
-pub struct OutputAnswer {
-    /// Column.
-    pub output: String,
-    /// Its unit.
-    pub unit: String,
-    /// Car; for an excess the baseline.
-    pub car: String,
-    /// Description of draws; none where the points are no sample.
-    pub summary: Option<Summary>,
-    /// Ends of points that are no sample.
-    pub range: Option<Range>,
-    /// Sobol indices of growing numbers of samples, the last of all; of a Saltelli design.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub sobol: Vec<SobolIndices>,
-    /// What knowing each factor would leave of the spread; of designs that sample.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub information: Option<Information>,
-    /// Of a one-at-a-time design.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tornado: Option<Tornado>,
-    /// Of factors that are numbers, in designs that sample.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rank: Option<Ranked>,
-    /// Means at the levels of factors: in grids of all, else of words.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub levels: Vec<(String, Groups)>,
-    /// Of a grid of two factors.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub matrix: Option<GridMatrix>,
-}
-
-impl OutputAnswer {
-    /// Numbers of values and of points without one.
-    pub fn counts(&self) -> [u64; 2] {
-        let of_draws = self.summary.as_ref().map(|s| [s.n, s.missing]);
-        let counts = of_draws.or(self.range.as_ref().map(|r| [r.n, r.missing]));
-        counts.unwrap_or_default().map(|n| n as u64)
-    }
-}
-
-/// Rank correlations with the factors that are drawn numbers.
-#[derive(Clone, Debug, Serialize)]
-pub struct Ranked {
-    /// Names of the factors.
-    pub factors: Vec<String>,
-    /// Correlations, in their order.
-    pub of: RankSensitivity,
 }
 
 /// Computes what the study says from the parts that are there.
@@ -264,15 +213,6 @@ pub fn described_numbers(
     Ok(pick(&frame.numbers(output, car)?, &described(frame)))
 }
 
-/// The numbers of the described points of which runs are there.
-fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
-    let pairs = numbers.iter().zip(rows);
-    pairs
-        .filter(|(_, described)| **described)
-        .map(|(x, _)| *x)
-        .collect()
-}
-
 pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons: Vec<String> = Vec::new();
     let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
@@ -310,155 +250,4 @@ pub(crate) fn counted(words: impl Iterator<Item = String>) -> Vec<(String, usize
     let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
     counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
     counts
-}
-
-/// Points from which rank correlations are computed at most: more would cost memory and tell nothing that can be seen.
-const MAX_RANKED: usize = 1 << 16;
-
-/// The values of a factor at the first points, as the design has them. They need no table: a design is a function of the point.
-fn values(plan: &Plan, factor: usize, points: usize) -> impl Iterator<Item = Option<FactorValue>> {
-    let level = move |point| plan.design.level(&plan.factors, point, factor);
-    (0..points as u64).map(move |point| plan.factors[factor].value(level(point)))
-}
-
-/// Numbers of a factor.
-fn numbers(plan: &Plan, factor: usize, points: usize) -> Vec<f64> {
-    let number = |value: Option<FactorValue>| value.and_then(|x| x.number()).unwrap_or(f64::NAN);
-    values(plan, factor, points).map(number).collect()
-}
-
-/// Words of a factor, or its numbers as words; every word is held once.
-fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> {
-    let mut known: Vec<(Option<FactorValue>, Arc<str>)> = vec![(None, "".into())];
-    let word = |value: Option<FactorValue>| {
-        if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
-            return text.clone();
-        }
-        let text: Arc<str> = value
-            .iter()
-            .map(|value| label(value, ""))
-            .collect::<String>()
-            .into();
-        known.push((value, text.clone()));
-        text
-    };
-    values(plan, factor, points).map(word).collect()
-}
-
-fn output(
-    frame: &StudyTable,
-    rows: &[bool],
-    (name, unit): &(String, String),
-    car: usize,
-    confidence: Confidence,
-) -> Result<OutputAnswer, Problem> {
-    let plan = &frame.outline.plan;
-    let sample = plan.design.is_sampled().then_some(confidence);
-    let found = frame.numbers(name, car)?;
-    let mut answer = OutputAnswer {
-        output: name.clone(),
-        unit: unit.clone(),
-        car: frame.outline.cars[car].clone(),
-        summary: sample.map(|confidence| Summary::of(&pick(&found, rows), confidence)),
-        range: Range::of(plan, &found),
-        sobol: Vec::new(),
-        information: None,
-        tornado: None,
-        rank: None,
-        levels: Vec::new(),
-        matrix: GridMatrix::of(plan, &found),
-    };
-    match plan.design {
-        Design::Saltelli { .. } => {
-            answer.sobol = sobol(&found, plan.factors.len(), confidence);
-            let last = answer.sobol.last();
-            answer.information =
-                last.and_then(|of| Information::of_indices(plan, &found, of, confidence));
-        }
-        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &found)),
-        _ => {
-            let as_words =
-                |f: &usize| plan.design == Design::Grid || !plan.factors[*f].values.are_numbers();
-            let (levels, drawn): (Vec<usize>, Vec<usize>) =
-                (0..plan.factors.len()).partition(as_words);
-            let summary = answer.summary.as_ref();
-            answer.information = summary
-                .and_then(|summary| Information::of_draws(plan, &found, summary, confidence));
-            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found, confidence));
-            let groups = |f| group_means(&words(plan, f, found.len()), &found, sample);
-            let levels = levels.into_iter();
-            answer.levels = levels
-                .map(|f| (plan.factors[f].name.clone(), groups(f)))
-                .collect();
-        }
-    }
-    Ok(answer)
-}
-
-fn ranked(plan: &Plan, drawn: &[usize], found: &[f64], confidence: Confidence) -> Ranked {
-    let points = found.len().min(MAX_RANKED);
-    let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(plan, f, points)).collect();
-    let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    Ranked {
-        factors: drawn
-            .iter()
-            .map(|&f| plan.factors[f].name.clone())
-            .collect(),
-        of: rank_sensitivity(&columns, &found[..points], confidence),
-    }
-}
-
-/// Splits the points of a Saltelli design into its blocks.
-fn sobol(numbers: &[f64], factors: usize, confidence: Confidence) -> Vec<SobolIndices> {
-    let width = factors + 2;
-    let column = |k: usize| numbers.iter().skip(k).step_by(width).copied().collect();
-    let columns: Vec<Vec<f64>> = (0..width).map(column).collect();
-    let blocks = Blocks {
-        a: &columns[0],
-        b: &columns[1],
-        ab: columns[2..].iter().map(Vec::as_slice).collect(),
-    };
-    let bootstrap = Bootstrap {
-        confidence,
-        ..Bootstrap::default()
-    };
-    sobol_convergence(&blocks, bootstrap)
-}
-
-/// Point 0 is the base; the others follow factor by factor.
-fn of_tornado(plan: &Plan, numbers: &[f64]) -> Tornado {
-    let input = |(f, factor): (usize, &Factor)| {
-        let points = values(plan, f, numbers.len()).zip(numbers).skip(1);
-        let entry = |(value, number): (Option<FactorValue>, &f64)| {
-            Some((label(&value?, &factor.unit), *number))
-        };
-        TornadoInput {
-            name: factor.name.clone(),
-            entries: points.filter_map(entry).collect(),
-        }
-    };
-    let inputs: Vec<TornadoInput> = plan.factors.iter().enumerate().map(input).collect();
-    tornado(numbers.first().copied().unwrap_or(f64::NAN), &inputs)
-}
-
-/// A value as a label: numbers with four figures and their unit.
-fn label(value: &FactorValue, unit: &str) -> String {
-    let x = match value {
-        FactorValue::Word(word) => return word.to_string(),
-        FactorValue::Number(x) => *x,
-    };
-    let digits = match x.abs() > 0.0 {
-        true => (3 - x.abs().log10().floor() as i32)
-            .clamp(0, 12)
-            .unsigned_abs(),
-        false => 0,
-    };
-    let mut text = format!("{x:.*}", digits as usize);
-    if text.contains('.') {
-        text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
-    }
-    match unit {
-        "" | "-" => text,
-        unit => format!("{text} {unit}"),
-    }
 }

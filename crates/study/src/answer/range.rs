@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::label;
+use super::levels::label;
 use crate::plan::{Design, Plan};
 
 /// Where a value is that is the same at all points.

@@ -149,6 +149,25 @@ impl Report {
 ///
 /// # Errors
 /// Sources whose vehicle cannot be loaded; more than [`MAX_EVALUATIONS`] evaluations.
+///
+/// ```
+/// use cvtcycle_config::setup::NamedBy;
+/// use cvtcycle_study::check::{CandidateVehicle, COMMON, Verdict, judge, read};
+/// let row = "[[row]]\nid = \"own.1\"\nchapter = \"own\"\nwhat = \"pump displacement\"\n\
+///     printed = \"8.57\"\nunit = \"cc/rev\"\nvalue = 8.57\ntolerance = \"rounding\"\n\
+///     compute = \"key(transmission.cvt.pump.displacement_cc_rev)\"\n";
+/// let files = read(COMMON, &[("own.toml".to_owned(), row.to_owned())])?;
+/// let candidate = CandidateVehicle {
+///     vehicle: "rover_216_cvt".to_owned(),
+///     lubricant: None,
+///     engine_oil: None,
+///     set: Vec::new(),
+///     named_by: NamedBy::Caller,
+/// };
+/// let report = judge(&files, &candidate, |_| true)?;
+/// assert!(report.rows[0].computed.is_some());
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn judge(
     files: &[RowFile],
     candidate: &CandidateVehicle,

@@ -22,6 +22,7 @@ pub mod expr;
 pub mod judge;
 pub mod keys;
 pub mod power;
+mod perturbation;
 mod published;
 pub mod report;
 mod read;

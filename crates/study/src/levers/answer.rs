@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::prepare::{ColumnNote, LeverNotes};
+use super::request::{ColumnNote, LeverNotes};
 use crate::answer::{Ended, Status, StudyTable, counted, ended};
 use crate::execute::manifest::SCHEMA;
 use crate::execute::outputs::FUEL;

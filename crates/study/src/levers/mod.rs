@@ -5,6 +5,7 @@
 //! | `keys`, `read` | lever files |
 //! | `cars` | which levers each car can have, and what is wrong with the others |
 //! | `combine` | which of them go together |
+//! | `request` | what is to be driven, and what the columns of its table are |
 //! | `prepare` | levers, cars and ambient temperatures to the columns of a study |
 //! | `answer` | the table of that study to differences with their certainty and side effects |
 //! | `tables`, `words` | the answer as a table for other programs, and in sentences |
@@ -15,12 +16,14 @@ mod combine;
 pub mod keys;
 mod prepare;
 mod read;
+mod request;
 mod tables;
 mod words;
 
 pub use answer::{LeverAnswer, LeverBlock, LeverRow, SideEffect, lever_answer};
 pub use combine::{COMBINE, Combine};
-pub use prepare::{ColumnNote, LeverNotes, LeverRequest, prepare};
+pub use prepare::prepare;
+pub use request::{ColumnNote, LeverNotes, LeverRequest};
 pub use tables::csv;
 pub use words::answer_in_words;
 

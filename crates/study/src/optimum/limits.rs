@@ -3,9 +3,10 @@
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::thermal::NODES;
 
-use super::nodes::Scene;
 use super::reference::Reference;
-use super::stages::{Problem, Table};
+use super::scene::Scene;
+use super::stage::Table;
+use super::stages::Problem;
 use super::{Limits, Task, least_path};
 
 /// A limit.

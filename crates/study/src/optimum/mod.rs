@@ -3,14 +3,18 @@
 //!
 //! | module | contents | labels |
 //! |---|---|---|
+//! | `place` | a place between two nodes, and the value there | |
 //! | `program` | the dynamic program, without physics | DP-1, DP-3, DP-6 |
+//! | `scene` | a car on the steps of a trace | |
 //! | `node` | the numbers of a step at one ratio | |
 //! | `nodes` | what engine and box do in a step at a ratio | DP-4, DP-13, DP-14 |
+//! | `stage` | which ratios a step may have: all in a table, and what the limits leave | DP-5 |
 //! | `stages` | the car on its trace as stages of the program | DP-2, DP-5 |
 //! | `reference` | a drive with its states, and the worth of heat | DP-7, DP-8 |
 //! | `line` | curves of engine speed over demand and road speed, improved by driving | DP-12 |
 //! | `limits` | what each limit costs, and which one cannot be held | |
 //! | `file` | the line as a vehicle file | |
+//! | `question` | what is asked, and the answer in numbers | |
 //! | `answer` | all of it for a car, its clamp laws and a cycle | |
 //!
 //! | label | statement | status |
@@ -29,17 +33,21 @@ mod limits;
 mod line;
 mod node;
 mod nodes;
+mod place;
 mod program;
+mod question;
 mod reference;
+mod scene;
+mod stage;
 mod stages;
 
-pub use answer::{
-    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, LockFloor, NoAnswer, Question,
-    TIGHT, answer,
-};
+pub use answer::{TIGHT, answer};
 pub use file::ReadFrom;
 pub use limits::{Infeasible, LimitName, Unheld};
 pub use line::{Line, LineFit, fit_line};
+pub use question::{
+    Answer, Elsewhere, LawBound, LawCar, LimitPrice, LineAnswer, LockFloor, NoAnswer, Question,
+};
 
 use cvtcycle_model::cycle::{Step, Trace};
 use cvtcycle_model::drive::{Car, Row, State};
@@ -49,10 +57,11 @@ use cvtcycle_model::transmission::cvt::{Cvt, Hold};
 use rayon::prelude::*;
 
 use self::node::Mode;
-use self::nodes::Scene;
 use self::program::{Controls, Path, least};
 use self::reference::Reference;
-use self::stages::{Problem, Table};
+use self::scene::Scene;
+use self::stage::Table;
+use self::stages::Problem;
 
 /// Largest change of the driven fuel between two sets of temperatures that is taken for settled.
 const SETTLED: f64 = 2e-4;
@@ -184,6 +193,52 @@ struct Solved {
 ///
 /// # Errors
 /// The limits cannot be held.
+///
+/// ```
+/// use cvtcycle_config::cycle::Cycle;
+/// use cvtcycle_config::setup::{Options, load};
+/// use cvtcycle_model::cycle::Interval;
+/// use cvtcycle_model::drive::State;
+/// use cvtcycle_model::keys::rad_s;
+/// use cvtcycle_study::optimum::{Clamp, Limits, Task, bound, cvt};
+/// let car = load("rover_216_cvt", &Options::default())?.car(298.15);
+/// // From 12 m/s, 0.3 m/s faster each second.
+/// let interval = |k: u32| Interval {
+///     start_s: k.into(),
+///     end_s: (k + 1).into(),
+///     start_speed_m_s: 12.0 + 0.3 * f64::from(k),
+///     end_speed_m_s: 12.0 + 0.3 * f64::from(k + 1),
+///     phase: 0,
+///     grade: 0.0,
+///     engine_off: false,
+/// };
+/// let cycle = Cycle::from_intervals("gentle", (0..6).map(interval).collect()).expect("rising");
+/// let trace = cycle.trace_for(true);
+/// let steps: Vec<_> = trace.steps(1.0).collect();
+/// let cvt = cvt(&car).expect("a CVT");
+/// let limits = Limits {
+///     least_rad_s: rad_s(1100.0),
+///     reserve: 0.1,
+///     up_per_s: cvt.ratio.up_per_s,
+///     down_per_s: cvt.ratio.down_per_s,
+/// };
+/// let task = Task {
+///     car: &car,
+///     cvt,
+///     steps: &steps,
+///     trace,
+///     start: State::at(363.15),
+///     warm: false,
+///     clamp: Clamp::Law,
+///     limits,
+///     grid: 25,
+///     least_speeds_rad_s: &[],
+///     prices: &[],
+/// };
+/// let bound = bound(&task).expect("the limits can be held");
+/// assert!(bound.least_kg() <= bound.driven_kg);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
 pub fn bound(task: &Task) -> Result<Bound, Box<Infeasible>> {
     let scene = Scene::new(task);
     let (reference, temperatures) = settled(&scene, task)?;

@@ -2,7 +2,7 @@
 
 use cvtcycle_model::thermal::NODES;
 
-use super::program::Place;
+use super::place::Place;
 
 /// How the coupling holds engine and box together in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

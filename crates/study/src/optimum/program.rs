@@ -9,60 +9,7 @@
 //! | DP-3 | u: every node within reach, both ends of reach, and x itself; V linear between nodes | derived: nodes alone leave an error of first order in their distance |
 //! | DP-6 | between a node from which the end cannot be reached and another, V is infinite; at the other it is its own | derived: an infinite value is no number to go between |
 
-/// A place between two nodes of a stage: a share of the way from one to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// The node at or below.
-    pub node: usize,
-    /// Share of the way to the next, 0 to less than 1.
-    pub share: f64,
-}
-
-impl Place {
-    /// A node itself.
-    pub const fn at(node: usize) -> Self {
-        Place { node, share: 0.0 }
-    }
-
-    /// Where `x` is among ascending `nodes`; none outside them.
-    pub fn of(x: f64, nodes: &[f64]) -> Option<Self> {
-        let above = nodes.partition_point(|node| *node < x - NEAR);
-        let node = *nodes.get(above)?;
-        if node <= x + NEAR {
-            return Some(Place::at(above));
-        }
-        let below = above.checked_sub(1)?;
-        Some(Place {
-            node: below,
-            share: (x - nodes[below]) / (node - nodes[below]),
-        })
-    }
-
-    /// The same place among nodes that begin later.
-    fn later(self, by: usize) -> Self {
-        Place {
-            node: self.node + by,
-            ..self
-        }
-    }
-
-    /// A quantity here from its values at the nodes, linear between them; infinite next to an infinite one (DP-6).
-    pub fn value(&self, at_nodes: &[f64]) -> f64 {
-        let here = at_nodes[self.node];
-        if self.share <= 0.0 {
-            return here;
-        }
-        let next = at_nodes[self.node + 1];
-        if here.is_finite() && next.is_finite() {
-            here + self.share * (next - here)
-        } else {
-            f64::INFINITY // DP-6
-        }
-    }
-}
-
-/// Places nearer than this are one.
-const NEAR: f64 = 1e-12;
+use super::place::{NEAR, Place};
 
 /// A problem in stages. The state between two stages is one number, known at the nodes of the stage before.
 pub trait Stages: Sync {

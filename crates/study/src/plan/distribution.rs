@@ -68,14 +68,10 @@ impl Distribution {
     pub fn inverse_cdf(&self, u: f64) -> f64 {
         match *self {
             Distribution::Normal { mean, sd } => mean + sd * standard(u), // PD-1
-            Distribution::TruncatedNormal {
-                mean,
-                sd,
-                low,
-                high,
-            } => {
-                let z = between((low - mean) / sd, (high - mean) / sd, u);
-                within(mean + sd * z, low, high)
+            Distribution::TruncatedNormal { mean, sd, .. } => {
+                let (a, b) = self.standard_ends(mean, sd);
+                let (low, high) = self.support();
+                within(mean + sd * between(a, b, u), low, high)
             }
             Distribution::Uniform { low, high } => within(low + u * (high - low), low, high), // PD-3
             Distribution::Triangular { low, mode, high } => {
@@ -115,17 +111,19 @@ impl Distribution {
         }
     }
 
+    /// Both ends in standard deviations from a mean (PD-2).
+    pub(super) fn standard_ends(&self, mean: f64, sd: f64) -> (f64, f64) {
+        let (low, high) = self.support();
+        ((low - mean) / sd, (high - mean) / sd)
+    }
+
     /// Mean and standard deviation.
     fn moments(&self) -> (f64, f64) {
         match *self {
             Distribution::Normal { mean, sd } => (mean, sd),
-            Distribution::TruncatedNormal {
-                mean,
-                sd,
-                low,
-                high,
-            } => {
-                let (m, s) = cut_moments((low - mean) / sd, (high - mean) / sd);
+            Distribution::TruncatedNormal { mean, sd, .. } => {
+                let (a, b) = self.standard_ends(mean, sd);
+                let (m, s) = cut_moments(a, b);
                 (mean + sd * m, sd * s)
             }
             Distribution::Uniform { low, high } => {

@@ -347,16 +347,13 @@ fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
             );
             spreads(mean, sd) && !wide
         }
-        Distribution::TruncatedNormal {
-            mean,
-            sd,
-            low,
-            high,
-        } => {
+        Distribution::TruncatedNormal { mean, sd, .. } => {
+            let (low, high) = found.support();
             if !(spreads(mean, sd) && ends(low, high)) {
                 return false;
             }
-            let left = mass((low - mean) / sd, (high - mean) / sd);
+            let (a, b) = found.standard_ends(mean, sd);
+            let left = mass(a, b);
             let message = format!(
                 "only {:.2} % of the normal distribution lie between `low` and `high`",
                 100.0 * left

@@ -2,6 +2,7 @@
 //! interval leaves it.
 
 pub mod drawn;
+mod effects;
 pub mod intervals;
 pub mod run;
 pub mod study;

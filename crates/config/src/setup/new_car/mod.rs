@@ -15,7 +15,6 @@
 //! reads the numbers from a file, `questions` says what may be asked for.
 
 mod answers;
-mod coast_down;
 mod full_load;
 mod options;
 mod questions;

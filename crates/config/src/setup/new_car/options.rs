@@ -2,7 +2,7 @@
 
 use super::Answers;
 use super::rules::{Line, PLAIN};
-use crate::document::overrides::rows;
+use crate::document::target::rows;
 use crate::{Place, Problem, Problems};
 
 /// Problems of the car of some lines under the options that gave them. What follows from a wrong number is not said of the rest.

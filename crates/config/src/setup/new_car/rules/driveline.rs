@@ -1,0 +1,233 @@
+//! What follows from the numbers of a box: the belt that reaches its ratios, or the gear set and its shift speeds.
+
+use std::f64::consts::PI;
+
+use super::{BEYOND_RATED_RPM, Given, Line, digits, list};
+use crate::document::units::{LENGTH, POWER, RATIO};
+use crate::setup::twin::shifts_kmh;
+use cvtcycle_model::keys::{RAD_S, RPM};
+use cvtcycle_model::math::asin;
+use cvtcycle_model::transmission::Transmission;
+
+/// Numbers of a CVT only, and of a manual box only.
+const OF_CVT: [&str; 5] = ["ratio-low", "ratio-high", "span", "centre-distance", "pump"];
+const OF_MANUAL: [&str; 1] = ["gears"];
+const LOW: &str = "transmission.cvt.ratio.low";
+const CENTRE: &str = "transmission.cvt.variator.centre_distance_mm";
+/// Least running radius of a belt, m (NC-4).
+const LEAST_RADIUS_M: f64 = 0.030;
+/// Mass of a belt, kg/m (NC-4).
+const BELT_KG_M: f64 = 1.6;
+/// Below the low ratio, where the primary reaches its stop.
+const STOP: f64 = 0.12;
+/// Engine speed of a CVT in overrun over that from which all fuel is cut, rpm (NC-10).
+const OVER_CUT_RPM: f64 = 100.0;
+
+impl Given<'_> {
+    pub(super) fn refuse_other_box(&mut self) {
+        let (others, has) = match self.base.transmission().is_cvt() {
+            true => (&OF_MANUAL[..], "a CVT"),
+            false => (&OF_CVT[..], "a manual box"),
+        };
+        for option in others {
+            if self.text(option).is_some() {
+                self.complain(
+                    option,
+                    &format!("the car has {has}"),
+                    "choose another class of box",
+                );
+            }
+        }
+    }
+
+    /// Low and high ratio of the belt, of which a span may give one; none after a problem.
+    fn ratio_limits(&mut self) -> Option<[Option<f64>; 2]> {
+        let low = self.number("ratio-low", &RATIO);
+        let high = self.number("ratio-high", &RATIO);
+        let span = self.number("span", &RATIO);
+        match (low, high, span) {
+            (low, high, None) => Some([low, high]),
+            (None, Some(high), Some(span)) => Some([Some(high * span), Some(high)]),
+            (Some(low), None, Some(span)) => Some([Some(low), Some(low / span)]),
+            (Some(_), Some(_), Some(_)) => {
+                self.complain(
+                    "span",
+                    "a span and both ratios at once",
+                    "give two of the three",
+                );
+                None
+            }
+            (None, None, Some(_)) => {
+                self.complain(
+                    "span",
+                    "a span without one of its ends",
+                    "give the smallest ratio too",
+                );
+                None
+            }
+        }
+    }
+
+    /// Limits of the belt's ratio, and the belt that reaches them.
+    pub(super) fn belt(&mut self) {
+        if let Some(ratio) = self.number("final-drive", &RATIO) {
+            self.is_given(
+                "final-drive",
+                "transmission.cvt.final_drive_ratio",
+                digits(ratio),
+            );
+        }
+        self.overrun();
+        let limits = self.ratio_limits();
+        let centre_mm = self.number("centre-distance", &LENGTH);
+        let Some([low, high]) = limits else { return };
+        for (option, key, value) in [
+            ("ratio-low", LOW, low),
+            ("ratio-high", "transmission.cvt.ratio.high", high),
+            ("centre-distance", CENTRE, centre_mm),
+        ] {
+            match (value, self.text(option)) {
+                (Some(value), Some(_)) => self.is_given(option, key, digits(value)),
+                (Some(value), None) => self.follows(
+                    key,
+                    digits(value),
+                    "the span and the other ratio".to_owned(),
+                ),
+                (None, _) => {}
+            }
+        }
+        if low.is_none() && centre_mm.is_none() {
+            return;
+        }
+        let low = low.unwrap_or_else(|| self.inherited(LOW));
+        let centre_mm = centre_mm.unwrap_or_else(|| self.inherited(CENTRE));
+        self.belt_of(low, centre_mm);
+    }
+
+    /// Engine speed in overrun where that of the class is too low for the engine to have its fuel cut (NC-10). A car has its own.
+    fn overrun(&mut self) {
+        let Transmission::Cvt(cvt) = self.base.transmission() else {
+            return;
+        };
+        let cut = self.base.engine().cut_above_rad_s;
+        if self.answers.like.is_none() && cvt.ratio.overrun_rad_s < cut {
+            self.follows(
+                "transmission.cvt.ratio.overrun_rpm",
+                digits((cut * RAD_S).round() + OVER_CUT_RPM),
+                "NC-10: above the speed from which all fuel is cut".to_owned(),
+            );
+        }
+    }
+
+    /// The belt that runs at the least radius in low.
+    fn belt_of(&mut self, low: f64, centre_mm: f64) {
+        let length_m = belt_length_m(low, centre_mm / 1e3);
+        if length_m.is_nan() {
+            let hint = "check the low ratio and the centre distance";
+            self.complain(
+                "ratio-low",
+                "no belt reaches this ratio at this distance of the pulleys",
+                hint,
+            );
+            return;
+        }
+        for (key, value, source) in [
+            (
+                "transmission.cvt.belt.length_m",
+                format!("{length_m:.5}"),
+                "NC-4: least running radius 30 mm",
+            ),
+            (
+                "transmission.cvt.belt.mass_kg",
+                format!("{:.3}", BELT_KG_M * length_m),
+                "NC-4: 1.6 kg/m",
+            ),
+            (
+                "transmission.cvt.variator.stop_from_ratio",
+                digits(low - STOP),
+                "no deflection of the primary in low",
+            ),
+            (
+                "transmission.cvt.variator.stop_to_ratio",
+                digits(low),
+                "no deflection of the primary in low",
+            ),
+        ] {
+            self.follows(key, value, source.to_owned());
+        }
+    }
+
+    /// The gear set, and shift speeds for it.
+    pub(super) fn gears(&mut self) {
+        let final_drive = self.number("final-drive", &RATIO);
+        if let Some(ratio) = final_drive {
+            self.is_given(
+                "final-drive",
+                "transmission.manual.final_ratio",
+                digits(ratio),
+            );
+        }
+        let Some(text) = self.text("gears").map(str::to_owned) else {
+            return;
+        };
+        let parts: Vec<&str> = text.split(',').collect();
+        let gears = parts
+            .iter()
+            .filter_map(|part| self.read("gears", part, &text, &RATIO));
+        let gears: Vec<f64> = gears.collect();
+        if gears.len() < parts.len() {
+            return;
+        }
+        let falls = gears.windows(2).all(|pair| pair[0] > pair[1]);
+        if gears.len() < 2 || !falls {
+            self.complain(
+                "gears",
+                "two gears or more are needed, from first to top",
+                "leave reverse out",
+            );
+            return;
+        }
+        let last = final_drive.unwrap_or_else(|| self.inherited("transmission.manual.final_ratio"));
+        let overall: Vec<f64> = gears.iter().map(|gear| gear * last).collect();
+        let words = format!("gears {text} times a final drive of {}", digits(last));
+        self.follows("transmission.manual.overall_ratios", list(&overall), words);
+        self.shifts(&overall);
+    }
+
+    /// Shift speeds of a gear set.
+    fn shifts(&mut self, overall: &[f64]) {
+        let rated = self.at_speed("power", &POWER);
+        let rated = rated.and_then(|(_, speeds)| speeds.first().copied());
+        let usual = self.base.engine().highest_rad_s - BEYOND_RATED_RPM * RPM;
+        let rated_rad_s = rated.map_or(usual, |rpm| rpm * RPM);
+        let mut radii = self
+            .lines
+            .iter()
+            .filter(|line| line.key == "road_load.wheel_radius_m");
+        let radius_m = radii.next().and_then(|line| line.value.parse().ok());
+        let radius_m = radius_m.unwrap_or(self.base.road_load.base.wheel_radius_m);
+        let speeds = shifts_kmh(overall, radius_m, rated_rad_s);
+        let keys = [
+            "transmission.manual.upshift_kmh",
+            "transmission.manual.downshift_kmh",
+        ];
+        for (key, speeds) in keys.into_iter().zip(speeds) {
+            self.lines.push(Line {
+                key,
+                value: list(&speeds),
+                status: "assumed",
+                source: format!("TW-3, rated speed {:.0} rpm", rated_rad_s * RAD_S),
+                option: None,
+            });
+        }
+    }
+}
+
+/// Length of the belt that runs at the least radius in low (GE-3, NC-4).
+fn belt_length_m(low: f64, centre_m: f64) -> f64 {
+    let (primary, secondary) = (LEAST_RADIUS_M, low * LEAST_RADIUS_M);
+    let difference = secondary - primary;
+    let alpha = asin(difference / centre_m);
+    let strut = (centre_m * centre_m - difference * difference).sqrt();
+    primary * (PI - 2.0 * alpha) + secondary * (PI + 2.0 * alpha) + 2.0 * strut
+}

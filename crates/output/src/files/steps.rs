@@ -1,0 +1,69 @@
+//! The steps that put files into place: all of them are taken, or none.
+
+use std::fs;
+use std::io::{self};
+use std::path::{Path, PathBuf};
+
+use super::is_temporary;
+use super::lock::sync_directory;
+
+/// A file that could not be put into place, and why.
+pub(super) type Unplaced = (PathBuf, io::Error);
+
+/// What puts files into place; each can be undone.
+#[derive(Debug)]
+pub(super) enum Step {
+    Folder(PathBuf),
+    Rename(PathBuf, PathBuf),
+    Sync(PathBuf),
+    Remove(PathBuf),
+}
+
+impl Step {
+    pub(super) fn run(&self) -> io::Result<()> {
+        match self {
+            Step::Folder(path) => fs::create_dir(path),
+            Step::Rename(from, to) => fs::rename(from, to),
+            Step::Remove(path) => fs::remove_file(path),
+            Step::Sync(path) => {
+                sync_directory(path);
+                Ok(())
+            }
+        }
+    }
+
+    pub(super) fn undo(&self) -> io::Result<()> {
+        match self {
+            Step::Folder(path) => fs::remove_dir(path),
+            Step::Rename(from, to) => fs::rename(to, from),
+            Step::Remove(_) | Step::Sync(_) => Ok(()),
+        }
+    }
+
+    /// The file that it is about, by its own name.
+    fn subject(&self) -> &Path {
+        match self {
+            Step::Rename(from, to) if has_temporary_name(to) => from,
+            Step::Folder(path) | Step::Rename(_, path) | Step::Remove(path) | Step::Sync(path) => {
+                path
+            }
+        }
+    }
+}
+
+fn has_temporary_name(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    is_temporary(&name.to_string_lossy())
+}
+
+/// Takes all steps or, if one fails, none: the way back ends with the journal, so that it may be interrupted as well.
+pub(super) fn carry_out(steps: &[Step]) -> Result<(), Unplaced> {
+    for (done, step) in steps.iter().enumerate() {
+        if let Err(error) = step.run() {
+            // If one way back is closed the journal stays, and the next command completes the set.
+            drop(steps[..done].iter().rev().try_for_each(Step::undo));
+            return Err((step.subject().to_path_buf(), error));
+        }
+    }
+    Ok(())
+}

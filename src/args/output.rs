@@ -1,0 +1,103 @@
+//! Options that say where results go, and in which form.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use cvtcycle::config::Problems;
+use cvtcycle::output::files::OutputDir;
+
+use super::problems::problem;
+
+/// Where the files go.
+#[derive(Args, Clone, Debug)]
+pub struct OutArgs {
+    /// Write the results as files into this directory
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier run there
+    #[arg(long)]
+    pub force: bool,
+}
+
+impl OutArgs {
+    /// Creates the output directory, if one is given.
+    pub fn dir(&self, problems: &mut Problems) -> Option<OutputDir> {
+        let path = self.path(problems)?;
+        problems.take(OutputDir::create(path, self.force))
+    }
+
+    /// The path, if one is given.
+    pub fn path(&self, problems: &mut Problems) -> Option<&Path> {
+        if self.force && self.out.is_none() {
+            let message = "there is no --out whose files could be replaced";
+            problems.add(problem("--force", message, "add --out"));
+        }
+        self.out.as_deref()
+    }
+}
+
+/// Form of the result on standard output, for commands without a quiet form.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct JsonArgs {
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Form of the result on standard output.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct OutputArgs {
+    #[command(flatten)]
+    json: JsonArgs,
+    /// Print problems only, no tables and no progress
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl OutputArgs {
+    /// Whether a JSON object is printed.
+    pub fn json(&self) -> bool {
+        self.json.json
+    }
+}
+
+/// Where the results of a command go, and in which form.
+#[derive(Args, Clone, Debug)]
+pub struct ResultArgs {
+    #[command(flatten)]
+    pub out: OutArgs,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
+/// Form of a table of points on standard output.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct TableOutputArgs {
+    /// What to print: a table for people, or CSV with all columns
+    #[arg(
+        long,
+        value_enum,
+        value_name = "FORMAT",
+        default_value = "table",
+        conflicts_with = "json"
+    )]
+    format: TableFormat,
+    #[command(flatten)]
+    pub output: OutputArgs,
+}
+
+/// Forms of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TableFormat {
+    /// A table for people
+    Table,
+    /// All columns as CSV
+    Csv,
+}
+
+impl TableOutputArgs {
+    /// True if JSON or CSV is printed, which is written as it is made.
+    pub fn is_streamed(&self) -> bool {
+        self.output.json() || self.format == TableFormat::Csv
+    }
+}

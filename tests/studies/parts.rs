@@ -1,0 +1,31 @@
+//! Parts of a study for tests: kept in memory, or on disk with a table of runs alone.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use cvtcycle::config::Problem;
+use cvtcycle::output::table::Head;
+use cvtcycle::study::PartWriter;
+use cvtcycle::study::store::{PartTable, Rows, StudyDir};
+
+/// Keeps the table of runs of each part.
+#[derive(Default)]
+pub struct Shelf(pub Mutex<BTreeMap<u64, Rows>>);
+
+impl PartWriter for Shelf {
+    fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
+        self.0.lock().unwrap().insert(part, runs.clone());
+        Ok(())
+    }
+}
+
+/// Writes a part that has a table of runs alone.
+pub fn write_runs(study: &StudyDir, part: usize, columns: &[Head], rows: &Rows) {
+    let table = PartTable {
+        name: "runs",
+        columns,
+        rows,
+        metadata: &[],
+    };
+    study.write_part(part, &[table]).unwrap();
+}
