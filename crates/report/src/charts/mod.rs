@@ -13,6 +13,7 @@ pub mod lines;
 mod loss_table;
 mod picture;
 mod price;
+mod printed;
 pub mod rig_transmission;
 mod run;
 pub mod study;

@@ -11,10 +11,29 @@ pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
         let mut lines = row.lines().filter(|line| line.starts_with("about = "));
         lines.any(|line| quoted.iter().all(|word| line.contains(word.as_str())))
     };
+    rows_of(is_about)
+        .into_iter()
+        .filter(|row| {
+            let about = row.about.as_ref();
+            about.is_some_and(|about| about.subject == subject && about.cycle == cycle)
+        })
+        .collect()
+}
+
+/// The rows of the program's files with these ids, in their order; none of an id that no row has.
+pub fn with_ids(ids: &[&str]) -> Vec<ValidationRow> {
+    let heads: Vec<String> = ids.iter().map(|id| format!("id = \"{id}\"\n")).collect();
+    let rows = rows_of(|row| heads.iter().any(|head| row.starts_with(head.as_str())));
+    let of = |id: &&str| rows.iter().find(|row| row.id == **id).cloned();
+    ids.iter().filter_map(of).collect()
+}
+
+/// The rows of the program's files whose text is wanted.
+fn rows_of(wanted: impl Fn(&&str) -> bool) -> Vec<ValidationRow> {
     let reduced = |(name, text): &(&str, &str)| {
         let mut parts = text.split(ROW);
         let head = parts.next()?;
-        let rows: Vec<&str> = parts.filter(is_about).collect();
+        let rows: Vec<&str> = parts.filter(&wanted).collect();
         (!rows.is_empty()).then(|| ((*name).to_owned(), [&[head], &rows[..]].concat().join(ROW)))
     };
     let files: Vec<(String, String)> = embedded_rows().iter().filter_map(reduced).collect();
@@ -23,12 +42,7 @@ pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
     } else {
         read(COMMON, &files)
     };
-    let rows = read.into_iter().flatten().flat_map(|file| file.rows);
-    rows.filter(|row| {
-        let about = row.about.as_ref();
-        about.is_some_and(|about| about.subject == subject && about.cycle == cycle)
-    })
-    .collect()
+    read.into_iter().flatten().flat_map(|file| file.rows).collect()
 }
 
 /// The beginning of a row.

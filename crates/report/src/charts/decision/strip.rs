@@ -2,7 +2,7 @@
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
-    Axis, Chart, Entry, Fill, INK, Label, QUIET, Style, Symbol, WIDTH, at, optional_cell,
+    Axis, Chart, Entry, Fill, INK, Label, PUBLISHED, QUIET, Style, Symbol, WIDTH, at, optional_cell,
     row_middle, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
@@ -14,8 +14,6 @@ const ROW: f64 = 30.0;
 /// Half of the height of a bar, radius of a mark, pixels.
 const HALF: f64 = 6.0;
 const RADIUS: f64 = 5.5;
-/// Colour of what contradicts.
-const CONTRARY: &str = "#a3311c";
 
 /// The difference to one baseline, per cent of its fuel.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,14 +65,14 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
             );
         }
         if let Some([low, high]) = row.published {
-            let line = Style::line(stroke(CONTRARY, 2.0, &[])).row(k);
+            let line = Style::line(stroke(PUBLISHED, 2.0, &[])).row(k);
             panel.segment(middle(low), middle(high), line);
             let mark = middle(0.5 * (low + high));
             panel.symbol(
                 Symbol::DIAMOND,
                 mark,
                 RADIUS,
-                Symbol::white(CONTRARY).row(k),
+                Symbol::white(PUBLISHED).row(k),
             );
         }
         if let Some(files) = row.files {
@@ -114,7 +112,7 @@ fn legend(rows: &[Against]) -> Vec<Entry> {
     if rows.iter().any(|row| row.published.is_some()) {
         list.push(Entry::symbol(
             Symbol::DIAMOND,
-            Symbol::white(CONTRARY),
+            Symbol::white(PUBLISHED),
             "published, contradicts",
         ));
     }
