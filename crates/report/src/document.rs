@@ -110,6 +110,21 @@ pub struct Figure {
     pub caption: String,
     /// Drawing and numbers.
     pub picture: Picture,
+    /// Which of several views it is; none for a figure of its own.
+    pub view: Option<View>,
+}
+
+/// One of several figures of which the page shows one at a time: the same of another car.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Name of the views, the same for all of them.
+    pub group: String,
+    /// What distinguishes this one: the car.
+    pub label: String,
+    /// Whether it is the one that is shown first, and that paper has.
+    pub first: bool,
+    /// Whether paper has the others too.
+    pub paper: bool,
 }
 
 impl Section {
@@ -149,7 +164,33 @@ impl Section {
             name: name.into(),
             caption: caption.into(),
             picture: of,
+            view: None,
         }));
+    }
+
+    /// Adds the same figure of several cars, of which the page shows one at a time: the car, the name of the file, what is to be seen, and the
+    /// figure. The first one is shown first.
+    pub fn views(
+        &mut self,
+        group: &str,
+        all: impl IntoIterator<Item = (String, String, String, Picture)>,
+    ) {
+        let all: Vec<_> = all.into_iter().collect();
+        let several = all.len() > 1;
+        for (k, (label, name, caption, picture)) in all.into_iter().enumerate() {
+            let view = View {
+                group: group.to_owned(),
+                label,
+                first: k == 0,
+                paper: false,
+            };
+            self.blocks.push(Block::Figure(Figure {
+                name,
+                caption,
+                picture,
+                view: several.then_some(view),
+            }));
+        }
     }
 
     /// Adds a table.
@@ -253,7 +294,15 @@ impl Document {
     #[must_use]
     pub fn shown(mut self, full: bool) -> Self {
         for section in &mut self.sections {
-            let more = std::mem::take(&mut section.more);
+            let mut more = std::mem::take(&mut section.more);
+            for block in &mut more {
+                if let Block::Figure(Figure {
+                    view: Some(view), ..
+                }) = block
+                {
+                    view.paper = true;
+                }
+            }
             section.blocks.extend(more.into_iter().filter(|_| full));
         }
         self.sections.retain(|section| !section.blocks.is_empty());

@@ -75,16 +75,18 @@ pub fn write(
             history,
             fuel_map: Some(fuel_map(car.setup)),
             group_fuel: charts::group_fuel(run),
+            published: charts::published_drive(name, summary),
         };
         let pressure = history
             .is_cvt()
             .then(|| ("pressure", charts::pressure(&plot)));
+        let one = std::slice::from_ref(&plot);
         let plots = [
             Some(("driveline", charts::driveline(&plot))),
             pressure,
-            Some(("temperatures", charts::temperatures(&plot))),
-            Some(("losses", charts::losses(&plot))),
-            Some(("operating_points", charts::operating_points(&plot))),
+            Some(("temperatures", charts::temperatures(one))),
+            Some(("losses", charts::losses(one))),
+            Some(("operating_points", charts::operating_points(one))),
         ];
         for (kind, picture) in plots.into_iter().flatten() {
             dir.put(&format!("{kind}_{name}.svg"), picture.svg)?;

@@ -1,7 +1,9 @@
 //! Which numbers of the thesis belong into which figure. The numbers are those of the validation rows; here are only their ids and places.
 
 use super::lines::PrintedMark;
+use super::run::PublishedDrive;
 use cvtcycle_model::bench::transmission::Piece;
+use cvtcycle_output::summary::{StartWord, Summary};
 use cvtcycle_study::check::{Printed, ValidationRow, with_ids};
 
 /// The car whose box and belt were on the rigs, and which drove the cycles.
@@ -73,6 +75,34 @@ pub(crate) fn rig(vehicle: &str, ratio: &str, of: RigNumber) -> Vec<PrintedMark>
     }
     let mark = |(ids, x)| Some(PrintedMark { x, y: number(ids)? });
     span(ratio, of).and_then(mark).into_iter().collect()
+}
+
+/// The cycle of the tests in the thesis, its end, the end of its first quarter and of the four quarters, s.
+const CYCLE: (&str, f64, f64, f64) = ("ece15_eudc", 1180.0, 195.0, 780.0);
+
+/// What the thesis prints of a drive of its car: temperatures after the soak at -10 degC, pressures at 25 degC.
+pub fn published_drive(vehicle: &str, summary: &Summary) -> PublishedDrive {
+    let (cycle, end, quarter, urban) = CYCLE;
+    let mut of = PublishedDrive::default();
+    if vehicle != THESIS_CAR || summary.cycle != cycle {
+        return of;
+    }
+    let is_at = |degc: f64| (summary.ambient_degc - degc).abs() < 1e-6;
+    let is_soaked = matches!(&summary.start, StartWord::Word(word) if word == "soak");
+    if is_at(-10.0) && is_soaked {
+        let marks = ["3.17a", "3.17b"].map(|id| Some(([end, end], number(&[id])?)));
+        of.end_degc = marks.into_iter().flatten().collect();
+    }
+    if is_at(25.0) {
+        let marks: [(&[&str], [f64; 2]); 3] = [
+            (&["3.10a"], [0.0, quarter]),
+            (&["3.10b"], [0.0, quarter]),
+            (&["3.11a", "3.11b"], [urban, end]),
+        ];
+        let mark = |(ids, x): (&[&str], [f64; 2])| Some((x, number(ids)?));
+        of.pressure_bar = marks.into_iter().filter_map(mark).collect();
+    }
+    of
 }
 
 /// The printed number of a row, or the range from that of the first to that of the last; none where a row has no finite number.

@@ -1,8 +1,8 @@
 //! Figures like 6-5 to 6-9 of the thesis: slip and radii on the variator rig, with what it prints of them.
 
 use super::engine::{
-    Axis, BELOW, Chart, End, Entry, INK, LEFT, PLOT_LEFT, PUBLISHED, Palette, Panel, Point,
-    Stroke, Style, Symbol, WIDTH, ZERO, at, grid, label_ends, range, stroke,
+    Axis, BELOW, Chart, End, Entry, INK, LEFT, PLOT_LEFT, PUBLISHED, Palette, Panel, Point, Stroke,
+    Style, Symbol, WIDTH, ZERO, at, grid, label_ends, range, stroke,
 };
 use super::picture::PictureTable;
 use super::printed::{THESIS_CAR, number};
@@ -62,11 +62,26 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
         }
     }
     let middles = tests.iter().filter_map(|test| test.get(test.len() / 2));
-    let radii = middles.flat_map(|curve| [radii("Primary", curve, 0), radii("Secondary", curve, 1)]);
+    let radii =
+        middles.flat_map(|curve| [radii("Primary", curve, 0), radii("Secondary", curve, 1)]);
     vec![
-        ("radii.svg", figure(plan, radius_title(&tests), radii.collect(), 2)),
-        ("slip.svg", figure(plan, slip_title(&tests), tests.iter().map(slip).collect(), 1)),
-        ("slip_speed.svg", figure(plan, speed_title(&tests), speeds, 2)),
+        (
+            "radii.svg",
+            figure(plan, radius_title(&tests), radii.collect(), 2),
+        ),
+        (
+            "slip.svg",
+            figure(
+                plan,
+                slip_title(&tests),
+                tests.iter().map(slip).collect(),
+                1,
+            ),
+        ),
+        (
+            "slip_speed.svg",
+            figure(plan, speed_title(&tests), speeds, 2),
+        ),
     ]
 }
 
@@ -89,7 +104,11 @@ fn slip_title(tests: &[&[Curve]]) -> String {
             bar(b)
         ),
         Some((from, _, a, _)) => {
-            format!("The belt holds up to {} Nm at {}, then slips", grouped(from, 0), bar(a))
+            format!(
+                "The belt holds up to {} Nm at {}, then slips",
+                grouped(from, 0),
+                bar(a)
+            )
         }
         None => "Belt slip against torque".to_owned(),
     }
@@ -113,10 +132,13 @@ fn printed_curve(test: &[Curve]) -> Option<&Curve> {
 
 fn speed_title(tests: &[&[Curve]]) -> String {
     let of = |curve: &Curve| {
-        let speeds = SLIP_SPEED.map(|(_, get)| where_it_is(curve, |r| r.belt.losses.slip_total, PRINTED_SLIP, get));
+        let speeds = SLIP_SPEED
+            .map(|(_, get)| where_it_is(curve, |r| r.belt.losses.slip_total, PRINTED_SLIP, get));
         Some((bar(curve), speeds[0]?, speeds[1]?))
     };
-    let first = tests.iter().filter_map(|test| printed_curve(test).or(test.first()));
+    let first = tests
+        .iter()
+        .filter_map(|test| printed_curve(test).or(test.first()));
     match first.filter_map(of).next() {
         Some((at, primary, secondary)) => format!(
             "At {at} and 3 % slip the belt slips {} m/s on the primary and {} m/s on the secondary",
@@ -180,10 +202,12 @@ impl Curves {
             return;
         };
         let point = match pulley {
-            0 => where_it_is(curve, |r| r.belt.losses.slip_total, PRINTED_SLIP, torque).map(|nm| (nm, primary)),
+            0 => where_it_is(curve, |r| r.belt.losses.slip_total, PRINTED_SLIP, torque)
+                .map(|nm| (nm, primary)),
             _ => {
                 let nm = where_it_is(curve, SLIP_SPEED[0].1, primary, torque);
-                nm.zip(number(&["6.12b"])).map(|(nm, [speed, _])| (nm, speed))
+                nm.zip(number(&["6.12b"]))
+                    .map(|(nm, [speed, _])| (nm, speed))
             }
         };
         self.printed.0.extend(point);

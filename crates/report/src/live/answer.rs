@@ -397,8 +397,9 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     let losses = pair.iter().map(|car| CarLosses {
         name: car.run.label().to_owned(),
         losses_kj: car.losses_kj(),
+        distance_km: car.run.distance_km,
     });
-    let picture = loss_by_component(&losses.collect::<Vec<_>>());
+    let picture = loss_by_component(&losses.collect::<Vec<_>>(), conditions);
     section.figure(
         "live_losses",
         "Losses of the transmission over the whole cycle.",

@@ -42,7 +42,10 @@ fn rows_of(wanted: impl Fn(&&str) -> bool) -> Vec<ValidationRow> {
     } else {
         read(COMMON, &files)
     };
-    read.into_iter().flatten().flat_map(|file| file.rows).collect()
+    read.into_iter()
+        .flatten()
+        .flat_map(|file| file.rows)
+        .collect()
 }
 
 /// The beginning of a row.

@@ -2,8 +2,8 @@
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
-    Axis, Chart, Entry, Fill, INK, Label, PUBLISHED, QUIET, Style, Symbol, WIDTH, at, optional_cell,
-    row_middle, rows_left, rows_panel, stroke,
+    Axis, Chart, Entry, Fill, INK, Label, PUBLISHED, QUIET, Style, Symbol, WIDTH, at,
+    optional_cell, row_middle, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::words::decimals;

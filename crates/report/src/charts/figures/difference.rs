@@ -7,6 +7,9 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital, grouped, signed};
 use cvtcycle_output::Component;
 
+/// Terms that change by less than this share of all changes are put together.
+const SMALL: f64 = 0.01;
+
 /// Two runs A and B, term by term.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
@@ -58,9 +61,22 @@ impl Difference {
         [a, b, b - a]
     }
 
+    /// The terms that change by a hundredth of all changes at least; the others together.
+    fn folded(&self) -> Vec<DifferenceTerm> {
+        let all: f64 = self.terms.iter().map(|term| term.change().abs()).sum();
+        let (large, small): (Vec<_>, Vec<_>) =
+            (self.terms.iter().cloned()).partition(|term| term.change().abs() >= SMALL * all);
+        let rest = [0, 1].map(|k| small.iter().map(|term| finite(term.kj[k])).sum());
+        let few = small.len() < 2;
+        let rest = (!few)
+            .then(|| DifferenceTerm::term(&format!("{} others", small.len()), Term::Other, rest));
+        let kept = if few { self.terms.clone() } else { large };
+        kept.into_iter().chain(rest).collect()
+    }
+
     /// The terms, with one for what they leave of the fuel if that is more than rounding, and at the end the fuel.
     fn complete_terms(&self) -> Vec<DifferenceTerm> {
-        let mut terms = self.terms.clone();
+        let mut terms = self.folded();
         let sum = |k: usize| {
             let kj = self.terms.iter().map(|term| finite(term.kj[k]));
             kj.sum::<f64>()
@@ -115,10 +131,32 @@ pub fn difference_bars(of: &Difference) -> Picture {
         at_end(&mut panel, row, change, sum, words(term));
     }
     let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);
-    Chart::new("Difference of energies, B \u{2212} A", subject, MARGIN)
+    Chart::new(title_of(of), subject, MARGIN)
         .panels([panel])
         .notes((MARGIN, WIDTH - 40.0), vec![explain(of)])
         .picture(table)
+}
+
+/// What B burns more or less, and where most of that is.
+fn title_of(of: &Difference) -> String {
+    let fuel = finite(of.fuel_kj[1]) - finite(of.fuel_kj[0]);
+    if fuel.abs() < 1e-9 {
+        return "B burns as much as A".to_owned();
+    }
+    let most = of
+        .terms
+        .iter()
+        .max_by(|a, b| a.change().abs().total_cmp(&b.change().abs()));
+    let most = most.map_or_else(String::new, |term| {
+        let change = term.change();
+        format!(
+            ", most of it {} ({})",
+            term.name.to_lowercase(),
+            signed(energy(change), change)
+        )
+    });
+    let more = if fuel < 0.0 { "less" } else { "more" };
+    format!("B burns {} {more} than A{most}", energy(fuel.abs()))
 }
 
 fn label(kj: f64, litres: f64) -> String {

@@ -87,7 +87,10 @@ pub fn variogram(of: &Variogram) -> Picture {
         .lead("Cells are coloured by the time spent in them")
         .panels([panel])
         .legend((PLOT_LEFT, WIDE), entries)
-        .foot(Block::key((PLOT_LEFT, 360.0), density.key()))
+        .foot(Block::key(
+            (PLOT_LEFT, 360.0),
+            density.key("Time spent in a cell [s]"),
+        ))
         .picture(table)
 }
 

@@ -46,6 +46,15 @@ impl Density {
         (size(x, max.0), size(y, max.1))
     }
 
+    /// What a cell holds, by a point in it; zero for an empty one.
+    pub(crate) fn within(&self, (x, y): (f64, f64)) -> f64 {
+        let key = (
+            (x / self.size.0).floor() as i64,
+            (y / self.size.1).floor() as i64,
+        );
+        self.seconds.get(&key).copied().unwrap_or(0.0)
+    }
+
     /// Time in all cells, s.
     pub(crate) fn total_s(&self) -> f64 {
         self.seconds.values().sum()
@@ -77,8 +86,8 @@ impl Density {
         self.cells().map(item).collect()
     }
 
-    /// The key of the colours: times in seconds.
-    pub(crate) fn key(&self) -> Key {
+    /// The key of the colours; `what` with its unit is what cells hold.
+    pub(crate) fn key(&self, what: &str) -> Key {
         let scale = self.scale();
         let colour = |k: usize| scale.colour(scale.seconds((k as f64 + 0.5) / SLICES as f64));
         let step = |seconds: f64| match scale.log {
@@ -88,7 +97,7 @@ impl Density {
         let label = |seconds: f64| (scale.share(seconds), number(seconds, step(seconds)));
         let log = if scale.log { ", logarithmic" } else { "" };
         Key {
-            heading: format!("Time spent in a cell [s]{log}"),
+            heading: format!("{what}{log}"),
             colours: (0..SLICES).map(colour).collect(),
             labels: scale.marks().into_iter().map(label).collect(),
         }

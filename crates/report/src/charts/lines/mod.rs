@@ -6,6 +6,7 @@ mod printed;
 mod table;
 
 pub use printed::PrintedMark;
+pub(crate) use printed::entries as printed_entries;
 
 pub use super::engine::Palette;
 use super::engine::{
@@ -114,11 +115,17 @@ pub fn line_chart(of: &LineChart) -> Picture {
     if stacked {
         entries.reverse(); // listed as they lie
     }
-    entries.extend(printed::entries(of.panels.iter().flat_map(|panel| &panel.printed)));
+    entries.extend(printed_entries(
+        of.panels.iter().flat_map(|panel| &panel.printed),
+    ));
     let chart = Chart::new(&of.title, &of.subject, PLOT_LEFT)
         .lead(&of.description)
         .panels(panels);
-    let heading = if direct { String::new() } else { of.legend.clone() };
+    let heading = if direct {
+        String::new()
+    } else {
+        of.legend.clone()
+    };
     let side = Side {
         heading,
         entries,
@@ -170,7 +177,10 @@ impl LineChart {
     /// Whether names stand at the ends of the lines: of a lone panel with more lines than one, and not too many.
     fn is_direct(&self) -> bool {
         let lone = self.panels.len() == 1 && (2..=MOST_DIRECT).contains(&self.names.len());
-        lone && self.panels.iter().all(|panel| !panel.stacked && panel.series.len() == self.names.len())
+        lone && self
+            .panels
+            .iter()
+            .all(|panel| !panel.stacked && panel.series.len() == self.names.len())
     }
 
     /// The line of a look.
@@ -192,7 +202,9 @@ impl LineChart {
     /// The name of a line at its right end.
     fn end(&self, (look, points): &(Look, Points)) -> Option<End> {
         let (_, name) = self.names.iter().find(|(other, _)| other == look)?;
-        let finite = points.iter().rfind(|p| p.0.is_finite() && p.1.is_finite())?;
+        let finite = points
+            .iter()
+            .rfind(|p| p.0.is_finite() && p.1.is_finite())?;
         Some(End {
             at: *finite,
             text: name.clone(),
@@ -271,6 +283,9 @@ fn x_axis(title: &str, panels: &[LinePanel], marked: bool, ticks: usize) -> Axis
     let series = panels.iter().flat_map(|panel| &panel.series);
     let points = series.flat_map(|(_, points)| points);
     let (low, high) = range(points.map(|p| p.0)).unwrap_or((0.0, 1.0));
+    // A first step of a second ends at one: the axis begins where the drive did.
+    let from_zero = title.starts_with("Time") && low > 0.0 && low < 0.02 * high;
+    let low = if from_zero { 0.0 } else { low };
     let room = match high - low {
         span if span > 0.0 && marked => 0.03 * span,
         span if span > 0.0 => 0.0,

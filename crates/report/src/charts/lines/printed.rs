@@ -15,7 +15,7 @@ pub struct PrintedMark {
 }
 
 impl PrintedMark {
-    pub(super) fn draw(&self, panel: &mut Panel) {
+    pub(crate) fn draw(&self, panel: &mut Panel) {
         let ([from, to], [low, high]) = (self.x, self.y);
         if to > from && high > low {
             let band = Style::colour(PUBLISHED).fill_opacity(0.10);
@@ -44,14 +44,21 @@ impl PrintedMark {
 }
 
 /// What the legend says of them.
-pub(super) fn entries<'m>(marks: impl Iterator<Item = &'m PrintedMark> + Clone) -> Vec<Entry> {
+pub(crate) fn entries<'m>(marks: impl Iterator<Item = &'m PrintedMark> + Clone) -> Vec<Entry> {
     let mut list = Vec::new();
     if marks.clone().any(PrintedMark::is_band) {
-        list.push(Entry::fill(Fill::plain(BAND), "range printed in the thesis"));
+        list.push(Entry::fill(
+            Fill::plain(BAND),
+            "range printed in the thesis",
+        ));
     }
     if marks.into_iter().any(|mark| !mark.is_band()) {
         let style = Symbol::white(PUBLISHED);
-        list.push(Entry::symbol(Symbol::DIAMOND, style, "printed in the thesis"));
+        list.push(Entry::symbol(
+            Symbol::DIAMOND,
+            style,
+            "printed in the thesis",
+        ));
     }
     list
 }

@@ -133,7 +133,9 @@ impl<T> Sheet<'_, T> {
 
     /// The rows of a ratio.
     fn at(&self, ratio: f64) -> impl Iterator<Item = &T> {
-        self.rows.iter().filter(move |row| same((self.set)(row).ratio, ratio))
+        self.rows
+            .iter()
+            .filter(move |row| same((self.set)(row).ratio, ratio))
     }
 }
 
@@ -191,15 +193,30 @@ pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
             chart.palette = Palette::Ordered;
             subject.picture(kind, ratio, "", chart)
         };
-        let (place, printed) = (subject.place(ratio), subject.printed(ratio, RigNumber::Total));
+        let (place, printed) = (
+            subject.place(ratio),
+            subject.printed(ratio, RigNumber::Total),
+        );
         let loss = |r: &SteadyPoint| r.answer.total_nm();
         let bar = |r: &SteadyPoint| r.answer.secondary_pa / 1e5;
         let losses = says::range(sheet.at(ratio).map(loss));
         let pressures = says::range(sheet.at(ratio).map(bar));
         let apart = says::apart(sheet.at(ratio).map(|r| (rpm(&r.set), bar(r))));
         [
-            figure("steady_loss", says::loss(losses, &place, &printed), LOSS, loss, printed),
-            figure("steady_pressure", says::pressure(pressures, apart, &place), PRESSURE, bar, Vec::new()),
+            figure(
+                "steady_loss",
+                says::loss(losses, &place, &printed),
+                LOSS,
+                loss,
+                printed,
+            ),
+            figure(
+                "steady_pressure",
+                says::pressure(pressures, apart, &place),
+                PRESSURE,
+                bar,
+                Vec::new(),
+            ),
         ]
     };
     sheet.ratios().into_iter().flat_map(of_ratio).collect()
@@ -227,12 +244,21 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
         };
         let lines = |degc: f64| {
             let torques = others.iter().enumerate();
-            torques.map(|(k, nm)| (Look::solid(k), added(degc, *nm))).collect()
+            torques
+                .map(|(k, nm)| (Look::solid(k), added(degc, *nm)))
+                .collect()
         };
         let names = names(others.iter().map(|t| format!("{t} Nm")));
         let most = others.last().copied().unwrap_or(*least);
-        let at_most = sheet.temperatures().into_iter().flat_map(|t| added(t, most));
-        let title = says::load(says::range(at_most.map(|p| p.1)), most, &subject.place(ratio));
+        let at_most = sheet
+            .temperatures()
+            .into_iter()
+            .flat_map(|t| added(t, most));
+        let title = says::load(
+            says::range(at_most.map(|p| p.1)),
+            most,
+            &subject.place(ratio),
+        );
         let mut panels = sheet.panels("Added loss [Nm]", lines);
         panels.iter_mut().for_each(|panel| panel.with_y = vec![0.0]);
         let mut chart = chart(title, panels, "Torque at the output", names);
@@ -265,7 +291,10 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
         };
         let belt = both(|m| m.answer.belt_k - ZERO_DEGC_K);
         let mut whole = panel("Complete box", LOSS, both(|m| m.answer.total_nm()));
-        let start_degc = l.moments.first().map_or(f64::NAN, |m| m.sump_k - ZERO_DEGC_K);
+        let start_degc = l
+            .moments
+            .first()
+            .map_or(f64::NAN, |m| m.sump_k - ZERO_DEGC_K);
         whole.printed = subject.printed(l.ratio, RigNumber::Warming { start_degc });
         let panels = vec![
             whole,
@@ -304,7 +333,11 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
         let lines = |degc: f64| [0, 1].map(|k| (Look::solid(k), line(degc, k))).to_vec();
         let names = names(["First box", "Second box"].into_iter());
         let gap = |r: &TwoBoxes| r.second.answer.total_nm() - r.first.answer.total_nm();
-        let title = says::second_box(pressure, says::mean(sheet.at(ratio).map(gap)), &subject.place(ratio));
+        let title = says::second_box(
+            pressure,
+            says::mean(sheet.at(ratio).map(gap)),
+            &subject.place(ratio),
+        );
         let mut chart = chart(title, sheet.panels(LOSS, lines), "", names);
         chart.same_y = true;
         let more = format!(", pressure of the second {pressure} of the first");
@@ -357,7 +390,10 @@ fn stages(sheet: &Sheet<StripDown>, ratio: f64, place: &str) -> LineChart {
     let line = |degc: f64, y: &dyn Fn(&StripDown, Stage) -> f64, keep: &dyn Fn(Stage) -> bool| {
         let stages = STAGES.into_iter().enumerate().filter(|(_, of)| keep(of.0));
         let line = |(k, (stage, _)): (usize, (Stage, &str))| {
-            (Look::solid(k), sheet.line((ratio, degc), |_| true, |r| y(r, stage)))
+            (
+                Look::solid(k),
+                sheet.line((ratio, degc), |_| true, |r| y(r, stage)),
+            )
         };
         stages.map(line).collect::<Lines>()
     };
@@ -367,7 +403,11 @@ fn stages(sheet: &Sheet<StripDown>, ratio: f64, place: &str) -> LineChart {
     for degc in sheet.ends() {
         panels.push(panel(&bulk_oil(degc), LOSS, line(degc, &loss, &|_| true)));
         let with_pump = |stage| stage != Stage::PumpRemoved;
-        panels.push(panel(&bulk_oil(degc), PRESSURE, line(degc, &bar, &with_pump)));
+        panels.push(panel(
+            &bulk_oil(degc),
+            PRESSURE,
+            line(degc, &bar, &with_pump),
+        ));
     }
     let first = sheet.ends().first().copied().unwrap_or(f64::NAN);
     let here = sheet.at(ratio).filter(|r| same(oil_degc(&r.set), first));

@@ -51,7 +51,10 @@ pub(super) fn loss(range: Option<(f64, f64)>, place: &str, printed: &[PrintedMar
         let [low, high] = mark.y.map(cvtcycle_output::number::plain);
         format!("; the thesis prints {low} to {high}")
     });
-    format!("Without load the box loses {} {place}{printed}", span(range, "Nm"))
+    format!(
+        "Without load the box loses {} {place}{printed}",
+        span(range, "Nm")
+    )
 }
 
 pub(super) fn pressure(range: Option<(f64, f64)>, apart: f64, place: &str) -> String {
@@ -100,7 +103,10 @@ pub(super) fn stages(left: Option<(f64, f64, [f64; 5])>, place: &str) -> String 
         return NOTHING.to_owned();
     };
     let losses = losses.map(|nm| grouped(nm, 1)).join(", ");
-    format!("Part by part {losses} Nm are left {place} ({} rpm, {degc} \u{b0}C)", grouped(rpm, 0))
+    format!(
+        "Part by part {losses} Nm are left {place} ({} rpm, {degc} \u{b0}C)",
+        grouped(rpm, 0)
+    )
 }
 
 /// `sums` of each piece over the points that are drawn.
@@ -119,7 +125,11 @@ pub(super) fn contributions(sums: &[(&str, f64)], place: &str) -> String {
 }
 
 pub(super) fn components(more_nm: f64, place: &str) -> String {
-    let whose = if more_nm < 0.0 { "too little" } else { "too much" };
+    let whose = if more_nm < 0.0 {
+        "too little"
+    } else {
+        "too much"
+    };
     format!(
         "The strip-down gives the final drive {} Nm {whose} {place}, on average: it is the belt's",
         grouped(more_nm.abs(), 2)

@@ -2,9 +2,10 @@
 
 use super::PlotRun;
 use crate::charts::engine::{
-    Axis, Chart, Cut, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style, WIDTH, at,
-    cell, range, stroke, text_width,
+    Axis, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style,
+    WIDTH, at, cell, label_ends, range, stroke, text_width,
 };
+use crate::charts::lines::{PrintedMark, printed_entries};
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{sign, with_unit};
 use cvtcycle_output::History;
@@ -15,6 +16,8 @@ pub(super) const PLOT_WIDE: f64 = WIDTH - 28.0 - PLOT_LEFT;
 /// Upper edge of the first plot: below the title and the names of the phases, pixels.
 pub(super) const PLOT_TOP: f64 = 72.0;
 const GAP: f64 = 16.0;
+/// Room above a panel for its heading, pixels.
+pub(super) const HEADED: f64 = 22.0;
 /// Rows of a table at most.
 const MAX_ROWS: usize = 600;
 /// The line of a marked value.
@@ -54,8 +57,10 @@ pub(super) struct Strip {
     pub max: f64,
     /// A value that is marked with a thin line, and its name in the legend.
     pub mark: Option<(f64, &'static str)>,
-    /// Whether its lines are listed in the legend.
-    pub legend: bool,
+    /// Whether its lines are named at their ends.
+    pub named: bool,
+    /// Published numbers: from and to on the time axis, s, and on the vertical one.
+    pub printed: Vec<([f64; 2], [f64; 2])>,
 }
 
 impl Strip {
@@ -68,8 +73,18 @@ impl Strip {
             with: &[0.0],
             max: f64::INFINITY,
             mark: None,
-            legend: false,
+            named: false,
+            printed: Vec::new(),
         }
+    }
+
+    /// Room that the names at the ends of its lines need, pixels.
+    fn names(&self) -> f64 {
+        let names = self.lines.iter().filter(|_| self.named);
+        let widest = names
+            .map(|line| text_width(line.title, PHASE_TEXT))
+            .fold(0.0, f64::max);
+        if widest > 0.0 { widest + 12.0 } else { 0.0 }
     }
 
     fn values<'h>(&self, history: &'h History) -> impl Iterator<Item = f64> + use<'_, 'h> {
@@ -83,18 +98,18 @@ impl Strip {
         let values = self.values(history).map(|y| y.min(self.max));
         let values = values.filter(|y| y.is_finite());
         let ticks = (self.tall / 28.0) as usize;
-        Axis::round(&title, values.chain(self.with.iter().copied()), ticks)
-    }
-
-    /// A line in the legend: one that has its panel alone is named by the axis.
-    fn entries(&self) -> impl Iterator<Item = Entry> {
-        let lines = self.lines.iter().filter(|_| self.legend);
-        lines.map(|line| Entry::line(line.stroke, line.title))
+        let printed = self.printed.iter().flat_map(|(_, y)| *y);
+        let values = values.chain(self.with.iter().copied()).chain(printed);
+        Axis::round(&title, values, ticks)
     }
 
     fn panel(&self, rect: Rect, history: &History) -> Panel {
+        self.panel_on(rect, history, self.axis(history))
+    }
+
+    fn panel_on(&self, rect: Rect, history: &History, y: Axis) -> Panel {
         let mut values = self.values(history);
-        let mut panel = Panel::new(rect, time_axis(history), self.axis(history))
+        let mut panel = Panel::new(rect, time_axis(history), y)
             .over_table()
             .no_data(!values.any(|y| y.is_finite()));
         if let Some((level, _)) = self.mark {
@@ -108,19 +123,33 @@ impl Strip {
             let lines = panel.items.split_off(first);
             panel.add(Shape::Within(None, lines), Style::default());
         }
+        for (x, y) in &self.printed {
+            PrintedMark { x: *x, y: *y }.draw(&mut panel);
+        }
+        if self.named {
+            let ends = self.lines.iter().filter_map(|line| {
+                let points = points(history, line.column);
+                let last = points.into_iter().rfind(|p| p.1.is_finite())?;
+                Some(End {
+                    at: last,
+                    text: line.title.to_owned(),
+                    colour: line.stroke.colour,
+                })
+            });
+            let ends = ends.collect();
+            label_ends(&mut panel, ends);
+        }
         panel
     }
 }
 
 /// Draws the panels of a run, with one legend below.
-pub(super) fn timeline(run: &PlotRun, title: &str, strips: &[Strip]) -> Picture {
+pub(super) fn timeline(run: &PlotRun, title: impl Into<String>, strips: &[Strip]) -> Picture {
     let lines: Vec<&Series> = strips.iter().flat_map(|strip| &strip.lines).collect();
-    let levels = strips.iter().filter_map(|strip| strip.mark);
-    let levels = levels.map(|(_, name)| Entry::line(LEVEL, name));
-    let entries = strips.iter().flat_map(Strip::entries).chain(levels);
+    let wide = PLOT_WIDE - strips.iter().map(Strip::names).fold(0.0, f64::max);
     let mut top = PLOT_TOP;
     let panel = |(k, strip): (usize, &Strip)| {
-        let rect = Rect::new(PLOT_LEFT, top, PLOT_WIDE, strip.tall);
+        let rect = Rect::new(PLOT_LEFT, top, wide, strip.tall);
         let mut panel = strip
             .panel(rect, run.history)
             .x_labels(k + 1 == strips.len());
@@ -130,8 +159,56 @@ pub(super) fn timeline(run: &PlotRun, title: &str, strips: &[Strip]) -> Picture 
     };
     Chart::new(title, run.name, PLOT_LEFT)
         .panels(strips.iter().enumerate().map(panel))
-        .legend((PLOT_LEFT, PLOT_WIDE), entries)
-        .picture(table(run, &lines))
+        .legend((PLOT_LEFT, PLOT_WIDE), entries(strips))
+        .picture(table(&[(run, lines)]))
+}
+
+/// One panel for each car, below each other on one scale; the lines are named at their ends.
+pub(super) fn side_by_side(cars: &[(&PlotRun, Strip)], title: String, subject: &str) -> Picture {
+    let axes = cars.iter().map(|(run, strip)| strip.axis(run.history));
+    let axes: Vec<Axis> = axes.collect();
+    let ends = axes.iter().flat_map(|axis| [axis.low, axis.high]);
+    let title_of = axes.first().map_or("", |axis| axis.title.as_str());
+    let ticks = cars.first().map_or(6.0, |(_, strip)| strip.tall / 28.0);
+    let y = Axis::round(title_of, ends, ticks as usize);
+    let wide = PLOT_WIDE
+        - cars
+            .iter()
+            .map(|(_, strip)| strip.names())
+            .fold(0.0, f64::max);
+    let mut top = PLOT_TOP;
+    let mut first = 1;
+    let panel = |(k, (run, strip)): (usize, &(&PlotRun, Strip))| {
+        top += HEADED;
+        let rect = Rect::new(PLOT_LEFT, top, wide, strip.tall);
+        let panel = strip.panel_on(rect, run.history, y.clone());
+        let mut panel = panel.x_labels(k + 1 == cars.len());
+        panel.heading = run.name.to_owned();
+        panel.columns = (first..first + strip.lines.len()).collect();
+        first += strip.lines.len();
+        phases(&mut panel, run.history, false);
+        top += strip.tall + GAP;
+        panel
+    };
+    let panels: Vec<Panel> = cars.iter().enumerate().map(panel).collect();
+    let strips: Vec<&Strip> = cars.iter().map(|(_, strip)| strip).collect();
+    let listed = cars
+        .iter()
+        .map(|(run, strip)| (*run, strip.lines.iter().collect::<Vec<_>>()));
+    Chart::new(title, subject, PLOT_LEFT)
+        .panels(panels)
+        .legend((PLOT_LEFT, PLOT_WIDE), entries(strips))
+        .picture(table(&listed.collect::<Vec<_>>()))
+}
+
+/// Marked values and what was published, for the legend; lines are named by their axis or at their ends.
+fn entries<'s>(strips: impl IntoIterator<Item = &'s Strip>) -> Vec<Entry> {
+    let strips: Vec<&Strip> = strips.into_iter().collect();
+    let levels = strips.iter().filter_map(|strip| strip.mark);
+    let levels = levels.map(|(_, name)| Entry::line(LEVEL, name));
+    let printed = strips.iter().flat_map(|strip| &strip.printed);
+    let printed: Vec<PrintedMark> = printed.map(|(x, y)| PrintedMark { x: *x, y: *y }).collect();
+    levels.chain(printed_entries(printed.iter())).collect()
 }
 
 /// Unit of a column.
@@ -192,26 +269,45 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
     }
 }
 
-/// Every so many steps with all columns that are drawn.
-fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
+/// Every so many steps of the first run with all columns that are drawn; of the others the steps that end at the same time.
+fn table(runs: &[(&PlotRun, Vec<&Series>)]) -> PictureTable {
     let plain = |unit: &'static str| if unit == "-" { "" } else { unit };
-    let columns = lines
-        .iter()
-        .map(|line| (line.title, plain(unit(line.column))));
-    let columns: Vec<_> = [("Time", "s")].into_iter().chain(columns).collect();
-    let mut table = PictureTable::new(&columns);
-    let history = run.history;
+    let several = runs.len() > 1;
+    let mut table = PictureTable::new(&[("Time", "s")]);
+    for (run, lines) in runs {
+        let name = |line: &&Series| match several {
+            true => format!("{}: {}", run.name, line.title.to_lowercase()),
+            false => line.title.to_owned(),
+        };
+        let columns = lines
+            .iter()
+            .map(|line| (name(line), plain(unit(line.column))));
+        table.columns.extend(columns);
+    }
+    let Some((first, _)) = runs.first() else {
+        return table;
+    };
+    let history = first.history;
     let every = history.len().div_ceil(MAX_ROWS).max(1);
     // Steps are hardly ever shorter than a hundredth of a second; times differ in any case.
     let step_s = range(history.dt_s().iter().copied()).map_or(1.0, |(least, _)| {
         if least >= 0.999_999 { 0.1 } else { 0.01 }
     });
     for (i, time) in history.time_s().iter().enumerate().step_by(every) {
-        let value = |name: &str| history.column(name).get(i).copied().unwrap_or(f64::NAN);
-        let cells = lines
-            .iter()
-            .map(|line| cell(value(line.column), resolution(line.column)));
-        table.push([cell(*time, step_s)].into_iter().chain(cells));
+        let mut cells = vec![cell(*time, step_s)];
+        for (run, lines) in runs {
+            let of = run.history;
+            let here = of
+                .time_s()
+                .get(i)
+                .is_some_and(|own| (own - time).abs() < 1e-3 || !several);
+            let value = |name: &str| of.column(name).get(i).copied().filter(|_| here);
+            let numbers = lines
+                .iter()
+                .map(|line| (value(line.column), resolution(line.column)));
+            cells.extend(numbers.map(|(x, step)| cell(x.unwrap_or(f64::NAN), step)));
+        }
+        table.push(cells);
     }
     table.note =
         "A row is the step that ends at its time: temperatures at its end, all else its mean."
@@ -222,9 +318,12 @@ fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
             3 => "third".to_owned(),
             n => format!("{n}th"),
         };
+        let whole = match several {
+            true => "the traces".to_owned(),
+            false => format!("trace_{}.csv", first.name),
+        };
         table.note += &format!(
-            " Every {ordinal} step is listed; all of them are in trace_{}.csv; the lines are drawn from all steps.",
-            run.name
+            " Every {ordinal} step is listed; all of them are in {whole}; the lines are drawn from all steps."
         );
     }
     table
