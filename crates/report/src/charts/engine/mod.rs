@@ -24,7 +24,7 @@ pub(crate) use place::{Label, Place, at};
 pub use style::Palette;
 pub(crate) use style::{
     CONTEXT, DIVERGING, Fill, INK, PLAIN, PUBLISHED, QUIET, RULE, STROKES, Stroke, Style, ZERO,
-    between, group_line, ramp, stroke,
+    between, group_line, ramp, signed_colour, stroke,
 };
 pub(crate) use svg::{Point, Rect};
 pub(crate) use symbol::Symbol;

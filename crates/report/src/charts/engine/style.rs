@@ -134,6 +134,11 @@ pub(crate) const DIVERGING: Ramp = &[
     (160.0, 72.0, 5.0),
 ];
 
+/// Colour of an area of what is more, or less: the two sides of the signed palette.
+pub(crate) fn signed_colour(more: bool) -> String {
+    between(DIVERGING, if more { 0.82 } else { 0.18 })
+}
+
 /// Colour of the ramp at a share of 0 to 1.
 pub(crate) fn ramp(share: f64) -> String {
     between(RAMP, share)
