@@ -204,6 +204,9 @@ impl Section {
     }
 }
 
+/// Columns that a phone has room for.
+const WIDE: usize = 3;
+
 impl ReportTable {
     /// A table of a column of names and columns of numbers with their units.
     pub fn of_numbers(
@@ -232,6 +235,20 @@ impl ReportTable {
             columns: columns.iter().map(column).collect(),
             ..ReportTable::default()
         }
+    }
+
+    /// Whether it is too wide for a phone: there each row is a card, and each cell has the head of its column.
+    pub fn is_wide(&self) -> bool {
+        self.columns.len() > WIDE
+    }
+
+    /// Name and unit of a column, for a cell of a card.
+    pub fn head(&self, column: &usize) -> String {
+        let of = self.columns.get(*column);
+        of.map_or_else(String::new, |of| match of.unit.as_str() {
+            "" => of.name.clone(),
+            unit => format!("{} [{unit}]", of.name),
+        })
     }
 
     /// Whether every column but the first holds numbers.

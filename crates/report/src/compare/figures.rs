@@ -2,8 +2,8 @@
 
 use super::Pair;
 use crate::charts::figures::{
-    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term,
-    TraceDifference, difference_bars, overlay, trace_difference,
+    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term, TraceDifference,
+    difference_bars, overlay, trace_difference,
 };
 use crate::document::{ReportTable, Section};
 use crate::number::{NONE, Quantity, capital};

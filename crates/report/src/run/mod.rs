@@ -128,9 +128,11 @@ pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
 /// The start in words.
 pub fn start_line(summary: &Summary) -> String {
     match &summary.start {
-        StartWord::Word(word) if word == "warm" => "after the same cycle from a soak".to_owned(),
-        StartWord::Word(_) => "from a soak".to_owned(),
-        StartWord::Degc(start) => format!("all nodes at {} at the start", degc(*start)),
+        StartWord::Word(word) if word == "warm" => {
+            "warm from the same cycle driven just before".to_owned()
+        }
+        StartWord::Word(_) => "the car as cold or warm as the air at the start".to_owned(),
+        StartWord::Degc(start) => format!("all of the car at {} at the start", degc(*start)),
     }
 }
 

@@ -102,11 +102,14 @@ fn nominal() -> Style {
 fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(Fill::car(0), "90 % of the draws"));
+        list.push(Entry::fill(
+            Fill::car(0),
+            "90 % of the runs with the uncertain values varied",
+        ));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
-            "median of the draws",
+            "median of these runs",
         ));
     }
     if rows.iter().any(|row| row.published.is_some()) {
@@ -139,9 +142,9 @@ fn table() -> PictureTable {
     PictureTable::new(&[
         ("Against", ""),
         ("Nominal values", "%"),
-        ("5 % of the draws below", "%"),
+        ("5 % of the varied runs below", "%"),
         ("Median", "%"),
-        ("95 % of the draws below", "%"),
+        ("95 % of the varied runs below", "%"),
         ("Published from", "%"),
         ("to", "%"),
     ])

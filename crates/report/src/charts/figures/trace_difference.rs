@@ -68,7 +68,9 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         points: less(&panel.runs[0], &panel.runs[1]),
         step: 0.1 * panel.digits(),
     };
-    let lines: Vec<Line> = std::iter::once(fuel).chain(of.panels.iter().map(other)).collect();
+    let lines: Vec<Line> = std::iter::once(fuel)
+        .chain(of.panels.iter().map(other))
+        .collect();
     let end = range(a.iter().map(|p| p.0)).map_or(1.0, |(_, end)| end);
     let time = Axis::exact("Time [s]", 0.0, end, 10);
     let mut top = TOP;
@@ -78,11 +80,16 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         let rect = Rect::new(PLOT_LEFT, top, WIDE, tall);
         let title = match k {
             0 => "B \u{2212} A, fuel [g]".to_owned(),
-            _ => format!("\u{394} {}", with_unit(&line.name.to_lowercase(), line.unit)),
+            _ => format!(
+                "\u{394} {}",
+                with_unit(&line.name.to_lowercase(), line.unit)
+            ),
         };
         let values = line.points.iter().map(|p| p.1).chain([0.0]);
         let y = Axis::round(&title, values, if k == 0 { 6 } else { 3 });
-        let panel = Panel::new(rect, time.clone(), y).over_table().x_labels(false);
+        let panel = Panel::new(rect, time.clone(), y)
+            .over_table()
+            .x_labels(false);
         let mut panel = panel.no_data(!line.points.iter().any(|p| p.1.is_finite()));
         areas(&mut panel, &line.points);
         panel.series(line.points.clone(), PLAIN);
@@ -90,7 +97,11 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         panels.push(panel);
         top += tall + GAP;
     }
-    let y = Axis::round("Speed [km/h]", of.speed_kmh.iter().map(|p| p.1).chain([0.0]), 3);
+    let y = Axis::round(
+        "Speed [km/h]",
+        of.speed_kmh.iter().map(|p| p.1).chain([0.0]),
+        3,
+    );
     let rect = Rect::new(PLOT_LEFT, top, WIDE, TALL.2);
     let mut panel = Panel::new(rect, time, y).over_table();
     panel.series(of.speed_kmh.clone(), CONTEXT);
@@ -122,8 +133,13 @@ fn title(fuel: &[Point]) -> String {
         return "B burns as much as A".to_owned();
     };
     let more = if *total < 0.0 { "less" } else { "more" };
-    let half = fuel.iter().rposition(|p| p.1 / total < 0.5).and_then(|k| fuel.get(k + 1));
-    let half = half.map_or_else(String::new, |(t, _)| format!(", half of it by {} s", grouped(*t, 0)));
+    let half = fuel
+        .iter()
+        .rposition(|p| p.1 / total < 0.5)
+        .and_then(|k| fuel.get(k + 1));
+    let half = half.map_or_else(String::new, |(t, _)| {
+        format!(", half of it by {} s", grouped(*t, 0))
+    });
     format!("B burns {} g {more} than A{half}", grouped(total.abs(), 2))
 }
 
@@ -139,7 +155,11 @@ fn table(lines: &[Line], speed: &[Point]) -> PictureTable {
     let every = times.len().div_ceil(ROWS).max(1);
     for time in times.iter().step_by(every) {
         let mut cells = vec![cell(*time, 0.1)];
-        cells.extend(lines.iter().map(|line| cell(at(&line.points, *time), line.step)));
+        cells.extend(
+            lines
+                .iter()
+                .map(|line| cell(at(&line.points, *time), line.step)),
+        );
         cells.push(cell(at(speed, *time), 0.1));
         table.push(cells);
     }

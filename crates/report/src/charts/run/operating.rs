@@ -160,12 +160,7 @@ fn lines_of_power(panel: &mut Panel) {
             style: Style::line(POWER),
         });
         let place = at(high, torque(high)).shift(-4.0, -3.0);
-        panel.label(
-            Label::new(place, format!("{kw} kW"))
-                .size(10.0)
-                .end()
-                .colour(QUIET),
-        );
+        panel.label(Label::new(place, format!("{kw} kW")).end().colour(QUIET));
     }
     let labels = std::mem::take(&mut panel.items);
     panel.add(Shape::Within(None, lines), Style::line(RULE));

@@ -101,7 +101,7 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
             let digits = |x: f64| value(x, high - low);
             let level = s.confidence.draws_percent();
             format!(
-                "{level} % of the draws of the {} lie between {} and {}{}",
+                "{level} % of the values of the {} lie between {} and {}{}",
                 shown.output,
                 digits(low),
                 digits(high),
