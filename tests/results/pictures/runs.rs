@@ -213,7 +213,7 @@ fn axes_series_and_names_can_be_read_as_text() {
                 "Secondary pressure",
                 "Primary pressure",
                 "Belt slip [%]",
-                "Clamp safety [-]",
+                "Clamping used [%]",
                 "Speed [km/h]",
                 "Time [s]",
             ],

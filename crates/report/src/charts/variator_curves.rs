@@ -54,7 +54,8 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
     for test in &tests {
         for (k, (pulley, get)) in SLIP_SPEED.into_iter().enumerate() {
             let mut curves = by_pressure(test, "Slip speed [m/s]", get);
-            curves.heading = format!("{pulley}, {}", curves.heading);
+            let name = test.first().map_or_else(String::new, short_name);
+            curves.heading = format!("{pulley}, {name}");
             if is_printed {
                 curves.printed_speed(test, k);
             }
@@ -83,6 +84,15 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
             figure(plan, speed_title(&tests), speeds, 2),
         ),
     ]
+}
+
+/// Ratio and speed of a test, without its temperature: what fits above half of a picture.
+fn short_name(curve: &Curve) -> String {
+    let name = curve.test_name();
+    let short = name
+        .rsplit_once(", belt")
+        .map(|(short, _)| short.to_owned());
+    short.unwrap_or(name)
 }
 
 /// "15 bar".
@@ -288,7 +298,7 @@ fn radii(pulley: &str, curve: &Curve, k: usize) -> Curves {
         breakpoint: None,
     };
     Curves {
-        heading: format!("{pulley}, {}, {}", curve.test_name(), bar(curve)),
+        heading: format!("{pulley}, {}, {}", short_name(curve), bar(curve)),
         y: "Radius against no torque [%]",
         lines: RADII.map(line).into(),
         palette: Palette::Kinds,

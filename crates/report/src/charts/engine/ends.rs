@@ -22,11 +22,14 @@ pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
     let lowest = panel.rect.bottom + 8.0;
     let (count, mut free) = (ends.len(), f64::NEG_INFINITY);
     for (k, end) in ends.into_iter().enumerate() {
-        let own = panel.py(end.at.1) + 4.0;
+        // A line may leave the panel.
+        let own = panel.py(end.at.1).clamp(panel.rect.top, panel.rect.bottom) + 4.0;
+        let x = panel.px(end.at.0).clamp(panel.rect.left, panel.rect.right);
         let room = lowest - APART * (count - 1 - k) as f64;
         let y = own.max(free).min(room.max(free));
         free = y + APART;
-        let place = at(end.at.0, end.at.1).shift(8.0, y - own + 4.0);
+        let corner = at(f64::NEG_INFINITY, f64::INFINITY);
+        let place = corner.shift(x - panel.rect.left + 8.0, y - panel.rect.top);
         panel.label(Label::new(place, end.text).colour(end.colour));
     }
 }

@@ -25,7 +25,8 @@ pub struct TraceDifference {
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
 /// Heights of the panel of the fuel, of the others, and of the speed, pixels.
 const TALL: (f64, f64, f64) = (190.0, 100.0, 80.0);
-const GAP: f64 = 16.0;
+/// Room between panels, with that for a heading, pixels.
+const GAP: f64 = 32.0;
 /// Most rows of the table.
 const ROWS: usize = 600;
 
@@ -73,24 +74,23 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         .collect();
     let end = range(a.iter().map(|p| p.0)).map_or(1.0, |(_, end)| end);
     let time = Axis::exact("Time [s]", 0.0, end, 10);
-    let mut top = TOP;
+    let mut top = TOP + 18.0;
     let mut panels = Vec::new();
     for (k, line) in lines.iter().enumerate() {
         let tall = if k == 0 { TALL.0 } else { TALL.1 };
         let rect = Rect::new(PLOT_LEFT, top, WIDE, tall);
-        let title = match k {
-            0 => "B \u{2212} A, fuel [g]".to_owned(),
-            _ => format!(
-                "\u{394} {}",
-                with_unit(&line.name.to_lowercase(), line.unit)
-            ),
-        };
         let values = line.points.iter().map(|p| p.1).chain([0.0]);
-        let y = Axis::round(&title, values, if k == 0 { 6 } else { 3 });
+        let y = Axis::round(
+            &with_unit("B \u{2212} A", line.unit),
+            values,
+            if k == 0 { 6 } else { 3 },
+        );
         let panel = Panel::new(rect, time.clone(), y)
             .over_table()
             .x_labels(false);
-        let mut panel = panel.no_data(!line.points.iter().any(|p| p.1.is_finite()));
+        let mut panel = panel
+            .heading(&line.name)
+            .no_data(!line.points.iter().any(|p| p.1.is_finite()));
         areas(&mut panel, &line.points);
         panel.series(line.points.clone(), PLAIN);
         panel.level(0.0, ZERO);
@@ -103,7 +103,9 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         3,
     );
     let rect = Rect::new(PLOT_LEFT, top, WIDE, TALL.2);
-    let mut panel = Panel::new(rect, time, y).over_table();
+    let mut panel = Panel::new(rect, time, y)
+        .over_table()
+        .heading("Vehicle speed");
     panel.series(of.speed_kmh.clone(), CONTEXT);
     panels.push(panel);
     let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);

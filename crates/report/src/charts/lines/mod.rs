@@ -268,7 +268,7 @@ fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> P
         }
     }
     for mark in &panel.printed {
-        mark.draw(&mut drawn);
+        mark.draw(&mut drawn, panel.stacked);
     }
     if of.is_direct() {
         let ends = panel.series.iter().filter_map(|series| of.end(series));

@@ -15,9 +15,10 @@ pub struct PrintedMark {
 }
 
 impl PrintedMark {
-    pub(crate) fn draw(&self, panel: &mut Panel) {
+    /// Over areas the band has edges alone, lest it hides them.
+    pub(crate) fn draw(&self, panel: &mut Panel, over_areas: bool) {
         let ([from, to], [low, high]) = (self.x, self.y);
-        if to > from && high > low {
+        if self.is_band() && !over_areas {
             let band = Style::colour(PUBLISHED).fill_opacity(0.10);
             panel.rectangle(at(from, low), at(to, high), band.class("printed"));
         }

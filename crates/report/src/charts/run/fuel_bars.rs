@@ -13,7 +13,7 @@ use cvtcycle_study::words::{more_or_less, than};
 const TOP: f64 = 58.0;
 const TALL: f64 = 340.0;
 /// Widths of the plot: room for names, and no more than fits on a page.
-const WIDTHS: (f64, f64) = (480.0, 786.0);
+const WIDTHS: (f64, f64) = (660.0, 786.0);
 const LABEL: f64 = 11.0;
 /// Bars thinner than this have their values in the table alone, pixels.
 const TURNED: f64 = 15.0;

@@ -47,6 +47,13 @@ pub fn operating_points(runs: &[PlotRun]) -> Picture {
     let pitch = (size.0 + LEFT + 20.0, size.1 + PITCH);
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
     let mut table = table(&cars);
+    let burnt = |moments: &[Moment]| Density::new(cells, moments.iter().map(|m| (m.0, m.1, m.3)));
+    let ends = cars.iter().map(|(_, moments)| burnt(moments).ends());
+    let span = ends.fold((f64::INFINITY, 0.0_f64), |a, b| {
+        (a.0.min(b.0), a.1.max(b.1))
+    });
+    // What is a thousandth of the most cannot be seen.
+    let span = (span.0.max(1e-3 * span.1), span.1);
     let mut key = None;
     let mut panels = Vec::new();
     let mut is_mapped = false;
@@ -57,7 +64,7 @@ pub fn operating_points(runs: &[PlotRun]) -> Picture {
         } else {
             panel
         };
-        let fuel = Density::new(cells, moments.iter().map(|m| (m.0, m.1, m.3)));
+        let fuel = burnt(moments).on_scale(span);
         let time = Density::new(cells, moments.iter().map(|m| (m.0, m.1, m.2)));
         lines_of_power(&mut panel);
         panel.items.extend(fuel.items(|cell| {
@@ -118,12 +125,16 @@ fn title(cars: &[(&PlotRun, Vec<Moment>)]) -> String {
         let ends = [stretch, stretch + 1].map(|k| grouped(k as f64 * STRETCH, 0));
         let share = grouped(100.0 * fuel / all, 0);
         let [from, to] = ends;
-        (all > 0.0).then(|| format!("{} {share} % at {from} to {to} rpm", run.name))
+        (all > 0.0).then(|| (run.name.to_owned(), share, format!("at {from} to {to} rpm")))
     };
-    let list: Vec<String> = cars.iter().filter_map(most).collect();
-    match list.is_empty() {
-        true => "Engine operating points".to_owned(),
-        false => format!("Most fuel is burnt by {}", list.join(", ")),
+    let mut list = cars.iter().filter_map(most);
+    let Some((name, share, place)) = list.next() else {
+        return "Engine operating points".to_owned();
+    };
+    let own = format!("{name} burns {share} % of its fuel {place}");
+    match list.next() {
+        Some((other, share, place)) => format!("{own}, {other} {share} % {place}"),
+        None => own,
     }
 }
 
@@ -132,6 +143,10 @@ fn mapped(panel: &mut Panel, map: &FuelMap, fuel: &Density) {
     let full_load = full_load(map);
     let taken = occupied(panel, fuel);
     let labels = iso_lines(panel, map, &full_load, taken);
+    // The map goes on beyond the speeds that were driven.
+    if let Some(lines) = panel.items.pop() {
+        panel.add(Shape::Within(None, vec![lines]), Style::default());
+    }
     let line = |points: Vec<Point>, stroke: Stroke| Item {
         shape: Shape::Line(points),
         style: Style::line(stroke).class("series"),

@@ -31,6 +31,8 @@ pub(super) struct Series {
     pub column: &'static str,
     pub title: &'static str,
     pub stroke: Stroke,
+    /// Unit where it is not that of the column, and what is drawn of a value.
+    pub shown: Option<(&'static str, fn(f64) -> f64)>,
 }
 
 impl Series {
@@ -39,7 +41,22 @@ impl Series {
             column,
             title,
             stroke,
+            shown: None,
         }
+    }
+
+    fn unit(&self) -> &'static str {
+        self.shown
+            .map_or_else(|| unit(self.column), |(unit, _)| unit)
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        self.shown.map_or(x, |(_, of)| of(x))
+    }
+
+    /// Step of the last digit in a table.
+    fn resolution(&self) -> f64 {
+        self.shown.map_or_else(|| resolution(self.column), |_| 0.1)
     }
 }
 
@@ -89,18 +106,22 @@ impl Strip {
 
     fn values<'h>(&self, history: &'h History) -> impl Iterator<Item = f64> + use<'_, 'h> {
         let lines = self.lines.iter();
-        lines.flat_map(|line| history.column(line.column).iter().copied())
+        lines.flat_map(|line| history.column(line.column).iter().map(|x| line.value(*x)))
+    }
+
+    /// Every value that has to fit into the panel.
+    fn heights(&self, history: &History) -> impl Iterator<Item = f64> {
+        let values = self.values(history).map(|y| y.min(self.max));
+        let values = values.filter(|y| y.is_finite());
+        let printed = self.printed.iter().flat_map(|(_, y)| *y);
+        values.chain(self.with.iter().copied()).chain(printed)
     }
 
     fn axis(&self, history: &History) -> Axis {
-        let unit = self.lines.first().map_or("", |line| unit(line.column));
+        let unit = self.lines.first().map_or("", Series::unit);
         let title = with_unit(self.title, unit);
-        let values = self.values(history).map(|y| y.min(self.max));
-        let values = values.filter(|y| y.is_finite());
         let ticks = (self.tall / 28.0) as usize;
-        let printed = self.printed.iter().flat_map(|(_, y)| *y);
-        let values = values.chain(self.with.iter().copied()).chain(printed);
-        Axis::round(&title, values, ticks)
+        Axis::round(&title, self.heights(history), ticks)
     }
 
     fn panel(&self, rect: Rect, history: &History) -> Panel {
@@ -117,18 +138,18 @@ impl Strip {
         }
         let first = panel.items.len();
         for line in self.lines.iter().rev() {
-            panel.series(points(history, line.column), line.stroke);
+            panel.series(points(history, line), line.stroke);
         }
         if self.max.is_finite() {
             let lines = panel.items.split_off(first);
             panel.add(Shape::Within(None, lines), Style::default());
         }
         for (x, y) in &self.printed {
-            PrintedMark { x: *x, y: *y }.draw(&mut panel);
+            PrintedMark { x: *x, y: *y }.draw(&mut panel, false);
         }
         if self.named {
             let ends = self.lines.iter().filter_map(|line| {
-                let points = points(history, line.column);
+                let points = points(history, line);
                 let last = points.into_iter().rfind(|p| p.1.is_finite())?;
                 Some(End {
                     at: last,
@@ -166,11 +187,12 @@ pub(super) fn timeline(run: &PlotRun, title: impl Into<String>, strips: &[Strip]
 /// One panel for each car, below each other on one scale; the lines are named at their ends.
 pub(super) fn side_by_side(cars: &[(&PlotRun, Strip)], title: String, subject: &str) -> Picture {
     let axes = cars.iter().map(|(run, strip)| strip.axis(run.history));
-    let axes: Vec<Axis> = axes.collect();
-    let ends = axes.iter().flat_map(|axis| [axis.low, axis.high]);
-    let title_of = axes.first().map_or("", |axis| axis.title.as_str());
+    let title_of = axes.map(|axis| axis.title).next().unwrap_or_default();
+    let values = cars
+        .iter()
+        .flat_map(|(run, strip)| strip.heights(run.history));
     let ticks = cars.first().map_or(6.0, |(_, strip)| strip.tall / 28.0);
-    let y = Axis::round(title_of, ends, ticks as usize);
+    let y = Axis::round(&title_of, values, ticks as usize);
     let wide = PLOT_WIDE
         - cars
             .iter()
@@ -217,7 +239,8 @@ fn unit(name: &str) -> &'static str {
 }
 
 /// The points of a column: means lie in the middle of their step, temperatures at its end, a gear holds for the whole of it.
-fn points(history: &History, name: &str) -> Vec<(f64, f64)> {
+fn points(history: &History, of: &Series) -> Vec<(f64, f64)> {
+    let name = of.column;
     let times = history.time_s().iter().zip(history.dt_s());
     let steps = times.zip(history.column(name));
     if name == "gear" {
@@ -226,7 +249,9 @@ fn points(history: &History, name: &str) -> Vec<(f64, f64)> {
             .collect();
     }
     let back = if name.ends_with("_degc") { 0.0 } else { 0.5 };
-    steps.map(|((end, dt), y)| (end - back * dt, *y)).collect()
+    steps
+        .map(|((end, dt), y)| (end - back * dt, of.value(*y)))
+        .collect()
 }
 
 /// Beginning of a trace, s.
@@ -279,9 +304,7 @@ fn table(runs: &[(&PlotRun, Vec<&Series>)]) -> PictureTable {
             true => format!("{}: {}", run.name, line.title.to_lowercase()),
             false => line.title.to_owned(),
         };
-        let columns = lines
-            .iter()
-            .map(|line| (name(line), plain(unit(line.column))));
+        let columns = lines.iter().map(|line| (name(line), plain(line.unit())));
         table.columns.extend(columns);
     }
     let Some((first, _)) = runs.first() else {

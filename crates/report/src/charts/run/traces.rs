@@ -49,17 +49,18 @@ pub fn pressure(run: &PlotRun) -> Picture {
     let safety = range(run.history.column("clamp_safety").iter().copied());
     let title = match (safety, most(run.history, "secondary_pressure_bar")) {
         (Some((least, _)), Some(bar)) if least > 0.0 => format!(
-            "The belt of {} is clamped to at least {} times its load, by up to {} bar",
+            "The belt of {} carries {} % of what its clamping holds at most; up to {} bar clamp it",
             run.name,
-            grouped(least, 2),
+            grouped(100.0 / least, 0),
             grouped(bar, 1)
         ),
         _ => "Pulley pressures, slip and clamp safety".to_owned(),
     };
-    // At low torque safety has no bound, and what matters is how near it comes to 1.
-    let max = safety
-        .map_or(4.0, |(least, _)| (4.0 * least).clamp(4.0, 30.0))
-        .round();
+    // Of a belt without torque the safety has no bound: its inverse is what the clamping is used for.
+    let used = Series {
+        shown: Some(("%", |safety| 100.0 / safety)),
+        ..Series::new("clamp_safety", "Clamping used", PLAIN)
+    };
     let strips = [
         Strip {
             lines: lines.collect(),
@@ -69,9 +70,10 @@ pub fn pressure(run: &PlotRun) -> Picture {
         },
         Strip::of("slip_percent", "Belt slip", 130.0, PLAIN),
         Strip {
-            max,
-            mark: Some((1.0, "Clamp safety 1: belt at its limit")),
-            ..Strip::of("clamp_safety", "Clamp safety", 130.0, PLAIN)
+            lines: vec![used],
+            with: &[0.0, 100.0],
+            mark: Some((100.0, "All of the clamping used: the belt is at its limit")),
+            ..Strip::of("clamp_safety", "Clamping used", 130.0, PLAIN)
         },
         Strip {
             title: "Speed",
