@@ -324,11 +324,12 @@ fn table(runs: &[(&PlotRun, Vec<&Series>)]) -> PictureTable {
                 .time_s()
                 .get(i)
                 .is_some_and(|own| (own - time).abs() < 1e-3 || !several);
-            let value = |name: &str| of.column(name).get(i).copied().filter(|_| here);
-            let numbers = lines
-                .iter()
-                .map(|line| (value(line.column), resolution(line.column)));
-            cells.extend(numbers.map(|(x, step)| cell(x.unwrap_or(f64::NAN), step)));
+            let value = |line: &Series| {
+                let own = of.column(line.column).get(i).filter(|_| here);
+                own.map_or(f64::NAN, |x| line.value(*x))
+            };
+            let numbers = lines.iter().map(|line| (value(line), line.resolution()));
+            cells.extend(numbers.map(|(x, step)| cell(x, step)));
         }
         table.push(cells);
     }
