@@ -6,6 +6,8 @@ use super::svg::Point;
 
 /// Least distance of two names, pixels.
 const APART: f64 = 14.0;
+/// Ends so near to the frame are named beyond it, pixels.
+const NEAR: f64 = 30.0;
 
 /// The right end of a line and what is written there.
 #[derive(Clone, Debug)]
@@ -29,7 +31,13 @@ pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
         let y = own.max(free).min(room.max(free));
         free = y + APART;
         let corner = at(f64::NEG_INFINITY, f64::INFINITY);
-        let place = corner.shift(x - panel.rect.left + 8.0, y - panel.rect.top);
+        // Names of lines that go on to the frame, or nearly so, stand beyond it.
+        let x = if panel.rect.right - x < NEAR {
+            panel.rect.right
+        } else {
+            x
+        };
+        let place = corner.shift(x - panel.rect.left + 7.0, y - panel.rect.top);
         panel.label(Label::new(place, end.text).colour(end.colour));
     }
 }
