@@ -16,7 +16,7 @@ use cvtcycle::study::{Answer, StudyManifest};
 use crate::print::colour::Paint;
 use crate::print::sections;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
-use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
+use cvtcycle::output::table::{TextColumns, TextTable, paragraphs, wrapped};
 
 /// Number of factors that are listed for an output.
 const MAX_FACTORS: usize = 10;
@@ -106,7 +106,7 @@ fn head(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let mut text = format!("{}\n", paint.heading(&answer.title));
     if !answer.question.is_empty() {
-        text += &format!("{}\n", answer.question);
+        text += &paragraphs(&answer.question);
     }
     let (points, cars) = (answer.points, outline.cars.join(", "));
     let (design, runs) = (design(outline), outline.points * outline.cars.len() as u64);
