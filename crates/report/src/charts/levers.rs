@@ -105,7 +105,7 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
     let marks = match answer.plan {
         None => "Points: the car as its file has it; nothing is varied.".to_owned(),
         Some(_) => format!(
-            "Bars: {} % of {} runs with the uncertain values varied, each with and without the lever. Points: medians. Right: runs in which it saves fuel.",
+            "Bars: {} % of {} runs with uncertain values varied, with and without the lever. Points: medians. Right: runs that it saves in.",
             answer.confidence.draws_percent(),
             answer.draws_done
         ),

@@ -125,7 +125,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         Some(of) => {
             let ends = level([of.percent[0], of.percent[2]]);
             format!(
-                "{kind}{ends} in 90 % of {} runs with the uncertain values varied",
+                "{kind}{ends} in 90 % of {} varied runs",
                 of.draws
             )
         }
@@ -222,7 +222,7 @@ fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
         let worst = row.worst("min_clamp_safety");
         let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
             let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
-            format!("the least safety of its clamping (1 is the limit of slip) falls from {now} to {worst} in the worst of the varied runs")
+            format!("its least clamp safety falls from {now} to {worst} in the worst varied run")
         });
         let needs = row.of.needs.trim_end_matches('.');
         let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
@@ -256,7 +256,7 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
         test => test.to_owned(),
     };
     let text = format!(
-        "{}. With {name} known, the standard deviation of the difference of fuel falls from {sd} to {left} percentage points.",
+        "{}. With {name} known, the standard deviation of the difference falls from {sd} to {left} points.",
         capital_first(&test)
     );
     Some((text, format!("test: {name}")))

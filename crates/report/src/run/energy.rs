@@ -74,7 +74,7 @@ pub(super) fn section(cars: &[Car]) -> Section {
     let mut section = Section::new("energy", "Energy from fuel to wheel");
     section.text(
         "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
-         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun.",
+         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun. What the rotating parts keep is drawn with the accessories where it is less than 0.5 % of the fuel.",
     );
     let stops = |car: &Car| car.run.term_kj("electric").is_some_and(|kj| kj.abs() > 0.0);
     if cars.iter().any(stops) {

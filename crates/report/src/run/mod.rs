@@ -129,10 +129,10 @@ pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
 pub fn start_line(summary: &Summary) -> String {
     match &summary.start {
         StartWord::Word(word) if word == "warm" => {
-            "warm from the same cycle driven just before".to_owned()
+            "warm from the same cycle".to_owned()
         }
-        StartWord::Word(_) => "the car as cold or warm as the air at the start".to_owned(),
-        StartWord::Degc(start) => format!("all of the car at {} at the start", degc(*start)),
+        StartWord::Word(_) => "the car as well".to_owned(),
+        StartWord::Degc(start) => format!("the car at {}", degc(*start)),
     }
 }
 

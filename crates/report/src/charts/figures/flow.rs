@@ -59,11 +59,11 @@ impl CarEnergy {
         (flywheel > 0.0 && passed.is_finite()).then_some(passed)
     }
 
-    /// Accessories, and the rotating parts where they can be seen.
+    /// Accessories, and the rotating parts apart where they can be seen.
     fn crankshaft(&self) -> Vec<Branch> {
         let (accessories, kinetic) = (self.accessories_kj, self.kinetic_kj);
         if kinetic.abs() < THIN * self.fuel_kj {
-            let name = "Accessories, rotating parts";
+            let name = "Accessories etc.";
             return vec![branch(name, Term::Accessories, accessories + kinetic)];
         }
         vec![
