@@ -123,7 +123,10 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     let cvt = plan.is_cvt();
     let draw = |file: &str, title: &str, parts: &[Component]| {
         let sum = |row: &&LossRow| parts.iter().map(|c| row.answer.part_nm(*c)).sum::<f64>();
-        let drawn = layout.panels.iter().flat_map(|panel| panel.rows.iter().flatten());
+        let drawn = layout
+            .panels
+            .iter()
+            .flat_map(|panel| panel.rows.iter().flatten());
         let title = &span(title, drawn.map(sum));
         let column = |column: &Vec<&LossRow>| column.iter().map(sum).collect();
         let panel = |of: &Panel| (of.title.clone(), of.rows.iter().map(column).collect());
@@ -137,11 +140,7 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
         };
         (format!("losses_{file}.svg"), map_figure(&figure))
     };
-    let total = draw(
-        "total",
-        "The transmission loses",
-        &plan.components(),
-    );
+    let total = draw("total", "The transmission loses", &plan.components());
     let groups = plan.groups().into_iter().map(|(name, parts)| {
         let name = name.to_lowercase();
         draw(

@@ -44,7 +44,8 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     }
     strip(&mut section, summary, cycle);
     for line in contradictions(&summary.labelled()) {
-        section.alert(line);
+        // "Soak" is a word of test cells.
+        section.alert(line.replace("(soak, ", "(from air temperature, "));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
         section.text(price);
@@ -124,10 +125,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let known = match &comparison.interval {
         Some(of) => {
             let ends = level([of.percent[0], of.percent[2]]);
-            format!(
-                "{kind}{ends} in 90 % of {} varied runs",
-                of.draws
-            )
+            format!("{kind}{ends} in 90 % of {} varied runs", of.draws)
         }
         None => format!("{kind}no interval"),
     };

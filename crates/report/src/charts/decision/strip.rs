@@ -88,10 +88,18 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     panel.upright(0.0, stroke(INK, 1.2, &[]));
     let first = rows.first();
     let first = first.and_then(|row| Some((row.baseline.as_str(), row.files?, row.interval())));
-    Chart::new(says::strip(subject, first), conditions, MARGIN)
-        .panels([panel])
-        .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
-        .picture(table)
+    let varied = match rows.iter().any(|row| row.drawn.is_some()) {
+        true => "; in varied runs every uncertain value is another one of its range",
+        false => "",
+    };
+    Chart::new(
+        says::strip(subject, first),
+        format!("{conditions}{varied}"),
+        MARGIN,
+    )
+    .panels([panel])
+    .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
+    .picture(table)
 }
 
 /// Dark, with a pale edge that shows it on a bar.
@@ -102,14 +110,11 @@ fn nominal() -> Style {
 fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(
-            Fill::car(0),
-            "90 % of the runs with the uncertain values varied",
-        ));
+        list.push(Entry::fill(Fill::car(0), "90 % of varied runs"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
-            "median of these runs",
+            "median of varied runs",
         ));
     }
     if rows.iter().any(|row| row.published.is_some()) {

@@ -14,8 +14,8 @@ use cvtcycle_model::keys::RAD_S;
 use cvtcycle_output::{Flags, History};
 
 /// Sizes of a lone panel and of one of two in a row, pixels.
-const LONE: Point = (860.0 - PLOT_LEFT, 460.0);
-const PAIRED: Point = ((WIDTH - PLOT_LEFT - LEFT - 34.0) / 2.0, 270.0);
+const LONE: Point = (850.0 - PLOT_LEFT, 460.0);
+const PAIRED: Point = ((WIDTH - PLOT_LEFT - LEFT - 48.0) / 2.0, 270.0);
 const TOP: f64 = 58.0;
 /// Room for the heading of a panel, and between rows, pixels.
 const HEADING: f64 = 22.0;
@@ -174,8 +174,9 @@ fn lines_of_power(panel: &mut Panel) {
             shape: Shape::Line(points.filter(|p| p.1 <= panel.y.high).collect()),
             style: Style::line(POWER),
         });
-        let place = at(high, torque(high)).shift(-4.0, -3.0);
-        panel.label(Label::new(place, format!("{kw} kW")).end().colour(QUIET));
+        // Beyond the frame, where no other label is; the legend has the unit.
+        let place = at(high, torque(high)).shift(3.0, 4.0);
+        panel.label(Label::new(place, cvtcycle_output::number::plain(kw)).colour(QUIET));
     }
     let labels = std::mem::take(&mut panel.items);
     panel.add(Shape::Within(None, lines), Style::line(RULE));
