@@ -3,6 +3,7 @@
   const by = (id) => document.getElementById(id);
   const [said, form, answer, command] = ["live-said", "live-levers", "live-answer", "live-command"].map(by);
   const REST_MS = 250;
+  said.textContent = "Starting the simulator\u2026";
 
   // The simulator: each call is JSON in, JSON out. Its text is also that of the worker.
   const machine = async (bytes) => {

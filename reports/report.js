@@ -18,6 +18,8 @@
 
   // Figures over time share one cursor.
   let traces = [];
+  // The part of the time that they show: the whole of it, and its ends.
+  let part = null;
 
   // The component that is pointed at is lit in all figures and tables.
   const components = new Set((document.querySelector("main").dataset.components ?? "").split(","));
@@ -167,7 +169,7 @@
     if (isTrace) { own.whole = [panels[0].from, panels[0].to]; traces.push(own); }
     const together = () => {
       traces = traces.filter((one) => one.svg.isConnected);
-      return isTrace ? traces : [own];
+      return isTrace ? traces.filter((one) => one.svg.checkVisibility()) : [own];
     };
 
     const clear = () => {
@@ -237,8 +239,12 @@
     const zoom = (from, to) => {
       clear();
       const [first, last] = own.whole;
-      const ends = [Math.max(first, from), Math.min(last, to)];
-      for (const one of together()) if (Math.abs(one.whole[0] - first) < 2 && Math.abs(one.whole[1] - last) < 2) one.zoom(...ends);
+      part = { whole: own.whole, ends: [Math.max(first, from), Math.min(last, to)] };
+      for (const one of together()) one.follow();
+    };
+    own.follow = () => {
+      const same = part && own.whole.every((end, k) => Math.abs(end - part.whole[k]) < 2);
+      if (same && svg.checkVisibility()) own.zoom(...part.ends);
     };
     const time = (x) => panels[0].from + (x - panels[0].left) / panels[0].wide * (panels[0].to - panels[0].from);
     const within = (event) => new DOMPoint(event.clientX, event.clientY).matrixTransform(svg.getScreenCTM().inverse()).x;
@@ -288,8 +294,44 @@
       show(index, box.left + box.width / 2, Math.max(box.top, 0) + 8);
     });
   };
+  // Figures that there are of several cars: the page shows those of one, and switches all of them together.
+  const switched = () => {
+    const views = [...document.querySelectorAll("figure.figure[data-view]")];
+    const labels = [...new Set(views.map((view) => view.dataset.view))];
+    const bars = [];
+    const shown = (label) => {
+      for (const view of views) {
+        const own = views.filter((other) => other.dataset.group === view.dataset.group);
+        const chosen = own.find((other) => other.dataset.view === label) ?? own[0];
+        view.hidden = view !== chosen;
+      }
+      for (const bar of bars) for (const button of bar.children) button.setAttribute("aria-pressed", String(button.textContent === label));
+      for (const one of traces) one.follow();
+    };
+    for (const first of views.filter((view) => !view.closest("details.view"))) {
+      const bar = document.createElement("div");
+      bar.className = "views";
+      bar.setAttribute("role", "group");
+      bar.setAttribute("aria-label", "Car that the figures show");
+      for (const label of labels.filter((name) => views.some((view) => view.dataset.group === first.dataset.group && view.dataset.view === name))) {
+        const button = document.createElement("button");
+        [button.type, button.textContent] = ["button", label];
+        button.addEventListener("click", () => { const top = bar.getBoundingClientRect().top; shown(label); scrollBy({ top: bar.getBoundingClientRect().top - top, behavior: "instant" }); });
+        bar.append(button);
+      }
+      bars.push(bar);
+      first.before(bar);
+    }
+    for (const details of document.querySelectorAll("details.view")) details.replaceWith(details.querySelector("figure.figure"));
+    if (views.length) shown(views[0].dataset.view);
+    // A link to a figure of another car shows it.
+    const linked = () => { const view = views.find((one) => location.hash === `#${one.id}`); if (view?.hidden) { shown(view.dataset.view); view.scrollIntoView(); } };
+    addEventListener("hashchange", linked);
+    linked();
+  };
   const all = (root) => root.querySelectorAll("figure.figure").forEach(connect);
   all(document);
+  switched();
   // Figures that were put into the page later.
   document.addEventListener("figures", (event) => { tip.hidden = true; all(event.detail); });
 })();

@@ -317,6 +317,7 @@ fn files_are_sound_and_named_after_their_tests() {
         );
         assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{kind}");
     }
+    titles_are_those_of_the_tables(&out);
     // Again: only with --force.
     assert_eq!(
         run(&["--test", "steady", "--out", out.to_str().unwrap()]).0,
@@ -333,6 +334,71 @@ fn files_are_sound_and_named_after_their_tests() {
         code == 0 && err.contains("files of an earlier run were not replaced"),
         "{err}"
     );
+}
+
+/// The sentence of a picture, up to the subject after it.
+fn title(out: &Path, name: &str) -> String {
+    let svg = std::fs::read_to_string(out.join(name)).unwrap();
+    let title = svg.split("<title>").nth(1).unwrap();
+    title
+        .split("</title>")
+        .next()
+        .unwrap()
+        .replace('\u{a0}', " ")
+}
+
+/// A column of a file where the ratio is that of low.
+fn low(out: &Path, file: &str, column: &str) -> Vec<f64> {
+    let mut reader = csv::Reader::from_path(out.join(file)).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let place = |name: &str| heads.iter().position(|head| head == name).unwrap();
+    let (ratio, own) = (place("ratio"), place(column));
+    let rows = reader.records().map(Result::unwrap);
+    let rows = rows.filter(|row| row[ratio].parse::<f64>().unwrap() > 1.0);
+    rows.map(|row| row[own].parse().unwrap()).collect()
+}
+
+/// Numbers of titles against the files of the same run, and of the thesis against the rows of `validate`.
+fn titles_are_those_of_the_tables(out: &Path) {
+    let ends = |values: &[f64]| {
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        (least, values.iter().copied().fold(0.0, f64::max))
+    };
+    let (least, most) = ends(&low(out, "steady.csv", "torque_loss_nm"));
+    let rows = cvtcycle::study::check::with_ids(&["5.04a", "5.04b"]);
+    let printed: Vec<&str> = rows.iter().map(|row| row.printed_text.as_str()).collect();
+    assert_eq!(printed, ["8.5 Nm", "13 Nm"]);
+    let said = format!(
+        "Without load the box loses {least:.1} to {most:.1} N m in low; the thesis prints 8.5 to 13"
+    );
+    assert!(
+        title(out, "steady_loss_low.svg").starts_with(&said),
+        "{said}"
+    );
+    let (least, most) = ends(&low(out, "steady.csv", "secondary_pressure_bar"));
+    let said = format!("Secondary pressure is {least:.1} to {most:.1} bar in low");
+    assert!(
+        title(out, "steady_pressure_low.svg").starts_with(&said),
+        "{said}"
+    );
+    let [found, own] = ["final_drive_corrected_nm", "final_drive_true_nm"]
+        .map(|column| low(out, "strip_down.csv", column));
+    let more = found
+        .iter()
+        .zip(&own)
+        .map(|(found, own)| found - own)
+        .sum::<f64>();
+    let said = format!("{:.2} N m too much in low", more / found.len() as f64);
+    assert!(title(out, "components_low.svg").contains(&said), "{said}");
+    for (name, marks) in [
+        ("steady_loss_low.svg", 1),
+        ("components_low.svg", 4),
+        ("transient_low.svg", 3),
+        ("transient_high.svg", 2),
+    ] {
+        let svg = std::fs::read_to_string(out.join(name)).unwrap();
+        assert_eq!(svg.matches("class=\"printed\"").count(), marks, "{name}");
+    }
 }
 
 /// A custom ratio and a lone speed still give pictures.

@@ -1,7 +1,8 @@
-// The report in a real browser. Usage: node --test report.test.mjs, with REPORTS=a.html:b.html and CHROMIUM=/path/to/chromium.
+// The report in a real browser. Usage: node --test report.test.mjs, with REPORTS=a.html:b.html and CHROMIUM=/path/to/chromium; PAGES=c.html are
+// pages of other kinds, PICTURES=folder those of commands without a page.
 // Truth: what a reader sees - sizes and boxes as laid out, requests as sent, pages as printed, rules of accessibility as axe-core has them.
 import assert from "node:assert/strict";
-import { readFileSync, mkdirSync } from "node:fs";
+import { readFileSync, readdirSync, mkdirSync } from "node:fs";
 import { createRequire } from "node:module";
 import { basename, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -17,6 +18,9 @@ const desktop = { width: 1280, height: 900 };
 // A4 less the margins of the style sheet, in CSS pixels.
 const paper = { width: Math.round((210 - 26) / 25.4 * 96), height: Math.round((297 - 32) / 25.4 * 96) };
 
+// Pages of other kinds, and folders of pictures that are no part of a page.
+const listed = (name) => (process.env[name] ?? "").split(":").filter(Boolean).map((file) => resolve(file));
+const [pages, folders] = [listed("PAGES"), listed("PICTURES")];
 assert.ok(reports.length > 0, "REPORTS names no report");
 let browser;
 before(async () => { browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: switches }); });
@@ -37,6 +41,7 @@ async function open(file, options = {}) {
 const badTexts = () => {
   const bad = [];
   for (const figure of document.querySelectorAll("figure.figure")) {
+    if (!figure.checkVisibility()) continue;
     const svg = figure.querySelector(".drawing svg");
     const frame = svg.getBoundingClientRect();
     const scale = frame.width / svg.viewBox.baseVal.width;
@@ -99,7 +104,7 @@ for (const file of reports) {
     test("figures have a size, and no text lies on another or outside", async () => {
       for (const options of [{}, { viewport: { width: 390, height: 844 }, isMobile: true }, { viewport: paper }]) {
         const { context, page } = await open(file, options);
-        const sizes = await page.$$eval(".drawing svg", (all) => all.map((svg) => { const box = svg.getBoundingClientRect(); return Math.min(box.width, box.height); }));
+        const sizes = await page.$$eval(".drawing svg", (all) => all.filter((svg) => svg.checkVisibility()).map((svg) => { const box = svg.getBoundingClientRect(); return Math.min(box.width, box.height); }));
         assert.ok(sizes.length > 0 && sizes.every((size) => size > 60), `${sizes}`);
         assert.deepEqual(await page.evaluate(badTexts), []);
         // Another machine's sans-serif may be a wider face.
@@ -132,7 +137,7 @@ for (const file of reports) {
       const { context, page } = await open(file, { viewport: paper });
       await page.emulateMedia({ media: "print" });
       // 6 pt are 8 px; what is smaller cannot be read on paper.
-      const small = await page.$$eval(".drawing svg", (all) => all.flatMap((svg) => {
+      const small = await page.$$eval(".drawing svg", (all) => all.filter((svg) => svg.checkVisibility()).flatMap((svg) => {
         const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
         return [...svg.querySelectorAll("text")].map((text) => [parseFloat(getComputedStyle(text).fontSize) * scale, text.textContent]).filter(([size]) => size < 8);
       }));
@@ -143,6 +148,7 @@ for (const file of reports) {
     test("tables are one click away, with as many cells as heads", async () => {
       const { context, page } = await open(file);
       for (const figure of await page.$$("figure.figure")) {
+        if (!(await figure.isVisible())) continue;
         const summary = await figure.$("details.data > summary");
         const table = await figure.$("details.data table");
         assert.equal(await table.isVisible(), false);
@@ -159,6 +165,7 @@ for (const file of reports) {
       const { context, page } = await open(file);
       const tip = page.locator(".tip");
       for (const figure of await page.$$("figure.figure")) {
+        if (!(await figure.isVisible())) continue;
         const id = await figure.getAttribute("id");
         const target = await figure.evaluate((f) => {
           f.scrollIntoView({ block: "center", behavior: "instant" });
@@ -187,7 +194,7 @@ for (const file of reports) {
 
     test("figures over time share one cursor and one part of the time", async () => {
       const { context, page, heard } = await open(file);
-      const traces = await page.$$eval("figure.figure", (all) => all.filter((f) => f.querySelector("rect.plot[data-x0]") && f.querySelector("details thead th .unit")?.textContent === "[s]").map((f) => f.id));
+      const traces = await page.$$eval("figure.figure", (all) => all.filter((f) => f.checkVisibility() && f.querySelector("rect.plot[data-x0]") && f.querySelector("details thead th .unit")?.textContent === "[s]").map((f) => f.id));
       if (traces.length > 1) {
         const first = page.locator(`[id="${traces[0]}"]`);
         await first.scrollIntoViewIfNeeded();
@@ -208,6 +215,31 @@ for (const file of reports) {
       }
       assert.deepEqual(heard.console, []);
       await context.close();
+    });
+
+    test("one switch shows the figures of another car, and is found again in print and without scripts", async () => {
+      const { context, page, heard } = await open(file);
+      const shown = () => page.$$eval("figure.figure[data-view]", (all) => all.filter((f) => f.checkVisibility()).map((f) => [f.dataset.group, f.dataset.view]));
+      const groups = await page.$$eval("figure.figure[data-view]", (all) => { const of = {}; for (const f of all) (of[f.dataset.group] ??= []).push(f.dataset.view); return of; });
+      for (const bar of Object.keys(groups).length ? [page.locator(".views").first()] : []) {
+        for (const label of await bar.locator("button").allTextContents()) {
+          await bar.locator("button", { hasText: new RegExp(`^${label}$`) }).click();
+          const wanted = Object.entries(groups).map(([group, views]) => [group, views.includes(label) ? label : views[0]]);
+          assert.deepEqual(await shown(), wanted, `one figure of each group, that of ${label}`);
+          assert.deepEqual(await page.$$eval('.views button[aria-pressed="true"]', (all) => [...new Set(all.map((b) => b.textContent))]), [label]);
+          assert.deepEqual(await page.evaluate(badTexts), []);
+        }
+      }
+      assert.deepEqual(heard.console, []);
+      await context.close();
+      const still = await open(file, { javaScriptEnabled: false });
+      const summaries = await still.page.locator("details.view > summary").count();
+      assert.equal(summaries, Object.values(groups).reduce((sum, views) => sum + views.length - 1, 0));
+      if (summaries) {
+        await still.page.locator("details.view > summary").first().click();
+        assert.ok(await still.page.locator("details.view figure .drawing svg").first().isVisible());
+      }
+      await still.context.close();
     });
 
     test("a component is lit wherever it is, and the numbers of a figure can be saved", async () => {
@@ -259,7 +291,8 @@ for (const file of reports) {
       const { context, page } = await open(file);
       // A mark at the upper and at the lower end of each figure, to be found again in the printed pages.
       const count = await page.evaluate(() => {
-        const figures = [...document.querySelectorAll("figure.figure")];
+        // Of several views paper has the one that is shown, and of a full report all.
+        const figures = [...document.querySelectorAll("figure.figure")].filter((figure) => !figure.hidden || "paper" in figure.dataset);
         figures.forEach((figure, k) => {
           const mark = (word) => { const p = document.createElement("div"); p.textContent = word; p.style.cssText = "font-size:6px;line-height:6px"; return p; };
           figure.prepend(mark(`upper${k}end`));
@@ -321,5 +354,35 @@ for (const file of reports) {
         await context.close();
       }
     });
+  });
+}
+
+// No word is cut and no table clipped in a page at any of the widths; what is wrong, with the place.
+async function cutAtAnyWidth(file) {
+  for (const [viewport, media] of [[{ width: 1400, height: 900 }, "screen"], [{ width: 1200, height: 900 }, "screen"], [{ width: 390, height: 844 }, "screen"], [paper, "print"]]) {
+    const { context, page, heard } = await open(file, { viewport });
+    await page.emulateMedia({ media });
+    assert.deepEqual(await page.evaluate(cutWords), [], `${media} ${viewport.width}`);
+    const over = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.ok(over <= 0, `${over} px too wide at ${media} ${viewport.width}`);
+    assert.deepEqual(heard.console, []);
+    await context.close();
+  }
+}
+
+for (const file of pages) test(`${basename(file)}: no word is cut`, () => cutAtAnyWidth(file));
+
+for (const folder of folders) {
+  test(`${basename(folder)}: no text of a picture lies on another or outside`, async () => {
+    const { context, page } = await open(reports[0]);
+    for (const name of readdirSync(folder).filter((name) => name.endsWith(".svg"))) {
+      const svg = readFileSync(`${folder}/${name}`, "utf8");
+      await page.setContent(`<!DOCTYPE html><body style="margin:0"><figure class="figure" id="${name}"><div class="drawing">${svg}</div></figure></body>`);
+      assert.deepEqual(await page.evaluate(badTexts), []);
+      await page.addStyleTag({ content: 'svg text { font-family: "DejaVu Sans" }' });
+      assert.deepEqual(await page.evaluate(badTexts), [], "in a wide face");
+      assert.ok(await page.evaluate(() => document.querySelector("svg").width.baseVal.value <= 880), `${name} is too wide for A4`);
+    }
+    await context.close();
   });
 }

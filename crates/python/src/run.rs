@@ -233,13 +233,14 @@ impl Whole {
             history: &histories[k],
             fuel_map: Some(fuel_map(&self.cars[k].setup)),
             group_fuel: charts::group_fuel(&summary.runs[k]),
+            published: charts::published_drive(&self.cars[k].name, &summary),
         };
         let picture = match kind {
             "driveline" => charts::driveline(&of(car)),
             "pressure" if histories[car].is_cvt() => charts::pressure(&of(car)),
-            "temperatures" => charts::temperatures(&of(car)),
-            "losses" => charts::losses(&of(car)),
-            "operating_points" => charts::operating_points(&of(car)),
+            "temperatures" => charts::temperatures(&[of(car)]),
+            "losses" => charts::losses(&[of(car)]),
+            "operating_points" => charts::operating_points(&[of(car)]),
             "fuel" => charts::fuel_bars(&(0..self.cars.len()).map(of).collect::<Vec<_>>()),
             _ => return None,
         };

@@ -110,6 +110,21 @@ pub struct Figure {
     pub caption: String,
     /// Drawing and numbers.
     pub picture: Picture,
+    /// Which of several views it is; none for a figure of its own.
+    pub view: Option<View>,
+}
+
+/// One of several figures of which the page shows one at a time: the same of another car.
+#[derive(Clone, Debug)]
+pub struct View {
+    /// Name of the views, the same for all of them.
+    pub group: String,
+    /// What distinguishes this one: the car.
+    pub label: String,
+    /// Whether it is the one that is shown first, and that paper has.
+    pub first: bool,
+    /// Whether paper has the others too.
+    pub paper: bool,
 }
 
 impl Section {
@@ -149,7 +164,33 @@ impl Section {
             name: name.into(),
             caption: caption.into(),
             picture: of,
+            view: None,
         }));
+    }
+
+    /// Adds the same figure of several cars, of which the page shows one at a time: the car, the name of the file, what is to be seen, and the
+    /// figure. The first one is shown first.
+    pub fn views(
+        &mut self,
+        group: &str,
+        all: impl IntoIterator<Item = (String, String, String, Picture)>,
+    ) {
+        let all: Vec<_> = all.into_iter().collect();
+        let several = all.len() > 1;
+        for (k, (label, name, caption, picture)) in all.into_iter().enumerate() {
+            let view = View {
+                group: group.to_owned(),
+                label,
+                first: k == 0,
+                paper: false,
+            };
+            self.blocks.push(Block::Figure(Figure {
+                name,
+                caption,
+                picture,
+                view: several.then_some(view),
+            }));
+        }
     }
 
     /// Adds a table.
@@ -162,6 +203,9 @@ impl Section {
         self.blocks.push(Block::Folded(table));
     }
 }
+
+/// Columns that a phone has room for.
+const WIDE: usize = 3;
 
 impl ReportTable {
     /// A table of a column of names and columns of numbers with their units.
@@ -191,6 +235,20 @@ impl ReportTable {
             columns: columns.iter().map(column).collect(),
             ..ReportTable::default()
         }
+    }
+
+    /// Whether it is too wide for a phone: there each row is a card, and each cell has the head of its column.
+    pub fn is_wide(&self) -> bool {
+        self.columns.len() > WIDE
+    }
+
+    /// Name and unit of a column, for a cell of a card.
+    pub fn head(&self, column: &usize) -> String {
+        let of = self.columns.get(*column);
+        of.map_or_else(String::new, |of| match of.unit.as_str() {
+            "" => of.name.clone(),
+            unit => format!("{} [{unit}]", of.name),
+        })
     }
 
     /// Whether every column but the first holds numbers.
@@ -253,7 +311,15 @@ impl Document {
     #[must_use]
     pub fn shown(mut self, full: bool) -> Self {
         for section in &mut self.sections {
-            let more = std::mem::take(&mut section.more);
+            let mut more = std::mem::take(&mut section.more);
+            for block in &mut more {
+                if let Block::Figure(Figure {
+                    view: Some(view), ..
+                }) = block
+                {
+                    view.paper = true;
+                }
+            }
             section.blocks.extend(more.into_iter().filter(|_| full));
         }
         self.sections.retain(|section| !section.blocks.is_empty());

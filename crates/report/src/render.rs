@@ -239,6 +239,7 @@ fn jointed(word: &str) -> String {
     let joint = |c: char| "_./:=".contains(c);
     let is_key = word.chars().count() >= LONG_KEY
         && word.contains(joint)
+        && !word.contains('\u{a0}')
         && word.contains(|c: char| c.is_alphabetic());
     if !is_key {
         return word.to_owned();

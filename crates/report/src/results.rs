@@ -86,10 +86,11 @@ impl StudyResults {
     /// As there.
     pub fn open_for_report(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
         let (mut outline, store) = Self::stored(path)?;
+        let names = outline.cars.clone();
         for car in &mut outline.cars {
             *car = label(store.manifest(), car);
         }
-        Self::of(outline, store, confidence)
+        Self::traced(outline, store, confidence, &names)
     }
 
     /// The name in tables and figures of a car.
@@ -125,11 +126,22 @@ impl StudyResults {
         store: store::Study,
         confidence: Confidence,
     ) -> Result<Self, Problem> {
+        let names = outline.cars.clone();
+        Self::traced(outline, store, confidence, &names)
+    }
+
+    /// The same where the cars have other names in the outline than in the traces, `names`.
+    fn traced(
+        outline: StudyManifest,
+        store: store::Study,
+        confidence: Confidence,
+        names: &[String],
+    ) -> Result<Self, Problem> {
         let frame = StudyTable::new(&outline, &store)?;
         let answer = answer(&frame, confidence)?;
         let traced = store.layout().tables.iter().any(|table| table == TRACES);
         let warm_ups = match &answer.matrix {
-            Some(matrix) if traced => warm_ups(&frame, matrix).unwrap_or_default(),
+            Some(matrix) if traced => warm_ups(&frame, matrix, names).unwrap_or_default(),
             _ => Vec::new(),
         };
         store.unchanged()?;

@@ -1,6 +1,7 @@
 //! The files of a run: traces, plots, and the inputs that it was made from. A report is made of them.
 
 use std::io::Write;
+use std::slice::from_ref;
 
 use rayon::prelude::*;
 
@@ -67,6 +68,7 @@ pub fn write(
         history,
         fuel_map: Some(fuel_map.clone()),
         group_fuel: charts::group_fuel(run),
+        published: charts::published_drive(car.name, summary),
     });
     let plots: Vec<PlotRun> = plots.collect();
     let mut files: Vec<(String, FileWriter)> = Vec::new();
@@ -105,9 +107,9 @@ type Plot = fn(&PlotRun) -> Picture;
 const PLOTS: [(&str, Plot); 5] = [
     ("driveline", charts::driveline),
     ("pressure", charts::pressure),
-    ("temperatures", charts::temperatures),
-    ("losses", charts::losses),
-    ("operating_points", charts::operating_points),
+    ("temperatures", |run| charts::temperatures(from_ref(run))),
+    ("losses", |run| charts::losses(from_ref(run))),
+    ("operating_points", |run| charts::operating_points(from_ref(run))),
 ];
 
 /// Writes a picture that is made when its file is.

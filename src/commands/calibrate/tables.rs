@@ -1,7 +1,7 @@
 //! A calibration as tables: errors first, then the numbers behind them.
 
 use cvtcycle::output::number::{NONE, fixed, signed};
-use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct, wrapped};
+use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct, paragraphs, wrapped};
 use cvtcycle::study::fit::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 
 use crate::print::colour::Paint;
@@ -44,8 +44,9 @@ fn head(o: &Outcome, paint: Paint) -> String {
     let free = count(o.parameters.len(), "parameter");
     let evaluations = count(o.evaluations, "evaluation");
     let (title, plan, vehicle, end) = (paint.heading(&o.title), &o.plan, &o.vehicle, &o.end);
-    let mut text =
-        format!("{title}  {plan}\n{vehicle}: {free} fitted to {data}; {end} after {evaluations}\n");
+    let mut text = paragraphs(&format!(
+        "{title}  {plan}\n{vehicle}: {free} fitted to {data}; {end} after {evaluations}"
+    ));
     if !o.converged {
         let failure = "not converged: the values are those of the best point so far, no minimum";
         text += &format!("{}\n", paint.bad(failure));

@@ -14,7 +14,7 @@ use super::effects::factors;
 use crate::print::colour::Paint;
 use crate::print::sections;
 use cvtcycle::output::number::{fixed, plain, signed};
-use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
+use cvtcycle::output::table::{TextColumns, TextTable, paragraphs, wrapped};
 
 /// Number of reasons of failed runs that are listed.
 pub const MAX_REASONS: usize = 5;
@@ -98,7 +98,7 @@ fn head(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let mut text = format!("{}\n", paint.heading(&answer.title));
     if !answer.question.is_empty() {
-        text += &format!("{}\n", answer.question);
+        text += &paragraphs(&answer.question);
     }
     let (points, cars) = (answer.points, outline.cars.join(", "));
     let (design, runs) = (design(outline), outline.points * outline.cars.len() as u64);

@@ -1,6 +1,6 @@
 //! A validation as tables.
 
-use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct};
+use cvtcycle::output::table::{TextColumns, TextTable, distinct};
 use cvtcycle::report::validation::chapter_title;
 use cvtcycle::study::check::{
     Group, Judged, PowerReport, Report, RowPower, Strength, Verdict, computed_text, notes_line,
@@ -9,9 +9,6 @@ use cvtcycle::study::check::{
 
 use crate::print::colour::Paint;
 use crate::print::sections;
-
-/// Longest text of a value; longer ones are cut, and complete in the other forms.
-const MAX_VALUE_LEN: usize = 20;
 
 /// Rows that the tables have.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -98,8 +95,8 @@ fn chapter(rows: &[&Judged], paint: Paint) -> String {
     let columns = TextColumns::new()
         .left("row", |j: &&Judged| j.row.id.clone())
         .left(VERDICT, |j| format!("{}{}", j.verdict.word(), mark(j)))
-        .left("printed", |j| cut(&j.row.printed_text, MAX_VALUE_LEN))
-        .left("computed", |j| cut(&computed_text(j), MAX_VALUE_LEN))
+        .left("printed", |j| j.row.printed_text.clone())
+        .left("computed", |j| computed_text(j))
         .left("unit", |j| unit_text(&j.row.unit))
         .left("what", |j| j.row.what.clone());
     let noted = |judged: &&&Judged| {

@@ -8,6 +8,7 @@ fn car(name: &str, losses: &[(Component, f64)]) -> CarLosses {
     CarLosses {
         name: name.to_owned(),
         losses_kj: losses.to_vec(),
+        distance_km: 11.0,
     }
 }
 
@@ -28,7 +29,7 @@ fn bars_are_in_proportion_and_shares_are_of_the_own_car() {
             &[(Component::Churning, 275.0)],
         ),
     ];
-    let picture = loss_by_component(&cars);
+    let picture = loss_by_component(&cars, "conditions");
     check(&picture);
     let doc = roxmltree::Document::parse(&picture.svg).expect("well-formed");
     let width = |row: &str| {
@@ -62,7 +63,7 @@ fn nothing_or_broken_numbers_are_still_pictures() {
             &[(Component::Seal, f64::NAN), (Component::Bearing, 0.0)],
         )],
     ] {
-        check(&loss_by_component(&cars));
+        check(&loss_by_component(&cars, "conditions"));
     }
 }
 

@@ -28,7 +28,7 @@ fn the_strip_says_whether_the_sign_is_sure() {
     for (drawn, said) in [
         (
             Some([1.2, 5.0, 9.6]),
-            "6 % more than five &lt;gears&gt;; in the draws +1 to +10 %",
+            "6 % more than five &lt;gears&gt;; with uncertain values varied +1 to +10 %",
         ),
         (
             Some([-1.2, 4.0, 9.1]),

@@ -59,7 +59,13 @@ fn less_goes_left_of_zero_and_more_goes_right() {
         };
         (number("x"), number("x") + number("width"))
     };
-    let (heat, band) = (edges("0"), edges("2"));
+    let place = |name: &str| {
+        let mut rows = picture.table.rows.iter();
+        rows.position(|row| row[0].to_lowercase().starts_with(name))
+            .expect("a row")
+            .to_string()
+    };
+    let (heat, band) = (edges("0"), edges(&place("belt band")));
     assert!(
         (heat.1 - band.0).abs() <= 1.0,
         "both begin at zero: {heat:?} {band:?}"

@@ -103,9 +103,16 @@ fn every_flow_has_its_label_however_thin() {
     ] {
         assert!(picture.svg.replace('\u{a0}', " ").contains(word), "{word}");
     }
+    let mut driven = car();
+    (driven.kinetic_kj, driven.fuel_kj) = (-800.0, driven.fuel_kj - 799.2);
     assert!(
-        energy_flow(&car()).svg.contains("0.80 kJ"),
+        energy_flow(&driven).svg.contains("800 kJ"),
         "what flows in is labelled too"
+    );
+    let little = energy_flow(&car()).svg;
+    assert!(
+        little.contains("Accessories etc.") && !little.contains("0.80 kJ"),
+        "what cannot be seen has no label of its own"
     );
 }
 

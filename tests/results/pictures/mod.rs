@@ -16,4 +16,5 @@ mod lines;
 mod overlay;
 mod runs;
 mod svg_checks;
+mod titles;
 mod variogram;

@@ -150,7 +150,7 @@ fn a_long_trace_is_listed_in_part_and_says_so() {
         (30_000, 600, "Every 50th step"),
     ] {
         let history = history(true, &rows(steps, 0.1, true), &phases);
-        let table = temperatures(&run("car", &history)).table;
+        let table = temperatures(&[run("car", &history)]).table;
         assert_eq!(table.rows.len(), listed);
         assert_eq!(
             table.note.contains("step is listed"),
@@ -164,7 +164,7 @@ fn a_long_trace_is_listed_in_part_and_says_so() {
         );
     }
     let history = history(true, &rows(100, 1.0, true), &phases);
-    let table = temperatures(&run("car", &history)).table;
+    let table = temperatures(&[run("car", &history)]).table;
     let sump = table
         .columns
         .iter()
@@ -213,7 +213,7 @@ fn axes_series_and_names_can_be_read_as_text() {
                 "Secondary pressure",
                 "Primary pressure",
                 "Belt slip [%]",
-                "Clamp safety [-]",
+                "Clamping used [%]",
                 "Speed [km/h]",
                 "Time [s]",
             ],
@@ -266,9 +266,9 @@ fn axes_series_and_names_can_be_read_as_text() {
         }
         assert!(!texts.iter().any(|text| text.contains("200.0")), "{name}");
     }
-    let losses = texts(&losses(&run).svg);
+    let losses = texts(&losses(std::slice::from_ref(&run)).svg);
     for component in CVT {
-        let start = component.name().replace('_', " ");
+        let start = component.group().name().replace('_', " ");
         assert!(
             losses
                 .iter()
@@ -376,7 +376,7 @@ fn cells_hold_all_time_in_which_the_engine_runs() {
         (rows(400, 0.1, true), 40.0),
     ] {
         let history = history(true, &rows, &phases());
-        let Picture { svg, table } = operating_points(&run("car", &history));
+        let Picture { svg, table } = operating_points(&[run("car", &history)]);
         let seconds: f64 = table
             .rows
             .iter()

@@ -15,8 +15,8 @@ fn what_is_missing_is_said_and_the_rest_is_there() {
     let page = place.text("cold/report.html");
     assert!(words_of(&page).contains("trace of rover_216_cvt is not there"));
     assert!(
-        page.contains("fig-temperatures_rover_216_5mt")
-            && !page.contains("fig-temperatures_rover_216_cvt")
+        page.contains("fig-driveline_rover_216_5mt")
+            && !page.contains("fig-driveline_rover_216_cvt")
     );
     fs::remove_file(place.path().join("cold/inputs.json")).unwrap();
     place.refused(

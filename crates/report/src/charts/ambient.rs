@@ -1,7 +1,8 @@
 //! Pictures of a matrix of ambient temperatures: fuel, the subject's excess, warm-up side by side.
 
-use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
+use super::lines::{LineChart, LinePanel, Look, Palette, Points, line_chart};
 use super::picture::Picture;
+use crate::number::{degc, grouped, signed};
 use cvtcycle_study::answer::ambient::{FuelPart, Matrix, WarmUp};
 
 const AMBIENT: &str = "Ambient temperature [\u{b0}C]";
@@ -65,6 +66,7 @@ fn by_part(
     };
     LineChart {
         x_title: AMBIENT,
+        palette: Palette::Cars,
         panels: matrix.fuel.iter().map(panel).collect(),
         marked: true,
         ..LineChart::default()
@@ -74,8 +76,8 @@ fn by_part(
 /// Fuel against ambient temperature: whole cycle and phases.
 pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
     line_chart(&LineChart {
-        title: "Fuel against ambient temperature".into(),
-        subject: title.to_owned(),
+        title: fuel_title(matrix),
+        subject: format!("{title}; each panel has its own scale"),
         legend: "Car, start".into(),
         names: names(matrix, &matrix.cars, 0),
         ..by_part(matrix, "Fuel [L/100 km]", 0, |part| &part.l_per_100km)
@@ -90,58 +92,149 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
         .map(|name| format!("over {name}"))
         .collect();
     let mut chart = LineChart {
-        title: format!("Fuel of {subject} over that of its baselines"),
+        title: penalty_title(matrix, subject),
         subject: title.to_owned(),
         same_y: true,
         legend: "Baseline, start".into(),
         names: names(matrix, &over, 1),
         ..by_part(matrix, "Excess fuel [%]", 1, |part| &part.excess_percent)
     };
+    // The phases say the same.
+    chart.panels.truncate(1);
     for panel in &mut chart.panels {
         panel.with_y = vec![0.0];
     }
     (!baselines.is_empty()).then(|| line_chart(&chart))
 }
 
-/// Warm-up from one start: a row of panels for each car, sump at the left, engine oil at the right; a line for each ambient temperature.
-pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> Picture {
-    let mut panels = Vec::new();
-    for (car, name) in matrix.cars.iter().enumerate() {
-        let own = |run: &&WarmUp| run.car == car && run.start == start;
-        let own = || runs.iter().filter(own);
-        let panel = |what: &str, of: fn(&WarmUp) -> &[f64]| LinePanel {
-            heading: format!("{name}: {what}"),
-            y_title: "Temperature [\u{b0}C]",
-            series: own().map(|run| warm_up_line(run, of(run))).collect(),
-            ..LinePanel::default()
-        };
-        panels.push(panel("transmission sump", |run| &run.sump_degc));
-        panels.push(panel("engine oil", |run| &run.engine_oil_degc));
+/// The least and the largest ambient temperature with a number there, in that order.
+fn ends(matrix: &Matrix, numbers: &[f64]) -> Option<[(f64, f64); 2]> {
+    let points = points(&matrix.ambient_degc, numbers);
+    let (first, last) = (points.first()?, points.last()?);
+    (points.len() > 1).then_some([*first, *last])
+}
+
+/// What the cold costs the subject from the first start.
+fn fuel_title(matrix: &Matrix) -> String {
+    let whole = matrix
+        .fuel
+        .first()
+        .and_then(|part| part.l_per_100km.first()?.first());
+    let ends = whole.and_then(|numbers| ends(matrix, numbers));
+    let Some(([cold, warm], car, start)) = ends
+        .zip(matrix.cars.first())
+        .zip(matrix.starts.first())
+        .map(|((a, b), c)| (a, b, c))
+    else {
+        return "Fuel against ambient temperature".into();
+    };
+    format!(
+        "{car} uses {} L/100 km at {} and {} at {} ({start})",
+        grouped(cold.1, 2),
+        degc(cold.0),
+        grouped(warm.1, 2),
+        degc(warm.0)
+    )
+}
+
+/// Whether the difference to the first baseline depends on the ambient temperature.
+fn penalty_title(matrix: &Matrix, subject: &str) -> String {
+    let part = matrix.fuel.first();
+    let percent = part.and_then(|part| part.excess_percent.first()?.first());
+    let numbers = percent
+        .map_or(&[][..], Vec::as_slice)
+        .iter()
+        .copied()
+        .filter(|x| x.is_finite());
+    let low = numbers.clone().fold(f64::INFINITY, f64::min);
+    let high = numbers.fold(f64::NEG_INFINITY, f64::max);
+    let named = matrix.cars.get(1).zip(matrix.starts.first());
+    match named {
+        Some((baseline, start)) if low <= high && low > 0.0 => format!(
+            "{subject} uses {} to {} % more than {baseline} at every temperature ({start})",
+            grouped(low, 1),
+            grouped(high, 1)
+        ),
+        Some((baseline, start)) if low <= high => format!(
+            "{subject} uses {} to {} % against {baseline} over the temperatures ({start})",
+            signed(grouped(low, 1), low),
+            signed(grouped(high, 1), high)
+        ),
+        _ => format!("Fuel of {subject} over that of its baselines"),
     }
-    let names = matrix.ambient_degc.iter().enumerate();
-    let names = names.map(|(index, degc)| (Look::solid(index), degrees(*degc)));
+}
+
+/// Warm-up of the transmissions from one start: a panel for each car, all on one scale; a line for each ambient temperature.
+pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> Picture {
+    let own = |car: usize| {
+        runs.iter()
+            .filter(move |run| run.car == car && run.start == start)
+    };
+    let panel = |(car, name): (usize, &String)| LinePanel {
+        heading: name.clone(),
+        y_title: "Transmission sump [\u{b0}C]",
+        series: own(car).map(|run| warm_up_line(matrix, run)).collect(),
+        ..LinePanel::default()
+    };
+    let mut order: Vec<f64> = matrix.ambient_degc.clone();
+    order.sort_by(f64::total_cmp);
+    let names = order.iter().enumerate();
+    let names = names.map(|(index, ambient)| (Look::solid(index), degc(*ambient)));
     let word = matrix.starts.get(start).map_or("", String::as_str);
+    let end = |ambient: f64| {
+        let mut of = own(0).filter(|run| matrix.ambient_degc.get(run.ambient) == Some(&ambient));
+        of.next()?
+            .sump_degc
+            .iter()
+            .copied()
+            .rfind(|x| x.is_finite())
+    };
+    let ends = order.first().zip(order.last());
+    let told = ends.and_then(|(a, b)| Some((*a, end(*a)?, *b, end(*b)?, matrix.cars.first()?)));
+    let said = told.map_or_else(
+        || format!("Warm-up, start {word}"),
+        |(cold, low, warm, high, car)| {
+            format!(
+                "The sump of {car} ends at {} after {} and at {} after {} ({word})",
+                degc(low.round()),
+                degc(cold),
+                degc(high.round()),
+                degc(warm)
+            )
+        },
+    );
     line_chart(&LineChart {
-        title: format!("Warm-up, start {word}"),
+        title: said,
         subject: title.to_owned(),
         x_title: "Time [s]",
-        panels,
+        panels: matrix.cars.iter().enumerate().map(panel).collect(),
         same_y: true,
         tight: true,
+        palette: Palette::Ordered,
         legend: "Ambient temperature".into(),
         names: names.collect(),
         ..LineChart::default()
     })
 }
 
-fn warm_up_line(run: &WarmUp, degc: &[f64]) -> (Look, Points) {
-    let points = run.time_s.iter().copied().zip(degc.iter().copied());
-    (Look::solid(run.ambient), points.collect())
-}
-
-/// "−10 °C".
-fn degrees(degc: f64) -> String {
-    format!("{degc} \u{b0}C").replace('-', "\u{2212}")
+/// A line whose look is the place of its ambient temperature among all.
+fn warm_up_line(matrix: &Matrix, run: &WarmUp) -> (Look, Points) {
+    let own = matrix
+        .ambient_degc
+        .get(run.ambient)
+        .copied()
+        .unwrap_or(f64::NAN);
+    let colder = matrix
+        .ambient_degc
+        .iter()
+        .filter(|other| **other < own)
+        .count();
+    let points = run
+        .time_s
+        .iter()
+        .copied()
+        .zip(run.sump_degc.iter().copied());
+    (Look::solid(colder), points.collect())
 }
 
 fn heading(part: &str) -> String {

@@ -103,9 +103,9 @@ fn title(block: &LeverBlock) -> String {
 
 fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<String> {
     let marks = match answer.plan {
-        None => "Points: the car as its file has it, without draws.".to_owned(),
+        None => "Points: the car as its file has it; nothing is varied.".to_owned(),
         Some(_) => format!(
-            "Bars: {} % of {} draws of the uncertain values, each with and without the lever. Points: medians. Right: draws that save fuel.",
+            "Bars: {} % of {} runs with uncertain values varied, with and without the lever. Points: medians. Right: runs that it saves in.",
             answer.confidence.draws_percent(),
             answer.draws_done
         ),
@@ -142,7 +142,7 @@ fn table(answer: &LeverAnswer, rows: &[&LeverRow]) -> PictureTable {
     let [low, high] = answer
         .confidence
         .ends()
-        .map(|p| format!("{:.0} % of the draws below", 100.0 * p));
+        .map(|p| format!("{:.0} % of the varied runs below", 100.0 * p));
     let columns = [
         ("Lever".to_owned(), ""),
         ("Median".to_owned(), "%"),

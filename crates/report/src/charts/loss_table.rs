@@ -6,6 +6,7 @@ use super::engine::{self, Axis, BELOW, Chart, Entry, Fill, LEFT, PLOT_LEFT, Side
 use super::grids::{MapFigure, map_figure};
 use super::lines::{Look, stack_layers};
 use super::picture::PictureTable;
+use crate::number::{capital_first, grouped};
 use cvtcycle_output::Component;
 use cvtcycle_output::losses::{Axis as GridAxis, LossRow, LossTable};
 
@@ -121,7 +122,12 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     };
     let cvt = plan.is_cvt();
     let draw = |file: &str, title: &str, parts: &[Component]| {
-        let sum = |row: &&LossRow| parts.iter().map(|c| row.answer.part_nm(*c)).sum();
+        let sum = |row: &&LossRow| parts.iter().map(|c| row.answer.part_nm(*c)).sum::<f64>();
+        let drawn = layout
+            .panels
+            .iter()
+            .flat_map(|panel| panel.rows.iter().flatten());
+        let title = &span(title, drawn.map(sum));
         let column = |column: &Vec<&LossRow>| column.iter().map(sum).collect();
         let panel = |of: &Panel| (of.title.clone(), of.rows.iter().map(column).collect());
         let figure = MapFigure {
@@ -134,20 +140,27 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
         };
         (format!("losses_{file}.svg"), map_figure(&figure))
     };
-    let total = draw(
-        "total",
-        "Torque loss of the transmission",
-        &plan.components(),
-    );
+    let total = draw("total", "The transmission loses", &plan.components());
     let groups = plan.groups().into_iter().map(|(name, parts)| {
         let name = name.to_lowercase();
         draw(
             &name.replace(' ', "_"),
-            &format!("Torque loss: {name}"),
+            &format!("{} takes", capital_first(&name)),
             &parts,
         )
     });
     [total].into_iter().chain(groups).collect()
+}
+
+/// "The transmission loses 8.2 to 15.6 Nm".
+fn span(what: &str, values: impl Iterator<Item = f64>) -> String {
+    match engine::range(values) {
+        Some((low, high)) => {
+            let [low, high] = [low, high].map(|nm| grouped(nm, 2));
+            format!("{what} {low} to {high} Nm")
+        }
+        None => format!("{what} what is not known"),
+    }
 }
 
 /// Sizes of a lone panel and of one of several, pixels.
@@ -202,8 +215,9 @@ fn stack(plan: &LossTable, layout: &Layout) -> String {
         ..Side::default()
     };
     let titles: Vec<&str> = parts.iter().map(|part| part.title()).collect();
+    let all = layout.panels.iter().flat_map(|panel| &panel.rows).map(sum);
     Chart::new(
-        "Torque losses of the transmission",
+        span("The transmission loses", all),
         &layout.subject,
         PLOT_LEFT,
     )

@@ -13,6 +13,7 @@ pub mod lines;
 mod loss_table;
 mod picture;
 mod price;
+mod printed;
 pub mod rig_transmission;
 mod run;
 pub mod study;
@@ -24,7 +25,7 @@ pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use price::price_bars;
 pub use run::{
-    LossBins, PlotRun, bin_losses, driveline, fuel_bars, group_fuel, losses, operating_points,
-    pressure, temperatures,
+    LossBins, PlotRun, PublishedDrive, bin_losses, driveline, fuel_bars, group_fuel, losses,
+    operating_points, pressure, published_drive, temperatures,
 };
 pub use variator_curves::variator_figures;

@@ -2,7 +2,8 @@
 
 use super::Pair;
 use crate::charts::figures::{
-    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term, difference_bars, overlay,
+    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term, TraceDifference,
+    difference_bars, overlay, trace_difference,
 };
 use crate::document::{ReportTable, Section};
 use crate::number::{NONE, Quantity, capital};
@@ -75,7 +76,7 @@ const OVERLAID: [(&str, &str, &str); 6] = [
 const PANELS: usize = 3;
 
 pub(super) fn traces(subject: &Pair, names: &[String; 2]) -> Section {
-    let mut section = Section::new("driveline", "Traces overlaid");
+    let mut section = Section::new("driveline", "Where along the drive they differ");
     let (Some(a), Some(b)) = (subject.a.history, subject.b.history) else {
         section.text(format!(
             "One of the two runs has no trace of its subject: nothing to overlay ({NONE})."
@@ -95,6 +96,20 @@ pub(super) fn traces(subject: &Pair, names: &[String; 2]) -> Section {
         runs: [points(a, name), points(b, name)],
     });
     let panels: Vec<OverlayPanel> = panels.collect();
+    let flow = |history: &History| {
+        let times = history.time_s().iter().zip(history.dt_s());
+        let steps = times.zip(history.column("fuel_g_s"));
+        steps.map(|((end, dt), g_s)| (*end, *dt, *g_s)).collect()
+    };
+    let picture = trace_difference(&TraceDifference {
+        names: names.clone(),
+        speed_kmh: points(a, "speed_kmh"),
+        fuel_g_s: [flow(a), flow(b)],
+        panels: panels.clone(),
+    });
+    let caption = "Fuel that the second run has burnt more than the first one up to each moment, and what else is different.";
+    section.figure("trace_difference", caption, picture);
+    let mut more = Section::default();
     for (k, chunk) in panels.chunks(PANELS).enumerate() {
         let picture = overlay(&Overlay {
             title: "Traces of the subjects".to_owned(),
@@ -105,7 +120,8 @@ pub(super) fn traces(subject: &Pair, names: &[String; 2]) -> Section {
         let titles = chunk.iter().map(|panel| panel.title.to_lowercase());
         let titles: Vec<String> = titles.collect();
         let caption = format!("Both subjects over time: {}.", titles.join(", "));
-        section.figure(format!("traces_{}", k + 1), caption, picture);
+        more.figure(format!("traces_{}", k + 1), caption, picture);
     }
+    section.more = more.blocks;
     section
 }

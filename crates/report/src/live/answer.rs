@@ -397,8 +397,9 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     let losses = pair.iter().map(|car| CarLosses {
         name: car.run.label().to_owned(),
         losses_kj: car.losses_kj(),
+        distance_km: car.run.distance_km,
     });
-    let picture = loss_by_component(&losses.collect::<Vec<_>>());
+    let picture = loss_by_component(&losses.collect::<Vec<_>>(), conditions);
     section.figure(
         "live_losses",
         "Losses of the transmission over the whole cycle.",
@@ -408,7 +409,7 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
         let history = car.history;
         history.map_or_else(Vec::new, |history| {
             let degc = history.column(COLUMNS[2]).iter().copied();
-            history.time_s().iter().copied().zip(degc).collect()
+            thinned(history.time_s().iter().copied().zip(degc).collect())
         })
     };
     let ends = pair.iter().filter_map(|car| {
@@ -437,6 +438,18 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
         "Temperature of the transmission sump over the cycle.",
         picture,
     );
+}
+
+/// Moments of the sump's temperature that are drawn at most: the eye sees no more of a curve so smooth, and each costs time at every move of a lever.
+const MOMENTS: usize = 120;
+
+/// Every so many points, and the last one.
+fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    let every = points.len().div_ceil(MOMENTS).max(1);
+    let last = points.len().saturating_sub(1);
+    let kept = points.into_iter().enumerate();
+    let kept = kept.filter(|(k, _)| k.is_multiple_of(every) || *k == last);
+    kept.map(|(_, point)| point).collect()
 }
 
 /// What is wrong with a car that cannot be built.

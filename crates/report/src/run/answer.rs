@@ -44,7 +44,8 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     }
     strip(&mut section, summary, cycle);
     for line in contradictions(&summary.labelled()) {
-        section.alert(line);
+        // "Soak" is a word of test cells.
+        section.alert(line.replace("(soak, ", "(from air temperature, "));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
         section.text(price);
@@ -124,7 +125,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let known = match &comparison.interval {
         Some(of) => {
             let ends = level([of.percent[0], of.percent[2]]);
-            format!("{kind}90 % of {} draws: {ends}", of.draws)
+            format!("{kind}{ends} in 90 % of {} varied runs", of.draws)
         }
         None => format!("{kind}no interval"),
     };
@@ -219,7 +220,7 @@ fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
         let worst = row.worst("min_clamp_safety");
         let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
             let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
-            format!("its least clamp safety falls from {now} to {worst} in the worst draw")
+            format!("its least clamp safety falls from {now} to {worst} in the worst varied run")
         });
         let needs = row.of.needs.trim_end_matches('.');
         let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
@@ -253,7 +254,7 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
         test => test.to_owned(),
     };
     let text = format!(
-        "{}. With {name} known, the spread of the difference falls from {sd} to {left} points.",
+        "{}. With {name} known, the standard deviation of the difference falls from {sd} to {left} points.",
         capital_first(&test)
     );
     Some((text, format!("test: {name}")))

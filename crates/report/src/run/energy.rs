@@ -3,6 +3,7 @@
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, grouped, percent, signed};
 use super::Car;
+use crate::charts::Picture;
 use crate::charts::decision::PerKm;
 use crate::charts::figures::{CarEnergy, TERMS, Term, energy_flow, transmission_flow};
 
@@ -19,7 +20,19 @@ fn car_energy(car: &Car) -> CarEnergy {
         losses_kj: car.losses_kj(),
         brake_kj: term("brake"),
         wheels_kj: term("wheels"),
+        largest_kj: [0.0; 2],
     }
+}
+
+/// The ledgers of all cars, to be drawn on one scale.
+fn energies(cars: &[Car]) -> Vec<CarEnergy> {
+    let mut all: Vec<CarEnergy> = cars.iter().map(car_energy).collect();
+    let most = |of: fn(&CarEnergy) -> f64| all.iter().map(of).fold(0.0, f64::max);
+    let largest_kj = [most(|car| car.fuel_kj), most(CarEnergy::flywheel_kj)];
+    for car in &mut all {
+        car.largest_kj = largest_kj;
+    }
+    all
 }
 
 /// Energies of two cars over their distance, kJ/km.
@@ -61,7 +74,7 @@ pub(super) fn section(cars: &[Car]) -> Section {
     let mut section = Section::new("energy", "Energy from fuel to wheel");
     section.text(
         "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
-         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun.",
+         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun. What the rotating parts keep is drawn with the accessories where it is less than 0.5 % of the fuel.",
     );
     let stops = |car: &Car| car.run.term_kj("electric").is_some_and(|kj| kj.abs() > 0.0);
     if cars.iter().any(stops) {
@@ -70,17 +83,43 @@ pub(super) fn section(cars: &[Car]) -> Section {
         );
     }
     section.table(balance(cars));
-    for car in cars {
-        let (file, name, energy) = (&car.run.vehicle, car.run.label(), car_energy(car));
-        section.heading(&car.run.title);
-        let caption = format!("Energy of {name} from the fuel to the road.");
-        section.figure(format!("energy_flow_{file}"), caption, energy_flow(&energy));
-        let caption = format!(
-            "The same, enlarged: from the flywheel of {name} through each part of the transmission to the wheels."
-        );
-        let name = format!("transmission_flow_{file}");
-        section.figure(name, caption, transmission_flow(&energy));
+    let energies = energies(cars);
+    let passed = energies.iter().filter_map(|car| {
+        Some(format!(
+            "{} {} %",
+            car.subject,
+            grouped(100.0 * car.passed()?, 0)
+        ))
+    });
+    let passed: Vec<String> = passed.collect();
+    if !passed.is_empty() {
+        section.text(format!(
+            "Of the work at the flywheel, brakes and wheels get: {}.",
+            passed.join(", ")
+        ));
     }
+    type Draw = fn(&CarEnergy) -> Picture;
+    let view = |kind: &str, about: &str, draw: Draw| {
+        let all = cars.iter().zip(&energies);
+        let view = all.map(|(car, energy)| {
+            let name = car.run.label();
+            let caption = format!("{about} of {name}; all cars on one scale.");
+            (
+                name.to_owned(),
+                format!("{kind}_{}", car.run.vehicle),
+                caption,
+                draw(energy),
+            )
+        });
+        view.collect::<Vec<_>>()
+    };
+    let about = "Energy from the fuel to the road";
+    section.views("energy_flow", view("energy_flow", about, energy_flow));
+    let about = "From the flywheel through each part of the transmission to the wheels";
+    section.views(
+        "transmission_flow",
+        view("transmission_flow", about, transmission_flow),
+    );
     section
 }
 

@@ -10,8 +10,8 @@ use crate::charts::figures::{
     CarLosses, GuideLine, PhaseLosses, Variogram, loss_by_component, loss_by_phase, variogram,
 };
 use crate::charts::{
-    PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure, price_bars,
-    temperatures,
+    Picture, PlotRun, driveline, fuel_bars, group_fuel, losses, operating_points, pressure,
+    price_bars, published_drive, temperatures,
 };
 use cvtcycle_config::cycle::phase_group;
 use cvtcycle_model::drive::FuelMap;
@@ -20,6 +20,7 @@ use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::FuelMapRecord;
+use cvtcycle_output::summary::Summary;
 use cvtcycle_output::table::distinct;
 use cvtcycle_output::trace::loss_column;
 
@@ -39,7 +40,9 @@ fn fuel_map(record: &FuelMapRecord) -> FuelMap {
 }
 
 pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
-    let plots: Vec<PlotRun> = cars(found).iter().filter_map(plot).collect();
+    let runs = cars(found);
+    let plots = runs.iter().filter_map(|car| plot(car, &found.summary));
+    let plots: Vec<PlotRun> = plots.collect();
     let mut energy = energy::section(all);
     if plots.len() == all.len() {
         energy.figure(
@@ -48,7 +51,12 @@ pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
             fuel_bars(&plots),
         );
     }
-    let details = [energy, warm_up(all), drive(all), engine(all)];
+    let details = [
+        energy,
+        warm_up(all, &plots),
+        drive(all, &found.summary),
+        engine(&plots),
+    ];
     let folded = details.map(|mut section| {
         section.more = std::mem::take(&mut section.blocks);
         section
@@ -58,7 +66,7 @@ pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
         .collect()
 }
 
-fn plot<'a>(car: &Car<'a>) -> Option<PlotRun<'a>> {
+fn plot<'a>(car: &Car<'a>, summary: &Summary) -> Option<PlotRun<'a>> {
     let history = car.history?;
     let fuel_map = car.record.map(|record| fuel_map(&record.fuel_map));
     Some(PlotRun {
@@ -66,6 +74,7 @@ fn plot<'a>(car: &Car<'a>) -> Option<PlotRun<'a>> {
         history,
         fuel_map,
         group_fuel: group_fuel(car.run),
+        published: published_drive(&car.run.vehicle, summary),
     })
 }
 
@@ -74,38 +83,35 @@ fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     let mut section = Section::new("losses", "Losses: what they cost, and where they are");
     let cycle = cycle_title(&found.summary, found.record.as_ref());
     let conditions = format!("{}, {}", brief(&cycle), conditions_line(&found.summary));
-    if let [subject, baseline, ..] = all {
-        let of = energy::per_km(subject, baseline);
-        let [own, other] = &of.names;
-        let caption = format!(
-            "Energy over distance from the fuel of {other} to that of {own}; the terms add up."
-        );
-        section.figure("waterfall", caption, waterfall(&of, &conditions));
-    }
+    section.views("waterfall", waterfalls(all, &conditions));
     let cars = all.iter().map(|car| CarLosses {
         name: car.run.label().to_owned(),
         losses_kj: car.losses_kj(),
+        distance_km: car.run.distance_km,
     });
-    let picture = loss_by_component(&cars.collect::<Vec<_>>());
+    let picture = loss_by_component(&cars.collect::<Vec<_>>(), &conditions);
     let caption = "Losses of each transmission over the whole cycle.";
     section.figure("loss_by_component", caption, picture);
-    if let Some((subject, drives, part)) = all.first().and_then(natural_experiment) {
+    let repeated = all.iter().filter_map(|car| {
+        let (name, drives, part) = natural_experiment(car)?;
         let caption = format!(
-            "{part} driven {} times by {subject} while the oil warms: nothing but the temperature changes.",
+            "{part} driven {} times by {name} while the oil warms: nothing but the temperature changes.",
             drives.len()
         );
-        let of = format!("{subject}, {part} of {conditions}");
-        section.figure("repeats", caption, repeats(&of, &drives));
-    }
-    let mut more = Section::default();
-    for (k, car) in all.iter().filter(|car| car.run.price.is_some()).enumerate() {
-        let (file, name) = (&car.run.vehicle, car.run.label());
+        let picture = repeats(&format!("{name}, {part} of {conditions}"), &drives);
+        Some((name.to_owned(), file("repeats", all, car), caption, picture))
+    });
+    section.views("repeats", repeated);
+    let priced = all.iter().filter(|car| car.run.price.is_some()).map(|car| {
+        let name = car.run.label();
         let caption = format!(
             "What each loss of {name} costs: the car driven again without it. The prices need not add up to that of all together."
         );
-        let of = if k == 0 { &mut section } else { &mut more };
-        of.figure(format!("price_{file}"), caption, price_bars(car.run, name));
-    }
+        let picture = price_bars(car.run, name);
+        (name.to_owned(), format!("price_{}", car.run.vehicle), caption, picture)
+    });
+    section.views("price", priced);
+    let mut more = Section::default();
     section.table(loss_table(all));
     let traced: Vec<&Car> = all.iter().filter(|car| car.history.is_some()).collect();
     if !traced.is_empty() && all[0].run.phases.len() > 1 {
@@ -113,16 +119,44 @@ fn losses_section(found: &RunResults, all: &[Car]) -> Section {
         let caption = "Losses by phase of the cycle, for each kilometre driven in it.";
         more.figure("loss_by_phase", caption, picture);
     }
-    for car in traced {
-        let Some(run) = plot(car) else { continue };
-        more.heading(&car.run.title);
-        let name = car.run.label();
-        let about =
-            format!("Loss power of {name} over time, averaged over stretches of the cycle.");
-        more.figure(format!("losses_{}", car.run.vehicle), about, losses(&run));
+    let runs = traced.iter().filter_map(|car| plot(car, &found.summary));
+    let runs: Vec<PlotRun> = runs.collect();
+    if !runs.is_empty() {
+        let caption = "Loss power over time by group of parts, averaged over stretches of the cycle; one scale.";
+        more.figure("losses", caption, losses(&runs));
     }
     section.more = more.blocks;
     section
+}
+
+/// The name of a figure: that of the first car is the plain one.
+fn file(name: &str, all: &[Car], car: &Car) -> String {
+    match all
+        .first()
+        .is_some_and(|first| first.run.vehicle == car.run.vehicle)
+    {
+        true => name.to_owned(),
+        false => format!("{name}_{}", car.run.vehicle),
+    }
+}
+
+/// From the fuel of the first baseline to that of the subject, and from that of the subject to each baseline.
+fn waterfalls(all: &[Car], conditions: &str) -> Vec<(String, String, String, Picture)> {
+    let Some((subject, baselines)) = all.split_first() else {
+        return Vec::new();
+    };
+    let first = baselines.first().map(|baseline| (subject, baseline));
+    let others = baselines.iter().map(|baseline| (baseline, subject));
+    let view = |(own, other): (&Car, &Car)| {
+        let of = energy::per_km(own, other);
+        let [name, from] = &of.names;
+        let caption = format!(
+            "Energy over distance from the fuel of {from} to that of {name}; the terms add up."
+        );
+        let picture = waterfall(&of, conditions);
+        (name.clone(), file("waterfall", all, own), caption, picture)
+    };
+    first.into_iter().chain(others).map(view).collect()
 }
 
 /// A part of the cycle that a car drives again and again with the same speeds: its name, and what each drive loses.
@@ -228,7 +262,7 @@ fn phase_losses(all: &[Car], traced: &[&Car]) -> PhaseLosses {
     }
 }
 
-fn warm_up(all: &[Car]) -> Section {
+fn warm_up(all: &[Car], runs: &[PlotRun]) -> Section {
     let mut section = Section::new("warm_up", "Warm-up");
     let columns = all
         .iter()
@@ -240,41 +274,47 @@ fn warm_up(all: &[Car]) -> Section {
         table.named(capital(node), ends.map(|degc| Quantity::Degc.bare(degc)));
     }
     section.table(table);
-    for car in all {
-        let Some(run) = plot(car) else { continue };
-        let name = run.name;
-        let caption = format!("Temperatures of {name} over the cycle.");
-        section.figure(
-            format!("temperatures_{}", car.run.vehicle),
-            caption,
-            temperatures(&run),
-        );
+    if !runs.is_empty() {
+        let caption = "Temperatures over the cycle, all cars on one scale.";
+        section.figure("temperatures", caption, temperatures(runs));
     }
     section
 }
 
-fn drive(all: &[Car]) -> Section {
+fn drive(all: &[Car], summary: &Summary) -> Section {
     let mut section = Section::new("driveline", "Ratio, engine speed, pressure and slip");
-    for car in all {
-        let Some(run) = plot(car) else { continue };
-        let name = run.name;
-        section.heading(&car.run.title);
-        let caption = format!("Speed, ratio, engine speed and throttle of {name}.");
-        section.figure(
-            format!("driveline_{}", car.run.vehicle),
+    let runs = || {
+        all.iter()
+            .filter_map(|car| Some((car, plot(car, summary)?)))
+    };
+    let named = |kind: &str, car: &Car| format!("{kind}_{}", car.run.vehicle);
+    let driven = runs().map(|(car, run)| {
+        let caption = format!("Speed, ratio, engine speed and throttle of {}.", run.name);
+        (
+            run.name.to_owned(),
+            named("driveline", car),
             caption,
             driveline(&run),
-        );
-        if run.history.is_cvt() {
+        )
+    });
+    section.views("driveline", driven);
+    let pressed = runs()
+        .filter(|(_, run)| run.history.is_cvt())
+        .map(|(car, run)| {
             let caption = format!(
-                "Pulley pressures, belt slip and clamping safety of {name}; the axis of safety is clipped at four times its minimum; it is unbounded at low torque."
+                "Pulley pressures, belt slip and used share of the clamping capacity of {}.",
+                run.name
             );
-            section.figure(
-                format!("pressure_{}", car.run.vehicle),
+            (
+                run.name.to_owned(),
+                named("pressure", car),
                 caption,
                 pressure(&run),
-            );
-        }
+            )
+        });
+    section.views("pressure", pressed);
+    let grams = runs().map(|(car, run)| {
+        let name = run.name.to_owned();
         let lines = car.record.map(|record| record.speed_lines.clone());
         let lines = lines.into_iter().flatten().map(|line| GuideLine {
             whole: line.name.starts_with("target"),
@@ -282,7 +322,7 @@ fn drive(all: &[Car]) -> Section {
             points: line.points,
         });
         let picture = variogram(&Variogram {
-            subject: name.to_owned(),
+            subject: name.clone(),
             speed_kmh: run.history.column("speed_kmh"),
             engine_rpm: run.history.column("engine_speed_rpm"),
             seconds: run.history.dt_s(),
@@ -294,25 +334,17 @@ fn drive(all: &[Car]) -> Section {
             ),
             false => format!("Where {name} ran, and the lines of its gears."),
         };
-        section.figure(format!("variogram_{}", car.run.vehicle), caption, picture);
-    }
+        (name, named("variogram", car), caption, picture)
+    });
+    section.views("variogram", grams);
     section
 }
 
-fn engine(all: &[Car]) -> Section {
+fn engine(runs: &[PlotRun]) -> Section {
     let mut section = Section::new("engine", "Engine operating points");
-    for car in all {
-        let Some(run) = plot(car) else { continue };
-        let name = run.name;
-        let caption = format!(
-            "Time that the engine of {name} spent at each speed and torque, on its fuel map when hot."
-        );
-        let picture = operating_points(&run);
-        section.figure(
-            format!("operating_points_{}", car.run.vehicle),
-            caption,
-            picture,
-        );
+    if !runs.is_empty() {
+        let caption = "Fuel that each engine burnt at each speed and torque, on its fuel map when hot, with the line of least consumption for each power.";
+        section.figure("operating_points", caption, operating_points(runs));
     }
     section
 }

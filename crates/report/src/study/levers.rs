@@ -123,9 +123,9 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
     let [low, high] = answer
         .confidence
         .ends()
-        .map(|p| format!("{:.0} % below", 100.0 * p));
+        .map(|p| format!("{:.0} %", 100.0 * p));
     let columns = [
-        ("Fuel, median", "%"),
+        ("Fuel", "%"),
         (low.as_str(), "%"),
         (high.as_str(), "%"),
         ("Saves in", ""),
@@ -151,8 +151,8 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
         }
     }
     table.note = format!(
-        "Saves in: draws of those without a failed run. Worst of all draws: clamp safety; seconds with a floor of the pressure, with too little flow, and slow, that is \
-         below {:.0} rpm above half load with the clutch closed. Draws in which a lever fails a check are left out.",
+        "Fuel: median of the runs with the uncertain values varied, and the values below which these shares of them lie. Saves in: runs of those that did not fail. Worst of all runs: clamp safety; seconds with \
+         a floor of the pressure, with too little flow, and slow, that is below {:.0} rpm above half load with the clutch closed. Runs in which a lever fails a check are left out.",
         answer.heard_rpm
     );
     table

@@ -142,7 +142,11 @@ pub fn matrix(frame: &StudyTable) -> Result<Option<Matrix>, Problem> {
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn warm_ups(frame: &StudyTable, matrix: &Matrix) -> Result<Vec<WarmUp>, Problem> {
+pub fn warm_ups(
+    frame: &StudyTable,
+    matrix: &Matrix,
+    names: &[String],
+) -> Result<Vec<WarmUp>, Problem> {
     let mut list: Vec<WarmUp> = Vec::new();
     let columns = ["time_s", "transmission_sump_degc", "engine_oil_degc"];
     frame.each_trace(&columns, |points, cars, values| {
@@ -157,7 +161,9 @@ pub fn warm_ups(frame: &StudyTable, matrix: &Matrix) -> Result<Vec<WarmUp>, Prob
         for k in 0..points.len() {
             let point = usize::try_from(points[k]).unwrap_or(0);
             let is_car = |name: &String| **name == *cars[k];
-            let car = matrix.cars.iter().position(is_car).unwrap_or(0);
+            let Some(car) = names.iter().position(is_car) else {
+                continue;
+            };
             let (ambient, start) = (point / matrix.starts.len(), point % matrix.starts.len());
             let of_run = (car, start, ambient);
             if list

@@ -14,7 +14,7 @@
 //! | `judge` | the vehicle that is validated, and verdicts of the rows |
 //! | `rule` | the rule from computed and printed to a verdict |
 //! | `report` | JSON, CSV, Markdown |
-//! | `published` | rows that are the headline of a run |
+//! | `published` | single rows: those that are the headline of a run, those with an id |
 //! | `power` | which change of the cars flips the verdict of a row |
 
 pub(crate) mod checks;
@@ -54,7 +54,7 @@ pub use expr::Computed;
 pub use judge::{CandidateVehicle, HeldOut, Judged, Report, judge};
 pub use keys::MECHANISMS;
 pub use power::{Perturbations, PowerReport, RowPower, Strength};
-pub use published::published;
+pub use published::{published, with_ids};
 pub use read::read;
 pub use report::{computed_text, csv, json, markdown, notes_line, unit_text};
 pub use rows::{About, Cause, RowFile, Tolerance, ValidationRow};

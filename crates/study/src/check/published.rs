@@ -14,10 +14,28 @@ pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
             .filter_map(|rest| rest.lines().next());
         lines.any(|line| quoted.iter().all(|word| line.contains(word.as_str())))
     };
+    let rows = rows_of(|row| row.contains(ABOUT) && is_about(row));
+    rows.into_iter()
+        .filter(|row| {
+            let about = row.about.as_ref();
+            about.is_some_and(|about| about.subject == subject && about.cycle == cycle)
+        })
+        .collect()
+}
+
+/// The rows of the program's files with these ids, in their order; none of an id that no row has.
+pub fn with_ids(ids: &[&str]) -> Vec<ValidationRow> {
+    let heads: Vec<String> = ids.iter().map(|id| format!("id = \"{id}\"\n")).collect();
+    let rows = rows_of(|row| heads.iter().any(|head| row.starts_with(head.as_str())));
+    let of = |id: &&str| rows.iter().find(|row| row.id == **id).cloned();
+    ids.iter().filter_map(of).collect()
+}
+
+/// The rows of the program's files whose text is wanted.
+fn rows_of(wanted: impl Fn(&&str) -> bool) -> Vec<ValidationRow> {
     let files: Vec<(&str, Vec<&str>)> = embedded_rows()
         .iter()
-        .filter(|(_, text)| text.contains(ABOUT))
-        .map(|(name, text)| (*name, text.split(ROW).filter(is_about).collect()))
+        .map(|(name, text)| (*name, text.split(ROW).skip(1).filter(&wanted).collect()))
         .filter(|(_, rows): &(_, Vec<&str>)| !rows.is_empty())
         .collect();
     if files.is_empty() {
@@ -34,12 +52,10 @@ pub fn published(subject: &str, cycle: &str) -> Vec<ValidationRow> {
     });
     let texts: Vec<(String, String)> = texts.collect();
     let read = read((COMMON.0, &common), &texts);
-    let rows = read.into_iter().flatten().flat_map(|file| file.rows);
-    rows.filter(|row| {
-        let about = row.about.as_ref();
-        about.is_some_and(|about| about.subject == subject && about.cycle == cycle)
-    })
-    .collect()
+    read.into_iter()
+        .flatten()
+        .flat_map(|file| file.rows)
+        .collect()
 }
 
 /// The beginning of the line that says which run a row is about.

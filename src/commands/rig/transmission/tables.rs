@@ -39,8 +39,9 @@ pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
     let (setup, c, belt) = (&plan.setup, &plan.conditions, &plan.formulation);
     let (name, title) = (paint.heading(&setup.name), &setup.title);
     let oil = &setup.oils().0.name;
-    let mut text =
-        format!("{name}  {title} on the transmission rig\noil {oil}, belt model {belt}\n");
+    let mut text = paragraphs(&format!(
+        "{name}  {title} on the transmission rig\noil {oil}, belt model {belt}"
+    ));
     text.extend(plan.set.iter().map(|set| format!("--set {set}\n")));
     let steady_rpm = shown_rpm(found.steady.iter().map(|p| &p.set));
     let loaded_rpm = shown_rpm(found.loaded.iter().map(|p| &p.set));

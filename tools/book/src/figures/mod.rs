@@ -194,7 +194,7 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
             .into_iter()
             .map(|line| (look(&line.name), line.points))
             .collect(),
-        stacked: false,
+        ..lines::LinePanel::default()
     };
     let text = |s: &str| s.to_owned();
     let picture = line_chart(&LineChart {

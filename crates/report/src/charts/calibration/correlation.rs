@@ -18,7 +18,7 @@ const FEW: usize = 18;
 const TEXT: f64 = 11.0;
 /// Largest cell, and the smallest one that holds a number, pixels.
 const CELL: f64 = 40.0;
-const HOLDS: f64 = 24.0;
+const HOLDS: f64 = 30.0;
 /// Room above the cells for the numbers of the columns, pixels.
 const HEAD: f64 = 20.0;
 const SLICES: usize = 40;
@@ -30,10 +30,13 @@ const ON_DARK: &str = "#ffffff";
 pub fn correlation_plot(outcome: &Outcome) -> Picture {
     let count = outcome.parameters.len();
     let n = count.min(MAX_DRAWN);
-    let mut notes = vec![
-        "Columns bear the numbers of the rows. Crossed out: not identifiable from these data."
-            .to_owned(),
-    ];
+    let unknown = (0..n).any(|i| (0..i).any(|j| correlation(outcome, i, j).is_none()));
+    let crossed = if unknown {
+        " Crossed out: not identifiable from these data."
+    } else {
+        ""
+    };
+    let mut notes = vec![format!("Columns bear the numbers of the rows.{crossed}")];
     if n < count {
         notes.push(format!(
             "The first {n} of {count} parameters; correlation.csv has all."
@@ -62,11 +65,26 @@ pub fn correlation_plot(outcome: &Outcome) -> Picture {
         colours: (0..SLICES).map(colour).collect(),
         labels: [-1.0, -0.5, 0.0, 0.5, 1.0].map(label).into(),
     };
-    Chart::new("Correlation of the parameters", subject(outcome), MARGIN)
+    Chart::new(title(outcome, n), subject(outcome), MARGIN)
         .panels([panel])
         .foot(Block::key((MARGIN + 8.0, 260.0), key))
         .notes(WIDE_FOOT, notes)
         .picture(table)
+}
+
+/// The strongest correlation of two parameters.
+fn title(outcome: &Outcome, n: usize) -> String {
+    let pairs = (0..n).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let known = pairs.filter_map(|(i, j)| Some((i, j, correlation(outcome, i, j)?)));
+    match known.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs())) {
+        Some((i, j, r)) => format!(
+            "The strongest correlation of two parameters is {}: {} and {}",
+            cell(r, 0.01),
+            j + 1,
+            i + 1
+        ),
+        None => "Correlation of the parameters".to_owned(),
+    }
 }
 
 /// Writes name and number of a row, and the number of its column.
@@ -125,7 +143,7 @@ fn draw(
         _ if own => {}
         Some(r) if r.abs() >= STRONG && size >= HOLDS => {
             let ink = if r.abs() > 0.75 { ON_DARK } else { ON_LIGHT };
-            let text = cell(r, 0.01).replacen("0.", ".", 1);
+            let text = cell(r, 0.01);
             let middle = at(x + 0.5, y + 0.5).shift(0.0, 4.0);
             panel.label(Label::new(middle, text).middle().colour(ink));
         }

@@ -133,6 +133,16 @@ fn common_note(outcome: &Outcome) -> Option<String> {
     })
 }
 
+/// By how much the fit brings computed and measured numbers together.
+fn rms_title(outcome: &Outcome) -> String {
+    match outcome.rms_sd() {
+        [Some(before), Some(after), _] => format!(
+            "The fit brings the residuals from {before:.2} to {after:.2} standard deviations (root mean square)"
+        ),
+        _ => "Measured and computed".to_owned(),
+    }
+}
+
 /// The root mean square of the residuals, for the picture in words.
 fn rms_in_words(outcome: &Outcome) -> String {
     let number = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.2}"));

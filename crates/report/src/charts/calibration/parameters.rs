@@ -65,11 +65,24 @@ pub fn parameters_plot(outcome: &Outcome) -> Picture {
         Entry::symbol(Symbol::CIRCLE, Symbol::open(INK), "Value of the files"),
         Entry::line(BOUND, "Bounds"),
     ];
-    Chart::new("Parameters", subject(outcome), MARGIN)
+    Chart::new(title(all), subject(outcome), MARGIN)
         .panels([panel])
         .legend(WIDE_FOOT, entries)
         .notes(WIDE_FOOT, notes)
         .picture(table)
+}
+
+/// The parameter that the data tell most of.
+fn title(all: &[Parameter]) -> String {
+    let known = all.iter().filter_map(|p| Some((p, p.prior_share?)));
+    match known.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((p, share)) => format!(
+            "The data say most of {}: {} % of the prior variance is left",
+            p.name,
+            cell(100.0 * share, 1.0)
+        ),
+        None => "Parameters between their bounds".to_owned(),
+    }
 }
 
 /// A step that leaves three digits of what a parameter is known to.

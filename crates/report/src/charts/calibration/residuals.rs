@@ -80,6 +80,26 @@ impl Pitch {
     }
 }
 
+/// How many observations a fit meets, and how many it predicts.
+fn title(outcome: &Outcome) -> String {
+    let all = &outcome.residuals;
+    let within = |of: fn(&Residual) -> Option<f64>| {
+        let values = all.iter().filter_map(of);
+        values.filter(|sd| sd.abs() <= BAND).count()
+    };
+    let fitted = within(|r| Some(r.after_sd));
+    let predicted = within(|r| r.left_out_sd);
+    let known = all.iter().filter(|r| r.left_out_sd.is_some()).count();
+    let rest = match known {
+        0 => String::new(),
+        n => format!("; {predicted} of {n} when predicted without their fold"),
+    };
+    format!(
+        "{fitted} of {} observations lie within two standard deviations{rest}",
+        all.len()
+    )
+}
+
 /// Draws the residuals by group: with the files' values, fitted, and predicted by a fit that has not seen the observation.
 pub fn residuals_plot(outcome: &Outcome) -> Picture {
     let (kept, thinned) = shown(outcome);
@@ -111,7 +131,7 @@ pub fn residuals_plot(outcome: &Outcome) -> Picture {
         );
         entries.push(Entry::symbol(Symbol::DIAMOND, style, name));
     }
-    Chart::new("Residuals", subject(outcome), MARGIN)
+    Chart::new(title(outcome), subject(outcome), MARGIN)
         .lead(rms_in_words(outcome))
         .panels([panel(&lines, axis)])
         .legend(WIDE_FOOT, entries)

@@ -1,8 +1,8 @@
 //! Measured against computed: a panel for each unit, a mark for each observation.
 
 use super::{
-    BEFORE, FOOT, RIGHT, TOP, common_note, groups, in_sd, label, rms_in_words, shown, subject,
-    symbol, unit,
+    BEFORE, FOOT, RIGHT, TOP, common_note, groups, in_sd, label, rms_in_words, rms_title, shown,
+    subject, symbol, unit,
 };
 use crate::charts::engine::{
     Axis, BELOW, CONTEXT, Chart, Entry, LEFT, PLOT_LEFT, Panel, Rect, Style, Symbol, at, grid,
@@ -44,9 +44,9 @@ pub fn scatter_plot(outcome: &Outcome) -> Picture {
     let room = (RIGHT - 8.0 - 2.0 * LEFT - GAP.0) / 2.0;
     let several = units.len() > 1;
     let size = if several {
-        (room, 290.0)
+        (room, room)
     } else {
-        (560.0, 440.0)
+        (460.0, 460.0)
     };
     let pitch = (LEFT + size.0 + GAP.0, size.1 + BELOW + GAP.1);
     let place = grid((PLOT_LEFT, TOP), size, pitch, 2);
@@ -55,7 +55,7 @@ pub fn scatter_plot(outcome: &Outcome) -> Picture {
         draw(place(k), name, &own.copied().collect::<Vec<_>>(), &groups)
     };
     let entries = groups.iter().map(entry).chain([open]);
-    Chart::new("Measured and computed", subject(outcome), PLOT_LEFT)
+    Chart::new(rms_title(outcome), subject(outcome), PLOT_LEFT)
         .lead(rms_in_words(outcome))
         .panels(units.iter().enumerate().map(panel))
         .legend(FOOT, entries)

@@ -2,17 +2,16 @@
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
-    Axis, BELOW, Chart, Label, Panel, RULE, Rect, Shape, Style, Symbol, WIDTH, at, cell,
-    group_line, stroke,
+    Axis, BELOW, Chart, End, Panel, RULE, Rect, Shape, Style, Symbol, WIDTH, at, cell, group_line,
+    label_ends, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital, capital_first, grouped, words};
 use cvtcycle_model::transmission::component::LossGroup;
 
-/// Left and right edge of the plot, its height, least distance of two labels, pixels.
+/// Left and right edge of the plot, and its height, pixels.
 const SIDES: (f64, f64) = (78.0, WIDTH - 250.0);
 const TALL: f64 = 300.0;
-const APART: f64 = 15.0;
 /// Row of the first group in the table, after those of the oil.
 const FIRST_ROW: usize = 2;
 
@@ -40,7 +39,7 @@ pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
         .map(|(k, of)| (k as f64, span(of)));
     let pad = 0.04 * last.max(1) as f64;
     let x = Axis::labelled(
-        "Transmission oil [degC]",
+        "Transmission oil, beginning to end [degC]",
         (-pad, last as f64 + pad),
         places.collect(),
     );
@@ -79,7 +78,9 @@ pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
         }
         parts.push((words(group.name()), [*first, end]));
     }
-    label_ends(&mut panel, &parts, last as f64);
+    let ends = groups.iter().zip(&parts);
+    let ends = ends.map(|((group, _), part)| named(*group, part, last as f64));
+    label_ends(&mut panel, ends.collect());
     let totals: Vec<f64> = drives.iter().map(Repeat::total_kj).collect();
     let title = says::repeats(&totals, &parts);
     Chart::new(title, subject, MARGIN)
@@ -92,21 +93,15 @@ fn span(of: &Repeat) -> String {
     format!("{from} to {to}")
 }
 
-/// Names and changes at the ends of the lines, moved apart where they would lie on each other.
-fn label_ends(panel: &mut Panel, parts: &[(String, [f64; 2])], last: f64) {
-    let mut order: Vec<&(String, [f64; 2])> = parts.iter().collect();
-    order.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
-    let lowest = panel.rect.bottom + 8.0;
-    let mut free = f64::NEG_INFINITY;
-    for (k, (name, [from, to])) in order.iter().enumerate() {
-        let own = panel.py(*to) + 4.0;
-        let room = lowest - APART * (order.len() - 1 - k) as f64;
-        let y = own.max(free).min(room.max(free));
-        free = y + APART;
-        let change = 100.0 * (to / from - 1.0);
-        let change = crate::number::signed(grouped(change, 0), change);
-        let text = format!("{} {} ({change} %)", capital_first(name), grouped(*to, 0));
-        panel.label(Label::new(at(last, *to).shift(12.0, y - own + 4.0), text).size(11.0));
+/// Names and changes at the ends of the lines.
+fn named(group: LossGroup, parts: &(String, [f64; 2]), last: f64) -> End {
+    let (name, [from, to]) = parts;
+    let change = 100.0 * (to / from - 1.0);
+    let change = crate::number::signed(grouped(change, 0), change);
+    End {
+        at: (last, *to),
+        text: format!("{} {} ({change} %)", capital_first(name), grouped(*to, 0)),
+        colour: group_line(group),
     }
 }
 

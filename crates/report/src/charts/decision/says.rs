@@ -28,7 +28,10 @@ pub(super) fn strip(subject: &str, first: Option<(&str, f64, Option<[f64; 2]>)>)
                 level(ends)
             )
         }
-        Some(ends) => format!("{subject} uses {compared}; in the draws {}", level(ends)),
+        Some(ends) => format!(
+            "{subject} uses {compared}; with uncertain values varied {}",
+            level(ends)
+        ),
     }
 }
 
@@ -73,9 +76,9 @@ pub(super) fn information(best: Option<(&str, f64, f64)>, unit: &str) -> String 
         Some((name, sd, left)) => {
             let digits = decimals([0.0, sd]) + 1;
             let [sd, left] = [sd, left].map(|x| grouped(x, digits));
-            format!("Knowing {name} would cut the spread from {sd} to {left} {unit}")
+            format!("Knowing {name} would cut the standard deviation from {sd} to {left} {unit}")
         }
-        None => "No single value is above chance: more draws first".to_owned(),
+        None => "No single value is above chance: more varied runs first".to_owned(),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
-    Axis, Chart, Entry, Fill, INK, Label, QUIET, Style, Symbol, WIDTH, at, optional_cell,
-    row_middle, rows_left, rows_panel, stroke,
+    Axis, Chart, Entry, Fill, INK, Label, PUBLISHED, QUIET, Style, Symbol, WIDTH, at,
+    optional_cell, row_middle, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_study::words::decimals;
@@ -14,8 +14,6 @@ const ROW: f64 = 30.0;
 /// Half of the height of a bar, radius of a mark, pixels.
 const HALF: f64 = 6.0;
 const RADIUS: f64 = 5.5;
-/// Colour of what contradicts.
-const CONTRARY: &str = "#a3311c";
 
 /// The difference to one baseline, per cent of its fuel.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -67,14 +65,14 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
             );
         }
         if let Some([low, high]) = row.published {
-            let line = Style::line(stroke(CONTRARY, 2.0, &[])).row(k);
+            let line = Style::line(stroke(PUBLISHED, 2.0, &[])).row(k);
             panel.segment(middle(low), middle(high), line);
             let mark = middle(0.5 * (low + high));
             panel.symbol(
                 Symbol::DIAMOND,
                 mark,
                 RADIUS,
-                Symbol::white(CONTRARY).row(k),
+                Symbol::white(PUBLISHED).row(k),
             );
         }
         if let Some(files) = row.files {
@@ -90,10 +88,18 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     panel.upright(0.0, stroke(INK, 1.2, &[]));
     let first = rows.first();
     let first = first.and_then(|row| Some((row.baseline.as_str(), row.files?, row.interval())));
-    Chart::new(says::strip(subject, first), conditions, MARGIN)
-        .panels([panel])
-        .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
-        .picture(table)
+    let varied = match rows.iter().any(|row| row.drawn.is_some()) {
+        true => "; in varied runs every uncertain value is another one of its range",
+        false => "",
+    };
+    Chart::new(
+        says::strip(subject, first),
+        format!("{conditions}{varied}"),
+        MARGIN,
+    )
+    .panels([panel])
+    .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
+    .picture(table)
 }
 
 /// Dark, with a pale edge that shows it on a bar.
@@ -104,17 +110,17 @@ fn nominal() -> Style {
 fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(Fill::car(0), "90 % of the draws"));
+        list.push(Entry::fill(Fill::car(0), "90 % of varied runs"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
-            "median of the draws",
+            "median of varied runs",
         ));
     }
     if rows.iter().any(|row| row.published.is_some()) {
         list.push(Entry::symbol(
             Symbol::DIAMOND,
-            Symbol::white(CONTRARY),
+            Symbol::white(PUBLISHED),
             "published, contradicts",
         ));
     }
@@ -141,9 +147,9 @@ fn table() -> PictureTable {
     PictureTable::new(&[
         ("Against", ""),
         ("Nominal values", "%"),
-        ("5 % of the draws below", "%"),
+        ("5 % of the varied runs below", "%"),
         ("Median", "%"),
-        ("95 % of the draws below", "%"),
+        ("95 % of the varied runs below", "%"),
         ("Published from", "%"),
         ("to", "%"),
     ])

@@ -5,6 +5,7 @@
 mod axis;
 mod backend;
 mod chart;
+mod ends;
 mod legend;
 mod panel;
 mod place;
@@ -17,11 +18,13 @@ mod text;
 pub use axis::cell;
 pub(crate) use axis::{Axis, number, optional_cell, range, round_step};
 pub(crate) use chart::{Block, Chart, Entry, Key, LEFT, PLOT_LEFT, Side, WIDTH};
+pub(crate) use ends::{End, label_ends};
 pub(crate) use panel::{BELOW, Item, Panel, Shape, free, grid, row_middle, rows_left, rows_panel};
 pub(crate) use place::{Label, Place, at};
+pub use style::Palette;
 pub(crate) use style::{
-    CONTEXT, DIVERGING, Fill, INK, PLAIN, QUIET, RULE, STROKES, Stroke, Style, ZERO, between,
-    group_line, ramp, stroke,
+    CONTEXT, DIVERGING, Fill, INK, PLAIN, PUBLISHED, QUIET, RULE, STROKES, Stroke, Style, ZERO,
+    between, group_line, ramp, signed_colour, stroke,
 };
 pub(crate) use svg::{Point, Rect};
 pub(crate) use symbol::Symbol;

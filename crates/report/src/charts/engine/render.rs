@@ -10,8 +10,9 @@ use super::text::{Cut, text_width};
 use crate::charts::picture::{MAX_SPANS, Picture, PictureTable};
 use cvtcycle_output::table::distinct;
 
-/// Size of the title and of the line below it, pixels.
+/// Size of the title, at least where it is long, and of the line below it, pixels.
 const TITLE: f64 = 15.0;
+const LEAST_TITLE: f64 = 12.5;
 const SUBJECT: f64 = 12.0;
 
 impl Chart {
@@ -54,7 +55,10 @@ impl Chart {
         let text = |y: f64, text: &str, size: f64| {
             Label::new(at(self.left, y), Cut::End.apply(text, size, room)).size(size)
         };
-        draw_text(svg, text(24.0, &self.title, TITLE).bold(true));
+        // A long sentence is written a little smaller before it is cut.
+        let fits = room / text_width(&self.title, 1.0).max(1.0);
+        let size = fits.clamp(LEAST_TITLE, TITLE);
+        draw_text(svg, text(24.0, &self.title, size).bold(true));
         draw_text(svg, text(42.0, &self.subject, SUBJECT).quiet());
     }
 

@@ -49,6 +49,43 @@ pub(crate) const STROKES: [Stroke; 7] = [
     stroke("#4b2991", 1.5, &[14.0, 3.0, 2.0, 3.0, 2.0, 3.0]),
 ];
 
+/// Colours of an ordered quantity from its least to its largest value: blue over purple to orange, and ever lighter.
+const ORDERED: [&str; 7] = [
+    "#1d3a8f", "#4b3a9c", "#79349a", "#a0338a", "#c23f6d", "#d6574a", "#dc7423",
+];
+/// Colour of what was published or measured, in every figure that has it.
+pub(crate) const PUBLISHED: &str = "#a3311c";
+
+/// What the colours of the lines of a figure mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Palette {
+    /// Things of different kinds.
+    #[default]
+    Kinds,
+    /// Cars, the subject first.
+    Cars,
+    /// Values of one quantity in ascending order, such as temperatures.
+    Ordered,
+}
+
+impl Palette {
+    /// The line with a number of so many.
+    pub(crate) fn stroke(self, index: usize, count: usize) -> Stroke {
+        let of_kind = STROKES[index % STROKES.len()];
+        match self {
+            Palette::Kinds => of_kind,
+            Palette::Cars => stroke(CARS[index % CARS.len()], 2.0, of_kind.dash),
+            Palette::Ordered => stroke(ordered(index, count), 1.8, of_kind.dash),
+        }
+    }
+}
+
+/// Colour of a value of an ordered quantity by its place among so many.
+pub(crate) fn ordered(index: usize, count: usize) -> &'static str {
+    let last = count.saturating_sub(1).max(1);
+    ORDERED[(index * (ORDERED.len() - 1) + last / 2) / last % ORDERED.len()]
+}
+
 impl Stroke {
     fn attributes(&self) -> String {
         let mut text = format!(
@@ -97,6 +134,11 @@ pub(crate) const DIVERGING: Ramp = &[
     (160.0, 72.0, 5.0),
 ];
 
+/// Colour of an area of what is more, or less: the two sides of the signed palette.
+pub(crate) fn signed_colour(more: bool) -> String {
+    between(DIVERGING, if more { 0.82 } else { 0.18 })
+}
+
 /// Colour of the ramp at a share of 0 to 1.
 pub(crate) fn ramp(share: f64) -> String {
     between(RAMP, share)
@@ -113,7 +155,7 @@ pub(crate) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
 }
 
 /// Cars, the subject first: the subject strongest.
-const CARS: [&str; 5] = ["#0b5a8c", "#d58a3c", "#a9a9a9", "#7a4f8f", "#5f8f5a"];
+const CARS: [&str; 5] = ["#0b5a8c", "#d58a3c", "#8f8f8f", "#7a4f8f", "#5f8f5a"];
 
 /// Colour of a line for a group of losses, in the hues of [`Fill::component`].
 pub(crate) fn group_line(group: LossGroup) -> &'static str {

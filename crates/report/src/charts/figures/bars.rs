@@ -1,14 +1,15 @@
 //! Rows of horizontal bars with a label at the outer end of each: losses of the transmission by component, with a panel for each car, and
 //! by phase of the cycle, stacked.
 
-use super::{MARGIN, TEXT, TOP, energy, finite, percent};
+use super::{MARGIN, TEXT, TOP, finite, percent};
 use crate::charts::engine::{
-    Axis, Chart, Entry, Fill, Label, Panel, Point, Style, WIDTH, at, cell, row_middle, rows_left,
-    rows_panel, text_width,
+    Axis, Chart, Entry, Fill, Label, Panel, Point, Style, WIDTH, at, cell, group_line, row_middle,
+    rows_left, rows_panel, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use crate::number::{capital, grouped};
+use crate::number::{capital, capital_first, grouped, list_of, words};
 use cvtcycle_output::Component;
+use cvtcycle_output::table::distinct;
 
 /// Right edge of the bars, pixels.
 const RIGHT: f64 = WIDTH - 18.0;
@@ -89,6 +90,8 @@ pub struct CarLosses {
     pub name: String,
     /// Energy lost by each component over the cycle, kJ, in the order of the power flow.
     pub losses_kj: Vec<(Component, f64)>,
+    /// Distance, km.
+    pub distance_km: f64,
 }
 
 impl CarLosses {
@@ -98,63 +101,84 @@ impl CarLosses {
     }
 }
 
-/// Losses over the cycle by component, in the order of the power flow, with their share of the car's transmission loss.
-pub fn loss_by_component(cars: &[CarLosses]) -> Picture {
+/// Losses over the cycle by component, in the order of the power flow, over the distance and as their share of the car's transmission loss.
+pub fn loss_by_component(cars: &[CarLosses], conditions: &str) -> Picture {
     let mut table = PictureTable::new(&[
         ("car", ""),
         ("component", ""),
-        ("energy", "kJ"),
+        ("loss", "kJ/km"),
         ("share of the transmission's loss", "%"),
     ]);
     let all = || {
-        let of = |car: &CarLosses| car.losses_kj.clone();
-        let total = |car: &CarLosses| std::iter::repeat(car.total_kj());
         cars.iter()
-            .flat_map(move |car| of(car).into_iter().zip(total(car)))
+            .flat_map(|car| car.losses_kj.iter().map(move |of| (car, of)))
     };
-    let names: Vec<String> = all().map(|((c, _), _)| capital(c.name())).collect();
+    let names: Vec<String> = all().map(|(_, (c, _))| capital(c.name())).collect();
     let left = rows_left(names.iter().map(String::as_str), TEXT);
-    let values = all().map(|((_, kj), _)| finite(kj));
-    let labels = all().map(|((_, kj), total)| loss_label(kj, total));
-    let x = axis_with_room("Energy lost over the cycle [kJ]", left, values, labels);
+    let values = all().map(|(car, (_, kj))| finite(kj / car.distance_km));
+    let labels = all().map(|(car, (_, kj))| loss_label(*kj, car));
+    let x = axis_with_room("Loss over the distance [kJ/km]", left, values, labels);
     let subject = match cars {
-        [car] => car.name.clone(),
-        _ => format!(
-            "{} cars, one scale; components in the order of the power flow",
-            cars.len()
-        ),
+        [car] => format!("{}, {conditions}", car.name),
+        _ => format!("{conditions}; one scale; components in the order of the power flow"),
     };
     let panel = |k: usize, corner: Point| match cars.get(k) {
         Some(car) => car_bars(car, corner, &x, &mut table),
         None => bars_panel(corner, 1, x.clone()).no_data(true),
     };
-    let chart = Chart::new("Transmission losses by component", subject, MARGIN);
+    let chart = Chart::new(largest(cars), subject, MARGIN);
     stacked(chart, (left, TOP), (24.0, 16.0), cars.len().max(1), panel).picture(table)
+}
+
+/// The three largest losses of the first car, and their share.
+fn largest(cars: &[CarLosses]) -> String {
+    let plain = || "Transmission losses by component".to_owned();
+    let Some(car) = cars.first().filter(|car| car.total_kj() > 0.0) else {
+        return plain();
+    };
+    let mut order: Vec<(Component, f64)> = car.losses_kj.clone();
+    order.retain(|(_, kj)| *kj > 0.0);
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    order.truncate(3);
+    let share = 100.0 * order.iter().map(|(_, kj)| kj).sum::<f64>() / car.total_kj();
+    let names: Vec<String> = order.iter().map(|(c, _)| words(c.name())).collect();
+    let verb = if names.len() == 1 { "is" } else { "are" };
+    format!(
+        "{} {verb} {} % of what the transmission of {} loses",
+        capital_first(&list_of(&names)),
+        grouped(share, 0),
+        car.name
+    )
 }
 
 fn car_bars(car: &CarLosses, corner: Point, x: &Axis, table: &mut PictureTable) -> Panel {
     let total = car.total_kj();
     let mut panel = bars_panel(corner, car.losses_kj.len(), x.clone())
-        .heading(format!("{}: {} in all", car.name, energy(total)))
+        .heading(format!("{}: {} in all", car.name, per_km(total, car)))
         .no_data(car.losses_kj.is_empty());
     for (row, (component, kj)) in car.losses_kj.iter().enumerate() {
         let words = capital(component.name());
-        let numbers = [*kj, 100.0 * kj / total].map(|x| cell(x, 0.01));
+        let numbers = [kj / car.distance_km, 100.0 * kj / total].map(|x| cell(x, 0.01));
         let names = [car.name.clone(), words.clone()];
         let at_row = table.push(names.into_iter().chain(numbers));
         let style = Style::edged(Fill::component(*component), 0.5).row(at_row);
         name(&mut panel, row, &words, false);
-        bar(&mut panel, row, (0.0, finite(*kj)), style);
-        at_end(&mut panel, row, finite(*kj), false, loss_label(*kj, total));
+        let value = finite(kj / car.distance_km);
+        bar(&mut panel, row, (0.0, value), style);
+        at_end(&mut panel, row, value, false, loss_label(*kj, car));
     }
     panel
 }
 
-fn loss_label(kj: f64, total: f64) -> String {
-    match percent(kj, total).as_str() {
-        "" => energy(kj),
-        share => format!("{}, {share}", energy(kj)),
+fn loss_label(kj: f64, car: &CarLosses) -> String {
+    match percent(kj, car.total_kj()).as_str() {
+        "" => per_km(kj, car),
+        share => format!("{}, {share}", per_km(kj, car)),
     }
+}
+
+fn per_km(kj: f64, car: &CarLosses) -> String {
+    format!("{} kJ/km", grouped(kj / car.distance_km, 1))
 }
 
 /// Losses of one car by component, in the order of the power flow.
@@ -174,17 +198,12 @@ pub struct PhaseLosses {
 /// Left edge of the legend, pixels.
 const LEGEND: f64 = 40.0;
 
-/// Loss per distance of each phase group, stacked by component in the order of the power flow. A group without any finite loss, such as a
+/// Loss per distance of each phase group, stacked by group of components in the order of the power flow. A group without any finite loss, such as a
 /// soak, in which no distance is driven, is left out.
 pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
     let some = |cars: &[CarParts]| cars.iter().flatten().any(|(_, x)| x.is_finite());
     let (groups, left_out): (Vec<_>, Vec<_>) = of.groups.iter().partition(|(_, cars)| some(cars));
-    let columns = [
-        ("phase", ""),
-        ("car", ""),
-        ("component", ""),
-        ("loss", "kJ/km"),
-    ];
+    let columns = [("phase", ""), ("car", ""), ("parts", ""), ("loss", "kJ/km")];
     let mut table = PictureTable::new(&columns);
     if !left_out.is_empty() {
         let names: Vec<&str> = left_out.iter().map(|(name, _)| name.as_str()).collect();
@@ -201,19 +220,35 @@ pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
         Some((group, cars)) => phase_bars(group, of.cars.iter().zip(cars), corner, &x, &mut table),
         None => bars_panel(corner, of.cars.len(), x.clone()).no_data(true),
     };
-    let used = |c: &Component| all().flatten().any(|(own, _)| own == c);
-    let used: Vec<Component> = Component::ALL.into_iter().filter(used).collect();
+    let used = distinct(all().flatten().map(|(component, _)| component.group()));
     let entries = used
         .into_iter()
-        .map(|c| Entry::fill(Fill::component(c), capital(c.name())));
-    let chart = Chart::new(
-        "Transmission losses by phase, per distance",
-        &of.subject,
-        MARGIN,
-    );
+        .map(|group| Entry::fill(Fill::plain(group_line(group)), capital(group.name())));
+    let chart = Chart::new(phase_title(of, &groups), &of.subject, MARGIN);
     stacked(chart, (left, TOP), (23.0, 12.0), groups.len().max(1), panel)
         .legend((LEGEND, WIDTH - LEGEND - 20.0), entries)
         .picture(table)
+}
+
+/// What the first car loses in each phase.
+fn phase_title(of: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String {
+    let sum = |parts: &CarParts| {
+        parts
+            .iter()
+            .map(|(_, loss)| finite(*loss).max(0.0))
+            .sum::<f64>()
+    };
+    let part = |(name, cars): &&(String, Vec<CarParts>)| {
+        Some(format!(
+            "{} kJ/km in {name}",
+            grouped(sum(cars.first()?), 1)
+        ))
+    };
+    let parts: Vec<String> = groups.iter().filter_map(part).collect();
+    match (of.cars.first(), parts.is_empty()) {
+        (Some(car), false) => format!("{car} loses {}", list_of(&parts)),
+        _ => "Transmission losses by phase, per distance".to_owned(),
+    }
 }
 
 /// The bars of a group, a row for each car.
@@ -228,11 +263,15 @@ fn phase_bars<'a>(
     for (row, (car, parts)) in cars.enumerate() {
         name(&mut panel, row, car, false);
         let mut base = 0.0;
-        for (component, loss) in parts {
-            let words = capital(component.name());
-            let at = table.push([group.to_owned(), car.clone(), words, cell(*loss, 0.01)]);
-            let next = base + finite(*loss).max(0.0);
-            let style = Style::edged(Fill::component(*component), 0.5).row(at);
+        for part in distinct(parts.iter().map(|(component, _)| component.group())) {
+            let own = parts
+                .iter()
+                .filter(|(component, _)| component.group() == part);
+            let loss: f64 = own.map(|(_, loss)| *loss).sum();
+            let words = capital(part.name());
+            let at = table.push([group.to_owned(), car.clone(), words, cell(loss, 0.01)]);
+            let next = base + finite(loss).max(0.0);
+            let style = Style::edged(Fill::plain(group_line(part)), 0.5).row(at);
             bar(&mut panel, row, (base, next), style);
             base = next;
         }

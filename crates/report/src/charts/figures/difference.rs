@@ -7,6 +7,9 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital, grouped, signed};
 use cvtcycle_output::Component;
 
+/// Terms that change by less than this share of all changes are put together.
+const SMALL: f64 = 0.01;
+
 /// Two runs A and B, term by term.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Difference {
@@ -58,9 +61,45 @@ impl Difference {
         [a, b, b - a]
     }
 
+    /// The terms that change by a hundredth of all changes at least, and the others, if there are several.
+    fn by_size(&self) -> (Vec<DifferenceTerm>, Vec<DifferenceTerm>) {
+        let all: f64 = self.terms.iter().map(|term| term.change().abs()).sum();
+        let large = |term: &DifferenceTerm| term.change().abs() >= SMALL * all;
+        let (kept, small): (Vec<_>, Vec<_>) = self.terms.iter().cloned().partition(large);
+        match small.len() {
+            0 | 1 => (self.terms.clone(), Vec::new()),
+            _ => (kept, small),
+        }
+    }
+
+    /// The terms that are drawn: the small ones together.
+    fn folded(&self) -> Vec<DifferenceTerm> {
+        let (mut kept, small) = self.by_size();
+        if !small.is_empty() {
+            let rest = [0, 1].map(|k| small.iter().map(|term| finite(term.kj[k])).sum());
+            kept.push(DifferenceTerm::term(
+                &format!("{} others", small.len()),
+                Term::Other,
+                rest,
+            ));
+        }
+        kept
+    }
+
+    /// The row of a term.
+    fn cells(&self, term: &DifferenceTerm) -> Vec<String> {
+        let kj = [term.kj[0], term.kj[1], term.change()].map(|kj| cell(kj, 0.01));
+        let fuel = self.litres(term.kj).map(|l| cell(l, 0.0001));
+        [term.name.clone()]
+            .into_iter()
+            .chain(kj)
+            .chain(fuel)
+            .collect()
+    }
+
     /// The terms, with one for what they leave of the fuel if that is more than rounding, and at the end the fuel.
     fn complete_terms(&self) -> Vec<DifferenceTerm> {
-        let mut terms = self.terms.clone();
+        let mut terms = self.folded();
         let sum = |k: usize| {
             let kj = self.terms.iter().map(|term| finite(term.kj[k]));
             kj.sum::<f64>()
@@ -83,6 +122,8 @@ impl Difference {
 pub fn difference_bars(of: &Difference) -> Picture {
     let terms = of.complete_terms();
     let last = terms.len() - 1;
+    let (kept, small) = of.by_size();
+    let place_of_others = kept.len();
     let words = |term: &DifferenceTerm| label(term.change(), of.litres(term.kj)[2]);
     let left = rows_left(terms.iter().map(|term| term.name.as_str()), TEXT);
     let changes = terms.iter().map(DifferenceTerm::change);
@@ -96,9 +137,14 @@ pub fn difference_bars(of: &Difference) -> Picture {
     table.note = explain(of);
     for (row, term) in terms.iter().enumerate() {
         let (sum, change) = (row == last, term.change());
-        let kj = [term.kj[0], term.kj[1], change].map(|kj| cell(kj, 0.01));
-        let fuel = of.litres(term.kj).map(|l| cell(l, 0.0001));
-        let at_row = table.push([term.name.clone()].into_iter().chain(kj).chain(fuel));
+        // The table has each of the small terms, the figure their sum.
+        let at_row = match term.term {
+            Term::Other if !small.is_empty() && row == place_of_others => {
+                table.rows.extend(small.iter().map(|term| of.cells(term)));
+                None
+            }
+            _ => Some(table.push(of.cells(term))),
+        };
         if sum {
             let [start, end] = [f64::NEG_INFINITY, f64::INFINITY].map(|x| at(x, row as f64));
             let rule = Style::line(stroke(QUIET, 0.75, &[]));
@@ -110,15 +156,38 @@ pub fn difference_bars(of: &Difference) -> Picture {
             term.term.fill()
         };
         name(&mut panel, row, &term.name, sum);
-        let style = Style::edged(fill, 0.5).row(at_row);
+        let mut style = Style::edged(fill, 0.5);
+        style.row = at_row;
         bar(&mut panel, row, (0.0, change), style);
         at_end(&mut panel, row, change, sum, words(term));
     }
     let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);
-    Chart::new("Difference of energies, B \u{2212} A", subject, MARGIN)
+    Chart::new(title_of(of), subject, MARGIN)
         .panels([panel])
         .notes((MARGIN, WIDTH - 40.0), vec![explain(of)])
         .picture(table)
+}
+
+/// What B burns more or less, and where most of that is.
+fn title_of(of: &Difference) -> String {
+    let fuel = finite(of.fuel_kj[1]) - finite(of.fuel_kj[0]);
+    if fuel.abs() < 1e-9 {
+        return "B burns as much as A".to_owned();
+    }
+    let most = of
+        .terms
+        .iter()
+        .max_by(|a, b| a.change().abs().total_cmp(&b.change().abs()));
+    let most = most.map_or_else(String::new, |term| {
+        let change = term.change();
+        format!(
+            ", most of it {} ({})",
+            term.name.to_lowercase(),
+            signed(energy(change), change)
+        )
+    });
+    let more = if fuel < 0.0 { "less" } else { "more" };
+    format!("B burns {} {more} than A{most}", energy(fuel.abs()))
 }
 
 fn label(kj: f64, litres: f64) -> String {

@@ -1,9 +1,10 @@
 //! The energy flow of one car: all of it from fuel to wheel, and its transmission enlarged.
 
-use super::sankey::{Sankey, Stage, Whole, branch, sankey};
+use super::sankey::{Branch, Sankey, Stage, Whole, branch, sankey};
 use super::{Term, finite};
 use crate::charts::picture::Picture;
 use crate::number::capital;
+use crate::number::grouped;
 use cvtcycle_output::Component;
 
 /// Energies of one run, kJ: fuel = exhaust + heat to the engine + accessories + rotating energy + losses + brakes + wheels.
@@ -27,7 +28,12 @@ pub struct CarEnergy {
     pub brake_kj: f64,
     /// Net work at the wheels, against rolling and air resistance.
     pub wheels_kj: f64,
+    /// Fuel, and work at the flywheel, of the car of the report that has most, kJ: all are drawn on one scale.
+    pub largest_kj: [f64; 2],
 }
+
+/// A share of the fuel below which the energy of the rotating parts is drawn with the accessories.
+const THIN: f64 = 0.005;
 
 impl CarEnergy {
     /// All losses of the transmission, kJ.
@@ -46,6 +52,26 @@ impl CarEnergy {
         Stage::new("Wheels", vec![brakes, rolling])
     }
 
+    /// Of what is at the flywheel, the share that reaches brakes and wheels; none without work.
+    pub fn passed(&self) -> Option<f64> {
+        let flywheel = self.flywheel_kj();
+        let passed = 1.0 - self.transmission_kj() / flywheel;
+        (flywheel > 0.0 && passed.is_finite()).then_some(passed)
+    }
+
+    /// Accessories, and the rotating parts apart where they can be seen.
+    fn crankshaft(&self) -> Vec<Branch> {
+        let (accessories, kinetic) = (self.accessories_kj, self.kinetic_kj);
+        if kinetic.abs() < THIN * self.fuel_kj {
+            let name = "Accessories etc.";
+            return vec![branch(name, Term::Accessories, accessories + kinetic)];
+        }
+        vec![
+            branch("Accessories", Term::Accessories, accessories),
+            branch("Rotating parts", Term::Kinetic, kinetic),
+        ]
+    }
+
     fn whole(&self) -> Whole {
         Whole::new("the fuel", self.fuel_kj)
     }
@@ -57,22 +83,19 @@ pub fn energy_flow(car: &CarEnergy) -> Picture {
         branch("Exhaust", Term::Exhaust, car.exhaust_kj),
         branch("Heat to the engine", Term::EngineHeat, car.engine_heat_kj),
     ];
-    let crankshaft = vec![
-        branch("Accessories", Term::Accessories, car.accessories_kj),
-        branch("Rotating parts", Term::Kinetic, car.kinetic_kj),
-    ];
     let losses = branch(
         "Transmission losses",
         Term::Transmission,
         car.transmission_kj(),
     );
     sankey(Sankey {
-        title: "Energy from fuel to wheel",
+        title: fuel_title(car),
         subject: &car.subject,
+        largest_kj: car.largest_kj[0],
         source: Whole::new("Fuel", car.fuel_kj),
         stages: vec![
             Stage::new("Engine", engine),
-            Stage::new("Crankshaft", crankshaft),
+            Stage::new("Crankshaft", car.crankshaft()),
             Stage::new("Transmission", vec![losses]),
             car.at_wheels(),
         ],
@@ -89,10 +112,38 @@ pub fn transmission_flow(car: &CarEnergy) -> Picture {
     };
     let stages = car.losses_kj.iter().map(component);
     sankey(Sankey {
-        title: "Energy through the transmission, flywheel to wheel",
+        title: box_title(car),
         subject: &car.subject,
+        largest_kj: car.largest_kj[1],
         source: Whole::new("Flywheel", source),
         stages: stages.chain([car.at_wheels()]).collect(),
         shares_of: vec![Whole::new("flywheel work", source), car.whole()],
     })
+}
+
+/// Which share of the fuel the wheels and the transmission take.
+fn fuel_title(car: &CarEnergy) -> String {
+    let share = |kj: f64| 100.0 * kj / car.fuel_kj;
+    let [wheels, lost] = [car.wheels_kj, car.transmission_kj()].map(share);
+    if !(wheels.is_finite() && lost.is_finite()) {
+        return "Energy from fuel to wheel".to_owned();
+    }
+    format!(
+        "Of the fuel of {} {} % reach the road; the transmission loses {} %",
+        car.subject,
+        grouped(wheels, 1),
+        grouped(lost, 1)
+    )
+}
+
+/// Which share of the work at the flywheel the transmission passes on.
+fn box_title(car: &CarEnergy) -> String {
+    match car.passed() {
+        Some(share) => format!(
+            "The transmission of {} passes {} % of the flywheel's work to brakes and wheels",
+            car.subject,
+            grouped(100.0 * share, 1)
+        ),
+        None => "Energy through the transmission, flywheel to wheel".to_owned(),
+    }
 }

@@ -44,12 +44,12 @@ impl OverlayPanel {
     }
 
     /// The unit as it is written; none for a plain number.
-    fn sign(&self) -> &'static str {
+    pub(super) fn sign(&self) -> &'static str {
         sign(if self.unit == "-" { "" } else { self.unit })
     }
 
     /// A step with about four digits over the range of the panel.
-    fn digits(&self) -> f64 {
+    pub(super) fn digits(&self) -> f64 {
         let (low, high) = range(self.points().map(|p| p.1)).unwrap_or((0.0, 1.0));
         let size = high.abs().max(low.abs()).clamp(1e-6, 1e9);
         10f64.powf((size / 2000.0).log10().ceil()).min(1.0)
@@ -126,7 +126,7 @@ fn table(of: &Overlay) -> PictureTable {
 }
 
 /// Value of a trace at a time; none outside it or in a gap.
-fn at(points: &[(f64, f64)], time: f64) -> f64 {
+pub(super) fn at(points: &[(f64, f64)], time: f64) -> f64 {
     let next = points.partition_point(|point| point.0 < time);
     let before = next.checked_sub(1).and_then(|i| points.get(i));
     match (before, points.get(next)) {

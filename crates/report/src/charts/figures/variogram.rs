@@ -7,6 +7,7 @@ use crate::charts::engine::{
 };
 use crate::charts::grids::Density;
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::grouped;
 
 /// Operating points of one car, and the lines that explain them.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,7 +55,10 @@ impl Variogram<'_> {
 pub fn variogram(of: &Variogram) -> Picture {
     let (x, y) = axes(of);
     let cells = Density::size_for(&x, &y, CELLS);
-    let density = Density::new(cells, of.steps());
+    // Held speeds lie on round numbers, which are the middles of cells.
+    let half = 0.5 * cells.1;
+    let steps = of.steps().map(|(v, n, dt)| (v, n + half, dt));
+    let density = Density::new(cells, steps).lowered(half);
     let (seen, outside) = seen(of, &x, &y);
     let columns = ["speed from", "to", "engine speed from", "to", "time"];
     let units = ["km/h", "km/h", "rpm", "rpm", "s"];
@@ -83,12 +87,40 @@ pub fn variogram(of: &Variogram) -> Picture {
     }
     let entries = seen.iter();
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
-    Chart::new("Engine speed against vehicle speed", &of.subject, PLOT_LEFT)
+    Chart::new(title(of, &density), &of.subject, PLOT_LEFT)
         .lead("Cells are coloured by the time spent in them")
         .panels([panel])
         .legend((PLOT_LEFT, WIDE), entries)
-        .foot(Block::key((PLOT_LEFT, 360.0), density.key()))
+        .foot(Block::key(
+            (PLOT_LEFT, 360.0),
+            density.key("Time spent in a cell [s]"),
+        ))
         .picture(table)
+}
+
+/// The row of cells with most of the time.
+fn title(of: &Variogram, density: &Density) -> String {
+    let mut rows: Vec<((f64, f64), f64)> = Vec::new();
+    for cell in density.cells() {
+        match rows
+            .iter_mut()
+            .find(|row| (row.0.0 - cell.y.0).abs() < 1e-6)
+        {
+            Some(row) => row.1 += cell.seconds,
+            None => rows.push((cell.y, cell.seconds)),
+        }
+    }
+    let most = rows.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    match most.filter(|_| density.total_s() > 0.0) {
+        Some(((from, to), seconds)) => format!(
+            "The engine of {} runs at {} to {} rpm for {} % of its time",
+            of.subject,
+            grouped(from, 0),
+            grouped(to, 0),
+            grouped(100.0 * seconds / density.total_s(), 0)
+        ),
+        None => "Engine speed against vehicle speed".to_owned(),
+    }
 }
 
 /// Axes over the steps in which the engine ran, and over those lines that are to be seen as a whole as far as the car drove.

@@ -19,10 +19,19 @@ pub(crate) struct DensityCell {
     pub seconds: f64,
 }
 
+/// Both ends of a cell, so much lower.
+fn lowered((from, to): (f64, f64), by: f64) -> (f64, f64) {
+    (from - by, to - by)
+}
+
 /// Seconds by cell. Cell edges lie on multiples of the cell's size, so that two cars share a grid.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Density {
     size: (f64, f64),
+    /// How far below the multiples of its size a cell lies on the vertical axis.
+    lower: f64,
+    /// Least and largest amount that the colours span; those of the own cells where it is none.
+    span: Option<(f64, f64)>,
     seconds: BTreeMap<(i64, i64), f64>,
 }
 
@@ -37,7 +46,12 @@ impl Density {
                     .or_default() += dt;
             }
         }
-        Density { size, seconds }
+        Density {
+            size,
+            lower: 0.0,
+            span: None,
+            seconds,
+        }
     }
 
     /// Round sizes with at most `max` cells along each axis.
@@ -46,9 +60,37 @@ impl Density {
         (size(x, max.0), size(y, max.1))
     }
 
+    /// Least and largest amount in a cell.
+    pub(crate) fn ends(&self) -> (f64, f64) {
+        let most = self.seconds.values().copied().fold(0.0, f64::max);
+        let least = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
+        (least, most)
+    }
+
+    /// The same with colours over the cells of all, so that figures side by side can be compared.
+    pub(crate) fn on_scale(mut self, span: (f64, f64)) -> Self {
+        self.span = Some(span);
+        self
+    }
+
+    /// What a cell holds, by a point in it; zero for an empty one.
+    pub(crate) fn within(&self, (x, y): (f64, f64)) -> f64 {
+        let key = (
+            (x / self.size.0).floor() as i64,
+            (y / self.size.1).floor() as i64,
+        );
+        self.seconds.get(&key).copied().unwrap_or(0.0)
+    }
+
     /// Time in all cells, s.
     pub(crate) fn total_s(&self) -> f64 {
         self.seconds.values().sum()
+    }
+
+    /// The same cells, so much lower on the vertical axis.
+    pub(crate) fn lowered(mut self, by: f64) -> Self {
+        self.lower = by;
+        self
     }
 
     /// The cells in which time was spent, by x and then y.
@@ -57,7 +99,7 @@ impl Density {
         let cells = self.seconds.iter();
         cells.map(move |(&(i, j), &seconds)| DensityCell {
             x: edges(i, self.size.0),
-            y: edges(j, self.size.1),
+            y: lowered(edges(j, self.size.1), self.lower),
             seconds,
         })
     }
@@ -77,8 +119,8 @@ impl Density {
         self.cells().map(item).collect()
     }
 
-    /// The key of the colours: times in seconds.
-    pub(crate) fn key(&self) -> Key {
+    /// The key of the colours; `what` with its unit is what cells hold.
+    pub(crate) fn key(&self, what: &str) -> Key {
         let scale = self.scale();
         let colour = |k: usize| scale.colour(scale.seconds((k as f64 + 0.5) / SLICES as f64));
         let step = |seconds: f64| match scale.log {
@@ -88,7 +130,7 @@ impl Density {
         let label = |seconds: f64| (scale.share(seconds), number(seconds, step(seconds)));
         let log = if scale.log { ", logarithmic" } else { "" };
         Key {
-            heading: format!("Time spent in a cell [s]{log}"),
+            heading: format!("{what}{log}"),
             colours: (0..SLICES).map(colour).collect(),
             labels: scale.marks().into_iter().map(label).collect(),
         }
@@ -96,8 +138,7 @@ impl Density {
 
     /// How seconds become a colour.
     fn scale(&self) -> TimeScale {
-        let max = self.seconds.values().copied().fold(0.0, f64::max);
-        let min = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
+        let (min, max) = self.span.unwrap_or_else(|| self.ends());
         TimeScale::new(min, max)
     }
 }
@@ -228,7 +269,7 @@ mod tests {
 
     #[test]
     fn no_time_at_all_still_has_a_key() {
-        let key = Density::new((1.0, 1.0), std::iter::empty()).key();
+        let key = Density::new((1.0, 1.0), std::iter::empty()).key("Time spent in a cell [s]");
         assert!(
             key.labels
                 .iter()

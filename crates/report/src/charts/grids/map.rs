@@ -69,7 +69,8 @@ impl Scale {
     }
 
     fn style(&self, band: usize) -> Style {
-        Style::colour(&ramp((band as f64 + 0.5) / self.count as f64))
+        // Much is dark, as in cells of time and fuel.
+        Style::colour(&ramp(1.0 - (band as f64 + 0.5) / self.count as f64))
     }
 }
 

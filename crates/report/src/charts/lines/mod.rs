@@ -2,11 +2,16 @@
 //!
 //! Everything that is a line over a quantity and not over time is drawn here: ambient temperatures, tests of rigs, figures of the book.
 
+mod printed;
 mod table;
 
+pub use printed::PrintedMark;
+pub(crate) use printed::entries as printed_entries;
+
+pub use super::engine::Palette;
 use super::engine::{
-    Axis, BELOW, Block, CONTEXT, Chart, Entry, Fill, LEFT, PLOT_LEFT, Panel, Rect, STROKES, Shape,
-    Side, Stroke, Style, Symbol, WIDTH, at, grid, range, stroke,
+    Axis, BELOW, Block, CONTEXT, Chart, End, Entry, Fill, LEFT, PLOT_LEFT, Panel, Rect, Shape,
+    Side, Stroke, Style, Symbol, WIDTH, at, grid, label_ends, range, stroke, text_width,
 };
 use super::picture::Picture;
 use cvtcycle_output::Component;
@@ -20,6 +25,10 @@ const GAP: (f64, f64) = (14.0, 8.0);
 const TALL: [f64; 2] = [340.0, 210.0];
 /// Ticks of the axes at most: of a lone panel, and of one of several.
 const TICKS: [(usize, usize); 2] = [(9, 8), (6, 7)];
+
+/// Size of names at the ends of lines, pixels; of more lines than these the names stand in a legend.
+const NAME: f64 = 11.0;
+const MOST_DIRECT: usize = 8;
 
 /// A series' points in the units of its axes.
 pub type Points = Vec<(f64, f64)>;
@@ -48,6 +57,8 @@ pub struct LinePanel {
     pub stacked: bool,
     /// Look and points of each series, with a gap where a value is not finite; stacked ones share their horizontal values.
     pub series: Vec<(Look, Points)>,
+    /// Published numbers next to the series.
+    pub printed: Vec<PrintedMark>,
 }
 
 /// A chart of lines.
@@ -65,7 +76,7 @@ pub struct LineChart {
     pub panels: Vec<LinePanel>,
     /// Whether every panel has a horizontal range of its own, else all have one.
     pub own_x: bool,
-    /// Whether all panels have one vertical range.
+    /// Whether all panels of one quantity have one vertical range.
     pub same_y: bool,
     /// Whether vertical axes are only as wide as the data, else they end on round numbers.
     pub tight: bool,
@@ -75,6 +86,10 @@ pub struct LineChart {
     pub legend: String,
     /// Look and name of each series.
     pub names: Vec<(Look, String)>,
+    /// What the colours of the lines mean.
+    pub palette: Palette,
+    /// Remarks below the legend.
+    pub notes: Vec<String>,
     /// The component that each stacked series is the loss of, by the number of its look; none where they are something else.
     pub parts: Vec<Component>,
 }
@@ -82,29 +97,47 @@ pub struct LineChart {
 /// Draws a chart of lines.
 pub fn line_chart(of: &LineChart) -> Picture {
     let (table, columns) = table::table(of);
-    let rects = layout(of);
+    let direct = of.is_direct();
+    let mut rects = layout(of);
+    if let Some(rect) = rects.first_mut().filter(|_| direct) {
+        let widths = of.names.iter().map(|(_, name)| text_width(name, NAME));
+        rect.right -= widths.fold(0.0, f64::max) + 12.0;
+    }
     let panels = of.panels.iter().zip(&rects).zip(columns);
     let panels = panels.map(|((panel, rect), columns)| draw(of, panel, *rect, columns));
     let stacked = of.panels.iter().any(|panel| panel.stacked);
     let entry = |(look, name): &(Look, String)| match stacked {
         true => Entry::fill(of.fill(look.index), name),
-        false => Entry::line(look.stroke(), name),
+        false => Entry::line(of.stroke(*look), name),
     };
-    let mut entries: Vec<Entry> = of.names.iter().map(entry).collect();
+    let named = of.names.iter().filter(|_| !direct);
+    let mut entries: Vec<Entry> = named.map(entry).collect();
     if stacked {
         entries.reverse(); // listed as they lie
     }
+    entries.extend(printed_entries(
+        of.panels.iter().flat_map(|panel| &panel.printed),
+    ));
     let chart = Chart::new(&of.title, &of.subject, PLOT_LEFT)
         .lead(&of.description)
         .panels(panels);
+    let heading = if direct {
+        String::new()
+    } else {
+        of.legend.clone()
+    };
     let side = Side {
-        heading: of.legend.clone(),
+        heading,
         entries,
         ..Side::default()
     };
     let chart = match free_place(&rects, side) {
         Ok(side) => chart.side(side),
-        Err(entries) => chart.foot(Block::legend((PLOT_LEFT, WIDE), &of.legend, entries)),
+        Err((heading, entries)) => chart.foot(Block::legend((PLOT_LEFT, WIDE), &heading, entries)),
+    };
+    let chart = match of.notes.is_empty() {
+        true => chart,
+        false => chart.notes((PLOT_LEFT, WIDE), of.notes.clone()),
     };
     chart.picture(table)
 }
@@ -126,8 +159,8 @@ fn layout(of: &LineChart) -> Vec<Rect> {
     (0..of.panels.len()).map(place).collect()
 }
 
-/// The legend in the place that an odd number of panels leaves free, or its entries if it does not fit in there.
-fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, Vec<Entry>> {
+/// The legend in the place that an odd number of panels leaves free, or its heading and entries if it does not fit in there.
+fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, (String, Vec<Entry>)> {
     if let [first, .., last] = rects
         && rects.len() % 2 == 1
     {
@@ -137,16 +170,46 @@ fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, Vec<Entry>> {
             return Ok(side);
         }
     }
-    Err(side.entries)
+    Err((side.heading, side.entries))
 }
 
 impl LineChart {
+    /// Whether names stand at the ends of the lines: of a lone panel with more lines than one, and not too many.
+    fn is_direct(&self) -> bool {
+        let lone = self.panels.len() == 1 && (2..=MOST_DIRECT).contains(&self.names.len());
+        lone && self
+            .panels
+            .iter()
+            .all(|panel| !panel.stacked && panel.series.len() == self.names.len())
+    }
+
+    /// The line of a look.
+    fn stroke(&self, look: Look) -> Stroke {
+        let count = self.names.iter().map(|(look, _)| look.index + 1).max();
+        let full = self.palette.stroke(look.index, count.unwrap_or(1));
+        let dotted = stroke(full.colour, 1.2, &[1.5, 2.5]);
+        if look.dotted { dotted } else { full }
+    }
+
     /// What a stacked series is filled with: a component with its own colours.
     fn fill(&self, index: usize) -> Fill {
         match self.parts.get(index) {
             Some(part) => Fill::component(*part),
             None => Fill::nth(index, self.names.len()),
         }
+    }
+
+    /// The name of a line at its right end.
+    fn end(&self, (look, points): &(Look, Points)) -> Option<End> {
+        let (_, name) = self.names.iter().find(|(other, _)| other == look)?;
+        let finite = points
+            .iter()
+            .rfind(|p| p.0.is_finite() && p.1.is_finite())?;
+        Some(End {
+            at: *finite,
+            text: name.clone(),
+            colour: self.stroke(*look).colour,
+        })
     }
 
     /// Title of the horizontal axis of a panel.
@@ -172,21 +235,19 @@ impl Look {
         let dotted = false;
         Look { index, dotted }
     }
-
-    fn stroke(self) -> Stroke {
-        let full = STROKES[self.index % STROKES.len()];
-        let dotted = stroke(full.colour, 1.2, &[1.5, 2.5]);
-        if self.dotted { dotted } else { full }
-    }
 }
 
 fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> Panel {
     let ticks = TICKS[usize::from(of.panels.len() > 1)];
     let own = std::slice::from_ref(panel);
     let x_of = if of.own_x { own } else { &of.panels };
-    let y_of = if of.same_y { &of.panels } else { own };
+    let alike = |other: &&LinePanel| other.y_title == panel.y_title;
+    let y_of: Vec<LinePanel> = match of.same_y {
+        true => of.panels.iter().filter(alike).cloned().collect(),
+        false => own.to_vec(),
+    };
     let x = x_axis(of.x_title(panel), x_of, of.marked, ticks.0);
-    let y = y_axis(panel.y_title, y_of, of.tight, ticks.1);
+    let y = y_axis(panel.y_title, &y_of, of.tight, ticks.1);
     let mut drawn = Panel::new(rect, x, y).heading(&panel.heading);
     (drawn.over_table, drawn.columns) = (of.one_x(), columns);
     let y = &drawn.y;
@@ -198,12 +259,20 @@ fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> P
     } else {
         // The first of the list ends up on top.
         for (look, points) in panel.series.iter().rev() {
-            drawn.series(points.clone(), look.stroke());
+            let stroke = of.stroke(*look);
+            drawn.series(points.clone(), stroke);
             for (x, y) in points.iter().filter(|_| of.marked) {
-                let style = Style::colour(look.stroke().colour).class("mark");
+                let style = Style::colour(stroke.colour).class("mark");
                 drawn.symbol(Symbol::CIRCLE, at(*x, *y), 2.6, style);
             }
         }
+    }
+    for mark in &panel.printed {
+        mark.draw(&mut drawn, panel.stacked);
+    }
+    if of.is_direct() {
+        let ends = panel.series.iter().filter_map(|series| of.end(series));
+        label_ends(&mut drawn, ends.collect());
     }
     let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
     let mut points = panel.series.iter().flat_map(|(_, points)| points);
@@ -214,6 +283,9 @@ fn x_axis(title: &str, panels: &[LinePanel], marked: bool, ticks: usize) -> Axis
     let series = panels.iter().flat_map(|panel| &panel.series);
     let points = series.flat_map(|(_, points)| points);
     let (low, high) = range(points.map(|p| p.0)).unwrap_or((0.0, 1.0));
+    // A first step of a second ends at one: the axis begins where the drive did.
+    let from_zero = title.starts_with("Time") && low > 0.0 && low < 0.02 * high;
+    let low = if from_zero { 0.0 } else { low };
     let room = match high - low {
         span if span > 0.0 && marked => 0.03 * span,
         span if span > 0.0 => 0.0,
@@ -238,6 +310,7 @@ fn y_axis(title: &str, panels: &[LinePanel], tight: bool, ticks: usize) -> Axis 
 /// Every height that has to fit into a panel.
 fn heights(panel: &LinePanel) -> Vec<f64> {
     let mut all = panel.with_y.clone();
+    all.extend(panel.printed.iter().flat_map(|mark| mark.y));
     let series = || panel.series.iter().map(|(_, points)| points);
     if panel.stacked {
         all.push(0.0);

@@ -6,12 +6,14 @@ use crate::charts::engine::{
     text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::{list_of, phase};
 use cvtcycle_output::table::distinct;
+use cvtcycle_study::words::{more_or_less, than};
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 340.0;
 /// Widths of the plot: room for names, and no more than fits on a page.
-const WIDTHS: (f64, f64) = (480.0, 786.0);
+const WIDTHS: (f64, f64) = (660.0, 786.0);
 const LABEL: f64 = 11.0;
 /// Bars thinner than this have their values in the table alone, pixels.
 const TURNED: f64 = 15.0;
@@ -37,7 +39,7 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
         [run] => run.name.to_owned(),
         _ => format!("{} vehicles", runs.len()),
     };
-    Chart::new("Fuel consumption", subject, PLOT_LEFT)
+    Chart::new(title(runs), subject, PLOT_LEFT)
         .width(PLOT_LEFT + plot + 20.0)
         .panels([panel])
         .foot(Block::legend((PLOT_LEFT, plot), "Vehicle", entries))
@@ -49,6 +51,7 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
     let names = [("Part of the cycle", ""), ("Vehicle", "")];
     let mut table = PictureTable::new(&[&names[..], &[("Fuel", "L/100 km")]].concat());
     let width = (1.0 - GAP) / runs.len().max(1) as f64;
+    let headline = headline(groups);
     for (g, group) in groups.iter().enumerate() {
         for (i, run) in runs.iter().enumerate() {
             let from = g as f64 + 0.5 * GAP + i as f64 * width;
@@ -62,11 +65,48 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
         }
         let place = at(g as f64 + 0.5, f64::NEG_INFINITY).shift(0.0, 20.0);
         let room = panel.px(1.0) - panel.px(0.0) - 6.0;
-        let name = Label::new(place, group).size(12.0).middle();
-        panel.label(name.bold(group == "total").cut(Cut::End, room));
+        let name = Label::new(place, phase(group)).size(12.0).middle();
+        panel.label(name.bold(group == headline).cut(Cut::End, room));
     }
     table
 }
+
+/// The group that is the headline: weighted where the cycle is, else the whole cycle.
+fn headline(groups: &[String]) -> &str {
+    let mut names = ["weighted", "total"].into_iter();
+    let there = |name: &&str| groups.iter().any(|group| group == name);
+    names.find(there).unwrap_or("total")
+}
+
+/// What the first car uses, and how much more or less than the others.
+fn title(runs: &[PlotRun]) -> String {
+    let name = headline(&groups(runs)).to_owned();
+    let Some((first, own)) = runs
+        .first()
+        .and_then(|run| Some((run, value_of(run, &name)?)))
+    else {
+        return "Fuel consumption".to_owned();
+    };
+    let weighted = if name == "weighted" {
+        " (weighted)"
+    } else {
+        ""
+    };
+    let other = |run: &PlotRun| {
+        let compared = more_or_less(100.0 * (own / value_of(run, &name)? - 1.0), 1);
+        Some(format!("{compared} {} {}", than(&compared), run.name))
+    };
+    let others: Vec<String> = runs[1..].iter().take(NAMED).filter_map(other).collect();
+    let rest = if others.is_empty() {
+        String::new()
+    } else {
+        format!(": {}", list_of(&others))
+    };
+    format!("{} uses {own:.2} L/100 km{weighted}{rest}", first.name)
+}
+
+/// Other cars that the title names.
+const NAMED: usize = 2;
 
 /// From zero, with room for the values over the highest bar.
 fn axis(runs: &[PlotRun]) -> Axis {

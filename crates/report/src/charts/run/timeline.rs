@@ -2,9 +2,10 @@
 
 use super::PlotRun;
 use crate::charts::engine::{
-    Axis, Chart, Cut, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style, WIDTH, at,
-    cell, range, stroke, text_width,
+    Axis, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, QUIET, Rect, Shape, Stroke, Style,
+    WIDTH, at, cell, label_ends, range, stroke, text_width,
 };
+use crate::charts::lines::{PrintedMark, printed_entries};
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{sign, with_unit};
 use cvtcycle_output::History;
@@ -15,6 +16,8 @@ pub(super) const PLOT_WIDE: f64 = WIDTH - 28.0 - PLOT_LEFT;
 /// Upper edge of the first plot: below the title and the names of the phases, pixels.
 pub(super) const PLOT_TOP: f64 = 72.0;
 const GAP: f64 = 16.0;
+/// Room above a panel for its heading, pixels.
+pub(super) const HEADED: f64 = 22.0;
 /// Rows of a table at most.
 const MAX_ROWS: usize = 600;
 /// The line of a marked value.
@@ -28,6 +31,8 @@ pub(super) struct Series {
     pub column: &'static str,
     pub title: &'static str,
     pub stroke: Stroke,
+    /// Unit where it is not that of the column, and what is drawn of a value.
+    pub shown: Option<(&'static str, fn(f64) -> f64)>,
 }
 
 impl Series {
@@ -36,7 +41,22 @@ impl Series {
             column,
             title,
             stroke,
+            shown: None,
         }
+    }
+
+    fn unit(&self) -> &'static str {
+        self.shown
+            .map_or_else(|| unit(self.column), |(unit, _)| unit)
+    }
+
+    fn value(&self, x: f64) -> f64 {
+        self.shown.map_or(x, |(_, of)| of(x))
+    }
+
+    /// Step of the last digit in a table.
+    fn resolution(&self) -> f64 {
+        self.shown.map_or_else(|| resolution(self.column), |_| 0.1)
     }
 }
 
@@ -54,8 +74,10 @@ pub(super) struct Strip {
     pub max: f64,
     /// A value that is marked with a thin line, and its name in the legend.
     pub mark: Option<(f64, &'static str)>,
-    /// Whether its lines are listed in the legend.
-    pub legend: bool,
+    /// Whether its lines are named at their ends.
+    pub named: bool,
+    /// Published numbers: from and to on the time axis, s, and on the vertical one.
+    pub printed: Vec<([f64; 2], [f64; 2])>,
 }
 
 impl Strip {
@@ -68,33 +90,47 @@ impl Strip {
             with: &[0.0],
             max: f64::INFINITY,
             mark: None,
-            legend: false,
+            named: false,
+            printed: Vec::new(),
         }
+    }
+
+    /// Room that the names at the ends of its lines need, pixels.
+    fn names(&self) -> f64 {
+        let names = self.lines.iter().filter(|_| self.named);
+        let widest = names
+            .map(|line| text_width(line.title, PHASE_TEXT))
+            .fold(0.0, f64::max);
+        if widest > 0.0 { widest + 12.0 } else { 0.0 }
     }
 
     fn values<'h>(&self, history: &'h History) -> impl Iterator<Item = f64> + use<'_, 'h> {
         let lines = self.lines.iter();
-        lines.flat_map(|line| history.column(line.column).iter().copied())
+        lines.flat_map(|line| history.column(line.column).iter().map(|x| line.value(*x)))
+    }
+
+    /// Every value that has to fit into the panel.
+    fn heights(&self, history: &History) -> impl Iterator<Item = f64> {
+        let values = self.values(history).map(|y| y.min(self.max));
+        let values = values.filter(|y| y.is_finite());
+        let printed = self.printed.iter().flat_map(|(_, y)| *y);
+        values.chain(self.with.iter().copied()).chain(printed)
     }
 
     fn axis(&self, history: &History) -> Axis {
-        let unit = self.lines.first().map_or("", |line| unit(line.column));
+        let unit = self.lines.first().map_or("", Series::unit);
         let title = with_unit(self.title, unit);
-        let values = self.values(history).map(|y| y.min(self.max));
-        let values = values.filter(|y| y.is_finite());
         let ticks = (self.tall / 28.0) as usize;
-        Axis::round(&title, values.chain(self.with.iter().copied()), ticks)
-    }
-
-    /// A line in the legend: one that has its panel alone is named by the axis.
-    fn entries(&self) -> impl Iterator<Item = Entry> {
-        let lines = self.lines.iter().filter(|_| self.legend);
-        lines.map(|line| Entry::line(line.stroke, line.title))
+        Axis::round(&title, self.heights(history), ticks)
     }
 
     fn panel(&self, rect: Rect, history: &History) -> Panel {
+        self.panel_on(rect, history, self.axis(history))
+    }
+
+    fn panel_on(&self, rect: Rect, history: &History, y: Axis) -> Panel {
         let mut values = self.values(history);
-        let mut panel = Panel::new(rect, time_axis(history), self.axis(history))
+        let mut panel = Panel::new(rect, time_axis(history), y)
             .over_table()
             .no_data(!values.any(|y| y.is_finite()));
         if let Some((level, _)) = self.mark {
@@ -102,25 +138,39 @@ impl Strip {
         }
         let first = panel.items.len();
         for line in self.lines.iter().rev() {
-            panel.series(points(history, line.column), line.stroke);
+            panel.series(points(history, line), line.stroke);
         }
         if self.max.is_finite() {
             let lines = panel.items.split_off(first);
             panel.add(Shape::Within(None, lines), Style::default());
+        }
+        for (x, y) in &self.printed {
+            PrintedMark { x: *x, y: *y }.draw(&mut panel, false);
+        }
+        if self.named {
+            let ends = self.lines.iter().filter_map(|line| {
+                let points = points(history, line);
+                let last = points.into_iter().rfind(|p| p.1.is_finite())?;
+                Some(End {
+                    at: last,
+                    text: line.title.to_owned(),
+                    colour: line.stroke.colour,
+                })
+            });
+            let ends = ends.collect();
+            label_ends(&mut panel, ends);
         }
         panel
     }
 }
 
 /// Draws the panels of a run, with one legend below.
-pub(super) fn timeline(run: &PlotRun, title: &str, strips: &[Strip]) -> Picture {
+pub(super) fn timeline(run: &PlotRun, title: impl Into<String>, strips: &[Strip]) -> Picture {
     let lines: Vec<&Series> = strips.iter().flat_map(|strip| &strip.lines).collect();
-    let levels = strips.iter().filter_map(|strip| strip.mark);
-    let levels = levels.map(|(_, name)| Entry::line(LEVEL, name));
-    let entries = strips.iter().flat_map(Strip::entries).chain(levels);
+    let wide = PLOT_WIDE - strips.iter().map(Strip::names).fold(0.0, f64::max);
     let mut top = PLOT_TOP;
     let panel = |(k, strip): (usize, &Strip)| {
-        let rect = Rect::new(PLOT_LEFT, top, PLOT_WIDE, strip.tall);
+        let rect = Rect::new(PLOT_LEFT, top, wide, strip.tall);
         let mut panel = strip
             .panel(rect, run.history)
             .x_labels(k + 1 == strips.len());
@@ -130,8 +180,57 @@ pub(super) fn timeline(run: &PlotRun, title: &str, strips: &[Strip]) -> Picture 
     };
     Chart::new(title, run.name, PLOT_LEFT)
         .panels(strips.iter().enumerate().map(panel))
-        .legend((PLOT_LEFT, PLOT_WIDE), entries)
-        .picture(table(run, &lines))
+        .legend((PLOT_LEFT, PLOT_WIDE), entries(strips))
+        .picture(table(&[(run, lines)]))
+}
+
+/// One panel for each car, below each other on one scale; the lines are named at their ends.
+pub(super) fn side_by_side(cars: &[(&PlotRun, Strip)], title: String, subject: &str) -> Picture {
+    let axes = cars.iter().map(|(run, strip)| strip.axis(run.history));
+    let title_of = axes.map(|axis| axis.title).next().unwrap_or_default();
+    let values = cars
+        .iter()
+        .flat_map(|(run, strip)| strip.heights(run.history));
+    let ticks = cars.first().map_or(6.0, |(_, strip)| strip.tall / 28.0);
+    let y = Axis::round(&title_of, values, ticks as usize);
+    let wide = PLOT_WIDE
+        - cars
+            .iter()
+            .map(|(_, strip)| strip.names())
+            .fold(0.0, f64::max);
+    let mut top = PLOT_TOP;
+    let mut first = 1;
+    let panel = |(k, (run, strip)): (usize, &(&PlotRun, Strip))| {
+        top += HEADED;
+        let rect = Rect::new(PLOT_LEFT, top, wide, strip.tall);
+        let panel = strip.panel_on(rect, run.history, y.clone());
+        let mut panel = panel.x_labels(k + 1 == cars.len());
+        panel.heading = run.name.to_owned();
+        panel.columns = (first..first + strip.lines.len()).collect();
+        first += strip.lines.len();
+        phases(&mut panel, run.history, false);
+        top += strip.tall + GAP;
+        panel
+    };
+    let panels: Vec<Panel> = cars.iter().enumerate().map(panel).collect();
+    let strips: Vec<&Strip> = cars.iter().map(|(_, strip)| strip).collect();
+    let listed = cars
+        .iter()
+        .map(|(run, strip)| (*run, strip.lines.iter().collect::<Vec<_>>()));
+    Chart::new(title, subject, PLOT_LEFT)
+        .panels(panels)
+        .legend((PLOT_LEFT, PLOT_WIDE), entries(strips))
+        .picture(table(&listed.collect::<Vec<_>>()))
+}
+
+/// Marked values and what was published, for the legend; lines are named by their axis or at their ends.
+fn entries<'s>(strips: impl IntoIterator<Item = &'s Strip>) -> Vec<Entry> {
+    let strips: Vec<&Strip> = strips.into_iter().collect();
+    let levels = strips.iter().filter_map(|strip| strip.mark);
+    let levels = levels.map(|(_, name)| Entry::line(LEVEL, name));
+    let printed = strips.iter().flat_map(|strip| &strip.printed);
+    let printed: Vec<PrintedMark> = printed.map(|(x, y)| PrintedMark { x: *x, y: *y }).collect();
+    levels.chain(printed_entries(printed.iter())).collect()
 }
 
 /// Unit of a column.
@@ -140,7 +239,8 @@ fn unit(name: &str) -> &'static str {
 }
 
 /// The points of a column: means lie in the middle of their step, temperatures at its end, a gear holds for the whole of it.
-fn points(history: &History, name: &str) -> Vec<(f64, f64)> {
+fn points(history: &History, of: &Series) -> Vec<(f64, f64)> {
+    let name = of.column;
     let times = history.time_s().iter().zip(history.dt_s());
     let steps = times.zip(history.column(name));
     if name == "gear" {
@@ -149,7 +249,9 @@ fn points(history: &History, name: &str) -> Vec<(f64, f64)> {
             .collect();
     }
     let back = if name.ends_with("_degc") { 0.0 } else { 0.5 };
-    steps.map(|((end, dt), y)| (end - back * dt, *y)).collect()
+    steps
+        .map(|((end, dt), y)| (end - back * dt, of.value(*y)))
+        .collect()
 }
 
 /// Beginning of a trace, s.
@@ -192,26 +294,44 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
     }
 }
 
-/// Every so many steps with all columns that are drawn.
-fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
+/// Every so many steps of the first run with all columns that are drawn; of the others the steps that end at the same time.
+fn table(runs: &[(&PlotRun, Vec<&Series>)]) -> PictureTable {
     let plain = |unit: &'static str| if unit == "-" { "" } else { unit };
-    let columns = lines
-        .iter()
-        .map(|line| (line.title, plain(unit(line.column))));
-    let columns: Vec<_> = [("Time", "s")].into_iter().chain(columns).collect();
-    let mut table = PictureTable::new(&columns);
-    let history = run.history;
+    let several = runs.len() > 1;
+    let mut table = PictureTable::new(&[("Time", "s")]);
+    for (run, lines) in runs {
+        let name = |line: &&Series| match several {
+            true => format!("{}: {}", run.name, line.title.to_lowercase()),
+            false => line.title.to_owned(),
+        };
+        let columns = lines.iter().map(|line| (name(line), plain(line.unit())));
+        table.columns.extend(columns);
+    }
+    let Some((first, _)) = runs.first() else {
+        return table;
+    };
+    let history = first.history;
     let every = history.len().div_ceil(MAX_ROWS).max(1);
     // Steps are hardly ever shorter than a hundredth of a second; times differ in any case.
     let step_s = range(history.dt_s().iter().copied()).map_or(1.0, |(least, _)| {
         if least >= 0.999_999 { 0.1 } else { 0.01 }
     });
     for (i, time) in history.time_s().iter().enumerate().step_by(every) {
-        let value = |name: &str| history.column(name).get(i).copied().unwrap_or(f64::NAN);
-        let cells = lines
-            .iter()
-            .map(|line| cell(value(line.column), resolution(line.column)));
-        table.push([cell(*time, step_s)].into_iter().chain(cells));
+        let mut cells = vec![cell(*time, step_s)];
+        for (run, lines) in runs {
+            let of = run.history;
+            let here = of
+                .time_s()
+                .get(i)
+                .is_some_and(|own| (own - time).abs() < 1e-3 || !several);
+            let value = |line: &Series| {
+                let own = of.column(line.column).get(i).filter(|_| here);
+                own.map_or(f64::NAN, |x| line.value(*x))
+            };
+            let numbers = lines.iter().map(|line| (value(line), line.resolution()));
+            cells.extend(numbers.map(|(x, step)| cell(x, step)));
+        }
+        table.push(cells);
     }
     table.note =
         "A row is the step that ends at its time: temperatures at its end, all else its mean."
@@ -222,9 +342,12 @@ fn table(run: &PlotRun, lines: &[&Series]) -> PictureTable {
             3 => "third".to_owned(),
             n => format!("{n}th"),
         };
+        let whole = match several {
+            true => "the traces".to_owned(),
+            false => format!("trace_{}.csv", first.name),
+        };
         table.note += &format!(
-            " Every {ordinal} step is listed; all of them are in trace_{}.csv; the lines are drawn from all steps.",
-            run.name
+            " Every {ordinal} step is listed; all of them are in {whole}; the lines are drawn from all steps."
         );
     }
     table

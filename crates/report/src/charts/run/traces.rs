@@ -1,16 +1,21 @@
 //! The quantities of a run over time.
 
 use super::PlotRun;
-use super::timeline::{Series, Strip, timeline};
+use super::timeline::{Series, Strip, side_by_side, timeline};
 use crate::charts::engine::{CONTEXT, INK, PLAIN, STROKES, Stroke, range, stroke};
 use crate::charts::picture::Picture;
+use crate::number::grouped;
+use cvtcycle_output::History;
 
 /// Secondary and primary pressure.
 const PRESSURES: [Stroke; 2] = [stroke(INK, 1.6, &[]), stroke("#d55e00", 1.3, &[4.0, 2.0])];
+/// Height of the panel of temperatures of a car by itself, and of one of several, pixels.
+const TALL: [f64; 2] = [400.0, 190.0];
 
-/// Clamp safety beyond which the line leaves its panel, as a multiple of the smallest one and within limits: at low torque it has no
-/// bound, and what matters is how near it comes to 1.
-const MAX_SAFETY: (f64, f64, f64) = (4.0, 4.0, 30.0);
+/// The largest finite value of a column.
+fn most(history: &History, column: &str) -> Option<f64> {
+    Some(range(history.column(column).iter().copied())?.1)
+}
 
 /// Vehicle speed, ratio or gear, engine speed and throttle over time.
 pub fn driveline(run: &PlotRun) -> Picture {
@@ -26,11 +31,11 @@ pub fn driveline(run: &PlotRun) -> Picture {
         ("throttle", "Throttle"),
     ]
     .map(|(column, title)| Strip::of(column, title, 140.0, PLAIN));
-    timeline(
-        run,
-        "Vehicle speed, ratio, engine speed and throttle",
-        &strips,
-    )
+    let title = match most(run.history, "engine_speed_rpm") {
+        Some(rpm) => format!("{} needs up to {} rpm", run.name, grouped(rpm, 0)),
+        None => "Vehicle speed, ratio, engine speed and throttle".to_owned(),
+    };
+    timeline(run, title, &strips)
 }
 
 /// Pulley pressures, belt slip and clamp safety over time, with the vehicle speed for context.
@@ -41,32 +46,76 @@ pub fn pressure(run: &PlotRun) -> Picture {
     ];
     let lines = pressures.into_iter().zip(PRESSURES);
     let lines = lines.map(|((column, title), stroke)| Series::new(column, title, stroke));
-    let (times, low, high) = MAX_SAFETY;
-    let safety = run.history.column("clamp_safety").iter().copied();
-    let least = range(safety).map_or(f64::INFINITY, |(least, _)| least);
-    let max = (times * least).clamp(low, high).round();
+    let safety = range(run.history.column("clamp_safety").iter().copied());
+    let title = match (safety, most(run.history, "secondary_pressure_bar")) {
+        (Some((least, _)), Some(bar)) if least > 0.0 => format!(
+            "The belt of {} carries {} % of what its clamping holds at most; up to {} bar clamp it",
+            run.name,
+            grouped(100.0 / least, 0),
+            grouped(bar, 1)
+        ),
+        _ => "Pulley pressures, slip and clamp safety".to_owned(),
+    };
+    // Of a belt without torque the safety has no bound: its inverse is what the clamping is used for.
+    let used = Series {
+        shown: Some(("%", |safety| 100.0 / safety)),
+        ..Series::new("clamp_safety", "Clamping used", PLAIN)
+    };
     let strips = [
         Strip {
             lines: lines.collect(),
-            legend: true,
+            named: true,
+            printed: run.published.pressure_bar.clone(),
             ..Strip::of("", "Pressure", 220.0, PLAIN)
         },
         Strip::of("slip_percent", "Belt slip", 130.0, PLAIN),
         Strip {
-            max,
-            mark: Some((1.0, "Clamp safety 1: belt at its limit")),
-            ..Strip::of("clamp_safety", "Clamp safety", 130.0, PLAIN)
+            lines: vec![used],
+            with: &[0.0, 100.0],
+            mark: Some((100.0, "All of the clamping used: the belt is at its limit")),
+            ..Strip::of("clamp_safety", "Clamping used", 130.0, PLAIN)
         },
         Strip {
             title: "Speed",
             ..Strip::of("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
         },
     ];
-    timeline(run, "Pulley pressures, slip and clamp safety", &strips)
+    timeline(run, title, &strips)
 }
 
-/// Temperatures over time.
-pub fn temperatures(run: &PlotRun) -> Picture {
+/// Temperatures over time: a panel for each car, all on one scale.
+pub fn temperatures(runs: &[PlotRun]) -> Picture {
+    let tall = TALL[usize::from(runs.len() > 1)];
+    let cars: Vec<(&PlotRun, Strip)> = runs.iter().map(|run| (run, nodes(run, tall))).collect();
+    let last = |history: &History, column: &str| {
+        history
+            .column(column)
+            .iter()
+            .copied()
+            .rfind(|x| x.is_finite())
+    };
+    let ends = runs.first().and_then(|run| {
+        let [oil, engine] =
+            ["transmission_sump_degc", "engine_oil_degc"].map(|column| last(run.history, column));
+        Some((run.name, oil?, engine?))
+    });
+    let title = ends.map_or_else(|| "Temperatures".to_owned(), |(name, oil, engine)| {
+        format!(
+            "{name} ends with {} degC in the sump of its transmission and {} degC in the engine oil",
+            grouped(oil, 0),
+            grouped(engine, 0)
+        )
+    });
+    let names: Vec<&str> = runs.iter().map(|run| run.name).collect();
+    let subject = match names.as_slice() {
+        [name] => (*name).to_owned(),
+        _ => "Temperatures over the cycle, one scale".to_owned(),
+    };
+    side_by_side(&cars, title, &subject)
+}
+
+/// The panel of a car.
+fn nodes(run: &PlotRun, tall: f64) -> Strip {
     let names = [
         ("coolant_degc", "Coolant"),
         ("engine_oil_degc", "Engine oil"),
@@ -79,11 +128,11 @@ pub fn temperatures(run: &PlotRun) -> Picture {
     let lines = names.into_iter().zip(STROKES);
     let lines = lines.filter(|((column, _), _)| there(column));
     let lines = lines.map(|((column, title), stroke)| Series::new(column, title, stroke));
-    let strip = Strip {
+    Strip {
         lines: lines.collect(),
         with: &[],
-        legend: true,
-        ..Strip::of("coolant_degc", "Temperature", 400.0, PLAIN)
-    };
-    timeline(run, "Temperatures", &[strip])
+        named: true,
+        printed: run.published.end_degc.clone(),
+        ..Strip::of("coolant_degc", "Temperature", tall, PLAIN)
+    }
 }

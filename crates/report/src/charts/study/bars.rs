@@ -8,6 +8,7 @@ use crate::charts::engine::{
     Axis, Chart, Entry, Fill, INK, Label, Style, at, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::capital_first;
 use cvtcycle_study::statistics::{Confidence, Estimate, RankSensitivity, SobolIndices};
 
 /// A factor with its two measures.
@@ -20,8 +21,9 @@ struct Texts<'a> {
     kinds: [&'a str; 2],
     /// The same for columns.
     short: [&'a str; 2],
-    /// Which of the two measures sorts.
+    /// Which of the two measures sorts, and how many rows are drawn.
     key: usize,
+    most: usize,
     notes: Vec<String>,
 }
 
@@ -44,7 +46,8 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
         ));
     }
     let texts = Texts {
-        title: format!("Sobol indices: {}", shown.output),
+        title: sobol_title(names, of, shown),
+        most: MOST_SOBOL,
         axis: "Share of the variance [-]",
         kinds: ["First order: alone", "Total: also with others"],
         short: ["First order", "Total"],
@@ -52,6 +55,49 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
         notes,
     };
     draw(rows.collect(), shown, texts)
+}
+
+/// Factors of Sobol indices that are drawn: what lies behind them is noise.
+const MOST_SOBOL: usize = 6;
+
+/// The factor that decides, where its interval lies above that of the next one.
+fn sobol_title(names: &[String], of: &SobolIndices, shown: &Shown) -> String {
+    let mut totals: Vec<(&String, &Estimate)> = names
+        .iter()
+        .zip(of.factors.iter().map(|f| &f.total))
+        .collect();
+    by_size(&mut totals, |of| of.1.value);
+    let ends = |estimate: &Estimate| estimate.interval.unwrap_or([estimate.value; 2]);
+    match totals.as_slice() {
+        [(name, first), (_, second), ..] if ends(first)[0] > ends(second)[1] => format!(
+            "{} decides: {} of the variance of the {}; no other above {}",
+            capital_first(name),
+            value(first.value, 0.9),
+            shown.output,
+            value(second.value, 0.9)
+        ),
+        _ => format!(
+            "{} samples single out no factor for the {}",
+            of.samples, shown.output
+        ),
+    }
+}
+
+/// The factor that goes most with the output.
+fn rank_title(names: &[String], of: &RankSensitivity, shown: &Shown) -> String {
+    let mut all: Vec<(&String, f64)> = names
+        .iter()
+        .zip(of.factors.iter().map(|f| f.spearman.value))
+        .collect();
+    by_size(&mut all, |of| of.1.abs());
+    match all.first().filter(|of| of.1.is_finite()) {
+        Some((name, rank)) => format!(
+            "The {} follows {name} most: rank correlation {}",
+            shown.output,
+            value(*rank, 0.9)
+        ),
+        None => format!("Rank sensitivity: {}", shown.output),
+    }
 }
 
 /// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
@@ -63,7 +109,8 @@ pub fn rank_plot(shown: &Shown, names: &[String], of: &RankSensitivity) -> Pictu
         _ => "No regression: too few rows, or factors that follow from each other.".to_owned(),
     };
     let texts = Texts {
-        title: format!("Rank sensitivity: {}", shown.output),
+        title: rank_title(names, of, shown),
+        most: MAX_ROWS,
         axis: "Coefficient [-]",
         kinds: ["Rank correlation", "Rank regression coefficient"],
         short: ["Correlation", "Regression"],
@@ -82,8 +129,8 @@ fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
     by_size(&mut rows, size);
     let table = table(&rows, &texts, shown.confidence);
     let mut notes = texts.notes.clone();
-    if rows.len() > MAX_ROWS + 1 {
-        let rest = rows.split_off(MAX_ROWS);
+    if rows.len() > texts.most + 1 {
+        let rest = rows.split_off(texts.most);
         let largest = rest.first().map_or(0.0, size);
         let (more, most) = (rest.len(), value(largest, 0.9));
         notes.push(format!(

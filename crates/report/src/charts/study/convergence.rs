@@ -1,6 +1,6 @@
 //! Sobol indices against the number of samples: whether they have settled.
 
-use super::{FOOT, Shown, WIDE, by_size, estimate_cells, estimate_columns};
+use super::{FOOT, Shown, WIDE, by_size, estimate_cells, estimate_columns, value};
 use crate::charts::engine::{
     Axis, Chart, Entry, PLOT_LEFT, Panel, Rect, STROKES, Shape, Style, Symbol, ZERO, at,
 };
@@ -47,12 +47,32 @@ pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices])
     }
     let lines = chosen.iter().zip(STROKES);
     let lines = lines.map(|(&i, stroke)| Entry::line(stroke, &names[i]));
-    let title = format!("Convergence of Sobol indices: {}", shown.output);
-    Chart::new(title, shown.subject, PLOT_LEFT)
+    let title = title_of((names, steps), &chosen, shown);
+    let subject = format!("{}: {}", shown.subject, shown.output);
+    Chart::new(title, subject, PLOT_LEFT)
         .panels(panels)
         .legend(FOOT, lines)
         .notes(FOOT, notes)
         .picture(table((names, steps), shown.confidence))
+}
+
+/// The largest total index with its interval at the last number of samples.
+fn title_of((names, steps): Steps, chosen: &[usize], shown: &Shown) -> String {
+    let of = || {
+        let (first, last) = (*chosen.first()?, steps.last()?);
+        let total = last.factors.get(first)?.total;
+        let [low, high] = total.interval?;
+        let digits = |x: f64| value(x, 0.9);
+        Some(format!(
+            "With {} samples the total index of {} is {} ({} to {})",
+            last.samples,
+            names.get(first)?,
+            digits(total.value),
+            digits(low),
+            digits(high)
+        ))
+    };
+    of().unwrap_or_else(|| format!("Convergence of Sobol indices: {}", shown.output))
 }
 
 /// A row for each number of samples and factor, in this order.

@@ -36,6 +36,8 @@ const STEPS: usize = 1500;
 const BINS: f64 = 100.0;
 /// Rounding up after a division by this lands on the nearest round number.
 const NEAREST: f64 = 1.6;
+/// Of fewer pairs than these the counts alone are told.
+const FEW: usize = 200;
 /// Most series that the picture in words describes.
 const IN_WORDS: usize = 2;
 /// Probabilities of the quantiles with a mark.
@@ -86,7 +88,28 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
     let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
     let zero = differences.then(|| Entry::line(ZERO, "No difference"));
     let table = table(shown, &output, &series, (&edges, &shares), &notes);
-    let title = format!("{what}: {}", shown.output);
+    let title = match series.as_slice() {
+        [s] if differences && s.above.n > 0 => {
+            format!(
+                "{} is above zero in {}",
+                capital_first(shown.output),
+                above(&s.above)
+            )
+        }
+        [s] if s.summary.n > 0 => {
+            let [low, high] = s.confidence.ends().map(|p| s.summary.quantile(p));
+            let digits = |x: f64| value(x, high - low);
+            let level = s.confidence.draws_percent();
+            format!(
+                "{level} % of the values of the {} lie between {} and {}{}",
+                shown.output,
+                digits(low),
+                digits(high),
+                shown.after()
+            )
+        }
+        _ => format!("{what}: {}", shown.output),
+    };
     let lead = format!(
         "{headline} {}",
         notes[..notes.len().min(IN_WORDS)].join(" ")
@@ -280,8 +303,12 @@ fn headline(series: &[Drawn], differences: bool) -> String {
 
 /// "934 of 1000 pairs: 93.4 % (91.7 to 94.9 %)".
 fn above(share: &Share) -> String {
-    let (k, n, own) = (share.k, share.n, percent(share.share));
+    let (k, n) = (share.k, share.n);
     let [low, high] = share.interval.unwrap_or([0.0, 1.0]).map(percent);
+    if n < FEW {
+        return format!("{k} of {n} pairs ({low} to {high}\u{a0}%)");
+    }
+    let own = percent(share.share);
     format!("{k} of {n} pairs: {own}\u{a0}% ({low} to {high}\u{a0}%)")
 }
 

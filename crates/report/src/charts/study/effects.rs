@@ -1,12 +1,12 @@
 //! Main effects: the mean over everything else, level by level, a panel for each factor.
 
-use super::{FOOT, RIGHT, Shown, by_size};
+use super::{FOOT, RIGHT, Shown, by_size, value};
 use crate::charts::engine::{
     Axis, BELOW, Chart, Cut, Entry, Fill, LEFT, Label, PLAIN, PLOT_LEFT, Panel, Rect, Shape, Style,
     Symbol, at, cell, round_step, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use crate::number::sign;
+use crate::number::{capital_first, sign};
 use cvtcycle_study::statistics::{Group, Groups};
 
 /// One factor.
@@ -52,7 +52,17 @@ pub fn effects_plot(shown: &Shown, factors: &[EffectFactor]) -> Picture {
         "Least to largest"
     };
     let spread = Entry::fill(Fill::plain("#dfe3eb"), what);
-    let title = format!("Main effects: {}", shown.output);
+    let widest = factors.first().filter(|f| f.groups.range > 0.0);
+    let title = match widest {
+        Some(factor) => format!(
+            "{} moves the mean {} most: by {}{}",
+            capital_first(factor.name),
+            shown.output,
+            value(factor.groups.range, factor.groups.range),
+            shown.after()
+        ),
+        None => format!("Main effects: {}", shown.output),
+    };
     Chart::new(title, shown.subject, PLOT_LEFT)
         .panels(panels(shown, &factors))
         .legend(FOOT, [Entry::line(PLAIN, "Mean"), spread])

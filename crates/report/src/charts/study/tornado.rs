@@ -6,6 +6,7 @@ use crate::charts::engine::{
     row_middle, rows_left, rows_panel, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use crate::number::{capital_first, signed};
 use cvtcycle_study::statistics::{Tornado, TornadoBar, TornadoEnd};
 
 /// Size of the values at the ends of bars, and widest such value, pixels.
@@ -35,7 +36,24 @@ pub fn tornado_plot(shown: &Shown, tornado: &Tornado) -> Picture {
     let names = ["Low or first value", "High or second value"];
     let entry = |(k, name): (usize, &str)| Entry::fill(Fill::nth(k, 2), name);
     let dots = dots.then(|| Entry::symbol(BETWEEN, Style::colour(INK), "Levels between"));
-    let title = format!("One factor at a time: {}", shown.output);
+    let widest = bars
+        .iter()
+        .find_map(|bar| Some((bar, bar.low.as_ref()?, bar.high.as_ref()?)));
+    let title = match widest {
+        Some((bar, a, b)) => {
+            let (least, most) = (a.effect.min(b.effect), a.effect.max(b.effect));
+            let digits = |x: f64| signed(value(x, high - low), x);
+            format!(
+                "{} moves the {} most: {} to {}{}",
+                capital_first(&bar.name),
+                shown.output,
+                digits(least),
+                digits(most),
+                shown.after()
+            )
+        }
+        None => format!("One factor at a time: {}", shown.output),
+    };
     Chart::new(title, shown.subject, MARGIN)
         .panels([panel])
         .legend(

@@ -17,8 +17,10 @@ use crate::charts::picture::{Picture, PictureTable};
 /// An energy flow.
 #[derive(Clone, Debug)]
 pub(super) struct Sankey<'a> {
-    pub title: &'static str,
+    pub title: String,
     pub subject: &'a str,
+    /// The largest source of the figures on this scale, kJ; the own one if it is smaller.
+    pub largest_kj: f64,
     /// What the trunk begins with.
     pub source: Whole,
     pub stages: Vec<Stage>,
@@ -140,7 +142,7 @@ impl Sankey<'_> {
     /// Pixels per kJ; zero where nothing flows.
     fn scale(&self) -> f64 {
         let inflow = self.source.kj + self.branches().map(|b| (-b.kj).max(0.0)).sum::<f64>();
-        let scale = TALL / inflow;
+        let scale = TALL / inflow.max(finite(self.largest_kj));
         if inflow > 0.0 && scale.is_finite() {
             scale
         } else {

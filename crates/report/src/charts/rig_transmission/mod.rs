@@ -1,6 +1,10 @@
-//! Pictures of the transmission rig's tests, after the figures of thesis chapter 5.
+//! Pictures of the transmission rig's tests, after the figures of thesis chapter 5; titles are sentences with the numbers of the picture,
+//! and what the thesis prints is drawn next to it.
 
-use super::lines::{LineChart, LinePanel, Look, Points, line_chart};
+mod says;
+
+use super::lines::{LineChart, LinePanel, Look, Palette, Points, PrintedMark, line_chart};
+use super::printed::{RigNumber, rig};
 use cvtcycle_model::bench::BenchPoint;
 use cvtcycle_model::bench::transmission::{
     Branch, Conditions, Loop, Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
@@ -45,6 +49,20 @@ impl Subject<'_> {
         }
         let file = format!("{kind}_{}.svg", name.replace('.', "_"));
         (file, line_chart(&chart).svg)
+    }
+
+    /// "in low", or "at I = 1.25".
+    fn place(&self, ratio: f64) -> String {
+        let name = self.conditions.ratio_name(ratio);
+        match name == format!("{ratio}") {
+            true => format!("at I = {ratio}"),
+            false => format!("in {name}"),
+        }
+    }
+
+    /// What the thesis prints of a quantity at a ratio.
+    fn printed(&self, ratio: f64, of: RigNumber) -> Vec<PrintedMark> {
+        rig(self.vehicle, &self.conditions.ratio_name(ratio), of)
     }
 }
 
@@ -99,11 +117,25 @@ impl<T> Sheet<'_, T> {
         temperatures.map(line).collect()
     }
 
-    /// A panel of losses for each temperature.
-    fn panels(&self, lines: impl Fn(f64) -> Lines) -> Vec<LinePanel> {
+    /// A panel for each temperature.
+    fn panels(&self, y_title: &'static str, lines: impl Fn(f64) -> Lines) -> Vec<LinePanel> {
         let temperatures = self.temperatures().into_iter();
-        let panel = |t: f64| panel(&format!("Bulk oil {t} \u{b0}C"), LOSS, lines(t));
+        let panel = |t: f64| panel(&bulk_oil(t), y_title, lines(t));
         temperatures.map(panel).collect()
+    }
+
+    /// The first and the last temperature, between which the others lie.
+    fn ends(&self) -> Vec<f64> {
+        let all = self.temperatures();
+        let last = all.last().copied().filter(|_| all.len() > 1);
+        all.first().copied().into_iter().chain(last).collect()
+    }
+
+    /// The rows of a ratio.
+    fn at(&self, ratio: f64) -> impl Iterator<Item = &T> {
+        self.rows
+            .iter()
+            .filter(move |row| same((self.set)(row).ratio, ratio))
     }
 }
 
@@ -117,6 +149,10 @@ fn names(names: impl Iterator<Item = impl Into<String>>) -> Vec<(Look, String)> 
     names.enumerate().map(name).collect()
 }
 
+fn bulk_oil(degc: f64) -> String {
+    format!("Bulk oil {degc} \u{b0}C")
+}
+
 fn panel(heading: &str, y_title: &'static str, series: Lines) -> LinePanel {
     LinePanel {
         heading: heading.to_owned(),
@@ -128,13 +164,13 @@ fn panel(heading: &str, y_title: &'static str, series: Lines) -> LinePanel {
 
 /// A chart with its title, panels, and the heading and names of its legend.
 fn chart(
-    title: &str,
+    title: String,
     panels: Vec<LinePanel>,
     legend: &str,
     names: Vec<(Look, String)>,
 ) -> LineChart {
     LineChart {
-        title: title.to_owned(),
+        title,
         panels,
         legend: legend.to_owned(),
         names,
@@ -142,74 +178,93 @@ fn chart(
     }
 }
 
-/// A quantity of the steady test: kind, title, axis and value.
-type Quantity = (
-    &'static str,
-    &'static str,
-    &'static str,
-    fn(&SteadyPoint) -> f64,
-);
-
-const STEADY: [Quantity; 2] = [
-    ("steady_loss", "Torque loss without load", LOSS, |r| {
-        r.answer.total_nm()
-    }),
-    (
-        "steady_pressure",
-        "Secondary pressure without load",
-        PRESSURE,
-        |r| r.answer.secondary_pa / 1e5,
-    ),
-];
-
 /// Torque loss and secondary pressure against speed, a line for each temperature (Figs 5-1 to 5-4).
 pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
     };
-    let mut pictures = Vec::new();
-    for ratio in sheet.ratios() {
-        for (kind, title, y_title, y) in STEADY {
-            let panels = vec![panel("", y_title, sheet.by_temperature(ratio, y))];
-            let chart = chart(title, panels, "Bulk oil", sheet.temperature_names());
-            pictures.push(subject.picture(kind, ratio, "", chart));
-        }
-    }
-    pictures
+    let of_ratio = |ratio: f64| {
+        let figure = |kind: &str, title: String, y_title, y: fn(&SteadyPoint) -> f64, printed| {
+            let mut panel = panel("", y_title, sheet.by_temperature(ratio, y));
+            panel.printed = printed;
+            panel.with_y = vec![0.0];
+            let mut chart = chart(title, vec![panel], "Bulk oil", sheet.temperature_names());
+            chart.palette = Palette::Ordered;
+            subject.picture(kind, ratio, "", chart)
+        };
+        let (place, printed) = (
+            subject.place(ratio),
+            subject.printed(ratio, RigNumber::Total),
+        );
+        let loss = |r: &SteadyPoint| r.answer.total_nm();
+        let bar = |r: &SteadyPoint| r.answer.secondary_pa / 1e5;
+        let losses = says::range(sheet.at(ratio).map(loss));
+        let pressures = says::range(sheet.at(ratio).map(bar));
+        let apart = says::apart(sheet.at(ratio).map(|r| (rpm(&r.set), bar(r))));
+        [
+            figure(
+                "steady_loss",
+                says::loss(losses, &place, &printed),
+                LOSS,
+                loss,
+                printed,
+            ),
+            figure(
+                "steady_pressure",
+                says::pressure(pressures, apart, &place),
+                PRESSURE,
+                bar,
+                Vec::new(),
+            ),
+        ]
+    };
+    sheet.ratios().into_iter().flat_map(of_ratio).collect()
 }
 
-/// Torque loss under load against speed, a line for each torque, a panel for each temperature.
+/// What a load adds to the torque loss, against speed: a line for each torque, a panel for each temperature.
 pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
     };
-    let torques = sheet.distinct(|set| set.output_nm);
+    let mut torques = sheet.distinct(|set| set.output_nm);
+    torques.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let Some((least, others)) = torques.split_first() else {
+        return Vec::new();
+    };
     let of_ratio = |ratio: f64| {
-        let line = |degc: f64, (k, nm): (usize, &f64)| {
-            let own = |set: &BenchPoint| same(set.output_nm, *nm);
-            (
-                Look::solid(k),
-                sheet.line((ratio, degc), own, |r| r.answer.total_nm()),
-            )
+        let line = |degc: f64, nm: f64| {
+            let own = |set: &BenchPoint| same(set.output_nm, nm);
+            sheet.line((ratio, degc), own, |r| r.answer.total_nm())
+        };
+        let added = |degc: f64, nm: f64| -> Points {
+            let pairs = line(degc, nm).into_iter().zip(line(degc, *least));
+            pairs.map(|((x, y), (_, base))| (x, y - base)).collect()
         };
         let lines = |degc: f64| {
+            let torques = others.iter().enumerate();
             torques
-                .iter()
-                .enumerate()
-                .map(|of| line(degc, of))
+                .map(|(k, nm)| (Look::solid(k), added(degc, *nm)))
                 .collect()
         };
-        let names = names(torques.iter().map(|t| format!("{t} Nm")));
-        let mut chart = chart(
-            "Torque loss under load",
-            sheet.panels(lines),
-            "Output torque",
-            names,
+        let names = names(others.iter().map(|t| format!("{t} Nm")));
+        let most = others.last().copied().unwrap_or(*least);
+        let at_most = sheet
+            .temperatures()
+            .into_iter()
+            .flat_map(|t| added(t, most));
+        let title = says::load(
+            says::range(at_most.map(|p| p.1)),
+            most,
+            &subject.place(ratio),
         );
-        chart.same_y = true;
-        subject.picture("loaded_loss", ratio, "", chart)
+        let mut panels = sheet.panels("Added loss [Nm]", lines);
+        panels.iter_mut().for_each(|panel| panel.with_y = vec![0.0]);
+        let mut chart = chart(title, panels, "Torque at the output", names);
+        (chart.same_y, chart.palette) = (true, Palette::Ordered);
+        let more = format!(", above the loss at {least} Nm");
+        subject.picture("loaded_loss", ratio, &more, chart)
     };
     sheet.ratios().into_iter().map(of_ratio).collect()
 }
@@ -235,8 +290,14 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
             branches.map(on).to_vec()
         };
         let belt = both(|m| m.answer.belt_k - ZERO_DEGC_K);
+        let mut whole = panel("Complete box", LOSS, both(|m| m.answer.total_nm()));
+        let start_degc = l
+            .moments
+            .first()
+            .map_or(f64::NAN, |m| m.sump_k - ZERO_DEGC_K);
+        whole.printed = subject.printed(l.ratio, RigNumber::Warming { start_degc });
         let panels = vec![
-            panel("Complete box", LOSS, both(|m| m.answer.total_nm())),
+            whole,
             panel("Belt alone", LOSS, both(|m| m.answer.belt_nm())),
             panel("Belt and spray", "Temperature [\u{b0}C]", belt),
         ];
@@ -245,7 +306,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
             .zip(names)
             .map(|((look, _), name)| (*look, name.to_owned()));
         let mut chart = chart(
-            "Temperature transient without load",
+            says::transient(l.widest(), &subject.place(l.ratio)),
             panels,
             "",
             names.collect(),
@@ -271,8 +332,13 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
         let line = |degc: f64, k: usize| sheet.line((ratio, degc), |_| true, boxes[k]);
         let lines = |degc: f64| [0, 1].map(|k| (Look::solid(k), line(degc, k))).to_vec();
         let names = names(["First box", "Second box"].into_iter());
-        let title = "Torque loss of two boxes without load";
-        let mut chart = chart(title, sheet.panels(lines), "", names);
+        let gap = |r: &TwoBoxes| r.second.answer.total_nm() - r.first.answer.total_nm();
+        let title = says::second_box(
+            pressure,
+            says::mean(sheet.at(ratio).map(gap)),
+            &subject.place(ratio),
+        );
+        let mut chart = chart(title, sheet.panels(LOSS, lines), "", names);
         chart.same_y = true;
         let more = format!(", pressure of the second {pressure} of the first");
         subject.picture("second_box", ratio, &more, chart)
@@ -288,15 +354,15 @@ pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
     };
     let corrected = ", corrected for pressure";
     let of_ratio = |ratio: f64| {
+        let place = subject.place(ratio);
+        let printed = |of: RigNumber| subject.printed(ratio, of);
+        let stages = stages(&sheet, ratio, &place);
+        let contributions = contributions(&sheet, ratio, &place, &printed(RigNumber::Sum));
+        let components = components(&sheet, ratio, &place, &printed);
         [
-            subject.picture("strip_down", ratio, "", stages(&sheet, ratio)),
-            subject.picture(
-                "contributions",
-                ratio,
-                corrected,
-                contributions(&sheet, ratio),
-            ),
-            subject.picture("components", ratio, corrected, components(&sheet, ratio)),
+            subject.picture("strip_down", ratio, "", stages),
+            subject.picture("contributions", ratio, corrected, contributions),
+            subject.picture("components", ratio, corrected, components),
         ]
     };
     sheet.ratios().into_iter().flat_map(of_ratio).collect()
@@ -319,35 +385,70 @@ const PIECES: [(Piece, &str, Component); 5] = [
     (Piece::FinalDrive, "Final drive", Component::FinalDrive),
 ];
 
-/// Torque loss and pressure after each part was removed.
-fn stages(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
+/// Torque loss and pressure of each stage: a line for each, between the coldest and the warmest oil.
+fn stages(sheet: &Sheet<StripDown>, ratio: f64, place: &str) -> LineChart {
+    let line = |degc: f64, y: &dyn Fn(&StripDown, Stage) -> f64, keep: &dyn Fn(Stage) -> bool| {
+        let stages = STAGES.into_iter().enumerate().filter(|(_, of)| keep(of.0));
+        let line = |(k, (stage, _)): (usize, (Stage, &str))| {
+            (
+                Look::solid(k),
+                sheet.line((ratio, degc), |_| true, |r| y(r, stage)),
+            )
+        };
+        stages.map(line).collect::<Lines>()
+    };
+    let loss = |r: &StripDown, stage: Stage| r.stage(stage).total_nm();
+    let bar = |r: &StripDown, stage: Stage| r.stage(stage).secondary_pa / 1e5;
     let mut panels = Vec::new();
-    for (stage, words) in STAGES {
-        let loss = sheet.by_temperature(ratio, |r| r.stage(stage).total_nm());
-        panels.push(panel(words, LOSS, loss));
-        if stage != Stage::PumpRemoved {
-            let pressure = sheet.by_temperature(ratio, |r| r.stage(stage).secondary_pa / 1e5);
-            panels.push(panel(words, PRESSURE, pressure));
-        }
+    for degc in sheet.ends() {
+        panels.push(panel(&bulk_oil(degc), LOSS, line(degc, &loss, &|_| true)));
+        let with_pump = |stage| stage != Stage::PumpRemoved;
+        panels.push(panel(
+            &bulk_oil(degc),
+            PRESSURE,
+            line(degc, &bar, &with_pump),
+        ));
     }
-    let title = "Strip-down: torque loss and pressure of each stage";
-    chart(title, panels, "Bulk oil", sheet.temperature_names())
+    let first = sheet.ends().first().copied().unwrap_or(f64::NAN);
+    let here = sheet.at(ratio).filter(|r| same(oil_degc(&r.set), first));
+    let near = here.min_by(|a, b| says::from_shown(&a.set).total_cmp(&says::from_shown(&b.set)));
+    let left = near.map(|r| (rpm(&r.set), first, STAGES.map(|(stage, _)| loss(r, stage))));
+    let names = names(STAGES.into_iter().map(|(_, words)| words));
+    let mut chart = chart(says::stages(left, place), panels, "", names);
+    (chart.same_y, chart.palette) = (true, Palette::Ordered);
+    chart
 }
 
-/// The losses found by the strip-down, stacked.
-fn contributions(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
+/// The losses found by the strip-down, stacked, in the coldest and the warmest oil.
+fn contributions(
+    sheet: &Sheet<StripDown>,
+    ratio: f64,
+    place: &str,
+    printed: &[PrintedMark],
+) -> LineChart {
+    let found = |r: &StripDown, piece: Piece| r.piece(piece).corrected_nm;
     let lines = |degc: f64| {
-        let line =
-            |piece: Piece| sheet.line((ratio, degc), |_| true, |r| r.piece(piece).corrected_nm);
+        let line = |piece: Piece| sheet.line((ratio, degc), |_| true, |r| found(r, piece));
         let pieces = PIECES.into_iter().enumerate();
         pieces
             .map(|(k, (piece, ..))| (Look::solid(k), line(piece)))
             .collect()
     };
-    let mut panels = sheet.panels(lines);
-    panels.iter_mut().for_each(|panel| panel.stacked = true);
+    let ends = sheet.ends();
+    let of_end = |t: &f64| {
+        let mut panel = panel(&bulk_oil(*t), LOSS, lines(*t));
+        panel.stacked = true;
+        panel.printed = printed.to_vec();
+        panel
+    };
+    let panels = ends.iter().map(of_end).collect();
+    let drawn = |r: &&StripDown| ends.iter().any(|t| same(oil_degc(&r.set), *t));
+    let sums = PIECES.map(|(piece, words, _)| {
+        let losses = sheet.at(ratio).filter(drawn).map(|r| found(r, piece));
+        (words, losses.sum::<f64>())
+    });
     let names = names(PIECES.into_iter().map(|(_, words, _)| words));
-    let title = "Contributions to the torque loss, from the strip-down";
+    let title = says::contributions(&sums, place);
     let mut chart = chart(title, panels, "From the strip-down", names);
     chart.same_y = true;
     chart.parts = PIECES.into_iter().map(|(.., part)| part).collect();
@@ -355,7 +456,12 @@ fn contributions(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
 }
 
 /// Each component from the strip-down, and dotted its own loss in the complete box.
-fn components(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
+fn components(
+    sheet: &Sheet<StripDown>,
+    ratio: f64,
+    place: &str,
+    printed: &dyn Fn(RigNumber) -> Vec<PrintedMark>,
+) -> LineChart {
     fn dotted<T>((mut look, of): (Look, T)) -> (Look, T) {
         look.dotted = true;
         (look, of)
@@ -366,12 +472,19 @@ fn components(sheet: &Sheet<StripDown>, ratio: f64) -> LineChart {
         series.extend(own.into_iter().map(dotted));
         let mut panel = panel(words, LOSS, series);
         panel.with_y = vec![0.0];
+        panel.printed = printed(RigNumber::Piece(piece));
         panel
     };
     let mut names = sheet.temperature_names();
     let own = names.clone().into_iter().map(dotted);
     names.extend(own.map(|(look, name)| (look, name + ", true")));
     let panels = PIECES.into_iter().map(of).collect();
-    let title = "Components from the strip-down and of the model";
-    chart(title, panels, "Bulk oil", names)
+    let more = |r: &StripDown| {
+        let piece = r.piece(Piece::FinalDrive);
+        piece.corrected_nm - piece.true_nm
+    };
+    let title = says::components(says::mean(sheet.at(ratio).map(more)), place);
+    let mut chart = chart(title, panels, "Bulk oil", names);
+    chart.palette = Palette::Ordered;
+    chart
 }

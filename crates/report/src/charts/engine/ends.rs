@@ -1,0 +1,43 @@
+//! Names of lines at their right ends, moved apart where they would lie on each other.
+
+use super::panel::Panel;
+use super::place::{Label, at};
+use super::svg::Point;
+
+/// Least distance of two names, pixels.
+const APART: f64 = 14.0;
+/// Ends so near to the frame are named beyond it, pixels.
+const NEAR: f64 = 30.0;
+
+/// The right end of a line and what is written there.
+#[derive(Clone, Debug)]
+pub(crate) struct End {
+    pub at: Point,
+    pub text: String,
+    pub colour: &'static str,
+}
+
+/// Writes names to the right of the ends of lines, the highest end on top, in the colours of the lines.
+pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
+    ends.retain(|end| end.at.0.is_finite() && end.at.1.is_finite());
+    ends.sort_by(|a, b| b.at.1.total_cmp(&a.at.1));
+    let lowest = panel.rect.bottom + 8.0;
+    let (count, mut free) = (ends.len(), f64::NEG_INFINITY);
+    for (k, end) in ends.into_iter().enumerate() {
+        // A line may leave the panel.
+        let own = panel.py(end.at.1).clamp(panel.rect.top, panel.rect.bottom) + 4.0;
+        let x = panel.px(end.at.0).clamp(panel.rect.left, panel.rect.right);
+        let room = lowest - APART * (count - 1 - k) as f64;
+        let y = own.max(free).min(room.max(free));
+        free = y + APART;
+        let corner = at(f64::NEG_INFINITY, f64::INFINITY);
+        // Names of lines that go on to the frame, or nearly so, stand beyond it.
+        let x = if panel.rect.right - x < NEAR {
+            panel.rect.right
+        } else {
+            x
+        };
+        let place = corner.shift(x - panel.rect.left + 7.0, y - panel.rect.top);
+        panel.label(Label::new(place, end.text).colour(end.colour));
+    }
+}

@@ -1,0 +1,285 @@
+//! Titles are sentences, and their numbers those of the table.
+
+use cvtcycle::output::Component;
+use cvtcycle::report::charts::figures::{
+    CarEnergy, CarLosses, Difference, DifferenceTerm, OverlayPanel, PhaseLosses, TraceDifference,
+    difference_bars, energy_flow, loss_by_component, loss_by_phase, trace_difference,
+    transmission_flow,
+};
+use cvtcycle::report::charts::{
+    Picture, fuel_bars, losses, operating_points, pressure, temperatures,
+};
+
+use super::svg_checks::{check, numbers};
+use crate::fixtures::{history, phases, rows, run};
+
+/// The title with plain spaces, without the subject after it.
+pub fn title(picture: &Picture) -> String {
+    let title = picture.svg.split("<title>").nth(1).unwrap();
+    let title = title.split("</title>").next().unwrap();
+    title.replace(['\u{a0}', '\u{202f}'], " ")
+}
+
+/// The numbers of a text.
+fn numbers_in(text: &str) -> Vec<f64> {
+    let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '\u{2212}';
+    let words = text
+        .split(|c| !is_number(c))
+        .map(|word| word.trim_end_matches('.'));
+    let found = words.map(numbers);
+    found.filter(|x| x.is_finite()).collect()
+}
+
+/// The sum of a column over rows.
+fn sum<'a>(rows: impl Iterator<Item = &'a Vec<String>>, column: usize) -> f64 {
+    rows.map(|row| numbers(&row[column])).sum()
+}
+
+#[test]
+fn the_losses_over_time_of_a_title_are_those_of_the_table() {
+    let (a, b) = (
+        history(true, &rows(1180, 1.0, true), &phases()),
+        history(false, &rows(1180, 1.0, false), &phases()),
+    );
+    let picture = losses(&[run("A", &a), run("B", &b)]);
+    check(&picture);
+    let kj = |name: &str| {
+        let column = picture
+            .table
+            .columns
+            .iter()
+            .position(|(own, _)| own == name)
+            .unwrap();
+        let energy = |row: &Vec<String>| numbers(&row[1]) * numbers(&row[column]);
+        picture.table.rows.iter().map(energy).sum::<f64>() / 1e3
+    };
+    let said = numbers_in(title(&picture).split(':').next().unwrap());
+    assert_eq!(said.len(), 2, "{}", title(&picture));
+    for (said, wanted) in said.into_iter().zip([kj("A: all"), kj("B: all")]) {
+        assert!((said - wanted).abs() < 0.6, "{said} {wanted}");
+    }
+    let own = losses(&[run("A", &a)]);
+    assert!(title(&own).contains("most of it in"), "{}", title(&own));
+}
+
+#[test]
+fn temperatures_pressures_and_fuel_of_a_title_are_those_of_the_table() {
+    let history = history(true, &rows(1180, 1.0, true), &phases());
+    let car = run("car", &history);
+    let column = |picture: &Picture, name: &str| {
+        picture
+            .table
+            .columns
+            .iter()
+            .position(|(own, _)| own == name)
+            .unwrap()
+    };
+    let picture = temperatures(&[run("car", &history)]);
+    let last = picture.table.rows.last().unwrap();
+    let ends =
+        ["Transmission sump", "Engine oil"].map(|name| numbers(&last[column(&picture, name)]));
+    let said = numbers_in(&title(&picture));
+    assert!(
+        (said[0] - ends[0]).abs() < 0.56 && (said[1] - ends[1]).abs() < 0.56,
+        "{said:?} {ends:?}"
+    );
+
+    let picture = pressure(&car);
+    // The table lists every second step, the title knows all.
+    let finite = |column: &str| {
+        let all = history.column(column).iter().copied();
+        all.filter(|x| x.is_finite()).collect::<Vec<_>>()
+    };
+    let least = finite("clamp_safety")
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let most = finite("secondary_pressure_bar")
+        .into_iter()
+        .fold(0.0, f64::max);
+    let used = 100.0 / least;
+    let listed = column(&picture, "Clamping used");
+    let listed = picture.table.rows.iter().map(|row| numbers(&row[listed]));
+    let listed = listed.filter(|x| x.is_finite()).fold(0.0, f64::max);
+    assert!(listed > 0.0 && listed <= used + 0.06, "{listed} {used}");
+    let said = numbers_in(&title(&picture));
+    assert!(
+        (said[0] - used).abs() < 0.56 && (said[1] - most).abs() < 0.06,
+        "{said:?} {used} {most}"
+    );
+
+    let other = run("other", &history);
+    let mut dear = run("car", &history);
+    dear.group_fuel[2].1 = 8.0;
+    let picture = fuel_bars(&[dear, other]);
+    let fuel = |car: &str| {
+        let own = |row: &&Vec<String>| row[0] == "total" && row[1] == car;
+        numbers(&picture.table.rows.iter().find(own).unwrap()[2])
+    };
+    let said = title(&picture);
+    let more = 100.0 * (fuel("car") / fuel("other") - 1.0);
+    let found = numbers_in(&said);
+    assert!(said.contains("more than other"), "{said}");
+    assert!(
+        (found[0] - 8.0).abs() < 0.005 && (found.last().unwrap() - more).abs() < 0.1,
+        "{said}"
+    );
+}
+
+#[test]
+fn the_stretch_of_most_fuel_is_that_of_the_cells() {
+    let history = history(true, &rows(1180, 1.0, true), &phases());
+    let picture = operating_points(&[run("car", &history)]);
+    check(&picture);
+    let said = numbers_in(title(&picture).split(": ").next().unwrap());
+    let [share, from, to] = said[..3] else {
+        panic!("{said:?}")
+    };
+    let within = |row: &&Vec<String>| {
+        let cell = numbers_in(&row[0]);
+        cell[0] >= from - 1e-6 && cell[1] <= to + 1e-6
+    };
+    let all = sum(picture.table.rows.iter(), 3);
+    let own = sum(picture.table.rows.iter().filter(within), 3);
+    assert!(
+        (100.0 * own / all - share).abs() < 0.6,
+        "{share} {own} {all}"
+    );
+}
+
+fn energy() -> CarEnergy {
+    CarEnergy {
+        subject: "car".to_owned(),
+        fuel_kj: 27_000.0,
+        exhaust_kj: 9000.0,
+        engine_heat_kj: 12_500.0,
+        accessories_kj: 562.0,
+        kinetic_kj: 0.8,
+        losses_kj: vec![(Component::Pump, 1700.0), (Component::BeltBand, 500.0)],
+        brake_kj: 300.0,
+        wheels_kj: 2437.2,
+        largest_kj: [54_000.0, 0.0],
+    }
+}
+
+#[test]
+fn shares_of_a_flow_are_those_of_its_table() {
+    let row = |picture: &Picture, name: &str, column: usize| {
+        let own = |row: &&Vec<String>| row[0] == name;
+        numbers(&picture.table.rows.iter().find(own).unwrap()[column])
+    };
+    let picture = energy_flow(&energy());
+    let said = numbers_in(&title(&picture));
+    assert!(
+        (said[0] - row(&picture, "Rolling and air", 3)).abs() < 0.06,
+        "{said:?}"
+    );
+    assert!(
+        (said[1] - row(&picture, "Transmission losses", 3)).abs() < 0.06,
+        "{said:?}"
+    );
+    let picture = transmission_flow(&energy());
+    let passed = row(&picture, "Rolling and air", 3) + row(&picture, "Brakes", 3);
+    assert!(
+        (numbers_in(&title(&picture))[0] - passed).abs() < 0.06,
+        "{passed}"
+    );
+}
+
+#[test]
+fn the_largest_losses_of_a_title_have_their_share() {
+    let car = CarLosses {
+        name: "car".to_owned(),
+        losses_kj: energy().losses_kj,
+        distance_km: 11.0,
+    };
+    let picture = loss_by_component(&[car], "conditions");
+    assert!(
+        title(&picture).starts_with("Pump and belt band are 100 %"),
+        "{}",
+        title(&picture)
+    );
+    let phases = PhaseLosses {
+        subject: "s".to_owned(),
+        cars: vec!["car".to_owned()],
+        groups: vec![(
+            "ECE15".to_owned(),
+            vec![vec![(Component::Pump, 40.0), (Component::BeltBand, 2.5)]],
+        )],
+    };
+    let picture = loss_by_phase(&phases);
+    assert!(
+        title(&picture).starts_with("car loses 42.5 kJ/km in ECE15"),
+        "{}",
+        title(&picture)
+    );
+    assert!((sum(picture.table.rows.iter(), 3) - 42.5).abs() < 1e-9);
+}
+
+#[test]
+fn differences_of_a_title_are_those_of_the_table() {
+    let of = Difference {
+        names: ["a".to_owned(), "b".to_owned()],
+        fuel_kj_per_l: [31_000.0; 2],
+        distance_km: [11.0; 2],
+        fuel_kj: [27_000.0, 26_900.0],
+        terms: vec![
+            DifferenceTerm::of(Component::BeltBand, [500.0, 420.0]),
+            DifferenceTerm::of(Component::Pump, [900.0, 899.9]),
+            DifferenceTerm::of(Component::Seal, [90.0, 90.1]),
+        ],
+    };
+    let picture = difference_bars(&of);
+    check(&picture);
+    let said = title(&picture);
+    assert!(
+        said.starts_with("B burns 100 kJ less than A, most of it belt band (\u{2212}80.0 kJ)"),
+        "{said}"
+    );
+    assert!(picture.svg.contains("2 others"), "small terms are one bar");
+    let rows = &picture.table.rows;
+    assert!(
+        rows.iter().any(|row| row[0] == "Seal") && rows.iter().any(|row| row[0] == "Pump"),
+        "the table has each"
+    );
+}
+
+#[test]
+fn fuel_that_one_run_has_burnt_more_grows_to_that_of_the_title() {
+    let flow = |g_s: f64| {
+        (1..=100)
+            .map(|t| (f64::from(t), 1.0, g_s))
+            .collect::<Vec<_>>()
+    };
+    let of = TraceDifference {
+        names: ["a".to_owned(), "b".to_owned()],
+        speed_kmh: vec![(1.0, 0.0), (100.0, 50.0)],
+        fuel_g_s: [flow(0.5), flow(0.45)],
+        panels: vec![OverlayPanel {
+            title: "Sump".to_owned(),
+            unit: "degC",
+            runs: [
+                vec![(1.0, 20.0), (100.0, 40.0)],
+                vec![(1.0, 20.0), (100.0, 38.0)],
+            ],
+        }],
+    };
+    let picture = trace_difference(&of);
+    check(&picture);
+    let said = numbers_in(title(&picture).split(": ").next().unwrap());
+    let last = picture.table.rows.last().unwrap();
+    assert!(
+        (said[0] + numbers(&last[1])).abs() < 0.006,
+        "{said:?} {last:?}"
+    );
+    let half = picture
+        .table
+        .rows
+        .iter()
+        .find(|row| numbers(&row[0]) >= said[1])
+        .unwrap();
+    assert!(
+        (numbers(&half[1]) / numbers(&last[1]) - 0.5).abs() < 0.02,
+        "{half:?}"
+    );
+    check(&trace_difference(&TraceDifference::default()));
+}
