@@ -24,7 +24,7 @@ use rayon::prelude::*;
 
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_model::drive::{Conditions, MOST_TOGETHER, Outcome, Run, Vehicle, drive_each};
 use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_model::transmission::loss_factor::LossFactors;
 use cvtcycle_output::Component;
@@ -262,18 +262,34 @@ impl<'a> Runs<'a> {
             keep_rows: false,
             ..of.conditions
         };
-        let one = |factors: &LossFactors| {
-            let outcome = drive(&of.setup.with_losses_times(factors), of.cycle, &conditions);
-            let driven = Driven {
-                name: &self.numbers.vehicle,
-                setup: of.setup,
-                outcome: &outcome,
+        // Some at a time, which are driven side by side.
+        let some = |factors: &[LossFactors]| -> Vec<Burnt> {
+            let cars: Vec<Vehicle> = (factors.iter())
+                .map(|factors| of.setup.with_losses_times(factors))
+                .collect();
+            let runs: Vec<Run> = (cars.iter())
+                .map(|vehicle| Run {
+                    vehicle,
+                    conditions,
+                })
+                .collect();
+            let burnt = |outcome: &Outcome| {
+                let driven = Driven {
+                    name: &self.numbers.vehicle,
+                    setup: of.setup,
+                    outcome,
+                };
+                let role = &self.numbers.role;
+                Burnt::of(&run_summary(of.cycle, role, of.settings, &driven))
             };
-            let role = &self.numbers.role;
-            Burnt::of(&run_summary(of.cycle, role, of.settings, &driven))
+            drive_each(&runs, of.cycle).iter().map(burnt).collect()
         };
         let counts = changed.each_ref().map(Vec::len);
-        let burnt: Vec<Burnt> = changed.concat().par_iter().map(one).collect();
+        let burnt: Vec<Vec<Burnt>> = (changed.concat())
+            .par_chunks(MOST_TOGETHER)
+            .map(some)
+            .collect();
+        let burnt: Vec<Burnt> = burnt.into_iter().flatten().collect();
         let mut burnt = burnt.into_iter();
         counts.map(|count| burnt.by_ref().take(count).collect())
     }

@@ -9,7 +9,7 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup};
 use cvtcycle_config::{Problems, unit_of};
-use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_model::drive::{Conditions, MOST_TOGETHER, Outcome, Run, drive, drive_each};
 use cvtcycle_model::transmission::loss_factor;
 use cvtcycle_output::number::finite;
 use cvtcycle_output::record::{Effect, Sensitivity};
@@ -62,25 +62,31 @@ pub fn sensitivity(
             .filter_map(|info| blueprint.slot(&info.key).ok())
             .filter(|slot| slot.base().abs() > 0.0)
             .collect();
-        let of_slot = |bench: &mut Variant, slot: &ParameterRef| {
-            let mut side = |sign: f64| {
+        let of_slots = |bench: &mut Variant, slots: &[ParameterRef]| -> Vec<Effect> {
+            let mut changed_car = |slot: &ParameterRef, sign: f64| {
                 bench.reset();
                 bench.set(slot, changed(slot.key(), slot.base(), sign));
-                let now = fuel(&bench.build().ok()?, cycle, &conditions);
-                finite(100.0 * (now? / base? - 1.0))
+                bench.build().ok()
             };
-            let (lowered_percent, raised_percent) = (side(-1.0), side(1.0));
-            Effect {
+            let cars: Vec<Option<Setup>> = (slots.iter())
+                .flat_map(|slot| [-1.0, 1.0].map(|sign| changed_car(slot, sign)))
+                .collect();
+            let fuels = fuels(&cars, cycle, &conditions);
+            let percent = |now: Option<f64>| finite(100.0 * (now? / base? - 1.0));
+            let effect = |(slot, sides): (&ParameterRef, &[Option<f64>])| Effect {
                 car: car.name.clone(),
                 key: slot.key().to_owned(),
-                lowered_percent,
-                raised_percent,
-            }
+                lowered_percent: sides.first().copied().and_then(percent),
+                raised_percent: sides.last().copied().and_then(percent),
+            };
+            slots.iter().zip(fuels.chunks(2)).map(effect).collect()
         };
-        let found: Vec<Effect> = slots
-            .par_iter()
-            .map_init(|| blueprint.bench(), of_slot)
+        // Both sides of some values are driven together.
+        let found: Vec<Vec<Effect>> = slots
+            .par_chunks(MOST_TOGETHER / 2)
+            .map_init(|| blueprint.bench(), of_slots)
             .collect();
+        let found = found.into_iter().flatten();
         effects.extend(found);
     }
     Ok(Sensitivity {
@@ -104,11 +110,31 @@ fn changed(key: &str, value: f64, sign: f64) -> f64 {
 
 /// Headline fuel of the car, L/100 km.
 fn fuel(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> Option<f64> {
-    let outcome = drive(setup, cycle, conditions);
+    headline(setup, cycle, &drive(setup, cycle, conditions))
+}
+
+/// Headline fuel of each car that there is, L/100 km; they are driven side by side.
+fn fuels(cars: &[Option<Setup>], cycle: &Cycle, conditions: &Conditions) -> Vec<Option<f64>> {
+    let run = |setup| Run {
+        vehicle: setup,
+        conditions: *conditions,
+    };
+    let runs: Vec<Run> = (cars.iter().flatten())
+        .map(|setup| run(&setup.vehicle))
+        .collect();
+    let mut outcomes = drive_each(&runs, cycle).into_iter();
+    let mut fuel = |setup: &Setup| headline(setup, cycle, &outcomes.next()?);
+    cars.iter()
+        .map(|setup| setup.as_ref().and_then(&mut fuel))
+        .collect()
+}
+
+/// Headline fuel of a drive, L/100 km.
+fn headline(setup: &Setup, cycle: &Cycle, outcome: &Outcome) -> Option<f64> {
     let driven = Driven {
         name: &setup.name,
         setup,
-        outcome: &outcome,
+        outcome,
     };
     run_summary(cycle, "subject", &Settings::default(), &driven).headline_fuel()
 }

@@ -21,7 +21,7 @@ const VARIED: [(&str, f64, f64); 12] = [
     ("engine.friction.viscous_share", 0.3, 0.05),
     ("engine.fuel.cut_from_degc", 20.0, 9.0),
     ("engine.fuel.start_g", 0.0, 1.5),
-    ("transmission_oil.viscosity.kv100_mm2_s", 7.0, 0.3),
+    ("engine.accessory_nm", 0.1, 0.07),
 ];
 
 /// Cars of one family, no two alike.

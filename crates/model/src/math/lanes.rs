@@ -122,6 +122,7 @@ macro_rules! lanes {
                 Answers($mask::from_bitmask(self.simd, bits))
             }
 
+            #[inline(always)]
             fn every<T: Own>(f: impl FnMut(usize) -> T) -> [T; $count] {
                 std::array::from_fn(f)
             }

@@ -43,11 +43,13 @@ impl Study {
         let mut traces = Traces::new(self, || 0);
         let mut half = None;
         // The first point of a thread reads the files of its cars, which is no part of the rest.
-        self.point(0, &mut worker, None);
+        self.points(0..1, &mut worker, None);
         let begun = Instant::now();
         for (k, point) in points.enumerate() {
-            let of_point = self.point(point, &mut worker, traces.as_mut());
-            filler.push(point, &of_point, &mut runs);
+            let of_points = self.points(point..point + 1, &mut worker, traces.as_mut());
+            for of_point in &of_points {
+                filler.push(point, of_point, &mut runs);
+            }
             if k as u64 + 1 == count.div_ceil(2) {
                 half = Some(runs.clone());
             }

@@ -211,6 +211,7 @@ where
     }
 
     /// Each loss times its factor (CV-7, MB-6).
+    #[inline(always)]
     pub fn times(&self, factor: &TrainLosses<R>) -> Self {
         TurningTrain {
             bearing_nm: factor.bearing * self.bearing_nm,
@@ -249,6 +250,7 @@ where
     }
 
     /// Losses by part for a torque behind the train; their sum is the torque before it less the one behind it.
+    #[inline(always)]
     pub fn losses(&self, output_nm: R) -> TrainLosses<R> {
         let through_nm = (output_nm + self.no_load_nm()).abs();
         let larger_nm = through_nm.most(self.input_nm(output_nm).abs());

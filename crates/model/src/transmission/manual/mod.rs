@@ -146,6 +146,27 @@ enum Action {
     Neutral,
 }
 
+impl<R: Real> Manual<R> {
+    /// The command of the shift speeds of a run (MB-5).
+    fn shifted<P: PrimeMover<R>>(
+        &self,
+        step: &StepInput<P, R>,
+        before: u8,
+        run: usize,
+    ) -> GearCommand {
+        let wheel = step.wheel;
+        let shifts = R::one(&self.shifts, run);
+        let gear = shifts.for_speed(wheel.speed_m_s, before, self.overall.len());
+        let input = self.overall[usize::from(gear) - 1].lane(run) * wheel.wheel_rad_s.lane(run);
+        let idle = step.engine.idle_rad_s().lane(run);
+        if wheel.power_w.lane(run) <= 0.0 && input < LEAST_OVER_IDLE * idle {
+            GearCommand::Declutched(gear)
+        } else {
+            GearCommand::InGear(gear)
+        }
+    }
+}
+
 impl<R: Real> Manual<R>
 where
     f64: Left<R>,
@@ -224,24 +245,6 @@ where
         }
     }
 
-    /// The command of the shift speeds of a run (MB-5).
-    fn shifted<P: PrimeMover<R>>(
-        &self,
-        step: &StepInput<P, R>,
-        before: u8,
-        run: usize,
-    ) -> GearCommand {
-        let shifts = R::one(&self.shifts, run);
-        let gear = shifts.for_speed(step.wheel.speed_m_s, before, self.overall.len());
-        let input = self.overall[usize::from(gear) - 1] * step.wheel.wheel_rad_s;
-        let slow = input.below(LEAST_OVER_IDLE * step.engine.idle_rad_s());
-        if (step.wheel.power_w.at_most(0.0) & slow).lane(run) {
-            GearCommand::Declutched(gear)
-        } else {
-            GearCommand::InGear(gear)
-        }
-    }
-
     /// Where the cycle has no gear in force, and one was needed to drive the car faster.
     #[inline(always)]
     fn is_wrong_gear<P: PrimeMover<R>>(step: &StepInput<P, R>, output: &StepOutput<R>) -> R::Mask {
@@ -279,15 +282,13 @@ where
             state,
             oil: step.oil.state(sump_k),
         };
-        let rolls = step.wheel.wheel_rad_s.above(0.0);
-        let action = |run| self.action(step, *R::one(&state.gear, run), rolls.lane(run), run);
-        let first = action(0);
-        let actions = R::every(action);
-        if (1..R::LANES).all(|run| *R::one(&actions, run) == first) {
-            at.act(first, output);
-        } else {
-            at.act_apart(&actions, output);
-        }
+        // The road speed is that of all runs.
+        let rolls = step.wheel.wheel_rad_s.above(0.0).any();
+        let actions = R::every(
+            #[inline(always)]
+            |run| self.action(step, *R::one(&state.gear, run), rolls, run),
+        );
+        at.act(&actions, output);
         output.flag(
             Flags::OVERSPEED,
             output.engine_rad_s.above(step.engine.max_rad_s()),

@@ -26,31 +26,44 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R>
 where
     f64: Left<R>,
 {
-    /// What all drivers do alike.
+    /// What the drivers do: each kind of it once for all runs, of which those take it over that do it.
     #[inline(always)]
-    pub fn act(&self, action: Action, output: &mut StepOutput<R>) {
-        match action {
-            Action::Engaged(gear) => {
-                self.engaged(gear, self.oil.density_kg_m3.answer(true), output)
-            }
-            Action::Coasting(gear) => self.coasting(gear, output),
-            Action::Neutral => self.neutral(output),
+    pub fn act(&self, actions: &R::Each<Action>, output: &mut StepOutput<R>) {
+        let like = self.oil.density_kg_m3;
+        if R::LANES == 1 {
+            return self.act_alike(*R::one(actions, 0), output);
         }
-    }
-
-    /// What the drivers do, not all of them the same: each kind once for all, of which those take it over that do it.
-    pub fn act_apart(&self, actions: &R::Each<Action>, output: &mut StepOutput<R>) {
-        let mut left = self.oil.density_kg_m3.answer(true);
+        let mut left = like.answer(true);
         for run in 0..R::LANES {
             if !left.lane(run) {
                 continue;
             }
-            let action = R::one(actions, run);
-            let alike = left & (self.oil.density_kg_m3).ask(|run| R::one(actions, run) == action);
-            let mut of_action = StepOutput::like(self.oil.density_kg_m3);
-            self.act(*action, &mut of_action);
+            let action = *R::one(actions, run);
+            let alike = left
+                & like.ask(
+                    #[inline(always)]
+                    |run| *R::one(actions, run) == action,
+                );
+            let mut of_action = StepOutput::like(like);
+            self.act_alike(action, &mut of_action);
+            if alike.all() {
+                *output = of_action;
+                return;
+            }
             output.take(alike, &of_action);
             left = left & !alike;
+        }
+    }
+
+    /// What all drivers do alike.
+    #[inline(always)]
+    fn act_alike(&self, action: Action, output: &mut StepOutput<R>) {
+        match action {
+            Action::Engaged(gear) => {
+                self.engaged(gear, self.oil.density_kg_m3.answer(true), output);
+            }
+            Action::Coasting(gear) => self.coasting(gear, output),
+            Action::Neutral => self.neutral(output),
         }
     }
 
@@ -117,29 +130,31 @@ where
     }
 
     /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
-    #[inline(always)]
     fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
-        let mut gear = gear;
-        let mut open = runs;
-        loop {
-            let lacks = if open.all() {
-                self.in_gear(gear, output)
-            } else {
-                let mut other = StepOutput::like(self.oil.density_kg_m3);
-                let lacks = self.in_gear(gear, &mut other);
-                output.take(open, &other);
-                lacks
-            };
-            open = open & lacks;
-            if !open.any() {
-                break;
-            }
-            open = open & self.may_shift_down(gear);
-            if !open.any() {
-                break;
-            }
-            gear -= 1;
-        }
+        let like = self.oil.density_kg_m3;
+        like.within(
+            #[inline(always)]
+            || {
+                let (mut gear, mut open) = (gear, runs);
+                loop {
+                    let mut other = StepOutput::like(like);
+                    let alone = R::LANES == 1;
+                    let lacks = self.in_gear(gear, if alone { &mut *output } else { &mut other });
+                    if !alone {
+                        output.take(open, &other);
+                    }
+                    open = open & lacks;
+                    if !open.any() {
+                        break;
+                    }
+                    open = open & self.may_shift_down(gear);
+                    if !open.any() {
+                        break;
+                    }
+                    gear -= 1;
+                }
+            },
+        );
     }
 
     /// Where there is a gear below, and the engine may turn as fast as the wheels would have it there.
@@ -185,9 +200,13 @@ where
         };
         let least = coupling.min_output_nm(&turning, absorbed_nm);
         let mut full_load_nm = engine.full_load_nm(w);
-        let most = self.most_nm(input, w);
-        let lacks_torque =
-            at.input_nm.above(most) | at.input_nm.above(self.most_nm(input, speed.settled_rad_s));
+        let most = self.most_nm(input, w, full_load_nm);
+        let mut lacks_torque = at.input_nm.above(most);
+        let settled = speed.settled_rad_s;
+        if (settled.above(w) | w.above(settled)).any() {
+            let settled_nm = self.most_nm(input, settled, engine.full_load_nm(settled));
+            lacks_torque = lacks_torque | at.input_nm.above(settled_nm);
+        }
         let below = at.input_nm.below(least);
         let above = at.input_nm.above(most);
         let limited = below | above;
@@ -243,11 +262,10 @@ where
 
     /// Torque into the box at the engine's full load, Nm, at speeds of box and engine.
     #[inline(always)]
-    fn most_nm(&self, input_rad_s: R, engine_rad_s: R) -> R {
+    fn most_nm(&self, input_rad_s: R, engine_rad_s: R, full_load_nm: R) -> R {
         let engine = self.step.engine;
         // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
-        let engine_nm =
-            (engine.full_load_nm(engine_rad_s) - engine.accessories_nm(engine_rad_s)).most(0.0);
+        let engine_nm = (full_load_nm - engine.accessories_nm(engine_rad_s)).most(0.0);
         (self.manual.coupling).output_nm(engine_nm, input_rad_s, engine_rad_s)
     }
 
