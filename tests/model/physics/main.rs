@@ -30,6 +30,7 @@ mod parts;
 mod rig_transmission;
 mod rig_variator;
 mod selector;
+mod parts_side_by_side;
 mod side_by_side;
 mod smaller_points;
 mod start_stop;
