@@ -138,7 +138,11 @@ fn bound_is_that_of_brute_force_over_driven_paths() {
             let place = f64::from(number / 9_u32.pow(k) % 9) / 8.0 - 0.75;
             let change = place * 0.46; // -0.345 to 0.115 in ln I
             ratio = (ratio * f64::exp(change)).clamp(control.high, control.low);
-            let hold = Hold { ratio, clamp: None };
+            let hold = Hold {
+                ratio,
+                clamp: None,
+                paced: false,
+            };
             let row = drive.step_held(&steps.1[k as usize + 1], &hold).0;
             kg += row.fuel_kg_s * row.dt_s;
             if row.engine_speed_rad_s < least_rad_s {
@@ -389,7 +393,11 @@ fn bound_of_a_converter_car_is_that_of_brute_force() {
         for k in 0..5 {
             let place = f64::from(number / 9_u32.pow(k) % 9) / 8.0 - 0.5;
             ratio = (ratio * f64::exp(0.3 * place)).clamp(control.high, control.low);
-            let hold = Hold { ratio, clamp: None };
+            let hold = Hold {
+                ratio,
+                clamp: None,
+                paced: false,
+            };
             let row = drive.step_held(&steps.1[k as usize + 1], &hold).0;
             kg += row.fuel_kg_s * row.dt_s;
             let open = row.flags.contains(Flags::LOCKUP_OPEN);

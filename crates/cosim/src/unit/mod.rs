@@ -1,5 +1,6 @@
 //! A unit that is instantiated: inputs in, steps, outputs out, states saved and taken back.
 
+mod driven_box;
 mod driving;
 mod operating_point;
 
@@ -13,9 +14,9 @@ use cvtcycle_model::drive::Car;
 use cvtcycle_model::transmission::component::ByComponent;
 
 use crate::UNIT_FILE;
-use crate::variables::{self, Causality, Get, Kind, Variable, car};
-pub(crate) use driving::Asked;
+use crate::variables::{self, Causality, Get, Kind, Variable, car, forward};
 use driving::Driven;
+pub(crate) use driving::{Asked, INPUTS};
 
 /// Shortest and longest communication step, s; the shortest is that of a run.
 pub const STEP_S: (f64, f64) = (0.01, 3600.0);
@@ -128,7 +129,12 @@ impl Unit {
                 one_line(token)
             )));
         }
-        Ok(Unit::new(kind, carried::open(resources)?))
+        let setup = carried::open(resources)?;
+        if !kind.fits(setup.transmission()) {
+            let name = kind.name();
+            return Err(Refusal::new(format!("the unit `{name}` needs a CVT")));
+        }
+        Ok(Unit::new(kind, setup))
     }
 
     /// Its variables; the value reference of each is its place.
@@ -227,10 +233,16 @@ impl Unit {
             )));
         }
         self.saved.time_s = time_s;
-        if self.kind == Kind::Losses {
-            return self.solve();
-        }
         let values = &self.saved.values;
+        match self.kind {
+            Kind::Losses => return self.solve(),
+            Kind::Cvt => {
+                let own = [forward::SPEED, forward::OIL, forward::COOLANT];
+                self.begin_forward(own.map(|place| values[place]));
+                return Ok(());
+            }
+            Kind::Car => {}
+        }
         let (ambient_k, asked_k) = (values[car::AMBIENT], values[car::START]);
         let start_k = if asked_k > 0.0 { asked_k } else { ambient_k };
         self.begin([values[car::SPEED], ambient_k, start_k])
@@ -260,27 +272,46 @@ impl Unit {
                 warns: true,
                 ..refused
             }),
-            Kind::Car => {
-                let value = |place: usize| self.saved.values.get(place);
-                let has_gears = self
-                    .variables
-                    .get(car::GEAR)
-                    .is_some_and(|own| own.causality == Causality::Input);
-                let gear = value(car::GEAR).filter(|_| has_gears);
-                let asked = Asked {
+            Kind::Car | Kind::Cvt => {
+                let inputs = match self.kind {
+                    Kind::Cvt => self.asked_forward(),
+                    _ => self.asked_car(),
+                };
+                self.go(&Asked {
                     from_s,
                     dt_s,
-                    speed_m_s: self.saved.values[car::SPEED],
-                    grade: self.saved.values[car::GRADE],
-                    ambient_k: self.saved.values[car::AMBIENT],
-                    gear: gear.copied().unwrap_or(-1.0),
-                };
-                self.drive(&asked)?;
+                    inputs,
+                })?;
                 Ok(())
             }
         };
         self.saved.time_s = from_s + dt_s;
         solved
+    }
+
+    /// Drives a step of a unit that has some.
+    pub(crate) fn go(&mut self, asked: &Asked) -> Result<(), Refusal> {
+        match self.kind {
+            Kind::Cvt => self.drive_forward(asked),
+            _ => self.drive(asked),
+        }
+    }
+
+    /// What is asked of a car in a step.
+    fn asked_car(&self) -> [f64; INPUTS] {
+        let value = |place: usize| self.saved.values[place];
+        let has_gears = self
+            .variables
+            .get(car::GEAR)
+            .is_some_and(|own| own.causality == Causality::Input);
+        let gear = if has_gears { value(car::GEAR) } else { -1.0 };
+        [
+            value(car::SPEED),
+            value(car::GRADE),
+            value(car::AMBIENT),
+            gear,
+            0.0,
+        ]
     }
 
     /// The state.

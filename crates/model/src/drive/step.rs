@@ -262,7 +262,7 @@ fn inertia(car: &Car, input: &Input, output: &StepOutput, kinetic_j: f64) -> Ine
 }
 
 #[inline(always)]
-fn advance(
+pub(super) fn advance(
     car: &Car,
     power_w: [f64; NODES],
     output: &StepOutput,

@@ -1,12 +1,14 @@
 //! From a study's table to what it says: each output described, the subject held against its baselines, and which factor decides.
 
 pub mod ambient;
+mod column;
 mod grid;
 mod information;
 mod range;
 mod study_table;
 mod tables;
 
+pub use column::Column;
 pub use grid::{GridMatrix, LeastOf};
 pub use information::{Information, KnownFactor};
 pub use range::Range;
@@ -23,7 +25,7 @@ use crate::execute::outputs::EXCESS;
 use crate::plan::{Design, Factor, FactorValue, Plan};
 use crate::statistics::{
     Blocks, Bootstrap, Confidence, Groups, RankSensitivity, Share, SobolIndices, Summary, Tornado,
-    TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
+    TornadoInput, group_means_over, rank_sensitivity, sobol_convergence, tornado,
 };
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
@@ -199,14 +201,13 @@ pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Prob
     let outline = frame.outline;
     let sample = outline.plan.design.is_sampled().then_some(confidence);
     let cars = 0..outline.cars.len();
-    let rows = described(frame);
     let compare = |car: usize| -> Result<Comparison, Problem> {
-        let excess = pick(&frame.numbers(EXCESS, car)?, &rows);
+        let excess = described(frame, EXCESS, car)?;
         Ok(Comparison {
             baseline: outline.cars[car].clone(),
-            worse: Share::above_zero(&excess, sample),
-            excess_percent: sample.map(|confidence| Summary::of(&excess, confidence)),
-            excess_range: Range::of(&outline.plan, &excess),
+            worse: Share::over_zero(&excess, sample)?,
+            excess_percent: summary(&excess, sample)?,
+            excess_range: Range::of(&outline.plan, &excess)?,
         })
     };
     let mut outputs = Vec::new();
@@ -214,17 +215,17 @@ pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Prob
         // The subject has no excess over itself.
         let first = usize::from(named.0.starts_with("subject_excess_"));
         for car in cars.clone().skip(first) {
-            outputs.push(output(frame, &rows, named, car, confidence)?);
+            outputs.push(output(frame, named, car, confidence)?);
         }
     }
-    let is_done = |status: &Status| *status != Status::Missing;
+    let missing = frame.count_of(0, Status::Missing) as u64;
     Ok(Answer {
         schema: SCHEMA,
         title: outline.title.clone(),
         question: outline.question.clone(),
         notes: outline.notes.clone(),
         points: outline.points,
-        points_done: frame.status(0).filter(is_done).count() as u64,
+        points_done: outline.points - missing,
         cars: outline.cars.clone(),
         runs: ended(frame)?,
         described: match is_saltelli(frame) {
@@ -242,74 +243,67 @@ fn is_saltelli(frame: &StudyTable) -> bool {
     matches!(frame.outline.plan.design, Design::Saltelli { .. })
 }
 
-/// Points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the output's distribution.
-fn described(frame: &StudyTable) -> Vec<bool> {
+/// The numbers of a car at the points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the
+/// output's distribution.
+///
+/// # Errors
+/// A part that cannot be read, or no room for a temporary file.
+pub fn described(frame: &StudyTable, output: &str, car: usize) -> Result<Column, Problem> {
     let factors = frame.outline.plan.factors.len();
     let mixed = is_saltelli(frame);
     let is_drawn = |point| matches!(saltelli_role(factors, point).1, Role::A | Role::B);
-    (0..frame.outline.points)
-        .map(|point| !mixed || is_drawn(point))
-        .collect()
+    frame.column(output, car, |point| !mixed || is_drawn(point))
 }
 
-/// The numbers of a car that are described: of points that are independent draws.
-///
-/// # Errors
-/// A part that cannot be read.
-pub fn described_numbers(
-    frame: &StudyTable,
-    output: &str,
-    car: usize,
-) -> Result<Vec<f64>, Problem> {
-    Ok(pick(&frame.numbers(output, car)?, &described(frame)))
-}
-
-/// The numbers of the described points of which runs are there.
-fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
-    let pairs = numbers.iter().zip(rows);
-    pairs
-        .filter(|(_, described)| **described)
-        .map(|(x, _)| *x)
-        .collect()
+/// Of numbers that are a sample.
+fn summary(numbers: &Column, sample: Option<Confidence>) -> Result<Option<Summary>, Problem> {
+    let over = |confidence| Summary::over(numbers, confidence);
+    sample.map(over).transpose()
 }
 
 pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
-    let mut reasons: Vec<String> = Vec::new();
-    let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
-    for car in 0..frame.outline.cars.len() {
-        if !frame.status(car).any(is_bad) {
-            continue;
+    let mut reasons = Counts::default();
+    frame.each_reason(|status, reason| {
+        for one in reason.split("; ") {
+            // Of a failed check the name alone: what follows differs from run to run.
+            let name = one.split(' ').next().unwrap_or_default();
+            reasons.add(if status == Status::Failed { name } else { one });
         }
-        let words = frame.words("reason", car)?;
-        let bad = words
-            .iter()
-            .zip(frame.status(car))
-            .filter(|(_, status)| is_bad(*status));
-        for (reason, status) in bad {
-            for one in reason.split("; ") {
-                // Of a failed check the name alone: what follows differs from run to run.
-                let name = one.split(' ').next().unwrap_or_default();
-                let word = if status == Status::Failed { name } else { one };
-                reasons.push(word.to_owned());
-            }
-        }
-    }
+    })?;
     Ok(Ended {
         ok: frame.count(Status::Ok),
         failed: frame.count(Status::Failed),
         not_run: frame.count(Status::NotRun),
         missing: frame.count(Status::Missing),
-        reasons: counted(reasons.into_iter()),
+        reasons: reasons.sorted(),
     })
+}
+
+/// Words with their counts.
+#[derive(Default)]
+struct Counts(BTreeMap<String, usize>);
+
+impl Counts {
+    fn add(&mut self, word: &str) {
+        match self.0.get_mut(word) {
+            Some(count) => *count += 1,
+            None => drop(self.0.insert(word.to_owned(), 1)),
+        }
+    }
+
+    /// The commonest first.
+    fn sorted(self) -> Vec<(String, usize)> {
+        let mut counts: Vec<(String, usize)> = self.0.into_iter().collect();
+        counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+        counts
+    }
 }
 
 /// Words with their counts, the commonest first.
 pub(crate) fn counted(words: impl Iterator<Item = String>) -> Vec<(String, usize)> {
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    words.for_each(|word| *counts.entry(word).or_default() += 1);
-    let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
-    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    counts
+    let mut counts = Counts::default();
+    words.for_each(|word| counts.add(&word));
+    counts.sorted()
 }
 
 /// Points from which rank correlations are computed at most: more would cost memory and tell nothing that can be seen.
@@ -328,9 +322,9 @@ fn numbers(plan: &Plan, factor: usize, points: usize) -> Vec<f64> {
 }
 
 /// Words of a factor, or its numbers as words; every word is held once.
-fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> {
+fn words(plan: &Plan, factor: usize, points: usize) -> impl Iterator<Item = Arc<str>> {
     let mut known: Vec<(Option<FactorValue>, Arc<str>)> = vec![(None, "".into())];
-    let word = |value: Option<FactorValue>| {
+    let word = move |value: Option<FactorValue>| {
         if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
             return text.clone();
         }
@@ -342,70 +336,80 @@ fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> {
         known.push((value, text.clone()));
         text
     };
-    values(plan, factor, points).map(word).collect()
+    values(plan, factor, points).map(word)
 }
 
 fn output(
     frame: &StudyTable,
-    rows: &[bool],
     (name, unit): &(String, String),
     car: usize,
     confidence: Confidence,
 ) -> Result<OutputAnswer, Problem> {
     let plan = &frame.outline.plan;
     let sample = plan.design.is_sampled().then_some(confidence);
-    let found = frame.numbers(name, car)?;
+    let points = frame.points();
+    let drawn = described(frame, name, car)?;
     let mut answer = OutputAnswer {
         output: name.clone(),
         unit: unit.clone(),
         car: frame.outline.cars[car].clone(),
-        summary: sample.map(|confidence| Summary::of(&pick(&found, rows), confidence)),
-        range: Range::of(plan, &found),
+        summary: summary(&drawn, sample)?,
+        range: Range::of(plan, &drawn)?,
         sobol: Vec::new(),
         information: None,
         tornado: None,
         rank: None,
         levels: Vec::new(),
-        matrix: GridMatrix::of(plan, &found),
+        matrix: GridMatrix::of(plan, &drawn)?,
     };
     match plan.design {
         Design::Saltelli { .. } => {
+            let found = frame.column(name, car, |_| true)?.all()?;
             answer.sobol = sobol(&found, plan.factors.len(), confidence);
-            let last = answer.sobol.last();
-            answer.information =
-                last.and_then(|of| Information::of_indices(plan, &found, of, confidence));
+            let of = answer.sobol.last().zip(Some(&drawn));
+            let of = of.map(|(of, drawn)| Information::of_indices(plan, drawn, of, confidence));
+            answer.information = of.transpose()?.flatten();
         }
-        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &found)),
+        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &drawn.all()?)),
         _ => {
             let as_words =
                 |f: &usize| plan.design == Design::Grid || !plan.factors[*f].values.are_numbers();
-            let (levels, drawn): (Vec<usize>, Vec<usize>) =
+            let (levels, numbers): (Vec<usize>, Vec<usize>) =
                 (0..plan.factors.len()).partition(as_words);
-            let summary = answer.summary.as_ref();
-            answer.information = summary
-                .and_then(|summary| Information::of_draws(plan, &found, summary, confidence));
-            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found, confidence));
-            let groups = |f| group_means(&words(plan, f, found.len()), &found, sample);
-            let levels = levels.into_iter();
-            answer.levels = levels
-                .map(|f| (plan.factors[f].name.clone(), groups(f)))
-                .collect();
+            let of = answer.summary.as_ref();
+            let of = of.map(|of| Information::of_draws(plan, &drawn, of, confidence));
+            answer.information = of.transpose()?.flatten();
+            if !numbers.is_empty() {
+                answer.rank = Some(ranked(plan, &numbers, &drawn, confidence)?);
+            }
+            for f in levels {
+                let groups = group_means_over(|| words(plan, f, points), &drawn, sample)?;
+                answer.levels.push((plan.factors[f].name.clone(), groups));
+            }
         }
     }
     Ok(answer)
 }
 
-fn ranked(plan: &Plan, drawn: &[usize], found: &[f64], confidence: Confidence) -> Ranked {
-    let points = found.len().min(MAX_RANKED);
-    let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(plan, f, points)).collect();
+fn ranked(
+    plan: &Plan,
+    drawn: &[usize],
+    found: &Column,
+    confidence: Confidence,
+) -> Result<Ranked, Problem> {
+    let found = found.first(MAX_RANKED)?;
+    let columns: Vec<Vec<f64>> = drawn
+        .iter()
+        .map(|&f| numbers(plan, f, found.len()))
+        .collect();
     let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    Ranked {
+    Ok(Ranked {
         factors: drawn
             .iter()
             .map(|&f| plan.factors[f].name.clone())
             .collect(),
-        of: rank_sensitivity(&columns, &found[..points], confidence),
-    }
+        of: rank_sensitivity(&columns, &found, confidence),
+    })
 }
 
 /// Splits the points of a Saltelli design into its blocks.

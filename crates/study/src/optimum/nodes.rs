@@ -290,7 +290,11 @@ impl<'a> Scene<'a> {
             Clamp::Law => None,
             Clamp::Free { safety, .. } => Some(free_law(safety)),
         };
-        Hold { ratio, clamp }
+        Hold {
+            ratio,
+            clamp,
+            paced: false,
+        }
     }
 
     /// What the law of the coupling does in a step at a ratio where it was open before, and where it was locked (TC-7). A clutch that locks by
@@ -453,7 +457,11 @@ impl<'a> Scene<'a> {
     ) -> (Node, Row) {
         let step = &self.steps[k];
         let ratio = place.ratio;
-        let hold = Hold { ratio, clamp };
+        let hold = Hold {
+            ratio,
+            clamp,
+            paced: false,
+        };
         let one = |cut_rad_s: f64| self.driven(reference, k, &place, (&hold, cut_rad_s));
         let fired = one(0.0); // nothing cut
         let cut = if fired.wheel_power_w < 0.0 {

@@ -94,6 +94,7 @@ fn shift<P: PrimeMover>(
         dt_s: input.dt_s,
     };
     let (ratio, change, short) = match held {
+        Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
         Some(hold) => (hold.ratio, ln(hold.ratio / before.ratio), false), // RC-12
         None => cvt.ratio.step(&demand),
     };
