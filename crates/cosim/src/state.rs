@@ -3,6 +3,8 @@
 //!
 //! Little endian: magic, kind, number of variables, steps; then numbers of 8 bytes: values, time, the start of the drive, the steps.
 
+use cvtcycle_config::ProblemKind::Damaged;
+
 use crate::unit::{Asked, FAR_S, INPUTS, is_step};
 use crate::variables::{Causality, Kind, car, forward};
 use crate::{Refusal, Unit};
@@ -11,6 +13,11 @@ const MAGIC: [u8; 8] = *b"cvtcy-2\n";
 /// Magic, kind and three counts of 8 bytes.
 const HEAD: usize = 8 * 5;
 const NUMBERS_A_STEP: usize = 2 + INPUTS;
+
+/// The bytes are none of these.
+fn damaged() -> Refusal {
+    Refusal::new(Damaged, "the bytes are no state of this unit")
+}
 
 /// The step of its numbers.
 fn asked(numbers: &[f64]) -> Option<Asked> {
@@ -61,7 +68,6 @@ impl Unit {
     }
 
     fn read_bytes(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
-        let damaged = || Refusal::new("the bytes are no state of this unit");
         let (head, numbers) = bytes.split_at_checked(HEAD).ok_or_else(damaged)?;
         let (words, rest) = head.as_chunks::<8>();
         let (numbers, odd) = numbers.as_chunks::<8>();
@@ -112,7 +118,6 @@ impl Unit {
 
     /// Drives the steps of a state.
     fn drive_again(&mut self, start: [f64; 3], steps: &[f64]) -> Result<(), Refusal> {
-        let damaged = || Refusal::new("the bytes are no state of this unit");
         let variables = self.variables();
         let range = |place: usize, value: f64| {
             let (low, high) = variables[place].range;

@@ -2,11 +2,12 @@
 
 use std::sync::Arc;
 
+use cvtcycle_config::ProblemKind::WrongTransmission;
 use cvtcycle_model::drive::{Forward, Given, State};
 use cvtcycle_model::thermal::BELT;
 use cvtcycle_model::transmission::Transmission;
 
-use super::driving::{Driven, MODEL_STEP_S};
+use super::driving::{Driven, MODEL_STEP_S, not_begun};
 use super::{Asked, Refusal, Unit, show};
 use crate::variables::{CvtResult, Get, forward};
 
@@ -26,10 +27,9 @@ impl Unit {
 
     /// Drives a step.
     pub(crate) fn drive_forward(&mut self, asked: &Asked) -> Result<(), Refusal> {
-        let before = || Refusal::new("a step before the end of initialization");
-        let driven = self.saved.drive.as_mut().ok_or_else(before)?;
+        let driven = self.saved.drive.as_mut().ok_or_else(not_begun)?;
         let [engine_nm, wheel_rad_s, ratio, sump_k, engine_k] = asked.inputs;
-        let manual = || Refusal::new("a manual box is not driven by a torque");
+        let manual = || Refusal::new(WrongTransmission, "a manual box is not driven by a torque");
         let mut drive = Forward::new(&self.car, driven.state).ok_or_else(manual)?;
         // A longer step is divided; torque and heat are then those of its last part.
         let parts = (asked.dt_s / MODEL_STEP_S).ceil().max(1.0);

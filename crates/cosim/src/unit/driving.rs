@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use cvtcycle_config::ProblemKind::{Conflict, OutOfRange};
 use cvtcycle_model::cycle::{GearColumns, GearCommand, Interval, Trace};
 use cvtcycle_model::drive::{Drive, Row, State};
 use cvtcycle_model::flags::Flags;
@@ -39,16 +40,23 @@ pub(crate) struct Driven {
     pub steps: Arc<Vec<Asked>>,
 }
 
+/// A step before its time.
+pub(super) fn not_begun() -> Refusal {
+    Refusal::new(Conflict, "a step before the end of initialization")
+}
+
 impl Unit {
     /// Begins a drive with speed, ambient and temperature of all parts.
     pub(crate) fn begin(&mut self, start: [f64; 3]) -> Result<(), Refusal> {
         let [speed_m_s, ambient_k, start_k] = start;
         let lowest_k = car::AMBIENT_K.0;
         if start_k < lowest_k {
-            return Err(Refusal::new(format!(
-                "T_start_VEH_PNT_K = {start_k} is out of range: {lowest_k} to {} K, or 0",
+            let name = "T_start_VEH_PNT_K";
+            let message = format!(
+                "{name} = {start_k} is out of range: {lowest_k} to {} K, or 0",
                 car::START_K.1
-            )));
+            );
+            return Err(Refusal::new(OutOfRange, message).of(name));
         }
         self.car = self.setup.car(ambient_k);
         let state = State::at(start_k);
@@ -76,7 +84,7 @@ impl Unit {
     /// Drives a step.
     pub(crate) fn drive(&mut self, asked: &Asked) -> Result<(), Refusal> {
         let Some(driven) = &mut self.saved.drive else {
-            return Err(Refusal::new("a step before the end of initialization"));
+            return Err(not_begun());
         };
         let [speed_m_s, grade, ambient_k, gear, _] = asked.inputs;
         if (ambient_k - self.car.ambient_k).abs() > 0.0 {

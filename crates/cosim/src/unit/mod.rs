@@ -7,8 +7,11 @@ mod operating_point;
 use std::fmt::Write;
 use std::path::Path;
 
+use cvtcycle_config::ProblemKind::{
+    Conflict, Damaged, OutOfRange, UnknownKey, Unreadable, WrongTransmission,
+};
 use cvtcycle_config::setup::{Setup, carried};
-use cvtcycle_config::{Problems, bounded, one_line};
+use cvtcycle_config::{ProblemKind, Problems, bounded, one_line};
 use cvtcycle_model::bench::Bench;
 use cvtcycle_model::drive::Car;
 use cvtcycle_model::transmission::component::ByComponent;
@@ -37,29 +40,43 @@ pub(crate) fn is_step(from_s: f64, dt_s: f64) -> bool {
 pub struct Refusal {
     /// Whether the results of the call count all the same.
     pub warns: bool,
+    /// Of what kind the problem is.
+    pub kind: ProblemKind,
+    /// Variable that it is about; may be empty.
+    pub variable: String,
     /// What is wrong, the value, what is allowed.
     pub message: String,
 }
 
 impl Refusal {
     /// Of a call that has done nothing.
-    pub fn new(message: impl Into<String>) -> Self {
+    pub fn new(kind: ProblemKind, message: impl Into<String>) -> Self {
         Refusal {
             warns: false,
+            kind,
+            variable: String::new(),
             message: message.into(),
         }
+    }
+
+    /// The same about a variable.
+    #[must_use]
+    pub fn of(mut self, variable: &str) -> Self {
+        variable.clone_into(&mut self.variable);
+        self
     }
 }
 
 impl From<Problems> for Refusal {
     fn from(problems: Problems) -> Self {
         let mut message = String::new();
+        let kind = problems.iter().next().map(|problem| problem.kind);
         for problem in problems.iter() {
             let place = problem.place.file_name().unwrap_or_default();
             // Writing into a text cannot fail.
             let _ = write!(message, "{place}: {}; {} ", problem.message, problem.hint);
         }
-        Refusal::new(one_line(message.trim_end()))
+        Refusal::new(kind.unwrap_or_default(), one_line(message.trim_end()))
     }
 }
 
@@ -114,25 +131,27 @@ impl Unit {
         let path = resources.join(UNIT_FILE);
         let bytes = bounded::read_file(&path, bounded::CHECKSUMS).map_err(|error| {
             let path = path.display();
-            Refusal::new(format!("cannot read the resource {path}: {error}"))
+            let message = format!("cannot read the resource {path}: {error}");
+            Refusal::new(Unreadable, message)
         })?;
         let text = String::from_utf8_lossy(&bytes);
         let (kind, own) = text.trim().split_once(' ').unwrap_or_default();
         let known = Kind::NAMES.into_iter().find(|(name, _)| *name == kind);
         let Some((_, kind)) = known else {
             let path = path.display();
-            return Err(Refusal::new(format!("{path} names no kind of unit")));
+            let message = format!("{path} names no kind of unit");
+            return Err(Refusal::new(Damaged, message));
         };
         if own != token {
-            return Err(Refusal::new(format!(
-                "the token `{}` is not that of these resources, `{own}`",
-                one_line(token)
-            )));
+            let token = one_line(token);
+            let message = format!("the token `{token}` is not that of these resources, `{own}`");
+            return Err(Refusal::new(Conflict, message));
         }
         let setup = carried::open(resources)?;
         if !kind.fits(setup.transmission()) {
             let name = kind.name();
-            return Err(Refusal::new(format!("the unit `{name}` needs a CVT")));
+            let message = format!("the unit `{name}` needs a CVT");
+            return Err(Refusal::new(WrongTransmission, message));
         }
         Ok(Unit::new(kind, setup))
     }
@@ -191,19 +210,17 @@ impl Unit {
             Causality::Parameter => {
                 let message =
                     format!("{name} is a parameter: set it before the end of initialization");
-                return Err(Refusal::new(message));
+                return Err(Refusal::new(Conflict, message).of(name));
             }
             Causality::Independent | Causality::Output => {
-                return Err(Refusal::new(format!(
-                    "{name} is computed: it cannot be set"
-                )));
+                let message = format!("{name} is computed: it cannot be set");
+                return Err(Refusal::new(Conflict, message).of(name));
             }
         }
         let fits = *low <= value && value <= *high && (!whole || value.fract().abs() <= 0.0);
         if !fits {
-            return Err(Refusal::new(format!(
-                "{name} = {value} is out of range: {low} to {high} {unit}"
-            )));
+            let message = format!("{name} = {value} is out of range: {low} to {high} {unit}");
+            return Err(Refusal::new(OutOfRange, message).of(name));
         }
         self.saved.values[reference as usize] = value;
         self.saved.stale = true;
@@ -214,9 +231,10 @@ impl Unit {
         let count = self.variables.len();
         self.variables.get(reference as usize).ok_or_else(|| {
             let last = count - 1;
-            Refusal::new(format!(
+            let message = format!(
                 "there is no variable with value reference {reference}; the last is {last}"
-            ))
+            );
+            Refusal::new(UnknownKey, message)
         })
     }
 
@@ -227,10 +245,11 @@ impl Unit {
     pub fn start(&mut self, time_s: f64) -> Result<(), Refusal> {
         let is_near = time_s.abs() <= FAR_S;
         if !is_near {
-            return Err(Refusal::new(format!(
+            let message = format!(
                 "the start time {time_s} s is out of range: {} to {FAR_S} s",
                 -FAR_S
-            )));
+            );
+            return Err(Refusal::new(OutOfRange, message));
         }
         self.saved.time_s = time_s;
         let values = &self.saved.values;
@@ -256,16 +275,15 @@ impl Unit {
     pub fn step(&mut self, from_s: f64, dt_s: f64) -> Result<(), Refusal> {
         let (least, most) = STEP_S;
         if !is_step(self.saved.time_s, dt_s) {
-            return Err(Refusal::new(format!(
-                "a communication step of {dt_s} s is out of range: {least} to {most} s"
-            )));
+            let message =
+                format!("a communication step of {dt_s} s is out of range: {least} to {most} s");
+            return Err(Refusal::new(OutOfRange, message));
         }
         let at_s = self.saved.time_s;
         let follows = (from_s - at_s).abs() <= NEAR * dt_s;
         if !follows {
-            return Err(Refusal::new(format!(
-                "the step begins at {from_s} s, the last one ended at {at_s} s"
-            )));
+            let message = format!("the step begins at {from_s} s, the last one ended at {at_s} s");
+            return Err(Refusal::new(Conflict, message));
         }
         let solved = match self.kind {
             Kind::Losses => self.solve().map_err(|refused| Refusal {
@@ -326,7 +344,7 @@ impl Unit {
     /// It is of another unit.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Refusal> {
         if saved.values.len() != self.variables.len() {
-            return Err(Refusal::new("the state is of another unit"));
+            return Err(Refusal::new(Conflict, "the state is of another unit"));
         }
         self.saved = saved.clone();
         Ok(())

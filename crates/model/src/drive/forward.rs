@@ -5,6 +5,7 @@
 //! | FO-1 | T = T_f(P) + J (w(P)2 - w_0 2)/(2 w(P) dt), P the power at the wheels at which T is the torque that is given; T_f, w, losses, pressure by the step of the box at P (CV-1 to CV-6, LC-1 or TC-1) | derived: one power balance, solved for its other end |
 //! | FO-2 | a T that no P has: the nearest that one has | derived: between least torque (CV-3) and full load (CV-4) at the ends of P; idle speed is held (LC-1) |
 //! | FO-3 | wheels that turn slower than 0.02 rad/s count as turning so fast | ASSUMED: 6 mm/s; the box at rest passes on creep torque alone, whatever the engine gives (LC-2) |
+//! | FO-4 | in a step in which a lock-up closes T = T_f(P), and the rotating energy of the slower engine is heat of the coupling | derived: SI-4, with an engine whose torque is given; it slips until the engine has come down |
 //!
 //! Nothing here is a second model: a torque that a drive has found at some power gives that power again. The clutch is the one of the
 //! drive: it is pressed so that its engine has the speed of LC-1 for the torque that it carries, within what its inertia allows. Engine, flywheel and primary are
@@ -12,9 +13,11 @@
 
 use super::step::advance;
 use super::{Car, State, loss_heat_w};
+use crate::flags::Flags;
 use crate::math::{larger, smaller};
 use crate::road::WheelDemand;
 use crate::thermal::{COOLANT, ENGINE_OIL, SUMP, speed_power};
+use crate::transmission::component::Component;
 use crate::transmission::cvt::Hold;
 use crate::transmission::{StepInput, StepOutput, TransmissionState};
 
@@ -26,6 +29,10 @@ const NEAR_NM: f64 = 1e-7;
 const MAX_TRIES: usize = 100;
 /// Power at the wheels beyond what any box passes on, over the rated power.
 const BEYOND: f64 = 4.0;
+/// How far beyond an end of the power a demand begins to come near it, over the rated power, ...
+const MARGIN: f64 = 0.05;
+/// ... and how near, W.
+const NEAR_W: f64 = 0.1;
 
 /// What is known of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,12 +132,7 @@ impl<'a> Forward<'a> {
 
     /// The power at which the torque is the one given (FO-1), or the nearest (FO-2).
     fn solve(&mut self, given: &Given) -> Tried {
-        let most_w = BEYOND * self.car.engine.rated_w;
-        // At the ends the engine is the limit, whatever is demanded; a demand of what it gives there is the last that is met.
-        let [mut low, mut high] = [-most_w, most_w].map(|power_w| {
-            let beyond = self.at(given, power_w);
-            self.at(given, beyond.turned.output.output_w)
-        });
+        let [mut low, mut high] = [-1.0, 1.0].map(|side| self.end(given, side));
         let (mut low_nm, mut high_nm) = (low.over_nm(given), high.over_nm(given));
         if low_nm >= 0.0 {
             return low;
@@ -172,6 +174,23 @@ impl<'a> Forward<'a> {
         best
     }
 
+    /// The last power on a side at which torque still follows the demand: there the engine is the limit (FO-2). What is demanded beyond it changes
+    /// no torque but the friction of the final drive's teeth (GM-2), so the demand comes near.
+    fn end(&mut self, given: &Given, side: f64) -> Tried {
+        let rated_w = self.car.engine.rated_w;
+        let mut end = self.at(given, side * BEYOND * rated_w);
+        let mut margin_w = MARGIN * rated_w;
+        while margin_w > NEAR_W {
+            let tried = self.at(given, end.turned.output.output_w + side * margin_w);
+            let output = &tried.turned.output;
+            if output.brake_w + output.deficit_w > 0.0 {
+                end = tried;
+            }
+            margin_w *= 0.2;
+        }
+        end
+    }
+
     /// The step of the box at a power at the wheels.
     fn at(&mut self, given: &Given, power_w: f64) -> Tried {
         let wheel = self.demand(given, power_w);
@@ -182,7 +201,7 @@ impl<'a> Forward<'a> {
         };
         let (before, inertia) = (self.state.transmission, self.car.engine.inertia_kg_m2);
         let kinetic_j = self.state.kinetic_j;
-        let (after, output, begun_j) = self.with_input(given, &wheel, |car, _, input| {
+        let (after, mut output, begun_j) = self.with_input(given, &wheel, |car, _, input| {
             let mut after = before.unwrap_or_else(|| car.transmission.start(input));
             if let Some(own) = &mut after.cvt {
                 own.hold = Some(hold);
@@ -199,16 +218,33 @@ impl<'a> Forward<'a> {
         self.state.kinetic_j = begun_j;
         let w = output.engine_rad_s;
         let kinetic_w = (0.5 * inertia * w * w - begun_j) / given.dt_s;
+        let mut taken_nm = output.shaft_nm;
+        if kinetic_w < 0.0 && self.closes(&output) {
+            // A coupling that loses a part only passes on the rest (LC-6).
+            let lost = smaller(self.car.transmission.coupling().loss_factor(), 1.0);
+            output.loss_w[Component::LaunchClutch] -= lost * kinetic_w; // FO-4
+            output.output_w -= (1.0 - lost) * kinetic_w;
+        } else {
+            taken_nm += kinetic_w / w; // FO-1
+        }
         Tried {
             turned: Turned {
                 output,
-                taken_nm: output.shaft_nm + kinetic_w / w, // FO-1
+                taken_nm,
                 kinetic_w,
                 wheel_rad_s: wheel.wheel_rad_s,
             },
             after,
             power_w,
         }
+    }
+
+    /// Whether a lock-up closes in a step.
+    fn closes(&self, output: &StepOutput) -> bool {
+        let by_command = self.car.transmission.coupling().by_command();
+        by_command
+            && output.flags.contains(Flags::CLUTCH_SLIPPING)
+            && !output.flags.contains(Flags::LOCKUP_OPEN)
     }
 
     /// The demand of wheels that turn as they do.
