@@ -35,7 +35,7 @@ impl Range {
         }
         let (mut point, mut n) = (0_u64, 0);
         // The first of equal ones on both sides.
-        let (mut least, mut largest): (Option<(u64, f64)>, Option<(u64, f64)>) = (None, None);
+        let (mut least, mut largest) = (None::<(u64, f64)>, None::<(u64, f64)>);
         numbers.pass(|piece| {
             for x in piece {
                 if x.is_finite() {
