@@ -15,6 +15,9 @@ use super::Confidence;
 use super::describe::Spread;
 use super::passes::{Moments, Numbers};
 
+/// Rows up to which all of them are summed group by group.
+const HELD: usize = 1 << 18;
+
 /// The output at one level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Group {
@@ -68,6 +71,7 @@ pub fn group_means_over<P: Numbers + ?Sized, L: Iterator<Item: AsRef<str>>>(
 ) -> Result<Groups, P::Error> {
     let mut known: Vec<(String, Moments)> = Vec::new();
     let mut all = Moments::default();
+    let mut rows = Some(Vec::new());
     for _ in 0..Moments::PASSES {
         let mut levels = levels();
         output.pass(|piece| {
@@ -80,7 +84,11 @@ pub fn group_means_over<P: Numbers + ?Sized, L: Iterator<Item: AsRef<str>>>(
                 });
                 known[at].1.add(*y);
                 all.add(*y);
+                if let Some(list) = rows.as_mut().filter(|_| all.is_first()) {
+                    list.push((at, *y));
+                }
             }
+            rows = rows.take().filter(|list| list.len() <= HELD);
         })?;
         known.iter_mut().for_each(|(_, moments)| moments.turn());
         all.turn();
@@ -100,7 +108,17 @@ pub fn group_means_over<P: Numbers + ?Sized, L: Iterator<Item: AsRef<str>>>(
         }
     };
     let groups: Vec<Group> = known.into_iter().map(group).collect();
-    Ok(Groups::of(groups, &all.spread()))
+    // Few rows are summed group by group, as they always were; many in the order of the points. That moves the last bit at most.
+    let all = match rows {
+        Some(mut rows) => {
+            rows.sort_by_key(|(group, _)| *group);
+            let rows: Vec<f64> = rows.into_iter().map(|(_, y)| y).collect();
+            let Ok(all) = Moments::of(rows.as_slice());
+            all
+        }
+        None => all.spread(),
+    };
+    Ok(Groups::of(groups, &all))
 }
 
 impl Groups {

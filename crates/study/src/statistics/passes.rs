@@ -92,6 +92,11 @@ impl Moments {
         self.squares += d * d;
     }
 
+    /// Whether this is the first pass.
+    pub(super) fn is_first(&self) -> bool {
+        self.pass == 0
+    }
+
     /// Ends a pass.
     pub(super) fn turn(&mut self) {
         self.pass += 1;
