@@ -83,6 +83,16 @@ impl Execute for FmuArgs {
         let libraries = problems.take(self.libraries());
         let (car, setup) = car?;
         let (kind, fmi) = (kind?, fmi?);
+        if !kind.fits(setup.transmission()) {
+            let name = kind.name();
+            let message = format!("{} has a manual box, and `{name}` is a CVT", setup.name);
+            let found = problem(
+                "--kind",
+                &message,
+                "take `car` or `losses`, or a car with a CVT",
+            );
+            problems.add(found.value(name));
+        }
         let path = match self.out.path(problems) {
             Some(path) => path.to_owned(),
             None => format!("{}_{}.fmu", setup.name, kind.name()).into(),

@@ -139,7 +139,11 @@ fn by_brute_force(
         for k in 0..5 {
             let share = f64::from(number / 9_u32.pow(k) % 9) / 8.0;
             ratio = (ratio * change(share).exp()).clamp(control.high, control.low);
-            let hold = Hold { ratio, clamp: None };
+            let hold = Hold {
+                ratio,
+                clamp: None,
+                paced: false,
+            };
             let row = drive.step_held(&of.steps[k as usize + 1], &hold).0;
             kg += row.fuel_kg_s * row.dt_s;
             if !may(&row) {

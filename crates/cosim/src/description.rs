@@ -208,6 +208,13 @@ fn use_of(kind: Kind) -> &'static [&'static str] {
             "The launch device is locked and the belt is in steady state above the oil.",
             "Heat leaves the box through Qf_HYD_PNT_W and Qf_GB_PNT_W; the oil temperature comes back as T_oil_AT_PNT_in_K.",
         ],
+        Kind::Cvt => &[
+            "Before each step set the torque of the engine in it and the speed that the drive shafts have at its end; the speed is linear within a step.",
+            "Outputs are means over the last step, temperature and ratio those at its end; before the first step all are 0.",
+            "The engine's speed is an output: engine, flywheel and primary shaft are one inertia in the unit. The clutch is controlled by the unit, pressure by the clamp law of the box.",
+            "A torque that box and engine of the file cannot have (below what holds idle speed, above full load) is replaced by the nearest; trq_FW_PNT_out_Nm says which.",
+            "Heat leaves the box through Qf_HYD_PNT_W and Qf_GB_PNT_W; the oil temperature comes back as T_oil_AT_PNT_in_K.",
+        ],
     }
 }
 

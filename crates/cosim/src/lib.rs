@@ -15,6 +15,7 @@ mod state;
 pub mod unit;
 pub mod variables;
 
+pub use cvtcycle_config::ProblemKind;
 pub use unit::{Refusal, Unit};
 pub use variables::{Causality, Kind, Variable};
 

@@ -3,27 +3,29 @@
 //!
 //! Little endian: magic, kind, number of variables, steps; then numbers of 8 bytes: values, time, the start of the drive, the steps.
 
-use crate::unit::{Asked, FAR_S, is_step};
-use crate::variables::{Causality, car};
+use cvtcycle_config::ProblemKind::Damaged;
+
+use crate::unit::{Asked, FAR_S, INPUTS, is_step};
+use crate::variables::{Causality, Kind, car, forward};
 use crate::{Refusal, Unit};
 
-const MAGIC: [u8; 8] = *b"cvtcy-1\n";
+const MAGIC: [u8; 8] = *b"cvtcy-2\n";
 /// Magic, kind and three counts of 8 bytes.
 const HEAD: usize = 8 * 5;
-const NUMBERS_A_STEP: usize = 6;
+const NUMBERS_A_STEP: usize = 2 + INPUTS;
+
+/// The bytes are none of these.
+fn damaged() -> Refusal {
+    Refusal::new(Damaged, "the bytes are no state of this unit")
+}
 
 /// The step of its numbers.
 fn asked(numbers: &[f64]) -> Option<Asked> {
-    let &[from_s, dt_s, speed_m_s, grade, ambient_k, gear] = numbers else {
-        return None;
-    };
+    let (&[from_s, dt_s], inputs) = numbers.split_first_chunk::<2>()?;
     Some(Asked {
         from_s,
         dt_s,
-        speed_m_s,
-        grade,
-        ambient_k,
-        gear,
+        inputs: inputs.try_into().ok()?,
     })
 }
 
@@ -44,17 +46,7 @@ impl Unit {
         ];
         let mut bytes = MAGIC.to_vec();
         bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
-        let of_step = |step: &Asked| {
-            let Asked {
-                from_s,
-                dt_s,
-                speed_m_s,
-                grade,
-                ambient_k,
-                gear,
-            } = *step;
-            [from_s, dt_s, speed_m_s, grade, ambient_k, gear]
-        };
+        let of_step = |step: &Asked| [step.from_s, step.dt_s].into_iter().chain(step.inputs);
         let numbers = saved.values.iter().copied().chain([saved.time_s]);
         let numbers = numbers.chain(start.into_iter().flatten());
         let numbers = numbers.chain(steps.iter().flat_map(of_step));
@@ -76,7 +68,6 @@ impl Unit {
     }
 
     fn read_bytes(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
-        let damaged = || Refusal::new("the bytes are no state of this unit");
         let (head, numbers) = bytes.split_at_checked(HEAD).ok_or_else(damaged)?;
         let (words, rest) = head.as_chunks::<8>();
         let (numbers, odd) = numbers.as_chunks::<8>();
@@ -127,32 +118,49 @@ impl Unit {
 
     /// Drives the steps of a state.
     fn drive_again(&mut self, start: [f64; 3], steps: &[f64]) -> Result<(), Refusal> {
-        let damaged = || Refusal::new("the bytes are no state of this unit");
         let variables = self.variables();
         let range = |place: usize, value: f64| {
             let (low, high) = variables[place].range;
             low <= value && value <= high
         };
+        let steps: Option<Vec<Asked>> = steps.chunks(NUMBERS_A_STEP).map(asked).collect();
+        let steps = steps.ok_or_else(damaged)?;
+        let own: [usize; 3] = match self.kind() {
+            Kind::Cvt => [forward::SPEED, forward::OIL, forward::COOLANT],
+            _ => [car::SPEED, car::AMBIENT, car::START],
+        };
         let gears = variables
             .get(car::GEAR)
             .filter(|own| own.causality == Causality::Input)
             .map_or((-1.0, -1.0), |own| own.range);
-        let [speed, ambient, start_k] = start;
-        let mut fits =
-            range(car::SPEED, speed) && range(car::AMBIENT, ambient) && range(car::START, start_k);
-        let steps: Option<Vec<Asked>> = steps.chunks(NUMBERS_A_STEP).map(asked).collect();
-        let steps = steps.ok_or_else(damaged)?;
-        for step in &steps {
-            fits &= is_step(step.from_s, step.dt_s);
-            fits &= range(car::SPEED, step.speed_m_s) && range(car::GRADE, step.grade);
-            fits &= range(car::AMBIENT, step.ambient_k);
-            fits &= gears.0 <= step.gear && step.gear <= gears.1 && step.gear.fract().abs() <= 0.0;
-        }
+        let is_gear = |gear: f64| gears.0 <= gear && gear <= gears.1 && gear.fract().abs() <= 0.0;
+        let of_step = |step: &Asked| match (self.kind(), step.inputs) {
+            (Kind::Cvt, inputs) => inputs
+                .iter()
+                .zip(forward::TORQUE..)
+                .all(|(value, place)| range(place, *value)),
+            (_, [speed, grade, ambient, gear, _]) => {
+                range(car::SPEED, speed)
+                    && range(car::GRADE, grade)
+                    && range(car::AMBIENT, ambient)
+                    && is_gear(gear)
+            }
+        };
+        let fits = own
+            .iter()
+            .zip(start)
+            .all(|(place, value)| range(*place, value))
+            && steps
+                .iter()
+                .all(|step| is_step(step.from_s, step.dt_s) && of_step(step));
         if !fits {
             return Err(damaged());
         }
-        self.begin(start)?;
-        steps.iter().try_for_each(|step| self.drive(step))?;
+        match self.kind() {
+            Kind::Cvt => self.begin_forward(start),
+            _ => self.begin(start)?,
+        }
+        steps.iter().try_for_each(|step| self.go(step))?;
         Ok(())
     }
 }

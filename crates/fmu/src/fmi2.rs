@@ -6,8 +6,10 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
+use cvtcycle_cosim::ProblemKind::{Syntax, UnknownName, WrongType};
 use cvtcycle_cosim::Refusal;
 
+use crate::both::{both, refused, values, without};
 use crate::slave::{ERROR, Log2, Logger, Wanted, call, free, given, instantiate, put};
 
 /// `fmi2CallbackFunctions`: of these only the logger is used.
@@ -32,9 +34,8 @@ fn folder(uri: &str) -> Result<String, Refusal> {
     // Some masters write one slash only.
     let rest = rest.or_else(|| uri.strip_prefix("file:").map(str::to_owned));
     let Some(path) = rest else {
-        return Err(Refusal::new(format!(
-            "the location of the resources `{uri}` is no file:// URI"
-        )));
+        let message = format!("the location of the resources `{uri}` is no file:// URI");
+        return Err(Refusal::new(Syntax, message));
     };
     let mut bytes = Vec::with_capacity(path.len());
     let mut rest = path.as_bytes();
@@ -111,11 +112,6 @@ extern "C" fn fmi2Instantiate(
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn fmi2FreeInstance(instance: *mut c_void) {
-    free(instance);
-}
-
-#[unsafe(no_mangle)]
 extern "C" fn fmi2SetupExperiment(
     instance: *mut c_void,
     _tolerance_defined: c_int,
@@ -136,122 +132,6 @@ extern "C" fn fmi2EnterInitializationMode(instance: *mut c_void) -> c_int {
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn fmi2ExitInitializationMode(instance: *mut c_void) -> c_int {
-    call(instance, |slave| slave.unit.start(slave.start_s))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2Terminate(instance: *mut c_void) -> c_int {
-    call(instance, |_| Ok(()))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2Reset(instance: *mut c_void) -> c_int {
-    call(instance, |slave| {
-        slave.unit.reset();
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2GetReal(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *mut f64,
-) -> c_int {
-    call(instance, |slave| {
-        slave.get((references, count), (values, count), false, |x| x)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2GetInteger(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *mut c_int,
-) -> c_int {
-    call(instance, |slave| {
-        slave.get((references, count), (values, count), true, |x| x as c_int)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SetReal(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *const f64,
-) -> c_int {
-    call(instance, |slave| {
-        slave.set((references, count), (values, count), false, |x| x)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SetInteger(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *const c_int,
-) -> c_int {
-    call(instance, |slave| {
-        slave.set((references, count), (values, count), true, f64::from)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2GetFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, |slave| slave.save(state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SetFMUstate(instance: *mut c_void, state: *mut c_void) -> c_int {
-    call(instance, |slave| {
-        let saved = slave.saved(state)?;
-        slave.unit.restore(saved)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2FreeFMUstate(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, |slave| slave.free_saved(state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SerializedFMUstateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    call(instance, |slave| {
-        put(size, slave.bytes_of(state)?.len());
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2SerializeFMUstate(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    call(instance, |slave| slave.write_bytes(state, (bytes, size)))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi2DeSerializeFMUstate(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> c_int {
-    call(instance, |slave| slave.read_bytes((bytes, size), state))
-}
-
-#[unsafe(no_mangle)]
 extern "C" fn fmi2DoStep(
     instance: *mut c_void,
     from_s: f64,
@@ -261,31 +141,15 @@ extern "C" fn fmi2DoStep(
     call(instance, |slave| slave.unit.step(from_s, step_s))
 }
 
-/// Functions of what no variable has, or no unit can do: refused as soon as anything is wanted.
-macro_rules! without {
-    ($what:literal: $($name:ident)*) => {$(
-        #[unsafe(no_mangle)]
-        extern "C" fn $name(instance: *mut c_void, references: *const u32, count: usize) -> c_int {
-            call(instance, |_| match given(references, count)? {
-                [] => Ok(()),
-                _ => Err(Refusal::new(concat!(stringify!($name), ": ", $what))),
-            })
-        }
-    )*};
+both! {
+    free: fmi2FreeInstance, end_initialization: fmi2ExitInitializationMode, terminate: fmi2Terminate, reset: fmi2Reset,
+    save: fmi2GetFMUstate, restore: fmi2SetFMUstate, free_state: fmi2FreeFMUstate,
+    size: fmi2SerializedFMUstateSize, write: fmi2SerializeFMUstate, read: fmi2DeSerializeFMUstate,
 }
+values!(fmi2GetReal fmi2SetReal: f64, whole false, |x| x, |x| x; count);
+values!(fmi2GetInteger fmi2SetInteger: c_int, whole true, |x| x as c_int, f64::from; count);
 
 without!("no variable of this FMU has this type": fmi2GetBoolean fmi2GetString fmi2SetBoolean fmi2SetString);
 without!("this FMU has no derivatives": fmi2SetRealInputDerivatives fmi2GetRealOutputDerivatives);
-
-/// Functions that this FMU does not have.
-macro_rules! refused {
-    ($($name:ident)*) => {$(
-        // More arguments follow in C, which a function of this convention may leave alone.
-        #[unsafe(no_mangle)]
-        extern "C" fn $name(instance: *mut c_void) -> c_int {
-            call(instance, |_| Err(Refusal::new(concat!(stringify!($name), ": this FMU cannot do this"))))
-        }
-    )*};
-}
 
 refused!(fmi2GetDirectionalDerivative fmi2CancelStep fmi2GetStatus fmi2GetRealStatus fmi2GetIntegerStatus fmi2GetBooleanStatus fmi2GetStringStatus);

@@ -6,8 +6,10 @@
 
 use std::ffi::{c_char, c_int, c_void};
 
+use cvtcycle_cosim::ProblemKind::{UnknownName, WrongType};
 use cvtcycle_cosim::Refusal;
 
+use crate::both::{both, refused, values, without};
 use crate::slave::{Log3, Logger, Wanted, call, free, given, instantiate, put};
 
 fn folder(path: &str) -> Result<String, Refusal> {
@@ -55,11 +57,6 @@ extern "C" fn fmi3InstantiateCoSimulation(
 }
 
 #[unsafe(no_mangle)]
-extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
-    free(instance);
-}
-
-#[unsafe(no_mangle)]
 extern "C" fn fmi3EnterInitializationMode(
     instance: *mut c_void,
     _tolerance_defined: bool,
@@ -72,128 +69,6 @@ extern "C" fn fmi3EnterInitializationMode(
         slave.start_s = start_s;
         Ok(())
     })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3ExitInitializationMode(instance: *mut c_void) -> c_int {
-    call(instance, |slave| slave.unit.start(slave.start_s))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3Terminate(instance: *mut c_void) -> c_int {
-    call(instance, |_| Ok(()))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3Reset(instance: *mut c_void) -> c_int {
-    call(instance, |slave| {
-        slave.unit.reset();
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetFloat64(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *mut f64,
-    value_count: usize,
-) -> c_int {
-    call(instance, |slave| {
-        slave.get((references, count), (values, value_count), false, |x| x)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetInt32(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *mut i32,
-    value_count: usize,
-) -> c_int {
-    call(instance, |slave| {
-        slave.get((references, count), (values, value_count), true, |x| {
-            x as i32
-        })
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SetFloat64(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *const f64,
-    value_count: usize,
-) -> c_int {
-    call(instance, |slave| {
-        slave.set((references, count), (values, value_count), false, |x| x)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SetInt32(
-    instance: *mut c_void,
-    references: *const u32,
-    count: usize,
-    values: *const i32,
-    value_count: usize,
-) -> c_int {
-    call(instance, |slave| {
-        slave.set((references, count), (values, value_count), true, f64::from)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3GetFMUState(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, |slave| slave.save(state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SetFMUState(instance: *mut c_void, state: *mut c_void) -> c_int {
-    call(instance, |slave| {
-        let saved = slave.saved(state)?;
-        slave.unit.restore(saved)
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3FreeFMUState(instance: *mut c_void, state: *mut *mut c_void) -> c_int {
-    call(instance, |slave| slave.free_saved(state))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SerializedFMUStateSize(
-    instance: *mut c_void,
-    state: *mut c_void,
-    size: *mut usize,
-) -> c_int {
-    call(instance, |slave| {
-        put(size, slave.bytes_of(state)?.len());
-        Ok(())
-    })
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3SerializeFMUState(
-    instance: *mut c_void,
-    state: *mut c_void,
-    bytes: *mut u8,
-    size: usize,
-) -> c_int {
-    call(instance, |slave| slave.write_bytes(state, (bytes, size)))
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn fmi3DeserializeFMUState(
-    instance: *mut c_void,
-    bytes: *const u8,
-    size: usize,
-    state: *mut *mut c_void,
-) -> c_int {
-    call(instance, |slave| slave.read_bytes((bytes, size), state))
 }
 
 #[unsafe(no_mangle)]
@@ -217,36 +92,21 @@ extern "C" fn fmi3DoStep(
     })
 }
 
-/// Functions of types that no variable has: refused as soon as a variable is named.
-macro_rules! without {
-    ($($name:ident)*) => {$(
-        // More arguments follow in C, which a function of this convention may leave alone.
-        #[unsafe(no_mangle)]
-        extern "C" fn $name(instance: *mut c_void, references: *const u32, count: usize) -> c_int {
-            call(instance, |_| match given(references, count)? {
-                [] => Ok(()),
-                _ => Err(Refusal::new(concat!(stringify!($name), ": no variable of this FMU has this type"))),
-            })
-        }
-    )*};
+both! {
+    free: fmi3FreeInstance, end_initialization: fmi3ExitInitializationMode, terminate: fmi3Terminate, reset: fmi3Reset,
+    save: fmi3GetFMUState, restore: fmi3SetFMUState, free_state: fmi3FreeFMUState,
+    size: fmi3SerializedFMUStateSize, write: fmi3SerializeFMUState, read: fmi3DeserializeFMUState,
 }
+values!(fmi3GetFloat64 fmi3SetFloat64: f64, whole false, |x| x, |x| x; count, value_count);
+values!(fmi3GetInt32 fmi3SetInt32: i32, whole true, |x| x as i32, f64::from; count, value_count);
 
 without!(
+    "no variable of this FMU has this type":
     fmi3GetFloat32 fmi3GetInt8 fmi3GetUInt8 fmi3GetInt16 fmi3GetUInt16 fmi3GetUInt32 fmi3GetInt64 fmi3GetUInt64
     fmi3GetBoolean fmi3GetString fmi3GetBinary fmi3GetClock
     fmi3SetFloat32 fmi3SetInt8 fmi3SetUInt8 fmi3SetInt16 fmi3SetUInt16 fmi3SetUInt32 fmi3SetInt64 fmi3SetUInt64
     fmi3SetBoolean fmi3SetString fmi3SetBinary fmi3SetClock
 );
-
-/// Functions that this FMU does not have.
-macro_rules! refused {
-    ($($name:ident)*) => {$(
-        #[unsafe(no_mangle)]
-        extern "C" fn $name(instance: *mut c_void) -> c_int {
-            call(instance, |_| Err(Refusal::new(concat!(stringify!($name), ": this FMU cannot do this"))))
-        }
-    )*};
-}
 
 refused!(
     fmi3EnterEventMode fmi3EnterStepMode fmi3EnterConfigurationMode fmi3ExitConfigurationMode

@@ -10,6 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::{ptr, slice};
 
+use cvtcycle_cosim::ProblemKind::{Conflict, Missing, TooLarge, WrongType};
 use cvtcycle_cosim::unit::Saved;
 use cvtcycle_cosim::{Refusal, Unit};
 
@@ -107,7 +108,7 @@ pub fn text(text: *const c_char) -> Option<String> {
 pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>) -> *mut c_void {
     let name = CString::new(text(wanted.name).unwrap_or_default()).unwrap_or_default();
     let made = catch_unwind(|| {
-        let absent = |what: &str| Refusal::new(format!("the {what} is missing"));
+        let absent = |what: &str| Refusal::new(Missing, format!("the {what} is missing"));
         let token = text(wanted.token).ok_or_else(|| absent("token (FMI 2: GUID)"))?;
         let resources = text(wanted.resources).ok_or_else(|| absent("path of the resources"))?;
         Unit::open(Path::new(&folder(&resources)?), &token)
@@ -170,7 +171,7 @@ pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
         return Ok(&[]);
     }
     match first.is_null() {
-        true => Err(Refusal::new("an array is missing")),
+        true => Err(Refusal::new(Missing, "an array is missing")),
         // SAFETY: not null; the master says that there are so many, and lends them for the call.
         false => Ok(unsafe { slice::from_raw_parts(first, count) }),
     }
@@ -182,7 +183,7 @@ pub fn wanted<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal
         return Ok(&mut []);
     }
     match first.is_null() {
-        true => Err(Refusal::new("an array is missing")),
+        true => Err(Refusal::new(Missing, "an array is missing")),
         // SAFETY: as in `given`, and the master lends them to this call alone.
         false => Ok(unsafe { slice::from_raw_parts_mut(first, count) }),
     }
@@ -234,9 +235,10 @@ impl Slave {
     fn fits(&self, references: usize, values: usize) -> Result<(), Refusal> {
         match references == values {
             true => Ok(()),
-            false => Err(Refusal::new(format!(
-                "{references} value references and {values} values"
-            ))),
+            false => {
+                let message = format!("{references} value references and {values} values");
+                Err(Refusal::new(Conflict, message))
+            }
         }
     }
 
@@ -245,9 +247,8 @@ impl Slave {
             return Ok(());
         }
         let kind = if whole { "whole" } else { "real" };
-        Err(Refusal::new(format!(
-            "the variable with value reference {reference} is no {kind} number"
-        )))
+        let message = format!("the variable with value reference {reference} is no {kind} number");
+        Err(Refusal::new(WrongType, message))
     }
 
     /// Saves the state at a place, where there may be one already.
@@ -267,7 +268,7 @@ impl Slave {
     pub fn saved<'a>(&self, state: *mut c_void) -> Result<&'a Saved, Refusal> {
         // SAFETY: null, or a state of `save` that is not freed.
         let saved = unsafe { state.cast::<Saved>().as_ref() };
-        saved.ok_or_else(|| Refusal::new("the saved state is missing"))
+        saved.ok_or_else(|| Refusal::new(Missing, "the saved state is missing"))
     }
 
     /// Frees a saved state.
@@ -300,9 +301,8 @@ impl Slave {
         let bytes = self.bytes_of(state)?;
         let Some(place) = wanted(first, size)?.get_mut(..bytes.len()) else {
             let needed = bytes.len();
-            return Err(Refusal::new(format!(
-                "the state has {needed} bytes, the array {size}"
-            )));
+            let message = format!("the state has {needed} bytes, the array {size}");
+            return Err(Refusal::new(TooLarge, message));
         };
         place.copy_from_slice(&bytes);
         Ok(())

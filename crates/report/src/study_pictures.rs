@@ -12,7 +12,7 @@ use crate::results::StudyResults;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_output::escape::json_text;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
-use cvtcycle_study::answer::{OutputAnswer, described_numbers, tables};
+use cvtcycle_study::answer::{Column, OutputAnswer, described, tables};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
 use cvtcycle_study::levers::LeverAnswer;
 use cvtcycle_study::statistics::{Confidence, Groups};
@@ -118,7 +118,7 @@ fn distribution(
     let mut values = Vec::new();
     for output in outputs {
         let car = outline.cars.iter().position(|car| *car == output.car);
-        values.push(described_numbers(frame, &output.output, car.unwrap_or(0))?);
+        values.push(described(frame, &output.output, car.unwrap_or(0))?);
     }
     let first = outputs.first().map_or("", |output| output.output.as_str());
     let excess = first.starts_with("subject_excess_");
@@ -127,7 +127,7 @@ fn distribution(
     let names: Vec<String> = names.collect();
     let series = names.iter().zip(&values);
     let series = series.map(|(name, values)| DistributionSeries { name, values });
-    let series: Vec<DistributionSeries> = series.collect();
+    let series: Vec<DistributionSeries<Column>> = series.collect();
     let title = match first {
         FUEL => "fuel".to_owned(),
         output if excess => {
@@ -143,7 +143,7 @@ fn distribution(
         subject: &outline.title,
         confidence,
     };
-    Ok(distribution_plot(&shown, &series, excess))
+    distribution_plot(&shown, &series, excess)
 }
 
 /// The phase of an excess, if it is of one.

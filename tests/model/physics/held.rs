@@ -30,6 +30,7 @@ fn driven_and_held(
         let hold = Hold {
             ratio: row.belt_ratio,
             clamp,
+            paced: false,
         };
         drive.step_held(step, &hold).0
     });
@@ -85,6 +86,7 @@ fn a_hold_moves_nothing_at_rest_and_kicks_nothing_down() {
     let high = Hold {
         ratio: 0.4137,
         clamp: None,
+        paced: false,
     };
     let mut missed = 0;
     for step in cycle.trace_for(true).steps(1.0) {

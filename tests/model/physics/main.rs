@@ -19,6 +19,7 @@ mod cycles;
 mod dead_inputs;
 mod electric_pump;
 mod equations;
+mod forward;
 mod held;
 mod gtr15;
 mod launch_behind;

@@ -245,10 +245,8 @@ fn distributions(scale: f64) -> Vec<(String, Picture)> {
             .iter()
             .map(|(name, values)| DistributionSeries { name, values })
             .collect();
-        (
-            name.to_owned(),
-            distribution_plot(&shown(scale), &series, differences),
-        )
+        let Ok(picture) = distribution_plot(&shown(scale), &series, differences);
+        (name.to_owned(), picture)
     };
     vec![
         draw(
@@ -296,7 +294,7 @@ fn odd() -> Vec<(String, Picture)> {
             })
             .collect();
         for differences in [false, true] {
-            let svg = distribution_plot(&shown, &series, differences);
+            let Ok(svg) = distribution_plot(&shown, &series, differences);
             plots.push((format!("{name} {differences}"), svg));
         }
     }

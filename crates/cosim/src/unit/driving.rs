@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use cvtcycle_config::ProblemKind::{Conflict, OutOfRange};
 use cvtcycle_model::cycle::{GearColumns, GearCommand, Interval, Trace};
 use cvtcycle_model::drive::{Drive, Row, State};
 use cvtcycle_model::flags::Flags;
@@ -11,29 +12,37 @@ use super::{Refusal, Unit, show};
 use crate::variables::{CarResult, Get, car};
 
 /// Longest step of the model, s, as in a run; a longer communication step is divided.
-const MODEL_STEP_S: f64 = 1.0;
+pub(super) const MODEL_STEP_S: f64 = 1.0;
+
+/// Inputs of a step, of any kind of unit.
+pub(crate) const INPUTS: usize = 5;
+
 /// One step that was asked for: all that the state after it follows from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Asked {
     pub from_s: f64,
     pub dt_s: f64,
-    pub speed_m_s: f64,
-    pub grade: f64,
-    pub ambient_k: f64,
-    pub gear: f64,
+    /// Of a car: speed, grade, ambient, gear. Of a CVT: torque, speed, ratio, oil, engine.
+    pub inputs: [f64; INPUTS],
 }
 
 /// A drive so far.
 #[derive(Clone, Debug)]
 pub(crate) struct Driven {
-    state: State,
-    fuel_kg: f64,
-    distance_m: f64,
-    speed_m_s: f64,
-    /// Speed, ambient and temperature at the start, m/s and K.
+    pub(super) state: State,
+    pub(super) fuel_kg: f64,
+    pub(super) distance_m: f64,
+    /// Speed at its end: of a car m/s, of the wheels of a CVT rad/s.
+    pub(super) speed: f64,
+    /// What it began with: speed, ambient and temperature of a car, m/s and K; speed, oil and engine of a CVT, rad/s and K.
     pub start: [f64; 3],
     /// All steps since the start; shared with saved states until one of them goes on.
     pub steps: Arc<Vec<Asked>>,
+}
+
+/// A step before its time.
+pub(super) fn not_begun() -> Refusal {
+    Refusal::new(Conflict, "a step before the end of initialization")
 }
 
 impl Unit {
@@ -42,10 +51,12 @@ impl Unit {
         let [speed_m_s, ambient_k, start_k] = start;
         let lowest_k = car::AMBIENT_K.0;
         if start_k < lowest_k {
-            return Err(Refusal::new(format!(
-                "T_start_VEH_PNT_K = {start_k} is out of range: {lowest_k} to {} K, or 0",
+            let name = "T_start_VEH_PNT_K";
+            let message = format!(
+                "{name} = {start_k} is out of range: {lowest_k} to {} K, or 0",
                 car::START_K.1
-            )));
+            );
+            return Err(Refusal::new(OutOfRange, message).of(name));
         }
         self.car = self.setup.car(ambient_k);
         let state = State::at(start_k);
@@ -62,7 +73,7 @@ impl Unit {
             state,
             fuel_kg: 0.0,
             distance_m: 0.0,
-            speed_m_s,
+            speed: speed_m_s,
             start,
             steps: Arc::default(),
         });
@@ -73,21 +84,22 @@ impl Unit {
     /// Drives a step.
     pub(crate) fn drive(&mut self, asked: &Asked) -> Result<(), Refusal> {
         let Some(driven) = &mut self.saved.drive else {
-            return Err(Refusal::new("a step before the end of initialization"));
+            return Err(not_begun());
         };
-        if (asked.ambient_k - self.car.ambient_k).abs() > 0.0 {
-            self.car = self.setup.car(asked.ambient_k);
+        let [speed_m_s, grade, ambient_k, gear, _] = asked.inputs;
+        if (ambient_k - self.car.ambient_k).abs() > 0.0 {
+            self.car = self.setup.car(ambient_k);
         }
         let interval = Interval {
             start_s: asked.from_s,
             end_s: asked.from_s + asked.dt_s,
-            start_speed_m_s: driven.speed_m_s,
-            end_speed_m_s: asked.speed_m_s,
+            start_speed_m_s: driven.speed,
+            end_speed_m_s: speed_m_s,
             phase: 0,
-            grade: asked.grade,
+            grade,
             engine_off: false,
         };
-        let command = match asked.gear {
+        let command = match gear {
             gear if gear < 0.0 => None,
             gear if gear > 0.0 => Some(GearCommand::InGear(gear as u8)),
             _ => Some(GearCommand::Neutral),
@@ -107,7 +119,7 @@ impl Unit {
         driven.state = drive.state();
         driven.fuel_kg = fuel_by_step;
         driven.distance_m += distance_m;
-        driven.speed_m_s = asked.speed_m_s;
+        driven.speed = speed_m_s;
         Arc::make_mut(&mut driven.steps).push(*asked);
         row.fuel_kg_s = fuel_kg / asked.dt_s;
         row.flags = flags;

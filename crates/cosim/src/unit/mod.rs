@@ -1,21 +1,25 @@
 //! A unit that is instantiated: inputs in, steps, outputs out, states saved and taken back.
 
+mod driven_box;
 mod driving;
 mod operating_point;
 
 use std::fmt::Write;
 use std::path::Path;
 
+use cvtcycle_config::ProblemKind::{
+    Conflict, Damaged, OutOfRange, UnknownKey, Unreadable, WrongTransmission,
+};
 use cvtcycle_config::setup::{Setup, carried};
-use cvtcycle_config::{Problems, bounded, one_line};
+use cvtcycle_config::{ProblemKind, Problems, bounded, one_line};
 use cvtcycle_model::bench::Bench;
 use cvtcycle_model::drive::Car;
 use cvtcycle_model::transmission::component::ByComponent;
 
 use crate::UNIT_FILE;
-use crate::variables::{self, Causality, Get, Kind, Variable, car};
-pub(crate) use driving::Asked;
+use crate::variables::{self, Causality, Get, Kind, Variable, car, forward};
 use driving::Driven;
+pub(crate) use driving::{Asked, INPUTS};
 
 /// Shortest and longest communication step, s; the shortest is that of a run.
 pub const STEP_S: (f64, f64) = (0.01, 3600.0);
@@ -36,29 +40,43 @@ pub(crate) fn is_step(from_s: f64, dt_s: f64) -> bool {
 pub struct Refusal {
     /// Whether the results of the call count all the same.
     pub warns: bool,
+    /// Of what kind the problem is.
+    pub kind: ProblemKind,
+    /// Variable that it is about; may be empty.
+    pub variable: String,
     /// What is wrong, the value, what is allowed.
     pub message: String,
 }
 
 impl Refusal {
     /// Of a call that has done nothing.
-    pub fn new(message: impl Into<String>) -> Self {
+    pub fn new(kind: ProblemKind, message: impl Into<String>) -> Self {
         Refusal {
             warns: false,
+            kind,
+            variable: String::new(),
             message: message.into(),
         }
+    }
+
+    /// The same about a variable.
+    #[must_use]
+    pub fn of(mut self, variable: &str) -> Self {
+        variable.clone_into(&mut self.variable);
+        self
     }
 }
 
 impl From<Problems> for Refusal {
     fn from(problems: Problems) -> Self {
         let mut message = String::new();
+        let kind = problems.iter().next().map(|problem| problem.kind);
         for problem in problems.iter() {
             let place = problem.place.file_name().unwrap_or_default();
             // Writing into a text cannot fail.
             let _ = write!(message, "{place}: {}; {} ", problem.message, problem.hint);
         }
-        Refusal::new(one_line(message.trim_end()))
+        Refusal::new(kind.unwrap_or_default(), one_line(message.trim_end()))
     }
 }
 
@@ -113,22 +131,29 @@ impl Unit {
         let path = resources.join(UNIT_FILE);
         let bytes = bounded::read_file(&path, bounded::CHECKSUMS).map_err(|error| {
             let path = path.display();
-            Refusal::new(format!("cannot read the resource {path}: {error}"))
+            let message = format!("cannot read the resource {path}: {error}");
+            Refusal::new(Unreadable, message)
         })?;
         let text = String::from_utf8_lossy(&bytes);
         let (kind, own) = text.trim().split_once(' ').unwrap_or_default();
         let known = Kind::NAMES.into_iter().find(|(name, _)| *name == kind);
         let Some((_, kind)) = known else {
             let path = path.display();
-            return Err(Refusal::new(format!("{path} names no kind of unit")));
+            let message = format!("{path} names no kind of unit");
+            return Err(Refusal::new(Damaged, message));
         };
         if own != token {
-            return Err(Refusal::new(format!(
-                "the token `{}` is not that of these resources, `{own}`",
-                one_line(token)
-            )));
+            let token = one_line(token);
+            let message = format!("the token `{token}` is not that of these resources, `{own}`");
+            return Err(Refusal::new(Conflict, message));
         }
-        Ok(Unit::new(kind, carried::open(resources)?))
+        let setup = carried::open(resources)?;
+        if !kind.fits(setup.transmission()) {
+            let name = kind.name();
+            let message = format!("the unit `{name}` needs a CVT");
+            return Err(Refusal::new(WrongTransmission, message));
+        }
+        Ok(Unit::new(kind, setup))
     }
 
     /// Its variables; the value reference of each is its place.
@@ -185,19 +210,17 @@ impl Unit {
             Causality::Parameter => {
                 let message =
                     format!("{name} is a parameter: set it before the end of initialization");
-                return Err(Refusal::new(message));
+                return Err(Refusal::new(Conflict, message).of(name));
             }
             Causality::Independent | Causality::Output => {
-                return Err(Refusal::new(format!(
-                    "{name} is computed: it cannot be set"
-                )));
+                let message = format!("{name} is computed: it cannot be set");
+                return Err(Refusal::new(Conflict, message).of(name));
             }
         }
         let fits = *low <= value && value <= *high && (!whole || value.fract().abs() <= 0.0);
         if !fits {
-            return Err(Refusal::new(format!(
-                "{name} = {value} is out of range: {low} to {high} {unit}"
-            )));
+            let message = format!("{name} = {value} is out of range: {low} to {high} {unit}");
+            return Err(Refusal::new(OutOfRange, message).of(name));
         }
         self.saved.values[reference as usize] = value;
         self.saved.stale = true;
@@ -208,9 +231,10 @@ impl Unit {
         let count = self.variables.len();
         self.variables.get(reference as usize).ok_or_else(|| {
             let last = count - 1;
-            Refusal::new(format!(
+            let message = format!(
                 "there is no variable with value reference {reference}; the last is {last}"
-            ))
+            );
+            Refusal::new(UnknownKey, message)
         })
     }
 
@@ -221,16 +245,23 @@ impl Unit {
     pub fn start(&mut self, time_s: f64) -> Result<(), Refusal> {
         let is_near = time_s.abs() <= FAR_S;
         if !is_near {
-            return Err(Refusal::new(format!(
+            let message = format!(
                 "the start time {time_s} s is out of range: {} to {FAR_S} s",
                 -FAR_S
-            )));
+            );
+            return Err(Refusal::new(OutOfRange, message));
         }
         self.saved.time_s = time_s;
-        if self.kind == Kind::Losses {
-            return self.solve();
-        }
         let values = &self.saved.values;
+        match self.kind {
+            Kind::Losses => return self.solve(),
+            Kind::Cvt => {
+                let own = [forward::SPEED, forward::OIL, forward::COOLANT];
+                self.begin_forward(own.map(|place| values[place]));
+                return Ok(());
+            }
+            Kind::Car => {}
+        }
         let (ambient_k, asked_k) = (values[car::AMBIENT], values[car::START]);
         let start_k = if asked_k > 0.0 { asked_k } else { ambient_k };
         self.begin([values[car::SPEED], ambient_k, start_k])
@@ -244,43 +275,61 @@ impl Unit {
     pub fn step(&mut self, from_s: f64, dt_s: f64) -> Result<(), Refusal> {
         let (least, most) = STEP_S;
         if !is_step(self.saved.time_s, dt_s) {
-            return Err(Refusal::new(format!(
-                "a communication step of {dt_s} s is out of range: {least} to {most} s"
-            )));
+            let message =
+                format!("a communication step of {dt_s} s is out of range: {least} to {most} s");
+            return Err(Refusal::new(OutOfRange, message));
         }
         let at_s = self.saved.time_s;
         let follows = (from_s - at_s).abs() <= NEAR * dt_s;
         if !follows {
-            return Err(Refusal::new(format!(
-                "the step begins at {from_s} s, the last one ended at {at_s} s"
-            )));
+            let message = format!("the step begins at {from_s} s, the last one ended at {at_s} s");
+            return Err(Refusal::new(Conflict, message));
         }
         let solved = match self.kind {
             Kind::Losses => self.solve().map_err(|refused| Refusal {
                 warns: true,
                 ..refused
             }),
-            Kind::Car => {
-                let value = |place: usize| self.saved.values.get(place);
-                let has_gears = self
-                    .variables
-                    .get(car::GEAR)
-                    .is_some_and(|own| own.causality == Causality::Input);
-                let gear = value(car::GEAR).filter(|_| has_gears);
-                let asked = Asked {
+            Kind::Car | Kind::Cvt => {
+                let inputs = match self.kind {
+                    Kind::Cvt => self.asked_forward(),
+                    _ => self.asked_car(),
+                };
+                self.go(&Asked {
                     from_s,
                     dt_s,
-                    speed_m_s: self.saved.values[car::SPEED],
-                    grade: self.saved.values[car::GRADE],
-                    ambient_k: self.saved.values[car::AMBIENT],
-                    gear: gear.copied().unwrap_or(-1.0),
-                };
-                self.drive(&asked)?;
+                    inputs,
+                })?;
                 Ok(())
             }
         };
         self.saved.time_s = from_s + dt_s;
         solved
+    }
+
+    /// Drives a step of a unit that has some.
+    pub(crate) fn go(&mut self, asked: &Asked) -> Result<(), Refusal> {
+        match self.kind {
+            Kind::Cvt => self.drive_forward(asked),
+            _ => self.drive(asked),
+        }
+    }
+
+    /// What is asked of a car in a step.
+    fn asked_car(&self) -> [f64; INPUTS] {
+        let value = |place: usize| self.saved.values[place];
+        let has_gears = self
+            .variables
+            .get(car::GEAR)
+            .is_some_and(|own| own.causality == Causality::Input);
+        let gear = if has_gears { value(car::GEAR) } else { -1.0 };
+        [
+            value(car::SPEED),
+            value(car::GRADE),
+            value(car::AMBIENT),
+            gear,
+            0.0,
+        ]
     }
 
     /// The state.
@@ -295,7 +344,7 @@ impl Unit {
     /// It is of another unit.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Refusal> {
         if saved.values.len() != self.variables.len() {
-            return Err(Refusal::new("the state is of another unit"));
+            return Err(Refusal::new(Conflict, "the state is of another unit"));
         }
         self.saved = saved.clone();
         Ok(())

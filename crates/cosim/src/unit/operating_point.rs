@@ -1,5 +1,6 @@
 //! The transmission at an operating point.
 
+use cvtcycle_config::ProblemKind::Failed;
 use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::transmission::component::ByComponent;
@@ -49,10 +50,13 @@ impl Unit {
         );
         match solved && !result.answer.flags.contains(Flags::NOT_CONVERGED) {
             true => Ok(()),
-            false => Err(Refusal::new(format!(
-                "no operating point at {} rad/s, {wanted_nm} Nm, ratio {}: the belt slips; the outputs without a value keep their last one",
-                asked.input_rad_s, asked.ratio
-            ))),
+            false => {
+                let message = format!(
+                    "no operating point at {} rad/s, {wanted_nm} Nm, ratio {}: the belt slips; the outputs without a value keep their last one",
+                    asked.input_rad_s, asked.ratio
+                );
+                Err(Refusal::new(Failed, message))
+            }
         }
     }
 }

@@ -4,13 +4,15 @@
 //! `FW` flywheel, `DS` drive shaft, `AT` transmission, `HYD` hydraulics, `GB` gearbox, `VEH` vehicle), `PNT` for a plant, direction, unit.
 
 pub mod car;
+pub mod forward;
 pub mod point;
 
 use cvtcycle_model::bench::{BenchAnswer, BenchPoint};
-use cvtcycle_model::drive::{Car, Row};
+use cvtcycle_model::drive::{Car, Row, Turned};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::{ByComponent, Component};
+use cvtcycle_model::transmission::cvt::Cvt;
 
 /// What a unit simulates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,11 +21,23 @@ pub enum Kind {
     Car,
     /// The losses of its transmission at an operating point, with the launch device locked.
     Losses,
+    /// Its CVT with launch device and ratio rate, driven by a torque.
+    Cvt,
 }
 
 impl Kind {
     /// Names, as the command line has them.
-    pub const NAMES: [(&'static str, Kind); 2] = [("car", Kind::Car), ("losses", Kind::Losses)];
+    pub const NAMES: [(&'static str, Kind); 3] = [
+        ("car", Kind::Car),
+        ("losses", Kind::Losses),
+        ("cvt", Kind::Cvt),
+    ];
+
+    /// Whether a car with this transmission has such a unit.
+    #[must_use]
+    pub fn fits(self, transmission: &Transmission) -> bool {
+        self != Kind::Cvt || transmission.is_cvt()
+    }
 
     /// Its name.
     #[must_use]
@@ -37,6 +51,7 @@ impl Kind {
         match self {
             Kind::Car => "whole car, backward: follows a speed; fuel, heat, losses",
             Kind::Losses => "losses and heat of the transmission at an operating point",
+            Kind::Cvt => "CVT with launch device, forward: torque in, torque out; losses, heat",
         }
     }
 }
@@ -76,6 +91,17 @@ pub struct LossResult {
     pub answer: BenchAnswer,
 }
 
+/// What the outputs of a CVT that is driven by a torque come from.
+#[derive(Clone, Copy, Debug)]
+pub struct CvtResult<'a> {
+    /// The last step.
+    pub turned: &'a Turned,
+    /// Temperature of the belt at its end, K.
+    pub belt_k: f64,
+    /// The box.
+    pub cvt: &'a Cvt,
+}
+
 /// Where the value of a variable comes from.
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
@@ -85,6 +111,8 @@ pub enum Get {
     Car(fn(&CarResult) -> f64),
     /// From an operating point.
     Losses(fn(&LossResult) -> f64),
+    /// From a step of the CVT that is driven by a torque.
+    Cvt(fn(&CvtResult) -> f64),
     /// Loss power of a component, W.
     Loss(Component),
 }
@@ -160,6 +188,7 @@ pub fn variables(kind: Kind, transmission: &Transmission) -> Vec<Variable> {
     match kind {
         Kind::Car => car::rows(transmission, &mut all),
         Kind::Losses => point::rows(transmission, &mut all),
+        Kind::Cvt => forward::rows(transmission, &mut all),
     }
     let mut components = transmission.components();
     if kind == Kind::Losses {

@@ -2,6 +2,7 @@
 
 mod balance;
 mod car;
+mod forward;
 mod gears;
 mod physics;
 mod row;
@@ -15,6 +16,7 @@ mod vehicle;
 
 pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;
+pub use forward::{Forward, Given, Turned};
 pub use gears::{CarTrace, WltcClass};
 pub use physics::{Finding, Law, PhysicsCheck, check_physics};
 pub use row::{HIGHEST_K, Row};

@@ -331,7 +331,7 @@ where
 }
 
 #[inline(always)]
-fn advance<R: Real, T>(
+pub(super) fn advance<R: Real, T>(
     car: &Car<R, T>,
     power_w: [R; NODES],
     output: &StepOutput<R>,

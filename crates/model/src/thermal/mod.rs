@@ -216,7 +216,7 @@ where
 }
 
 /// v^0.7, 0 at standstill.
-fn speed_power(v: f64) -> f64 {
+pub(crate) fn speed_power(v: f64) -> f64 {
     if v > 0.0 { exp(0.7 * ln(v)) } else { 0.0 }
 }
 

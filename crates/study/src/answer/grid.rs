@@ -2,8 +2,10 @@
 
 use serde::Serialize;
 
+use super::Column;
 use super::levels::{label, values};
 use crate::plan::{Design, Plan};
+use cvtcycle_config::Problem;
 
 /// An output at every pair of levels of two factors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,13 +42,14 @@ const CONDITIONS: [&str; 3] = ["ambient_degc", "start", "cycle"];
 
 impl GridMatrix {
     /// The matrix of a plan with two factors from the numbers of its points; none for another plan.
-    pub(super) fn of(plan: &Plan, numbers: &[f64]) -> Option<Self> {
+    pub(super) fn of(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
         let [first, second] = plan.factors.as_slice() else {
-            return None;
+            return Ok(None);
         };
         if plan.design != Design::Grid {
-            return None;
+            return Ok(None);
         }
+        let numbers = numbers.all()?;
         let names = |factor: usize, unit: &str| -> Vec<String> {
             let all = values(plan, factor, numbers.len());
             all.map(|value| value.map_or_else(String::new, |value| label(&value, unit)))
@@ -60,7 +63,8 @@ impl GridMatrix {
             (false, true) => LeastOf::Column,
             _ => LeastOf::All,
         };
-        Some(folded(factors, &rows, columns, numbers).with_least(least_of))
+        let matrix = folded(factors, &rows, columns, &numbers);
+        Ok(Some(matrix.with_least(least_of)))
     }
 
     /// Finds the smallest numbers.

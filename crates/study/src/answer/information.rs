@@ -2,11 +2,13 @@
 
 use serde::Serialize;
 
+use super::Column as Found;
 use crate::design::{Role, saltelli_role};
 use crate::plan::{Factor, FactorValue, Plan};
 use crate::statistics::{
     Column, Confidence, Estimate, Shares, SobolIndices, Summary, sd_left, shares as from_draws,
 };
+use cvtcycle_config::Problem;
 
 /// Draws from which shares are computed at most: more would cost time and tell nothing that can be seen.
 const MAX_DRAWS: usize = 1 << 13;
@@ -59,38 +61,44 @@ impl Information {
     /// From any sample of an output; none of an output that does not vary, and of too few draws.
     pub(super) fn of_draws(
         plan: &Plan,
-        found: &[f64],
+        found: &Found,
         summary: &Summary,
         confidence: Confidence,
-    ) -> Option<Self> {
-        let points: Vec<u64> = (0..found.len().min(MAX_DRAWS) as u64).collect();
-        let of = chance(plan, &points, found, confidence)?;
-        let share = |k: usize| Estimate {
-            value: of.shares[k],
-            interval: None,
-        };
-        let above = |k: usize| of.shares[k] > of.noise;
-        Some(Self::new(plan, (of.n, summary.sd, of.noise), share, above))
+    ) -> Result<Option<Self>, Problem> {
+        let found = found.first(MAX_DRAWS)?;
+        let points: Vec<u64> = (0..found.len() as u64).collect();
+        let of = chance(plan, &points, &found, confidence);
+        Ok(of.map(|of| {
+            let share = |k: usize| Estimate {
+                value: of.shares[k],
+                interval: None,
+            };
+            let above = |k: usize| of.shares[k] > of.noise;
+            Self::new(plan, (of.n, summary.sd, of.noise), share, above)
+        }))
     }
 
-    /// From the indices of a Saltelli design, whose first two blocks are a sample that shows what chance gives; none of an output that does
-    /// not vary, and of too few draws.
+    /// From the indices of a Saltelli design, and what it found in its first two blocks, a sample that shows what chance gives; none of an
+    /// output that does not vary, and of too few draws.
     pub(super) fn of_indices(
         plan: &Plan,
-        found: &[f64],
+        drawn: &Found,
         indices: &SobolIndices,
         confidence: Confidence,
-    ) -> Option<Self> {
+    ) -> Result<Option<Self>, Problem> {
         let factors = plan.factors.len();
         let is_draw = |point: &u64| matches!(saltelli_role(factors, *point).1, Role::A | Role::B);
-        let points = (0..found.len() as u64).filter(is_draw).take(MAX_DRAWS);
-        let of = chance(plan, &points.collect::<Vec<_>>(), found, confidence)?;
-        let first = |k: usize| indices.factors[k].first;
-        let above = |k: usize| {
-            of.shares[k] > of.noise && first(k).interval.is_some_and(|[low, _]| low > 0.0)
-        };
-        let head = (indices.samples, indices.variance.sqrt(), of.noise);
-        Some(Self::new(plan, head, first, above))
+        let found = drawn.first(MAX_DRAWS)?;
+        let points: Vec<u64> = (0..).filter(is_draw).take(found.len()).collect();
+        let of = chance(plan, &points, &found, confidence);
+        Ok(of.map(|of| {
+            let first = |k: usize| indices.factors[k].first;
+            let above = |k: usize| {
+                of.shares[k] > of.noise && first(k).interval.is_some_and(|[low, _]| low > 0.0)
+            };
+            let head = (indices.samples, indices.variance.sqrt(), of.noise);
+            Self::new(plan, head, first, above)
+        }))
     }
 
     fn new(
@@ -134,12 +142,11 @@ impl Information {
     }
 }
 
-/// Shares of some points that are draws; none where nothing can be said.
+/// Shares from what some points found that are draws; none where nothing can be said.
 fn chance(plan: &Plan, points: &[u64], found: &[f64], confidence: Confidence) -> Option<Shares> {
     let columns = (0..plan.factors.len()).map(|f| column(plan, f, points));
     let columns: Vec<Column> = columns.collect();
-    let output: Vec<f64> = points.iter().map(|point| found[*point as usize]).collect();
-    let of = from_draws(&columns, &output, confidence);
+    let of = from_draws(&columns, found, confidence);
     of.noise.is_finite().then_some(of)
 }
 

@@ -21,9 +21,13 @@ pub(super) fn numbers(plan: &Plan, factor: usize, points: usize) -> Vec<f64> {
 }
 
 /// Words of a factor, or its numbers as words; every word is held once.
-pub(super) fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> {
+pub(super) fn words(
+    plan: &Plan,
+    factor: usize,
+    points: usize,
+) -> impl Iterator<Item = Arc<str>> {
     let mut known: Vec<(Option<FactorValue>, Arc<str>)> = vec![(None, "".into())];
-    let word = |value: Option<FactorValue>| {
+    let word = move |value: Option<FactorValue>| {
         if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
             return text.clone();
         }
@@ -35,7 +39,7 @@ pub(super) fn words(plan: &Plan, factor: usize, points: usize) -> Vec<Arc<str>> 
         known.push((value, text.clone()));
         text
     };
-    values(plan, factor, points).map(word).collect()
+    values(plan, factor, points).map(word)
 }
 
 /// A value as a label: numbers with four figures and their unit.

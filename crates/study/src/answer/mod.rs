@@ -1,6 +1,7 @@
 //! From a study's table to what it says: each output described, the subject held against its baselines, and which factor decides.
 
 pub mod ambient;
+mod column;
 mod grid;
 mod information;
 mod levels;
@@ -9,6 +10,7 @@ mod range;
 mod study_table;
 mod tables;
 
+pub use column::Column;
 pub use grid::{GridMatrix, LeastOf};
 pub use information::{Information, KnownFactor};
 pub use output::{OutputAnswer, Ranked};
@@ -26,7 +28,7 @@ use crate::plan::Design;
 use crate::statistics::{Confidence, Share, Summary};
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
-use output::{output, pick};
+use output::output;
 pub(crate) use study_table::Status;
 
 /// Version of an [`Answer`] as JSON. 2: intervals of any confidence under one name, ends in place of moments where the points are no sample.
@@ -148,14 +150,13 @@ pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Prob
     let outline = frame.outline;
     let sample = outline.plan.design.is_sampled().then_some(confidence);
     let cars = 0..outline.cars.len();
-    let rows = described(frame);
     let compare = |car: usize| -> Result<Comparison, Problem> {
-        let excess = pick(&frame.numbers(EXCESS, car)?, &rows);
+        let excess = described(frame, EXCESS, car)?;
         Ok(Comparison {
             baseline: outline.cars[car].clone(),
-            worse: Share::above_zero(&excess, sample),
-            excess_percent: sample.map(|confidence| Summary::of(&excess, confidence)),
-            excess_range: Range::of(&outline.plan, &excess),
+            worse: Share::over_zero(&excess, sample)?,
+            excess_percent: summary(&excess, sample)?,
+            excess_range: Range::of(&outline.plan, &excess)?,
         })
     };
     let mut outputs = Vec::new();
@@ -163,17 +164,17 @@ pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Prob
         // The subject has no excess over itself.
         let first = usize::from(named.0.starts_with("subject_excess_"));
         for car in cars.clone().skip(first) {
-            outputs.push(output(frame, &rows, named, car, confidence)?);
+            outputs.push(output(frame, named, car, confidence)?);
         }
     }
-    let is_done = |status: &Status| *status != Status::Missing;
+    let missing = frame.count_of(0, Status::Missing) as u64;
     Ok(Answer {
         schema: SCHEMA,
         title: outline.title.clone(),
         question: outline.question.clone(),
         notes: outline.notes.clone(),
         points: outline.points,
-        points_done: frame.status(0).filter(is_done).count() as u64,
+        points_done: outline.points - missing,
         cars: outline.cars.clone(),
         runs: ended(frame)?,
         described: match is_saltelli(frame) {
@@ -191,63 +192,65 @@ fn is_saltelli(frame: &StudyTable) -> bool {
     matches!(frame.outline.plan.design, Design::Saltelli { .. })
 }
 
-/// Points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the output's distribution.
-fn described(frame: &StudyTable) -> Vec<bool> {
+/// The numbers of a car at the points that are independent draws: all, but of a Saltelli design A and B; nothing else says something of the
+/// output's distribution.
+///
+/// # Errors
+/// A part that cannot be read, or no room for a temporary file.
+pub fn described(frame: &StudyTable, output: &str, car: usize) -> Result<Column, Problem> {
     let factors = frame.outline.plan.factors.len();
     let mixed = is_saltelli(frame);
     let is_drawn = |point| matches!(saltelli_role(factors, point).1, Role::A | Role::B);
-    (0..frame.outline.points)
-        .map(|point| !mixed || is_drawn(point))
-        .collect()
+    frame.column(output, car, |point| !mixed || is_drawn(point))
 }
 
-/// The numbers of a car that are described: of points that are independent draws.
-///
-/// # Errors
-/// A part that cannot be read.
-pub fn described_numbers(
-    frame: &StudyTable,
-    output: &str,
-    car: usize,
-) -> Result<Vec<f64>, Problem> {
-    Ok(pick(&frame.numbers(output, car)?, &described(frame)))
+/// Of numbers that are a sample.
+fn summary(numbers: &Column, sample: Option<Confidence>) -> Result<Option<Summary>, Problem> {
+    let over = |confidence| Summary::over(numbers, confidence);
+    sample.map(over).transpose()
 }
 
 pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
-    let mut reasons: Vec<String> = Vec::new();
-    let is_bad = |status: Status| matches!(status, Status::Failed | Status::NotRun);
-    for car in 0..frame.outline.cars.len() {
-        if !frame.status(car).any(is_bad) {
-            continue;
+    let mut reasons = Counts::default();
+    frame.each_reason(|status, reason| {
+        for one in reason.split("; ") {
+            // Of a failed check the name alone: what follows differs from run to run.
+            let name = one.split(' ').next().unwrap_or_default();
+            reasons.add(if status == Status::Failed { name } else { one });
         }
-        let words = frame.words("reason", car)?;
-        let bad = words
-            .iter()
-            .zip(frame.status(car))
-            .filter(|(_, status)| is_bad(*status));
-        for (reason, status) in bad {
-            for one in reason.split("; ") {
-                // Of a failed check the name alone: what follows differs from run to run.
-                let name = one.split(' ').next().unwrap_or_default();
-                let word = if status == Status::Failed { name } else { one };
-                reasons.push(word.to_owned());
-            }
-        }
-    }
+    })?;
     Ok(Ended {
         ok: frame.count(Status::Ok),
         failed: frame.count(Status::Failed),
         not_run: frame.count(Status::NotRun),
         missing: frame.count(Status::Missing),
-        reasons: counted(reasons.into_iter()),
+        reasons: reasons.sorted(),
     })
+}
+
+/// Words with their counts.
+#[derive(Default)]
+struct Counts(BTreeMap<String, usize>);
+
+impl Counts {
+    fn add(&mut self, word: &str) {
+        match self.0.get_mut(word) {
+            Some(count) => *count += 1,
+            None => drop(self.0.insert(word.to_owned(), 1)),
+        }
+    }
+
+    /// The commonest first.
+    fn sorted(self) -> Vec<(String, usize)> {
+        let mut counts: Vec<(String, usize)> = self.0.into_iter().collect();
+        counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+        counts
+    }
 }
 
 /// Words with their counts, the commonest first.
 pub(crate) fn counted(words: impl Iterator<Item = String>) -> Vec<(String, usize)> {
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    words.for_each(|word| *counts.entry(word).or_default() += 1);
-    let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
-    counts.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
-    counts
+    let mut counts = Counts::default();
+    words.for_each(|word| counts.add(&word));
+    counts.sorted()
 }

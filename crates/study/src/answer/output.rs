@@ -1,11 +1,11 @@
 //! What the runs say of one output of a car, by the design of the study.
 
 use super::levels::{label, numbers, values, words};
-use super::{GridMatrix, Information, Range, StudyTable};
+use super::{Column, GridMatrix, Information, Range, StudyTable, described, summary};
 use crate::plan::{Design, Factor, FactorValue, Plan};
 use crate::statistics::{
     Blocks, Bootstrap, Confidence, Groups, RankSensitivity, SobolIndices, Summary, Tornado,
-    TornadoInput, group_means, rank_sensitivity, sobol_convergence, tornado,
+    TornadoInput, group_means_over, rank_sensitivity, sobol_convergence, tornado,
 };
 use cvtcycle_config::Problem;
 use serde::Serialize;
@@ -66,65 +66,75 @@ const MAX_RANKED: usize = 1 << 16;
 
 pub(super) fn output(
     frame: &StudyTable,
-    rows: &[bool],
     (name, unit): &(String, String),
     car: usize,
     confidence: Confidence,
 ) -> Result<OutputAnswer, Problem> {
     let plan = &frame.outline.plan;
     let sample = plan.design.is_sampled().then_some(confidence);
-    let found = frame.numbers(name, car)?;
+    let points = frame.points();
+    let drawn = described(frame, name, car)?;
     let mut answer = OutputAnswer {
         output: name.clone(),
         unit: unit.clone(),
         car: frame.outline.cars[car].clone(),
-        summary: sample.map(|confidence| Summary::of(&pick(&found, rows), confidence)),
-        range: Range::of(plan, &found),
+        summary: summary(&drawn, sample)?,
+        range: Range::of(plan, &drawn)?,
         sobol: Vec::new(),
         information: None,
         tornado: None,
         rank: None,
         levels: Vec::new(),
-        matrix: GridMatrix::of(plan, &found),
+        matrix: GridMatrix::of(plan, &drawn)?,
     };
     match plan.design {
         Design::Saltelli { .. } => {
+            let found = frame.column(name, car, |_| true)?.all()?;
             answer.sobol = sobol(&found, plan.factors.len(), confidence);
-            let last = answer.sobol.last();
-            answer.information =
-                last.and_then(|of| Information::of_indices(plan, &found, of, confidence));
+            let of = answer.sobol.last().zip(Some(&drawn));
+            let of = of.map(|(of, drawn)| Information::of_indices(plan, drawn, of, confidence));
+            answer.information = of.transpose()?.flatten();
         }
-        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &found)),
+        Design::OneAtATime { .. } => answer.tornado = Some(of_tornado(plan, &drawn.all()?)),
         _ => {
             let as_words =
                 |f: &usize| plan.design == Design::Grid || !plan.factors[*f].values.are_numbers();
-            let (levels, drawn): (Vec<usize>, Vec<usize>) =
+            let (levels, numbers): (Vec<usize>, Vec<usize>) =
                 (0..plan.factors.len()).partition(as_words);
-            let summary = answer.summary.as_ref();
-            answer.information = summary
-                .and_then(|summary| Information::of_draws(plan, &found, summary, confidence));
-            answer.rank = (!drawn.is_empty()).then(|| ranked(plan, &drawn, &found, confidence));
-            let groups = |f| group_means(&words(plan, f, found.len()), &found, sample);
-            let levels = levels.into_iter();
-            answer.levels = levels
-                .map(|f| (plan.factors[f].name.clone(), groups(f)))
-                .collect();
+            let of = answer.summary.as_ref();
+            let of = of.map(|of| Information::of_draws(plan, &drawn, of, confidence));
+            answer.information = of.transpose()?.flatten();
+            if !numbers.is_empty() {
+                answer.rank = Some(ranked(plan, &numbers, &drawn, confidence)?);
+            }
+            for f in levels {
+                let groups = group_means_over(|| words(plan, f, points), &drawn, sample)?;
+                answer.levels.push((plan.factors[f].name.clone(), groups));
+            }
         }
     }
     Ok(answer)
 }
 
-fn ranked(plan: &Plan, drawn: &[usize], found: &[f64], confidence: Confidence) -> Ranked {
-    let points = found.len().min(MAX_RANKED);
-    let columns: Vec<Vec<f64>> = drawn.iter().map(|&f| numbers(plan, f, points)).collect();
+fn ranked(
+    plan: &Plan,
+    drawn: &[usize],
+    found: &Column,
+    confidence: Confidence,
+) -> Result<Ranked, Problem> {
+    let found = found.first(MAX_RANKED)?;
+    let columns: Vec<Vec<f64>> = drawn
+        .iter()
+        .map(|&f| numbers(plan, f, found.len()))
+        .collect();
     let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    Ranked {
+    Ok(Ranked {
         factors: drawn
             .iter()
             .map(|&f| plan.factors[f].name.clone())
             .collect(),
-        of: rank_sensitivity(&columns, &found[..points], confidence),
-    }
+        of: rank_sensitivity(&columns, &found, confidence),
+    })
 }
 
 /// Splits the points of a Saltelli design into its blocks.
@@ -158,13 +168,4 @@ fn of_tornado(plan: &Plan, numbers: &[f64]) -> Tornado {
     };
     let inputs: Vec<TornadoInput> = plan.factors.iter().enumerate().map(input).collect();
     tornado(numbers.first().copied().unwrap_or(f64::NAN), &inputs)
-}
-
-/// The numbers of the described points of which runs are there.
-pub(super) fn pick(numbers: &[f64], rows: &[bool]) -> Vec<f64> {
-    let pairs = numbers.iter().zip(rows);
-    pairs
-        .filter(|(_, described)| **described)
-        .map(|(x, _)| *x)
-        .collect()
 }

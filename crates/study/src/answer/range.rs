@@ -2,8 +2,11 @@
 
 use serde::Serialize;
 
+use super::Column;
 use super::levels::label;
 use crate::plan::{Design, Plan};
+use crate::statistics::Numbers;
+use cvtcycle_config::Problem;
 
 /// Where a value is that is the same at all points.
 const EVERYWHERE: &str = "everywhere";
@@ -27,34 +30,46 @@ pub struct Range {
 
 impl Range {
     /// Over the numbers of the points of a plan; none of a plan that draws its points.
-    pub(super) fn of(plan: &Plan, numbers: &[f64]) -> Option<Self> {
+    pub(super) fn of(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
         if plan.design.is_sampled() {
-            return None;
+            return Ok(None);
         }
-        let known = || numbers.iter().enumerate().filter(|(_, x)| x.is_finite());
+        let (mut point, mut n) = (0_u64, 0);
         // The first of equal ones on both sides.
-        let least = known().min_by(|a, b| a.1.total_cmp(b.1));
-        let largest = known().rev().max_by(|a, b| a.1.total_cmp(b.1));
-        let at = |end: Option<(usize, &f64)>| {
-            end.map_or_else(String::new, |(point, _)| levels(plan, point as u64))
+        let (mut least, mut largest) = (None::<(u64, f64)>, None::<(u64, f64)>);
+        numbers.pass(|piece| {
+            for x in piece {
+                if x.is_finite() {
+                    n += 1;
+                    if least.is_none_or(|(_, low)| x.total_cmp(&low).is_lt()) {
+                        least = Some((point, *x));
+                    }
+                    if largest.is_none_or(|(_, high)| x.total_cmp(&high).is_gt()) {
+                        largest = Some((point, *x));
+                    }
+                }
+                point += 1;
+            }
+        })?;
+        let at = |end: Option<(u64, f64)>| {
+            end.map_or_else(String::new, |(point, _)| levels(plan, point))
         };
-        let n = known().count();
         let range = Range {
             n,
-            missing: numbers.len() - n,
-            least: least.map(|(_, x)| *x),
+            missing: usize::try_from(point).unwrap_or(usize::MAX) - n,
+            least: least.map(|(_, x)| x),
             least_at: at(least),
-            largest: largest.map(|(_, x)| *x),
+            largest: largest.map(|(_, x)| x),
             largest_at: at(largest),
         };
-        Some(match range.is_one() && n > 1 {
+        Ok(Some(match range.is_one() && n > 1 {
             true => Range {
                 least_at: EVERYWHERE.to_owned(),
                 largest_at: EVERYWHERE.to_owned(),
                 ..range
             },
             false => range,
-        })
+        }))
     }
 
     /// Whether all values are the same.

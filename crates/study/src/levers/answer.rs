@@ -220,17 +220,15 @@ pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverA
         Some(k) => found[k].clone(),
         None => vec![Vec::new(); outline.cars.len()],
     };
-    let is_ok = |car: usize| {
-        frame
-            .status(car)
-            .map(|status| status == Status::Ok)
-            .collect()
+    let is_ok = |car: usize| -> Result<Vec<bool>, Problem> {
+        let status = frame.status(car)?.into_iter();
+        Ok(status.map(|status| status == Status::Ok).collect())
     };
-    let is_bad = |car: usize| {
-        let mut status = frame.status(car);
-        status.any(|status| matches!(status, Status::Failed | Status::NotRun))
+    let bad = |car: usize| {
+        let counts = [Status::Failed, Status::NotRun].map(|status| frame.count_of(car, status));
+        counts.iter().sum::<usize>()
     };
-    let reasons = (0..outline.cars.len()).map(|car| match is_bad(car) {
+    let reasons = (0..outline.cars.len()).map(|car| match bad(car) > 0 {
         true => frame.words("reason", car),
         false => Ok(Vec::new()),
     });
@@ -239,12 +237,12 @@ pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverA
         fuel: of(FUEL),
         co2: of(CO2),
         effects: names.iter().map(|name| of(name)).collect(),
-        ok: (0..outline.cars.len()).map(is_ok).collect(),
+        ok: (0..outline.cars.len())
+            .map(is_ok)
+            .collect::<Result<_, _>>()?,
     };
-    let done = frame
-        .status(0)
-        .filter(|status| *status != Status::Missing)
-        .count();
+    let points = usize::try_from(outline.points).unwrap_or(usize::MAX);
+    let done = points - frame.count_of(0, Status::Missing);
     Ok(LeverAnswer {
         schema: SCHEMA,
         title: outline.title.clone(),

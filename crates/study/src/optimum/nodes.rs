@@ -193,7 +193,11 @@ impl Scene<'_> {
     ) -> (Node, Row) {
         let step = &self.steps[k];
         let ratio = place.ratio;
-        let hold = Hold { ratio, clamp };
+        let hold = Hold {
+            ratio,
+            clamp,
+            paced: false,
+        };
         let one = |cut_rad_s: f64| self.driven(reference, k, &place, (&hold, cut_rad_s));
         let fired = one(0.0); // nothing cut
         let cut = if fired.wheel_power_w < 0.0 {

@@ -231,7 +231,11 @@ impl<'a> Scene<'a> {
             Clamp::Law => None,
             Clamp::Free { safety, .. } => Some(free_law(safety)),
         };
-        Hold { ratio, clamp }
+        Hold {
+            ratio,
+            clamp,
+            paced: false,
+        }
     }
 
     /// What the law of the coupling does in a step at a ratio where it was open before, and where it was locked (TC-7). A clutch that locks by

@@ -16,6 +16,8 @@ use serde::Serialize;
 
 use super::Confidence;
 use super::intervals::{clopper_pearson, quantile_ranks, student};
+use super::order::{Ordered, between};
+use super::passes::{Moments, Numbers, each};
 
 /// An output in numbers; read through it, the fields of [`Spread`] are its own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,22 +54,35 @@ pub struct Quantile {
 impl Summary {
     /// Describes a sample.
     pub fn of(values: &[f64], confidence: Confidence) -> Self {
-        let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
-        let spread = Spread::of(values.iter().copied());
-        sorted.sort_unstable_by(f64::total_cmp);
-        let quantile = |p: f64| {
-            let value = |at: Option<usize>| at.and_then(|i| sorted.get(i).copied());
-            Quantile {
-                p,
-                value: quantile_of_sorted(&sorted, p),
-                interval: quantile_ranks(spread.n, p, confidence.tail()).map(value),
-            }
+        let Ok(summary) = Self::over(values, confidence);
+        summary
+    }
+
+    /// Describes a sample that is not held: in a few passes over it.
+    ///
+    /// # Errors
+    /// Numbers that cannot be had.
+    pub fn over<P: Numbers + ?Sized>(values: &P, confidence: Confidence) -> Result<Self, P::Error> {
+        let spread = Spread::over(values)?;
+        let ranks = |p: &f64| (*p, quantile_ranks(spread.n, *p, confidence.tail()));
+        let wanted: Vec<_> = confidence.quantiles().iter().map(ranks).collect();
+        let places = wanted.iter().flat_map(|(p, ends)| {
+            let own = between(spread.n, *p).map(|(low, high, _)| [low, high]);
+            own.into_iter()
+                .flatten()
+                .chain(ends.iter().copied().flatten())
+        });
+        let ordered = Ordered::of(values, &spread, places)?;
+        let quantile = |(p, ends): &(f64, [Option<usize>; 2])| Quantile {
+            p: *p,
+            value: ordered.quantile(*p),
+            interval: ends.map(|at| at.and_then(|place| ordered.at(place))),
         };
-        Summary {
-            quantiles: confidence.quantiles().into_iter().map(quantile).collect(),
+        Ok(Summary {
+            quantiles: wanted.iter().map(quantile).collect(),
             mean_interval: spread.mean_interval(confidence),
             spread,
-        }
+        })
     }
 
     /// The quantile at one of the probabilities that it was made for; NaN at any other probability.
@@ -96,27 +111,8 @@ pub struct Spread {
 
 impl Spread {
     /// Of all finite values.
-    pub(super) fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
-        let finite = || values.clone().filter(|x| x.is_finite());
-        let n = finite().count();
-        let count = n as f64;
-        let rough = finite().sum::<f64>() / count;
-        let mean = rough + finite().map(|x| x - rough).sum::<f64>() / count; // DS-1
-        let (sum, squares) = finite()
-            .map(|x| x - mean)
-            .fold((0.0, 0.0), |(s, q), d| (s + d, q + d * d));
-        let sd = match n {
-            0 | 1 => f64::NAN,
-            _ => ((squares - sum * sum / count).max(0.0) / (count - 1.0)).sqrt(), // DS-1
-        };
-        Spread {
-            n,
-            missing: values.clone().count() - n,
-            mean,
-            sd,
-            min: finite().fold(f64::NAN, |low, x| x.min(low)),
-            max: finite().fold(f64::NAN, |high, x| x.max(high)),
-        }
+    pub(super) fn over<P: Numbers + ?Sized>(values: &P) -> Result<Self, P::Error> {
+        Moments::of(values)
     }
 
     /// Interval of the mean, for independent values.
@@ -130,13 +126,25 @@ impl Spread {
 
 /// Quantile of ascending finite values by DS-3; NaN of none.
 pub fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else {
+    let Some((k, next, share)) = between(sorted.len(), p) else {
         return f64::NAN;
     };
-    let h = last as f64 * p.clamp(0.0, 1.0); // DS-3, counted from 0
-    let k = (h.floor() as usize).min(last);
-    let (low, high) = (sorted[k], sorted[(k + 1).min(last)]);
-    low + (h - h.floor()) * (high - low) // DS-3
+    sorted[k] + share * (sorted[next] - sorted[k]) // DS-3
+}
+
+/// Quantiles by DS-3 of a sample that is not held.
+///
+/// # Errors
+/// Numbers that cannot be had.
+pub fn quantiles<P: Numbers + ?Sized>(
+    values: &P,
+    spread: &Spread,
+    probabilities: &[f64],
+) -> Result<Vec<f64>, P::Error> {
+    let places = probabilities.iter().filter_map(|p| between(spread.n, *p));
+    let places = places.flat_map(|(low, high, _)| [low, high]);
+    let ordered = Ordered::of(values, spread, places)?;
+    Ok(probabilities.iter().map(|p| ordered.quantile(*p)).collect())
 }
 
 /// In how many of the cases something holds.
@@ -157,20 +165,53 @@ pub struct Share {
 impl Share {
     /// The share of the values for which `holds`. Without a confidence the values are no sample.
     pub fn of(values: &[f64], confidence: Option<Confidence>, holds: impl Fn(f64) -> bool) -> Self {
-        let known = || values.iter().filter(|x| x.is_finite());
-        let n = known().count();
-        let k = known().filter(|x| holds(**x)).count();
-        Share {
+        let Ok(share) = Self::over(values, confidence, holds);
+        share
+    }
+
+    /// The same of values that are not held.
+    ///
+    /// # Errors
+    /// Numbers that cannot be had.
+    pub fn over<P: Numbers + ?Sized>(
+        values: &P,
+        confidence: Option<Confidence>,
+        holds: impl Fn(f64) -> bool,
+    ) -> Result<Self, P::Error> {
+        let (mut k, mut n, mut missing) = (0, 0, 0);
+        each(values, |x| match x.is_finite() {
+            true => {
+                n += 1;
+                k += usize::from(holds(x));
+            }
+            false => missing += 1,
+        })?;
+        Ok(Share {
             k,
             n,
-            missing: values.len() - n,
+            missing,
             share: k as f64 / n as f64,
             interval: confidence.map(|confidence| clopper_pearson(k, n, confidence.tail())),
-        }
+        })
     }
 
     /// The share of the values above zero: of a difference, in how many pairs the first one has more. Equal ones are not more.
     pub fn above_zero(values: &[f64], confidence: Option<Confidence>) -> Self {
-        Self::of(values, confidence, |x| x > 0.0)
+        Self::of(values, confidence, is_above_zero)
     }
+
+    /// The same of values that are not held.
+    ///
+    /// # Errors
+    /// Numbers that cannot be had.
+    pub fn over_zero<P: Numbers + ?Sized>(
+        values: &P,
+        confidence: Option<Confidence>,
+    ) -> Result<Self, P::Error> {
+        Self::over(values, confidence, is_above_zero)
+    }
+}
+
+fn is_above_zero(x: f64) -> bool {
+    x > 0.0
 }

@@ -13,6 +13,10 @@ use serde::Serialize;
 
 use super::Confidence;
 use super::describe::Spread;
+use super::passes::{Moments, Numbers};
+
+/// Rows up to which all of them are summed group by group.
+const HELD: usize = 1 << 18;
 
 /// The output at one level.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,23 +56,47 @@ pub fn group_means<S: AsRef<str>>(
     output: &[f64],
     confidence: Option<Confidence>,
 ) -> Groups {
-    let mut names: Vec<&str> = Vec::new();
-    let mut rows: Vec<Vec<f64>> = Vec::new();
-    for (level, y) in levels.iter().zip(output) {
-        let at = names
-            .iter()
-            .position(|name| *name == level.as_ref())
-            .unwrap_or_else(|| {
-                names.push(level.as_ref());
-                rows.push(Vec::new());
-                names.len() - 1
-            });
-        rows[at].push(*y);
+    let Ok(groups) = group_means_over(|| levels.iter(), output, confidence);
+    groups
+}
+
+/// The same of an output that is not held; `levels` begins with the level of its first row each time.
+///
+/// # Errors
+/// Numbers that cannot be had.
+pub fn group_means_over<P: Numbers + ?Sized, L: Iterator<Item: AsRef<str>>>(
+    levels: impl Fn() -> L,
+    output: &P,
+    confidence: Option<Confidence>,
+) -> Result<Groups, P::Error> {
+    let mut known: Vec<(String, Moments)> = Vec::new();
+    let mut all = Moments::default();
+    let mut rows = Some(Vec::new());
+    for _ in 0..Moments::PASSES {
+        let mut levels = levels();
+        output.pass(|piece| {
+            for (y, level) in piece.iter().zip(levels.by_ref()) {
+                let level = level.as_ref();
+                let at = known.iter().position(|(name, _)| name == level);
+                let at = at.unwrap_or_else(|| {
+                    known.push((level.to_owned(), Moments::default()));
+                    known.len() - 1
+                });
+                known[at].1.add(*y);
+                all.add(*y);
+                if let Some(list) = rows.as_mut().filter(|_| all.is_first()) {
+                    list.push((at, *y));
+                }
+            }
+            rows = rows.take().filter(|list| list.len() <= HELD);
+        })?;
+        known.iter_mut().for_each(|(_, moments)| moments.turn());
+        all.turn();
     }
-    let group = |(name, values): (&&str, &Vec<f64>)| {
-        let spread = Spread::of(values.iter().copied());
+    let group = |(label, moments): (String, Moments)| {
+        let spread = moments.spread();
         Group {
-            label: (*name).to_owned(),
+            label,
             mean_interval: confidence.and_then(|confidence| spread.mean_interval(confidence)),
             spread: match confidence {
                 Some(_) => spread,
@@ -79,26 +107,42 @@ pub fn group_means<S: AsRef<str>>(
             },
         }
     };
-    let groups: Vec<Group> = names.iter().zip(&rows).map(group).collect();
-    let all = Spread::of(rows.iter().flatten().copied());
-    let filled = || groups.iter().filter(|g| g.n > 0);
-    let between = |g: &Group| g.n as f64 * (g.mean - all.mean).powi(2);
-    let between: f64 = filled().map(between).sum();
-    let within = all.sd.powi(2) * (all.n as f64 - 1.0);
-    // Of a constant only rounding is left of both.
-    let eta_squared = match all.max > all.min {
-        true => (between / within).min(1.0), // GR-1
-        false => f64::NAN,
+    let groups: Vec<Group> = known.into_iter().map(group).collect();
+    // Few rows are summed group by group, as they always were; many in the order of the points. That moves the last bit at most.
+    let all = match rows {
+        Some(mut rows) => {
+            rows.sort_by_key(|(group, _)| *group);
+            let rows: Vec<f64> = rows.into_iter().map(|(_, y)| y).collect();
+            let Ok(all) = Moments::of(rows.as_slice());
+            all
+        }
+        None => all.spread(),
     };
-    let means = || filled().map(|g| g.mean);
-    let least = means().fold(f64::INFINITY, |low, x| x.min(low));
-    let largest = means().fold(f64::NEG_INFINITY, |high, x| x.max(high));
-    Groups {
-        range: match filled().count() {
-            0 | 1 => f64::NAN,
-            _ => largest - least,
-        },
-        groups,
-        eta_squared,
+    Ok(Groups::of(groups, &all))
+}
+
+impl Groups {
+    /// From the groups, and all rows together.
+    fn of(groups: Vec<Group>, all: &Spread) -> Self {
+        let filled = || groups.iter().filter(|g| g.n > 0);
+        let between = |g: &Group| g.n as f64 * (g.mean - all.mean).powi(2);
+        let between: f64 = filled().map(between).sum();
+        let within = all.sd.powi(2) * (all.n as f64 - 1.0);
+        // Of a constant only rounding is left of both.
+        let eta_squared = match all.max > all.min {
+            true => (between / within).min(1.0), // GR-1
+            false => f64::NAN,
+        };
+        let means = || filled().map(|g| g.mean);
+        let least = means().fold(f64::INFINITY, |low, x| x.min(low));
+        let largest = means().fold(f64::NEG_INFINITY, |high, x| x.max(high));
+        Groups {
+            range: match filled().count() {
+                0 | 1 => f64::NAN,
+                _ => largest - least,
+            },
+            groups,
+            eta_squared,
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::dir::{StudyDir, other_settings};
-use super::names::{self, MANIFEST, PLAN};
+use super::names::{self, Layout, MANIFEST, PLAN};
 use super::read::{Study, is_whole, marked_parts};
 use cvtcycle_config::ProblemKind::{Conflict, Damaged, Duplicate, Missing, Unreadable};
 use cvtcycle_config::bounded::{self, ReadError};
@@ -15,17 +15,21 @@ use cvtcycle_output::files::problem;
 /// Ranges of missing parts that are listed.
 const MAX_LISTED: usize = 12;
 
-/// A folder with parts, read.
+/// A folder with parts of a study. What all shards have alike is not held for each.
 struct Shard {
+    path: PathBuf,
+    layout: Layout,
+}
+
+/// What a study was begun with, byte for byte.
+struct Begun {
     path: PathBuf,
     manifest: Vec<u8>,
     plan: Vec<u8>,
-    study: Study,
 }
 
-impl Shard {
-    fn open(path: &Path) -> Result<Self, Problem> {
-        let study = Study::open(path)?;
+impl Begun {
+    fn read(path: &Path) -> Result<Self, Problem> {
         let read = |name: &str, limit| {
             let file = path.join(name);
             let unreadable = |error: ReadError| {
@@ -34,12 +38,32 @@ impl Shard {
             };
             bounded::read_file(file, limit).map_err(unreadable)
         };
-        Ok(Shard {
+        Ok(Begun {
             manifest: read(MANIFEST, bounded::RECORD)?,
             plan: read(PLAN, bounded::TOML)?,
             path: path.to_path_buf(),
-            study,
         })
+    }
+
+    /// The problem of a shard that was begun with something else.
+    fn foreign(&self, shard: &Begun) -> Problem {
+        let found = other_settings(&shard.path, (&shard.manifest, &self.manifest), &self.plan);
+        let hint = format!(
+            "all shards are of one plan and one build of the program, here those of {}",
+            self.path.display()
+        );
+        found.kind(Conflict).hint(hint).settings(&[])
+    }
+}
+
+impl Shard {
+    fn open(path: &Path) -> Result<(Self, Begun), Problem> {
+        let study = Study::open(path)?;
+        let shard = Shard {
+            path: path.to_path_buf(),
+            layout: study.layout().clone(),
+        };
+        Ok((shard, Begun::read(path)?))
     }
 
     /// The mark of a part, byte for byte: the checksums of its files.
@@ -67,26 +91,29 @@ impl StudyDir {
         let path = path.as_ref();
         let mut problems = Problems::new();
         check_names(path, shards, &mut problems);
-        let opened = shards.iter().map(|shard| Shard::open(shard));
-        let opened = opened.filter_map(|shard| problems.take(shard));
-        let shards: Vec<Shard> = opened.collect();
-        let Some(first) = shards.first() else {
+        let mut first: Option<Begun> = None;
+        let (mut opened, mut foreign) = (Vec::new(), Problems::new());
+        for path in shards {
+            let Some((shard, begun)) = problems.take(Shard::open(path)) else {
+                continue;
+            };
+            opened.push(shard);
+            match &first {
+                None => first = Some(begun),
+                Some(first) if first.manifest == begun.manifest => {}
+                Some(first) => foreign.add(first.foreign(&begun)),
+            }
+        }
+        problems.extend(foreign);
+        let (Some(first), shards) = (first, opened) else {
             return Err(problems);
         };
-        for shard in shards.iter().filter(|own| own.manifest != first.manifest) {
-            let foreign = (shard.manifest.as_slice(), first.manifest.as_slice());
-            let found = other_settings(&shard.path, foreign, &first.plan);
-            let hint = format!(
-                "all shards are of one plan and one build of the program, here those of {}",
-                first.path.display()
-            );
-            problems.add(found.kind(Conflict).hint(hint).settings(&[]));
-        }
         // What a foreign study lacks or has is no news.
         problems.finish()?;
         let mut problems = Problems::new();
         let found = parts_of(&shards, &mut problems);
-        missing(path, &found, first.study.layout().parts, &mut problems);
+        let parts = shards.first().map_or(0, |shard| shard.layout.parts);
+        missing(path, &found, parts, &mut problems);
         problems.finish()?;
         let dir = StudyDir::create(path, &first.manifest, &first.plan, force)?;
         for (part, shard) in found {
@@ -116,7 +143,7 @@ fn parts_of(shards: &[Shard], problems: &mut Problems) -> Found {
     let mut found = Found::new();
     for (number, shard) in shards.iter().enumerate() {
         let name = shard.path.display();
-        let layout = shard.study.layout();
+        let layout = &shard.layout;
         let marked = marked_parts(&shard.path, layout).map_err(|error| {
             let message = format!("cannot read the parts in {name}: {error}");
             problem(&shard.path, &message, "check its permissions").kind(Unreadable)

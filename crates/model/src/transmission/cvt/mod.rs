@@ -185,6 +185,8 @@ pub struct Hold<R: Real = f64> {
     pub ratio: R,
     /// Clamp law; that of the box without one.
     pub clamp: Option<ClampLaw<R>>,
+    /// Whether the ratio is only asked for: the box goes there as fast as it can (RC-4, RC-5).
+    pub paced: bool,
 }
 
 /// What the ratio control keeps of the step before.

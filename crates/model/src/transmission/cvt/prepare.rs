@@ -103,6 +103,7 @@ where
         dt_s: input.dt_s,
     };
     let (ratio, change, short) = match held {
+        Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
         Some(hold) => (
             hold.ratio,
             (hold.ratio / before.ratio).ln(),

@@ -7,24 +7,31 @@ use crate::charts::engine::{
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::capital_first;
-use cvtcycle_study::statistics::{Confidence, Share, Summary, quantile_of_sorted};
+use cvtcycle_study::statistics::{Confidence, Numbers, Share, Summary, quantiles};
 
 /// One car, or one pair of cars.
 #[derive(Clone, Copy, Debug)]
-pub struct DistributionSeries<'a> {
+pub struct DistributionSeries<'a, P: ?Sized = [f64]> {
     /// Name in the legend.
     pub name: &'a str,
     /// Values; those that are not finite are missing.
-    pub values: &'a [f64],
+    pub values: &'a P,
 }
 
 /// A series prepared for drawing.
 struct Drawn<'a> {
     name: &'a str,
-    sorted: Vec<f64>,
+    /// The cumulative curve.
+    steps: Vec<(f64, f64)>,
     summary: Summary,
     above: Share,
     confidence: Confidence,
+}
+
+impl Drawn<'_> {
+    fn is_empty(&self) -> bool {
+        self.summary.n == 0
+    }
 }
 
 const TOP: f64 = 58.0;
@@ -51,16 +58,37 @@ const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 
 /// Draws histogram and cumulative curve of each series over one axis, with the median and the two ends of its confidence marked; of more
 /// than seven the first seven. Of differences of pairs zero is marked and the share above it written.
-pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences: bool) -> Picture {
-    let series = all.iter().take(STROKES.len());
-    let series: Vec<Drawn> = series
-        .map(|series| prepare(series, shown.confidence))
-        .collect();
+///
+/// # Errors
+/// Values that cannot be had.
+pub fn distribution_plot<P: Numbers + ?Sized>(
+    shown: &Shown,
+    all: &[DistributionSeries<P>],
+    differences: bool,
+) -> Result<Picture, P::Error> {
+    let drawn = &all[..all.len().min(STROKES.len())];
+    let series = drawn.iter().map(|series| prepare(series, shown.confidence));
+    let series: Vec<Drawn> = series.collect::<Result<_, _>>()?;
     let edges = edges(&series, differences);
-    let shares: Vec<Vec<f64>> = series.iter().map(|s| shares(s, &edges)).collect();
+    let shares = drawn.iter().map(|series| shares(series.values, &edges));
+    let shares: Vec<Vec<f64>> = shares.collect::<Result<_, _>>()?;
+    Ok(drawing(
+        shown,
+        (all.len(), &series),
+        (&edges, &shares),
+        differences,
+    ))
+}
+
+fn drawing(
+    shown: &Shown,
+    (all, series): (usize, &[Drawn]),
+    (edges, shares): (&[f64], &[Vec<f64>]),
+    differences: bool,
+) -> Picture {
     let (headline, notes) = (
-        headline(&series, differences),
-        notes(shown, all.len(), &series, differences),
+        headline(series, differences),
+        notes(shown, all, series, differences),
     );
     let lines = lines(&headline, 12.0, WIDE);
     let gap = if lines.is_empty() { 0.0 } else { 6.0 };
@@ -76,19 +104,35 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
     let title = shown.axis(&title);
     let x = Axis::exact(&title, edges[0], edges[edges.len() - 1], 9);
     let rect = Rect::new(PLOT_LEFT, TOP + head, WIDE, TALL);
-    let mut upper = histogram((rect, x.clone()), &series, &shares, &edges);
+    let mut upper = histogram((rect, x.clone()), series, shares, edges);
     for (k, line) in lines.into_iter().enumerate() {
         let place = at(f64::NEG_INFINITY, f64::INFINITY);
         let place = place.shift(0.0, 6.0 - head + 16.0 * k as f64);
         upper.label(Label::new(place, line).size(12.0).bold(true));
     }
     let rect = Rect::new(PLOT_LEFT, rect.bottom + GAP, WIDE, TALL);
-    let lower = cumulative((rect, x), &series, marked(shown.confidence));
+    let lower = cumulative((rect, x), series, marked(shown.confidence));
     let names = series.iter().zip(STROKES);
     let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
     let zero = differences.then(|| Entry::line(ZERO, "No difference"));
-    let table = table(shown, &output, &series, (&edges, &shares), &notes);
-    let title = match series.as_slice() {
+    let table = table(shown, &output, series, (edges, shares), &notes);
+    let title = title(shown, series, differences, what);
+    let lead = format!(
+        "{headline} {}",
+        notes[..notes.len().min(IN_WORDS)].join(" ")
+    );
+    Chart::new(title, shown.subject, PLOT_LEFT)
+        .lead(lead.trim().replace('\u{a0}', " "))
+        .panels([upper, lower])
+        .legend(FOOT, names.chain(zero))
+        .notes(FOOT, notes)
+        .picture(table)
+}
+
+/// A row for each bin, its middle first.
+/// A sentence on one series, else what is drawn.
+fn title(shown: &Shown, series: &[Drawn], differences: bool, what: &str) -> String {
+    match series {
         [s] if differences && s.above.n > 0 => {
             format!(
                 "{} is above zero in {}",
@@ -109,20 +153,9 @@ pub fn distribution_plot(shown: &Shown, all: &[DistributionSeries], differences:
             )
         }
         _ => format!("{what}: {}", shown.output),
-    };
-    let lead = format!(
-        "{headline} {}",
-        notes[..notes.len().min(IN_WORDS)].join(" ")
-    );
-    Chart::new(title, shown.subject, PLOT_LEFT)
-        .lead(lead.trim().replace('\u{a0}', " "))
-        .panels([upper, lower])
-        .legend(FOOT, names.chain(zero))
-        .notes(FOOT, notes)
-        .picture(table)
+    }
 }
 
-/// A row for each bin, its middle first.
 fn table(
     shown: &Shown,
     output: &str,
@@ -154,17 +187,18 @@ fn table(
     table
 }
 
-fn prepare<'a>(series: &DistributionSeries<'a>, confidence: Confidence) -> Drawn<'a> {
-    let values = series.values.iter().copied();
-    let mut sorted: Vec<f64> = values.filter(|x| x.is_finite()).collect();
-    sorted.sort_unstable_by(f64::total_cmp);
-    Drawn {
+fn prepare<'a, P: Numbers + ?Sized>(
+    series: &DistributionSeries<'a, P>,
+    confidence: Confidence,
+) -> Result<Drawn<'a>, P::Error> {
+    let summary = Summary::over(series.values, confidence)?;
+    Ok(Drawn {
         name: series.name,
-        sorted,
-        summary: Summary::of(series.values, confidence),
-        above: Share::above_zero(series.values, Some(confidence)),
+        steps: steps(series.values, &summary)?,
+        above: Share::over_zero(series.values, Some(confidence))?,
+        summary,
         confidence,
-    }
+    })
 }
 
 /// Edges of the bins of all series: at round numbers, so that zero is one of them; about as wide as Freedman and Diaconis (1981) advise.
@@ -194,19 +228,21 @@ fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
     (0..=count).map(|i| (first + i as f64) * step).collect()
 }
 
-/// How much of a series lies in each bin, %.
-fn shares(series: &Drawn, edges: &[f64]) -> Vec<f64> {
-    let sorted = &series.sorted;
+/// How much of a series lies in each bin, %. The outer bins take in what lies on the outer edges, or next to them by rounding.
+fn shares<P: Numbers + ?Sized>(values: &P, edges: &[f64]) -> Result<Vec<f64>, P::Error> {
     let last = edges.len() - 2;
-    // The outer bins take in what lies on the outer edges, or next to them by rounding.
-    let upto = |k: usize| match k {
-        0 => 0,
-        k if k > last => sorted.len(),
-        k => sorted.partition_point(|x| *x < edges[k]),
-    };
-    let count = |k: usize| (upto(k + 1) - upto(k)) as f64;
-    let all = sorted.len().max(1) as f64;
-    (0..=last).map(|k| 100.0 * count(k) / all).collect()
+    let inner = &edges[1..=last];
+    let mut counts = vec![0_u64; last + 1];
+    values.pass(|piece| {
+        for x in piece.iter().filter(|x| x.is_finite()) {
+            counts[inner.partition_point(|edge| edge <= x)] += 1;
+        }
+    })?;
+    let all = counts.iter().sum::<u64>().max(1) as f64;
+    Ok(counts
+        .iter()
+        .map(|count| 100.0 * *count as f64 / all)
+        .collect())
 }
 
 fn histogram(
@@ -220,9 +256,9 @@ fn histogram(
     let mut panel = Panel::new(rect, x, y)
         .over_table()
         .x_labels(false)
-        .no_data(series.iter().all(|s| s.sorted.is_empty()));
+        .no_data(series.iter().all(Drawn::is_empty));
     for (k, shares) in shares.iter().enumerate().rev() {
-        if series[k].sorted.is_empty() {
+        if series[k].is_empty() {
             continue;
         }
         let bins = edges.windows(2).zip(shares);
@@ -250,9 +286,9 @@ fn cumulative((rect, x): (Rect, Axis), series: &[Drawn], marked: [f64; 3]) -> Pa
     zero(&mut panel);
     quantile_lines(&mut panel, series);
     for (k, s) in series.iter().enumerate().rev() {
-        panel.add(Shape::Line(steps(&s.sorted)), Style::line(STROKES[k]));
+        panel.add(Shape::Line(s.steps.clone()), Style::line(STROKES[k]));
     }
-    let known = |(s, _): &(&Drawn, _)| !s.sorted.is_empty();
+    let known = |(s, _): &(&Drawn, _)| !s.is_empty();
     for (s, stroke) in series.iter().zip(STROKES).filter(known) {
         for p in marked {
             let place = at(s.summary.quantile(p), 100.0 * p);
@@ -264,16 +300,18 @@ fn cumulative((rect, x): (Rect, Axis), series: &[Drawn], marked: [f64; 3]) -> Pa
 }
 
 /// The cumulative curve as far as it can be seen: a stair of few values, a line through quantiles of many.
-fn steps(sorted: &[f64]) -> Vec<(f64, f64)> {
-    if sorted.len() > STEPS {
-        let shares = (0..=STEPS).map(|k| k as f64 / STEPS as f64);
-        return shares
-            .map(|p| (quantile_of_sorted(sorted, p), 100.0 * p))
-            .collect();
+fn steps<P: Numbers + ?Sized>(values: &P, summary: &Summary) -> Result<Vec<(f64, f64)>, P::Error> {
+    if summary.n > STEPS {
+        let shares: Vec<f64> = (0..=STEPS).map(|k| k as f64 / STEPS as f64).collect();
+        let found = quantiles(values, summary, &shares)?.into_iter();
+        return Ok(found.zip(shares).map(|(x, p)| (x, 100.0 * p)).collect());
     }
+    let mut sorted = Vec::with_capacity(summary.n);
+    values.pass(|piece| sorted.extend(piece.iter().filter(|x| x.is_finite())))?;
+    sorted.sort_unstable_by(f64::total_cmp);
     let share = |k: usize| 100.0 * k as f64 / sorted.len() as f64;
     let step = |(k, x): (usize, &f64)| [(*x, share(k)), (*x, share(k + 1))];
-    sorted.iter().enumerate().flat_map(step).collect()
+    Ok(sorted.iter().enumerate().flat_map(step).collect())
 }
 
 /// The line of no difference, where zero lies within.

@@ -1,0 +1,87 @@
+//! A CVT that is driven by a torque, step by step.
+
+use std::sync::Arc;
+
+use cvtcycle_config::ProblemKind::WrongTransmission;
+use cvtcycle_model::drive::{Forward, Given, State};
+use cvtcycle_model::thermal::BELT;
+use cvtcycle_model::transmission::Transmission;
+
+use super::driving::{Driven, MODEL_STEP_S, not_begun};
+use super::{Asked, Refusal, Unit, show};
+use crate::variables::{CvtResult, Get, forward};
+
+impl Unit {
+    /// Begins with the speed of the wheels, the oil in the sump and the engine, rad/s and K.
+    pub(crate) fn begin_forward(&mut self, start: [f64; 3]) {
+        let [wheel_rad_s, oil_k, _] = start;
+        self.saved.drive = Some(Driven {
+            state: State::at(oil_k),
+            fuel_kg: 0.0,
+            distance_m: 0.0,
+            speed: wheel_rad_s,
+            start,
+            steps: Arc::default(),
+        });
+    }
+
+    /// Drives a step.
+    pub(crate) fn drive_forward(&mut self, asked: &Asked) -> Result<(), Refusal> {
+        let driven = self.saved.drive.as_mut().ok_or_else(not_begun)?;
+        let [engine_nm, wheel_rad_s, ratio, sump_k, engine_k] = asked.inputs;
+        let manual = || Refusal::new(WrongTransmission, "a manual box is not driven by a torque");
+        let mut drive = Forward::new(&self.car, driven.state).ok_or_else(manual)?;
+        // A longer step is divided; torque and heat are then those of its last part.
+        let parts = (asked.dt_s / MODEL_STEP_S).ceil().max(1.0);
+        let (from, rise) = (driven.speed, (wheel_rad_s - driven.speed) / parts);
+        let mut part = |k: f64| {
+            drive.step(&Given {
+                engine_nm,
+                wheel_rad_s: [from + k * rise, from + (k + 1.0) * rise],
+                ratio,
+                sump_k,
+                engine_k: [engine_k; 2],
+                dt_s: asked.dt_s / parts,
+            })
+        };
+        let mut turned = part(0.0);
+        for k in 1..parts as u32 {
+            turned = part(f64::from(k));
+        }
+        driven.state = drive.state();
+        driven.speed = wheel_rad_s;
+        Arc::make_mut(&mut driven.steps).push(*asked);
+        let belt_k = driven.state.heat.node_k[BELT];
+        let Transmission::Cvt(cvt) = &self.car.transmission else {
+            return Err(manual());
+        };
+        let result = CvtResult {
+            turned: &turned,
+            belt_k,
+            cvt,
+        };
+        let of = |get: &Get| match get {
+            Get::Cvt(of) => Some(of(&result)),
+            _ => None,
+        };
+        show(
+            &self.variables,
+            &mut self.saved.values,
+            &turned.output.loss_w,
+            of,
+        );
+        Ok(())
+    }
+
+    /// What is asked for in a step.
+    pub(super) fn asked_forward(&self) -> [f64; 5] {
+        [
+            forward::TORQUE,
+            forward::SPEED,
+            forward::RATIO,
+            forward::OIL,
+            forward::COOLANT,
+        ]
+        .map(|place| self.saved.values[place])
+    }
+}
