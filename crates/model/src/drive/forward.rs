@@ -211,8 +211,7 @@ impl<'a> Forward<'a> {
                 true => 0.5 * inertia * idling * idling,
                 false => kinetic_j,
             };
-            let mut output = StepOutput::at_rest();
-            car.transmission.solve_into(input, &mut after, &mut output);
+            let output = car.transmission.solve(input, &mut after);
             (after, output, begun_j)
         });
         self.state.kinetic_j = begun_j;
@@ -221,7 +220,8 @@ impl<'a> Forward<'a> {
         let mut taken_nm = output.shaft_nm;
         if kinetic_w < 0.0 && self.closes(&output) {
             // A coupling that loses a part only passes on the rest (LC-6).
-            let lost = smaller(self.car.transmission.coupling().loss_factor(), 1.0);
+            let factor = self.car.transmission.coupling().loss_factor();
+            let lost = factor.map_or(1.0, |factor| smaller(factor, 1.0));
             output.loss_w[Component::LaunchClutch] -= lost * kinetic_w; // FO-4
             output.output_w -= (1.0 - lost) * kinetic_w;
         } else {

@@ -10,6 +10,7 @@ use cvtcycle_model::drive::{Row, State, loss_heat_w};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::SUMP;
+use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Hold;
 use cvtcycle_model::transmission::cvt::WarmStart;
 use cvtcycle_model::transmission::cvt::controller::ClampLaw;

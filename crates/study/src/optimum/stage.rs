@@ -7,6 +7,7 @@ use super::scene::Scene;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
 use cvtcycle_model::thermal::NODES;
+use cvtcycle_model::transmission::coupling::Coupling;
 use rayon::prelude::*;
 
 /// Launch in a ratio below this share of low is not one in low.

@@ -8,7 +8,6 @@
 use cvtcycle_model::drive::State;
 use cvtcycle_model::engine::EngineAtTemperature;
 use cvtcycle_model::thermal::{COOLANT, ENGINE_OIL, NODES};
-use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Hold;
 use rayon::prelude::*;
 

@@ -116,7 +116,7 @@ fn drawing(
     let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
     let zero = differences.then(|| Entry::line(ZERO, "No difference"));
     let table = table(shown, &output, series, (edges, shares), &notes);
-    let title = title(shown, series, differences, what);
+    let title = sentence(shown, series, differences, what);
     let lead = format!(
         "{headline} {}",
         notes[..notes.len().min(IN_WORDS)].join(" ")
@@ -131,7 +131,7 @@ fn drawing(
 
 /// A row for each bin, its middle first.
 /// A sentence on one series, else what is drawn.
-fn title(shown: &Shown, series: &[Drawn], differences: bool, what: &str) -> String {
+fn sentence(shown: &Shown, series: &[Drawn], differences: bool, what: &str) -> String {
     match series {
         [s] if differences && s.above.n > 0 => {
             format!(
