@@ -178,7 +178,10 @@ where
         ratio,
         change,
     ];
-    (numbers, vec![pump.flow_limited, short, short & short.then(short, locked)])
+    (
+        numbers,
+        vec![pump.flow_limited, short, short & short.then(short, locked)],
+    )
 }
 
 #[test]
