@@ -229,10 +229,10 @@ where
     /// Loss of a box that is a map, Nm at the flywheel; 0 without one.
     #[inline(always)]
     fn box_map_nm(&self) -> R {
-        self.box_map.unwrap_or_else(
-            #[inline(always)]
-            || self.pump.filled(0.0),
-        )
+        match self.box_map {
+            Some(loss) => loss,
+            None => self.pump.filled(0.0),
+        }
     }
 
     /// Torque at the flywheel with that of the coupling, Nm.

@@ -401,12 +401,13 @@ where
             wanted.above(self.cap_pa),
             wanted.above(self.floors.control_pa),
         );
-        let number = |of: ClampCause| cause.filled(of.number());
+        let by_control = cause.filled(ClampCause::Control.number());
+        let by_cap = cause.filled(ClampCause::Cap.number());
         let held_pa = R::pick(open, wanted, self.floors.control_pa);
-        let held_by = R::pick(open, cause, number(ClampCause::Control));
+        let held_by = R::pick(open, cause, by_control);
         (
             R::pick(capped, self.cap_pa, held_pa),
-            R::pick(capped, number(ClampCause::Cap), held_by),
+            R::pick(capped, by_cap, held_by),
         )
     }
 

@@ -170,13 +170,13 @@ where
         let share = mesh_share + self.bearing_share;
         let held = R::pick(share.above(MAX_SHARE), MAX_SHARE / share, share.filled(1.0));
         let churning_nm = churning::torque_nm(self.churning, oil.density_kg_m3, log_first, log_nu);
-        let turns = |value: R| R::pick(rests, value.filled(0.0), value);
+        let none = share.filled(0.0);
         TurningTrain {
-            bearing_nm: turns(bearing_nm),
-            churning_nm: turns(churning_nm),
-            seal_nm: turns(self.seal_nm),
-            mesh_share: turns(held * mesh_share),
-            bearing_share: turns(held * self.bearing_share),
+            bearing_nm: R::pick(rests, none, bearing_nm),
+            churning_nm: R::pick(rests, none, churning_nm),
+            seal_nm: R::pick(rests, none, self.seal_nm),
+            mesh_share: R::pick(rests, none, held * mesh_share),
+            bearing_share: R::pick(rests, none, held * self.bearing_share),
         }
     }
 }
