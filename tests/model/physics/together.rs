@@ -87,3 +87,29 @@ fn gears_of_their_own_and_starts_of_their_own() {
         ..COLD
     });
 }
+
+/// CVTs after a first drive that is not counted, with a remainder; another kind of box and another oil in between.
+#[test]
+fn kinds_of_cars_may_be_mixed() {
+    let cycle = embedded("ece15").unwrap();
+    let mut cars = family("rover_216_cvt", 5);
+    cars.insert(1, family("rover_216_5mt", 1).remove(0));
+    cars.insert(3, try_car("mondeo_20_5mt", &[]).unwrap());
+    assert_alone(&cars, &cycle, |_| Conditions {
+        start: Start::Warm,
+        max_dt_s: 2.5,
+        ..COLD
+    });
+}
+
+/// One car far too heavy for its engine, one whose numbers end in none: the others drive as they do alone.
+#[test]
+fn a_failed_run_keeps_to_itself() {
+    let cycle = embedded("ece15_eudc").unwrap();
+    for vehicle in ["rover_216_5mt", "rover_216_cvt"] {
+        let mut cars = family(vehicle, 4);
+        cars[1] = try_car(vehicle, &["road_load.mass_kg=4900".to_owned()]).unwrap();
+        cars[2].vehicle.road_load.base.f0_n = f64::NAN;
+        assert_alone(&cars, &cycle, |_| COLD);
+    }
+}

@@ -86,14 +86,19 @@ pub fn exp(x: f64) -> f64 {
 
 /// e to the power of each x, the same bits as one by one: several together cost little more than one, since processors work in pairs.
 #[inline(always)]
-pub fn exp_each<const N: usize>(x: [f64; N]) -> [f64; N] {
-    // One comparison for all: a sum within reach has every term within it. Beyond, each is asked.
+pub fn exp_each<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+    // A loop, as `map` is a function of its own without the processor's features. One comparison for all: a sum within reach has every term within it. Beyond, each is asked.
     let sum = x.iter().fold(0.0, |sum, x| sum + x.abs());
     if sum < EXP_REACH {
-        x.map(exp_within)
+        for x in &mut x {
+            *x = exp_within(*x);
+        }
     } else {
-        x.map(exp_anywhere)
+        for x in &mut x {
+            *x = exp_anywhere(*x);
+        }
     }
+    x
 }
 
 /// exp where several are large.
@@ -134,17 +139,22 @@ pub fn ln(x: f64) -> f64 {
 
 /// Natural logarithm of each x, the same bits as one by one; see [`exp_each`].
 #[inline(always)]
-pub fn ln_each<const N: usize>(x: [f64; N]) -> [f64; N] {
+pub fn ln_each<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     // One comparison for all: between 2^-511 and 2^512 the two leading bits of this difference are zero. Beyond, each is asked.
     const LEAST: u64 = 512 << 52;
     let bits = x
         .iter()
         .fold(0, |bits, x| bits | x.to_bits().wrapping_sub(LEAST));
     if bits >> 62 == 0 {
-        x.map(ln_plain)
+        for x in &mut x {
+            *x = ln_plain(*x);
+        }
     } else {
-        x.map(ln_anywhere)
+        for x in &mut x {
+            *x = ln_anywhere(*x);
+        }
     }
+    x
 }
 
 /// ln where one of several is far from 1.

@@ -134,11 +134,12 @@ fn val_shift_of_the_shipped_box() {
                 let (d, demand) = shifted(&b, from, &wheel, pa, degc);
                 let k = degc + ZERO;
                 let engine = b.car.engine.at(k, k, &b.car.engine_oil, 0.8);
+                // No update of the struct in the closure: the compiler's borrow checker fails on fields that are `R`'s own types (rustc 1.95).
                 let route = |efficiency: f64| {
-                    b.cvt().ratio.step(&RatioDemand {
-                        full_load_rad_s: super::route_rad_s(b.cvt(), &engine, power / efficiency),
-                        ..demand
-                    })
+                    let mut asked: RatioDemand = demand;
+                    asked.full_load_rad_s =
+                        super::route_rad_s(b.cvt(), &engine, power / efficiency);
+                    b.cvt().ratio.step(&asked)
                 };
                 // RC-7: the ratio of RC-3 where it suffices, else as much more as full load needs, else all that the rates allow.
                 let place = format!("{from} {speed} {pa} {degc}: {d:?} from {demand:?}");
