@@ -243,7 +243,7 @@ fn distributions(scale: f64) -> Vec<(String, Picture)> {
     let draw = |name: &str, differences: bool, list: &[(&str, &[f64])]| {
         let series: Vec<DistributionSeries> = list
             .iter()
-            .map(|(name, values)| DistributionSeries { name, values })
+            .map(|&(name, values)| DistributionSeries { name, values })
             .collect();
         let Ok(picture) = distribution_plot(&shown(scale), &series, differences);
         (name.to_owned(), picture)
@@ -288,7 +288,7 @@ fn odd() -> Vec<(String, Picture)> {
     for (name, columns) in cases {
         let series: Vec<DistributionSeries> = columns
             .iter()
-            .map(|values| DistributionSeries {
+            .map(|&values| DistributionSeries {
                 name: "car",
                 values,
             })
