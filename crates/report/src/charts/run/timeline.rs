@@ -26,13 +26,16 @@ const LEVEL: Stroke = stroke(QUIET, 0.8, &[4.0, 2.0]);
 const PHASE: Stroke = stroke(QUIET, 0.75, &[1.0, 2.5]);
 const PHASE_TEXT: f64 = 11.0;
 
+/// A unit, and what is drawn of a value.
+pub(super) type Shown = (&'static str, fn(f64) -> f64);
+
 /// A column of the trace as a line.
 pub(super) struct Series {
     pub column: &'static str,
     pub title: &'static str,
     pub stroke: Stroke,
     /// Unit where it is not that of the column, and what is drawn of a value.
-    pub shown: Option<(&'static str, fn(f64) -> f64)>,
+    pub shown: Option<Shown>,
 }
 
 impl Series {
