@@ -120,7 +120,7 @@ where
         flow_down_per_s: flow,
         flow_up_per_s: 0.2 * flow,
         coupled: w.above(100.0),
-        last_direction: R::every(|lane| if lane % 2 == 0 { 1 } else { -1 }),
+        last_direction: R::every(|lane| if power_w.lane(lane) > 20e3 { 1 } else { -1 }),
         free_up_to_rad_s: ratio.filled(100.0),
         dt_s: 1.0,
     }

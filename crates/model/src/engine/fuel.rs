@@ -76,11 +76,10 @@ impl Gather for FuelModel {
     }
 
     fn alike(&self, other: &Self) -> bool {
-        match (self, other) {
-            (FuelModel::Willans(_), FuelModel::Willans(_)) => true,
-            (FuelModel::Map(_), FuelModel::Map(_)) => true,
-            _ => false,
-        }
+        matches!(
+            (self, other),
+            (FuelModel::Willans(_), FuelModel::Willans(_)) | (FuelModel::Map(_), FuelModel::Map(_))
+        )
     }
 }
 

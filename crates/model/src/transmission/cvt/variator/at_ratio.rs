@@ -84,6 +84,7 @@ impl<R: Real> Prepared<R>
 where
     f64: Left<R>,
 {
+    #[inline(always)]
     fn new(belt: &Belt<R>, g: &Geometry<R>, (direction, thrust_ratio): (R, R)) -> Self {
         let pitch = belt.segment_thickness_m;
         let arc_m = [
@@ -128,6 +129,14 @@ where
 {
     /// Prepares a ratio.
     pub fn new(belt: &Belt<R>, ratio: R) -> Self {
+        ratio.within(
+            #[inline(always)]
+            || Self::prepare(belt, ratio),
+        )
+    }
+
+    #[inline(always)]
+    fn prepare(belt: &Belt<R>, ratio: R) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
         let log = ratio.ln();
         let direction = -(log / belt.unity_width).tanh(); // TE-6

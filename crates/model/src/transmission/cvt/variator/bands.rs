@@ -22,6 +22,7 @@ use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Friction-weighted sliding of the band pack on each pulley per turn of the primary, m: on both with the wrap factor (BT-2 to BT-4), or on
 /// the smaller wrap alone, with the part of the one force that a `direction` of the tension step leaves (BT-6, BT-7).
+#[inline(always)]
 pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2]
 where
     f64: Left<R>,
@@ -42,6 +43,7 @@ where
 }
 
 /// A value of the pulley of smaller wrap, where the bands slide, and nothing of the other (BT-7).
+#[inline(always)]
 fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
     let (primary, none) = (
         g.secondary_wrap_rad.above(g.primary_wrap_rad),
@@ -51,6 +53,7 @@ fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
 }
 
 /// Part of the bands' sliding, weighted by friction, that is not at the innermost interface (BT-2).
+#[inline(always)]
 pub fn outer_part<R: Real>(belt: &Belt<R>) -> R
 where
     f64: Left<R>,
@@ -61,6 +64,7 @@ where
 }
 
 /// Part of the bands' sliding that a coating of the shoulders takes away (BT-8).
+#[inline(always)]
 pub fn coated_part<R: Real>(belt: &Belt<R>) -> R
 where
     f64: Left<R>,
@@ -69,6 +73,7 @@ where
 }
 
 /// Contact area of a film, on the smaller wrap, m2 (FI-1).
+#[inline(always)]
 pub fn film_area_m2<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R
 where
     f64: Left<R>,
@@ -81,6 +86,7 @@ where
 }
 
 /// Levers of the films' forces, at the primary shaft, m: innermost interface, all others together (FI-1).
+#[inline(always)]
 pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2]
 where
     f64: Left<R>,
@@ -108,6 +114,7 @@ where
 }
 
 /// Adopted band speed of a formulation as `travel_m` takes it (BT-1, BT-7).
+#[inline(always)]
 pub fn speed_share<R: Real>(belt: &Belt<R>) -> f64 {
     if belt.formulation.by_statics() {
         -0.5

@@ -23,6 +23,7 @@ pub struct Deflection<R: Real = f64> {
 }
 
 /// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
+#[inline(always)]
 pub fn wedge_per_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> [R; 2]
 where
     f64: Left<R>,
@@ -32,6 +33,7 @@ where
 }
 
 /// 2 `R_p` / t, times depth over deflection (PE-1).
+#[inline(always)]
 pub fn penetration<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R
 where
     f64: Left<R>,
@@ -56,7 +58,10 @@ where
     f64: Left<R>,
 {
     let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
-    mu_flank.within(|| clamped(belt, at, clamp_n, mu_flank))
+    mu_flank.within(
+        #[inline(always)]
+        || clamped(belt, at, clamp_n, mu_flank),
+    )
 }
 
 /// The same from the clamping forces, N.

@@ -47,6 +47,7 @@ where
     f64: Left<R>,
 {
     /// Solves the belt's geometry for a ratio, centre distance and belt length (GE-1 to GE-4).
+    #[inline(always)]
     pub fn new(ratio: R, centre_distance_m: R, belt_length_m: R) -> Self {
         let (x, l) = (centre_distance_m, belt_length_m);
         let g = 1.0 - 1.0 / ratio;
@@ -78,6 +79,7 @@ where
     }
 
     /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
+    #[inline(always)]
     pub fn secondary_radius_slope_m(&self) -> R {
         // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.
         let bp = self.primary_wrap_rad / self.ratio;

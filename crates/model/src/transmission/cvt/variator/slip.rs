@@ -217,6 +217,15 @@ where
     }
 }
 
+/// A value of both branches by the weight of the first (SL-8).
+#[inline(always)]
+fn mixed<R: Real>(weight: R, conventional: R, inverted: R) -> R
+where
+    f64: Left<R>,
+{
+    weight * conventional + (1.0 - weight) * inverted
+}
+
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
 #[inline(always)]
 pub fn slip<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, t: &Tension<R>, mu_segment: R) -> Slip<R>
@@ -224,7 +233,10 @@ where
     f64: Left<R>,
 {
     let contact = Contact::new(belt, at, t, mu_segment);
-    let b = mu_segment.within(|| branches(&contact));
+    let b = mu_segment.within(
+        #[inline(always)]
+        || branches(&contact),
+    );
     let x = contact.compression_n * at.prepared.per_blend_n;
     // SL-8: (1 + tanh x)/2
     let (blends, zero) = (!x.abs().above(ALONE), x.filled(0.0));
@@ -240,16 +252,18 @@ where
     let held = both!(i => b.free[i].above(b.loaded[i]));
     let gap = both!(i => R::pick(held[i], b.gap[i] * (b.loaded[i] / b.free[i]), b.gap[i])); // SL-9
     let is_inverted = zero.above(x);
-    let mix = |conventional: R, inverted: R| w * conventional + (1.0 - w) * inverted;
-    let in_force = |of: [R; 2]| R::pick(is_inverted, of[1], of[0]);
     Slip {
-        primary: mix(b.loaded[0], other),
-        secondary: mix(b.other[0].abs(), -b.loaded[1]),
-        gap: mix(gap[0], gap[1]),
-        idle: mix(b.loaded[0] - gap[0], b.loaded[1] - gap[1]),
-        primary_loss_nm: mix(b.loss_loaded_nm[0], b.loss_other_nm[1]),
-        secondary_loss_nm: mix(b.loss_other_nm[0], b.loss_loaded_nm[1]),
-        active_segments: in_force(b.active_segments),
-        held: in_force(b.free).above(in_force(b.loaded)),
+        primary: mixed(w, b.loaded[0], other),
+        secondary: mixed(w, b.other[0].abs(), -b.loaded[1]),
+        gap: mixed(w, gap[0], gap[1]),
+        idle: mixed(w, b.loaded[0] - gap[0], b.loaded[1] - gap[1]),
+        primary_loss_nm: mixed(w, b.loss_loaded_nm[0], b.loss_other_nm[1]),
+        secondary_loss_nm: mixed(w, b.loss_other_nm[0], b.loss_loaded_nm[1]),
+        active_segments: R::pick(is_inverted, b.active_segments[1], b.active_segments[0]),
+        held: R::pick(is_inverted, b.free[1], b.free[0]).above(R::pick(
+            is_inverted,
+            b.loaded[1],
+            b.loaded[0],
+        )),
     }
 }
