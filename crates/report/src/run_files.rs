@@ -109,7 +109,9 @@ const PLOTS: [(&str, Plot); 5] = [
     ("pressure", charts::pressure),
     ("temperatures", |run| charts::temperatures(from_ref(run))),
     ("losses", |run| charts::losses(from_ref(run))),
-    ("operating_points", |run| charts::operating_points(from_ref(run))),
+    ("operating_points", |run| {
+        charts::operating_points(from_ref(run))
+    }),
 ];
 
 /// Writes a picture that is made when its file is.

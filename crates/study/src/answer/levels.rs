@@ -21,11 +21,7 @@ pub(super) fn numbers(plan: &Plan, factor: usize, points: usize) -> Vec<f64> {
 }
 
 /// Words of a factor, or its numbers as words; every word is held once.
-pub(super) fn words(
-    plan: &Plan,
-    factor: usize,
-    points: usize,
-) -> impl Iterator<Item = Arc<str>> {
+pub(super) fn words(plan: &Plan, factor: usize, points: usize) -> impl Iterator<Item = Arc<str>> {
     let mut known: Vec<(Option<FactorValue>, Arc<str>)> = vec![(None, "".into())];
     let word = move |value: Option<FactorValue>| {
         if let Some((_, text)) = known.iter().find(|(other, _)| *other == value) {
