@@ -1,7 +1,7 @@
 //! Several cars through one cycle in lockstep: one text of the physics, a car in each lane.
 //!
 //! Each run has the bits that [`drive_into`](super::drive_into) gives it alone. Cars can be in one group that are of one kind (see
-//! [`Gather::alike`]) and drive the same trace; those with start-stop drive alone. A run that fails keeps its numbers that are none to itself.
+//! [`Gather::alike`]) and drive the same trace; those with start-stop, with a slip-limited clamp or with a shift map drive alone. A run that fails keeps its numbers that are none to itself.
 
 use std::borrow::Cow;
 
@@ -134,6 +134,12 @@ impl<'a> Prepared<'a> {
         }
     }
 
+    /// Whether the car drives alone: with start-stop, or where each run would search its own way through its clamp law or shift map.
+    fn is_alone(&self) -> bool {
+        let searches = self.cvt().is_some_and(Cvt::searches);
+        self.car.engine.start_stop.is_some() || searches
+    }
+
     /// Whether another run can be in one group with this one.
     fn alike(&self, other: &Self) -> bool {
         let boxes = match (&self.car.transmission, &other.car.transmission) {
@@ -147,7 +153,7 @@ impl<'a> Prepared<'a> {
             (Cow::Borrowed(a), Cow::Borrowed(b)) => std::ptr::eq(*a, *b),
             (a, b) => a == b,
         };
-        a.engine.start_stop.is_none()
+        !self.is_alone()
             && same_trace
             && from.max_dt_s.to_bits() == to.max_dt_s.to_bits()
             && matches!(from.start, Start::Warm) == matches!(to.start, Start::Warm)

@@ -107,9 +107,10 @@ where
         let x = self.film_loads(eta_pa_s, sliding_m_s);
         let slides = both!(i => x[i].above(0.0));
         let log = both!(i => x[i].ln());
-        let power = |q: R| both!(i => R::pick(slides[i], (q * log[i]).exp(), q.filled(0.0)));
         let [q, rest] = self.film_exponents();
-        let (carried, sheared) = (power(q), power(rest));
+        let zero = q.filled(0.0);
+        let carried = both!(i => R::pick(slides[i], (q * log[i]).exp(), zero));
+        let sheared = both!(i => R::pick(slides[i], (rest * log[i]).exp(), zero));
         self.band_on_film(belt_k, FilmPowers { carried, sheared })
     }
 

@@ -10,6 +10,7 @@
 //! within 1/256 of x = 1. tanh: at most 1.3 units of the last place. A library's own functions may differ in the last bit from one
 //! processor to the next; these use +, -, x, / only.
 
+use super::real::{Mask, Real};
 use std::f64::consts::LN_2;
 
 /// Leading bits of ln 2, so that a small whole number times it is exact.
@@ -114,9 +115,9 @@ fn exp_anywhere(x: f64) -> f64 {
     }
 }
 
-/// exp within reach of its series.
+/// exp within reach of its series, of one number or of several side by side.
 #[inline(always)]
-fn exp_within(x: f64) -> f64 {
+fn exp_within<R: Real>(x: R) -> R {
     const PER_PART: f64 = PARTS as f64 / LN_2;
     const PART_HIGH: f64 = LN_2_HIGH / PARTS as f64;
     const PART_LOW: f64 = LN_2_LOW / PARTS as f64;
@@ -124,11 +125,26 @@ fn exp_within(x: f64) -> f64 {
     let n = shifted - ROUND;
     let r = (x - n * PART_HIGH) - n * PART_LOW;
     let r2 = r * r;
-    let part = r + r2 * ((0.5 + r * (1.0 / 6.0)) + r2 * (1.0 / 24.0 + r * (1.0 / 120.0)));
-    let whole = shifted.to_bits();
-    let t = POWER[whole as usize % PARTS].to_bits();
-    let power = f64::from_bits(t.wrapping_add((whole & !(PARTS as u64 - 1)) << 46));
+    let part = r + r2 * ((r * (1.0 / 6.0) + 0.5) + r2 * (r * (1.0 / 120.0) + 1.0 / 24.0));
+    let power = shifted.each(
+        #[inline(always)]
+        |shifted| {
+            let whole = shifted.to_bits();
+            let t = POWER[whole as usize % PARTS].to_bits();
+            f64::from_bits(t.wrapping_add((whole & !(PARTS as u64 - 1)) << 46))
+        },
+    );
     power + power * part
+}
+
+/// exp of several numbers side by side, the same bits as one by one.
+#[inline(always)]
+pub(super) fn exp_lanes<R: Real>(x: R) -> R {
+    if x.filled(EXP_REACH).above(x.abs()).all() {
+        exp_within(x)
+    } else {
+        x.each(exp_anywhere)
+    }
 }
 
 /// Natural logarithm.
@@ -177,26 +193,57 @@ fn ln_anywhere(x: f64) -> f64 {
     }
 }
 
-/// ln of a normal positive number.
+/// ln of a normal positive number, or of several side by side.
 #[inline(always)]
-fn ln_plain(x: f64) -> f64 {
+fn ln_plain<R: Real>(x: R) -> R {
     /// Exponent field of 1.
     const BIAS: u64 = 1023 << 52;
     /// A whole number below it, put in its lowest bits, is added to it.
     const TWO_52: f64 = 4_503_599_627_370_496.0;
-    let above = x.to_bits().wrapping_add(BIAS - FIRST_CELL);
-    let (inverse, ln_c) = CELL[(above >> 45) as usize % CELLS];
-    let e = f64::from_bits(above >> 52 | TWO_52.to_bits()) - (TWO_52 + 1023.0);
-    let r = f64::from_bits(
-        x.to_bits()
-            .wrapping_sub(above & 0xfff0_0000_0000_0000)
-            .wrapping_add(BIAS),
-    ) * inverse
-        - 1.0;
+    #[inline(always)]
+    fn above(x: f64) -> u64 {
+        x.to_bits().wrapping_add(BIAS - FIRST_CELL)
+    }
+    #[inline(always)]
+    fn cell(x: f64) -> (f64, f64) {
+        CELL[(above(x) >> 45) as usize % CELLS]
+    }
+    let inverse = x.each(
+        #[inline(always)]
+        |x| cell(x).0,
+    );
+    let ln_c = x.each(
+        #[inline(always)]
+        |x| cell(x).1,
+    );
+    let e = x.each(
+        #[inline(always)]
+        |x| f64::from_bits(above(x) >> 52 | TWO_52.to_bits()),
+    ) - (TWO_52 + 1023.0);
+    let scaled = x.each(
+        #[inline(always)]
+        |x| {
+            let exponent = above(x) & 0xfff0_0000_0000_0000;
+            f64::from_bits(x.to_bits().wrapping_sub(exponent).wrapping_add(BIAS))
+        },
+    );
+    let r = scaled * inverse - 1.0;
     let r2 = r * r;
     let low = r2 * (r * (1.0 / 3.0) - 0.5);
-    let high = r2 * r2 * ((0.2 * r - 0.25) + r2 * (r * (1.0 / 7.0) - 1.0 / 6.0));
+    let high = r2 * r2 * ((r * 0.2 - 0.25) + r2 * (r * (1.0 / 7.0) - 1.0 / 6.0));
     (e * LN_2_HIGH + ln_c) + (r + (low + (high + e * LN_2_LOW)))
+}
+
+/// ln of several numbers side by side, the same bits as one by one.
+#[inline(always)]
+pub(super) fn ln_lanes<R: Real>(x: R) -> R {
+    let (least, most) = (x.filled(f64::MIN_POSITIVE), x.filled(f64::MAX));
+    let plain = x.reaches(least) & most.reaches(x);
+    if plain.all() {
+        ln_plain(x)
+    } else {
+        x.each(ln_anywhere)
+    }
 }
 
 /// Hyperbolic tangent.

@@ -11,7 +11,7 @@
 use super::Curve;
 use super::elementary;
 use super::real::{Mask, Operand, Own, Real};
-use fearless_simd::{Select, SimdBase, SimdFrom, SimdMask, mask64x4, mask64x8};
+use fearless_simd::{Select, SimdBase, SimdMask, mask64x4, mask64x8};
 use std::fmt::Debug;
 use std::ops::{BitAnd, BitOr, Not};
 
@@ -179,12 +179,12 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn exp(self) -> Self {
-                Self::simd_from(self.simd, elementary::exp_each::<$count>(self.into()))
+                elementary::exp_lanes(self)
             }
 
             #[inline(always)]
             fn ln(self) -> Self {
-                Self::simd_from(self.simd, elementary::ln_each::<$count>(self.into()))
+                elementary::ln_lanes(self)
             }
 
             #[inline(always)]

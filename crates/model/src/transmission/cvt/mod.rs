@@ -476,6 +476,12 @@ where
 }
 
 impl Cvt {
+    /// Whether a step searches through a law of its own: several cars side by side would each wait for the searches of all.
+    pub fn searches(&self) -> bool {
+        let by_slip = matches!(self.clamp, ClampLaw::SlipLimited { .. });
+        by_slip || self.ratio.shift_map.is_some()
+    }
+
     /// Factors on the losses of the box (CV-7), the coupling apart.
     pub fn loss_factors(&self) -> LossFactors {
         self.changes

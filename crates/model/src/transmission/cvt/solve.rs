@@ -145,11 +145,13 @@ where
         runs: R::Mask,
         work: &mut Work<R>,
     ) {
-        work.guess = Guess::pick(runs, first, &work.guess);
-        work.limit = Limit::pick(runs, limit, &work.limit);
         first.slip.within(
             #[inline(always)]
-            || self.iterate(may_leave, runs, work),
+            || {
+                work.guess = Guess::pick(runs, first, &work.guess);
+                work.limit = Limit::pick(runs, limit, &work.limit);
+                self.iterate(may_leave, runs, work);
+            },
         );
     }
 
