@@ -9,8 +9,8 @@
 //! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::alike`] says which records can be in one group.
 
 use super::Curve;
-use super::elementary;
 use super::real::{Mask, Operand, Own, Real};
+use super::{circular, elementary};
 use fearless_simd::{Select, SimdBase, SimdMask, mask64x4, mask64x8};
 use std::fmt::Debug;
 use std::ops::{BitAnd, BitOr, Not};
@@ -185,6 +185,16 @@ macro_rules! lanes {
             #[inline(always)]
             fn ln(self) -> Self {
                 elementary::ln_lanes(self)
+            }
+
+            #[inline(always)]
+            fn tanh(self) -> Self {
+                self.each(elementary::tanh)
+            }
+
+            #[inline(always)]
+            fn asin(self) -> Self {
+                self.each(circular::asin)
             }
 
             #[inline(always)]

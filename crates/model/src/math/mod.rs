@@ -6,6 +6,7 @@ mod elementary;
 mod grid;
 mod lanes;
 mod real;
+mod scalar;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;

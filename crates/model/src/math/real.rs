@@ -7,7 +7,6 @@
 //! `where f64: Left<R>` lets constants be to the left of an operator: `2.0 * x`. A constant as the other side of a comparison or as a bound is given as it
 //! is: `x.most(0.0)`. One that has to be an `R` by itself takes its lanes from any number at hand: `x.filled(1.0)`.
 
-use super::{circular, clamp, elementary, larger, smaller};
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -195,16 +194,10 @@ pub trait Real:
     }
 
     /// e to the power of it.
-    #[inline(always)]
-    fn exp(self) -> Self {
-        self.each(elementary::exp)
-    }
+    fn exp(self) -> Self;
 
     /// Natural logarithm.
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.each(elementary::ln)
-    }
+    fn ln(self) -> Self;
 
     /// e to the power of several, the same bits as one by one: together they cost less.
     fn exp_each<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
@@ -213,16 +206,10 @@ pub trait Real:
     fn ln_each<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
 
     /// Hyperbolic tangent.
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        self.each(elementary::tanh)
-    }
+    fn tanh(self) -> Self;
 
     /// Angle whose sine it is, rad.
-    #[inline(always)]
-    fn asin(self) -> Self {
-        self.each(circular::asin)
-    }
+    fn asin(self) -> Self;
 
     /// Where `self` is below the other; no where one is no number.
     #[inline(always)]
@@ -244,121 +231,5 @@ pub trait Real:
             sum = sum + *number;
         }
         sum
-    }
-}
-
-impl Real for f64 {
-    type Mask = bool;
-    type Each<T: Own> = T;
-    const LANES: usize = 1;
-
-    #[inline(always)]
-    fn filled(self, number: f64) -> f64 {
-        number
-    }
-
-    #[inline(always)]
-    fn by_lane(self, f: impl Fn(usize) -> f64) -> f64 {
-        f(0)
-    }
-
-    #[inline(always)]
-    fn lane(self, _: usize) -> f64 {
-        self
-    }
-
-    #[inline(always)]
-    fn with_lane(self, _: usize, number: f64) -> f64 {
-        number
-    }
-
-    #[inline(always)]
-    fn answer(self, yes: bool) -> bool {
-        yes
-    }
-
-    #[inline(always)]
-    fn ask(self, f: impl Fn(usize) -> bool) -> bool {
-        f(0)
-    }
-
-    #[inline(always)]
-    fn every<T: Own>(mut f: impl FnMut(usize) -> T) -> T {
-        f(0)
-    }
-
-    #[inline(always)]
-    fn one<T: Own>(of: &T, _: usize) -> &T {
-        of
-    }
-
-    #[inline(always)]
-    fn one_mut<T: Own>(of: &mut T, _: usize) -> &mut T {
-        of
-    }
-
-    #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> f64 {
-        f(self)
-    }
-
-    #[inline(always)]
-    fn above(self, other: impl Operand<f64>) -> bool {
-        self > other.lifted(self)
-    }
-
-    #[inline(always)]
-    fn reaches(self, other: impl Operand<f64>) -> bool {
-        self >= other.lifted(self)
-    }
-
-    #[inline(always)]
-    fn is_same(self, other: f64) -> bool {
-        self.to_bits() == other.to_bits()
-    }
-
-    #[inline(always)]
-    fn pick(mask: bool, yes: f64, no: f64) -> f64 {
-        if mask { yes } else { no }
-    }
-
-    #[inline(always)]
-    fn abs(self) -> f64 {
-        self.abs()
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> f64 {
-        self.sqrt()
-    }
-
-    #[inline(never)]
-    fn within<T>(self, part: impl FnOnce() -> T) -> T {
-        part()
-    }
-
-    #[inline(always)]
-    fn exp_each<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
-        elementary::exp_each(x)
-    }
-
-    #[inline(always)]
-    fn ln_each<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
-        elementary::ln_each(x)
-    }
-
-    #[inline(always)]
-    fn most(self, other: impl Operand<f64>) -> f64 {
-        larger(self, other.lifted(self))
-    }
-
-    #[inline(always)]
-    fn least(self, other: impl Operand<f64>) -> f64 {
-        smaller(self, other.lifted(self))
-    }
-
-    #[inline(always)]
-    fn held(self, low: impl Operand<f64>, high: impl Operand<f64>) -> f64 {
-        clamp(self, low.lifted(self), high.lifted(self))
     }
 }

@@ -1,7 +1,6 @@
 //! Which numbers of the thesis belong into which figure. The numbers are those of the validation rows; here are only their ids and places.
 
 use super::lines::PrintedMark;
-use super::run::PublishedDrive;
 use cvtcycle_model::bench::transmission::Piece;
 use cvtcycle_output::summary::{StartWord, Summary};
 use cvtcycle_study::check::{Printed, ValidationRow, with_ids};
@@ -79,6 +78,15 @@ pub(crate) fn rig(vehicle: &str, ratio: &str, of: RigNumber) -> Vec<PrintedMark>
 
 /// The cycle of the tests in the thesis, its end, the end of its first quarter and of the four quarters, s.
 const CYCLE: (&str, f64, f64, f64) = ("ece15_eudc", 1180.0, 195.0, 780.0);
+
+/// Published numbers of a drive, each with where it belongs on the time axis, from and to, s.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PublishedDrive {
+    /// Temperatures, degC.
+    pub end_degc: Vec<([f64; 2], [f64; 2])>,
+    /// Secondary pressures, bar.
+    pub pressure_bar: Vec<([f64; 2], [f64; 2])>,
+}
 
 /// What the thesis prints of a drive of its car: temperatures after the soak at -10 degC, pressures at 25 degC.
 pub fn published_drive(vehicle: &str, summary: &Summary) -> PublishedDrive {

@@ -45,7 +45,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     strip(&mut section, summary, cycle);
     for line in contradictions(&summary.labelled()) {
         // "Soak" is a word of test cells.
-        section.alert(line.replace("(soak, ", "(from air temperature, "));
+        section.alert(line.replace("(soak, ", "(cold start, "));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
         section.text(price);

@@ -128,8 +128,8 @@ pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
 /// The start in words.
 pub fn start_line(summary: &Summary) -> String {
     match &summary.start {
-        StartWord::Word(word) if word == "warm" => "warm from the same cycle".to_owned(),
-        StartWord::Word(_) => "the car as well".to_owned(),
+        StartWord::Word(word) if word == "warm" => "warm start from the same cycle".to_owned(),
+        StartWord::Word(_) => "cold start".to_owned(),
         StartWord::Degc(start) => format!("the car at {}", degc(*start)),
     }
 }

@@ -18,6 +18,7 @@ use super::Confidence;
 use super::intervals::{clopper_pearson, quantile_ranks, student};
 use super::order::{Ordered, between};
 use super::passes::{Moments, Numbers, each};
+use super::spread::Spread;
 
 /// An output in numbers; read through it, the fields of [`Spread`] are its own.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -90,23 +91,6 @@ impl Summary {
         let found = self.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9);
         found.map_or(f64::NAN, |q| q.value)
     }
-}
-
-/// What needs no order.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Spread {
-    /// Number of values.
-    pub n: usize,
-    /// Number of cells without a value.
-    pub missing: usize,
-    /// Mean.
-    pub mean: f64,
-    /// Standard deviation of the population, from n - 1; NaN of fewer than two values.
-    pub sd: f64,
-    /// Least value.
-    pub min: f64,
-    /// Largest value.
-    pub max: f64,
 }
 
 impl Spread {

@@ -12,8 +12,8 @@ use std::ops::Deref;
 use serde::Serialize;
 
 use super::Confidence;
-use super::describe::Spread;
 use super::passes::{Moments, Numbers};
+use super::spread::Spread;
 
 /// Rows up to which all of them are summed group by group.
 const HELD: usize = 1 << 18;

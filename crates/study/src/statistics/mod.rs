@@ -14,10 +14,11 @@ mod order;
 mod passes;
 mod rank;
 mod sobol;
+mod spread;
 mod tornado;
 
 pub use confidence::{Confidence, of_hundred};
-pub use describe::{Quantile, Share, Spread, Summary, quantile_of_sorted, quantiles};
+pub use describe::{Quantile, Share, Summary, quantile_of_sorted, quantiles};
 pub use enough::Enough;
 pub use groups::{Group, Groups, group_means, group_means_over};
 pub use information::{Column, Shares, sd_left, shares};
@@ -25,6 +26,7 @@ pub use intervals::least_draws;
 pub use passes::Numbers;
 pub use rank::{RankFactor, RankSensitivity, rank_sensitivity};
 pub use sobol::{Blocks, Bootstrap, FactorIndices, SobolIndices, sobol_convergence, sobol_indices};
+pub use spread::Spread;
 pub use tornado::{Tornado, TornadoBar, TornadoEnd, TornadoInput, tornado};
 
 use serde::Serialize;

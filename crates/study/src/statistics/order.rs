@@ -1,8 +1,8 @@
 //! Numbers at wanted places of an ascending order, without the order: bins around the wanted places become narrower pass by pass, until what is in
 //! them can be held. The numbers are those that a sort of all would give, bit by bit.
 
-use super::describe::Spread;
 use super::passes::{Numbers, each};
+use super::spread::Spread;
 
 /// Numbers that are held and sorted at most, and bins of a pass.
 const HELD: usize = 1 << 17;

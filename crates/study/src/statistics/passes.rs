@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::describe::Spread;
+use super::spread::Spread;
 
 /// Numbers in one order, in pieces. A description of them takes several passes, so that it needs no memory that grows with them.
 pub trait Numbers {

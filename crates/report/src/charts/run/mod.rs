@@ -11,7 +11,7 @@ pub use losses::{LossBins, bin_losses, losses};
 pub use operating::operating_points;
 pub use traces::{driveline, pressure, temperatures};
 
-pub use super::printed::published_drive;
+pub use super::printed::{PublishedDrive, published_drive};
 
 use cvtcycle_model::drive::FuelMap;
 use cvtcycle_output::History;
@@ -30,15 +30,6 @@ pub struct PlotRun<'a> {
     pub group_fuel: Vec<(String, f64)>,
     /// What was published of this drive.
     pub published: PublishedDrive,
-}
-
-/// Published numbers of a drive, each with where it belongs on the time axis, from and to, s.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PublishedDrive {
-    /// Temperatures, degC.
-    pub end_degc: Vec<([f64; 2], [f64; 2])>,
-    /// Secondary pressures, bar.
-    pub pressure_bar: Vec<([f64; 2], [f64; 2])>,
 }
 
 /// Fuel of each phase group, of the cycle, and weighted where the cycle is, L/100 km: for [`PlotRun::group_fuel`].

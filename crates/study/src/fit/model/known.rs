@@ -54,7 +54,7 @@ mod tests {
         };
         assert_eq!(ask(&[1.0, 2.0], 1), 1);
         assert_eq!(ask(&[1.0, 2.0], 1), 1);
-        assert_eq!(ask(&[1.0, 2.0 + f64::EPSILON], 1), 1 + 1);
+        assert_eq!(ask(&[1.0, 2.0_f64.next_up()], 1), 2);
         assert_eq!(ask(&[0.0], 1), 3);
         assert_eq!(ask(&[-0.0], 1), 4);
         assert_eq!(ask(&[1.0, 2.0], MAX_NUMBERS), 5);
