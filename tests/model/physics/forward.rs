@@ -191,7 +191,7 @@ fn a_torque_launches_a_car() {
             }
             (wheel_rad_s, before_nm) = (next, nm);
         }
-        // A lock-up closes in the step in which it is told to (FO-4).
+        // A lock-up closes in the step in which its law closes it (FO-4).
         let by_command = own.transmission.coupling().by_command();
         assert_eq!(jumps, usize::from(by_command), "{word}");
         assert!(slipped > 5 && locked > 50, "{word}: {slipped} {locked}");

@@ -238,7 +238,7 @@ where
     for (k, y) in functions(x).into_iter().enumerate() {
         for lane in 0..R::LANES {
             let (y, alone) = (y.lane(lane), alone(lane)[k]);
-            // The sign of what is no number is nobody's promise.
+            // The sign of what is no number is not defined.
             assert!(
                 y.to_bits() == alone.to_bits() || y.is_nan() && alone.is_nan(),
                 "{k} {lane}"
@@ -248,8 +248,8 @@ where
     let positive = x.above(0.0);
     assert!((!positive).any() && !(positive & x.filled(0.0).above(x)).any());
     assert!((!positive | positive).all() && !positive.all());
-    for lane in 0..R::LANES {
-        assert_eq!(positive.lane(lane), EDGES[lane] > 0.0);
+    for (lane, edge) in EDGES.into_iter().enumerate().take(R::LANES) {
+        assert_eq!(positive.lane(lane), edge > 0.0);
         let same = x.is_same(x.with_lane(lane, 7.0));
         assert!((0..R::LANES).all(|other| same.lane(other) == (other != lane)));
     }

@@ -5,7 +5,7 @@
 //! [`Real::within`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
 //! lane by lane in f64.
 //!
-//! A record has its lanes by [`gather!`](crate::math::gather), one line beside the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
+//! A record has its lanes by [`gather!`](crate::math::gather), one line next to the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
 //! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::alike`] says which records can be in one group.
 
 use super::Curve;

@@ -190,8 +190,9 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
             .rfind(|x| x.is_finite())
     };
     let ends = order.first().zip(order.last());
-    let told = ends.and_then(|(a, b)| Some((*a, end(*a)?, *b, end(*b)?, matrix.cars.first()?)));
-    let said = told.map_or_else(
+    let ends_of_first =
+        ends.and_then(|(a, b)| Some((*a, end(*a)?, *b, end(*b)?, matrix.cars.first()?)));
+    let said = ends_of_first.map_or_else(
         || format!("Warm-up, start {word}"),
         |(cold, low, warm, high, car)| {
             format!(

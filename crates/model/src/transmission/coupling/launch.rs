@@ -140,7 +140,7 @@ fn holds<R: Real>(devices: &R::Each<Device>, now: &LockSignals<R>, past: R::Mask
     }
 }
 
-/// Asks the clutch, or the device of each lane for one number.
+/// One number of the clutch, or of the device of each lane.
 macro_rules! ask {
     ($self:ident, $like:ident, $lane:ident, $method:ident($($argument:expr),*), $($own:expr),*) => {
         match $self {

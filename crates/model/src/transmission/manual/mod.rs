@@ -142,7 +142,7 @@ enum Action {
     Engaged(u8),
     /// Rolls with the clutch open in a gear, 0 the highest.
     Coasting(u8),
-    /// Stands in neutral.
+    /// At rest in neutral.
     Neutral,
 }
 

@@ -7,7 +7,7 @@ use cvtcycle_model::bench::BenchPoint;
 use cvtcycle_output::number::signed;
 use cvtcycle_output::rig::rpm;
 
-/// The speed at which a single number is told, if it was tested, rpm: that of the transients of thesis 5.3.2.
+/// The speed at which a single number is given, if it was tested, rpm: that of the transients of thesis 5.3.2.
 const SHOWN_RPM: f64 = 2500.0;
 
 /// How far a point is from that speed, rpm.

@@ -43,7 +43,7 @@ const STEPS: usize = 1500;
 const BINS: f64 = 100.0;
 /// Rounding up after a division by this lands on the nearest round number.
 const NEAREST: f64 = 1.6;
-/// Of fewer pairs than these the counts alone are told.
+/// Of fewer pairs than these only the counts are given.
 const FEW: usize = 200;
 /// Most series that the picture in words describes.
 const IN_WORDS: usize = 2;

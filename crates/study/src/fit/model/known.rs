@@ -20,7 +20,7 @@ pub(super) struct Known {
 }
 
 impl Known {
-    /// The prediction at these values of the cars, made once, of `count` observations. A thread that asks for one which another thread makes
+    /// The prediction at these values of the cars, made once, of `count` observations. A thread that wants one which another thread makes
     /// waits for it: `make` must not wait for other threads.
     pub fn once(&self, cars: &[f64], count: usize, make: impl FnOnce() -> Made) -> Made {
         let bits: Vec<u64> = cars.iter().map(|x| x.to_bits()).collect();

@@ -6,7 +6,7 @@
 //! | RC-2 | below 15 % power the target falls linearly to that without power, which holds in overrun too | source: thesis 3.7 and 1.1.2 (J of Fig 1-6) in words; size ASSUMED |
 //! | RC-13 | target in place of RC-1 and RC-2: n_d(u) of the drive line, n_o(v) of the overrun line while P <= 0, where the file has these lines; at least 1.006 times 1.2 idle speed, where the clutch stays locked (LC-5) | derived: any target of a controller that sees demand and speed; lines for a car by DP-12 |
 //! | RC-12 | a held step has its own ratio and clamp law in place of RC-1 to RC-14 and PC-1 to PC-6 | derived: definition |
-//! | RC-15 | a step that asks for a ratio goes towards it within RC-4 and RC-5, in place of RC-1 to RC-3 and RC-6 to RC-14 | derived: definition; the box's own limits hold for any controller |
+//! | RC-15 | a step for which a ratio is demanded goes towards it within RC-4 and RC-5, in place of RC-1 to RC-3 and RC-6 to RC-14 | derived: definition; the box's own limits hold for any controller |
 //! | RC-3 | never below the speed at which full load gives the power asked for, over an efficiency | source: thesis 1.1.2, route G-H-F in words; efficiency ASSUMED |
 //! | RC-7 | where full load does not suffice, RC-3 is asked again with 0.995 min(eta, P/P_e), P_e the engine power of that try, until it does, the ratio no longer changes, or 40 %; RC-10 holds none of it back | derived: kick-down, within RC-4 and RC-5 |
 //! | RC-8 | target never above the speed of greatest power | source: thesis 1.1.2, maximum power route |
