@@ -33,6 +33,10 @@ pub fn drive_each(runs: &[Run], cycle: &Cycle) -> Vec<Outcome> {
 
 /// The same with the instructions of a level.
 pub fn drive_each_on(level: Level, runs: &[Run], cycle: &Cycle) -> Vec<Outcome> {
+    if !HAS_LANES {
+        let alone = |run: &Run| drive_into(run.vehicle, cycle, &run.conditions, None);
+        return runs.iter().map(alone).collect();
+    }
     let mut left: Vec<(usize, Prepared)> = runs
         .iter()
         .map(|run| Prepared::new(run, cycle))
@@ -78,6 +82,14 @@ fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
 
 /// Most runs that are side by side.
 pub const MOST_TOGETHER: usize = 8;
+
+/// Whether the program is built for processors that may have vectors. A page's simulator is not: it would be larger for nothing.
+const HAS_LANES: bool = cfg!(any(
+    target_arch = "x86",
+    target_arch = "x86_64",
+    target_arch = "aarch64",
+    all(target_arch = "wasm32", target_feature = "simd128")
+));
 
 /// How many runs are side by side at a level: eight pay with the wide vectors of newer processors.
 fn width(level: Level) -> usize {
@@ -202,7 +214,7 @@ fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outco
             || in_lanes(four(simd), group, phases),
         ));
     }
-    #[cfg(target_arch = "wasm32")]
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     if let Some(simd) = level.as_wasm_simd128() {
         return Some(simd.vectorize(
             #[inline(always)]
