@@ -31,7 +31,7 @@ pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
         let y = own.max(free).min(room.max(free));
         free = y + APART;
         let corner = at(f64::NEG_INFINITY, f64::INFINITY);
-        // Names of lines that go on to the frame, or nearly so, stand beyond it.
+        // Names of lines that go on to the frame, or nearly so, are drawn beyond it.
         let x = if panel.rect.right - x < NEAR {
             panel.rect.right
         } else {

@@ -26,7 +26,7 @@ const TALL: [f64; 2] = [340.0, 210.0];
 /// Ticks of the axes at most: of a lone panel, and of one of several.
 const TICKS: [(usize, usize); 2] = [(9, 8), (6, 7)];
 
-/// Size of names at the ends of lines, pixels; of more lines than these the names stand in a legend.
+/// Size of names at the ends of lines, pixels; of more lines than these a legend has the names.
 const NAME: f64 = 11.0;
 const MOST_DIRECT: usize = 8;
 
@@ -174,7 +174,7 @@ fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, (String, Vec<Entry
 }
 
 impl LineChart {
-    /// Whether names stand at the ends of the lines: of a lone panel with more lines than one, and not too many.
+    /// Whether the lines have their names at their ends: of a lone panel with more lines than one, and not too many.
     fn is_direct(&self) -> bool {
         let lone = self.panels.len() == 1 && (2..=MOST_DIRECT).contains(&self.names.len());
         lone && self
