@@ -78,11 +78,12 @@ def test_scipy_finds_an_optimum() -> None:
 
 
 def test_salib_ranks() -> None:
+    """Property: the ambient temperature is nearly all of the spread. With the seed left out, 16 points gave 0.67 once."""
     from SALib.analyze import sobol
     from SALib.sample import sobol as sample
 
     family = cc.Family("rover_216_cvt", "ece15", KEYS)
     problem = {"num_vars": 3, "names": KEYS, "bounds": [[1190, 1210], [6.9, 7.1], [-20, 40]]}
-    X = sample.sample(problem, 16, calc_second_order=False)
-    first = sobol.analyze(problem, family(X), calc_second_order=False, seed=1)["ST"]
-    assert first[2] > 0.9 > first[0]
+    X = sample.sample(problem, 256, calc_second_order=False, seed=1)
+    total = sobol.analyze(problem, family(X), calc_second_order=False, seed=1)["ST"]
+    assert total[2] > 0.99 and max(total[:2]) < 0.01
