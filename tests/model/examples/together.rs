@@ -1,4 +1,5 @@
-//! Time of a run alone and in lockstep: `cargo run --release -p cvtcycle-model-tests --example together [VEHICLE [CYCLE [RUNS]]]`.
+//! Time of a run alone and in lockstep: `cargo run --release -p cvtcycle-model-tests --example together [VEHICLE [CYCLE [RUNS [LEVEL]]]]`; LEVEL is the set
+//! of the processor's instructions: `sse2`, `avx2` or `avx512`, the best that it has where none is given.
 //!
 //! Cars that differ in mass, clutch, engine and oil drive a cycle one after another and side by side; the outcomes must have the same bits.
 #![allow(
@@ -12,7 +13,8 @@ use std::time::Instant;
 use cvtcycle_config::Override;
 use cvtcycle_config::cycle::embedded;
 use cvtcycle_config::setup::{Options, Setup, load};
-use cvtcycle_model::drive::{Conditions, Outcome, Run, Start, drive, drive_each};
+use cvtcycle_model::drive::{Conditions, Outcome, Run, Start, drive, drive_each_on};
+use cvtcycle_model::math::{Level, Simd};
 
 /// Numbers that differ between the cars, from a value on by a step.
 const VARIED: [(&str, f64, f64); 4] = [
@@ -37,6 +39,19 @@ fn car(vehicle: &str, number: usize) -> Setup {
     load(vehicle, &options).unwrap()
 }
 
+/// The processor's instructions of a name; none where it does not have them.
+fn level(name: &str) -> Option<Level> {
+    let best = Level::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    match name {
+        "sse2" => return best.as_sse2().map(|simd| simd.level()),
+        "avx2" => return best.as_avx2().map(|simd| simd.level()),
+        "avx512" => return best.as_avx512().map(|simd| simd.level()),
+        _ => {}
+    }
+    (name == "best").then_some(best)
+}
+
 /// Least time of some tries, s.
 fn least_s(mut work: impl FnMut()) -> f64 {
     let once = |_| {
@@ -53,6 +68,7 @@ fn main() {
         |place: usize, default: &str| words.get(place).cloned().unwrap_or(default.to_owned());
     let cycle = embedded(&word(1, "ece15_eudc")).unwrap();
     let count: usize = word(2, "8").parse().unwrap();
+    let level = level(&word(3, "best")).unwrap();
     let cars: Vec<Setup> = (0..count)
         .map(|k| car(&word(0, "rover_216_5mt"), k))
         .collect();
@@ -79,12 +95,15 @@ fn main() {
         let one = |outcome: &Outcome| format!("{:?} {:?}", outcome.totals, outcome.end);
         outcomes.iter().map(one).collect()
     };
-    let (one_by_one, side_by_side) = (numbers(&alone()), numbers(&drive_each(&runs, &cycle)));
+    let (one_by_one, side_by_side) = (
+        numbers(&alone()),
+        numbers(&drive_each_on(level, &runs, &cycle)),
+    );
     let differ = one_by_one.iter().zip(&side_by_side).filter(|(a, b)| a != b);
     println!("{} of {count} runs differ", differ.count());
     let [alone_s, together_s] = [
         least_s(|| drop(alone())),
-        least_s(|| drop(drive_each(&runs, &cycle))),
+        least_s(|| drop(drive_each_on(level, &runs, &cycle))),
     ];
     let us = |seconds: f64| seconds * 1e6 / count as f64;
     println!(

@@ -4,11 +4,13 @@
 //! |---|---|
 //! | `embedded` | the regulations' cycles that the program carries |
 //! | `find` | a cycle by name or path, `constant_90` and other constant speeds |
+//! | `plain` | the tables of `embedded` to traces, without looking for mistakes |
 //! | `read` | a CSV file to a checked cycle; `row` has its columns, those of other programs too, and checks its rows |
 //! | `write` | a cycle as a file, of another program too |
 
 mod embedded;
 mod find;
+mod plain;
 mod read;
 mod row;
 mod write;

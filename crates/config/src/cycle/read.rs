@@ -101,7 +101,8 @@ pub(super) fn read_trace(
     }
     problems.finish().finish()?;
     let read_as = read_as(&table);
-    Ok((trace(&table, &rows, intervals, row_of), read_as))
+    let has = GEARS.map(|k| table.has(k));
+    Ok((trace(has, &rows, intervals, row_of), read_as))
 }
 
 /// The intervals of a table over distance, and the row of each.
@@ -149,14 +150,15 @@ fn check_notes(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
     }
 }
 
-fn trace(
-    table: &Table,
+/// The trace of rows; `has`: the columns of gears that there are, in the order of [`GEARS`].
+pub(super) fn trace(
+    has: [bool; 3],
     rows: &[Row],
     intervals: Vec<Interval>,
     row_of: Option<Vec<usize>>,
 ) -> Trace {
     let [plain, five, six] = [0, 1, 2].map(|k| -> Option<Vec<GearCommand>> {
-        table.has(GEARS[k]).then(|| {
+        has[k].then(|| {
             let mut list = commands(rows.iter().map(|row| (row.gears[k], row.note)));
             match &row_of {
                 Some(row_of) => row_of.iter().map(|row| list[*row]).collect(),
@@ -170,7 +172,8 @@ fn trace(
     Trace::with_gears(intervals, GearColumns::new(five, six, plain))
 }
 
-fn interval(row: &Row, next: &Row) -> Interval {
+/// The interval from a row to the next.
+pub(super) fn interval(row: &Row, next: &Row) -> Interval {
     let Row {
         phase,
         grade,

@@ -134,7 +134,7 @@ fn highest_gear(table: &Table) -> u8 {
 const KM_PER_MILE: f64 = 1.609_344;
 
 /// A speed in km/h and in m/s; its unit is in the name of the column.
-fn speed(name: &str, value: f64) -> (f64, f64) {
+pub(super) fn speed(name: &str, value: f64) -> (f64, f64) {
     match name {
         "speed_m_s" => (value * 3.6, value),
         "speed_mph" => (value * KM_PER_MILE, value * KM_PER_MILE / 3.6),

@@ -1,12 +1,15 @@
 //! Piecewise linear curve through points, held at its ends.
 
+use std::sync::Arc;
+
 /// A curve y(x) through points with strictly rising x; between them linear, outside them held.
+/// Copies share their points: the cars of a study have most curves in common, and side by side they find them in the processor's caches once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// The points, each with the piece that begins there; the last piece is flat and has no end.
-    pieces: Vec<Piece>,
+    pieces: Arc<[Piece]>,
     /// For equal cells of x: the piece in which the cell begins, so that a look-up needs no search.
-    cell: Vec<u16>,
+    cell: Arc<[u16]>,
     cells_per_x: f64,
     first: (f64, f64),
     last: (f64, f64),

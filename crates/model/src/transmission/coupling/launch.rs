@@ -1,7 +1,8 @@
-//! The coupling of a box, in a form that the compiler sees through: the clutch of several runs side by side, or any other device lane by lane.
+//! The coupling of a box, in a form that the compiler sees through: clutch or converter of several runs side by side, or any other device lane by lane.
 
 use super::{
-    Coupling, CouplingLoad, DriverClutch, EngineSide, FrictionClutch, Hold, LockSignals, Turning,
+    Coupling, CouplingLoad, DriverClutch, EngineSide, FrictionClutch, Hold, LockSignals,
+    TorqueConverter, Turning,
 };
 use crate::math::{Gather, Left, Mask, Real};
 use std::sync::Arc;
@@ -11,6 +12,8 @@ use std::sync::Arc;
 pub enum Launch<R: Real = f64> {
     /// A friction clutch, with factors on its loss.
     Clutch(DriverClutch<R>),
+    /// A torque converter that loses what its model says.
+    Converter(TorqueConverter<R>),
     /// Another device, one for each run, and a one with their lanes.
     Other(R::Each<Device>, R),
 }
@@ -38,7 +41,15 @@ impl<R: Real> Launch<R> {
     fn as_clutch(&self) -> Option<&DriverClutch<R>> {
         match self {
             Launch::Clutch(clutch) => Some(clutch),
-            Launch::Other(..) => None,
+            Launch::Converter(_) | Launch::Other(..) => None,
+        }
+    }
+
+    /// The torque converter, if it is one.
+    fn as_converter(&self) -> Option<&TorqueConverter<R>> {
+        match self {
+            Launch::Converter(converter) => Some(converter),
+            Launch::Clutch(_) | Launch::Other(..) => None,
         }
     }
 
@@ -52,25 +63,26 @@ impl Gather for Launch {
     type Together<R: Real> = Launch<R>;
 
     fn gather<R: Real>(like: R, of: &[&Self]) -> Launch<R> {
-        match of
-            .iter()
-            .map(|launch| launch.as_clutch())
-            .collect::<Option<Vec<_>>>()
-        {
-            Some(clutches) => Launch::Clutch(Gather::gather(like, &clutches)),
-            None => {
-                let device = |lane: usize| match of[lane] {
-                    Launch::Clutch(clutch) => Device(Arc::new(clutch.clone())),
-                    Launch::Other(device, _) => device.clone(),
-                };
-                Launch::Other(R::every(device), like.filled(1.0))
-            }
+        let clutches: Option<Vec<_>> = of.iter().map(|launch| launch.as_clutch()).collect();
+        let converters: Option<Vec<_>> = of.iter().map(|launch| launch.as_converter()).collect();
+        if let Some(clutches) = clutches {
+            return Launch::Clutch(Gather::gather(like, &clutches));
         }
+        if let Some(converters) = converters {
+            return Launch::Converter(Gather::gather(like, &converters));
+        }
+        let device = |lane: usize| match of[lane] {
+            Launch::Clutch(clutch) => Device(Arc::new(clutch.clone())),
+            Launch::Converter(converter) => Device(Arc::new(converter.clone())),
+            Launch::Other(device, _) => device.clone(),
+        };
+        Launch::Other(R::every(device), like.filled(1.0))
     }
 
     fn lane<R: Real>(together: &Launch<R>, lane: usize) -> Self {
         match together {
             Launch::Clutch(clutch) => Launch::Clutch(Gather::lane(clutch, lane)),
+            Launch::Converter(converter) => Launch::Converter(Gather::lane(converter, lane)),
             Launch::Other(devices, _) => Launch::Other(R::one(devices, lane).clone(), 1.0),
         }
     }
@@ -78,6 +90,7 @@ impl Gather for Launch {
     fn alike(&self, other: &Self) -> bool {
         match (self, other) {
             (Launch::Clutch(own), Launch::Clutch(other)) => own.alike(other),
+            (Launch::Converter(own), Launch::Converter(other)) => own.alike(other),
             (Launch::Other(..), Launch::Other(..)) => {
                 let with_factor = |launch: &Launch| launch.loss_factor().is_some();
                 self.by_command() == other.by_command() && with_factor(self) == with_factor(other)
@@ -140,11 +153,12 @@ fn holds<R: Real>(devices: &R::Each<Device>, now: &LockSignals<R>, past: R::Mask
     }
 }
 
-/// One number of the clutch, or of the device of each lane.
+/// One number of the clutch or converter, or of the device of each lane.
 macro_rules! ask {
     ($self:ident, $like:ident, $lane:ident, $method:ident($($argument:expr),*), $($own:expr),*) => {
         match $self {
             Launch::Clutch(clutch) => clutch.$method($($argument),*),
+            Launch::Converter(converter) => converter.$method($($argument),*),
             Launch::Other(devices, _) => {
                 $like.by_lane(|$lane| one::<R>(devices, $lane).$method($($own),*))
             }
@@ -194,6 +208,7 @@ where
     fn by_command(&self) -> bool {
         match self {
             Launch::Clutch(clutch) => clutch.by_command(),
+            Launch::Converter(converter) => converter.by_command(),
             Launch::Other(devices, _) => one::<R>(devices, 0).by_command(),
         }
     }
@@ -202,6 +217,7 @@ where
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         match self {
             Launch::Clutch(clutch) => clutch.hold(now, past),
+            Launch::Converter(converter) => converter.hold(now, past),
             Launch::Other(devices, _) => holds::<R>(devices, now, past),
         }
     }
@@ -210,6 +226,9 @@ where
     fn locked_side(&self, output_nm: R, output_rad_s: R, slip_rad_s: R) -> EngineSide<R> {
         match self {
             Launch::Clutch(clutch) => clutch.locked_side(output_nm, output_rad_s, slip_rad_s),
+            Launch::Converter(converter) => {
+                converter.locked_side(output_nm, output_rad_s, slip_rad_s)
+            }
             Launch::Other(devices, _) => sides(output_nm, |lane| {
                 let (w, slip) = (output_rad_s.lane(lane), slip_rad_s.lane(lane));
                 one::<R>(devices, lane).locked_side(output_nm.lane(lane), w, slip)
@@ -221,6 +240,9 @@ where
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         match self {
             Launch::Clutch(clutch) => clutch.engine_side(output_nm, output_rad_s, engine_rad_s),
+            Launch::Converter(converter) => {
+                converter.engine_side(output_nm, output_rad_s, engine_rad_s)
+            }
             Launch::Other(devices, _) => sides(output_nm, |lane| {
                 let (output, engine) = (output_rad_s.lane(lane), engine_rad_s.lane(lane));
                 one::<R>(devices, lane).engine_side(output_nm.lane(lane), output, engine)
@@ -280,6 +302,7 @@ where
     fn at_least_speed(&self) -> Option<Launch<R>> {
         match self {
             Launch::Clutch(clutch) => clutch.at_least_speed(),
+            Launch::Converter(converter) => converter.at_least_speed(),
             Launch::Other(devices, like) => {
                 let each = (0..R::LANES).map(|lane| one::<R>(devices, lane).at_least_speed());
                 let each: Vec<Launch> = each.collect::<Option<_>>()?;
@@ -292,6 +315,7 @@ where
     fn device(&self) -> &'static str {
         match self {
             Launch::Clutch(clutch) => clutch.device(),
+            Launch::Converter(converter) => converter.device(),
             Launch::Other(devices, _) => one::<R>(devices, 0).device(),
         }
     }
@@ -300,6 +324,7 @@ where
     fn loss_factor(&self) -> Option<R> {
         match self {
             Launch::Clutch(clutch) => clutch.loss_factor(),
+            Launch::Converter(converter) => converter.loss_factor(),
             Launch::Other(devices, like) => {
                 one::<R>(devices, 0).loss_factor()?;
                 Some(like.by_lane(|lane| one::<R>(devices, lane).loss_factor().unwrap_or(1.0)))

@@ -46,7 +46,7 @@ const fn launch(choices: &'static [Choice]) -> spec::Spec {
 pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Launch {
     let (kind, own) = s.choose(key);
     match kind {
-        "torque_converter" => Launch::other(TorqueConverter::from_values(&own)),
+        "torque_converter" => Launch::Converter(TorqueConverter::from_values(&own)),
         _ => Launch::clutch(FrictionClutch::from_values(&own, creep_nm)),
     }
 }
@@ -128,15 +128,6 @@ pub struct Hold<R: Real = f64> {
     pub locked_from_rad_s: R,
     /// Speed by which the engine is faster where it is locked, rad/s.
     pub slip_rad_s: R,
-}
-
-impl Hold {
-    /// Not locked.
-    pub const OPEN: Hold = Hold {
-        coupled: false,
-        locked_from_rad_s: f64::INFINITY,
-        slip_rad_s: 0.0,
-    };
 }
 
 /// The speeds around a coupling, rad/s.

@@ -16,7 +16,8 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
 use crate::keys::{Bound, Quantity, Values, keys};
-use crate::math::{clamp, larger, smaller};
+use crate::math::{Left, MOST_LANES, Mask, Real, gather, gather_each, larger};
+use std::sync::Arc;
 
 /// Torque ratio and capacity of the original at a speed ratio: [nu, k, lambda/lambda(0)].
 const TABLE: [[f64; 3]; 29] = table();
@@ -86,30 +87,65 @@ struct Row {
     coast: f64,
 }
 
+impl Row {
+    /// Whether the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
+    #[inline(always)]
+    fn pulls_above(&self, turbine_nm: f64, square: f64) -> bool {
+        self.pull * square > turbine_nm
+    }
+
+    /// Whether the engine takes more than a torque in overrun, Nm.
+    #[inline(always)]
+    fn coasts_above(&self, drag_nm: f64, square: f64) -> bool {
+        self.coast * square > drag_nm
+    }
+}
+
+/// The rows of a converter, at least four; copies share them.
+#[derive(Clone, Debug, PartialEq)]
+struct Rows(Arc<[Row]>);
+
+gather_each!(Rows);
+
 /// When the lock-up clutch closes, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LockUp {
+pub struct LockUp<R: Real = f64> {
     /// Road speed above which it closes, m/s.
-    pub from_m_s: f64,
+    pub from_m_s: R,
     /// Road speed below which it opens, m/s.
-    pub until_m_s: f64,
+    pub until_m_s: R,
     /// Temperature of the sump above which it closes, K.
-    pub from_k: f64,
+    pub from_k: R,
     /// Speed of the turbine below which it opens, rad/s.
-    pub open_rad_s: f64,
+    pub open_rad_s: R,
     /// Slip of a lock-up clutch that does not close in full, rad/s.
-    pub slip_rad_s: f64,
+    pub slip_rad_s: R,
     /// Temperature of the sump up to which it slips, K.
-    pub slip_until_k: f64,
+    pub slip_until_k: R,
 }
+
+gather!(LockUp {
+    from_m_s,
+    until_m_s,
+    from_k,
+    open_rad_s,
+    slip_rad_s,
+    slip_until_k
+});
 
 /// The checked torque converter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TorqueConverter {
-    rows: Vec<Row>,
-    neutral_idle: f64,
-    lockup: Option<LockUp>,
+pub struct TorqueConverter<R: Real = f64> {
+    rows: R::Each<Rows>,
+    neutral_idle: R,
+    lockup: Option<LockUp<R>>,
 }
+
+gather!(TorqueConverter {
+    rows,
+    neutral_idle,
+    lockup
+});
 
 /// Speed of the turbine from which the lock-up clutch closes, over that below which it opens (TC-7).
 const CLOSES_OVER_OPEN: f64 = 1.1;
@@ -144,77 +180,174 @@ impl TorqueConverter {
             rows[i - 1].coast = larger(rows[i].coast, rows[i - 1].coast);
         }
         TorqueConverter {
-            rows,
+            rows: Rows(rows.into()),
             neutral_idle,
             lockup,
         }
     }
+}
 
-    /// The rows at the ends of the piece that begins with the last row for which `before` holds, the first one at least.
-    #[inline]
-    fn piece(&self, before: impl Fn(&Row) -> bool) -> (&Row, &Row) {
-        let inner = &self.rows[1..self.rows.len() - 1];
-        let first = inner.partition_point(before);
-        (&self.rows[first], &self.rows[first + 1])
+/// A piece of the table, for each run: the rows at its ends.
+struct Piece<R: Real> {
+    nu: [R; 2],
+    k: [R; 2],
+    lambda: [R; 2],
+    coast: [R; 2],
+}
+
+impl<R: Real> TorqueConverter<R>
+where
+    f64: Left<R>,
+{
+    /// The piece that begins with the last row for which `before` holds in a lane, the first one at least.
+    #[inline(always)]
+    fn piece(&self, before: impl Fn(usize, &Row) -> bool) -> Piece<R> {
+        let mut first = [0; MOST_LANES];
+        for (lane, first) in first.iter_mut().enumerate().take(R::LANES) {
+            let rows = &R::one(&self.rows, lane).0;
+            *first = rows[1..rows.len() - 1].partition_point(
+                #[inline(always)]
+                |row| before(lane, row),
+            );
+        }
+        let zero = self.neutral_idle.filled(0.0);
+        let mut piece = Piece {
+            nu: [zero; 2],
+            k: [zero; 2],
+            lambda: [zero; 2],
+            coast: [zero; 2],
+        };
+        for (lane, first) in first.into_iter().enumerate().take(R::LANES) {
+            let rows = &R::one(&self.rows, lane).0[first..first + 2];
+            for (end, row) in rows.iter().enumerate() {
+                piece.nu[end] = piece.nu[end].with_lane(lane, row.nu);
+                piece.k[end] = piece.k[end].with_lane(lane, row.k);
+                piece.lambda[end] = piece.lambda[end].with_lane(lane, row.lambda);
+                piece.coast[end] = piece.coast[end].with_lane(lane, row.coast);
+            }
+        }
+        piece
     }
 
     /// Torque ratio and capacity, Nm s2, at a speed ratio from 0 to 1.
-    #[inline]
-    fn at(&self, nu: f64) -> (f64, f64) {
-        let (from, to) = self.piece(|row| row.nu <= nu);
-        let share = (nu - from.nu) / (to.nu - from.nu);
+    #[inline(always)]
+    fn at(&self, nu: R) -> (R, R) {
+        let p = self.piece(
+            #[inline(always)]
+            |lane, row| row.nu <= nu.lane(lane),
+        );
+        let share = (nu - p.nu[0]) / (p.nu[1] - p.nu[0]);
         (
-            from.k + share * (to.k - from.k),
-            from.lambda + share * (to.lambda - from.lambda),
+            p.k[0] + share * (p.k[1] - p.k[0]),
+            p.lambda[0] + share * (p.lambda[1] - p.lambda[0]),
         ) // TC-1
     }
 
     /// Speed of the engine that drives a turbine with a torque, rad/s (TC-2).
-    #[inline]
-    fn driving_rad_s(&self, turbine_nm: f64, turbine_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn driving_rad_s(&self, turbine_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
-        let (from, to) = self.piece(|row| row.pull * square > turbine_nm);
-        let per_nu = 1.0 / (to.nu - from.nu);
-        let (b, d) = ((to.k - from.k) * per_nu, (to.lambda - from.lambda) * per_nu);
-        let (a, c) = (from.k - b * from.nu, from.lambda - d * from.nu);
-        let linear = -(a * d + b * c) * turbine_rad_s;
-        let rest = larger(
-            linear * linear + 4.0 * a * c * (turbine_nm - b * d * square),
-            0.0,
+        let p = self.piece(
+            #[inline(always)]
+            |lane, row| row.pulls_above(turbine_nm.lane(lane), square.lane(lane)),
         );
-        (linear + rest.sqrt()) / (2.0 * a * c) // TC-2
+        let per_nu = 1.0 / (p.nu[1] - p.nu[0]);
+        let b = (p.k[1] - p.k[0]) * per_nu;
+        let d = (p.lambda[1] - p.lambda[0]) * per_nu;
+        let (a, c) = (p.k[0] - b * p.nu[0], p.lambda[0] - d * p.nu[0]);
+        let linear = -(a * d + b * c) * turbine_rad_s;
+        let rest = linear * linear + 4.0 * a * c * (turbine_nm - b * d * square);
+        (linear + rest.most(0.0).sqrt()) / (2.0 * a * c) // TC-2
     }
 
     /// Speed of an engine that takes a torque from the turbine, rad/s (TC-6).
-    #[inline]
-    fn coasting_rad_s(&self, drag_nm: f64, turbine_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn coasting_rad_s(&self, drag_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
-        if self.rows[0].coast * square <= drag_nm {
-            return 0.0; // no engine at rest takes more
-        }
-        let (from, to) = self.piece(|row| row.coast * square > drag_nm);
-        let share = (from.coast * square - drag_nm) / ((from.coast - to.coast) * square);
-        (from.nu + share * (to.nu - from.nu)) * turbine_rad_s // TC-6
+        let p = self.piece(
+            #[inline(always)]
+            |lane, row| row.coasts_above(drag_nm.lane(lane), square.lane(lane)),
+        );
+        let share = (p.coast[0] * square - drag_nm) / ((p.coast[0] - p.coast[1]) * square);
+        let speed = (p.nu[0] + share * (p.nu[1] - p.nu[0])) * turbine_rad_s; // TC-6
+        // No engine at rest takes more.
+        let most = square.by_lane(
+            #[inline(always)]
+            |lane| R::one(&self.rows, lane).0[0].coast,
+        );
+        R::pick((most * square).at_most(drag_nm), speed.filled(0.0), speed)
     }
 
     /// Largest torque that an idling engine's pump wheel takes from the turbine, Nm (TC-6).
-    fn coast_at_idle_nm(&self, turbine_rad_s: f64, idle_rad_s: f64) -> f64 {
+    #[inline(always)]
+    fn coast_at_idle_nm(&self, turbine_rad_s: R, idle_rad_s: R) -> R {
         let r = idle_rad_s / turbine_rad_s;
-        let (from, to) = self.piece(|row| row.nu <= r);
-        let share = (r - from.nu) / (to.nu - from.nu);
-        (from.coast + share * (to.coast - from.coast)) * turbine_rad_s * turbine_rad_s
+        let p = self.piece(
+            #[inline(always)]
+            |lane, row| row.nu <= r.lane(lane),
+        );
+        let share = (r - p.nu[0]) / (p.nu[1] - p.nu[0]);
+        (p.coast[0] + share * (p.coast[1] - p.coast[0])) * turbine_rad_s * turbine_rad_s
+    }
+
+    /// The engine's side at known speeds.
+    #[inline(always)]
+    fn side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
+        let drives = output_nm.reaches(0.0) & engine_rad_s.reaches(output_rad_s);
+        let coasts = output_nm.below(0.0) & engine_rad_s.at_most(output_rad_s);
+        let mut engine_nm = output_nm; // TC-6
+        if drives.any() {
+            let driving_nm = output_nm / self.at(output_rad_s / engine_rad_s).0; // TC-5
+            engine_nm = R::pick(drives, driving_nm, engine_nm);
+        }
+        let mut loss_w = (engine_nm * engine_rad_s - output_nm * output_rad_s).most(0.0); // TC-4
+        let passes = !(drives | coasts);
+        if passes.any() {
+            let passed_nm = output_nm * output_rad_s / engine_rad_s;
+            engine_nm = R::pick(passes, passed_nm, engine_nm);
+            loss_w = R::pick(passes, loss_w.filled(0.0), loss_w);
+        }
+        EngineSide {
+            engine_nm,
+            engine_rad_s,
+            loss_w,
+        }
+    }
+
+    /// Torque into the box that the idling engine passes on, Nm.
+    #[inline(always)]
+    fn creeping_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
+        let nu = output_rad_s / idle_rad_s;
+        let (k, lambda) = self.at(nu);
+        let turns = output_rad_s.above(0.0);
+        let share = R::pick(turns, nu.filled(1.0), self.neutral_idle);
+        let creep_nm = share * k * lambda * idle_rad_s * idle_rad_s; // TC-3
+        R::pick(nu.reaches(1.0), nu.filled(0.0), creep_nm)
     }
 }
 
-impl Coupling for TorqueConverter {
-    #[inline]
-    fn engine_rad_s(&self, load: &CouplingLoad) -> f64 {
-        let wanted = if load.output_nm > 0.0 {
-            self.driving_rad_s(load.output_nm, load.output_rad_s)
-        } else {
-            self.coasting_rad_s(-load.output_nm, load.output_rad_s)
-        };
-        larger(wanted, load.idle_rad_s)
+/// The parts with a look-up in the table are functions of their own, so that cars with a clutch do not carry them.
+impl<R: Real> Coupling<R> for TorqueConverter<R>
+where
+    f64: Left<R>,
+{
+    #[inline(never)]
+    fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
+        load.output_nm.within(
+            #[inline(always)]
+            || {
+                let (nm, rad_s) = (load.output_nm, load.output_rad_s);
+                let drives = nm.above(0.0);
+                let mut wanted = nm;
+                if drives.any() {
+                    wanted = self.driving_rad_s(nm, rad_s);
+                }
+                if !drives.all() {
+                    wanted = R::pick(drives, wanted, self.coasting_rad_s(-nm, rad_s));
+                }
+                wanted.most(load.idle_rad_s)
+            },
+        )
     }
 
     fn device(&self) -> &'static str {
@@ -222,49 +355,52 @@ impl Coupling for TorqueConverter {
     }
 
     /// The engine may be slower than the turbine that drives it.
-    fn min_engine_rad_s(&self, _output_rad_s: f64) -> f64 {
-        0.0
+    #[inline(always)]
+    fn min_engine_rad_s(&self, output_rad_s: R) -> R {
+        output_rad_s.filled(0.0)
     }
 
-    fn locked_from_rad_s(&self, idle_rad_s: f64) -> f64 {
-        self.lockup.map_or(f64::INFINITY, |lockup| {
-            larger(lockup.open_rad_s, idle_rad_s)
-        })
+    #[inline(always)]
+    fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
+        match &self.lockup {
+            Some(lockup) => lockup.open_rad_s.most(idle_rad_s),
+            None => idle_rad_s.filled(f64::INFINITY),
+        }
     }
 
+    #[inline(always)]
     fn by_command(&self) -> bool {
         true
     }
 
-    fn hold(&self, now: &LockSignals, past: bool) -> Hold {
+    #[inline(always)]
+    fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
+        let zero = now.sump_k.filled(0.0);
         let Some(lockup) = &self.lockup else {
-            return Hold::OPEN;
+            return Hold {
+                coupled: zero.answer(false),
+                locked_from_rad_s: zero.filled(f64::INFINITY),
+                slip_rad_s: zero,
+            };
         };
         let least_rad_s = self.locked_from_rad_s(now.idle_rad_s);
-        let (speed_m_s, sump_k, turbine_rad_s) = if past {
-            (lockup.until_m_s, lockup.from_k - COOLER_K, least_rad_s)
-        } else {
-            let turbine_rad_s = CLOSES_OVER_OPEN * least_rad_s;
-            (lockup.from_m_s, lockup.from_k, turbine_rad_s)
-        };
-        let closes =
-            now.speed_m_s > speed_m_s && now.sump_k > sump_k && now.output_rad_s > turbine_rad_s; // TC-7
-        if !closes {
-            return Hold::OPEN;
-        }
+        let speed_m_s = R::pick(past, lockup.until_m_s, lockup.from_m_s);
+        let sump_k = R::pick(past, lockup.from_k - COOLER_K, lockup.from_k);
+        let turbine_rad_s = R::pick(past, least_rad_s, CLOSES_OVER_OPEN * least_rad_s);
+        let closes = speed_m_s.below(now.speed_m_s)
+            & now.sump_k.above(sump_k)
+            & now.output_rad_s.above(turbine_rad_s); // TC-7
+        let slips = closes & now.sump_k.at_most(lockup.slip_until_k);
         Hold {
-            coupled: true,
-            locked_from_rad_s: 0.0,
-            slip_rad_s: if now.sump_k <= lockup.slip_until_k {
-                lockup.slip_rad_s
-            } else {
-                0.0
-            },
+            coupled: closes,
+            locked_from_rad_s: R::pick(closes, zero, zero.filled(f64::INFINITY)),
+            slip_rad_s: R::pick(slips, lockup.slip_rad_s, zero),
         }
     }
 
-    fn locked_side(&self, output_nm: f64, output_rad_s: f64, slip_rad_s: f64) -> EngineSide {
-        let slip_rad_s = slip_rad_s * clamp(output_nm / SLIP_FROM_NM, 0.0, 1.0); // TC-8
+    #[inline(always)]
+    fn locked_side(&self, output_nm: R, output_rad_s: R, slip_rad_s: R) -> EngineSide<R> {
+        let slip_rad_s = slip_rad_s * (output_nm / SLIP_FROM_NM).held(0.0, 1.0); // TC-8
         EngineSide {
             engine_nm: output_nm,
             engine_rad_s: output_rad_s + slip_rad_s,
@@ -272,64 +408,70 @@ impl Coupling for TorqueConverter {
         }
     }
 
-    #[inline]
-    fn engine_side(&self, output_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> EngineSide {
-        let engine_nm = if output_nm >= 0.0 && engine_rad_s >= output_rad_s {
-            output_nm / self.at(output_rad_s / engine_rad_s).0 // TC-5
-        } else if output_nm < 0.0 && engine_rad_s <= output_rad_s {
-            output_nm // TC-6
-        } else {
-            return EngineSide {
-                engine_nm: output_nm * output_rad_s / engine_rad_s,
-                engine_rad_s,
-                loss_w: 0.0,
-            };
-        };
-        EngineSide {
-            engine_nm,
-            engine_rad_s,
-            loss_w: larger(engine_nm * engine_rad_s - output_nm * output_rad_s, 0.0), // TC-4
-        }
+    #[inline(never)]
+    fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
+        output_nm.within(
+            #[inline(always)]
+            || self.side(output_nm, output_rad_s, engine_rad_s),
+        )
     }
 
-    #[inline]
-    fn output_nm(&self, engine_nm: f64, output_rad_s: f64, engine_rad_s: f64) -> f64 {
-        if engine_nm < 0.0 {
-            engine_nm
-        } else if engine_rad_s >= output_rad_s {
-            engine_nm * self.at(output_rad_s / engine_rad_s).0 // TC-1
-        } else {
-            engine_nm * engine_rad_s / output_rad_s
-        }
+    #[inline(never)]
+    fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
+        engine_nm.within(
+            #[inline(always)]
+            || {
+                let drags = engine_nm.below(0.0);
+                let drives = !drags & engine_rad_s.reaches(output_rad_s);
+                let mut output_nm = engine_nm;
+                if drives.any() {
+                    let driving_nm = engine_nm * self.at(output_rad_s / engine_rad_s).0; // TC-1
+                    output_nm = R::pick(drives, driving_nm, output_nm);
+                }
+                let passes = !(drags | drives);
+                if passes.any() {
+                    let passed_nm = engine_nm * engine_rad_s / output_rad_s;
+                    output_nm = R::pick(passes, passed_nm, output_nm);
+                }
+                output_nm
+            },
+        )
     }
 
-    fn creep_nm(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
-        let nu = output_rad_s / idle_rad_s;
-        if nu >= 1.0 {
-            return 0.0;
-        }
-        let (k, lambda) = self.at(nu);
-        let share = if output_rad_s > 0.0 {
-            1.0
-        } else {
-            self.neutral_idle
-        };
-        share * k * lambda * idle_rad_s * idle_rad_s // TC-3
+    #[inline(never)]
+    fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
+        idle_rad_s.within(
+            #[inline(always)]
+            || self.creeping_nm(output_rad_s, idle_rad_s),
+        )
     }
 
-    fn overrun_share(&self, output_rad_s: f64, idle_rad_s: f64) -> f64 {
-        if output_rad_s > idle_rad_s { 1.0 } else { 0.0 }
+    #[inline(always)]
+    fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
+        let one = idle_rad_s.filled(1.0);
+        R::pick(output_rad_s.above(idle_rad_s), one, one.filled(0.0))
     }
 
-    fn min_output_nm(&self, at: &Turning, absorbed_nm: f64) -> f64 {
-        if at.locked {
-            return -absorbed_nm;
-        }
-        if at.output_rad_s < at.idle_rad_s {
-            return self.creep_nm(at.output_rad_s, at.idle_rad_s);
-        }
-        let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
-        -together(at) * smaller(absorbed_nm, carried_nm) // TC-6
+    #[inline(never)]
+    fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
+        absorbed_nm.within(
+            #[inline(always)]
+            || {
+                let mut least_nm = -absorbed_nm;
+                let creeps = !at.locked & at.output_rad_s.below(at.idle_rad_s);
+                if creeps.any() {
+                    let creep_nm = self.creeping_nm(at.output_rad_s, at.idle_rad_s);
+                    least_nm = R::pick(creeps, creep_nm, least_nm);
+                }
+                let coasts = !(at.locked | creeps);
+                if coasts.any() {
+                    let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
+                    let coast_nm = -together(at) * absorbed_nm.least(carried_nm); // TC-6
+                    least_nm = R::pick(coasts, coast_nm, least_nm);
+                }
+                least_nm
+            },
+        )
     }
 }
 
