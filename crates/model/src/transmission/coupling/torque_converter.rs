@@ -16,7 +16,7 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
 use crate::keys::{Bound, Quantity, Values, keys};
-use crate::math::{Left, MOST_LANES, Mask, Real, gather, gather_each, larger};
+use crate::math::{Left, MOST_LANES, Mask, Real, both, gather, gather_each, larger};
 use std::sync::Arc;
 
 /// Torque ratio and capacity of the original at a speed ratio: [nu, k, lambda/lambda(0)].
@@ -88,6 +88,12 @@ struct Row {
 }
 
 impl Row {
+    /// Whether it is at or before a speed ratio; it needs no second number.
+    #[inline(always)]
+    fn is_up_to(&self, nu: f64, _: f64) -> bool {
+        self.nu <= nu
+    }
+
     /// Whether the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
     #[inline(always)]
     fn pulls_above(&self, turbine_nm: f64, square: f64) -> bool {
@@ -188,58 +194,85 @@ impl TorqueConverter {
 }
 
 /// A piece of the table, for each run: the rows at its ends.
-struct Piece<R: Real> {
-    nu: [R; 2],
-    k: [R; 2],
-    lambda: [R; 2],
-    coast: [R; 2],
+struct Piece<'a, R: Real> {
+    rows: &'a R::Each<Rows>,
+    first: [usize; MOST_LANES],
+    like: R,
+}
+
+impl<R: Real> Piece<'_, R> {
+    /// A number of the rows at both ends.
+    #[inline(always)]
+    fn ends(&self, of: fn(&Row) -> f64) -> [R; 2] {
+        both!(end => self.like.by_lane(
+            #[inline(always)]
+            |lane| of(&R::one(self.rows, lane).0[self.first[lane] + end]),
+        ))
+    }
+
+    #[inline(always)]
+    fn nu(&self) -> [R; 2] {
+        self.ends(
+            #[inline(always)]
+            |row| row.nu,
+        )
+    }
+
+    #[inline(always)]
+    fn k(&self) -> [R; 2] {
+        self.ends(
+            #[inline(always)]
+            |row| row.k,
+        )
+    }
+
+    #[inline(always)]
+    fn lambda(&self) -> [R; 2] {
+        self.ends(
+            #[inline(always)]
+            |row| row.lambda,
+        )
+    }
+
+    #[inline(always)]
+    fn coast(&self) -> [R; 2] {
+        self.ends(
+            #[inline(always)]
+            |row| row.coast,
+        )
+    }
 }
 
 impl<R: Real> TorqueConverter<R>
 where
     f64: Left<R>,
 {
-    /// The piece that begins with the last row for which `before` holds in a lane, the first one at least.
+    /// The piece that begins with the last row for which `before` holds with the numbers of a lane, the first one at least.
     #[inline(always)]
-    fn piece(&self, before: impl Fn(usize, &Row) -> bool) -> Piece<R> {
+    fn piece(&self, x: R, y: R, before: fn(&Row, f64, f64) -> bool) -> Piece<'_, R> {
         let mut first = [0; MOST_LANES];
         for (lane, first) in first.iter_mut().enumerate().take(R::LANES) {
             let rows = &R::one(&self.rows, lane).0;
-            *first = rows[1..rows.len() - 1].partition_point(
-                #[inline(always)]
-                |row| before(lane, row),
-            );
+            // Plain numbers: the search is a function of its own, which does not have the processor's vectors.
+            let (x, y) = (x.lane(lane), y.lane(lane));
+            *first = rows[1..rows.len() - 1].partition_point(|row| before(row, x, y));
         }
-        let zero = self.neutral_idle.filled(0.0);
-        let mut piece = Piece {
-            nu: [zero; 2],
-            k: [zero; 2],
-            lambda: [zero; 2],
-            coast: [zero; 2],
-        };
-        for (lane, first) in first.into_iter().enumerate().take(R::LANES) {
-            let rows = &R::one(&self.rows, lane).0[first..first + 2];
-            for (end, row) in rows.iter().enumerate() {
-                piece.nu[end] = piece.nu[end].with_lane(lane, row.nu);
-                piece.k[end] = piece.k[end].with_lane(lane, row.k);
-                piece.lambda[end] = piece.lambda[end].with_lane(lane, row.lambda);
-                piece.coast[end] = piece.coast[end].with_lane(lane, row.coast);
-            }
+        Piece {
+            rows: &self.rows,
+            first,
+            like: x,
         }
-        piece
     }
 
     /// Torque ratio and capacity, Nm s2, at a speed ratio from 0 to 1.
     #[inline(always)]
     fn at(&self, nu: R) -> (R, R) {
-        let p = self.piece(
-            #[inline(always)]
-            |lane, row| row.nu <= nu.lane(lane),
-        );
-        let share = (nu - p.nu[0]) / (p.nu[1] - p.nu[0]);
+        let p = self.piece(nu, nu, Row::is_up_to);
+        let (at, k, lambda) = (p.nu(), p.k(), p.lambda());
+        let share = (nu - at[0]) / (at[1] - at[0]);
         (
-            p.k[0] + share * (p.k[1] - p.k[0]),
-            p.lambda[0] + share * (p.lambda[1] - p.lambda[0]),
+            k[0] + share * (k[1] - k[0]),
+            lambda[0] + share * (lambda[1] - lambda[0]),
         ) // TC-1
     }
 
@@ -247,14 +280,11 @@ where
     #[inline(always)]
     fn driving_rad_s(&self, turbine_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
-        let p = self.piece(
-            #[inline(always)]
-            |lane, row| row.pulls_above(turbine_nm.lane(lane), square.lane(lane)),
-        );
-        let per_nu = 1.0 / (p.nu[1] - p.nu[0]);
-        let b = (p.k[1] - p.k[0]) * per_nu;
-        let d = (p.lambda[1] - p.lambda[0]) * per_nu;
-        let (a, c) = (p.k[0] - b * p.nu[0], p.lambda[0] - d * p.nu[0]);
+        let p = self.piece(turbine_nm, square, Row::pulls_above);
+        let (nu, k, lambda) = (p.nu(), p.k(), p.lambda());
+        let per_nu = 1.0 / (nu[1] - nu[0]);
+        let (b, d) = ((k[1] - k[0]) * per_nu, (lambda[1] - lambda[0]) * per_nu);
+        let (a, c) = (k[0] - b * nu[0], lambda[0] - d * nu[0]);
         let linear = -(a * d + b * c) * turbine_rad_s;
         let rest = linear * linear + 4.0 * a * c * (turbine_nm - b * d * square);
         (linear + rest.most(0.0).sqrt()) / (2.0 * a * c) // TC-2
@@ -264,12 +294,10 @@ where
     #[inline(always)]
     fn coasting_rad_s(&self, drag_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
-        let p = self.piece(
-            #[inline(always)]
-            |lane, row| row.coasts_above(drag_nm.lane(lane), square.lane(lane)),
-        );
-        let share = (p.coast[0] * square - drag_nm) / ((p.coast[0] - p.coast[1]) * square);
-        let speed = (p.nu[0] + share * (p.nu[1] - p.nu[0])) * turbine_rad_s; // TC-6
+        let p = self.piece(drag_nm, square, Row::coasts_above);
+        let (nu, coast) = (p.nu(), p.coast());
+        let share = (coast[0] * square - drag_nm) / ((coast[0] - coast[1]) * square);
+        let speed = (nu[0] + share * (nu[1] - nu[0])) * turbine_rad_s; // TC-6
         // No engine at rest takes more.
         let most = square.by_lane(
             #[inline(always)]
@@ -282,12 +310,10 @@ where
     #[inline(always)]
     fn coast_at_idle_nm(&self, turbine_rad_s: R, idle_rad_s: R) -> R {
         let r = idle_rad_s / turbine_rad_s;
-        let p = self.piece(
-            #[inline(always)]
-            |lane, row| row.nu <= r.lane(lane),
-        );
-        let share = (r - p.nu[0]) / (p.nu[1] - p.nu[0]);
-        (p.coast[0] + share * (p.coast[1] - p.coast[0])) * turbine_rad_s * turbine_rad_s
+        let p = self.piece(r, r, Row::is_up_to);
+        let (nu, coast) = (p.nu(), p.coast());
+        let share = (r - nu[0]) / (nu[1] - nu[0]);
+        (coast[0] + share * (coast[1] - coast[0])) * turbine_rad_s * turbine_rad_s
     }
 
     /// The engine's side at known speeds.
