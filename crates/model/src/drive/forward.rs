@@ -23,15 +23,17 @@ use crate::transmission::{StepInput, StepOutput, TransmissionState};
 
 /// Slowest wheels, rad/s (FO-3).
 pub const LEAST_WHEEL_RAD_S: f64 = 0.02;
-/// Torque up to which a step is solved, Nm.
+/// Torque up to which a step is solved, Nm. ASSUMED, numerical: a millionth of what is measured on a rig; less is rounding of the box's own solve.
 const NEAR_NM: f64 = 1e-7;
-/// Tries for a power.
+/// Tries for a power; a step that needs them all takes the nearest.
 const MAX_TRIES: usize = 100;
-/// Power at the wheels beyond what any box passes on, over the rated power.
+/// Power at the wheels beyond what any box passes on, over the rated power. ASSUMED, numerical: an engine gives its rated power at most and its drag takes
+/// less, so that any number well above 1 leaves both ends where they are.
 const BEYOND: f64 = 4.0;
-/// How far beyond an end of the power a demand begins to come near it, over the rated power, ...
+/// How far beyond an end of the power a demand begins to come near it, over the rated power, ... ASSUMED, numerical: near enough that the clamp law asks
+/// for the pressure of the end; a fifth of it with each try.
 const MARGIN: f64 = 0.05;
-/// ... and how near, W.
+/// ... and how near, W. ASSUMED, numerical: some millionth of a rated power.
 const NEAR_W: f64 = 0.1;
 
 /// What is known of a step.

@@ -398,31 +398,23 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
                 pressure_pa: past.secondary_pa,
             };
             step.run(&guess, &Limit::none(no), false, yes, &mut work); // LO-4
-            finish(
-                &step,
-                &work.point,
-                (past, warm_start),
-                &work.outcome(),
-                output,
-            );
-            *shifting = step.shifting;
-            return;
+        } else {
+            let ratio = step.line.at.geometry.ratio;
+            let last = ratio.is_same(tried_ratio)
+                | efficiency.filled(MIN_ROUTE_EFFICIENCY).reaches(efficiency)
+                | efficiency.answer(hold.is_some());
+            let short = step.limited(warm_start, last, trying, &mut work);
+            if short.any() {
+                // Kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7).
+                tried_ratio = R::pick(short, ratio, tried_ratio);
+                let lower = step.kick_down(efficiency, &work.point);
+                efficiency = R::pick(short, lower, efficiency);
+                trying = short;
+                continue;
+            }
+            warm_start.slopes = work.slopes;
+            warm_start.overrun = work.limit.engine_drag;
         }
-        let ratio = step.line.at.geometry.ratio;
-        let last = ratio.is_same(tried_ratio)
-            | efficiency.filled(MIN_ROUTE_EFFICIENCY).reaches(efficiency)
-            | efficiency.answer(hold.is_some());
-        let short = step.limited(warm_start, last, trying, &mut work);
-        if short.any() {
-            // Kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7).
-            tried_ratio = R::pick(short, ratio, tried_ratio);
-            let lower = step.kick_down(efficiency, &work.point);
-            efficiency = R::pick(short, lower, efficiency);
-            trying = short;
-            continue;
-        }
-        warm_start.slopes = work.slopes;
-        warm_start.overrun = work.limit.engine_drag;
         finish(
             &step,
             &work.point,
