@@ -113,3 +113,43 @@ fn a_failed_run_keeps_to_itself() {
         assert_alone(&cars, &cycle, |_| COLD);
     }
 }
+
+/// Converters whose numbers and tables differ, with a lock-up clutch that slips, with none, and one that loses a part only, which drives apart.
+#[test]
+fn converters_have_their_own_tables_and_locks() {
+    const OWN: [&[&str]; 7] = [
+        &["capacity_nm=27"],
+        &["capacity_nm=35", "coast_factor=1.4", "neutral_idle=0.3"],
+        &[
+            "capacity_nm=21",
+            "lockup.from_degc=-20",
+            "lockup.slip_rpm=50",
+        ],
+        &[
+            "capacity_nm=30",
+            "table=[[0, 1.9, 1], [0.5, 1.4, 0.8], [0.8, 1.1, 0.5], [0.9, 1.0, 0.3], [1, 1, 0]]",
+            "lockup.from_degc=-20",
+            "lockup.from_kmh=30",
+            "lockup.until_kmh=25",
+        ],
+        &["capacity_nm=27", "lockup.enabled=false"],
+        &["capacity_nm=24", "lockup.enabled=false"],
+        &["capacity_nm=33", "lockup.open_rpm=1300"],
+    ];
+    let car = |own: &&[&str]| {
+        let set: Vec<String> = (own.iter())
+            .map(|set| format!("transmission.cvt.launch.torque_converter.{set}"))
+            .collect();
+        try_car("rover_216_cvt", &set).unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let mut cars: Vec<Setup> = OWN.iter().map(car).collect();
+    let part = [
+        "transmission.cvt.launch.torque_converter.capacity_nm=27".to_owned(),
+        "transmission.cvt.loss_factor.launch_clutch=0.5".to_owned(),
+    ];
+    cars.push(try_car("rover_216_cvt", &part).unwrap_or_else(|problems| panic!("{problems}")));
+    assert_alone(&cars, &embedded("ece15_eudc").unwrap(), |k| Conditions {
+        ambient_k: 262.0 + 6.0 * k as f64,
+        ..COLD
+    });
+}
