@@ -12,22 +12,16 @@ use cvtcycle::report::charts::{
 
 use super::svg_checks::{check, numbers};
 use crate::fixtures::{history, phases, rows, run};
+use crate::titles::{number, written};
 
-/// The title with plain spaces, without the subject after it.
-pub fn title(picture: &Picture) -> String {
-    let title = picture.svg.split("<title>").nth(1).unwrap();
-    let title = title.split("</title>").next().unwrap();
-    title.replace(['\u{a0}', '\u{202f}'], " ")
+/// The title, without the subject after it where it is asked for.
+fn title(picture: &Picture) -> String {
+    crate::titles::title(&picture.svg)
 }
 
 /// The numbers of a text.
 fn numbers_in(text: &str) -> Vec<f64> {
-    let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '\u{2212}';
-    let words = text
-        .split(|c| !is_number(c))
-        .map(|word| word.trim_end_matches('.'));
-    let found = words.map(numbers);
-    found.filter(|x| x.is_finite()).collect()
+    written(text).iter().map(|text| number(text)).collect()
 }
 
 /// The sum of a column over rows.
@@ -232,7 +226,7 @@ fn differences_of_a_title_are_those_of_the_table() {
     check(&picture);
     let said = title(&picture);
     assert!(
-        said.starts_with("B burns 100 kJ less than A, most of it belt band (\u{2212}80.0 kJ)"),
+        said.starts_with("B burns 100 kJ less than A, most of it belt band (-80.0 kJ)"),
         "{said}"
     );
     assert!(picture.svg.contains("2 others"), "small terms are one bar");

@@ -2,7 +2,7 @@
 //!
 //! Every picture is a function from plain numbers to a [`Picture`]: it fills in a chart of the `engine`, which draws it.
 
-pub(crate) mod ambient;
+pub mod ambient;
 pub mod calibration;
 pub mod decision;
 mod engine;
