@@ -155,7 +155,7 @@ fn intervals_are_those_of_the_draws() {
     );
     let text = flat(&stdout(&run(&words)));
     assert!(
-        text.contains(" than rover_216_5mt (90 % of 256 draws: "),
+        text.contains(" than rover_216_5mt (90 % of 256 runs with uncertain values varied: "),
         "{text}"
     );
     let changed = [&words[..], &["--set", "engine.electrical_w=250"]].concat();

@@ -1,9 +1,11 @@
 //! Titles of pictures of statistics: their numbers are those of the table under the picture.
 
-use super::drawn::every_plot;
+use super::drawn::{every_plot, sample};
 use super::{Outputs, additive};
-use crate::titles::{is_cell, number, title, written};
-use cvtcycle::report::charts::study::{Shown, sobol_plot};
+use crate::titles::{is, is_cell, number, title, written};
+use cvtcycle::report::charts::study::{
+    DistributionSeries, KnownValue, Shown, distribution_plot, sobol_plot,
+};
 use cvtcycle::report::charts::{Picture, PictureTable};
 use cvtcycle::study::statistics::{Bootstrap, sobol_indices};
 
@@ -127,6 +129,48 @@ fn effects_titles_have_the_widest_range_of_means() {
         let said = written(title.split(" most: by ").nth(1).unwrap());
         let off = (number(&said[0]) - widest).abs();
         assert!(off <= 0.01 * widest, "{} {widest}: {title}", said[0]);
+    }
+}
+
+/// Truth: the values themselves, drawn again.
+#[test]
+fn distribution_titles_have_the_counts_and_ends_of_the_values() {
+    let draw = |name, values: &[f64], differences| {
+        let shown = Shown {
+            output: "fuel",
+            unit: "%",
+            ..Shown::default()
+        };
+        let known = KnownValue::default();
+        let Ok(picture) = distribution_plot(
+            &shown,
+            &[DistributionSeries {
+                name,
+                values,
+                known,
+            }],
+            differences,
+        );
+        title(&picture.svg)
+    };
+    let values = sample(7, 1000, 0.2, 1.0);
+    let above = values.iter().filter(|x| **x > 0.0).count();
+    let text = draw("a - b", &values, true);
+    let said = written(&text);
+    assert_eq!(said[..2], [above.to_string(), "1000".to_owned()], "{text}");
+    is(&said[2], 0.1 * above as f64, &text);
+    let text = draw("a", &values, false);
+    let mut sorted = values;
+    sorted.sort_by(f64::total_cmp);
+    let said = written(&text);
+    assert_eq!(said[0], "90", "{text}");
+    // Between the 50th and the 51st value, and between the 950th and the 951st.
+    for (said, [low, high]) in said[1..].iter().zip([[49, 50], [949, 950]]) {
+        let x = number(said);
+        assert!(
+            sorted[low] - 0.006 <= x && x <= sorted[high] + 0.006,
+            "{text}"
+        );
     }
 }
 

@@ -149,7 +149,7 @@ pub(super) fn cold(car: &Car) -> Option<String> {
     let share = grouped(100.0 * cold / car.run.duration_s, 0);
     let (name, from) = (car.run.label(), super::degc(MEASURED_FROM_DEGC));
     (cold > 0.0).then(|| {
-        format!("For {share} % of the cycle the transmission oil of {name} is colder than any measurement of losses ({from}): there they are extrapolated.")
+        format!("For {share} % of the cycle the transmission oil of the {name} is colder than {from}, the coldest oil in which losses were measured: there they are extrapolated.")
     })
 }
 

@@ -150,11 +150,11 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
             let decimals = decimals([low, high]);
             let [median, percent] = [median, percent].map(|x| signed(x, decimals));
             doubts.push(format!(
-                "the median of the draws is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
+                "the median of the varied runs is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
             ));
         }
         let baseline = &comparison.baseline;
-        (!doubts.is_empty()).then(|| format!("Draws against {baseline}: {}.", doubts.join("; ")))
+        (!doubts.is_empty()).then(|| format!("Varied runs against {baseline}: {}.", doubts.join("; ")))
     });
     drawn.collect()
 }
@@ -201,13 +201,13 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
         let ends = between(ends, "%");
         let (baseline, plan, draws, more) = (&comparison.baseline, &of.plan, of.draws, of.more);
         Some(format!(
-            "Difference to {baseline} over {draws} draws of the plan {plan}: 90 % of them are {ends}, the median is {median} %; the subject uses more in {more}."
+            "Difference to {baseline} over {draws} runs with the uncertain values of the plan {plan} varied: 90 % of them are {ends}, the median is {median} %; the subject uses more in {more}."
         ))
     });
     drawn.chain(draw_doubts(summary)).collect()
 }
 
-/// ", 7 % more than the baseline (90 % of 256 draws: +2 to +12 %)".
+/// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
 fn against(comparison: &Comparison) -> Option<String> {
     let percent = comparison.fuel_percent?;
     let baseline = &comparison.baseline;
@@ -225,7 +225,7 @@ fn against(comparison: &Comparison) -> Option<String> {
         n => format!("; {n} left out"),
     };
     Some(format!(
-        ", {compared} {than} {baseline} (90 % of {draws} draws: {ends}; more in {more}{left_out})"
+        ", {compared} {than} {baseline} (90 % of {draws} runs with uncertain values varied: {ends}; more in {more}{left_out})"
     ))
 }
 

@@ -78,7 +78,7 @@ pub(super) fn information(best: Option<(&str, f64, f64)>, unit: &str) -> String 
             let [sd, left] = [sd, left].map(|x| grouped(x, digits));
             format!("Knowing {name} would cut the standard deviation from {sd} to {left} {unit}")
         }
-        None => "No single value is above chance: more varied runs first".to_owned(),
+        None => "No single value is above chance: more runs first".to_owned(),
     }
 }
 

@@ -89,7 +89,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     let first = rows.first();
     let first = first.and_then(|row| Some((row.baseline.as_str(), row.files?, row.interval())));
     let varied = match rows.iter().any(|row| row.drawn.is_some()) {
-        true => "; in varied runs every uncertain value is another one of its range",
+        true => "; bar: 90 % of the runs with all uncertain values varied",
         false => "",
     };
     Chart::new(
@@ -110,11 +110,11 @@ fn nominal() -> Style {
 fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(Fill::car(0), "90 % of varied runs"));
+        list.push(Entry::fill(Fill::car(0), "90 % of these runs"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
-            "median of varied runs",
+            "median of these runs",
         ));
     }
     if rows.iter().any(|row| row.published.is_some()) {
@@ -147,9 +147,9 @@ fn table() -> PictureTable {
     PictureTable::new(&[
         ("Against", ""),
         ("Nominal values", "%"),
-        ("5 % of the varied runs below", "%"),
+        ("5 % of the runs below", "%"),
         ("Median", "%"),
-        ("95 % of the varied runs below", "%"),
+        ("95 % of the runs below", "%"),
         ("Published from", "%"),
         ("to", "%"),
     ])
