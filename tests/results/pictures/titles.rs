@@ -143,15 +143,15 @@ fn the_stretch_of_most_fuel_is_that_of_the_cells() {
 fn energy() -> CarEnergy {
     CarEnergy {
         subject: "car".to_owned(),
-        fuel_kj: 27_000.0,
-        exhaust_kj: 9000.0,
-        engine_heat_kj: 12_500.0,
-        accessories_kj: 562.0,
-        kinetic_kj: 0.8,
-        losses_kj: vec![(Component::Pump, 1700.0), (Component::BeltBand, 500.0)],
-        brake_kj: 300.0,
-        wheels_kj: 2437.2,
-        largest_kj: [54_000.0, 0.0],
+        fuel_kj_km: 27_000.0,
+        exhaust_kj_km: 9000.0,
+        engine_heat_kj_km: 12_500.0,
+        accessories_kj_km: 562.0,
+        kinetic_kj_km: 0.8,
+        losses_kj_km: vec![(Component::Pump, 1700.0), (Component::BeltBand, 500.0)],
+        brake_kj_km: 300.0,
+        wheels_kj_km: 2437.2,
+        largest_kj_km: [54_000.0, 0.0],
     }
 }
 
@@ -183,7 +183,7 @@ fn shares_of_a_flow_are_those_of_its_table() {
 fn the_largest_losses_of_a_title_have_their_share() {
     let car = CarLosses {
         name: "car".to_owned(),
-        losses_kj: energy().losses_kj,
+        losses_kj: energy().losses_kj_km,
         distance_km: 11.0,
     };
     let picture = loss_by_component(&[car], "conditions");
