@@ -117,7 +117,7 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
     let marks = match answer.plan {
         None => "Points: the car as its file has it; nothing is varied.".to_owned(),
         Some(_) => format!(
-            "Bars: {} % of {} runs with all uncertain values varied, each with and without the change. Points: medians. Right: in how many runs it saves fuel.",
+            "Bars: {} % of {} runs, all uncertain values varied. Points: medians. Right: runs in which it saves fuel.",
             answer.confidence.draws_percent(),
             answer.draws_done
         ),

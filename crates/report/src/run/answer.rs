@@ -98,7 +98,11 @@ fn question(summary: &Summary, cycle: &str) -> String {
 fn compared(summary: &Summary) -> String {
     let baselines = summary.runs.iter().skip(1).zip(&summary.comparison);
     let sentence = |(run, of): (&RunSummary, &Comparison)| {
-        format!("{}: {}; {}.", run.label(), run.title, of.likeness)
+        let like = match of.differences.is_empty() {
+            true => "like for like",
+            false => "not like for like",
+        };
+        format!("{}: {} ({like}).", run.label(), run.title)
     };
     baselines.map(sentence).collect::<Vec<_>>().join(" ")
 }
@@ -118,11 +122,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         Some(_) => " (weighted)",
         None => "",
     };
-    let text = format!(
-        "The {} uses {fuel}{weighted} on {cycle} ({})",
-        subject.label(),
-        conditions_line(summary)
-    );
+    let text = format!("The {} uses {fuel}{weighted} on {cycle}", subject.label());
     let first = summary.comparison.first().zip(summary.runs.get(1));
     let Some((percent, comparison, baseline)) =
         first.and_then(|(of, baseline)| Some((of.fuel_percent?, of, baseline)))
@@ -229,7 +229,9 @@ fn checks(summary: &Summary) -> Vec<String> {
 }
 
 fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
-    let mut list: Vec<String> = cars.first().and_then(doubts::cold).into_iter().collect();
+    let mut list: Vec<String> = doubts::cold(cars.get(..1).unwrap_or_default())
+        .into_iter()
+        .collect();
     list.extend(found.validation.as_ref().map(validation::differing));
     let now = cars.first().and_then(|car| car.run.min_clamp_safety);
     let block = options.iter().map(|(_, block)| block);
@@ -255,7 +257,7 @@ fn risk(row: &LeverRow, now: Option<f64>) -> Option<String> {
         format!("the least clamping safety falls from {now} to {worst} in the worst run")
     });
     let needs = match row.is_combination() {
-        true => "what each of its changes needs, and a test of them together",
+        true => "all that its changes need",
         false => row.of.needs.trim_end_matches('.'),
     };
     let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));

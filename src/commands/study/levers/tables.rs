@@ -8,16 +8,17 @@ use cvtcycle::study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words
 
 use super::super::tables::MAX_REASONS;
 use crate::print::colour::Paint;
-use crate::print::sections;
+use crate::print::{bold, sections};
 
 /// All results for people.
 pub fn tables(answer: &LeverAnswer, (present, all): (usize, usize), paint: Paint) -> String {
-    let mut text = format!("{}\n", paint.heading(&answer.title));
+    let mut text = bold(&answer.title, paint);
     text += &match &answer.plan {
-        Some(plan) => format!(
-            "{} paired runs with the uncertain values of {plan} varied\n",
-            answer.draws
-        ),
+        Some(plan) => {
+            let runs = answer.draws;
+            let words = format!("{runs} paired runs with the uncertain values of {plan} varied");
+            wrapped(&words, "")
+        }
         None => "the cars as their files have them; no value is varied\n".to_owned(),
     };
     if present < all {
