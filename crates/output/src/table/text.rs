@@ -418,7 +418,7 @@ mod tests {
     /// Numbers and their units are not parted, headings above them are.
     #[test]
     fn a_number_keeps_its_unit() {
-        let text = rows().text_in(60);
+        let text = rows().text_in(46);
         assert!(text.contains("8.57 cm³/rev"), "{text}");
         assert!(!text.contains("over rover_216_5mt"), "{text}");
     }

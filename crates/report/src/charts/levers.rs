@@ -16,7 +16,7 @@ const ROW: f64 = 22.0;
 const HALF: f64 = 5.0;
 const RADIUS: f64 = 4.5;
 /// Levers of a combination that are named below the figure; tables have all.
-const NAMED: usize = 4;
+const NAMED: usize = 3;
 /// What the marks are.
 const MARKS: [&str; 2] = ["One change", "Changes together"];
 

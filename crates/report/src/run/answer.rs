@@ -100,7 +100,7 @@ fn compared(summary: &Summary) -> String {
     let sentence = |(run, of): (&RunSummary, &Comparison)| {
         let like = match of.differences.is_empty() {
             true => "like for like",
-            false => "not like for like",
+            false => "other car",
         };
         format!("{}: {} ({like}).", run.label(), run.title)
     };

@@ -114,7 +114,8 @@ fn known(summary: &Summary) -> Vec<(String, KnownValue)> {
             nominal: comparison.fuel_percent,
             published: answer::published(summary, &run.vehicle),
         };
-        (run.vehicle.clone(), known)
+        // As the labelled answer of a study has it.
+        (run.label().to_owned(), known)
     };
     baselines.map(of).collect()
 }

@@ -57,7 +57,7 @@ impl Drawn<'_> {
 
 const TOP: f64 = 58.0;
 /// Height of the row of a lone series, and of one of several, pixels.
-const ROWS: [f64; 2] = [190.0, 110.0];
+const ROWS: [f64; 2] = [150.0, 110.0];
 /// Most dots of a series: each is a hundredth of its runs.
 const DOTS: usize = 100;
 /// Stacks of dots over the width of the plot, at most.
