@@ -11,7 +11,7 @@ use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
 /// Right edge of the plot with room for the counts, left edge of what lies below it, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 96.0;
 const MARGIN: f64 = 12.0;
-const ROW: f64 = 22.0;
+const ROW: f64 = 20.0;
 /// Half of the height of the bar of a range, radius of its median, pixels.
 const HALF: f64 = 5.0;
 const RADIUS: f64 = 4.5;
@@ -106,10 +106,7 @@ fn title(block: &LeverBlock) -> String {
     let alone = format!("{name} saves most: {:.1} % of the fuel", saved(best));
     match together.first() {
         None => alone,
-        Some(all) => {
-            let (n, saved) = (all.of.members.len(), saved(all));
-            format!("{alone}; {n} changes together {saved:.1} %")
-        }
+        Some(all) => format!("{alone}; the combination of changes {:.1} %", saved(all)),
     }
 }
 

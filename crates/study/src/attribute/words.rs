@@ -53,5 +53,5 @@ fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
         (false, "cvt") => ("less", "less load lowers the clamping pressure"),
         (false, _) => ("less", "less load makes the others smaller"),
     };
-    format!("all at once {size} points {word} than their sum, for {cause}")
+    format!("all at once {size} points {word}: {cause}")
 }

@@ -32,12 +32,11 @@ pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
         free = y + APART;
         let corner = at(f64::NEG_INFINITY, f64::INFINITY);
         // Names of lines that go on to the frame, or nearly so, are drawn beyond it.
-        let x = if panel.rect.right - x < NEAR {
-            panel.rect.right
-        } else {
-            x
-        };
+        let is_beyond = panel.rect.right - x < NEAR;
+        let x = if is_beyond { panel.rect.right } else { x };
         let place = corner.shift(x - panel.rect.left + 7.0, y - panel.rect.top);
-        panel.label(Label::new(place, end.text).colour(end.colour));
+        let mut label = Label::new(place, end.text).colour(end.colour);
+        label.ground = !is_beyond;
+        panel.label(label);
     }
 }

@@ -37,7 +37,7 @@ pub struct GuideLine {
 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
 /// Room right of the panel for names of lines that go on there, at most, and above it for names of those that leave there, pixels.
-const NAMES: f64 = 170.0;
+const NAMES: f64 = 190.0;
 const ABOVE: f64 = 16.0;
 /// Size of a name, and least distance of two names next to each other, pixels.
 const NAME: f64 = 11.0;
@@ -123,9 +123,23 @@ fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
     let lefts: Vec<f64> = ends.iter().map(|end| panel.px(end.at.0) - 4.0).collect();
     for (k, end) in ends.iter().enumerate() {
         let next = lefts.get(k + 1).copied().unwrap_or(WIDTH - 4.0);
-        let text = Cut::End.apply(&end.text, NAME, next - lefts[k] - APART);
+        let wide = text_width(&end.text, NAME);
+        let is_last = k + 1 == ends.len();
+        let left = match is_last {
+            true => lefts[k].min((WIDTH - 4.0 - wide).max(panel.rect.left)),
+            false => lefts[k],
+        };
+        let before = k.checked_sub(1).map_or(f64::NEG_INFINITY, |before| {
+            lefts[before] + text_width(&ends[before].text, NAME) + APART
+        });
+        let left = left.max(before.min(lefts[k]));
+        let text = Cut::End.apply(
+            &end.text,
+            NAME,
+            next - left - if is_last { 0.0 } else { APART },
+        );
         let place = at(f64::NEG_INFINITY, f64::INFINITY);
-        let place = place.shift(lefts[k] - panel.rect.left, -5.0);
+        let place = place.shift(left - panel.rect.left, -5.0);
         panel.label(Label::new(place, text).colour(end.colour));
     }
 }
