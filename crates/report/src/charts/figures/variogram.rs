@@ -3,7 +3,7 @@
 use super::TOP;
 use crate::charts::engine::{
     Axis, Block, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
-    Stroke, Style, WIDTH, at, cell, label_ends, stroke, text_width,
+    Stroke, Style, WIDTH, at, cell, label_ends_on_cells, stroke, text_width,
 };
 use crate::charts::grids::Density;
 use crate::charts::picture::{Picture, PictureTable};
@@ -101,7 +101,7 @@ pub fn variogram(of: &Variogram) -> Picture {
         panel.series(points.clone(), *line);
     }
     name_above(&mut panel, above);
-    label_ends(&mut panel, beside);
+    label_ends_on_cells(&mut panel, beside);
     // A legend for names that were cut.
     let is_cut = |of: &&SeenLine| text_width(of.0, NAME) > NAMES - 10.0;
     let entries = seen.iter().filter(is_cut);
