@@ -43,7 +43,6 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
         section.alert(line);
     }
     strip(&mut section, summary, cycle);
-    section.text(compared(summary));
     for line in contradictions(&summary.labelled()) {
         // "Soak" is a word of test cells.
         section.alert(line.replace("soak, ", "cold start, "));
@@ -92,19 +91,6 @@ fn question(summary: &Summary, cycle: &str) -> String {
     format!(
         "How much fuel does the {subject} use on the cycle {cycle} ({conditions}){against}? What do the losses of its transmission cost, and which changes are worthwhile?"
     )
-}
-
-/// Which car each baseline is, and whether it is like for like.
-fn compared(summary: &Summary) -> String {
-    let baselines = summary.runs.iter().skip(1).zip(&summary.comparison);
-    let sentence = |(run, of): (&RunSummary, &Comparison)| {
-        let like = match of.differences.is_empty() {
-            true => "like for like",
-            false => "other car",
-        };
-        format!("{}: {} ({like}).", run.label(), run.title)
-    };
-    baselines.map(sentence).collect::<Vec<_>>().join(" ")
 }
 
 fn interval(comparison: &Comparison) -> Option<[f64; 2]> {
@@ -190,6 +176,7 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     }
     let row = |(baseline, comparison): (&RunSummary, &Comparison)| Against {
         baseline: baseline.label().to_owned(),
+        title: format!("{}{}", baseline.title, likeness(comparison)),
         files: comparison.fuel_percent,
         drawn: comparison.interval.as_ref().map(|of| of.percent),
         published: published(summary, &baseline.vehicle),

@@ -148,7 +148,11 @@ pub(super) fn cold(cars: &[Car]) -> Option<String> {
         let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
         let cold: f64 = cold.map(|(_, dt)| dt).sum();
         let share = grouped(100.0 * cold / car.run.duration_s, 0);
-        (cold > 0.0).then(|| format!("{share} % ({})", car.run.label()))
+        let of = match cars.len() {
+            1 => String::new(),
+            _ => format!(" ({})", car.run.label()),
+        };
+        (cold > 0.0).then(|| format!("{share} %{of}"))
     };
     let shares: Vec<String> = cars.iter().filter_map(share).collect();
     let from = super::degc(MEASURED_FROM_DEGC);

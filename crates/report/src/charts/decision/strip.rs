@@ -20,6 +20,8 @@ const RADIUS: f64 = 5.5;
 pub struct Against {
     /// Name of the baseline.
     pub baseline: String,
+    /// Which car that is.
+    pub title: String,
     /// With the nominal values, those of the files.
     pub files: Option<f64>,
     /// 5 %, 50 % and 95 % of the draws.
@@ -99,12 +101,26 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     )
     .panels([panel])
     .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
+    .notes((MARGIN, WIDTH - 2.0 * MARGIN), titles(rows))
     .picture(table)
 }
 
 /// Dark, with a pale edge that shows it on a bar.
 fn nominal() -> Style {
     Style::colour(INK).edge(stroke("#ffffff", 1.0, &[]))
+}
+
+/// Which car each baseline is, where its name does not say it.
+fn titles(rows: &[Against]) -> Vec<String> {
+    let named = rows.iter().filter(|row| !row.title.is_empty());
+    let named = named.filter(|row| row.title != row.baseline);
+    let titles: Vec<String> = named
+        .map(|row| format!("{}: {}.", row.baseline, row.title))
+        .collect();
+    (!titles.is_empty())
+        .then(|| titles.join(" "))
+        .into_iter()
+        .collect()
 }
 
 fn legend(rows: &[Against]) -> Vec<Entry> {
