@@ -127,7 +127,14 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let Some((run, fuel)) = run.and_then(|run| run.headline_fuel().map(|fuel| (run, fuel))) else {
         return Vec::new();
     };
-    let against: String = summary.comparison.iter().filter_map(against).collect();
+    // What a run of an interval is, is said of the first one.
+    let mut told = false;
+    let against = summary.comparison.iter().filter_map(|of| {
+        let said = against(of, told);
+        told |= of.interval.is_some();
+        said
+    });
+    let against: String = against.collect();
     let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
     let lines = [Some(first), price(run)].into_iter().flatten();
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
@@ -208,7 +215,7 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
 }
 
 /// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
-fn against(comparison: &Comparison) -> Option<String> {
+fn against(comparison: &Comparison, told: bool) -> Option<String> {
     let percent = comparison.fuel_percent?;
     let baseline = &comparison.baseline;
     let Some(drawn) = &comparison.interval else {
@@ -224,8 +231,12 @@ fn against(comparison: &Comparison) -> Option<String> {
         0 => String::new(),
         n => format!("; {n} left out"),
     };
+    let runs = match told {
+        false => format!("{draws} runs with uncertain values varied"),
+        true => format!("{draws} runs"),
+    };
     Some(format!(
-        ", {compared} {than} {baseline} (90 % of {draws} runs with uncertain values varied: {ends}; more in {more}{left_out})"
+        ", {compared} {than} {baseline} (90 % of {runs}: {ends}; more in {more}{left_out})"
     ))
 }
 
