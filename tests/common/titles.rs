@@ -21,7 +21,7 @@ fn plain(text: &str) -> String {
         .replace('\u{2212}', "-")
 }
 
-/// The numbers of a text as they are written, signs included: a sign stands after a space or a bracket.
+/// The numbers of a text as they are written, signs included: a sign follows a space or a bracket.
 pub fn written(text: &str) -> Vec<String> {
     let part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
     let text = plain(text);

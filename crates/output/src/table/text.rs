@@ -102,8 +102,8 @@ impl TextTable {
 
     /// The lines in a width.
     fn text_in(&self, width: usize) -> String {
-        if self.hangs(width) {
-            return self.hanging(width);
+        if self.goes_below(width) {
+            return self.with_text_below(width);
         }
         match self.fitting(width) {
             Some(columns) => {
@@ -129,7 +129,7 @@ impl TextTable {
     }
 
     /// Whether a narrow line has no room for the texts of the last column next to the others.
-    fn hangs(&self, width: usize) -> bool {
+    fn goes_below(&self, width: usize) -> bool {
         let last = self.right.len().saturating_sub(1);
         if width >= NARROW || last < 2 || self.right[last] || self.fitting(width).is_some() {
             return false;
@@ -141,7 +141,7 @@ impl TextTable {
     }
 
     /// The lines with the text of the last column below those of its row, indented.
-    fn hanging(&self, width: usize) -> String {
+    fn with_text_below(&self, width: usize) -> String {
         let last = self.right.len() - 1;
         let before = self.part(0..last);
         let widths = before.widths(width - (last - 1) * GAP);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::engine::{self, Axis, Chart, Entry, Fill, PLOT_LEFT, Side, WIDTH, grid};
-use super::grids::{MapFigure, map_figure, panels_beside};
+use super::grids::{MapFigure, map_figure, panels_left_of};
 use super::lines::{Look, stack_layers};
 use super::picture::PictureTable;
 use crate::number::{capital_first, grouped};
@@ -177,7 +177,7 @@ fn stack(plan: &LossTable, layout: &Layout) -> String {
     let parts = plan.components();
     let several = layout.panels.len() > 1;
     let strip = STRIPS[usize::from(several)];
-    let (columns, size, pitch) = panels_beside(strip, layout.panels.len());
+    let (columns, size, pitch) = panels_left_of(strip, layout.panels.len());
     let titled = layout.panels.iter().any(|panel| !panel.title.is_empty());
     let top = TOP + if titled { ABOVE } else { 0.0 };
     let place = grid((PLOT_LEFT, top), size, pitch, columns);

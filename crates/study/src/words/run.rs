@@ -128,10 +128,10 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         return Vec::new();
     };
     // What a run of an interval is, is said of the first one.
-    let mut told = false;
+    let mut explained = false;
     let against = summary.comparison.iter().filter_map(|of| {
-        let said = against(of, told);
-        told |= of.interval.is_some();
+        let said = against(of, explained);
+        explained |= of.interval.is_some();
         said
     });
     let against: String = against.collect();
@@ -215,7 +215,7 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
 }
 
 /// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
-fn against(comparison: &Comparison, told: bool) -> Option<String> {
+fn against(comparison: &Comparison, explained: bool) -> Option<String> {
     let percent = comparison.fuel_percent?;
     let baseline = &comparison.baseline;
     let Some(drawn) = &comparison.interval else {
@@ -231,7 +231,7 @@ fn against(comparison: &Comparison, told: bool) -> Option<String> {
         0 => String::new(),
         n => format!("; {n} left out"),
     };
-    let runs = match told {
+    let runs = match explained {
         false => format!("{draws} runs with uncertain values varied"),
         true => format!("{draws} runs"),
     };

@@ -80,8 +80,10 @@ pub fn variogram(of: &Variogram) -> Picture {
         colour: line.colour,
     };
     let is_high = |end: &End| (end.at.1 - y.high).abs() < 1e-6 * y.high;
-    let (above, beside): (Vec<End>, Vec<End>) = seen.iter().map(names).partition(is_high);
-    let room = beside.iter().map(|end| text_width(&end.text, NAME) + 10.0);
+    let (above, at_right): (Vec<End>, Vec<End>) = seen.iter().map(names).partition(is_high);
+    let room = at_right
+        .iter()
+        .map(|end| text_width(&end.text, NAME) + 10.0);
     let wide = WIDE - room.fold(0.0, f64::max);
     let rect = Rect::new(PLOT_LEFT, TOP + ABOVE, wide, TALL);
     let mut panel = Panel::new(rect, x, y).no_data(density.total_s() <= 0.0);
@@ -101,7 +103,7 @@ pub fn variogram(of: &Variogram) -> Picture {
         panel.series(points.clone(), *line);
     }
     name_above(&mut panel, above);
-    label_ends_on_cells(&mut panel, beside);
+    label_ends_on_cells(&mut panel, at_right);
     // A legend for names that were cut.
     let is_cut = |of: &&SeenLine| text_width(of.0, NAME) > NAMES - 10.0;
     let entries = seen.iter().filter(is_cut);

@@ -80,7 +80,7 @@ impl Scale {
 /// Draws the picture. Where values are not finite the panel stays white.
 pub(crate) fn map_figure(of: &MapFigure) -> String {
     let several = of.panels.len() > 1;
-    let (columns, size, pitch) = panels_beside(STRIP, of.panels.len());
+    let (columns, size, pitch) = panels_left_of(STRIP, of.panels.len());
     let titled = several || of.panels.iter().any(|(title, _)| !title.is_empty());
     let top = TOP + if titled { ABOVE } else { 0.0 };
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
@@ -114,7 +114,7 @@ pub(crate) fn map_figure(of: &MapFigure) -> String {
 }
 
 /// Columns, size of a panel and distance of two of so many panels that fill the width of a picture but for a strip on the right.
-pub(crate) fn panels_beside(strip: f64, panels: usize) -> (usize, Point, Point) {
+pub(crate) fn panels_left_of(strip: f64, panels: usize) -> (usize, Point, Point) {
     let columns = match panels {
         0 | 1 => 1,
         2 | 4 => 2,
