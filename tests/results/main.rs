@@ -10,6 +10,8 @@
 mod common;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
+#[path = "../common/titles.rs"]
+mod titles;
 
 mod attacks;
 mod alike;

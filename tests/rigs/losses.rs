@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Output;
 
 use crate::common::{RPM, ZERO, car};
+use crate::titles::{is, title_of_file, written};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
 use cvtcycle::model::bench::{Bench, BenchPoint};
@@ -304,12 +305,55 @@ fn output_directory() {
     let json: Value =
         serde_json::from_str(&std::fs::read_to_string(a.join("summary.json")).unwrap()).unwrap();
     assert_eq!(json["points"].as_array().unwrap().len(), 42);
+    titles_are_those_of_the_table(&a, "losses_total.svg", &["total_loss_nm"]);
+    titles_are_those_of_the_table(&a, "losses_pump.svg", &["pump_loss_nm"]);
+    let belt =
+        ["band", "film", "slip", "wedge", "penetration"].map(|part| format!("belt_{part}_loss_nm"));
+    titles_are_those_of_the_table(&a, "losses_belt.svg", &belt);
     assert!(refused(&["--out", a_text]).contains("--force"));
     good(&["--out", a_text, "--force", "--quiet"]);
     good(&["--speed", "1000..4000:500", "--out", b_text]);
     assert_eq!(
         files(&b),
         ["losses.csv", "losses_stacked.svg", "summary.json"]
+    );
+    titles_are_those_of_the_table(&b, "losses_stacked.svg", &["total_loss_nm"]);
+}
+
+/// The least and the largest sum of some columns are those of the title, and the picture is as wide as a page.
+fn titles_are_those_of_the_table(folder: &Path, picture: &str, columns: &[impl AsRef<str>]) {
+    let mut reader = csv::Reader::from_path(folder.join("losses.csv")).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let places = columns
+        .iter()
+        .map(|name| heads.iter().position(|head| head == name.as_ref()).unwrap());
+    let places: Vec<usize> = places.collect();
+    let sums = reader.records().map(|row| {
+        let row = row.unwrap();
+        places
+            .iter()
+            .map(|k| row[*k].parse::<f64>().unwrap())
+            .sum::<f64>()
+    });
+    let sums: Vec<f64> = sums.collect();
+    let low = sums.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let title = title_of_file(folder, picture);
+    for (said, wanted) in written(&title).iter().zip([low, high]) {
+        is(said, wanted, &title);
+    }
+    let svg = std::fs::read_to_string(folder.join(picture)).unwrap();
+    let svg = roxmltree::Document::parse(&svg).unwrap();
+    let size = |name: &str| {
+        svg.root_element()
+            .attribute(name)
+            .unwrap()
+            .parse::<f64>()
+            .unwrap()
+    };
+    assert!(
+        size("width") <= 880.0 && size("height") <= 1250.0,
+        "{picture}"
     );
 }
 

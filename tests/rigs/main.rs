@@ -8,6 +8,8 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+#[path = "../common/titles.rs"]
+mod titles;
 
 mod belt;
 mod loss_columns;

@@ -8,6 +8,7 @@
 use std::path::Path;
 
 use crate::common::{RPM, car};
+use crate::titles::title_of_file;
 use assert_cmd::Command;
 use cvtcycle::model::bench::{Bench, BenchPoint};
 use serde_json::Value;
@@ -336,17 +337,6 @@ fn files_are_sound_and_named_after_their_tests() {
     );
 }
 
-/// The sentence of a picture, up to the subject after it.
-fn title(out: &Path, name: &str) -> String {
-    let svg = std::fs::read_to_string(out.join(name)).unwrap();
-    let title = svg.split("<title>").nth(1).unwrap();
-    title
-        .split("</title>")
-        .next()
-        .unwrap()
-        .replace('\u{a0}', " ")
-}
-
 /// A column of a file where the ratio is that of low.
 fn low(out: &Path, file: &str, column: &str) -> Vec<f64> {
     let mut reader = csv::Reader::from_path(out.join(file)).unwrap();
@@ -372,13 +362,13 @@ fn titles_are_those_of_the_tables(out: &Path) {
         "Without load the box loses {least:.1} to {most:.1} N m in low; the thesis prints 8.5 to 13"
     );
     assert!(
-        title(out, "steady_loss_low.svg").starts_with(&said),
+        title_of_file(out, "steady_loss_low.svg").starts_with(&said),
         "{said}"
     );
     let (least, most) = ends(&low(out, "steady.csv", "secondary_pressure_bar"));
     let said = format!("Secondary pressure is {least:.1} to {most:.1} bar in low");
     assert!(
-        title(out, "steady_pressure_low.svg").starts_with(&said),
+        title_of_file(out, "steady_pressure_low.svg").starts_with(&said),
         "{said}"
     );
     let [found, own] = ["final_drive_corrected_nm", "final_drive_true_nm"]
@@ -389,7 +379,10 @@ fn titles_are_those_of_the_tables(out: &Path) {
         .map(|(found, own)| found - own)
         .sum::<f64>();
     let said = format!("{:.2} N m too much in low", more / found.len() as f64);
-    assert!(title(out, "components_low.svg").contains(&said), "{said}");
+    assert!(
+        title_of_file(out, "components_low.svg").contains(&said),
+        "{said}"
+    );
     for (name, marks) in [
         ("steady_loss_low.svg", 1),
         ("components_low.svg", 4),

@@ -1,8 +1,11 @@
 //! The variator rig: the thesis's breakpoints, slips and signs, the zero of the reading, limits, files, and what is refused.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use std::collections::HashMap;
+use std::path::Path;
 use std::process::Output;
 
+use crate::titles::{is, title_of_file, written};
 use serde_json::Value;
 
 fn run(words: &[&str]) -> Output {
@@ -85,6 +88,7 @@ fn outputs() {
         );
         assert_eq!(count("series"), lines, "{name}");
     }
+    titles_are_those_of_the_files(&out);
     assert_eq!(
         std::fs::read_to_string(out.join("curves.csv"))
             .unwrap()
@@ -93,6 +97,63 @@ fn outputs() {
         11
     );
     assert_eq!(good(&["--quiet", "--ratio", "low"]), "");
+}
+
+/// Rows of a file, by the names of its columns.
+fn rows(file: &Path) -> Vec<HashMap<String, String>> {
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+/// Numbers of titles against the files of the same run: breakpoints and slip speeds of the curves in low, and the radius at the last point up
+/// to 5 % slip.
+fn titles_are_those_of_the_files(out: &Path) {
+    let curves = rows(&out.join("curves.csv"));
+    let x = |row: &HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    let low: Vec<_> = curves
+        .iter()
+        .filter(|row| x(row, "belt_ratio") > 1.0)
+        .collect();
+    let title = title_of_file(out, "slip.svg");
+    let ends = [low[0], low[low.len() - 1]];
+    let wanted = ends.map(|row| [x(row, "breakpoint_nm"), x(row, "secondary_pressure_bar")]);
+    for (said, wanted) in written(&title).iter().zip(wanted.concat()) {
+        is(said, wanted, &title);
+    }
+    let title = title_of_file(out, "slip_speed.svg");
+    let at_30 = low
+        .iter()
+        .find(|row| row["secondary_pressure_bar"] == "30")
+        .unwrap();
+    let said = written(&title);
+    assert_eq!(said[..2], ["30", "3"], "{title}");
+    // The curve is found to a hundredth of its step, the title between two points: 0.005 m/s is its last digit.
+    for (said, name) in said[2..].iter().zip([
+        "three_percent_primary_slip_m_s",
+        "three_percent_secondary_slip_m_s",
+    ]) {
+        is(said, x(at_30, name), &title);
+    }
+    let middle = low[low.len() / 2];
+    let points = rows(&out.join("points.csv"));
+    let own = points.iter().filter(|row| {
+        let same = ["belt_ratio", "secondary_pressure_bar"]
+            .iter()
+            .all(|name| row[*name] == middle[*name]);
+        same && x(row, "slip_percent").abs() <= 5.0 && !row["flags"].contains("gross_slip")
+    });
+    let last = own
+        .max_by(|a, b| x(a, "output_torque_nm").total_cmp(&x(b, "output_torque_nm")))
+        .unwrap();
+    let change =
+        100.0 * (x(last, "primary_pulse_radius_mm") / x(last, "primary_zeroed_radius_mm") - 1.0);
+    let title = title_of_file(out, "radii.svg");
+    for (said, wanted) in written(&title)
+        .iter()
+        .zip([x(last, "output_torque_nm"), change])
+    {
+        is(said, wanted, &title);
+    }
 }
 
 #[test]

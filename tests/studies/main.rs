@@ -15,6 +15,8 @@ mod common;
 mod fixtures;
 #[path = "../common/small_tables.rs"]
 mod small_tables;
+#[path = "../common/titles.rs"]
+mod titles;
 #[path = "../common/tree.rs"]
 mod tree;
 

@@ -35,12 +35,12 @@ async function open(file, { hash = "", wait = true, ...options } = {}) {
   return { context, page, heard };
 }
 
-const drawn = (page) => page.waitForFunction(() => /of \d+ draws/.test(document.querySelector("#live-answer .lead")?.textContent ?? "") && !/Drawing|follows/.test(document.getElementById("live-said").textContent), null, { timeout: 60_000 });
+const drawn = (page) => page.waitForFunction(() => /of \d+ runs/.test(document.querySelector("#live-answer .lead")?.textContent ?? "") && !/Drawing|follows/.test(document.getElementById("live-said").textContent), null, { timeout: 60_000 });
 const lead = (page) => page.locator("#live-answer .lead").innerText();
 // Moves a lever as a hand does.
 const move = (page, id, value) => page.$eval(`[id="${id}"]`, (input, to) => { input.value = to; input.dispatchEvent(new Event("input", { bubbles: true })); }, String(value));
 const frames = (page) => page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
-const numbers = (text) => text.replaceAll("\u2212", "-").replace(/\s+/g, " ").match(/[-+]?\d+(\.\d+)?(?= ?(%|L\/100|draws|to|;|\)))/g);
+const numbers = (text) => text.replaceAll("\u2212", "-").replace(/\s+/g, " ").match(/[-+]?\d+(\.\d+)?(?= ?(%|L\/100|runs|to|;|\)))/g);
 
 for (const file of pages) {
   describe(basename(file), () => {

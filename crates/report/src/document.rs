@@ -289,7 +289,7 @@ impl ReportTable {
 
 impl Figure {
     /// The numbers of the picture as a table, for the figure of that number.
-    pub fn numbers(&self, number: &usize) -> ReportTable {
+    pub fn numbers(&self, number: &str) -> ReportTable {
         let table = &self.picture.table;
         let caption = format!("Numbers of figure {number}");
         let mut of = ReportTable::of_words(&caption, &[]);

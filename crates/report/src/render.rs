@@ -47,7 +47,8 @@ struct ShownSection<'a> {
 /// A block with its number among the tables or the figures of the document, which other blocks have no use for.
 struct ShownBlock<'a> {
     block: &'a Block,
-    number: usize,
+    /// Number of a figure or a table; other views of a figure have its number and a letter, so that no number is missing on paper.
+    number: String,
     /// Name of the file of a figure.
     file: String,
 }
@@ -120,14 +121,33 @@ fn sections(document: &Document) -> Vec<ShownSection<'_>> {
     sections.collect()
 }
 
-/// Numbers of the last figure and of the last table.
+/// Numbers of the last figure, of its last view, and of the last table.
 #[derive(Default)]
 struct Numbering {
     figures: usize,
+    views: u8,
     tables: usize,
 }
 
 impl Numbering {
+    fn number(&mut self, block: &Block) -> String {
+        match block {
+            Block::Table(_) | Block::Folded(_) => {
+                self.tables += 1;
+                self.tables.to_string()
+            }
+            Block::Figure(figure) if figure.view.as_ref().is_some_and(|view| !view.first) => {
+                self.views += 1;
+                format!("{}{}", self.figures, char::from(b'a' + self.views.min(25)))
+            }
+            Block::Figure(_) => {
+                (self.figures, self.views) = (self.figures + 1, 0);
+                self.figures.to_string()
+            }
+            _ => String::new(),
+        }
+    }
+
     fn section<'a>(
         &mut self,
         first: bool,
@@ -135,13 +155,7 @@ impl Numbering {
         files: &mut dyn Iterator<Item = String>,
     ) -> ShownSection<'a> {
         let shown = |block: &'a Block| {
-            let count = match block {
-                Block::Table(_) | Block::Folded(_) => &mut self.tables,
-                Block::Figure(_) => &mut self.figures,
-                _ => &mut 0,
-            };
-            *count += 1;
-            let number = *count;
+            let number = self.number(block);
             let file = match block {
                 Block::Figure(_) => files.next().unwrap_or_default(),
                 _ => String::new(),
@@ -185,7 +199,7 @@ fn is_tall(svg: &str) -> bool {
 }
 
 /// A drawing whose ids no other drawing of the page has.
-fn with_own_ids(svg: &str, number: &usize) -> String {
+fn with_own_ids(svg: &str, number: &str) -> String {
     svg.replace(" id=\"", &format!(" id=\"f{number}-"))
         .replace("url(#", &format!("url(#f{number}-"))
 }

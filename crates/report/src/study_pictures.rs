@@ -4,8 +4,8 @@ use crate::charts::Picture;
 use crate::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
 use crate::charts::lever_strip;
 use crate::charts::study::{
-    DistributionSeries, EffectFactor, Shown, convergence_plot, distribution_plot, effects_plot,
-    rank_plot, sobol_plot, tornado_plot,
+    DistributionSeries, EffectFactor, KnownValue, Shown, convergence_plot, distribution_plot,
+    effects_plot, rank_plot, sobol_plot, tornado_plot,
 };
 use crate::document::plain;
 use crate::results::StudyResults;
@@ -19,7 +19,8 @@ use cvtcycle_study::statistics::{Confidence, Groups};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 
 /// Every picture that the answer has something for, each under a name that can be a file's: of a matrix of ambient temperatures fuel,
-/// excess and, where traces were kept, warm-up; else of the outputs that the plan names, or of fuel and excess.
+/// excess and, where traces were kept, warm-up; else of the outputs that the plan names, or of fuel and excess. `known` are numbers of the
+/// excess over baselines by their names.
 ///
 /// # Errors
 /// A part of the study that cannot be read.
@@ -27,10 +28,11 @@ pub fn study_pictures(
     answer: &Answer,
     frame: &StudyTable,
     warm_ups: &[WarmUp],
+    known: &[(String, KnownValue)],
 ) -> Result<Vec<(String, Picture)>, Problem> {
     match &answer.matrix {
         Some(matrix) => Ok(of_matrix(matrix, warm_ups, &frame.outline.title)),
-        None => of_outputs(answer, frame),
+        None => of_outputs(answer, frame, known),
     }
 }
 
@@ -42,7 +44,7 @@ pub fn study_files(found: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Probl
     let statistics = json_text(&found.answer)?.into_bytes();
     let mut files = vec![("statistics.json".to_owned(), statistics)];
     files.extend(tables(&found.answer, &found.outline));
-    let pictures = study_pictures(&found.answer, &found.frame()?, &found.warm_ups)?;
+    let pictures = study_pictures(&found.answer, &found.frame()?, &found.warm_ups, &[])?;
     let svg = pictures
         .into_iter()
         .map(|(name, picture)| (format!("{name}.svg"), picture.svg.into_bytes()));
@@ -72,7 +74,11 @@ fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, 
     list
 }
 
-fn of_outputs(answer: &Answer, frame: &StudyTable) -> Result<Vec<(String, Picture)>, Problem> {
+fn of_outputs(
+    answer: &Answer,
+    frame: &StudyTable,
+    known: &[(String, KnownValue)],
+) -> Result<Vec<(String, Picture)>, Problem> {
     let outline = frame.outline;
     let mut list = Vec::new();
     let outputs = answer.outputs.iter();
@@ -81,9 +87,12 @@ fn of_outputs(answer: &Answer, frame: &StudyTable) -> Result<Vec<(String, Pictur
         .collect();
     for (k, output) in pictured.iter().enumerate() {
         let same = |other: &&&OutputAnswer| other.output == output.output;
-        if outline.plan.design.is_sampled() && !pictured[..k].iter().any(|other| same(&other)) {
+        // Of pairs the difference is what counts: fuel side by side would hide that both vary together.
+        let is_paired = output.output == FUEL && pictured.iter().any(|of| of.output == EXCESS);
+        let is_first = !pictured[..k].iter().any(|other| same(&other));
+        if outline.plan.design.is_sampled() && is_first && !is_paired {
             let same: Vec<&&OutputAnswer> = pictured.iter().filter(same).collect();
-            let picture = distribution(frame, &same, answer.confidence)?;
+            let picture = distribution(frame, &same, answer.confidence, known)?;
             list.push((format!("distribution_{}", output.output), picture));
         }
         let name = |kind: &str| format!("{kind}_{}_{}", output.output, output.car);
@@ -113,6 +122,7 @@ fn distribution(
     frame: &StudyTable,
     outputs: &[&&OutputAnswer],
     confidence: Confidence,
+    known: &[(String, KnownValue)],
 ) -> Result<Picture, Problem> {
     let outline = frame.outline;
     let mut values = Vec::new();
@@ -125,8 +135,17 @@ fn distribution(
     let over = if excess { "over " } else { "" };
     let names = outputs.iter().map(|output| format!("{over}{}", output.car));
     let names: Vec<String> = names.collect();
-    let series = names.iter().zip(&values);
-    let series = series.map(|(name, values)| DistributionSeries { name, values });
+    let known = outputs.iter().map(|output| {
+        let mut own = known.iter().filter(|(car, _)| *car == output.car);
+        let own = own.next().filter(|_| first == EXCESS);
+        own.map_or_else(KnownValue::default, |(_, known)| *known)
+    });
+    let series = names.iter().zip(&values).zip(known);
+    let series = series.map(|((name, values), known)| DistributionSeries {
+        name,
+        values,
+        known,
+    });
     let series: Vec<DistributionSeries<Column>> = series.collect();
     let title = match first {
         FUEL => "fuel".to_owned(),

@@ -120,7 +120,7 @@ pub fn differing(value: &Value) -> String {
     let count = |verdict: &str| value["counts"][verdict].as_u64().unwrap_or(0);
     let all: u64 = ["agrees", "fit", "differs"].map(count).iter().sum();
     format!(
-        "{} of {all} published numbers that can be compared differ.",
+        "{} of the {all} published numbers that can be compared with the model differ from it.",
         count("differs")
     )
 }

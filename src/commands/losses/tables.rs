@@ -100,7 +100,8 @@ fn several(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>) -> Strin
     let fixed: Vec<Axis> = fixed.collect();
     let held = losses.held(&losses.grid.at(0), &fixed);
     let table = columns.text(&shown);
-    let mut text = format!("{held}; losses in Nm at the input shaft\n\n{table}");
+    let head = wrapped(&format!("{held}; losses in Nm at the input shaft"), "");
+    let mut text = format!("{head}\n{table}");
     if more > 0 {
         text += &format!("\n{more} more points; --format csv or --json prints all\n");
     }

@@ -12,7 +12,7 @@ use cvtcycle::study::{Answer, StudyManifest};
 
 use super::effects::factors;
 use crate::print::colour::Paint;
-use crate::print::sections;
+use crate::print::{bold, sections};
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, paragraphs, wrapped};
 
@@ -96,7 +96,7 @@ fn lead(matrix: &Matrix) -> TextColumns<'_, MatrixRow> {
 
 fn head(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
-    let mut text = format!("{}\n", paint.heading(&answer.title));
+    let mut text = bold(&answer.title, paint);
     if !answer.question.is_empty() {
         text += &paragraphs(&answer.question);
     }

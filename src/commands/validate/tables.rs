@@ -1,6 +1,6 @@
 //! A validation as tables.
 
-use cvtcycle::output::table::{TextColumns, TextTable, distinct};
+use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
 use cvtcycle::report::validation::chapter_title;
 use cvtcycle::study::check::{
     Group, Judged, PowerReport, Report, RowPower, Strength, Verdict, computed_text, notes_line,
@@ -49,12 +49,15 @@ pub fn tables(report: &Report, shown: Shown, paint: Paint) -> String {
         ]
     });
     let rest = match shown {
-        Shown::All => "",
-        Shown::Differing => "\nBelow: rows that differ or whose verdict moved (--all: every row)\n",
+        Shown::All => String::new(),
+        Shown::Differing => {
+            let below = "Below: rows that differ or whose verdict moved (--all: every row)";
+            format!("\n{}", wrapped(below, ""))
+        }
     };
     let counts = sections(counts, paint);
     let rows = sections(chapters.into_iter().map(of_chapter), paint);
-    text + &counts + rest + &rows
+    text + &counts + &rest + &rows
 }
 
 /// The verdicts of a table in their colours.

@@ -55,7 +55,7 @@ fn tables_and_files_of_an_attribution() {
     for part in [
         "rover_216_cvt at -10 degC, soak",
         "rover_216_5mt at 25 degC, soak",
-        "Its losses cost",
+        "The transmission losses cost",
         "interaction",
         "Pairs",
         "Shapley",
@@ -86,7 +86,7 @@ fn tables_and_files_of_an_attribution() {
 fn a_run_says_what_its_losses_cost() {
     let text = stdout(&run(&["run", "--ambient", "-10"]));
     for part in [
-        "Its losses cost",
+        "The transmission losses cost",
         "fuel saved if the loss were zero",
         "together",
         "interaction",

@@ -27,7 +27,7 @@ fn tables_and_files_of_levers() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
     for part in [
-        "8 paired draws of embedded:uncertainty_rover.toml",
+        "8 paired runs with the uncertain values of embedded:uncertainty_rover.toml varied",
         "rover_216_cvt at -10 degC",
         "rover_216_cvt at 25 degC",
         "variable pump saves most",
@@ -35,7 +35,7 @@ fn tables_and_files_of_levers() {
         "Together (variable_pump + offset_2mm)",
         "What they take",
         "control of displacement",
-        "note: 8 draws that agree show no more than that 63 % of all do",
+        "note: 8 varied runs that agree show no more than that 63 % of all do",
         "levers.csv",
     ] {
         assert!(text.contains(part), "{part}: {text}");
@@ -111,7 +111,7 @@ fn a_report_of_levers_says_what_they_save() {
             .find(|row| row["kind"] == "combination")
             .unwrap();
         let title = format!(
-            "Variable pump saves most: {:.1} % of the fuel; levers together {:.1} %",
+            "Variable pump saves most: {:.1} % of the fuel; the combination of changes {:.1} %",
             saved(&rows[0]),
             saved(together)
         );
@@ -268,9 +268,9 @@ fn a_lever_that_fails_is_no_lever_that_saves() {
     let text = stdout(&output);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     for part in [
-        "L/100 km in the median of the draws; no lever saves fuel.",
+        "L/100 km in the median of 8 runs with uncertain values varied; no lever saves fuel.",
         "soft does not work in this car: gross_slip",
-        "in 8 of 8 draws.",
+        "in 8 of 8 runs.",
         "soft !8",
         "note: 8 of 16 runs fail a check and are left out: 8 x gross_slip",
     ] {
@@ -289,5 +289,5 @@ fn a_lever_that_fails_is_no_lever_that_saves() {
         "levers --only offset_2mm --vehicle car.toml --cycle ftp75 --samples 8 --combine none";
     let failed = run_in(dir.path(), &words(line));
     assert_eq!(failed.status.code(), Some(1), "{}", stdout(&failed));
-    assert!(stdout(&failed).contains("In 8 of 8 draws the car as it is fails by gross_slip"));
+    assert!(stdout(&failed).contains("In 8 of 8 runs the car as it is fails by gross_slip"));
 }

@@ -72,7 +72,7 @@ fn every_row_that_differs_is_in_the_text_of_its_run() {
             "{id}: {of_run} {computed}"
         );
         let text = flat(&stdout(&run(&words)));
-        let row = format!("no. {id} in `cvtcycle validate`");
+        let row = format!("row {id} of `cvtcycle validate`");
         assert!(
             text.contains(&row) && text.contains(&flat(&judged.row.printed_text)),
             "{text}"
@@ -155,7 +155,7 @@ fn intervals_are_those_of_the_draws() {
     );
     let text = flat(&stdout(&run(&words)));
     assert!(
-        text.contains(" than rover_216_5mt (90 % of 256 draws: "),
+        text.contains(" than rover_216_5mt (90 % of 256 runs with uncertain values varied: "),
         "{text}"
     );
     let changed = [&words[..], &["--set", "engine.electrical_w=250"]].concat();

@@ -1,6 +1,8 @@
 //! Pictures of calibrations.
 
 use super::svg_checks::{check, numbers};
+use crate::titles::{is, number, title, written};
+use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::calibration::{
     calibration_pictures, correlation_plot, parameters_plot, residuals_plot, scatter_plot,
     trace_plots,
@@ -261,4 +263,100 @@ fn unknown_correlations_are_crossed_out_and_strong_ones_written() {
         .count();
     assert!(strong > 0);
     assert_eq!(written, strong);
+}
+
+/// What a title says up to the subject of the calibration.
+fn sentence(picture: &Picture, outcome: &Outcome) -> String {
+    let title = title(&picture.svg);
+    let subject = outcome.title.replace('&', "&amp;");
+    let subject = subject.replace('<', "&lt;").replace('>', "&gt;");
+    title
+        .split(&format!(": {subject}"))
+        .next()
+        .unwrap()
+        .to_owned()
+}
+
+#[test]
+fn titles_have_the_numbers_of_the_outcome() {
+    for (name, outcome) in every() {
+        if matches!(name, "nothing" | "odd") {
+            continue;
+        }
+        let of = |picture: &Picture| {
+            (
+                sentence(picture, &outcome),
+                written(&sentence(picture, &outcome)),
+            )
+        };
+        let (text, said) = of(&scatter_plot(&outcome));
+        let squares = |of: fn(&Residual) -> Option<f64>| {
+            let all: Option<Vec<f64>> = outcome.residuals.iter().map(of).collect();
+            all.map(|all| (all.iter().map(|x| x * x).sum::<f64>() / all.len() as f64).sqrt())
+        };
+        if let (Some(before), Some(after)) =
+            (squares(|r| r.before_sd), squares(|r| Some(r.after_sd)))
+        {
+            is(&said[0], before, &text);
+            is(said.last().unwrap(), after, &text);
+        }
+        let (text, said) = of(&residuals_plot(&outcome));
+        let within = |of: fn(&Residual) -> Option<f64>| {
+            let all = outcome.residuals.iter().filter_map(of);
+            all.filter(|x| x.abs() <= 2.0).count() as f64
+        };
+        is(&said[0], within(|r| Some(r.after_sd)), &text);
+        is(&said[1], outcome.residuals.len() as f64, &text);
+        if said.len() > 2 {
+            is(&said[2], within(|r| r.left_out_sd), &text);
+            let known = outcome.residuals.iter().filter(|r| r.left_out_sd.is_some());
+            is(&said[3], known.count() as f64, &text);
+        }
+        let (text, _) = of(&parameters_plot(&outcome));
+        let least = outcome.parameters.iter().filter_map(|p| p.prior_share);
+        let least = least.fold(f64::INFINITY, f64::min);
+        is(
+            &written(text.split(": ").last().unwrap())[0],
+            100.0 * least,
+            &text,
+        );
+        let (text, said) = of(&correlation_plot(&outcome));
+        let known = |(i, j): (usize, usize)| Some((outcome.correlation[i][j]?, i, j));
+        let pairs = (0..outcome.parameters.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+        if let Some((r, i, j)) = pairs
+            .filter_map(known)
+            .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
+        {
+            for (said, wanted) in said.iter().zip([r, j as f64 + 1.0, i as f64 + 1.0]) {
+                is(said, wanted, &text);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_title_of_a_trace_has_its_distance_from_the_measured_one() {
+    let outcome = named("mixed");
+    for (_, picture) in trace_plots(&outcome) {
+        let text = sentence(&picture, &outcome);
+        let rows = &picture.table.rows;
+        let off = |column: usize| {
+            let square = |row: &Vec<String>| (numbers(&row[column]) - numbers(&row[1])).powi(2);
+            (rows.iter().map(square).sum::<f64>() / rows.len() as f64).sqrt()
+        };
+        let said = written(&text);
+        // The cells are rounded.
+        assert!(
+            (number(&said[0]) - off(3)).abs() < 0.02,
+            "{} {}: {text}",
+            said[0],
+            off(3)
+        );
+        assert!(
+            (number(&said[1]) - off(4)).abs() < 0.02,
+            "{} {}: {text}",
+            said[1],
+            off(4)
+        );
+    }
 }

@@ -21,6 +21,7 @@ fn title(svg: &str) -> String {
 fn the_strip_says_whether_the_sign_is_sure() {
     let row = |drawn: Option<[f64; 3]>| Against {
         baseline: "five <gears>".to_owned(),
+        title: "a car with <gears> (not like for like)".to_owned(),
         files: Some(6.3),
         drawn,
         published: Some([5.0, 5.0]),

@@ -7,6 +7,7 @@
     reason = "helpers and tables of tests"
 )]
 
+mod ambient;
 mod bars;
 mod calibration;
 mod decision;

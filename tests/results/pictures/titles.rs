@@ -12,22 +12,16 @@ use cvtcycle::report::charts::{
 
 use super::svg_checks::{check, numbers};
 use crate::fixtures::{history, phases, rows, run};
+use crate::titles::{number, written};
 
-/// The title with plain spaces, without the subject after it.
-pub fn title(picture: &Picture) -> String {
-    let title = picture.svg.split("<title>").nth(1).unwrap();
-    let title = title.split("</title>").next().unwrap();
-    title.replace(['\u{a0}', '\u{202f}'], " ")
+/// The title, without the subject after it where it is asked for.
+fn title(picture: &Picture) -> String {
+    crate::titles::title(&picture.svg)
 }
 
 /// The numbers of a text.
 fn numbers_in(text: &str) -> Vec<f64> {
-    let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '\u{2212}';
-    let words = text
-        .split(|c| !is_number(c))
-        .map(|word| word.trim_end_matches('.'));
-    let found = words.map(numbers);
-    found.filter(|x| x.is_finite()).collect()
+    written(text).iter().map(|text| number(text)).collect()
 }
 
 /// The sum of a column over rows.
@@ -149,15 +143,15 @@ fn the_stretch_of_most_fuel_is_that_of_the_cells() {
 fn energy() -> CarEnergy {
     CarEnergy {
         subject: "car".to_owned(),
-        fuel_kj: 27_000.0,
-        exhaust_kj: 9000.0,
-        engine_heat_kj: 12_500.0,
-        accessories_kj: 562.0,
-        kinetic_kj: 0.8,
-        losses_kj: vec![(Component::Pump, 1700.0), (Component::BeltBand, 500.0)],
-        brake_kj: 300.0,
-        wheels_kj: 2437.2,
-        largest_kj: [54_000.0, 0.0],
+        fuel_kj_km: 27_000.0,
+        exhaust_kj_km: 9000.0,
+        engine_heat_kj_km: 12_500.0,
+        accessories_kj_km: 562.0,
+        kinetic_kj_km: 0.8,
+        losses_kj_km: vec![(Component::Pump, 1700.0), (Component::BeltBand, 500.0)],
+        brake_kj_km: 300.0,
+        wheels_kj_km: 2437.2,
+        largest_kj_km: [54_000.0, 0.0],
     }
 }
 
@@ -189,7 +183,7 @@ fn shares_of_a_flow_are_those_of_its_table() {
 fn the_largest_losses_of_a_title_have_their_share() {
     let car = CarLosses {
         name: "car".to_owned(),
-        losses_kj: energy().losses_kj,
+        losses_kj: energy().losses_kj_km,
         distance_km: 11.0,
     };
     let picture = loss_by_component(&[car], "conditions");
@@ -232,7 +226,7 @@ fn differences_of_a_title_are_those_of_the_table() {
     check(&picture);
     let said = title(&picture);
     assert!(
-        said.starts_with("B burns 100 kJ less than A, most of it belt band (\u{2212}80.0 kJ)"),
+        said.starts_with("B burns 100 kJ less than A, most of it belt band (-80.0 kJ)"),
         "{said}"
     );
     assert!(picture.svg.contains("2 others"), "small terms are one bar");

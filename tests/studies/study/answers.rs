@@ -368,11 +368,11 @@ fn another_confidence_moves_the_ends_alone() {
     };
     assert!(spearman(&json80) < spearman(&json));
     assert!(
-        flat(&usual).contains("(95 % interval") && flat(&usual).contains("32 draws are"),
+        flat(&usual).contains("(95 % interval") && flat(&usual).contains("32 runs are"),
         "{usual}"
     );
     assert!(
-        flat(&given).contains("(80 % interval") && flat(&given).contains("80 % of the draws are"),
+        flat(&given).contains("(80 % interval") && flat(&given).contains("80 % of the runs are"),
         "{given}"
     );
     assert!(table[0].contains_key("mean_low95") && table80[0].contains_key("mean_low80"));

@@ -2,8 +2,8 @@
 
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::study::{
-    DistributionSeries, EffectFactor, Shown, convergence_plot, distribution_plot, effects_plot,
-    rank_plot, sobol_plot, tornado_plot,
+    DistributionSeries, EffectFactor, KnownValue, Shown, convergence_plot, distribution_plot,
+    effects_plot, rank_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle::study::statistics::{
     Blocks, Bootstrap, Confidence, Groups, TornadoInput, group_means, rank_sensitivity,
@@ -243,7 +243,11 @@ fn distributions(scale: f64) -> Vec<(String, Picture)> {
     let draw = |name: &str, differences: bool, list: &[(&str, &[f64])]| {
         let series: Vec<DistributionSeries> = list
             .iter()
-            .map(|&(name, values)| DistributionSeries { name, values })
+            .map(|&(name, values)| DistributionSeries {
+                name,
+                values,
+                known: KnownValue::default(),
+            })
             .collect();
         let Ok(picture) = distribution_plot(&shown(scale), &series, differences);
         (name.to_owned(), picture)
@@ -291,6 +295,7 @@ fn odd() -> Vec<(String, Picture)> {
             .map(|&values| DistributionSeries {
                 name: "car",
                 values,
+                known: KnownValue::default(),
             })
             .collect();
         for differences in [false, true] {

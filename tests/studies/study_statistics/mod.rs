@@ -12,6 +12,7 @@ mod effects;
 mod information;
 mod pictures;
 mod sobol;
+mod titles;
 
 use cvtcycle::study::statistics::{Blocks, Confidence};
 use rand::{RngExt, SeedableRng};

@@ -3,7 +3,7 @@
 use super::drawn::{every_plot, names, sample};
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::study::{
-    DistributionSeries, Shown, distribution_plot, sobol_plot, tornado_plot,
+    DistributionSeries, KnownValue, Shown, distribution_plot, sobol_plot, tornado_plot,
 };
 use cvtcycle::study::statistics::{Estimate, FactorIndices, SobolIndices, TornadoInput, tornado};
 use roxmltree::{Document, Node};
@@ -395,53 +395,11 @@ fn a_tornado_says_where_low_and_high_lead() {
     assert_eq!((last.0.as_str(), last.1), ("Swing", "L/100 km"));
 }
 
-/// What a histogram holds, in percent, and the width of its first bin: the area under its outline, whose steps are relative, h along and v
-/// down. Bins are equally wide.
-fn area(document: &Document) -> f64 {
-    let outline = class(document, "series")
-        .next()
-        .and_then(|n| n.attribute("d"))
-        .unwrap();
-    let (start, mut rest) = outline
-        .trim_start_matches('M')
-        .split_at(outline.find(['h', 'v']).unwrap() - 1);
-    let base: Vec<f64> = start.split(' ').map(|n| n.parse().unwrap()).collect();
-    let (mut x, mut y, mut area) = (0.0, 0.0, 0.0);
-    while !rest.is_empty() {
-        let end = rest[1..].find(['h', 'v']).map_or(rest.len(), |at| at + 1);
-        let step: f64 = rest[1..end].parse().unwrap();
-        if rest.starts_with('h') {
-            area -= step * y;
-            x += step;
-        } else {
-            y += step;
-        }
-        rest = &rest[end..];
-    }
-    let plot = class(document, "plot").next().unwrap();
-    assert!(
-        (base[0] - number(plot, "x")).abs() < 3.0
-            && (x - number(plot, "width")).abs() < 3.0
-            && y.abs() < 1.0
-    );
-    let ticks: Vec<(f64, f64)> = document
-        .descendants()
-        .filter(|n| {
-            n.tag_name().name() == "text"
-                && n.attribute("text-anchor") == Some("end")
-                && n.attribute("class").is_none()
-        })
-        .filter_map(|n| Some((number(n, "y"), n.text()?.trim().parse::<f64>().ok()?)))
-        .take(2)
-        .collect();
-    let percent = (ticks[0].0 - ticks[1].0).abs() / (ticks[1].1 - ticks[0].1).abs();
-    area / percent / x
-}
-
-fn lone(values: &[f64]) -> Picture {
+fn lone(values: &[f64], known: KnownValue) -> Picture {
     let series = [DistributionSeries {
         name: "cvt - manual",
         values,
+        known,
     }];
     let shown = Shown {
         output: "Fuel, total",
@@ -453,40 +411,80 @@ fn lone(values: &[f64]) -> Picture {
     picture
 }
 
+/// Truth: quantiles of the values by hand. A hundred dots of a thousand values are those of 0.5, 1.5 ... 99.5 %.
 #[test]
-fn a_histogram_holds_every_value_once() {
-    // Tens of equally many values, the largest on the last edge; zero is on the axis and no value at it. Bins are 1 wide, one
-    // below zero and 10 above.
-    let steps: Vec<f64> = (0..1000).map(|i| f64::from(i % 10) + 1.0).collect();
-    let picture = lone(&steps);
-    let total = 11.0 * area(&Document::parse(&picture.svg).unwrap());
-    assert!((total - 100.0).abs() < 1.5, "{total} %");
-    let in_bin: f64 = picture
+fn dots_are_equal_shares_of_the_values() {
+    let values: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0 - 2.0).collect();
+    let picture = lone(&values, KnownValue::default());
+    let document = Document::parse(&picture.svg).unwrap();
+    assert_eq!(class(&document, "dot").count(), 100);
+    let rows = picture
         .table
         .rows
         .iter()
-        .map(|row| row[3].parse::<f64>().unwrap())
-        .sum();
-    assert!(
-        (in_bin - 100.0).abs() < 0.6
-            && picture.table.rows.len() == 11
-            && picture.table.rows[10][4] == "100.0",
-        "{in_bin} %"
+        .filter(|row| numbers(&row[1]).is_finite());
+    for (k, row) in rows.enumerate() {
+        let share = k as f64 + 0.5;
+        assert!((numbers(&row[1]) - share).abs() < 0.051, "{row:?}");
+        assert!(
+            (numbers(&row[2]) - (share / 10.0 - 2.0)).abs() < 0.02,
+            "{row:?}"
+        );
+    }
+    // Dots stand in their place: none is farther from its value than half of a stack, and none leaves the row.
+    let plot = class(&document, "plot").next().unwrap();
+    let (top, bottom) = (
+        number(plot, "y"),
+        number(plot, "y") + number(plot, "height"),
     );
+    let places: Vec<(f64, f64)> = class(&document, "dot")
+        .map(|dot| (number(dot, "cx"), number(dot, "cy")))
+        .collect();
+    assert!(places.iter().all(|(_, y)| *y > top && *y < bottom));
+    assert!(places.windows(2).all(|pair| pair[0].0 <= pair[1].0));
+    let (first, last) = (places[0].0, places[99].0);
+    for (k, (x, _)) in places.iter().enumerate() {
+        let own = first + (last - first) * k as f64 / 99.0;
+        assert!(
+            (x - own).abs() < number(plot, "width") / 55.0,
+            "{k}: {x} {own}"
+        );
+    }
+}
+
+fn numbers(cell: &str) -> f64 {
+    crate::titles::number(cell)
 }
 
 #[test]
-fn the_share_above_zero_is_written_and_zero_marked() {
+fn the_share_above_zero_is_written_and_what_is_below_shaded() {
     let values = sample(4, 777, 0.1, 0.4);
     let above = values.iter().filter(|x| **x > 0.0).count();
     let mut gaps = values.clone();
     gaps.push(f64::NAN);
-    let svg = lone(&gaps).svg;
+    let known = KnownValue {
+        nominal: Some(0.31),
+        published: Some([0.4, 0.6]),
+    };
+    let Picture { svg, table } = lone(&gaps, known);
     assert!(
-        svg.contains(&format!("Above zero in {above} of 777 pairs")) && svg.contains("1 missing")
+        svg.contains(&format!("is above zero in {above} of 777 pairs"))
+            && svg.contains("1 missing")
     );
     assert!(svg.contains("Difference: Fuel, total [L/100 km]"));
     let document = Document::parse(&svg).unwrap();
-    assert_eq!(class(&document, "zero").count(), 2);
-    assert_eq!(class(&document, "mark").count(), 3);
+    let count = |name: &str| class(&document, name).count();
+    assert_eq!([count("below"), count("mark"), count("printed")], [1, 2, 1]);
+    let cell = |what: &str| {
+        let own = table.rows.iter().find(|row| row[1] == what);
+        numbers(&own.unwrap()[2])
+    };
+    assert!(
+        (cell("nominal values") - 0.31).abs() < 0.006 && (cell("published") - 0.5).abs() < 0.006
+    );
+    let always = lone(&[1.0, 2.0, 3.0], KnownValue::default());
+    assert!(
+        !always.svg.contains("class=\"below\""),
+        "nothing lies below zero"
+    );
 }

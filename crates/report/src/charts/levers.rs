@@ -11,14 +11,14 @@ use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
 /// Right edge of the plot with room for the counts, left edge of what lies below it, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 96.0;
 const MARGIN: f64 = 12.0;
-const ROW: f64 = 22.0;
+const ROW: f64 = 20.0;
 /// Half of the height of the bar of a range, radius of its median, pixels.
 const HALF: f64 = 5.0;
 const RADIUS: f64 = 4.5;
 /// Levers of a combination that are named below the figure; tables have all.
-const NAMED: usize = 4;
+const NAMED: usize = 3;
 /// What the marks are.
-const MARKS: [&str; 2] = ["Lever", "Levers together"];
+const MARKS: [&str; 2] = ["One change", "Changes together"];
 
 /// For each lever of a car at one ambient temperature the range of its draws and their median; combinations last.
 pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
@@ -38,6 +38,14 @@ pub fn saves(row: &LeverRow) -> bool {
     !row.does_not_work() && row.fuel_percent.value < 0.0
 }
 
+/// Name of a lever; of a combination that has none of its own how many there are in it.
+pub fn lever_title(row: &LeverRow) -> String {
+    match row.of.title.as_str() {
+        "combination" => format!("combination of {} changes", row.of.members.len()),
+        title => title.to_owned(),
+    }
+}
+
 fn strip(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Picture {
     let ends = rows.iter().flat_map(|row| {
         let quantiles = [row.low_percent, row.fuel_percent, row.high_percent];
@@ -45,11 +53,12 @@ fn strip(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Pictur
     });
     let ends = ends.filter(|x| x.is_finite()).chain([0.0]);
     let x = Axis::round("Change of the fuel [%]", ends, 8);
-    let left = rows_left(rows.iter().map(|row| row.of.title.as_str()), 11.0);
+    let titles: Vec<String> = rows.iter().map(|row| lever_title(row)).collect();
+    let left = rows_left(titles.iter().map(String::as_str), 11.0);
     let panel = rows_panel((left, 58.0), RIGHT, rows.len().max(2), ROW, x);
     let mut panel = panel.no_data(rows.is_empty());
     for (k, row) in rows.iter().enumerate() {
-        let name = Label::new(at(0.0, 0.0), row.of.title.as_str());
+        let name = Label::new(at(0.0, 0.0), titles[k].as_str());
         panel.row_name(k, name.class("row").row(k));
         let fill = Fill::car(usize::from(row.is_combination()));
         if answer.plan.is_some() && row.n > 0 {
@@ -91,13 +100,13 @@ fn title(block: &LeverBlock) -> String {
     single.truncate(1);
     let saved = |row: &LeverRow| -row.fuel_percent.value;
     let Some(best) = single.first() else {
-        return "No lever saves fuel".to_owned();
+        return "No change of the design saves fuel".to_owned();
     };
     let name = capital_first(&best.of.title);
     let alone = format!("{name} saves most: {:.1} % of the fuel", saved(best));
     match together.first() {
         None => alone,
-        Some(all) => format!("{alone}; levers together {:.1} %", saved(all)),
+        Some(all) => format!("{alone}; the combination of changes {:.1} %", saved(all)),
     }
 }
 
@@ -105,7 +114,7 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
     let marks = match answer.plan {
         None => "Points: the car as its file has it; nothing is varied.".to_owned(),
         Some(_) => format!(
-            "Bars: {} % of {} runs with uncertain values varied, with and without the lever. Points: medians. Right: runs that it saves in.",
+            "Bars: {} % of {} runs, all uncertain values varied. Points: medians. Right: runs in which it saves fuel.",
             answer.confidence.draws_percent(),
             answer.draws_done
         ),
@@ -122,7 +131,7 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
             0 => String::new(),
             n => format!("; and {n} more"),
         };
-        let name = capital_first(&row.of.title);
+        let name = capital_first(&lever_title(row));
         format!("{name}: {}{more}.", shown.join("; "))
     });
     [marks].into_iter().chain(together).collect()
@@ -142,9 +151,9 @@ fn table(answer: &LeverAnswer, rows: &[&LeverRow]) -> PictureTable {
     let [low, high] = answer
         .confidence
         .ends()
-        .map(|p| format!("{:.0} % of the varied runs below", 100.0 * p));
+        .map(|p| format!("{:.0} % of the runs below", 100.0 * p));
     let columns = [
-        ("Lever".to_owned(), ""),
+        ("Change".to_owned(), ""),
         ("Median".to_owned(), "%"),
         (low, "%"),
         (high, "%"),
@@ -157,7 +166,7 @@ fn table(answer: &LeverAnswer, rows: &[&LeverRow]) -> PictureTable {
             Some(_) => [row.low_percent, row.high_percent].map(|q| of(q.value)),
             None => [of(f64::NAN), of(f64::NAN)],
         };
-        let cells = [row.of.title.clone(), of(row.fuel_percent.value)];
+        let cells = [lever_title(row), of(row.fuel_percent.value)];
         table.push(cells.into_iter().chain(ends).chain([counted(answer, row)]));
     }
     table

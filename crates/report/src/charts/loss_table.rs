@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::engine::{self, Axis, BELOW, Chart, Entry, Fill, LEFT, PLOT_LEFT, Side, grid};
-use super::grids::{MapFigure, map_figure};
+use super::engine::{self, Axis, Chart, Entry, Fill, PLOT_LEFT, Side, WIDTH, grid};
+use super::grids::{MapFigure, map_figure, panels_left_of};
 use super::lines::{Look, stack_layers};
 use super::picture::PictureTable;
 use crate::number::{capital_first, grouped};
@@ -157,32 +157,29 @@ fn span(what: &str, values: impl Iterator<Item = f64>) -> String {
     match engine::range(values) {
         Some((low, high)) => {
             let [low, high] = [low, high].map(|nm| grouped(nm, 2));
+            if low == high {
+                return format!("{what} {low} Nm at every point");
+            }
             format!("{what} {low} to {high} Nm")
         }
         None => format!("{what} what is not known"),
     }
 }
 
-/// Sizes of a lone panel and of one of several, pixels.
-const SIZES: [(f64, f64); 2] = [(600.0, 400.0), (290.0, 220.0)];
 const TOP: f64 = 58.0;
 /// Room above a panel for its title, pixels.
 const ABOVE: f64 = 24.0;
-/// Width of the legend, pixels.
-const STRIP: f64 = 190.0;
+/// Width of the legend next to a lone panel, and room right of several, pixels; their legend lies below them.
+const STRIPS: [f64; 2] = [206.0, 16.0];
 
 /// All components stacked over one axis.
 fn stack(plan: &LossTable, layout: &Layout) -> String {
     let parts = plan.components();
     let several = layout.panels.len() > 1;
-    let size = SIZES[usize::from(several)];
-    let columns = match layout.panels.len() {
-        count if count > 4 => 3,
-        count => count.clamp(1, 2),
-    };
+    let strip = STRIPS[usize::from(several)];
+    let (columns, size, pitch) = panels_left_of(strip, layout.panels.len());
     let titled = layout.panels.iter().any(|panel| !panel.title.is_empty());
     let top = TOP + if titled { ABOVE } else { 0.0 };
-    let pitch = (size.0 + LEFT + 20.0, size.1 + ABOVE + BELOW + 8.0);
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
     let loss = |row: &LossRow, part: Component| row.answer.part_nm(part);
     let sum = |column: &Vec<&LossRow>| {
@@ -207,24 +204,21 @@ fn stack(plan: &LossTable, layout: &Layout) -> String {
     // Listed from the top, as they lie in the stack.
     let entries = parts.iter().rev();
     let entries = entries.map(|part| Entry::fill(Fill::component(*part), part.title()));
-    let edge = place(columns - 1).right;
-    let side = Side {
-        corner: (edge + 16.0, top),
-        width: STRIP - 8.0,
-        entries: entries.collect(),
-        ..Side::default()
-    };
     let titles: Vec<&str> = parts.iter().map(|part| part.title()).collect();
     let all = layout.panels.iter().flat_map(|panel| &panel.rows).map(sum);
-    Chart::new(
-        span("The transmission loses", all),
-        &layout.subject,
-        PLOT_LEFT,
-    )
-    .lead(format!("Stacked from the bottom: {}", titles.join(", ")))
-    .width(edge + STRIP + 16.0)
-    .panels(layout.panels.iter().enumerate().map(panel))
-    .side(side)
-    .picture(PictureTable::default())
-    .svg
+    let title = span("The transmission loses", all);
+    let chart = Chart::new(title, &layout.subject, PLOT_LEFT)
+        .lead(format!("Stacked from the bottom: {}", titles.join(", ")))
+        .panels(layout.panels.iter().enumerate().map(panel));
+    let chart = if several {
+        chart.legend((PLOT_LEFT, WIDTH - PLOT_LEFT - 20.0), entries)
+    } else {
+        chart.side(Side {
+            corner: (place(0).right + 16.0, top),
+            width: strip - 24.0,
+            entries: entries.collect(),
+            ..Side::default()
+        })
+    };
+    chart.picture(PictureTable::default()).svg
 }

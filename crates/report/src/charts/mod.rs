@@ -2,7 +2,7 @@
 //!
 //! Every picture is a function from plain numbers to a [`Picture`]: it fills in a chart of the `engine`, which draws it.
 
-pub(crate) mod ambient;
+pub mod ambient;
 pub mod calibration;
 pub mod decision;
 mod engine;
@@ -20,7 +20,7 @@ pub mod study;
 mod variator_curves;
 
 pub use engine::cell;
-pub use levers::{foremost_levers, lever_strip, saves};
+pub use levers::{foremost_levers, lever_strip, lever_title, saves};
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
 pub use price::price_bars;

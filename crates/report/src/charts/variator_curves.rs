@@ -168,9 +168,9 @@ fn radius_title(tests: &[&[Curve]]) -> String {
     let middle = tests.first().and_then(|test| test.get(test.len() / 2));
     match middle.and_then(radius_change) {
         Some((nm, change)) => format!(
-            "Slip makes the primary's radius seem {} % at {} Nm; the sheaves do not move",
-            signed(grouped(change, 1), change),
-            grouped(nm, 0)
+            "At {} Nm slip changes the primary's radius, as read from the speeds, by {} %; the sheaves do not move",
+            grouped(nm, 0),
+            signed(grouped(change, 1), change)
         ),
         None => "Running radii, geometric and from speeds".to_owned(),
     }

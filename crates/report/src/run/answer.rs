@@ -6,8 +6,8 @@ use super::super::results::{RunResults, StudyResults};
 use super::super::{study, study_answers, validation};
 use super::{Car, conditions_line, cycle_title, doubts};
 use crate::charts::decision::{Against, against, answer_strip, level};
-use crate::charts::{foremost_levers, saves};
-use cvtcycle_output::summary::{Comparison, RunSummary, Summary};
+use crate::charts::{foremost_levers, lever_title, saves};
+use cvtcycle_output::summary::{Comparison, Contradiction, RunSummary, Summary};
 use cvtcycle_study::attribute;
 use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
 use cvtcycle_study::words::decimals;
@@ -45,18 +45,18 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     strip(&mut section, summary, cycle);
     for line in contradictions(&summary.labelled()) {
         // "Soak" is a word of test cells.
-        section.alert(line.replace("(soak, ", "(cold start, "));
+        section.alert(line.replace("soak, ", "cold start, "));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
         section.text(price);
     }
     match options {
         Some((answer, block)) => {
-            let caption = format!("Options: change of the fuel of {} by each lever, the foremost.", block.vehicle);
+            let caption = format!("Options: what the most effective changes of the design (levers) do to the fuel of {}.", block.vehicle);
             section.figure("options", caption, foremost_levers(answer, block, OPTIONS.0));
         }
         None => section.text(
-            "Options: not computed for this case. `cvtcycle levers` drives changes of the design with the same draws of the uncertain values.",
+            "Options: not computed for this case. `cvtcycle levers` drives changes of the design, with the uncertain values varied.",
         ),
     }
     let next = found
@@ -83,14 +83,13 @@ pub(crate) fn brief(title: &str) -> &str {
 }
 
 fn question(summary: &Summary, cycle: &str) -> String {
-    let subject = summary.runs.first().map_or("", |run| run.title.as_str());
+    let subject = summary.runs.first().map_or("car", RunSummary::label);
     let conditions = conditions_line(summary);
-    let against = summary
-        .runs
-        .get(1)
-        .map_or_else(String::new, |run| format!(" against {}", run.title));
+    let against = summary.runs.get(1).map_or_else(String::new, |run| {
+        format!(", compared with the {}", run.label())
+    });
     format!(
-        "What does {subject} use on {cycle}, {conditions}{against}, what do the losses of its transmission cost, and what is worth changing?"
+        "How much fuel does the {subject} use on the cycle {cycle} ({conditions}){against}? What do the losses of its transmission cost, and which changes are worthwhile?"
     )
 }
 
@@ -109,52 +108,55 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         Some(_) => " (weighted)",
         None => "",
     };
-    let text = format!(
-        "{} uses {fuel}{weighted} on {cycle}, {}",
-        subject.label(),
-        conditions_line(summary)
-    );
+    let text = format!("The {} uses {fuel}{weighted} on {cycle}", subject.label());
     let first = summary.comparison.first().zip(summary.runs.get(1));
     let Some((percent, comparison, baseline)) =
         first.and_then(|(of, baseline)| Some((of.fuel_percent?, of, baseline)))
     else {
         return text + ".";
     };
-    let difference = against(percent, interval(comparison), baseline.label());
+    let other = format!("the {}", baseline.label());
+    let difference = against(percent, interval(comparison), &other);
     let kind = likeness(comparison);
     let known = match &comparison.interval {
         Some(of) => {
             let ends = level([of.percent[0], of.percent[2]]);
-            format!("{kind}{ends} in 90 % of {} varied runs", of.draws)
+            format!(
+                "With all uncertain values varied, 90 % of {} runs give {ends}",
+                of.draws
+            )
         }
-        None => format!("{kind}no interval"),
+        None => "How sure that is, is not known".to_owned(),
     };
-    format!("{text}: {difference} ({known}).")
+    format!("{text}: {difference}{kind}. {known}.")
 }
 
-/// "not like for like; ", where that is so.
+/// " (not like for like)", where that is so.
 fn likeness(comparison: &Comparison) -> &'static str {
     match comparison.differences.is_empty() {
         true => "",
-        false => "not like for like; ",
+        false => " (not like for like)",
     }
 }
 
 /// The lever that saves most, in a sentence.
 fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     let row = single(block).next()?;
-    let (name, saved) = (capital_first(&row.of.title), -row.fuel_percent.value);
+    let (name, saved) = (&row.of.title, -row.fuel_percent.value);
     let ends = [-row.high_percent.value, -row.low_percent.value];
     Some(match answer.plan {
         Some(_) => {
             let digits = decimals(ends);
             let [low, high] = ends.map(|x| grouped(x, digits));
             format!(
-                "{name} saves {} % ({low} to {high} %).",
+                "Best single change: {name}, which saves {} % ({low} to {high} %).",
                 grouped(saved, digits)
             )
         }
-        None => format!("{name} saves {} %.", grouped(saved, 1)),
+        None => format!(
+            "Best single change: {name}, which saves {} %.",
+            grouped(saved, 1)
+        ),
     })
 }
 
@@ -172,17 +174,12 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     if baselines.is_empty() {
         return;
     }
-    let row = |(baseline, comparison): (&RunSummary, &Comparison)| {
-        let mut contradicted = summary.contradicted.iter();
-        let own = contradicted.find(|of| {
-            of.phase.is_none() && of.baseline.as_deref() == Some(baseline.vehicle.as_str())
-        });
-        Against {
-            baseline: baseline.label().to_owned(),
-            files: comparison.fuel_percent,
-            drawn: comparison.interval.as_ref().map(|of| of.percent),
-            published: own.and_then(|of| of.between),
-        }
+    let row = |(baseline, comparison): (&RunSummary, &Comparison)| Against {
+        baseline: baseline.label().to_owned(),
+        title: format!("{}{}", baseline.title, likeness(comparison)),
+        files: comparison.fuel_percent,
+        drawn: comparison.interval.as_ref().map(|of| of.percent),
+        published: published(summary, &baseline.vehicle),
     };
     let rows: Vec<Against> = baselines.iter().zip(&summary.comparison).map(row).collect();
     let conditions = format!("{cycle}, {}", conditions_line(summary));
@@ -192,6 +189,13 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
         subject.label()
     );
     section.figure("answer", caption, picture);
+}
+
+/// The published range of the difference to a baseline over the whole cycle, where it contradicts that of the run.
+pub(super) fn published(summary: &Summary, baseline: &str) -> Option<[f64; 2]> {
+    let mut contradicted = summary.contradicted.iter();
+    let own = |of: &&Contradiction| of.phase.is_none() && of.baseline.as_deref() == Some(baseline);
+    contradicted.find(own)?.between
 }
 
 fn checks(summary: &Summary) -> Vec<String> {
@@ -212,28 +216,41 @@ fn checks(summary: &Summary) -> Vec<String> {
 }
 
 fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
-    let mut list: Vec<String> = cars.first().and_then(doubts::cold).into_iter().collect();
+    let mut list: Vec<String> = doubts::cold(cars.get(..1).unwrap_or_default())
+        .into_iter()
+        .collect();
     list.extend(found.validation.as_ref().map(validation::differing));
     let now = cars.first().and_then(|car| car.run.min_clamp_safety);
     let block = options.iter().map(|(_, block)| block);
-    for row in block.flat_map(|block| single(block).take(OPTIONS.1)) {
-        let worst = row.worst("min_clamp_safety");
-        let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
-            let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
-            format!("its least clamp safety falls from {now} to {worst} in the worst varied run")
-        });
-        let needs = row.of.needs.trim_end_matches('.');
-        let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
-        let both: Vec<String> = falls.into_iter().chain(needs).collect();
-        if !both.is_empty() {
-            let title = capital_first(&row.of.title);
-            list.push(format!("{title}: {}.", both.join("; ")));
-        }
-    }
+    list.extend(block.flat_map(asked).filter_map(|row| risk(row, now)));
     if list.is_empty() {
         list.push("No validation is in this report, and no lever.".to_owned());
     }
     list
+}
+
+/// The changes that are asked for: the foremost by themselves, and the combinations.
+fn asked(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
+    let together = block.rows.iter();
+    let together = together.filter(|row| row.is_combination() && saves(row));
+    single(block).take(OPTIONS.1).chain(together)
+}
+
+/// What a change takes: safety against belt slip, and what has to be built or proven.
+fn risk(row: &LeverRow, now: Option<f64>) -> Option<String> {
+    let worst = row.worst("min_clamp_safety");
+    let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
+        let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
+        format!("the least clamping safety falls from {now} to {worst} in the worst run")
+    });
+    let needs = match row.is_combination() {
+        true => "all that its changes need",
+        false => row.of.needs.trim_end_matches('.'),
+    };
+    let needs = (!needs.is_empty()).then(|| format!("it needs {needs}"));
+    let both: Vec<String> = falls.into_iter().chain(needs).collect();
+    let title = capital_first(&lever_title(row));
+    (!both.is_empty()).then(|| format!("{title}: {}.", both.join("; ")))
 }
 
 fn no_test() -> String {
@@ -254,22 +271,17 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
         test => test.to_owned(),
     };
     let text = format!(
-        "{}. With {name} known, the standard deviation of the difference falls from {sd} to {left} points.",
+        "{}. With the {name} known, the standard deviation of the fuel difference falls from {sd} to {left} percentage points.",
         capital_first(&test)
     );
-    Some((text, format!("test: {name}")))
+    Some((text, format!("Measure: {name}")))
 }
 
 fn decisions(options: &Options, test: Option<String>) -> Vec<String> {
-    let block = options.iter().map(|(_, block)| block);
-    let levers = block.flat_map(|block| single(block).take(OPTIONS.1));
-    let levers = levers.map(|row| format!("concept: {}", row.of.title));
-    let blocks = options.iter().flat_map(|(_, block)| &block.rows);
-    let together = blocks.filter(|row| row.is_combination() && saves(row));
-    let together = together.map(|row| format!("concept: {}", row.of.title));
-    let levers = levers.chain(together);
-    let asked = levers.chain(test).chain(["none of these".to_owned()]);
-    let mut list: Vec<String> = asked.map(|text| format!("\u{2610} {text}")).collect();
+    let levers = options.iter().flat_map(|(_, block)| asked(block));
+    let levers = levers.map(|row| format!("Develop: {}", lever_title(row)));
+    let boxes = levers.chain(test).chain(["None of these".to_owned()]);
+    let mut list: Vec<String> = boxes.map(|text| format!("\u{2610} {text}")).collect();
     list.push("Reviewed ________________".to_owned());
     list.push("Date ____________________".to_owned());
     list

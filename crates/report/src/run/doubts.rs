@@ -139,17 +139,28 @@ fn ends(cars: &[Car]) -> String {
 /// Temperature below which the thesis measured trends only, degC.
 const MEASURED_FROM_DEGC: f64 = 25.0;
 
-/// Share of the time in which the transmission oil is below the measured temperatures, in a sentence, if there is any.
-pub(super) fn cold(car: &Car) -> Option<String> {
-    let history = car.history?;
-    let degc = history.column("transmission_sump_degc").iter();
-    let steps = degc.zip(history.column("dt_s"));
-    let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
-    let cold: f64 = cold.map(|(_, dt)| dt).sum();
-    let share = grouped(100.0 * cold / car.run.duration_s, 0);
-    let (name, from) = (car.run.label(), super::degc(MEASURED_FROM_DEGC));
-    (cold > 0.0).then(|| {
-        format!("For {share} % of the cycle the transmission oil of {name} is colder than any measurement of losses ({from}): there they are extrapolated.")
+/// Share of the time in which the transmission oil of each car is below the measured temperatures, in a sentence, if there is any.
+pub(super) fn cold(cars: &[Car]) -> Option<String> {
+    let share = |car: &Car| {
+        let history = car.history?;
+        let degc = history.column("transmission_sump_degc").iter();
+        let steps = degc.zip(history.column("dt_s"));
+        let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
+        let cold: f64 = cold.map(|(_, dt)| dt).sum();
+        let share = grouped(100.0 * cold / car.run.duration_s, 0);
+        let of = match cars.len() {
+            1 => String::new(),
+            _ => format!(" ({})", car.run.label()),
+        };
+        (cold > 0.0).then(|| format!("{share} %{of}"))
+    };
+    let shares: Vec<String> = cars.iter().filter_map(share).collect();
+    let from = super::degc(MEASURED_FROM_DEGC);
+    (!shares.is_empty()).then(|| {
+        format!(
+            "For {} of the cycle the transmission oil is colder than {from}, the coldest at which losses were measured: there they are extrapolated.",
+            list_of(&shares)
+        )
     })
 }
 
@@ -168,7 +179,7 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     list.extend(
         unlike.map(|of| format!("The comparison with {} is {}.", of.baseline, of.likeness)),
     );
-    list.extend(cars.iter().filter_map(cold));
+    list.extend(cold(cars));
     list.extend(super::values::doubt(found, cars));
     let has_interval = |study: &&StudyResults| {
         study.outline.plan.design.is_sampled()

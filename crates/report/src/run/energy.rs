@@ -7,20 +7,23 @@ use crate::charts::Picture;
 use crate::charts::decision::PerKm;
 use crate::charts::figures::{CarEnergy, TERMS, Term, energy_flow, transmission_flow};
 
-/// A car's ledger as the figures want it, kJ.
+/// A car's ledger as the figures want it, kJ/km.
 fn car_energy(car: &Car) -> CarEnergy {
-    let term = |name: &str| car.run.term_kj(name).unwrap_or(f64::NAN);
+    let per_km = |kj: f64| kj / car.run.distance_km;
+    let term = |name: &str| per_km(car.run.term_kj(name).unwrap_or(f64::NAN));
+    let electric = per_km(car.run.term_kj("electric").unwrap_or(0.0));
+    let losses = car.losses_kj().into_iter();
     CarEnergy {
         subject: car.run.label().to_owned(),
-        fuel_kj: car.run.fuel_energy_kj,
-        exhaust_kj: term("exhaust"),
-        engine_heat_kj: term("engine_heat"),
-        accessories_kj: term("accessories") + car.run.term_kj("electric").unwrap_or(0.0),
-        kinetic_kj: term("kinetic"),
-        losses_kj: car.losses_kj(),
-        brake_kj: term("brake"),
-        wheels_kj: term("wheels"),
-        largest_kj: [0.0; 2],
+        fuel_kj_km: per_km(car.run.fuel_energy_kj),
+        exhaust_kj_km: term("exhaust"),
+        engine_heat_kj_km: term("engine_heat"),
+        accessories_kj_km: term("accessories") + electric,
+        kinetic_kj_km: term("kinetic"),
+        losses_kj_km: losses.map(|(c, kj)| (c, per_km(kj))).collect(),
+        brake_kj_km: term("brake"),
+        wheels_kj_km: term("wheels"),
+        largest_kj_km: [0.0; 2],
     }
 }
 
@@ -28,9 +31,9 @@ fn car_energy(car: &Car) -> CarEnergy {
 fn energies(cars: &[Car]) -> Vec<CarEnergy> {
     let mut all: Vec<CarEnergy> = cars.iter().map(car_energy).collect();
     let most = |of: fn(&CarEnergy) -> f64| all.iter().map(of).fold(0.0, f64::max);
-    let largest_kj = [most(|car| car.fuel_kj), most(CarEnergy::flywheel_kj)];
+    let largest_kj_km = [most(|car| car.fuel_kj_km), most(CarEnergy::flywheel_kj_km)];
     for car in &mut all {
-        car.largest_kj = largest_kj;
+        car.largest_kj_km = largest_kj_km;
     }
     all
 }
@@ -73,8 +76,8 @@ pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
 pub(super) fn section(cars: &[Car]) -> Section {
     let mut section = Section::new("energy", "Energy from fuel to wheel");
     section.text(
-        "Widths are in proportion to energy over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
-         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun. What the rotating parts keep is drawn with the accessories where it is less than 0.5 % of the fuel.",
+        "Widths are in proportion to the energy per kilometre over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
+         + rotating parts + transmission + brakes + rolling and air. Wheel work is net of overrun. What the rotating parts keep is drawn with the accessories where it is less than 0.5 % of the fuel, and parts of the transmission with less than 0.5 % of the work at the flywheel are drawn as one.",
     );
     let stops = |car: &Car| car.run.term_kj("electric").is_some_and(|kj| kj.abs() > 0.0);
     if cars.iter().any(stops) {

@@ -12,11 +12,12 @@ use super::document::{Document, Section};
 use super::number::{degc, list_of, words};
 use super::results::RunResults;
 use super::{study, study_answers, validation};
+use crate::charts::study::KnownValue;
 use cvtcycle_config::Problem;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
 use cvtcycle_output::record::{CarRecord, Record};
-use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
+use cvtcycle_output::summary::{Comparison, RunSummary, StartWord, Summary};
 
 pub(crate) use answer::{brief, strip};
 pub(super) use conditions::change_table;
@@ -85,7 +86,11 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     ];
     sections.extend(figures::sections(found, &cars));
     for (k, own) in found.studies.iter().enumerate() {
-        let mut section = study::section(own)?;
+        let known = match study_answers::other_case(own, &found.summary) {
+            None => known(&found.summary),
+            Some(_) => Vec::new(),
+        };
+        let mut section = study::section(own, &known)?;
         // Of several studies of a kind the first keeps the plain name.
         let same = |other: &Section| other.id == section.id;
         if sections.iter().any(same) {
@@ -99,6 +104,20 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     sections.push(reproduce::section(found, &cars));
     document.sections = sections;
     Ok(document)
+}
+
+/// Differences to the baselines that no study has: with the nominal values, and published ones.
+fn known(summary: &Summary) -> Vec<(String, KnownValue)> {
+    let baselines = summary.runs.iter().skip(1).zip(&summary.comparison);
+    let of = |(run, comparison): (&RunSummary, &Comparison)| {
+        let known = KnownValue {
+            nominal: comparison.fuel_percent,
+            published: answer::published(summary, &run.vehicle),
+        };
+        // As the labelled answer of a study has it.
+        (run.label().to_owned(), known)
+    };
+    baselines.map(of).collect()
 }
 
 /// Cars that a title names, at most.

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use self::conditions::{conditions, reproduce};
 use crate::charts::decision::information;
+use crate::charts::study::KnownValue;
 use crate::document::{Block, Document, ReportTable, Section};
 use crate::number::{Quantity, degc, grouped, phase, sign, words};
 use crate::results::StudyResults;
@@ -19,15 +20,15 @@ use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::of_hundred;
 use cvtcycle_study::words::decimals;
 
-/// The study as a section of a report.
+/// The study as a section of a report; `known` are numbers of its differences that are none of its runs, by baseline.
 ///
 /// # Errors
 /// A part that cannot be read.
-pub fn section(study: &StudyResults) -> Result<Section, Problem> {
+pub fn section(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<Section, Problem> {
     if study.outline.levers.is_some() {
         return levers::section(study);
     }
-    let mut section = details(study)?;
+    let mut section = details(study, known)?;
     let mut blocks = Vec::new();
     if !study.answer.question.is_empty() {
         blocks.push(Block::Text(study.answer.question.clone()));
@@ -43,7 +44,7 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     if let Some((of, _)) = cause(study) {
         let title = &study.answer.title;
         let caption = format!(
-            "Spread of the difference to the first baseline over the draws of \u{201c}{title}\u{201d}, as it is and with one value known: the next test."
+            "Spread of the difference to the first baseline over the runs of \u{201c}{title}\u{201d}, as it is and with one value known: the next test."
         );
         section.figure("information", caption, information(of, "points", title));
     }
@@ -84,7 +85,7 @@ pub(super) fn unfinished(study: &StudyResults, what: &str) -> Option<Block> {
 }
 
 /// Tables and pictures of a study.
-fn details(study: &StudyResults) -> Result<Section, Problem> {
+fn details(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<Section, Problem> {
     let answer = &study.answer;
     let mut section = match &answer.matrix {
         Some(_) => Section::new("ambient", "Ambient temperatures"),
@@ -101,7 +102,7 @@ fn details(study: &StudyResults) -> Result<Section, Problem> {
         section.table(outputs(study));
     }
     let frame = study.frame()?;
-    for (name, picture) in study_pictures(answer, &frame, &study.warm_ups)? {
+    for (name, picture) in study_pictures(answer, &frame, &study.warm_ups, known)? {
         let caption = caption(&name, study);
         section.figure(name, caption, picture);
     }
@@ -113,7 +114,7 @@ fn caption(name: &str, study: &StudyResults) -> String {
     let (of, level) = (&study.answer.title, study.answer.confidence.percent());
     match name.split('_').next().unwrap_or_default() {
         "distribution" => {
-            format!("How the output is distributed over the samples of \u{201c}{of}\u{201d}.")
+            format!("How the output is distributed over the runs of \u{201c}{of}\u{201d}.")
         }
         "sobol" => format!(
             "Share of the variance that each factor explains, alone and with its interactions, with {level} % intervals."
@@ -327,7 +328,7 @@ pub fn document(study: &StudyResults) -> Result<Document, Problem> {
     let answers = answers(study).into_iter().map(Block::Text);
     first.blocks.extend(alert.into_iter().chain(answers));
     first.text(extent(study));
-    let mut details = details(study)?;
+    let mut details = details(study, &[])?;
     if answer.matrix.is_none() {
         details.title = "Outputs and factors".to_owned();
     }

@@ -33,9 +33,11 @@ pub fn answer(run: &RunSummary) -> Option<String> {
     Some(match price.factor {
         factor if factor > 0.0 => {
             let factor = plain(factor);
-            format!("With {factor} times each loss it burns {whole} % less: {parts}; {tail}.")
+            format!(
+                "With {factor} times each transmission loss it burns {whole} % less: {parts}; {tail}."
+            )
         }
-        _ => format!("Its losses cost {whole} % of that fuel: {parts}; {tail}."),
+        _ => format!("The transmission losses cost {whole} % of that fuel: {parts}; {tail}."),
     })
 }
 
@@ -44,12 +46,12 @@ fn of_interaction(run: &RunSummary, price: &PriceSummary) -> String {
     let points = price.interaction.percent.unwrap_or(0.0);
     let size = fixed(points.abs(), 1);
     if points.abs() < SMALL {
-        return "together as much as their sum".to_owned();
+        return "all at once as much as their sum".to_owned();
     }
     let (word, cause) = match (points > 0.0, run.transmission.as_str()) {
         (true, _) => ("more", "without one loss the others grow in colder oil"),
         (false, "cvt") => ("less", "less load lowers the clamping pressure"),
         (false, _) => ("less", "less load makes the others smaller"),
     };
-    format!("together {size} points {word} than their sum: {cause}")
+    format!("all at once {size} points {word}: {cause}")
 }

@@ -7,9 +7,12 @@ use cvtcycle_output::number::{fixed, signed};
 pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> {
     let mut sentences = Vec::new();
     let fuel = fixed(block.fuel_l_per_100km, 2);
-    let of_draws = match answer.plan {
-        Some(_) => " in the median of the draws",
-        None => "",
+    let of_runs = match answer.plan {
+        Some(_) => format!(
+            " in the median of {} runs with uncertain values varied",
+            block.n
+        ),
+        None => String::new(),
     };
     let all = || block.rows.iter().filter(|row| !row.is_combination());
     // What little holds of a lever that mostly fails says nothing.
@@ -18,10 +21,10 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         Some(best) => {
             let (name, change) = (&best.of.title, change(answer, best));
             sentences.push(format!(
-                "{fuel} L/100 km{of_draws}; {name} saves most: {change}."
+                "{fuel} L/100 km{of_runs}; {name} saves most: {change}."
             ));
         }
-        None => sentences.push(format!("{fuel} L/100 km{of_draws}; no lever saves fuel.")),
+        None => sentences.push(format!("{fuel} L/100 km{of_runs}; no lever saves fuel.")),
     }
     let is_open = |row: &&LeverRow| {
         let interval = row.saves.interval;
@@ -43,7 +46,7 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         let why = why(&row.reasons);
         sentences.push(match answer.plan {
             Some(_) => format!(
-                "{name} does not work in this car: {why} in {} of {draws} draws.",
+                "{name} does not work in this car: {why} in {} of {draws} runs.",
                 row.failed
             ),
             None => format!("{name} does not work in this car: {why}."),
@@ -52,7 +55,7 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
     if answer.plan.is_some() && block.failed > 0 {
         let (failed, n, why) = (block.failed, block.n, why(&block.reasons));
         sentences.push(format!(
-            "In {failed} of {n} draws the car as it is fails by {why}; they are left out."
+            "In {failed} of {n} runs the car as it is fails by {why}; they are left out."
         ));
     }
     for row in block.rows.iter().filter(|row| row.is_combination()) {
@@ -86,6 +89,6 @@ fn change(answer: &LeverAnswer, row: &LeverRow) -> String {
         answer.confidence.draws_percent(),
     );
     format!(
-        "{median} % fuel, {draws} % of the draws from {low} to {high}, less in {k} of {n}: in at least {share} % of all cases"
+        "{median} % fuel, {draws} % of these runs from {low} to {high}, less in {k} of {n}: in at least {share} % of all cases"
     )
 }

@@ -50,7 +50,7 @@ impl Enough {
     pub fn doubts(&self, confidence: Confidence) -> Vec<String> {
         let n = self.n;
         if n < 2 {
-            return vec!["no draws: nothing is known of the certainty".to_owned()];
+            return vec!["no varied runs: nothing is known of the certainty".to_owned()];
         }
         let percent = (100.0 * self.at_most_shown).floor();
         let [low, high] = confidence.ends();
@@ -59,19 +59,22 @@ impl Enough {
         let doubts = [
             (
                 self.median,
-                format!("{n} draws give no interval of a median: {} do", least(0.5)),
+                format!(
+                    "{n} varied runs give no interval of a median: {} do",
+                    least(0.5)
+                ),
             ),
             (
                 self.nearly_all,
                 format!(
-                    "{n} draws that agree show no more than that {percent} % of all do: {} show {nearly} %",
+                    "{n} varied runs that agree show no more than that {percent} % of all do: {} show {nearly} %",
                     least(NEARLY_ALL)
                 ),
             ),
             (
                 self.ends,
                 format!(
-                    "the {} % and {} % points of {n} draws have no interval: those of {} do",
+                    "the {} % and {} % points of {n} varied runs have no interval: those of {} do",
                     ends[0],
                     ends[1],
                     least(low)

@@ -24,7 +24,7 @@ pub(super) fn decided(output: &OutputAnswer, answer: &Answer) -> Option<String> 
         None if summary.sd > 0.0 => {
             let n = summary.n;
             Some(format!(
-                "{n} draws are too few to name a cause of the spread."
+                "{n} runs are too few to name a cause of the spread."
             ))
         }
         None => answer
@@ -121,13 +121,13 @@ fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
         let needed = needed.map_or_else(String::new, |n| {
             let round = 10f64.powf(n.log10().floor());
             format!(
-                "; about {} draws would tell",
+                "; about {} runs would tell",
                 plain((n / round).ceil() * round)
             )
         });
         let n = of.n;
         return Some(format!(
-            "No single factor is above chance in {n} draws{largest}{needed}."
+            "No single factor is above chance in {n} runs{largest}{needed}."
         ));
     };
     if let Some([low, high]) = first.share.interval.filter(|[low, high]| high - low > WIDE) {
@@ -223,15 +223,15 @@ mod tests {
         let text = say(&quiet);
         assert!(
             !text.contains("were known")
-                && text.starts_with("No single factor is above chance in 256 draws"),
+                && text.starts_with("No single factor is above chance in 256 runs"),
             "{text}"
         );
         // 256 (0.06 / 0.03)^(4/3) = 645.
-        assert!(text.ends_with("; about 700 draws would tell."), "{text}");
+        assert!(text.ends_with("; about 700 runs would tell."), "{text}");
         let nothing = information(0.06, vec![factor("pump", -0.01, None, false)]);
         assert_eq!(
             say(&nothing),
-            "No single factor is above chance in 256 draws."
+            "No single factor is above chance in 256 runs."
         );
     }
 

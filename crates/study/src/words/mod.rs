@@ -56,7 +56,7 @@ fn of_difference(percent: f64, baseline: &str, phase: Option<&str>) -> String {
 /// A computed number and the published one that it contradicts.
 fn against_print(computed: &str, printed: &str, condition: &str, row: &str) -> String {
     format!(
-        "Contradicted: {computed}; published is \"{printed}\" ({condition}; no. {row} in `cvtcycle validate`)."
+        "Contradicted by a published number: computed {computed}, published \"{printed}\" ({condition}; row {row} of `cvtcycle validate`)."
     )
 }
 

@@ -127,7 +127,14 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let Some((run, fuel)) = run.and_then(|run| run.headline_fuel().map(|fuel| (run, fuel))) else {
         return Vec::new();
     };
-    let against: String = summary.comparison.iter().filter_map(against).collect();
+    // What a run of an interval is, is said of the first one.
+    let mut explained = false;
+    let against = summary.comparison.iter().filter_map(|of| {
+        let said = against(of, explained);
+        explained |= of.interval.is_some();
+        said
+    });
+    let against: String = against.collect();
     let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
     let lines = [Some(first), price(run)].into_iter().flatten();
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
@@ -150,11 +157,11 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
             let decimals = decimals([low, high]);
             let [median, percent] = [median, percent].map(|x| signed(x, decimals));
             doubts.push(format!(
-                "the median of the draws is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
+                "the median of the varied runs is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
             ));
         }
         let baseline = &comparison.baseline;
-        (!doubts.is_empty()).then(|| format!("Draws against {baseline}: {}.", doubts.join("; ")))
+        (!doubts.is_empty()).then(|| format!("Varied runs against {baseline}: {}.", doubts.join("; ")))
     });
     drawn.collect()
 }
@@ -201,14 +208,14 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
         let ends = between(ends, "%");
         let (baseline, plan, draws, more) = (&comparison.baseline, &of.plan, of.draws, of.more);
         Some(format!(
-            "Difference to {baseline} over {draws} draws of the plan {plan}: 90 % of them are {ends}, the median is {median} %; the subject uses more in {more}."
+            "Difference to {baseline} over {draws} runs with the uncertain values of the plan {plan} varied: 90 % of them are {ends}, the median is {median} %; the subject uses more in {more}."
         ))
     });
     drawn.chain(draw_doubts(summary)).collect()
 }
 
-/// ", 7 % more than the baseline (90 % of 256 draws: +2 to +12 %)".
-fn against(comparison: &Comparison) -> Option<String> {
+/// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
+fn against(comparison: &Comparison, explained: bool) -> Option<String> {
     let percent = comparison.fuel_percent?;
     let baseline = &comparison.baseline;
     let Some(drawn) = &comparison.interval else {
@@ -224,8 +231,12 @@ fn against(comparison: &Comparison) -> Option<String> {
         0 => String::new(),
         n => format!("; {n} left out"),
     };
+    let runs = match explained {
+        false => format!("{draws} runs with uncertain values varied"),
+        true => format!("{draws} runs"),
+    };
     Some(format!(
-        ", {compared} {than} {baseline} (90 % of {draws} draws: {ends}; more in {more}{left_out})"
+        ", {compared} {than} {baseline} (90 % of {runs}: {ends}; more in {more}{left_out})"
     ))
 }
 

@@ -95,14 +95,14 @@ fn middle(s: &Summary, confidence: Confidence, unit: &str) -> (String, usize) {
         let n = s.n;
         let digits = decimals([s.min, s.max]);
         let ends = between([s.min, s.max], unit);
-        let text = format!("the least and the largest of {n} draws are {ends}");
+        let text = format!("the least and the largest of {n} runs are {ends}");
         return (text, digits);
     }
     let ends = [s.quantile(low), s.quantile(high)];
     let (draws, digits) = (confidence.draws_percent(), decimals(ends));
     let (ends, median) = (between(ends, unit), signed(median, digits));
     (
-        format!("{draws} % of the draws are {ends}, the median is {median} {unit}"),
+        format!("{draws} % of the runs are {ends}, the median is {median} {unit}"),
         digits,
     )
 }
@@ -217,16 +217,16 @@ mod tests {
         let text = |n: usize| middle(&Summary::of(&draws(n), usual), usual, "%").0;
         assert_eq!(
             text(71),
-            "the least and the largest of 71 draws are 0 to +70 %"
+            "the least and the largest of 71 runs are 0 to +70 %"
         );
         assert_eq!(
             text(101),
-            "90 % of the draws are +5 to +95 %, the median is +50 %"
+            "90 % of the runs are +5 to +95 %, the median is +50 %"
         );
         let wide = Confidence::of(0.99);
         let text = middle(&Summary::of(&draws(101), wide), wide, "%").0;
         assert!(
-            text.starts_with("the least and the largest of 101 draws"),
+            text.starts_with("the least and the largest of 101 runs"),
             "{text}"
         );
     }

@@ -8,18 +8,22 @@ use cvtcycle::study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words
 
 use super::super::tables::MAX_REASONS;
 use crate::print::colour::Paint;
-use crate::print::sections;
+use crate::print::{bold, sections};
 
 /// All results for people.
 pub fn tables(answer: &LeverAnswer, (present, all): (usize, usize), paint: Paint) -> String {
-    let mut text = format!("{}\n", paint.heading(&answer.title));
+    let mut text = bold(&answer.title, paint);
     text += &match &answer.plan {
-        Some(plan) => format!("{} paired draws of {plan}\n", answer.draws),
-        None => "the cars as their files have them, without draws\n".to_owned(),
+        Some(plan) => {
+            let runs = answer.draws;
+            let words = format!("{runs} paired runs with the uncertain values of {plan} varied");
+            wrapped(&words, "")
+        }
+        None => "the cars as their files have them; no value is varied\n".to_owned(),
     };
     if present < all {
         let (done, draws) = (answer.draws_done, answer.draws);
-        text += &format!("not finished: {done} of {draws} draws\n");
+        text += &format!("not finished: {done} of {draws} runs\n");
     }
     let block = |block: &LeverBlock| {
         let ambient = plain(block.ambient_degc);
@@ -34,7 +38,7 @@ pub fn tables(answer: &LeverAnswer, (present, all): (usize, usize), paint: Paint
     }
     let (heard, draws) = (plain(answer.heard_rpm), answer.confidence.draws_percent());
     let legend = format!(
-        "% fuel: median; {draws} %: of the draws; g/km: carbon dioxide, median. The worst of all draws: safety of the clamp; seconds with a floor of the \
+        "% fuel: median; {draws} %: of these runs; g/km: carbon dioxide, median. The worst of all runs: safety of the clamp; seconds with a floor of the \
          pressure (floor), with too little flow (flow), and below {heard} rpm above half load with the clutch closed (slow). `!`: runs that fail a \
          check, which are left out."
     );

@@ -136,9 +136,15 @@ fn common_note(outcome: &Outcome) -> Option<String> {
 /// By how much the fit brings computed and measured numbers together.
 fn rms_title(outcome: &Outcome) -> String {
     match outcome.rms_sd() {
-        [Some(before), Some(after), _] => format!(
-            "The fit brings the residuals from {before:.2} to {after:.2} standard deviations (root mean square)"
-        ),
+        [Some(before), Some(after), _] => {
+            let [before, after] = [before, after].map(|x| format!("{x:.2}"));
+            let moved = if before == after {
+                format!("leaves the residuals at {after}")
+            } else {
+                format!("brings the residuals from {before} to {after}")
+            };
+            format!("The fit {moved} standard deviations (root mean square)")
+        }
         _ => "Measured and computed".to_owned(),
     }
 }

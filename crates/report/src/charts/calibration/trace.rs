@@ -5,7 +5,9 @@ use crate::charts::engine::{
     Axis, Chart, Entry, INK, PLOT_LEFT, Panel, Rect, Shape, Stroke, Style, optional_cell, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
+use crate::charts::study::value;
+use crate::number::words;
+use cvtcycle_study::fit::outcome::{Outcome, Residual, rms};
 
 const TALL: f64 = 330.0;
 /// Standard deviations on either side of what was measured.
@@ -93,11 +95,37 @@ fn trace(outcome: &Outcome, group: &str, column: &str, list: &[&Residual]) -> Pi
             entries.push(Entry::line(stroke, name));
         }
     }
-    Chart::new(format!("{column}, {group}"), subject(outcome), PLOT_LEFT)
+    let about = format!("{}; {group}", subject(outcome));
+    Chart::new(title(column, unit, list), about, PLOT_LEFT)
         .panels([panel])
         .legend(FOOT, entries)
         .notes(FOOT, notes)
         .picture(table)
+}
+
+/// How far the computed trace is from the measured one, with the values of the files and fitted.
+fn title(column: &str, unit: &str, list: &[&Residual]) -> String {
+    let off = |k: usize| {
+        let differences = list.iter().filter_map(|r| {
+            let [measured, ..] = numbers(r);
+            Some(numbers(r)[k]? - measured?)
+        });
+        rms(differences)
+    };
+    let name = words(column.strip_suffix("_degc").unwrap_or(column));
+    let digits = |x: f64| value(x, off(1).unwrap_or(x));
+    match (off(1), off(2)) {
+        (Some(before), Some(after)) => format!(
+            "The fit brings the {name} from {} to {} {unit} off the measured one (root mean square)",
+            digits(before),
+            digits(after)
+        ),
+        (None, Some(after)) => format!(
+            "Fitted, the {name} is {} {unit} off the measured one (root mean square)",
+            digits(after)
+        ),
+        _ => format!("Measured and computed {name}"),
+    }
 }
 
 fn time(r: &Residual) -> f64 {

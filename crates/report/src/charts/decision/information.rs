@@ -88,7 +88,7 @@ pub fn information(of: &Information, unit: &'static str, subject: &str) -> Pictu
     let best = of.causes().next();
     let best = best.map(|factor| (factor.name.as_str(), of.sd, factor.sd_left.value));
     let note = format!(
-        "Grey: not above chance. Whiskers: intervals from {} draws.",
+        "Grey: not above chance. Whiskers: intervals from {} runs.",
         of.n
     );
     Chart::new(says::information(best, unit), subject, MARGIN)

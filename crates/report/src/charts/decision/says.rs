@@ -76,9 +76,11 @@ pub(super) fn information(best: Option<(&str, f64, f64)>, unit: &str) -> String 
         Some((name, sd, left)) => {
             let digits = decimals([0.0, sd]) + 1;
             let [sd, left] = [sd, left].map(|x| grouped(x, digits));
-            format!("Knowing {name} would cut the standard deviation from {sd} to {left} {unit}")
+            format!(
+                "Knowing the {name} would cut the standard deviation from {sd} to {left} {unit}"
+            )
         }
-        None => "No single value is above chance: more varied runs first".to_owned(),
+        None => "No single value is above chance: more runs first".to_owned(),
     }
 }
 

@@ -20,6 +20,8 @@ const RADIUS: f64 = 5.5;
 pub struct Against {
     /// Name of the baseline.
     pub baseline: String,
+    /// Which car that is.
+    pub title: String,
     /// With the nominal values, those of the files.
     pub files: Option<f64>,
     /// 5 %, 50 % and 95 % of the draws.
@@ -89,7 +91,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     let first = rows.first();
     let first = first.and_then(|row| Some((row.baseline.as_str(), row.files?, row.interval())));
     let varied = match rows.iter().any(|row| row.drawn.is_some()) {
-        true => "; in varied runs every uncertain value is another one of its range",
+        true => "; bar: 90 % of the runs with all uncertain values varied",
         false => "",
     };
     Chart::new(
@@ -99,6 +101,7 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     )
     .panels([panel])
     .legend((MARGIN, WIDTH - 2.0 * MARGIN), legend(rows))
+    .notes((MARGIN, WIDTH - 2.0 * MARGIN), titles(rows))
     .picture(table)
 }
 
@@ -107,14 +110,27 @@ fn nominal() -> Style {
     Style::colour(INK).edge(stroke("#ffffff", 1.0, &[]))
 }
 
+/// Which car each baseline is, where its name does not say it.
+fn titles(rows: &[Against]) -> Vec<String> {
+    let named = rows.iter().filter(|row| !row.title.is_empty());
+    let named = named.filter(|row| row.title != row.baseline);
+    let titles: Vec<String> = named
+        .map(|row| format!("{}: {}.", row.baseline, row.title))
+        .collect();
+    (!titles.is_empty())
+        .then(|| titles.join(" "))
+        .into_iter()
+        .collect()
+}
+
 fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
     if rows.iter().any(|row| row.drawn.is_some()) {
-        list.push(Entry::fill(Fill::car(0), "90 % of varied runs"));
+        list.push(Entry::fill(Fill::car(0), "90 % of these runs"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
             Symbol::white(INK),
-            "median of varied runs",
+            "median of these runs",
         ));
     }
     if rows.iter().any(|row| row.published.is_some()) {
@@ -147,9 +163,9 @@ fn table() -> PictureTable {
     PictureTable::new(&[
         ("Against", ""),
         ("Nominal values", "%"),
-        ("5 % of the varied runs below", "%"),
+        ("5 % of the runs below", "%"),
         ("Median", "%"),
-        ("95 % of the varied runs below", "%"),
+        ("95 % of the runs below", "%"),
         ("Published from", "%"),
         ("to", "%"),
     ])

@@ -18,7 +18,16 @@ pub(crate) struct End {
 }
 
 /// Writes names to the right of the ends of lines, the highest end on top, in the colours of the lines.
-pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
+pub(crate) fn label_ends(panel: &mut Panel, ends: Vec<End>) {
+    name_ends(panel, ends, false);
+}
+
+/// The same over cells, where a name within the panel needs a ground of its own.
+pub(crate) fn label_ends_on_cells(panel: &mut Panel, ends: Vec<End>) {
+    name_ends(panel, ends, true);
+}
+
+fn name_ends(panel: &mut Panel, mut ends: Vec<End>, cells: bool) {
     ends.retain(|end| end.at.0.is_finite() && end.at.1.is_finite());
     ends.sort_by(|a, b| b.at.1.total_cmp(&a.at.1));
     let lowest = panel.rect.bottom + 8.0;
@@ -32,12 +41,11 @@ pub(crate) fn label_ends(panel: &mut Panel, mut ends: Vec<End>) {
         free = y + APART;
         let corner = at(f64::NEG_INFINITY, f64::INFINITY);
         // Names of lines that go on to the frame, or nearly so, are drawn beyond it.
-        let x = if panel.rect.right - x < NEAR {
-            panel.rect.right
-        } else {
-            x
-        };
+        let is_beyond = panel.rect.right - x < NEAR;
+        let x = if is_beyond { panel.rect.right } else { x };
         let place = corner.shift(x - panel.rect.left + 7.0, y - panel.rect.top);
-        panel.label(Label::new(place, end.text).colour(end.colour));
+        let mut label = Label::new(place, end.text).colour(end.colour);
+        label.ground = cells && !is_beyond;
+        panel.label(label);
     }
 }

@@ -18,7 +18,7 @@ mod text;
 pub use axis::cell;
 pub(crate) use axis::{Axis, number, optional_cell, range, round_step};
 pub(crate) use chart::{Block, Chart, Entry, Key, LEFT, PLOT_LEFT, Side, WIDTH};
-pub(crate) use ends::{End, label_ends};
+pub(crate) use ends::{End, label_ends, label_ends_on_cells};
 pub(crate) use panel::{BELOW, Item, Panel, Shape, free, grid, row_middle, rows_left, rows_panel};
 pub(crate) use place::{Label, Place, at};
 pub use style::Palette;

@@ -3,66 +3,69 @@
 use super::sankey::{Branch, Sankey, Stage, Whole, branch, sankey};
 use super::{Term, finite};
 use crate::charts::picture::Picture;
-use crate::number::capital;
-use crate::number::grouped;
+use crate::number::{capital, capital_first, grouped};
 use cvtcycle_output::Component;
 
-/// Energies of one run, kJ: fuel = exhaust + heat to the engine + accessories + rotating energy + losses + brakes + wheels.
+/// Energies of one run over its distance, kJ/km: fuel = exhaust + heat to the engine + accessories + rotating energy + losses + brakes + wheels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CarEnergy {
     /// Name of the car.
     pub subject: String,
     /// Fuel, lower heating value.
-    pub fuel_kj: f64,
+    pub fuel_kj_km: f64,
     /// Heat and unburnt fuel into the exhaust.
-    pub exhaust_kj: f64,
+    pub exhaust_kj_km: f64,
     /// Heat to the engine.
-    pub engine_heat_kj: f64,
+    pub engine_heat_kj_km: f64,
     /// Accessories.
-    pub accessories_kj: f64,
+    pub accessories_kj_km: f64,
     /// Change of rotating energy; negative where it was given back.
-    pub kinetic_kj: f64,
+    pub kinetic_kj_km: f64,
     /// Losses of the transmission in the order of the power flow.
-    pub losses_kj: Vec<(Component, f64)>,
+    pub losses_kj_km: Vec<(Component, f64)>,
     /// Wheel brakes.
-    pub brake_kj: f64,
+    pub brake_kj_km: f64,
     /// Net work at the wheels, against rolling and air resistance.
-    pub wheels_kj: f64,
-    /// Fuel, and work at the flywheel, of the car of the report that has most, kJ: all are drawn on one scale.
-    pub largest_kj: [f64; 2],
+    pub wheels_kj_km: f64,
+    /// Fuel, and work at the flywheel, of the car of the report that has most, kJ/km: all are drawn on one scale.
+    pub largest_kj_km: [f64; 2],
 }
 
-/// A share of the fuel below which the energy of the rotating parts is drawn with the accessories.
+/// A share of the fuel, or of the work at the flywheel, below which the energy of the rotating parts is drawn with the accessories, and that of a part
+/// of the transmission with the other small ones.
 const THIN: f64 = 0.005;
 
 impl CarEnergy {
-    /// All losses of the transmission, kJ.
-    pub fn transmission_kj(&self) -> f64 {
-        self.losses_kj.iter().map(|(_, kj)| finite(*kj)).sum()
+    /// All losses of the transmission, kJ/km.
+    pub fn transmission_kj_km(&self) -> f64 {
+        self.losses_kj_km
+            .iter()
+            .map(|(_, kj_km)| finite(*kj_km))
+            .sum()
     }
 
-    /// Work into the transmission at the flywheel, kJ: what leaves it again as losses, at the brakes and at the wheels.
-    pub fn flywheel_kj(&self) -> f64 {
-        self.transmission_kj() + finite(self.brake_kj) + finite(self.wheels_kj)
+    /// Work into the transmission at the flywheel, kJ/km: what leaves it again as losses, at the brakes and at the wheels.
+    pub fn flywheel_kj_km(&self) -> f64 {
+        self.transmission_kj_km() + finite(self.brake_kj_km) + finite(self.wheels_kj_km)
     }
 
     fn at_wheels(&self) -> Stage {
-        let brakes = branch("Brakes", Term::Brake, self.brake_kj);
-        let rolling = branch("Rolling and air", Term::Wheels, self.wheels_kj);
+        let brakes = branch("Brakes", Term::Brake, self.brake_kj_km);
+        let rolling = branch("Rolling and air", Term::Wheels, self.wheels_kj_km);
         Stage::new("Wheels", vec![brakes, rolling])
     }
 
     /// Of what is at the flywheel, the share that reaches brakes and wheels; none without work.
     pub fn passed(&self) -> Option<f64> {
-        let flywheel = self.flywheel_kj();
-        let passed = 1.0 - self.transmission_kj() / flywheel;
+        let flywheel = self.flywheel_kj_km();
+        let passed = 1.0 - self.transmission_kj_km() / flywheel;
         (flywheel > 0.0 && passed.is_finite()).then_some(passed)
     }
 
     /// Accessories, and the rotating parts apart where they can be seen.
     fn crankshaft(&self) -> Vec<Branch> {
-        let (accessories, kinetic) = (self.accessories_kj, self.kinetic_kj);
-        if kinetic.abs() < THIN * self.fuel_kj {
+        let (accessories, kinetic) = (self.accessories_kj_km, self.kinetic_kj_km);
+        if kinetic.abs() < THIN * self.fuel_kj_km {
             let name = "Accessories etc.";
             return vec![branch(name, Term::Accessories, accessories + kinetic)];
         }
@@ -73,26 +76,30 @@ impl CarEnergy {
     }
 
     fn whole(&self) -> Whole {
-        Whole::new("the fuel", self.fuel_kj)
+        Whole::new("the fuel", self.fuel_kj_km)
     }
 }
 
 /// From fuel to wheel; the transmission is one branch.
 pub fn energy_flow(car: &CarEnergy) -> Picture {
     let engine = vec![
-        branch("Exhaust", Term::Exhaust, car.exhaust_kj),
-        branch("Heat to the engine", Term::EngineHeat, car.engine_heat_kj),
+        branch("Exhaust", Term::Exhaust, car.exhaust_kj_km),
+        branch(
+            "Heat to the engine",
+            Term::EngineHeat,
+            car.engine_heat_kj_km,
+        ),
     ];
     let losses = branch(
         "Transmission losses",
         Term::Transmission,
-        car.transmission_kj(),
+        car.transmission_kj_km(),
     );
     sankey(Sankey {
         title: fuel_title(car),
         subject: &car.subject,
-        largest_kj: car.largest_kj[0],
-        source: Whole::new("Fuel", car.fuel_kj),
+        largest_kj_km: car.largest_kj_km[0],
+        source: Whole::new("Fuel", car.fuel_kj_km),
         stages: vec![
             Stage::new("Engine", engine),
             Stage::new("Crankshaft", car.crankshaft()),
@@ -105,16 +112,28 @@ pub fn energy_flow(car: &CarEnergy) -> Picture {
 
 /// From the flywheel to the wheels, with a branch for each component.
 pub fn transmission_flow(car: &CarEnergy) -> Picture {
-    let source = car.flywheel_kj();
-    let component = |(c, kj): &(Component, f64)| {
-        let branch = branch(&capital(c.name()), Term::Component(*c), *kj);
+    let source = car.flywheel_kj_km();
+    let component = |(c, kj_km): &(Component, f64)| {
+        let branch = branch(&capital(c.name()), Term::Component(*c), *kj_km);
         Stage::new("", vec![branch])
     };
-    let stages = car.losses_kj.iter().map(component);
+    let is_thin = |of: &&(Component, f64)| of.1.abs() < THIN * source;
+    let thin: Vec<&(Component, f64)> = car.losses_kj_km.iter().filter(is_thin).collect();
+    // One small part keeps its name: nothing would be gained.
+    let folded = thin.len() > 1;
+    let shown = car.losses_kj_km.iter();
+    let shown = shown.filter(|of| !folded || !is_thin(of)).map(component);
+    let names: Vec<&str> = thin.iter().map(|(c, _)| c.title()).collect();
+    let rest = folded.then(|| {
+        let sum = thin.iter().map(|(_, kj_km)| finite(*kj_km)).sum();
+        let name = capital_first(&names.join(", ").to_lowercase());
+        Stage::new("", vec![branch(&name, Term::Other, sum)])
+    });
+    let stages = shown.chain(rest);
     sankey(Sankey {
         title: box_title(car),
         subject: &car.subject,
-        largest_kj: car.largest_kj[1],
+        largest_kj_km: car.largest_kj_km[1],
         source: Whole::new("Flywheel", source),
         stages: stages.chain([car.at_wheels()]).collect(),
         shares_of: vec![Whole::new("flywheel work", source), car.whole()],
@@ -123,8 +142,8 @@ pub fn transmission_flow(car: &CarEnergy) -> Picture {
 
 /// Which share of the fuel the wheels and the transmission take.
 fn fuel_title(car: &CarEnergy) -> String {
-    let share = |kj: f64| 100.0 * kj / car.fuel_kj;
-    let [wheels, lost] = [car.wheels_kj, car.transmission_kj()].map(share);
+    let share = |kj_km: f64| 100.0 * kj_km / car.fuel_kj_km;
+    let [wheels, lost] = [car.wheels_kj_km, car.transmission_kj_km()].map(share);
     if !(wheels.is_finite() && lost.is_finite()) {
         return "Energy from fuel to wheel".to_owned();
     }

@@ -38,6 +38,11 @@ fn energy(kj: f64) -> String {
     }
 }
 
+/// The same over a distance, of an energy in kJ/km.
+fn per_km(kj_km: f64) -> String {
+    energy(kj_km) + "/km"
+}
+
 /// A share as a label in per cent; what rounds to zero without being zero is less than a tenth.
 fn percent(part: f64, whole: f64) -> String {
     match 100.0 * part / whole {

@@ -3,7 +3,7 @@
 use super::contour::{Grid, LineLabels};
 use crate::charts::engine::{
     Axis, BELOW, Chart, INK, Item, LEFT, Label, PLOT_LEFT, Panel, Point, Rect, Shape, Stroke,
-    Style, at, free, grid, number, ramp, range, round_step, stroke,
+    Style, WIDTH, at, free, grid, number, ramp, range, round_step, stroke,
 };
 use crate::charts::picture::PictureTable;
 
@@ -24,11 +24,14 @@ pub(crate) struct MapFigure<'a> {
     pub panels: Vec<(String, Vec<Vec<f64>>)>,
 }
 
-/// Sizes of a lone panel, and of one of several, pixels.
-const SIZES: [(f64, f64); 2] = [(600.0, 420.0), (290.0, 220.0)];
+/// Heights of panels by the number of their columns, and room between columns besides that of the axis, pixels.
+const TALL: [f64; 3] = [420.0, 220.0, 180.0];
+const GAP: f64 = 12.0;
 const TOP: f64 = 58.0;
 /// Room above a panel for its title, pixels.
 const ABOVE: f64 = 24.0;
+/// Height of the colour bar of several panels, pixels: the labels of its bands stay apart.
+const BAR: f64 = 202.0;
 /// Room right of the panels for the colour bar, pixels.
 const STRIP: f64 = 110.0;
 /// Height of the stripes that make up the filled bands, pixels.
@@ -77,15 +80,9 @@ impl Scale {
 /// Draws the picture. Where values are not finite the panel stays white.
 pub(crate) fn map_figure(of: &MapFigure) -> String {
     let several = of.panels.len() > 1;
-    let size = SIZES[usize::from(several)];
-    let columns = match of.panels.len() {
-        0 | 1 => 1,
-        2 | 4 => 2,
-        _ => 3,
-    };
+    let (columns, size, pitch) = panels_left_of(STRIP, of.panels.len());
     let titled = several || of.panels.iter().any(|(title, _)| !title.is_empty());
     let top = TOP + if titled { ABOVE } else { 0.0 };
-    let pitch = (size.0 + LEFT + 20.0, size.1 + ABOVE + BELOW + 8.0);
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
     let found = range(of.panels.iter().flat_map(|p| &p.1).flatten().copied());
     let (low, high) = found.unwrap_or((0.0, 1.0));
@@ -104,7 +101,8 @@ pub(crate) fn map_figure(of: &MapFigure) -> String {
         panel
     };
     let edge = place(columns - 1).right;
-    let bar = Rect::new(edge + 20.0, top + 18.0, 20.0, size.1 - 18.0);
+    let tall = if several { BAR } else { size.1 - 18.0 };
+    let bar = Rect::new(edge + 20.0, top + 18.0, 20.0, tall);
     let span = number(low, (high - low) / 100.0) + " to " + &number(high, (high - low) / 100.0);
     Chart::new(of.title, of.subject, PLOT_LEFT)
         .lead(format!("{} from {span}", of.value))
@@ -113,6 +111,20 @@ pub(crate) fn map_figure(of: &MapFigure) -> String {
         .panels([colour_bar(&scale, of.value, bar)])
         .picture(PictureTable::default())
         .svg
+}
+
+/// Columns, size of a panel and distance of two of so many panels that fill the width of a picture but for a strip on the right.
+pub(crate) fn panels_left_of(strip: f64, panels: usize) -> (usize, Point, Point) {
+    let columns = match panels {
+        0 | 1 => 1,
+        2 | 4 => 2,
+        _ => 3,
+    };
+    let n = columns as f64;
+    let between = (n - 1.0) * (LEFT + GAP);
+    let size = ((WIDTH - PLOT_LEFT - strip - between) / n, TALL[columns - 1]);
+    let pitch = (size.0 + LEFT + GAP, size.1 + ABOVE + BELOW + 8.0);
+    (columns, size, pitch)
 }
 
 /// Value between the grid's points, bilinear; NaN next to a point without value.

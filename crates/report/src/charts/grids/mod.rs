@@ -7,4 +7,4 @@ mod map;
 
 pub(crate) use density::{Density, DensityCell};
 pub(crate) use iso::{ISO, iso_lines};
-pub(crate) use map::{MapFigure, map_figure};
+pub(crate) use map::{MapFigure, map_figure, panels_left_of};

@@ -70,7 +70,7 @@ fn sobol_title(names: &[String], of: &SobolIndices, shown: &Shown) -> String {
     let ends = |estimate: &Estimate| estimate.interval.unwrap_or([estimate.value; 2]);
     match totals.as_slice() {
         [(name, first), (_, second), ..] if ends(first)[0] > ends(second)[1] => format!(
-            "{} decides: {} of the variance of the {}; no other above {}",
+            "{} decides: {} of the variance of the {}; the next has {}",
             capital_first(name),
             value(first.value, 0.9),
             shown.output,

@@ -1,63 +1,77 @@
-//! How an output, or a difference of pairs, is distributed: histogram over cumulative curve.
+//! How an output, or a difference of pairs, is distributed: a dot for each equal share of the runs.
 
-use super::{FOOT, Shown, WIDE, percent, value};
+use super::{MARGIN, RIGHT, Shown, WIDE_FOOT, percent, value};
 use crate::charts::engine::{
-    Axis, Chart, Cut, Entry, INK, Label, PLOT_LEFT, Panel, Point, QUIET, Rect, STROKES, Shape,
-    Stroke, Style, Symbol, at, cell, lines, range, round_step, stroke,
+    Axis, Chart, Cut, Entry, Fill, INK, Label, PUBLISHED, Panel, STROKES, Style, Symbol, at, cell,
+    round_step, row_middle, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use crate::number::capital_first;
+use crate::number::{capital_first, grouped};
 use cvtcycle_study::statistics::{Confidence, Numbers, Share, Summary, quantiles};
 
 /// One car, or one pair of cars.
 #[derive(Clone, Copy, Debug)]
 pub struct DistributionSeries<'a, P: ?Sized = [f64]> {
-    /// Name in the legend.
+    /// Name of its row.
     pub name: &'a str,
     /// Values; those that are not finite are missing.
     pub values: &'a P,
+    /// What is known of it besides the values.
+    pub known: KnownValue,
+}
+
+/// Numbers of the same quantity that are none of the values.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct KnownValue {
+    /// With the nominal values, those of the files.
+    pub nominal: Option<f64>,
+    /// A published range.
+    pub published: Option<[f64; 2]>,
 }
 
 /// A series prepared for drawing.
 struct Drawn<'a> {
     name: &'a str,
-    /// The cumulative curve.
-    steps: Vec<(f64, f64)>,
+    known: KnownValue,
+    /// Values at the middles of equal shares, ascending.
+    dots: Vec<f64>,
     summary: Summary,
     above: Share,
     confidence: Confidence,
 }
 
 impl Drawn<'_> {
-    fn is_empty(&self) -> bool {
-        self.summary.n == 0
+    /// Median and the two ends of the confidence.
+    fn marked(&self) -> [f64; 3] {
+        let [low, high] = self.confidence.ends();
+        [low, 0.5, high].map(|p| self.summary.quantile(p))
+    }
+
+    /// Everything that has to lie on the axis.
+    fn seen(&self) -> Vec<f64> {
+        let known = self.known.published.into_iter().flatten();
+        let known = known.chain(self.known.nominal);
+        known.chain(self.dots.iter().copied()).collect()
     }
 }
 
 const TOP: f64 = 58.0;
-const TALL: f64 = 230.0;
-const GAP: f64 = 16.0;
-/// Most steps of a cumulative curve: more could not be seen.
-const STEPS: usize = 1500;
-/// Bins at most.
-const BINS: f64 = 100.0;
-/// Rounding up after a division by this lands on the nearest round number.
-const NEAREST: f64 = 1.6;
+/// Height of the row of a lone series, and of one of several, pixels.
+const ROWS: [f64; 2] = [150.0, 110.0];
+/// Most dots of a series: each is a hundredth of its runs.
+const DOTS: usize = 100;
+/// Stacks of dots over the width of the plot, at most.
+const STACKS: f64 = 55.0;
+/// Largest radius of a dot, and of a mark on the base line, pixels.
+const DOT: f64 = 5.0;
+const MARK: f64 = 5.5;
 /// Of fewer pairs than these only the counts are given.
 const FEW: usize = 200;
 /// Most series that the picture in words describes.
 const IN_WORDS: usize = 2;
-/// Probabilities of the quantiles with a mark.
-fn marked(confidence: Confidence) -> [f64; 3] {
-    let [low, high] = confidence.ends();
-    [low, 0.5, high]
-}
-/// Dashed, so that it stays apart from the frame.
-const ZERO: Stroke = stroke(INK, 1.4, &[6.0, 2.0]);
-const GUIDE: Stroke = stroke(QUIET, 0.9, &[3.0, 3.0]);
 
-/// Draws histogram and cumulative curve of each series over one axis, with the median and the two ends of its confidence marked; of more
-/// than seven the first seven. Of differences of pairs zero is marked and the share above it written.
+/// Draws the values of each series as dots of equal shares of the runs, stacked where they lie together, over an interval with the median and the two
+/// ends of its confidence; of more than seven series the first seven. Of differences of pairs the part below zero is shaded and its share written.
 ///
 /// # Errors
 /// Values that cannot be had.
@@ -69,73 +83,162 @@ pub fn distribution_plot<P: Numbers + ?Sized>(
     let drawn = &all[..all.len().min(STROKES.len())];
     let series = drawn.iter().map(|series| prepare(series, shown.confidence));
     let series: Vec<Drawn> = series.collect::<Result<_, _>>()?;
-    let edges = edges(&series, differences);
-    let shares = drawn.iter().map(|series| shares(series.values, &edges));
-    let shares: Vec<Vec<f64>> = shares.collect::<Result<_, _>>()?;
-    Ok(drawing(
-        shown,
-        (all.len(), &series),
-        (&edges, &shares),
-        differences,
-    ))
+    Ok(drawing(shown, all.len(), &series, differences))
 }
 
-fn drawing(
-    shown: &Shown,
-    (all, series): (usize, &[Drawn]),
-    (edges, shares): (&[f64], &[Vec<f64>]),
-    differences: bool,
-) -> Picture {
-    let (headline, notes) = (
-        headline(series, differences),
-        notes(shown, all, series, differences),
-    );
-    let lines = lines(&headline, 12.0, WIDE);
-    let gap = if lines.is_empty() { 0.0 } else { 6.0 };
-    let head = 16.0 * lines.len() as f64 + gap;
-    let (what, output) = match differences {
-        true => (
-            "Distribution of the difference",
-            format!("Difference: {}", shown.output),
-        ),
-        false => ("Distribution", capital_first(shown.output)),
+fn drawing(shown: &Shown, all: usize, series: &[Drawn], differences: bool) -> Picture {
+    let notes = notes(shown, all, series, differences);
+    let output = match differences {
+        true => format!("Difference: {}", shown.output),
+        false => capital_first(shown.output),
     };
-    let title = Cut::Middle.apply(&output, 12.0, WIDE - 90.0);
-    let title = shown.axis(&title);
-    let x = Axis::exact(&title, edges[0], edges[edges.len() - 1], 9);
-    let rect = Rect::new(PLOT_LEFT, TOP + head, WIDE, TALL);
-    let mut upper = histogram((rect, x.clone()), series, shares, edges);
-    for (k, line) in lines.into_iter().enumerate() {
-        let place = at(f64::NEG_INFINITY, f64::INFINITY);
-        let place = place.shift(0.0, 6.0 - head + 16.0 * k as f64);
-        upper.label(Label::new(place, line).size(12.0).bold(true));
+    let zero = differences.then_some(0.0);
+    let values = series.iter().flat_map(Drawn::seen).chain(zero);
+    let left = rows_left(series.iter().map(|s| s.name), 11.0);
+    let title = Cut::Middle.apply(&output, 12.0, RIGHT - left - 90.0);
+    let x = Axis::round(&shown.axis(&title), values, 9);
+    let tall = ROWS[usize::from(series.len() > 1)];
+    let panel = rows_panel((left, TOP), RIGHT, series.len().max(1), tall, x);
+    let mut panel = panel.no_data(series.iter().all(|s| s.dots.is_empty()));
+    if differences && !panel.no_data && panel.x.low < 0.0 {
+        let below = Style::colour(INK).fill_opacity(0.07).class("below");
+        let (low, high) = (at(panel.x.low, f64::NEG_INFINITY), at(0.0, f64::INFINITY));
+        panel.rectangle(low, high, below);
     }
-    let rect = Rect::new(PLOT_LEFT, rect.bottom + GAP, WIDE, TALL);
-    let lower = cumulative((rect, x), series, marked(shown.confidence));
-    let names = series.iter().zip(STROKES);
-    let names = names.map(|(s, stroke)| Entry::line(stroke, s.name));
-    let zero = differences.then(|| Entry::line(ZERO, "No difference"));
-    let table = table(shown, &output, series, (edges, shares), &notes);
-    let title = sentence(shown, series, differences, what);
-    let lead = format!(
-        "{headline} {}",
-        notes[..notes.len().min(IN_WORDS)].join(" ")
-    );
-    Chart::new(title, shown.subject, PLOT_LEFT)
-        .lead(lead.trim().replace('\u{a0}', " "))
-        .panels([upper, lower])
-        .legend(FOOT, names.chain(zero))
-        .notes(FOOT, notes)
+    if differences && !panel.no_data {
+        panel.upright(0.0, stroke(INK, 1.2, &[]));
+    }
+    let radius = radius(&panel, series, tall);
+    let mut table = table(shown, &notes);
+    for (k, s) in series.iter().enumerate() {
+        panel.row_name(k, Label::new(at(0.0, 0.0), s.name).class("row"));
+        dots(&mut panel, &mut table, (k, s), (tall, radius));
+    }
+    let lead = notes[..notes.len().min(IN_WORDS)].join(" ");
+    Chart::new(sentence(shown, series, differences), shown.subject, MARGIN)
+        .lead(lead.replace('\u{a0}', " "))
+        .panels([panel])
+        .legend(WIDE_FOOT, legend(series, differences))
+        .notes(WIDE_FOOT, notes)
         .picture(table)
 }
 
-/// A row for each bin, its middle first.
+fn legend(series: &[Drawn], differences: bool) -> Vec<Entry> {
+    let dots = series.iter().map(|s| s.dots.len()).max().unwrap_or(0);
+    let all = series.iter().map(|s| s.summary.n).max().unwrap_or(0);
+    let each = match dots {
+        _ if dots == all => "one run".to_owned(),
+        dots => format!("1/{dots} of the runs"),
+    };
+    let colour = Style::colour(STROKES[DOTTED].colour);
+    let level = series
+        .first()
+        .map_or(Confidence::default(), |s| s.confidence);
+    let of_known = |wanted: fn(&KnownValue) -> bool| series.iter().any(|s| wanted(&s.known));
+    let list = [
+        Some(Entry::symbol(Symbol::CIRCLE, colour, each)),
+        Some(Entry::line(
+            stroke(INK, 1.25, &[]),
+            format!("{} % of the runs, and their median", level.draws_percent()),
+        )),
+        differences.then(|| {
+            let below = Fill::plain("#ededed");
+            Entry::fill(below, "less fuel")
+        }),
+        of_known(|known| known.nominal.is_some())
+            .then(|| Entry::symbol(Symbol::CIRCLE, Style::colour(INK), "nominal values")),
+        of_known(|known| known.published.is_some())
+            .then(|| Entry::symbol(Symbol::DIAMOND, Symbol::white(PUBLISHED), "published")),
+    ];
+    list.into_iter().flatten().collect()
+}
+
+/// Which of the lines has the colour of dots.
+const DOTTED: usize = 2;
+
+/// Dots that lie together by the place of their stack on the axis.
+fn stacks<'a>(x: &Axis, dots: &'a [f64]) -> impl Iterator<Item = (f64, &'a [f64])> {
+    let (low, step) = (x.low, (x.high - x.low) / STACKS);
+    let place = move |x: f64| ((x - low) / step).floor();
+    let together = dots.chunk_by(move |a, b| place(*a).total_cmp(&place(*b)).is_eq());
+    together.map(move |stack| (low + (place(stack[0]) + 0.5) * step, stack))
+}
+
+/// The radius with which the highest stack fits in its row, pixels.
+fn radius(panel: &Panel, series: &[Drawn], tall: f64) -> f64 {
+    let all = series.iter().flat_map(|s| stacks(&panel.x, &s.dots));
+    let highest = all.map(|(_, stack)| stack.len()).max().unwrap_or(1);
+    let room = tall - BELOW_DOTS - 8.0;
+    let wide = 0.5 * panel.rect.width() / STACKS;
+    (0.5 * room / highest as f64).min(wide).min(DOT)
+}
+
+/// Height of the base line of the dots over the lower end of their row, pixels.
+const BELOW_DOTS: f64 = 30.0;
+
+/// Adds the dots of a series, its interval and what is known of it, each with its row of the table.
+fn dots(
+    panel: &mut Panel,
+    table: &mut PictureTable,
+    (row, s): (usize, &Drawn),
+    (tall, radius): (f64, f64),
+) {
+    let base = 0.5 * tall - BELOW_DOTS;
+    let step = round_step(((panel.x.high - panel.x.low) / 500.0).max(1e-12));
+    let dots = s.dots.len() as f64;
+    let (x, mut placed) = (panel.x.clone(), 0);
+    for (middle, stack) in stacks(&x, &s.dots) {
+        for (level, x) in stack.iter().enumerate() {
+            placed += 1;
+            let share = 100.0 * (f64::from(placed) - 0.5) / dots;
+            let cells = [s.name.to_owned(), cell(share, 0.1), cell(*x, step)];
+            let style = Style::colour(STROKES[DOTTED].colour).class("dot");
+            let down = base - radius - 2.0 * radius * level as f64;
+            let place = at(middle, row_middle(row)).shift(0.0, down);
+            let own = table.push(cells);
+            panel.symbol(Symbol::CIRCLE, place, 0.92 * radius, style.row(own));
+        }
+    }
+    if s.dots.is_empty() {
+        return;
+    }
+    let mut add =
+        |what: &str, x: f64| table.push([s.name.to_owned(), what.to_owned(), cell(x, step)]);
+    let down = base + 12.0;
+    let on_base = |x: f64| at(x, row_middle(row)).shift(0.0, down);
+    let [low, median, high] = s.marked();
+    let own = add("median", median);
+    panel.whisker(row, [low, high], down, own);
+    let style = Symbol::white(INK).class("mark").row(own);
+    panel.symbol(Symbol::CIRCLE, on_base(median), MARK - 1.0, style);
+    if let Some([low, high]) = s.known.published {
+        let middle = 0.5 * (low + high);
+        let own = add("published", middle);
+        let style = Symbol::white(PUBLISHED).class("printed").row(own);
+        panel.symbol(Symbol::DIAMOND, on_base(middle), MARK, style);
+    }
+    if let Some(x) = s.known.nominal {
+        let own = add("nominal values", x);
+        let style = Style::colour(INK).edge(stroke("#ffffff", 1.0, &[]));
+        panel.symbol(
+            Symbol::CIRCLE,
+            on_base(x),
+            MARK,
+            style.class("mark").row(own),
+        );
+    }
+}
+
 /// A sentence on one series, else what is drawn.
-fn sentence(shown: &Shown, series: &[Drawn], differences: bool, what: &str) -> String {
+fn sentence(shown: &Shown, series: &[Drawn], differences: bool) -> String {
     match series {
-        [s] if differences && s.above.n > 0 => {
+        [s, ..] if differences && s.above.n > 0 => {
+            let of = match series.len() {
+                1 => String::new(),
+                _ => format!(", {}", s.name),
+            };
             format!(
-                "{} is above zero in {}",
+                "{}{of} is above zero in {}",
                 capital_first(shown.output),
                 above(&s.above)
             )
@@ -152,39 +255,18 @@ fn sentence(shown: &Shown, series: &[Drawn], differences: bool, what: &str) -> S
                 shown.after()
             )
         }
-        _ => format!("{what}: {}", shown.output),
+        _ => format!("Distribution: {}", shown.output),
     }
 }
 
-fn table(
-    shown: &Shown,
-    output: &str,
-    series: &[Drawn],
-    (edges, shares): (&[f64], &[Vec<f64>]),
-    notes: &[String],
-) -> PictureTable {
-    let column = |name: &str| shown.column(name);
-    let mut columns = vec![
-        column(&format!("{output}, middle")),
-        column("From"),
-        column("To"),
+fn table(shown: &Shown, notes: &[String]) -> PictureTable {
+    let columns = [
+        ("Runs".to_owned(), ""),
+        ("Share below, or what".to_owned(), ""),
+        shown.column("Value"),
     ];
-    for s in series {
-        let names = ["runs in the bin", "runs up to its end"];
-        columns.extend(names.map(|name| (format!("{}: {name}", s.name), "%")));
-    }
     let note = notes.join(" ").replace('\u{a0}', " ");
-    let mut table = PictureTable::with_columns(columns).note(note);
-    for (k, pair) in edges.windows(2).enumerate() {
-        let step = pair[1] - pair[0];
-        let middle = cell(0.5 * (pair[0] + pair[1]), 0.1 * step);
-        let mut cells = vec![middle, cell(pair[0], step), cell(pair[1], step)];
-        for shares in shares {
-            cells.extend([cell(shares[k], 0.1), cell(shares[..=k].iter().sum(), 0.1)]);
-        }
-        table.push(cells);
-    }
-    table
+    PictureTable::with_columns(columns).note(note)
 }
 
 fn prepare<'a, P: Numbers + ?Sized>(
@@ -192,151 +274,17 @@ fn prepare<'a, P: Numbers + ?Sized>(
     confidence: Confidence,
 ) -> Result<Drawn<'a>, P::Error> {
     let summary = Summary::over(series.values, confidence)?;
+    let count = summary.n.min(DOTS);
+    let middle = |k: usize| (k as f64 + 0.5) / count as f64;
+    let shares: Vec<f64> = (0..count).map(middle).collect();
     Ok(Drawn {
         name: series.name,
-        steps: steps(series.values, &summary)?,
+        known: series.known,
+        dots: quantiles(series.values, &summary, &shares)?,
         above: Share::over_zero(series.values, Some(confidence))?,
         summary,
         confidence,
     })
-}
-
-/// Edges of the bins of all series: at round numbers, so that zero is one of them; about as wide as Freedman and Diaconis (1981) advise.
-fn edges(series: &[Drawn], with_zero: bool) -> Vec<f64> {
-    let ends = series.iter().flat_map(|s| [s.summary.min, s.summary.max]);
-    let Some((low, high)) = range(ends.chain(with_zero.then_some(0.0))) else {
-        return vec![0.0, 1.0];
-    };
-    let advised = |s: &Drawn| {
-        2.0 * (s.summary.quantile(0.75) - s.summary.quantile(0.25)) / (s.summary.n as f64).cbrt()
-    };
-    let advised = series.iter().map(advised).filter(|width| *width > 0.0);
-    let advised = advised.fold(f64::INFINITY, f64::min);
-    let (span, size) = (high - low, low.abs().max(high.abs()));
-    let step = if span > 1e-9 * size {
-        round_step((advised.min(span / 4.0) / NEAREST).max(span / BINS))
-    } else {
-        round_step((0.02 * size).max(1e-12))
-    };
-    // A bin beyond zero where nothing else lies there, lest the line of no difference hides in the frame.
-    let alone = |end: f64| with_zero && end.abs() < 1e-9 * step;
-    let apart = |end: f64| if alone(end) { 1.0 } else { 0.0 };
-    let first = (low / step + 1e-9).floor() - apart(low);
-    let last = (high / step - 1e-9).ceil() + apart(high);
-    // A value on the last edge belongs into the last bin; a lone value gets a bin around it.
-    let count = (last - first).clamp(1.0, 2.0 * BINS) as usize;
-    (0..=count).map(|i| (first + i as f64) * step).collect()
-}
-
-/// How much of a series lies in each bin, %. The outer bins take in what lies on the outer edges, or next to them by rounding.
-fn shares<P: Numbers + ?Sized>(values: &P, edges: &[f64]) -> Result<Vec<f64>, P::Error> {
-    let last = edges.len() - 2;
-    let inner = &edges[1..=last];
-    let mut counts = vec![0_u64; last + 1];
-    values.pass(|piece| {
-        for x in piece.iter().filter(|x| x.is_finite()) {
-            counts[inner.partition_point(|edge| edge <= x)] += 1;
-        }
-    })?;
-    let all = counts.iter().sum::<u64>().max(1) as f64;
-    Ok(counts
-        .iter()
-        .map(|count| 100.0 * *count as f64 / all)
-        .collect())
-}
-
-fn histogram(
-    (rect, x): (Rect, Axis),
-    series: &[Drawn],
-    shares: &[Vec<f64>],
-    edges: &[f64],
-) -> Panel {
-    let heights = shares.iter().flatten().copied();
-    let y = Axis::round("Runs in a bin [%]", heights.chain([0.0]), 6);
-    let mut panel = Panel::new(rect, x, y)
-        .over_table()
-        .x_labels(false)
-        .no_data(series.iter().all(Drawn::is_empty));
-    for (k, shares) in shares.iter().enumerate().rev() {
-        if series[k].is_empty() {
-            continue;
-        }
-        let bins = edges.windows(2).zip(shares);
-        let steps = bins.flat_map(|(pair, share)| [(pair[0], *share), (pair[1], *share)]);
-        let ends = [edges[0], edges[edges.len() - 1]].map(|x| (x, 0.0));
-        let outline = [ends[0]].into_iter().chain(steps).chain([ends[1]]);
-        let outline: Vec<Point> = outline.collect();
-        let area = Style::colour(STROKES[k].colour).fill_opacity(0.12);
-        panel.add(Shape::Area(vec![outline.clone()]), area.class("area"));
-        panel.series(outline, STROKES[k]);
-    }
-    if !panel.no_data {
-        zero(&mut panel);
-        quantile_lines(&mut panel, series);
-    }
-    panel
-}
-
-fn cumulative((rect, x): (Rect, Axis), series: &[Drawn], marked: [f64; 3]) -> Panel {
-    let y = Axis::exact("Runs at or below [%]", 0.0, 104.0, 6);
-    let mut panel = Panel::new(rect, x, y).over_table();
-    for p in marked {
-        panel.level(100.0 * p, GUIDE);
-    }
-    zero(&mut panel);
-    quantile_lines(&mut panel, series);
-    for (k, s) in series.iter().enumerate().rev() {
-        panel.add(Shape::Line(s.steps.clone()), Style::line(STROKES[k]));
-    }
-    let known = |(s, _): &(&Drawn, _)| !s.is_empty();
-    for (s, stroke) in series.iter().zip(STROKES).filter(known) {
-        for p in marked {
-            let place = at(s.summary.quantile(p), 100.0 * p);
-            let style = Symbol::white(stroke.colour).class("mark");
-            panel.symbol(Symbol::CIRCLE, place, 3.4, style);
-        }
-    }
-    panel
-}
-
-/// The cumulative curve as far as it can be seen: a stair of few values, a line through quantiles of many.
-fn steps<P: Numbers + ?Sized>(values: &P, summary: &Summary) -> Result<Vec<(f64, f64)>, P::Error> {
-    if summary.n > STEPS {
-        let shares: Vec<f64> = (0..=STEPS).map(|k| k as f64 / STEPS as f64).collect();
-        let found = quantiles(values, summary, &shares)?.into_iter();
-        return Ok(found.zip(shares).map(|(x, p)| (x, 100.0 * p)).collect());
-    }
-    let mut sorted = Vec::with_capacity(summary.n);
-    values.pass(|piece| sorted.extend(piece.iter().filter(|x| x.is_finite())))?;
-    sorted.sort_unstable_by(f64::total_cmp);
-    let share = |k: usize| 100.0 * k as f64 / sorted.len() as f64;
-    let step = |(k, x): (usize, &f64)| [(*x, share(k)), (*x, share(k + 1))];
-    Ok(sorted.iter().enumerate().flat_map(step).collect())
-}
-
-/// The line of no difference, where zero lies within.
-fn zero(panel: &mut Panel) {
-    if panel.x.low <= 0.0 && 0.0 <= panel.x.high && panel.x.low < panel.x.high {
-        let [low, high] = [f64::NEG_INFINITY, f64::INFINITY].map(|y| at(0.0, y));
-        panel.segment(low, high, Style::line(ZERO).class("zero"));
-    }
-}
-
-/// Of a lone series the marked quantiles run through both panels.
-fn quantile_lines(panel: &mut Panel, series: &[Drawn]) {
-    if let [s] = series {
-        for p in marked(s.confidence) {
-            panel.upright(s.summary.quantile(p), GUIDE);
-        }
-    }
-}
-
-/// The answer in one sentence, for one series of differences.
-fn headline(series: &[Drawn], differences: bool) -> String {
-    match series {
-        [s] if differences && s.above.n > 0 => format!("Above zero in {}.", above(&s.above)),
-        _ => String::new(),
-    }
 }
 
 /// "934 of 1000 pairs: 93.4 % (91.7 to 94.9 %)".
@@ -360,7 +308,7 @@ fn notes(shown: &Shown, all: usize, series: &[Drawn], differences: bool) -> Vec<
         if s.summary.n == 0 {
             return format!("{}: no values, {} missing.", s.name, s.summary.missing);
         }
-        let [low, median, high] = marked(s.confidence).map(|p| digits(s.summary.quantile(p)));
+        let [low, median, high] = s.marked().map(digits);
         let mut text = format!(
             "{}: median {median}{unit}, {}\u{a0}% within {low} to {high}",
             s.name,
@@ -372,6 +320,12 @@ fn notes(shown: &Shown, all: usize, series: &[Drawn], differences: bool) -> Vec<
         }
         if differences && series.len() > 1 && s.above.n > 0 {
             text += &format!("; above zero in {}", above(&s.above));
+        }
+        if let Some(x) = s.known.nominal {
+            text += &format!("; nominal values {}", digits(x));
+        }
+        if let Some([low, high]) = s.known.published {
+            text += &format!("; published {}", grouped(0.5 * (low + high), 0));
         }
         text += &format!("; n\u{a0}=\u{a0}{}", s.summary.n);
         if s.summary.missing > 0 {

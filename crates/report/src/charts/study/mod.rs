@@ -10,7 +10,7 @@ mod tornado;
 
 pub use bars::{rank_plot, sobol_plot};
 pub use convergence::convergence_plot;
-pub use distribution::{DistributionSeries, distribution_plot};
+pub use distribution::{DistributionSeries, KnownValue, distribution_plot};
 pub use effects::{EffectFactor, effects_plot};
 pub use tornado::tornado_plot;
 

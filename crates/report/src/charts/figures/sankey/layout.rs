@@ -32,8 +32,8 @@ impl Ribbon<'_> {
 pub(super) struct Trunk {
     pub top: f64,
     pub bottom: f64,
-    /// Energy that arrives at the stage, kJ.
-    pub kj: f64,
+    /// Energy that arrives at the stage, kJ/km.
+    pub kj_km: f64,
 }
 
 /// All flows in their places.
@@ -50,30 +50,30 @@ pub(super) struct Flows<'a> {
 }
 
 /// Room between the names of the stages and the trunk, for the labels of what flows in above that of the source, pixels.
-fn room_above(of: &Sankey, per_kj: f64) -> f64 {
-    let room = |b: &Branch| (-b.kj * per_kj + GAP).max(LEFT_PITCH);
-    let room: f64 = of.branches().filter(|b| b.kj < 0.0).map(room).sum();
+fn room_above(of: &Sankey, per_kj_km: f64) -> f64 {
+    let room = |b: &Branch| (-b.kj_km * per_kj_km + GAP).max(LEFT_PITCH);
+    let room: f64 = of.branches().filter(|b| b.kj_km < 0.0).map(room).sum();
     let tall = if room > 0.0 { LEFT_PITCH } else { 40.0 };
-    room + (0.5 * (tall - of.source.kj * per_kj)).max(0.0)
+    room + (0.5 * (tall - of.source.kj_km * per_kj_km)).max(0.0)
 }
 
 pub(super) fn lay_out<'a>(of: &'a Sankey<'a>) -> Flows<'a> {
-    let per_kj = of.scale();
-    let wide = of.source.kj * per_kj;
-    let first = TOP + BAND + room_above(of, per_kj);
+    let per_kj_km = of.scale();
+    let wide = of.source.kj_km * per_kj_km;
+    let first = TOP + BAND + room_above(of, per_kj_km);
     let (mut trunk, mut leaving, mut entering) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut top, mut bottom, mut kj) = (first, first + wide, of.source.kj);
+    let (mut top, mut bottom, mut kj_km) = (first, first + wide, of.source.kj_km);
     let mut left = (first, first + 0.5 * wide);
     for (stage, Stage { branches, .. }) in of.stages.iter().enumerate() {
-        let came: f64 = branches.iter().map(|b| (-b.kj).max(0.0)).sum();
+        let came: f64 = branches.iter().map(|b| (-b.kj_km).max(0.0)).sum();
         trunk.push(Trunk {
             top,
             bottom,
-            kj: kj + came,
+            kj_km: kj_km + came,
         });
         for of in branches {
-            let wide = of.kj.abs() * per_kj;
-            kj -= of.kj;
+            let wide = of.kj_km.abs() * per_kj_km;
+            kj_km -= of.kj_km;
             let mut ribbon = Ribbon {
                 of,
                 stage,
@@ -81,7 +81,7 @@ pub(super) fn lay_out<'a>(of: &'a Sankey<'a>) -> Flows<'a> {
                 at_trunk: bottom - wide,
                 at_end: bottom - wide,
             };
-            if of.kj < 0.0 {
+            if of.kj_km < 0.0 {
                 top -= wide;
                 let end = (left.0 - GAP - wide).min(left.1 - LEFT_PITCH - 0.5 * wide);
                 left = (end, end + 0.5 * wide);

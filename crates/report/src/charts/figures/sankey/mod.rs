@@ -7,7 +7,7 @@ mod layout;
 
 use layout::{Flows, Ribbon, lay_out};
 
-use super::{MARGIN, TEXT, TOP, Term, energy, finite, percent};
+use super::{MARGIN, TEXT, TOP, Term, finite, per_km, percent};
 use crate::charts::engine::{
     Chart, Cut, Label, Panel, Point, QUIET, Rect, Shape, Style, WIDTH, at, cell, free, lines,
     stroke,
@@ -19,8 +19,8 @@ use crate::charts::picture::{Picture, PictureTable};
 pub(super) struct Sankey<'a> {
     pub title: String,
     pub subject: &'a str,
-    /// The largest source of the figures on this scale, kJ; the own one if it is smaller.
-    pub largest_kj: f64,
+    /// The largest source of the figures on this scale, kJ/km; the own one if it is smaller.
+    pub largest_kj_km: f64,
     /// What the trunk begins with.
     pub source: Whole,
     pub stages: Vec<Stage>,
@@ -32,12 +32,12 @@ pub(super) struct Sankey<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Whole {
     pub name: &'static str,
-    pub kj: f64,
+    pub kj_km: f64,
 }
 
 impl Whole {
-    pub fn new(name: &'static str, kj: f64) -> Self {
-        Whole { name, kj }
+    pub fn new(name: &'static str, kj_km: f64) -> Self {
+        Whole { name, kj_km }
     }
 }
 
@@ -59,13 +59,13 @@ impl Stage {
 #[derive(Clone, Debug)]
 pub(super) struct Branch {
     pub name: String,
-    pub kj: f64,
+    pub kj_km: f64,
     pub term: Term,
 }
 
-pub(super) fn branch(name: &str, term: Term, kj: f64) -> Branch {
+pub(super) fn branch(name: &str, term: Term, kj_km: f64) -> Branch {
     let name = name.to_owned();
-    Branch { name, kj, term }
+    Branch { name, kj_km, term }
 }
 
 /// Height of all that flows in, pixels.
@@ -83,7 +83,7 @@ const SHARE: f64 = 76.0;
 pub(super) fn sankey(of: Sankey) -> Picture {
     let of = balanced(of);
     let flows = lay_out(&of);
-    let mut table = PictureTable::new(&[("flow", ""), ("way", ""), ("energy", "kJ")]).note(
+    let mut table = PictureTable::new(&[("flow", ""), ("way", ""), ("energy", "kJ/km")]).note(
         "Widths are in proportion to energy. What enters and what leaves add up to the same sum.",
     );
     let shares = of.shares_of.iter();
@@ -114,18 +114,18 @@ fn balanced(mut of: Sankey) -> Sankey {
     if of.stages.is_empty() {
         of.stages.push(Stage::default());
     }
-    of.source.kj = finite(of.source.kj);
+    of.source.kj_km = finite(of.source.kj_km);
     for branch in of.stages.iter_mut().flat_map(|stage| &mut stage.branches) {
-        branch.kj = finite(branch.kj);
+        branch.kj_km = finite(branch.kj_km);
     }
     let mut last = Vec::new();
-    if of.source.kj < 0.0 {
-        last.push(branch(of.source.name, Term::Trunk, -of.source.kj));
-        of.source.kj = 0.0;
+    if of.source.kj_km < 0.0 {
+        last.push(branch(of.source.name, Term::Trunk, -of.source.kj_km));
+        of.source.kj_km = 0.0;
     }
-    let branches = || of.branches().chain(&last).map(|branch| branch.kj);
-    let left_over = of.source.kj - branches().sum::<f64>();
-    if left_over.abs() > 1e-6 * (of.source.kj + branches().map(f64::abs).sum::<f64>()) {
+    let branches = || of.branches().chain(&last).map(|branch| branch.kj_km);
+    let left_over = of.source.kj_km - branches().sum::<f64>();
+    if left_over.abs() > 1e-6 * (of.source.kj_km + branches().map(f64::abs).sum::<f64>()) {
         last.push(branch("Not accounted for", Term::Other, left_over));
     }
     if let Some(stage) = of.stages.last_mut() {
@@ -139,10 +139,10 @@ impl Sankey<'_> {
         self.stages.iter().flat_map(|stage| &stage.branches)
     }
 
-    /// Pixels per kJ; zero where nothing flows.
+    /// Pixels per kJ/km; zero where nothing flows.
     fn scale(&self) -> f64 {
-        let inflow = self.source.kj + self.branches().map(|b| (-b.kj).max(0.0)).sum::<f64>();
-        let scale = TALL / inflow.max(finite(self.largest_kj));
+        let inflow = self.source.kj_km + self.branches().map(|b| (-b.kj_km).max(0.0)).sum::<f64>();
+        let scale = TALL / inflow.max(finite(self.largest_kj_km));
         if inflow > 0.0 && scale.is_finite() {
             scale
         } else {
@@ -151,9 +151,12 @@ impl Sankey<'_> {
     }
 
     /// Adds a row to the table; returns its index.
-    fn push(&self, table: &mut PictureTable, name: &str, way: &str, kj: f64) -> usize {
-        let shares = self.shares_of.iter().map(|whole| 100.0 * kj / whole.kj);
-        let numbers = [kj].into_iter().chain(shares).map(|x| cell(x, 0.01));
+    fn push(&self, table: &mut PictureTable, name: &str, way: &str, kj_km: f64) -> usize {
+        let shares = self
+            .shares_of
+            .iter()
+            .map(|whole| 100.0 * kj_km / whole.kj_km);
+        let numbers = [kj_km].into_iter().chain(shares).map(|x| cell(x, 0.01));
         let words = [name, way].map(str::to_owned);
         table.push(words.into_iter().chain(numbers))
     }
@@ -172,15 +175,15 @@ impl Flows<'_> {
     }
 
     fn draw_trunk(&self, panel: &mut Panel, table: &mut PictureTable) {
-        let Whole { name, kj } = self.of.source;
-        let source = self.of.push(table, name, "enters", kj);
+        let Whole { name, kj_km } = self.of.source;
+        let source = self.of.push(table, name, "enters", kj_km);
         let mut from = LEFT;
         for (s, (stage, trunk)) in self.of.stages.iter().zip(&self.trunk).enumerate() {
             let to = self.stage_x(s);
             let row = if s == 0 || stage.name.is_empty() {
                 source
             } else {
-                self.of.push(table, stage.name, "arrives", trunk.kj)
+                self.of.push(table, stage.name, "arrives", trunk.kj_km)
             };
             if trunk.bottom > trunk.top {
                 let style = Style::fill(Term::Trunk.fill()).crisp().class("trunk");
@@ -189,20 +192,20 @@ impl Flows<'_> {
             from = to;
         }
         let middle = 0.5 * (self.trunk[0].top + self.trunk[0].bottom);
-        self.source_label(panel, name, kj, middle);
+        self.source_label(panel, name, kj_km, middle);
     }
 
     fn draw_entering(&self, panel: &mut Panel, ribbon: &Ribbon, table: &mut PictureTable) {
         let of = ribbon.of;
-        let row = self.of.push(table, &of.name, "enters", -of.kj);
+        let row = self.of.push(table, &of.name, "enters", -of.kj_km);
         let to = (self.stage_x(ribbon.stage), ribbon.at_trunk);
         draw_ribbon(panel, (LEFT, ribbon.at_end), to, ribbon, row);
-        self.source_label(panel, &of.name, -of.kj, ribbon.middle());
+        self.source_label(panel, &of.name, -of.kj_km, ribbon.middle());
     }
 
     fn draw_leaving(&self, panel: &mut Panel, ribbon: &Ribbon, table: &mut PictureTable) {
         let of = ribbon.of;
-        let row = self.of.push(table, &of.name, "leaves", of.kj.abs());
+        let row = self.of.push(table, &of.name, "leaves", of.kj_km.abs());
         let from = (self.stage_x(ribbon.stage), ribbon.at_trunk);
         draw_ribbon(panel, from, (self.end, ribbon.at_end), ribbon, row);
         let (middle, end) = (ribbon.middle(), self.end);
@@ -211,29 +214,29 @@ impl Flows<'_> {
         let text = |x: f64, text: &str| Label::new(at(x, middle + 4.0), text).size(TEXT);
         let room = self.energy - 72.0 - end - 14.0;
         panel.label(text(end + 14.0, &of.name).cut(Cut::End, room));
-        panel.label(text(self.energy, &energy(of.kj)).end());
+        panel.label(text(self.energy, &per_km(of.kj_km)).end());
         for (x, whole) in self.shares.iter().zip(&self.of.shares_of) {
-            panel.label(text(*x, &percent(of.kj, whole.kj)).end());
+            panel.label(text(*x, &percent(of.kj_km, whole.kj_km)).end());
         }
     }
 
     /// Energy and share of the first whole.
-    fn size(&self, kj: f64) -> impl Iterator<Item = String> {
+    fn size(&self, kj_km: f64) -> impl Iterator<Item = String> {
         let whole = self.of.shares_of.first();
         let share = whole
-            .map(|whole| percent(kj, whole.kj))
+            .map(|whole| percent(kj_km, whole.kj_km))
             .filter(|share| !share.is_empty());
-        [energy(kj)].into_iter().chain(share)
+        [per_km(kj_km)].into_iter().chain(share)
     }
 
     /// Name, energy and share left of where a flow begins.
-    fn source_label(&self, panel: &mut Panel, name: &str, kj: f64, middle: f64) {
+    fn source_label(&self, panel: &mut Panel, name: &str, kj_km: f64, middle: f64) {
         let room = LEFT - 8.0 - MARGIN;
         // Bold letters are wider than plain ones.
         let mut lines = lines(name, TEXT, 0.94 * room);
         lines.truncate(2);
         let names = lines.len();
-        lines.extend(self.size(kj));
+        lines.extend(self.size(kj_km));
         let first = middle - 0.5 * LINE * (lines.len() - 1) as f64 + 4.0;
         for (k, line) in lines.into_iter().enumerate() {
             let place = at(LEFT - 8.0, first + LINE * k as f64);
@@ -256,7 +259,7 @@ impl Flows<'_> {
             panel.segment(at(x, TOP + 2.0), at(x, foot), rule);
             let mut text = lines(stage.name, TEXT, room);
             text.truncate(2);
-            text.extend(self.size(trunk.kj));
+            text.extend(self.size(trunk.kj_km));
             for (n, line) in text.into_iter().enumerate() {
                 let place = at(x + 5.0, TOP + 12.0 + LINE * n as f64);
                 panel.label(Label::new(place, line).size(TEXT).cut(Cut::End, room));
