@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use cvtcycle::config::Problems;
+use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::OutputDir;
 
-use super::problems::problem;
+use super::problems::{bad_value, in_options, problem};
 
 /// Where the files go.
 #[derive(Args, Clone, Debug)]
@@ -24,6 +25,25 @@ impl OutArgs {
     pub fn dir(&self, problems: &mut Problems) -> Option<OutputDir> {
         let path = self.path(problems)?;
         problems.take(OutputDir::create(path, self.force))
+    }
+
+    /// Begins the one file of a command, whose name has an ending. Its usual name may be unknown, where the input that it is made of is bad.
+    pub fn file(
+        &self,
+        usual: Option<PathBuf>,
+        ending: &str,
+        problems: &mut Problems,
+    ) -> Option<OutputFile> {
+        let path = self.out.clone().or(usual)?;
+        let own = path.extension().unwrap_or_default();
+        if !path.is_dir() && !own.eq_ignore_ascii_case(ending) {
+            let (value, allowed) = (path.display().to_string(), format!("a name in .{ending}"));
+            let message = "the file has another ending than what is written";
+            let hint = format!("for example {}", path.with_extension(ending).display());
+            problems.add(bad_value("--out", &value, &allowed, message, &hint));
+            return None;
+        }
+        problems.take(OutputFile::create(path, self.force).map_err(in_options))
     }
 
     /// The path, if one is given.

@@ -81,6 +81,9 @@ impl Execute for FmuArgs {
         let car = CarriedCar::load(&self.car, &options);
         let car = problems.take(car.map_err(|found| found.map(of_car)));
         let libraries = problems.take(self.libraries());
+        let usual = car.as_ref().zip(kind);
+        let usual = usual.map(|((_, setup), kind)| format!("{}_{}.fmu", setup.name, kind.name()));
+        let file = self.out.file(usual.map(PathBuf::from), "fmu", problems);
         let (car, setup) = car?;
         let (kind, fmi) = (kind?, fmi?);
         if !kind.fits(setup.transmission()) {
@@ -93,13 +96,7 @@ impl Execute for FmuArgs {
             );
             problems.add(found.value(name));
         }
-        let path = match self.out.path(problems) {
-            Some(path) => path.to_owned(),
-            None => format!("{}_{}.fmu", setup.name, kind.name()).into(),
-        };
-        let libraries = libraries?;
-        let file = OutputFile::create(path, self.out.force);
-        let file = problems.take(file.map_err(in_options))?;
+        let (libraries, file) = (libraries?, file?);
         Some(FmuPlan {
             kind,
             fmi,

@@ -99,6 +99,19 @@ impl Execute for LeversArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
         self.run.begin(problems);
+        let study = self.study(problems);
+        self.run.look(problems);
+        study
+    }
+
+    fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
+        self.run.run::<LeverResults>(&study, terminal)
+    }
+}
+
+impl LeversArgs {
+    /// The study of all levers; none after a problem.
+    fn study(&self, problems: &mut Problems) -> Option<Study> {
         let levers = self.levers(problems);
         let cycle = problems.take(cycle::find(&self.cycle.word));
         let ambients = self.ambients.get(problems);
@@ -141,10 +154,6 @@ impl Execute for LeversArgs {
         };
         let study = prepare(&request).map_err(|found| found.map(of_option));
         self.run.confirmed(problems.take(study)?, problems)
-    }
-
-    fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
-        self.run.run::<LeverResults>(&study, terminal)
     }
 }
 

@@ -131,8 +131,7 @@ impl Execute for NewArgs {
         self.complete(&mut answers, problems);
         let has_usual_box = answers.like.is_none() && answers.gearbox.is_none();
         let car = problems.take(new_car::write(&answers).map_err(|found| found.map(option)));
-        let file = OutputFile::create(path, self.out.force);
-        let file = problems.take(file.map_err(in_options));
+        let file = self.out.file(Some(path), "toml", problems);
         Some(NewPlan {
             car: car?,
             has_usual_box,

@@ -55,13 +55,8 @@ pub struct ReportArgs {
 }
 
 impl ReportArgs {
-    /// The section that can be driven again.
-    fn live_section(
-        &self,
-        document: &Document,
-        form: Form,
-        problems: &mut Problems,
-    ) -> Option<LiveSection> {
+    /// Whether the report can have a section that is driven again.
+    fn check_live(&self, form: Form, problems: &mut Problems) -> bool {
         let refused = match (&self.dirs[..], form) {
             (_, Form::Markdown) => Some(("levers are in a page alone", "choose --format html")),
             ([_, _], _) => Some((
@@ -72,10 +67,8 @@ impl ReportArgs {
         };
         if let Some((message, hint)) = refused {
             problems.add(problem("--live", message, hint));
-            return None;
         }
-        let first_figure = document.figures().count() + 1;
-        problems.take(of_dir(&self.dirs[0], first_figure))
+        refused.is_none()
     }
 }
 
@@ -86,11 +79,12 @@ impl Execute for ReportArgs {
         problems.take(threads::begin(None));
         let out = self.results.out.out.as_deref();
         let form = match &self.format {
-            Some(word) => problems
-                .take(one_of("--format", word, &Form::NAMES))
-                .unwrap_or(Form::Html),
-            None => out.and_then(Form::of).unwrap_or(Form::Html),
+            Some(word) => problems.take(one_of("--format", word, &Form::NAMES)),
+            None => None,
         };
+        let form = form.or_else(|| out.and_then(Form::of));
+        let form = form.unwrap_or(Form::Html);
+        let fits = !self.live || self.check_live(form, problems);
         let document = problems.take(report(&self.dirs, &self.with, self.cover.as_deref()));
         let file = match out {
             Some(file) => file.to_path_buf(),
@@ -103,8 +97,10 @@ impl Execute for ReportArgs {
         };
         let target = problems.take(Target::new(&file, form, self.results.out.force));
         let mut document = document?.shown(self.full);
-        if self.live {
-            document.live = Some(self.live_section(&document, form, problems)?);
+        if self.live && fits {
+            let first_figure = document.figures().count() + 1;
+            let live: LiveSection = problems.take(of_dir(&self.dirs[0], first_figure))?;
+            document.live = Some(live);
         }
         Some((document, target?))
     }

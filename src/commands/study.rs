@@ -113,6 +113,19 @@ impl Execute for StudyPlanArgs {
             return None;
         };
         self.run.begin(problems);
+        let study = self.prepared(word, problems);
+        self.run.look(problems);
+        study
+    }
+
+    fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
+        self.run.run::<StudyResults>(&study, terminal)
+    }
+}
+
+impl StudyPlanArgs {
+    /// The plan with what the options change.
+    fn prepared(&self, word: &str, problems: &mut Problems) -> Option<Study> {
         let mut count = |option, text: &Option<String>, range| {
             count_if_given(option, text.as_ref(), range, problems)
         };
@@ -127,12 +140,6 @@ impl Execute for StudyPlanArgs {
         self.run.prepare(plan, problems)
     }
 
-    fn run(&self, study: Study, terminal: Terminal) -> CommandResult {
-        self.run.run::<StudyResults>(&study, terminal)
-    }
-}
-
-impl StudyPlanArgs {
     /// The plan for another vehicle.
     fn of_vehicle(&self, plan: Plan, vehicle: &str, problems: &mut Problems) -> Option<Plan> {
         let (mut plan, _) = problems.take(relative(plan))?;

@@ -120,6 +120,10 @@ fn check_target(path: &Path, force: bool) -> Result<(), Problem> {
         return Ok(());
     };
     let name = path.display();
+    if path.is_dir() {
+        let hint = "name a file, for example one in it";
+        return Err(problem(path, &format!("{name} is a directory"), hint));
+    }
     if !found.is_file() && !found.is_symlink() {
         let message = format!("{name} exists and is not a plain file");
         return Err(problem(path, &message, "choose another name"));

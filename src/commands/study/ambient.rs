@@ -68,6 +68,7 @@ impl Execute for StudyAmbientArgs {
         self.run.begin(&mut own);
         let plan = self.matrix(&mut own);
         let study = plan.and_then(|plan| self.run.prepare(plan, &mut own));
+        self.run.look(&mut own);
         own.into_iter()
             .for_each(|problem| problems.add(of_option(problem)));
         study

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use super::super::threads;
 use super::share::{self, ShareArgs};
 use super::tables;
-use crate::args::problems::{bad_value, problem};
+use crate::args::problems::{bad_value, in_options, problem};
 use crate::args::{ConfidenceArgs, OutArgs, OutputArgs, ThreadArgs};
 use crate::print::colour::Paint;
 use crate::print::progress::{Progress, handle_interrupts};
@@ -73,6 +73,15 @@ impl StudyRunArgs {
         self.confidence.get(problems);
         let threads = self.threads.given(problems);
         problems.take(threads::begin(threads));
+    }
+
+    /// Looks at the directory as well where there are problems, so that all are reported at once.
+    pub fn look(&self, problems: &mut Problems) {
+        let begins = !self.resume && !self.share.dry_run && !problems.is_empty();
+        if let Some(path) = self.out.out.as_deref().filter(|_| begins) {
+            let found = StudyDir::check_free(path, self.out.force);
+            problems.take(found.map_err(in_options));
+        }
     }
 
     /// Reads the vehicles of a plan, and checks the number of runs.

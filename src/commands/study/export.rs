@@ -52,10 +52,12 @@ impl Execute for StudyExportArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let path = self.out.path(problems)?;
-        let format = problems.take(Format::of(path))?;
-        let study = problems.take(Study::open(&self.dir))?;
-        let out = problems.take(OutputFile::create(path, self.out.force))?;
-        Some((format, study, out))
+        let format = problems.take(Format::of(path));
+        let study = problems.take(Study::open(&self.dir));
+        // Of a name with a wrong ending nothing else is said.
+        let format = format?;
+        let out = problems.take(OutputFile::create(path, self.out.force));
+        Some((format, study?, out?))
     }
 
     fn run(&self, (format, study, mut out): Self::Plan, _: Terminal) -> CommandResult {

@@ -3,6 +3,7 @@
 
 mod attribute;
 mod optimum;
+mod out;
 mod compare;
 mod cycles;
 mod fmu;

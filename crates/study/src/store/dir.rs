@@ -77,6 +77,18 @@ impl StudyDir {
         Ok(dir)
     }
 
+    /// Looks, without changing anything, whether [`StudyDir::create`] would find something in the way: for a list of all problems.
+    ///
+    /// # Errors
+    /// A problem of `--out` that says what is in the way.
+    pub fn check_free(path: &Path, force: bool) -> Result<(), Problem> {
+        check_directory(path)?;
+        match path.is_dir() {
+            true => check_contents(path, force).map(drop),
+            false => Ok(()),
+        }
+    }
+
     /// Takes up a study where it was left: with the same manifest, byte for byte. What an interrupted process left half written is
     /// removed; [`StudyDir::missing`] then tells the parts that are still to be computed.
     ///
