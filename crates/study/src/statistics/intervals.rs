@@ -8,7 +8,8 @@
 //! | IV-4 | least n of IV-3: (max(p, 1 - p))^n <= a | derived: then n values reach beyond the quantile p on both sides |
 //!
 //! c is the confidence, 0.95 unless another is wanted, and a = (1 - c) / 2 its tail. IV-1: statrs' inverse loses digits above some 10^5
-//! degrees of freedom (1.83 in place of 1.96 at 10^7), hence the expansion, whose next term is 2.6 / nu^3 (53 / nu^3 of c = 0.999). IV-2
+//! degrees of freedom (1.83 in place of 1.96 at 10^7), hence the expansion, whose next term is 2.6 / nu^3 (53 / nu^3 of c = 0.999). IV-2:
+//! its inverse of Beta never ends where all or none of some 7 * 10^6 draws do something (a Newton step overflows), hence halving of its Beta above 10^6 draws. IV-2
 //! and IV-3 hold at least c, for any distribution of independent values.
 
 use super::Confidence;
@@ -16,6 +17,9 @@ use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF, Normal, S
 
 /// Degrees of freedom above which the expansion is used.
 const MANY: f64 = 1000.0;
+
+/// Draws up to which statrs' inverse of Beta is used.
+const NEWTON: usize = 1_000_000;
 
 /// Quantile of the standard normal distribution that leaves a tail above it.
 pub(super) fn normal(tail: f64) -> f64 {
@@ -37,14 +41,28 @@ pub(super) fn student(freedom: f64, tail: f64) -> f64 {
 /// Where the probability of `k` of `n` lies; 0 to 1 of nothing.
 pub(super) fn clopper_pearson(k: usize, n: usize, tail: f64) -> [f64; 2] {
     let (k, rest) = (k as f64, n.saturating_sub(k) as f64);
-    let at = |a: f64, b: f64, p: f64, none: f64| {
-        Beta::new(a, b).map_or(none, |beta| beta.inverse_cdf(p))
+    let at = |a: f64, b: f64, p: f64, none: f64| match Beta::new(a, b) {
+        Ok(beta) if n <= NEWTON => beta.inverse_cdf(p),
+        Ok(beta) => halved(|x| beta.cdf(x) < p),
+        Err(_) => none,
     };
     // No Beta has a shape of 0: none or all of n leave the end open, at 0 or at 1.
     [
         at(k, rest + 1.0, tail, 0.0),
         at(k + 1.0, rest, 1.0 - tail, 1.0),
     ] // IV-2
+}
+
+/// Where a condition that holds from 0 on ends, of 0 to 1: to the last bit.
+fn halved(holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        *(if holds(middle) { &mut low } else { &mut high }) = middle;
+    }
 }
 
 /// Indices, from 0, of the two of `n` ordered values between which the quantile `p` lies; `None` where no value is far enough out.
@@ -106,6 +124,29 @@ mod tests {
             (93, 100, [0.861_080_271_544, 0.971_394_711_093]),
             (5000, 10_000, [0.490_151_380_590, 0.509_848_619_410]),
             (500_000, 1_000_000, [0.499_019_519_195, 0.500_980_480_805]),
+            (0, 10_000_000, [0.0, 3.688_878_773_722e-7]),
+            (5, 10_000_000, [1.623_486_583_030e-7, 1.166_832_818_877e-6]),
+            (
+                3_000_000,
+                10_000_000,
+                [0.299_715_982_165, 0.300_284_133_634],
+            ),
+            (
+                5_000_000,
+                10_000_000,
+                [0.499_690_052_521, 0.500_309_947_479],
+            ),
+            (
+                9_999_997,
+                10_000_000,
+                [0.999_999_123_273, 0.999_999_938_133],
+            ),
+            (10_000_000, 10_000_000, [0.999_999_631_112_123, 1.0]),
+            (
+                400_000_000,
+                1_000_000_000,
+                [0.399_969_636_158, 0.400_030_364_421],
+            ),
         ];
         for (k, n, truth) in shares {
             let ends = clopper_pearson(k, n, TAIL);
