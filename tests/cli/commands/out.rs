@@ -1,4 +1,4 @@
-//! `--out` of every command: what is wrong with it is reported beside the other mistakes, and nothing is written.
+//! `--out` of every command: what is wrong with it is reported with the other mistakes, and nothing is written.
 
 use std::fs;
 
@@ -71,7 +71,7 @@ fn refused(words: &[&str], out: &str, parts: &[&str]) {
 }
 
 #[test]
-fn a_bad_directory_is_reported_beside_other_mistakes() {
+fn a_bad_directory_is_reported_with_other_mistakes() {
     for (words, other) in OF_DIRECTORY {
         refused(words, "file.txt", &[other, "exists and is not a directory"]);
         refused(
@@ -83,7 +83,7 @@ fn a_bad_directory_is_reported_beside_other_mistakes() {
 }
 
 #[test]
-fn a_wrong_ending_is_reported_beside_other_mistakes() {
+fn a_wrong_ending_is_reported_with_other_mistakes() {
     for ((words, other), name) in OF_FILE {
         refused(words, name, &[other, "--out", name, "ending"]);
         let says = if words[0] == "study" {
@@ -99,7 +99,7 @@ fn a_wrong_ending_is_reported_beside_other_mistakes() {
     }
 }
 
-/// A form that is none has no ending: nothing is said about the name of the file. And levers that a form cannot have are named beside it.
+/// A form that is none has no ending: nothing is said about the name of the file. And levers that a form cannot have are named with it.
 #[test]
 fn a_form_that_is_none_has_no_ending() {
     let folder = tempfile::tempdir().unwrap();
