@@ -37,13 +37,16 @@ pub fn than(compared: &str) -> &'static str {
 }
 
 /// "-1 to +9 %".
-pub fn between([low, high]: [f64; 2], unit: &str) -> String {
-    let decimals = decimals([low, high]);
-    format!(
-        "{} to {} {unit}",
-        signed(low, decimals),
-        signed(high, decimals)
-    )
+pub fn between(ends: [f64; 2], unit: &str) -> String {
+    ends_in(ends, decimals(ends), (unit, signed))
+}
+
+/// How a number is written with so many decimals: a difference with its sign, an output without.
+type Written = fn(f64, usize) -> String;
+
+fn ends_in([low, high]: [f64; 2], decimals: usize, (unit, written): (&str, Written)) -> String {
+    let [low, high] = [low, high].map(|x| written(x, decimals));
+    format!("{low} to {high} {unit}")
 }
 
 /// "13.3 % less than the baseline in a phase".

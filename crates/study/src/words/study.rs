@@ -5,7 +5,7 @@ use cvtcycle_config::setup::Kind;
 use cvtcycle_output::number::{fixed, plain, signed};
 
 use super::effects::decided;
-use super::{against_print, between, decimals};
+use super::{Written, against_print, decimals, ends_in};
 use crate::answer::ambient::Matrix;
 use crate::answer::{Answer, Comparison, OutputAnswer, Range};
 use crate::check::{About, published};
@@ -79,7 +79,7 @@ fn compared(of: &Comparison, answer: &Answer) -> String {
     let percent = |x: f64| fixed(100.0 * x, if n >= 1000 { 1 } else { 0 });
     let (share, [low, high]) = (percent(worse.share), interval.map(percent));
     let level = answer.confidence.percent();
-    let (spread, digits) = middle(s, answer.confidence, "%");
+    let (spread, digits) = middle(s, answer.confidence, ("%", signed));
     let (mean, sd) = (signed(s.mean, digits + 1), fixed(s.sd, digits + 1));
     format!(
         "{subject} uses more fuel than {baseline} in {k} of {n} pairs: {share} % ({level} % interval {low} to {high} %). \
@@ -88,19 +88,25 @@ fn compared(of: &Comparison, answer: &Answer) -> String {
 }
 
 /// Where most of the draws lie, and the median; of too few draws their ends. And the decimals of its numbers.
-fn middle(s: &Summary, confidence: Confidence, unit: &str) -> (String, usize) {
+fn middle(
+    s: &Summary,
+    confidence: Confidence,
+    (unit, written): (&str, Written),
+) -> (String, usize) {
     let [low, high] = confidence.ends();
-    let median = s.quantile(0.5);
     if s.n < least_draws(high, confidence) {
         let n = s.n;
         let digits = decimals([s.min, s.max]);
-        let ends = between([s.min, s.max], unit);
+        let ends = ends_in([s.min, s.max], digits, (unit, written));
         let text = format!("the least and the largest of {n} runs are {ends}");
         return (text, digits);
     }
     let ends = [s.quantile(low), s.quantile(high)];
     let (draws, digits) = (confidence.draws_percent(), decimals(ends));
-    let (ends, median) = (between(ends, unit), signed(median, digits));
+    let (ends, median) = (
+        ends_in(ends, digits, (unit, written)),
+        written(s.quantile(0.5), digits),
+    );
     (
         format!("{draws} % of the runs are {ends}, the median is {median} {unit}"),
         digits,
@@ -110,7 +116,7 @@ fn middle(s: &Summary, confidence: Confidence, unit: &str) -> (String, usize) {
 /// The spread of an output without anything to compare it with.
 fn spread(output: &OutputAnswer, s: &Summary, confidence: Confidence) -> String {
     let (name, car) = (&output.output, &output.car);
-    let text = middle(s, confidence, &output.unit).0;
+    let text = middle(s, confidence, (&output.unit, fixed)).0;
     format!("{name} of {car}: {text}.")
 }
 
@@ -214,17 +220,23 @@ mod tests {
     fn ends_need_draws_that_reach_them() {
         let usual = Confidence::default();
         let draws = |n: usize| (0..n).map(|k| k as f64).collect::<Vec<_>>();
-        let text = |n: usize| middle(&Summary::of(&draws(n), usual), usual, "%").0;
+        let text = |n: usize| middle(&Summary::of(&draws(n), usual), usual, ("%", signed)).0;
         assert_eq!(
             text(71),
             "the least and the largest of 71 runs are 0 to +70 %"
+        );
+        // An output has no sign.
+        let output = Summary::of(&draws(101), usual);
+        assert_eq!(
+            middle(&output, usual, ("W", fixed)).0,
+            "90 % of the runs are 5 to 95 W, the median is 50 W"
         );
         assert_eq!(
             text(101),
             "90 % of the runs are +5 to +95 %, the median is +50 %"
         );
         let wide = Confidence::of(0.99);
-        let text = middle(&Summary::of(&draws(101), wide), wide, "%").0;
+        let text = middle(&Summary::of(&draws(101), wide), wide, ("%", signed)).0;
         assert!(
             text.starts_with("the least and the largest of 101 runs"),
             "{text}"
