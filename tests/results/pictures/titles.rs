@@ -143,6 +143,7 @@ fn the_stretch_of_most_fuel_is_that_of_the_cells() {
 fn energy() -> CarEnergy {
     CarEnergy {
         subject: "car".to_owned(),
+        conditions: "NEDC, ambient \u{2212}10 \u{b0}C".into(),
         fuel_kj_km: 27_000.0,
         exhaust_kj_km: 9000.0,
         engine_heat_kj_km: 12_500.0,

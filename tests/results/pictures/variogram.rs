@@ -32,6 +32,7 @@ fn all_time_is_in_the_table_and_lines_stay_in_the_panel() {
     ];
     let picture = variogram(&Variogram {
         subject: "s".to_owned(),
+        conditions: "NEDC, ambient \u{2212}10 \u{b0}C".into(),
         speed_kmh: &speed,
         engine_rpm: &rpm,
         seconds: &seconds,

@@ -8,13 +8,14 @@ use crate::charts::decision::PerKm;
 use crate::charts::figures::{CarEnergy, TERMS, Term, energy_flow, transmission_flow};
 
 /// A car's ledger as the figures want it, kJ/km.
-fn car_energy(car: &Car) -> CarEnergy {
+fn car_energy(car: &Car, conditions: &str) -> CarEnergy {
     let per_km = |kj: f64| kj / car.run.distance_km;
     let term = |name: &str| per_km(car.run.term_kj(name).unwrap_or(f64::NAN));
     let electric = per_km(car.run.term_kj("electric").unwrap_or(0.0));
     let losses = car.losses_kj().into_iter();
     CarEnergy {
         subject: car.run.label().to_owned(),
+        conditions: conditions.to_owned(),
         fuel_kj_km: per_km(car.run.fuel_energy_kj),
         exhaust_kj_km: term("exhaust"),
         engine_heat_kj_km: term("engine_heat"),
@@ -28,8 +29,9 @@ fn car_energy(car: &Car) -> CarEnergy {
 }
 
 /// The ledgers of all cars, to be drawn on one scale.
-fn energies(cars: &[Car]) -> Vec<CarEnergy> {
-    let mut all: Vec<CarEnergy> = cars.iter().map(car_energy).collect();
+fn energies(cars: &[Car], conditions: &str) -> Vec<CarEnergy> {
+    let of = |car| car_energy(car, conditions);
+    let mut all: Vec<CarEnergy> = cars.iter().map(of).collect();
     let most = |of: fn(&CarEnergy) -> f64| all.iter().map(of).fold(0.0, f64::max);
     let largest_kj_km = [most(|car| car.fuel_kj_km), most(CarEnergy::flywheel_kj_km)];
     for car in &mut all {
@@ -73,7 +75,7 @@ pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
     )
 }
 
-pub(super) fn section(cars: &[Car]) -> Section {
+pub(super) fn section(cars: &[Car], conditions: &str) -> Section {
     let mut section = Section::new("energy", "Energy from fuel to wheel");
     section.text(
         "Widths are in proportion to the energy per kilometre over the whole cycle, by the ledger of the run: fuel = exhaust + heat to the engine + accessories \
@@ -86,7 +88,7 @@ pub(super) fn section(cars: &[Car]) -> Section {
         );
     }
     section.table(balance(cars));
-    let energies = energies(cars);
+    let energies = energies(cars, conditions);
     let passed = energies.iter().filter_map(|car| {
         Some(format!(
             "{} {} %",

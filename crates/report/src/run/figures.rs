@@ -43,7 +43,7 @@ pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
     let runs = cars(found);
     let plots = runs.iter().filter_map(|car| plot(car, &found.summary));
     let plots: Vec<PlotRun> = plots.collect();
-    let mut energy = energy::section(all);
+    let mut energy = energy::section(all, &conditions(found));
     if plots.len() == all.len() {
         energy.figure(
             "fuel_comparison",
@@ -54,7 +54,7 @@ pub(super) fn sections(found: &RunResults, all: &[Car]) -> Vec<Section> {
     let details = [
         energy,
         warm_up(all, &plots),
-        drive(all, &found.summary),
+        drive(all, found),
         engine(&plots),
     ];
     let folded = details.map(|mut section| {
@@ -78,11 +78,16 @@ fn plot<'a>(car: &Car<'a>, summary: &Summary) -> Option<PlotRun<'a>> {
     })
 }
 
+/// Cycle, ambient temperature and start.
+fn conditions(found: &RunResults) -> String {
+    let cycle = cycle_title(&found.summary, found.record.as_ref());
+    format!("{}, {}", brief(&cycle), conditions_line(&found.summary))
+}
+
 /// What the losses cost and where they come from; by phase and over time in the full report.
 fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     let mut section = Section::new("losses", "Losses: what they cost, and where they are");
-    let cycle = cycle_title(&found.summary, found.record.as_ref());
-    let conditions = format!("{}, {}", brief(&cycle), conditions_line(&found.summary));
+    let conditions = conditions(found);
     section.views("waterfall", waterfalls(all, &conditions));
     let cars = all.iter().map(|car| CarLosses {
         name: car.run.label().to_owned(),
@@ -281,7 +286,8 @@ fn warm_up(all: &[Car], runs: &[PlotRun]) -> Section {
     section
 }
 
-fn drive(all: &[Car], summary: &Summary) -> Section {
+fn drive(all: &[Car], found: &RunResults) -> Section {
+    let summary = &found.summary;
     let mut section = Section::new("driveline", "Ratio, engine speed, pressure and slip");
     let runs = || {
         all.iter()
@@ -323,6 +329,7 @@ fn drive(all: &[Car], summary: &Summary) -> Section {
         });
         let picture = variogram(&Variogram {
             subject: name.clone(),
+            conditions: conditions(found),
             speed_kmh: run.history.column("speed_kmh"),
             engine_rpm: run.history.column("engine_speed_rpm"),
             seconds: run.history.dt_s(),

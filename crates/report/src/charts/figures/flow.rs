@@ -1,7 +1,7 @@
 //! The energy flow of one car: all of it from fuel to wheel, and its transmission enlarged.
 
 use super::sankey::{Branch, Sankey, Stage, Whole, branch, sankey};
-use super::{Term, finite};
+use super::{Term, finite, of_drive};
 use crate::charts::picture::Picture;
 use crate::number::{capital, capital_first, grouped};
 use cvtcycle_output::Component;
@@ -11,6 +11,8 @@ use cvtcycle_output::Component;
 pub struct CarEnergy {
     /// Name of the car.
     pub subject: String,
+    /// Cycle, ambient temperature and start.
+    pub conditions: String,
     /// Fuel, lower heating value.
     pub fuel_kj_km: f64,
     /// Heat and unburnt fuel into the exhaust.
@@ -75,6 +77,14 @@ impl CarEnergy {
         ]
     }
 
+    /// What is drawn, of which car and in which conditions.
+    fn subtitle(&self) -> String {
+        format!(
+            "Energy in kJ/km; {}",
+            of_drive(&self.subject, &self.conditions)
+        )
+    }
+
     fn whole(&self) -> Whole {
         Whole::new("the fuel", self.fuel_kj_km)
     }
@@ -97,7 +107,7 @@ pub fn energy_flow(car: &CarEnergy) -> Picture {
     );
     sankey(Sankey {
         title: fuel_title(car),
-        subject: &car.subject,
+        subject: &car.subtitle(),
         largest_kj_km: car.largest_kj_km[0],
         source: Whole::new("Fuel", car.fuel_kj_km),
         stages: vec![
@@ -132,7 +142,7 @@ pub fn transmission_flow(car: &CarEnergy) -> Picture {
     let stages = shown.chain(rest);
     sankey(Sankey {
         title: box_title(car),
-        subject: &car.subject,
+        subject: &car.subtitle(),
         largest_kj_km: car.largest_kj_km[1],
         source: Whole::new("Flywheel", source),
         stages: stages.chain([car.at_wheels()]).collect(),

@@ -53,6 +53,13 @@ fn percent(part: f64, whole: f64) -> String {
     }
 }
 
+/// Whose drive a figure is of, for the line below its title: "CVT; NEDC, ambient -10 degC".
+fn of_drive(subject: &str, conditions: &str) -> String {
+    let words = [subject, conditions].into_iter();
+    let known: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    known.join("; ")
+}
+
 /// Finite numbers as they are, everything else as zero.
 fn finite(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }

@@ -1,6 +1,6 @@
 //! Where the engine runs against road speed: time in cells, over the lines between which the transmission can or wants to run.
 
-use super::TOP;
+use super::{TOP, of_drive};
 use crate::charts::engine::{
     Axis, Block, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
     Stroke, Style, WIDTH, at, cell, label_ends_on_cells, stroke, text_width,
@@ -14,6 +14,8 @@ use crate::number::grouped;
 pub struct Variogram<'a> {
     /// Name of the car.
     pub subject: String,
+    /// Cycle, ambient temperature and start.
+    pub conditions: String,
     /// Vehicle speed of each step, km/h.
     pub speed_kmh: &'a [f64],
     /// Engine speed of each step, rpm; zero or not finite where the engine is off, and then left out.
@@ -108,7 +110,9 @@ pub fn variogram(of: &Variogram) -> Picture {
     let is_cut = |of: &&SeenLine| text_width(of.0, NAME) > NAMES - 10.0;
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
-    Chart::new(title(of, &density), &of.subject, PLOT_LEFT)
+    let drive = of_drive(&of.subject, &of.conditions);
+    let subtitle = format!("Engine speed over vehicle speed, time in each cell in s; {drive}");
+    Chart::new(title(of, &density), &subtitle, PLOT_LEFT)
         .lead("Cells are coloured by the time spent in them")
         .panels([panel])
         .legend((PLOT_LEFT, WIDE), entries)
