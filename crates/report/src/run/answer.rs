@@ -1,7 +1,7 @@
 //! Page 1: question, answer with its interval and what contradicts it, price of the losses, options, risk, next test, decision.
 
 use super::super::document::{Block, Section};
-use super::super::number::{Quantity, capital_first, grouped, signed, words};
+use super::super::number::{Quantity, capital_first, grouped, words};
 use super::super::results::{RunResults, StudyResults};
 use super::super::{study, study_answers, validation};
 use super::{Car, conditions_line, cycle_title, doubts};
@@ -121,10 +121,8 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let known = match &comparison.interval {
         Some(of) => {
             let ends = level([of.percent[0], of.percent[2]]);
-            let digits = decimals([of.percent[0], of.percent[2]]);
-            let median = signed(grouped(of.percent[1], digits), of.percent[1]);
             format!(
-                "With all uncertain values varied, 90 % of {} runs give {ends}, their median {median} %",
+                "With all uncertain values varied, 90 % of {} runs give {ends}",
                 of.draws
             )
         }
@@ -141,7 +139,7 @@ fn likeness(comparison: &Comparison) -> &'static str {
     }
 }
 
-/// The lever that saves most, in a sentence, and the next one where it saves about as much with more safety.
+/// The lever that saves most, in a sentence.
 fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     let row = single(block).next()?;
     let (name, saved) = (&row.of.title, -row.fuel_percent.value);
@@ -150,15 +148,8 @@ fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
         Some(_) => {
             let digits = decimals(ends);
             let [low, high] = ends.map(|x| grouped(x, digits));
-            let safer = safer(block, ends).map_or_else(String::new, |other| {
-                format!(
-                    " {} saves {} % with more clamping safety.",
-                    capital_first(&other.of.title),
-                    grouped(-other.fuel_percent.value, digits)
-                )
-            });
             format!(
-                "Best single change: {name}, which saves {} % ({low} to {high} %).{safer}",
+                "Best single change: {name}, which saves {} % ({low} to {high} %).",
                 grouped(saved, digits)
             )
         }
@@ -167,15 +158,6 @@ fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
             grouped(saved, 1)
         ),
     })
-}
-
-/// The lever after the one that saves most, if its median is within the interval of that one and its least clamping safety larger.
-fn safer(block: &LeverBlock, [low, high]: [f64; 2]) -> Option<&LeverRow> {
-    let mut rows = single(block);
-    let first = rows.next()?.worst("min_clamp_safety");
-    let next = rows.next()?;
-    let as_much = (low..=high).contains(&-next.fuel_percent.value);
-    (as_much && next.worst("min_clamp_safety") > first + SAFETY).then_some(next)
 }
 
 /// Levers that work and save, the one that saves most first.
