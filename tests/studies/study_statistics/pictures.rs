@@ -431,7 +431,7 @@ fn dots_are_equal_shares_of_the_values() {
             "{row:?}"
         );
     }
-    // Dots stand in their place: none is farther from its value than half of a stack, and none leaves the row.
+    // Dots are at their values: none is farther from its value than half of a stack, and none leaves the row.
     let plot = class(&document, "plot").next().unwrap();
     let (top, bottom) = (
         number(plot, "y"),

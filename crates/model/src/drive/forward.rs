@@ -30,8 +30,8 @@ const MAX_TRIES: usize = 100;
 /// Power at the wheels beyond what any box passes on, over the rated power. ASSUMED, numerical: an engine gives its rated power at most and its drag takes
 /// less, so that any number well above 1 leaves both ends where they are.
 const BEYOND: f64 = 4.0;
-/// How far beyond an end of the power a demand begins to come near it, over the rated power, ... ASSUMED, numerical: near enough that the clamp law wants
-/// for the pressure of the end; a fifth of it with each try.
+/// How far beyond an end of the power a demand begins to come near it, over the rated power, ... ASSUMED, numerical: near enough that the clamp law
+/// gives the pressure of the end; a fifth of it with each try.
 const MARGIN: f64 = 0.05;
 /// ... and how near, W. ASSUMED, numerical: some millionth of a rated power.
 const NEAR_W: f64 = 0.1;
