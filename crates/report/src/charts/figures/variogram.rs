@@ -111,7 +111,7 @@ pub fn variogram(of: &Variogram) -> Picture {
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
     let drive = of_drive(&of.subject, &of.conditions);
-    let subtitle = format!("Engine speed over vehicle speed, time in each cell in s; {drive}");
+    let subtitle = format!("Time in each cell in s; {drive}");
     Chart::new(title(of, &density), &subtitle, PLOT_LEFT)
         .lead("Cells are coloured by the time spent in them")
         .panels([panel])
