@@ -58,7 +58,7 @@ pub struct Engine<R: Real = f64> {
     /// Rated power, W.
     pub rated_w: R,
     /// Full-load torque over speed, rad/s to Nm, at sea level.
-    pub full_load: R::Each<Curve>,
+    pub full_load: R::Curve,
     /// Largest speed, rad/s.
     pub highest_rad_s: R,
     /// Moment of inertia of engine, flywheel and primary side, kg m2.
@@ -316,7 +316,7 @@ where
 
     #[inline(always)]
     fn full_load_share(&self, speed_rad_s: R) -> R {
-        self.full_load_nm(speed_rad_s) / speed_rad_s.each_of(&self.engine.full_load, Curve::at)
+        self.full_load_nm(speed_rad_s) / speed_rad_s.along(&self.engine.full_load)
     }
 
     #[inline(always)]
@@ -337,7 +337,7 @@ where
 
     #[inline(always)]
     fn full_load_nm(&self, speed_rad_s: R) -> R {
-        let hot = speed_rad_s.each_of(&self.engine.full_load, Curve::at);
+        let hot = speed_rad_s.along(&self.engine.full_load);
         let piston_m_s = self.engine.piston_m_s(speed_rad_s);
         let friction = self
             .engine

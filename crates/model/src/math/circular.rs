@@ -6,6 +6,7 @@
 //!
 //! asin, sin, cos: at most one unit of the last place; tan two. sin and cos for |x| <= 100, within 1e-24 where they vanish. asin is NaN beyond 1.
 
+use super::real::{Mask, Real};
 use std::f64::consts::FRAC_PI_2;
 
 /// What the nearest f64 lacks of pi/2.
@@ -37,12 +38,32 @@ const ASIN: [f64; 13] = [
 
 /// z P(z), in pieces of three coefficients that wait for no other.
 #[inline(always)]
-fn asin_series(z: f64) -> f64 {
-    let three = |k: usize| ASIN[k] + z * (ASIN[k + 1] + z * ASIN[k + 2]);
+fn asin_series<R: Real>(z: R) -> R {
+    #[inline(always)]
+    fn three<R: Real>(z: R, k: usize) -> R {
+        z * (z * ASIN[k + 2] + ASIN[k + 1]) + ASIN[k]
+    }
     let z3 = z * (z * z);
-    let low = three(0) + z3 * three(3);
-    let high = three(6) + z3 * (three(9) + z3 * ASIN[12]);
+    let low = three(z, 0) + z3 * three(z, 3);
+    let high = three(z, 6) + z3 * (three(z, 9) + z3 * ASIN[12]);
     z * (low + (z3 * z3) * high)
+}
+
+/// asin of several numbers side by side, the same bits as one by one.
+#[inline(always)]
+pub(super) fn asin_lanes<R: Real>(x: R) -> R {
+    if x.filled(ASIN_REACH).reaches(x.abs()).all() {
+        x + x * asin_series(x * x)
+    } else {
+        x.each(asin_of_one)
+    }
+}
+
+/// asin where a lane is beyond.
+#[cold]
+#[inline(never)]
+fn asin_of_one(x: f64) -> f64 {
+    asin(x)
 }
 
 /// Angle whose sine is x, rad, from -pi/2 to pi/2.

@@ -246,17 +246,42 @@ pub(super) fn ln_lanes<R: Real>(x: R) -> R {
     }
 }
 
+/// tanh for |x| < 1, of one number or of several side by side; z = x2.
+#[inline(always)]
+fn tanh_near<R: Real>(x: R, z: R) -> R {
+    // Small whole numbers: the numerator of the convergent over x, and what its denominator has more.
+    let more = z * (z * (z * (z * 44.0 + 12_870.0) + 810_810.0) + 11_486_475.0);
+    let less = z * (z * (z * (z + 990.0) + 135_135.0) + 4_729_725.0) + 34_459_425.0;
+    x - x * (more / (less + more))
+}
+
+/// tanh for |x| >= 1, but for its sign.
+#[inline(always)]
+fn tanh_beyond<R: Real>(e: R) -> R {
+    e.filled(1.0) - e.filled(2.0) / (e + 1.0)
+}
+
+/// tanh of several numbers side by side, the same bits as one by one.
+#[inline(always)]
+pub(super) fn tanh_lanes<R: Real>(x: R) -> R {
+    let z = x * x;
+    let near = z.filled(1.0).above(z);
+    let tanh = tanh_near(x, z);
+    if near.all() {
+        return tanh;
+    }
+    let beyond = tanh_beyond(exp_lanes(x.abs() * 2.0));
+    let beyond = R::pick(x.filled(0.0).above(x), -beyond, beyond);
+    R::pick(near, tanh, beyond)
+}
+
 /// Hyperbolic tangent.
 #[inline]
 pub fn tanh(x: f64) -> f64 {
     let z = x * x;
     if z < 1.0 {
-        // Small whole numbers: the numerator of the convergent over x, and what its denominator has more.
-        let more = z * (11_486_475.0 + z * (810_810.0 + z * (12_870.0 + z * 44.0)));
-        let less = 34_459_425.0 + z * (4_729_725.0 + z * (135_135.0 + z * (990.0 + z)));
-        x - x * (more / (less + more))
+        tanh_near(x, z)
     } else {
-        let beyond = 2.0 / (1.0 + exp(2.0 * x.abs()));
-        (1.0 - beyond).copysign(x)
+        tanh_beyond(exp(2.0 * x.abs())).copysign(x)
     }
 }

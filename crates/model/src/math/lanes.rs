@@ -8,10 +8,10 @@
 //! A record has its lanes by [`gather!`](crate::math::gather), one line next to the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
 //! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::alike`] says which records can be in one group.
 
-use super::Curve;
+use super::curve::{Curve, Curves};
 use super::real::{Mask, Operand, Own, Real};
 use super::{circular, elementary};
-use fearless_simd::{Select, SimdBase, SimdMask, mask64x4, mask64x8};
+use fearless_simd::{Bytes, Select, SimdBase, SimdFloat, SimdMask, mask64x4, mask64x8, u64x4, u64x8};
 use std::fmt::Debug;
 use std::ops::{BitAnd, BitOr, Not};
 
@@ -22,7 +22,7 @@ pub use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 pub struct Answers<M>(M);
 
 macro_rules! lanes {
-    ($($vector:ident $mask:ident $count:literal),*) => {$(
+    ($($vector:ident $mask:ident $bits:ident $count:literal),*) => {$(
         impl<S: Simd> BitAnd for Answers<$mask<S>> {
             type Output = Self;
             #[inline(always)]
@@ -88,6 +88,7 @@ macro_rules! lanes {
         impl<S: Simd> Real for $vector<S> {
             type Mask = Answers<$mask<S>>;
             type Each<T: Own> = [T; $count];
+            type Curve = Curves<$count>;
             const LANES: usize = $count;
 
             #[inline(always)]
@@ -138,6 +139,29 @@ macro_rules! lanes {
             }
 
             #[inline(always)]
+            fn curves(of: impl FnMut(usize) -> Curve) -> Curves<$count> {
+                Curves::new(of)
+            }
+
+            #[inline(always)]
+            fn curve(of: &Curves<$count>, lane: usize) -> &Curve {
+                of.one(lane)
+            }
+
+            #[inline(always)]
+            fn along(self, curves: &Curves<$count>) -> Self {
+                match curves.common() {
+                    Some(curve) if self.reaches(self).all() => {
+                        curve.across(self, (self.reduce_min(), self.reduce_max()))
+                    }
+                    _ => {
+                        let y = curves.at(std::array::from_fn(#[inline(always)] |lane| self[lane]));
+                        self.by_lane(#[inline(always)] |lane| y[lane])
+                    }
+                }
+            }
+
+            #[inline(always)]
             fn each(self, f: impl Fn(f64) -> f64) -> Self {
                 Self::from_fn(self.simd, #[inline(always)] |lane| f(self[lane]))
             }
@@ -154,7 +178,8 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn is_same(self, other: Self) -> Self::Mask {
-                self.ask(#[inline(always)] |lane| self[lane].to_bits() == other[lane].to_bits())
+                let bits: $bits<S> = self.bitcast();
+                Answers(bits.simd_eq(other.bitcast::<$bits<S>>()))
             }
 
             #[inline(always)]
@@ -169,7 +194,7 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn sqrt(self) -> Self {
-                <Self as fearless_simd::SimdFloat<S>>::sqrt(self)
+                <Self as SimdFloat<S>>::sqrt(self)
             }
 
             #[inline(always)]
@@ -189,12 +214,12 @@ macro_rules! lanes {
 
             #[inline(always)]
             fn tanh(self) -> Self {
-                self.each(elementary::tanh)
+                elementary::tanh_lanes(self)
             }
 
             #[inline(always)]
             fn asin(self) -> Self {
-                self.each(circular::asin)
+                circular::asin_lanes(self)
             }
 
             #[inline(always)]
@@ -216,7 +241,7 @@ macro_rules! lanes {
     )*};
 }
 
-lanes!(f64x4 mask64x4 4, f64x8 mask64x8 8);
+lanes!(f64x4 mask64x4 u64x4 4, f64x8 mask64x8 u64x8 8);
 
 /// Most runs that are side by side.
 pub(crate) const MOST_LANES: usize = 8;
@@ -302,7 +327,21 @@ macro_rules! gather_each {
 }
 pub(crate) use gather_each;
 
-gather_each!(Curve);
+impl Gather for Curve {
+    type Together<R: Real> = R::Curve;
+
+    fn gather<R: Real>(_: R, of: &[&Self]) -> R::Curve {
+        R::curves(|lane| of[lane].clone())
+    }
+
+    fn lane<R: Real>(together: &R::Curve, lane: usize) -> Self {
+        R::curve(together, lane).clone()
+    }
+
+    fn alike(&self, _: &Self) -> bool {
+        true
+    }
+}
 
 impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
     type Together<R: Real> = [T::Together<R>; COUNT];

@@ -7,6 +7,7 @@
 //! `where f64: Left<R>` lets constants be to the left of an operator: `2.0 * x`. A constant as the other side of a comparison or as a bound is given as it
 //! is: `x.most(0.0)`. One that has to be an `R` by itself takes its lanes from any number at hand: `x.filled(1.0)`.
 
+use super::curve::Curve;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
@@ -108,6 +109,9 @@ pub trait Real:
     /// What each lane has of its own and no arithmetic works on, such as a curve.
     type Each<T: Own>: Own;
 
+    /// A curve for each lane.
+    type Curve: Own;
+
     /// How many runs are side by side.
     const LANES: usize;
 
@@ -138,17 +142,17 @@ pub trait Real:
     /// The same, to be changed.
     fn one_mut<T: Own>(of: &mut Self::Each<T>, lane: usize) -> &mut T;
 
+    /// A curve for each lane, from the lane's place.
+    fn curves(of: impl FnMut(usize) -> Curve) -> Self::Curve;
+
+    /// The curve of one lane.
+    fn curve(of: &Self::Curve, lane: usize) -> &Curve;
+
+    /// Value of a curve at it.
+    fn along(self, curve: &Self::Curve) -> Self;
+
     /// Lane by lane what a function of f64 gives.
     fn each(self, f: impl Fn(f64) -> f64) -> Self;
-
-    /// Lane by lane what a function of f64 and of the lane's own value gives.
-    #[inline(always)]
-    fn each_of<T: Own>(self, of: &Self::Each<T>, f: impl Fn(&T, f64) -> f64) -> Self {
-        self.by_lane(
-            #[inline(always)]
-            |lane| f(Self::one(of, lane), self.lane(lane)),
-        )
-    }
 
     /// Where `self` is above the other; no where one is no number.
     fn above(self, other: impl Operand<Self>) -> Self::Mask;

@@ -1,11 +1,12 @@
 //! One run: f64 as a number of the physics.
 
 use super::real::{Operand, Own, Real};
-use super::{circular, clamp, elementary, larger, smaller};
+use super::{Curve, circular, clamp, elementary, larger, smaller};
 
 impl Real for f64 {
     type Mask = bool;
     type Each<T: Own> = T;
+    type Curve = Curve;
     const LANES: usize = 1;
 
     #[inline(always)]
@@ -51,6 +52,21 @@ impl Real for f64 {
     #[inline(always)]
     fn one_mut<T: Own>(of: &mut T, _: usize) -> &mut T {
         of
+    }
+
+    #[inline(always)]
+    fn curves(mut of: impl FnMut(usize) -> Curve) -> Curve {
+        of(0)
+    }
+
+    #[inline(always)]
+    fn curve(of: &Curve, _: usize) -> &Curve {
+        of
+    }
+
+    #[inline(always)]
+    fn along(self, curve: &Curve) -> f64 {
+        curve.at(self)
     }
 
     #[inline(always)]

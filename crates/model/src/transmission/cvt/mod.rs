@@ -54,7 +54,7 @@ use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::{Curve, Left, Mask, Real, gather};
+use crate::math::{Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
@@ -148,7 +148,7 @@ pub struct Cvt<R: Real = f64> {
     /// Selector at rest.
     pub selector: Selector<R>,
     /// Engine speed for a power at full load, W to rad/s.
-    pub full_load_route: R::Each<Curve>,
+    pub full_load_route: R::Curve,
     /// Losses that are not those of the models, if there are any.
     pub changes: Option<Box<LossChanges<R>>>,
     /// Share of belt loss that heats the belt node.
@@ -242,19 +242,19 @@ where
         let zero = power_w.filled(0.0);
         let none = zero.reaches(power_w);
         if none.all() {
-            return zero.each_of(&self.full_load_route, Curve::at);
+            return zero.along(&self.full_load_route);
         }
         let mut speed = self.ratio.highest_rad_s;
         for _ in 0..3 {
             let before = speed;
             let share = engine.full_load_share(before);
-            speed = (power_w / share).each_of(&self.full_load_route, Curve::at); // RC-3
+            speed = (power_w / share).along(&self.full_load_route); // RC-3
             if (none | speed.is_same(before)).all() {
                 break; // settled: another pass gives the same
             }
         }
         if none.any() {
-            let least = zero.each_of(&self.full_load_route, Curve::at);
+            let least = zero.along(&self.full_load_route);
             speed = R::pick(none, least, speed);
         }
         speed

@@ -21,7 +21,7 @@
 
 use super::shift_map::{ShiftMap, shift_map};
 use crate::keys::{Bound, Choice, Values, curve, keys};
-use crate::math::{Curve, Left, Mask, Real, gather, ramp};
+use crate::math::{Left, Mask, Real, gather, ramp};
 use std::sync::Arc;
 
 /// The checked controller.
@@ -72,9 +72,9 @@ gather! {
 #[derive(Clone, Debug, PartialEq)]
 pub struct OperatingLine<R: Real = f64> {
     /// Engine speed over the share of rated power asked for, rad/s.
-    pub drive: Option<R::Each<Curve>>,
+    pub drive: Option<R::Curve>,
     /// Engine speed over road speed in m/s while no power is asked for, rad/s.
-    pub overrun: Option<R::Each<Curve>>,
+    pub overrun: Option<R::Curve>,
 }
 
 gather!(OperatingLine { drive, overrun });
@@ -99,12 +99,12 @@ where
         let drives = d.power_w.above(0.0);
         let mut target = other;
         if let Some(line) = &self.drive {
-            let own = d.share.each_of(line, Curve::at).most(locked_rad_s); // RC-13
+            let own = d.share.along(line).most(locked_rad_s); // RC-13
             target = R::pick(drives, own, target);
         }
         if let Some(line) = &self.overrun {
             let speed = d.share.filled(d.speed_m_s);
-            let own = speed.each_of(line, Curve::at).most(locked_rad_s); // RC-13
+            let own = speed.along(line).most(locked_rad_s); // RC-13
             target = R::pick(drives, target, own);
         }
         target

@@ -1,7 +1,7 @@
 //! The belt at one ratio: what every operating point there has in common.
 
 use super::{Belt, Geometry, bands, deflection};
-use crate::math::{Curve, Left, Real, both, gather, ramp};
+use crate::math::{Left, Real, both, gather, ramp};
 
 /// The belt at one ratio: everything that does not depend on torque or pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -141,7 +141,7 @@ where
         let log = ratio.ln();
         let direction = -(log / belt.unity_width).tanh(); // TE-6
         let thrust_ratio = match &belt.thrust_ratio {
-            Some(curve) => log.each_of(curve, Curve::at),
+            Some(curve) => log.along(curve),
             None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
         };
         BeltAtRatio {

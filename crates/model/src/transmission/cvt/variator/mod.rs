@@ -32,7 +32,7 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::math::{Curve, Left, Real, gather};
+use crate::math::{Left, Real, gather};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
@@ -84,7 +84,7 @@ pub struct Belt<R: Real = f64> {
     /// Bound of each pulley's slip.
     pub slip_bound: R,
     /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
-    pub thrust_ratio: Option<R::Each<Curve>>,
+    pub thrust_ratio: Option<R::Curve>,
     /// Reading of the thesis.
     pub formulation: Formulation,
 }
