@@ -109,9 +109,9 @@ struct Pass {
 }
 
 /// The belt at a temperature, K, without torque and clamping force.
-fn turning(car: &Car, cvt: &Cvt, point: &BenchPoint, belt_k: f64) -> BeltLoad {
-    let (ratio, primary_rad_s) = (point.ratio, point.input_rad_s);
-    BeltLoad::turning(&cvt.belt, &car.oil, belt_k, ratio, primary_rad_s)
+fn turning(car: &Car, cvt: &Cvt, at: &BeltAtRatio, point: &BenchPoint, belt_k: f64) -> BeltLoad {
+    let (area_m2, speeds) = (at.prepared.film_area_m2, (point.ratio, point.input_rad_s));
+    BeltLoad::turning_on(&cvt.belt, area_m2, &car.oil, belt_k, speeds)
 }
 
 /// Solves one operating point of a CVT, whose belt is at the ratio of the point.
@@ -122,7 +122,7 @@ pub(super) fn solve(
     point: &BenchPoint,
     printed: bool,
 ) -> BenchAnswer {
-    let turning = |belt_k| turning(car, cvt, point, belt_k);
+    let turning = |belt_k| turning(car, cvt, at, point, belt_k);
     let this = OnBench {
         car,
         point,
@@ -253,7 +253,7 @@ impl OnBench<'_> {
 
     fn load(&self, u: &Unknown, output_torque_nm: f64, secondary_clamp_n: f64) -> BeltLoad {
         let (cvt, p) = (self.line.cvt, self.point);
-        let turning = || turning(self.car, cvt, p, u.belt_k);
+        let turning = || turning(self.car, cvt, self.line.at, p, u.belt_k);
         BeltLoad {
             output_torque_nm,
             secondary_clamp_n,

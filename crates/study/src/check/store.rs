@@ -52,7 +52,7 @@ type Numbers = HashMap<String, Result<f64, String>>;
 /// Everything that was computed, shared by all expressions: sources of equal contents are one.
 pub struct Store<'a> {
     cars: &'a dyn Cars,
-    runs: RefCell<HashMap<String, Rc<Result<Driven, String>>>>,
+    runs: RefCell<HashMap<String, Result<Rc<Driven>, String>>>,
     tables: RefCell<HashMap<String, Made>>,
     /// Evaluations that are left; none after one was refused.
     left: Cell<Option<u64>>,
@@ -118,10 +118,9 @@ impl<'a> Store<'a> {
             phase: String::new(),
             ..source.clone()
         };
-        let drive = || Rc::new(tables::drive(&whole, &setup));
+        let drive = || tables::drive(&whole, &setup).map(Rc::new);
         let driven = once(&self.runs, format!("{whole:?}"), drive);
-        let driven = driven.as_ref().as_ref().map_err(Clone::clone)?;
-        Ok(tables::of_run(source, driven, totals))
+        Ok(tables::of_run(source, &driven?, totals))
     }
 
     fn rig(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), String> {

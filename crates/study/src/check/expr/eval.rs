@@ -114,7 +114,7 @@ impl Context<'_> {
             Expr::Number(x) => *x,
             Expr::Column(k) => self
                 .row
-                .map_or(f64::NAN, |(table, row)| table.columns[*k][row]),
+                .map_or(f64::NAN, |(table, row)| table.column(*k)[row]),
             Expr::Variable(k) => self.variables.get(*k).copied().unwrap_or(f64::NAN),
             Expr::Previous(inner) => match self.row {
                 Some((table, row)) if row > 0 => {
@@ -220,7 +220,7 @@ impl Context<'_> {
             variables: self.variables.clone(),
             recording: self.recording,
         };
-        for row in 0..table.columns.first().map_or(0, Vec::len) {
+        for row in 0..table.rows() {
             inner.tables.spend(1)?;
             inner.row = Some((table, row));
             if let Some(filter) = &r.filter
@@ -236,7 +236,7 @@ impl Context<'_> {
             found.push(Point {
                 value: inner.eval(&r.value)?,
                 over: r.over.as_ref().map_or(Ok(0.0), |over| inner.eval(over))?,
-                weight: table.weight.get(row).copied().unwrap_or(1.0),
+                weight: table.weight[row],
                 group: inner.all(&r.by)?,
             });
         }

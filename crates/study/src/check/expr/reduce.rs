@@ -1,16 +1,44 @@
 //! Statistics over the rows of a table.
 
-/// A table of numbers: one list for each column.
-#[derive(Clone, Debug, Default, PartialEq)]
+use std::cell::OnceCell;
+
+/// Makes the numbers of a column.
+type Make = Box<dyn Fn(usize) -> Vec<f64>>;
+
+/// A table of numbers: one list for each column, made when it is first looked at, since expressions look at few.
 pub struct Table {
     /// Columns in the order of their names.
-    pub columns: Vec<Vec<f64>>,
+    columns: Vec<OnceCell<Vec<f64>>>,
+    make: Make,
     /// Weight of each row in means, sums and shares (seconds in a run, 1 elsewhere).
     pub weight: Vec<f64>,
     /// Rows at gross slip of the belt, which no reduction uses; empty if there are none.
     pub gross: Vec<bool>,
     /// Rows outside the validity of a model, which count and are reported; empty if that is not known.
     pub outside: Vec<bool>,
+}
+
+impl Table {
+    /// A table of so many columns, each made by `make` from its place; with a weight for each row, and its marks.
+    pub fn new(columns: usize, make: Make, weight: Vec<f64>, [gross, outside]: [Vec<bool>; 2]) -> Self {
+        Table {
+            columns: (0..columns).map(|_| OnceCell::new()).collect(),
+            make,
+            weight,
+            gross,
+            outside,
+        }
+    }
+
+    /// The numbers of a column.
+    pub fn column(&self, place: usize) -> &[f64] {
+        self.columns[place].get_or_init(|| (self.make)(place))
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.weight.len()
+    }
 }
 
 /// One row that counts.

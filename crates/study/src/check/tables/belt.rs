@@ -1,6 +1,6 @@
 //! The belt alone as a table.
 
-use super::{Column, Marks, Rows, combinations, numbers, rpm};
+use super::{Column, Marks, Rows, combinations, rpm};
 use crate::check::expr::Table;
 use crate::check::source::{Kind, Source};
 use crate::points::{GivenFriction, belt_k, belt_load};
@@ -162,18 +162,17 @@ pub fn table(source: &Source, setup: &Setup) -> Result<Table, String> {
         formulation: source.formulation,
         ..cvt.belt.clone()
     };
-    let columns = columns();
     let points = combinations(&axes);
-    let mut rows = Rows::new(columns.len(), points.len());
+    let mut rows = Rows::new(points.len());
     for x in points {
         let solved = solve(x, cvt, &belt, setup.oils().0);
         let marks = Marks {
             gross: solved.point.status != PointStatus::Ok,
             ..Marks::default()
         };
-        rows.add(numbers(&columns, &solved), &marks);
+        rows.add(solved, &marks);
     }
-    Ok(rows.table())
+    Ok(rows.by(columns()))
 }
 
 fn solve(x: Vec<f64>, cvt: &Cvt, belt: &Belt, oil: &Lubricant) -> Solved {

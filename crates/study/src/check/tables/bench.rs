@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::belt;
-use super::{Column, Marks, Rows, combinations, numbers, rpm};
+use super::{Column, Marks, Rows, combinations, rpm};
 use crate::check::expr::{Table, truth};
 use crate::check::keys::BENCH;
 use crate::check::source::Source;
@@ -64,16 +64,21 @@ fn efficiency(p: &BenchPoint, a: &BenchAnswer) -> f64 {
     }
 }
 
-/// Adds the row of a solved point, with further numbers before its own.
-pub(super) fn add(rows: &mut Rows, head: impl IntoIterator<Item = f64>, solved: &Solved) {
-    let (_, answer) = solved;
-    let own = numbers(&COLUMNS, solved).chain(answer.loss_nm);
-    let marks = Marks {
+/// What counts of a solved point besides its numbers.
+pub(super) fn marks(answer: &BenchAnswer) -> Marks {
+    Marks {
         gross: answer.flags.contains(Flags::GROSS_SLIP),
         outside: answer.flags.contains(Flags::OUTSIDE_VALIDITY),
         ..Marks::default()
-    };
-    rows.add(head.into_iter().chain(own), &marks);
+    }
+}
+
+/// Number of a solved point in a column.
+pub(super) fn number(solved: &Solved, column: usize) -> f64 {
+    match COLUMNS.get(column) {
+        Some(of) => (of.get)(solved),
+        None => solved.1.loss_nm[Component::ALL[column - COLUMNS.len()]],
+    }
 }
 
 /// Number of columns.
@@ -139,16 +144,16 @@ pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> 
     for point in points {
         fits(&bench, point.ratio)?;
     }
-    let mut rows = Rows::new(width(), points.len());
+    let mut rows = Rows::new(points.len());
     let Some(first) = points.first() else {
-        return Ok(rows.table());
+        return Ok(rows.table(width(), number));
     };
     let mut bench = KeptRatio::new(&bench, first.ratio);
     for point in points {
         let answer = bench.at(point.ratio).solve(point);
-        add(&mut rows, [], &(*point, answer));
+        rows.add((*point, answer), &marks(&answer));
     }
-    Ok(rows.table())
+    Ok(rows.table(width(), number))
 }
 
 /// An error if the box does not have this ratio or gear.

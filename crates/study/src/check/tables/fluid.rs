@@ -1,6 +1,8 @@
 //! A fluid over temperature as a table.
 
-use super::{Column, Marks, Rows, numbers};
+use std::rc::Rc;
+
+use super::{Column, Marks, Rows};
 use crate::check::expr::Table;
 use crate::check::keys::FLUID;
 use crate::check::source::Source;
@@ -8,10 +10,10 @@ use cvtcycle_config::setup::Setup;
 use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};
 
 /// Oil and temperature in K.
-type Point<'a> = (&'a Lubricant, f64);
+type Point = (Rc<Lubricant>, f64);
 
 /// Columns.
-pub fn columns<'a>() -> Vec<Column<Point<'a>>> {
+pub fn columns() -> Vec<Column<Point>> {
     columns! { Point;
     "temp_degc" (_, k) => k - ZERO_DEGC_K;
     "kinematic_mm2_s" (oil, k) => oil.kinematic_m2_s(*k) * 1e6;
@@ -23,12 +25,11 @@ pub fn columns<'a>() -> Vec<Column<Point<'a>>> {
 
 /// All temperatures of the source for the transmission oil.
 pub fn table(source: &Source, setup: &Setup) -> Table {
-    let oil = setup.oils().0;
+    let oil = Rc::new(setup.oils().0.clone());
     let temperatures = source.axis(&FLUID.temp_degc);
-    let columns = columns();
-    let mut rows = Rows::new(columns.len(), temperatures.len());
+    let mut rows = Rows::new(temperatures.len());
     for k in temperatures {
-        rows.add(numbers(&columns, &(oil, k)), &Marks::default());
+        rows.add((oil.clone(), k), &Marks::default());
     }
-    rows.table()
+    rows.by(columns())
 }

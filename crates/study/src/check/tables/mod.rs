@@ -13,6 +13,8 @@ mod fluid;
 mod rig;
 mod run;
 
+use std::rc::Rc;
+
 use super::expr::Table;
 use super::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
@@ -29,10 +31,6 @@ pub struct Column<R> {
 
 pub fn names<R>(columns: Vec<Column<R>>) -> impl Iterator<Item = &'static str> {
     columns.into_iter().map(|column| column.name)
-}
-
-pub fn numbers<R>(columns: &[Column<R>], row: &R) -> impl Iterator<Item = f64> {
-    columns.iter().map(move |column| (column.get)(row))
 }
 
 /// Every combination of the values of some axes, the last axis fastest.
@@ -64,38 +62,48 @@ impl Default for Marks {
     }
 }
 
-/// A table that is made row by row.
-pub struct Rows {
-    table: Table,
+/// What the rows of a table are of, with their marks.
+pub struct Rows<T> {
+    of: Vec<T>,
+    weight: Vec<f64>,
+    gross: Vec<bool>,
+    outside: Vec<bool>,
 }
 
-impl Rows {
-    /// None yet of so many columns, with room for so many rows.
-    pub fn new(columns: usize, room: usize) -> Self {
+impl<T: 'static> Rows<T> {
+    /// None yet, with room for so many.
+    pub fn new(room: usize) -> Self {
         Rows {
-            table: Table {
-                columns: (0..columns).map(|_| Vec::with_capacity(room)).collect(),
-                weight: Vec::with_capacity(room),
-                gross: Vec::with_capacity(room),
-                outside: Vec::with_capacity(room),
-            },
+            of: Vec::with_capacity(room),
+            weight: Vec::with_capacity(room),
+            gross: Vec::with_capacity(room),
+            outside: Vec::with_capacity(room),
         }
     }
 
-    /// Adds a row, a number for each column.
-    pub fn add(&mut self, numbers: impl Iterator<Item = f64>, marks: &Marks) {
-        let table = &mut self.table;
-        for (column, x) in table.columns.iter_mut().zip(numbers) {
-            column.push(x);
-        }
-        table.weight.push(marks.weight);
-        table.gross.push(marks.gross);
-        table.outside.push(marks.outside);
+    /// Adds a row.
+    pub fn add(&mut self, of: T, marks: &Marks) {
+        self.of.push(of);
+        self.weight.push(marks.weight);
+        self.gross.push(marks.gross);
+        self.outside.push(marks.outside);
     }
 
-    /// The table.
-    pub fn table(self) -> Table {
-        self.table
+    /// The table of so many columns; `number` is that of a row in a column.
+    pub fn table(self, columns: usize, number: impl Fn(&T, usize) -> f64 + 'static) -> Table {
+        let of = self.of;
+        let make = move |column: usize| of.iter().map(|row| number(row, column)).collect();
+        Table::new(
+            columns,
+            Box::new(make),
+            self.weight,
+            [self.gross, self.outside],
+        )
+    }
+
+    /// The table of some columns.
+    pub fn by(self, columns: Vec<Column<T>>) -> Table {
+        self.table(columns.len(), move |row, column| (columns[column].get)(row))
     }
 }
 
@@ -131,7 +139,7 @@ pub fn table(source: &Source, setup: &Setup, conditions: &Conditions) -> Result<
 
 /// The trace or the totals of a run.
 #[must_use]
-pub fn of_run(source: &Source, driven: &Driven, totals: bool) -> Table {
+pub fn of_run(source: &Source, driven: &Rc<Driven>, totals: bool) -> Table {
     if totals {
         run::totals(source, driven)
     } else {

@@ -1,5 +1,6 @@
 //! The transmission rig's transients and strip-down as tables.
 
+use std::rc::Rc;
 use std::sync::LazyLock;
 
 use super::bench;
@@ -45,10 +46,12 @@ pub fn transients(
     let bench = Bench::new(setup);
     let ratios = source.axis(&TRANSIENT.ratio);
     cvt_only(&bench, &ratios)?;
-    let mut rows = Rows::new(OF_MOMENT.len() + bench::width(), 0);
+    let mut rows = Rows::new(0);
     for ratio in ratios {
-        let result = transient(&bench, conditions, ratio);
-        for m in &result.moments {
+        let mut result = transient(&bench, conditions, ratio);
+        let moments = std::mem::take(&mut result.moments);
+        let result = Rc::new(result);
+        for m in moments {
             let point = BenchPoint {
                 ratio,
                 input_rad_s: conditions.transient.speed_rad_s,
@@ -60,12 +63,19 @@ pub fn transients(
                 m.time_s,
                 truth(m.branch == Branch::Cooling),
                 m.metal_k - ZERO_DEGC_K,
-                result.gap_nm(m.sump_k).unwrap_or(f64::NAN),
             ];
-            bench::add(&mut rows, head, &(point, m.answer));
+            let marks = bench::marks(&m.answer);
+            rows.add((result.clone(), head, (point, m.answer)), &marks);
         }
     }
-    Ok(rows.table())
+    let width = OF_MOMENT.len() + bench::width();
+    Ok(rows.table(width, |(result, head, solved), column| {
+        match (head.get(column), column.checked_sub(OF_MOMENT.len())) {
+            (Some(number), _) => *number,
+            (None, Some(of_bench)) => bench::number(solved, of_bench),
+            (None, None) => result.gap_nm(solved.0.sump_k).unwrap_or(f64::NAN),
+        }
+    }))
 }
 
 /// The box taken apart, a row a point.
@@ -84,7 +94,7 @@ pub fn strip_downs(
     };
     cvt_only(&bench, &plan.ratios)?;
     let found = strip_down(&bench, conditions, &plan);
-    let mut rows = Rows::new(OF_POINT.len() + PIECES.len(), found.len());
+    let mut rows = Rows::new(found.len());
     for found in found {
         let set = &found.set;
         let head = [set.ratio, rpm(set.input_rad_s), set.sump_k - ZERO_DEGC_K];
@@ -92,9 +102,11 @@ pub fn strip_downs(
             let f = found.piece(*piece);
             [f.corrected_nm, f.true_nm, f.interaction_nm()]
         });
-        rows.add(head.into_iter().chain(pieces), &Marks::default());
+        let numbers: Vec<f64> = head.into_iter().chain(pieces).collect();
+        rows.add(numbers, &Marks::default());
     }
-    Ok(rows.table())
+    let width = OF_POINT.len() + PIECES.len();
+    Ok(rows.table(width, |numbers, column| numbers[column]))
 }
 
 fn cvt_only(bench: &Bench, ratios: &[f64]) -> Result<(), String> {

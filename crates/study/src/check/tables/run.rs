@@ -1,9 +1,10 @@
 //! A car through a cycle as a table: its trace, or its totals.
 
 use std::borrow::Cow;
+use std::rc::Rc;
 use std::sync::LazyLock;
 
-use super::{Column, Marks, Rows, names, numbers};
+use super::{Column, Marks, Rows, names};
 use crate::check::expr::{Table, truth};
 use crate::check::source::{Source, cycle};
 use cvtcycle_config::cycle::Cycle;
@@ -26,23 +27,29 @@ pub struct Driven {
 }
 
 /// A row of the trace in its run.
-struct Step<'a> {
-    row: &'a Row,
-    rated_w: f64,
+struct Step {
+    driven: Rc<Driven>,
+    place: usize,
     /// Number of the launch, counted from 1.
     launch: f64,
     since_launch_s: f64,
 }
 
+impl Step {
+    fn row(&self) -> &Row {
+        &self.driven.outcome.rows[self.place]
+    }
+}
+
 /// Columns after those of the trace and its flags.
-fn more<'a>() -> Vec<Column<Step<'a>>> {
+fn more() -> Vec<Column<Step>> {
     columns! { Step;
-    "moving" s => truth(s.row.speed_m_s > 0.0);
-    "coupled" s => truth(!s.row.flags.contains(Flags::CLUTCH_SLIPPING) && !s.row.flags.contains(Flags::CLUTCH_OPEN));
+    "moving" s => truth(s.row().speed_m_s > 0.0);
+    "coupled" s => truth(!s.row().flags.contains(Flags::CLUTCH_SLIPPING) && !s.row().flags.contains(Flags::CLUTCH_OPEN));
     "launch" s => s.launch;
     "since_launch_s" s => s.since_launch_s;
-    "power_share" s => s.row.wheel_power_w / s.rated_w;
-    "transmission_loss_w" s => s.row.loss_w.iter().sum::<f64>();
+    "power_share" s => s.row().wheel_power_w / s.driven.rated_w;
+    "transmission_loss_w" s => s.row().loss_w.iter().sum::<f64>();
     }
 }
 
@@ -133,52 +140,53 @@ impl Driven {
 }
 
 /// The trace of a run, weighted with the length of the steps.
-pub fn trace(source: &Source, driven: &Driven) -> Table {
+pub fn trace(source: &Source, driven: &Rc<Driven>) -> Table {
     let wanted = driven.phases(source);
     let (mut launch, mut since_launch_s, mut at_rest) = (0.0, f64::NAN, true);
-    let more = more();
-    let mut rows = Rows::new(columns().len(), driven.outcome.rows.len());
-    for row in &driven.outcome.rows {
+    let mut rows = Rows::new(driven.outcome.rows.len());
+    for (place, row) in driven.outcome.rows.iter().enumerate() {
         let moving = row.speed_m_s > 0.0;
         if moving && at_rest {
             (launch, since_launch_s) = (launch + 1.0, 0.0);
         }
         since_launch_s += row.dt_s;
         at_rest = !moving;
-        let state = Step {
-            row,
-            rated_w: driven.rated_w,
-            launch,
-            since_launch_s,
+        let flags = row.flags;
+        let marks = Marks {
+            weight: row.dt_s,
+            gross: flags.contains(Flags::GROSS_SLIP),
+            outside: flags.contains(Flags::OUTSIDE_VALIDITY) || flags.any(Flags::IMPOSSIBLE),
         };
         if wanted.contains(&row.phase) {
-            add(&mut rows, &more, &state);
+            let step = Step {
+                driven: driven.clone(),
+                place,
+                launch,
+                since_launch_s,
+            };
+            rows.add(step, &marks);
         }
     }
-    rows.table()
-}
-
-fn add<'a>(rows: &mut Rows, more: &[Column<Step<'a>>], step: &Step<'a>) {
-    let flags = step.row.flags;
-    let trace = COLUMNS.iter().map(|column| column.number_of(step.row));
-    let set = Flags::NAMES
-        .iter()
-        .map(|(flag, _)| truth(flags.contains(*flag)));
-    let marks = Marks {
-        weight: step.row.dt_s,
-        gross: flags.contains(Flags::GROSS_SLIP),
-        outside: flags.contains(Flags::OUTSIDE_VALIDITY) || flags.any(Flags::IMPOSSIBLE),
-    };
-    rows.add(trace.chain(set).chain(numbers(more, step)), &marks);
+    let more = more();
+    let (own, flags) = (COLUMNS.len(), Flags::NAMES.len());
+    rows.table(own + flags + more.len(), move |step, column| {
+        if column < own {
+            COLUMNS[column].number_of(step.row())
+        } else if let Some((flag, _)) = Flags::NAMES.get(column - own) {
+            truth(step.row().flags.contains(*flag))
+        } else {
+            (more[column - own - flags].get)(step)
+        }
+    })
 }
 
 /// The totals of a run as a table of one row.
 pub fn totals(source: &Source, driven: &Driven) -> Table {
     let sum = driven.outcome.totals.over(&driven.phases(source));
-    let losses = sum.loss_j.iter().map(|j| j / 1e3);
-    let columns = of_totals();
-    let mut rows = Rows::new(columns.len() + LOSSES.len(), 1);
-    let set = (driven, &sum);
-    rows.add(numbers(&columns, &set).chain(losses), &Marks::default());
-    rows.table()
+    let own = of_totals().into_iter().map(|column| (column.get)(&(driven, &sum)));
+    let numbers: Vec<f64> = own.chain(sum.loss_j.iter().map(|j| j / 1e3)).collect();
+    let width = numbers.len();
+    let mut rows = Rows::new(1);
+    rows.add(numbers, &Marks::default());
+    rows.table(width, |numbers, column| numbers[column])
 }

@@ -97,7 +97,7 @@ impl Evaluation<'_> {
             }
             Observable::Point { bench, row, column } => {
                 let table = once(&self.benches, *bench, || self.bench(*bench).map(Rc::new))?;
-                (table.columns[*column][*row], doubtful(&table, *row))
+                (table.column(*column)[*row], doubtful(&table, *row))
             }
             Observable::Trace {
                 run,
@@ -111,7 +111,7 @@ impl Evaluation<'_> {
             }
             Observable::Total { run, column } => {
                 let table = self.store.table(&plan.runs[*run], true)?;
-                (table.columns[*column][0], 0)
+                (table.column(*column)[0], 0)
             }
         })
     }
@@ -139,7 +139,7 @@ const SLACK_S: f64 = 1e-6;
 
 /// A column at a time, linear between the rows; its first or last value outside of them, the last one as doubtful.
 fn between(table: &Table, [time, column]: [usize; 2], time_s: f64) -> (f64, usize) {
-    let (times, values) = (&table.columns[time], &table.columns[column]);
+    let (times, values) = (table.column(time), table.column(column));
     let Some(last) = times.len().checked_sub(1) else {
         return (f64::NAN, 0);
     };

@@ -81,11 +81,22 @@ impl BeltLoad {
         ratio: f64,
         primary_rad_s: f64,
     ) -> Self {
+        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
+        let film_area_m2 = bands::film_area_m2(belt, &geometry);
+        BeltLoad::turning_on(belt, film_area_m2, oil, belt_k, (ratio, primary_rad_s))
+    }
+
+    /// The same with the area of its films known, m2, at a ratio and primary speed.
+    pub(crate) fn turning_on(
+        belt: &Belt,
+        film_area_m2: f64,
+        oil: &Lubricant,
+        belt_k: f64,
+        (ratio, primary_rad_s): (f64, f64),
+    ) -> Self {
         let friction = &oil.friction;
         let sliding = belt.sliding_m_s(ratio, primary_rad_s);
         let band = friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
-        let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
-        let film_area_m2 = bands::film_area_m2(belt, &geometry);
         BeltLoad {
             primary_speed_rad_s: primary_rad_s,
             ..BeltLoad::unloaded(friction, band, film_area_m2, sliding)
