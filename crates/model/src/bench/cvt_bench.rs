@@ -6,6 +6,7 @@ use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
+use crate::transmission::cvt::controller::ClampLaw;
 use crate::transmission::cvt::driveline::{Clamp, Driveline, PartTorques, Shaft};
 use crate::transmission::cvt::variator::point::{LIMIT_SLACK, PointStatus};
 use crate::transmission::cvt::variator::{
@@ -114,13 +115,22 @@ fn turning(car: &Car, cvt: &Cvt, at: &BeltAtRatio, point: &BenchPoint, belt_k: f
     BeltLoad::turning_on(&cvt.belt, area_m2, &car.oil, belt_k, speeds)
 }
 
+/// Where a fixed point begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    /// Slip that is expected.
+    pub slip: f64,
+    /// Pressure of a point near it, Pa.
+    pub pressure_pa: f64,
+}
+
 /// Solves one operating point of a CVT, whose belt is at the ratio of the point.
 pub(super) fn solve(
     car: &Car,
-    cvt: &Cvt,
-    at: &BeltAtRatio,
+    (cvt, at): (&Cvt, &BeltAtRatio),
     point: &BenchPoint,
     printed: bool,
+    near: Option<Near>,
 ) -> BenchAnswer {
     let turning = |belt_k| turning(car, cvt, at, point, belt_k);
     let this = OnBench {
@@ -135,6 +145,14 @@ pub(super) fn solve(
         belt_k: point.belt_k.unwrap_or(point.sump_k),
         pressure_pa: point.pressure_pa.unwrap_or(cvt.floors.control_pa),
     };
+    if let Some(near) = near.filter(|near| near.slip.is_finite()) {
+        unknown.slip = near.slip;
+        unknown.pressure_pa = match cvt.clamp {
+            // The map needs no belt, so its pressure is the exact one.
+            ClampLaw::Map(_) => this.pressure_pa(&this.load(&unknown, 0.0, 0.0), 0.0),
+            _ => point.pressure_pa.unwrap_or(near.pressure_pa),
+        };
+    }
     let mut count = 0;
     let pass = loop {
         let pass = this.pass(&unknown);
@@ -301,6 +319,7 @@ impl OnBench<'_> {
         flags.set(Flags::OUTSIDE_VALIDITY, !valid);
         let with = |part: bool, value: f64, without: f64| if part { value } else { without };
         BenchAnswer {
+            point: *p,
             loss_nm,
             primary_ring_nm: pass.primary_ring_nm,
             input_nm,

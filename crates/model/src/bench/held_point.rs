@@ -9,7 +9,7 @@
 //! The part models are those of driving; nothing is computed twice. Losses are torques at the input shaft. The pressure is the clamp
 //! law's at the bench's throttle, times a factor for another box, or given.
 
-use super::cvt_bench;
+use super::cvt_bench::{self, Near};
 use super::point::{BenchAnswer, BenchPoint};
 use crate::drive::{Car, Vehicle};
 use crate::flags::Flags;
@@ -106,6 +106,7 @@ impl Bench {
         );
         flags.set(Flags::OVERRUN, input_nm < 0.0);
         BenchAnswer {
+            point: *p,
             loss_nm,
             primary_ring_nm: 0.0,
             input_nm,
@@ -131,10 +132,17 @@ pub struct AtRatio<'a> {
 impl AtRatio<'_> {
     /// Solves one operating point, at this ratio whatever its own is.
     pub fn solve(&self, p: &BenchPoint) -> BenchAnswer {
+        self.solve_near(p, None)
+    }
+
+    /// The same, begun where the answer is expected: fewer passes of the fixed point (RB-1), and the same answer within its tolerance.
+    pub(super) fn solve_near(&self, p: &BenchPoint, near: Option<Near>) -> BenchAnswer {
         let (bench, ratio) = (self.bench, self.ratio);
         let p = BenchPoint { ratio, ..*p };
         match (&self.belt, &bench.car.transmission) {
-            (Some((cvt, at)), _) => cvt_bench::solve(&bench.car, cvt, at, &p, bench.printed),
+            (Some((cvt, at)), _) => {
+                cvt_bench::solve(&bench.car, (cvt, at), &p, bench.printed, near)
+            }
             (None, Transmission::Manual(manual)) => bench.solve_manual(manual, &p),
             (None, Transmission::Cvt(_)) => unreachable!("a CVT has a belt"),
         }

@@ -47,6 +47,8 @@ impl Default for BenchPoint {
 /// The bench's answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchAnswer {
+    /// The point that it is of.
+    pub point: BenchPoint,
     /// Loss of each component, Nm at the input shaft; NaN where slip leaves no point at which the box turns.
     pub loss_nm: ByComponent<f64>,
     /// Part of the seal rings' loss at the primary, Nm: it stays in the box as long as the pump does.

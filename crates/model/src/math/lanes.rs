@@ -11,7 +11,9 @@
 use super::curve::{Curve, Curves};
 use super::real::{Mask, Operand, Own, Real};
 use super::{circular, elementary};
-use fearless_simd::{Bytes, Select, SimdBase, SimdFloat, SimdMask, mask64x4, mask64x8, u64x4, u64x8};
+use fearless_simd::{
+    Bytes, Select, SimdBase, SimdFloat, SimdMask, mask64x4, mask64x8, u64x4, u64x8,
+};
 use std::fmt::Debug;
 use std::ops::{BitAnd, BitOr, Not};
 

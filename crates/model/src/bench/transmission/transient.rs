@@ -9,15 +9,20 @@
 //! so that heat in = stored + to the air + to the cooler holds to rounding. Nothing drives the output shaft.
 
 use super::conditions::Conditions;
+use crate::bench::cvt_bench::Near;
 use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint};
 use crate::drive::loss_heat_w;
 use crate::math::exp;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network, SUMP};
+use crate::transmission::cvt::Series;
 
 /// Step, s: the rig recorded once a second (thesis 5.3).
 const STEP_S: f64 = 1.0;
 /// A branch that takes longer has come to rest before its end.
 pub const MAX_DURATION_S: f64 = 4.0 * 3600.0;
+
+/// Seconds for which there is room from the start: most loops are shorter.
+const USUAL_S: usize = 2500;
 
 /// Half of a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -213,6 +218,11 @@ struct Running<'a> {
     network: Network,
     heat: Heat,
     time_s: f64,
+    /// Seconds solved.
+    seconds: u32,
+    /// Slip of the seconds before, and the pressure of the last, Pa.
+    slip: Series,
+    pressure_pa: f64,
 }
 
 /// Warms the box up and cools it down again, without load.
@@ -226,6 +236,9 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
         network: on_the_rig(&bench.car().network),
         heat,
         time_s: 0.0,
+        seconds: 0,
+        slip: Series::default(),
+        pressure_pa: 0.0,
     };
     // The engine's nodes stay at room temperature: nothing leads to them.
     (
@@ -234,11 +247,11 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
     ) = (conditions.room_k, conditions.room_k);
     let mut result = Loop {
         ratio,
-        moments: Vec::new(),
+        moments: Vec::with_capacity(USUAL_S),
         energy: LoopEnergy::default(),
         complete: true,
         monotone: true,
-        line: Vec::new(),
+        line: Vec::with_capacity(USUAL_S),
         cooling: 0,
     };
     for (branch, until_k) in [
@@ -276,8 +289,8 @@ pub fn transient(bench: &Bench, conditions: &Conditions, ratio: f64) -> Loop {
 }
 
 impl Running<'_> {
-    fn moment(&self, branch: Branch) -> Moment {
-        let t = &self.heat.node_k;
+    fn moment(&mut self, branch: Branch) -> Moment {
+        let t = self.heat.node_k;
         let point = BenchPoint {
             input_rad_s: self.conditions.transient.speed_rad_s,
             throttle: self.conditions.throttle,
@@ -290,8 +303,22 @@ impl Running<'_> {
             branch,
             sump_k: t[SUMP],
             metal_k: t[METAL],
-            answer: self.at_ratio.solve(&point),
+            answer: self.solve(&point),
         }
+    }
+
+    /// Solves a second, begun where the seconds before lead: slip goes on smoothly.
+    fn solve(&mut self, point: &BenchPoint) -> BenchAnswer {
+        let near = self.seconds.checked_sub(1).map(|before| Near {
+            slip: self.slip.next(before),
+            pressure_pa: self.pressure_pa,
+        });
+        let answer = self.at_ratio.solve_near(point, near);
+        let slip = answer.belt.map_or(0.0, |belt| belt.losses.slip_total);
+        self.slip.push(slip);
+        self.pressure_pa = answer.secondary_pa;
+        self.seconds = self.seconds.saturating_add(1);
+        answer
     }
 
     fn step(&mut self, moment: &Moment, energy: &mut LoopEnergy) {

@@ -34,6 +34,7 @@ mod step_output;
 
 pub use driveline::Parts;
 pub use keys::CvtKeys;
+pub(crate) use secant::Series;
 pub use secant::{Slopes, Trend, WarmStart};
 
 use self::clamping::Clamping;

@@ -71,7 +71,7 @@ impl Default for WarmStart {
 
 /// Last value of a smooth series and its differences.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Series<R: Real = f64> {
+pub(crate) struct Series<R: Real = f64> {
     value: R,
     first: R,
     second: R,
@@ -90,14 +90,14 @@ impl<R: Real> Series<R> {
 
     /// The value that follows, with as many differences as there are steps alike before the last.
     #[inline(always)]
-    fn next(&self, alike: u32) -> R {
+    pub fn next(&self, alike: u32) -> R {
         let none = self.value.filled(0.0);
         let first = if alike > 0 { self.first } else { none };
         self.value + first + if alike > 1 { self.second } else { none }
     }
 
     #[inline(always)]
-    fn push(&mut self, value: R) {
+    pub fn push(&mut self, value: R) {
         let first = value - self.value;
         *self = Series {
             value,

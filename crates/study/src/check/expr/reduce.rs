@@ -20,7 +20,12 @@ pub struct Table {
 
 impl Table {
     /// A table of so many columns, each made by `make` from its place; with a weight for each row, and its marks.
-    pub fn new(columns: usize, make: Make, weight: Vec<f64>, [gross, outside]: [Vec<bool>; 2]) -> Self {
+    pub fn new(
+        columns: usize,
+        make: Make,
+        weight: Vec<f64>,
+        [gross, outside]: [Vec<bool>; 2],
+    ) -> Self {
         Table {
             columns: (0..columns).map(|_| OnceCell::new()).collect(),
             make,

@@ -15,33 +15,30 @@ use cvtcycle_model::keys::Key;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 
-/// A point and its solution.
-pub type Solved = (BenchPoint, BenchAnswer);
-
 /// Columns before those of the components.
-static COLUMNS: LazyLock<Vec<Column<Solved>>> = LazyLock::new(|| {
-    columns! { Solved;
-        "ratio" (p, _) => p.ratio;
-        "speed_rpm" (p, _) => rpm(p.input_rad_s);
-        "temp_degc" (p, _) => p.sump_k - ZERO_DEGC_K;
-        "torque_nm" (p, _) => p.output_nm;
-        "throttle" (p, _) => p.throttle;
-        "pressure_factor" (p, _) => p.pressure_factor;
-        "total_nm" (_, a) => a.total_nm();
-        "belt_nm" (_, a) => a.belt_nm();
-        "input_torque_nm" (_, a) => a.input_nm;
-        "input_power_w" (p, a) => a.input_nm * p.input_rad_s;
-        "efficiency_percent" (p, a) => 100.0 * efficiency(p, a);
-        "output_speed_rpm" (_, a) => rpm(a.output_rad_s);
-        "pressure_bar" (_, a) => a.secondary_pa / 1e5;
-        "belt_degc" (_, a) => a.belt_k - ZERO_DEGC_K;
-        "belt_above_sump_k" (p, a) => a.belt_k - p.sump_k;
-        "slip_percent" (_, a) => a.belt.map_or(f64::NAN, |belt| 100.0 * belt.losses.slip_total);
-        "capacity_nm" (_, a) => a.belt.map_or(f64::NAN, |belt| belt.losses.capacity_nm);
-        "flow_l_min" (_, a) => a.oil_flow_m3_s * 6e4;
-        "segment_compression_n" (_, a) => a.belt.map_or(f64::NAN, |belt| belt.tension.compression_n);
-        "flow_limited" (_, a) => truth(a.flags.contains(Flags::FLOW_LIMITED));
-        "outside_validity" (_, a) => truth(a.flags.contains(Flags::OUTSIDE_VALIDITY));
+static COLUMNS: LazyLock<Vec<Column<BenchAnswer>>> = LazyLock::new(|| {
+    columns! { BenchAnswer;
+        "ratio" a => a.point.ratio;
+        "speed_rpm" a => rpm(a.point.input_rad_s);
+        "temp_degc" a => a.point.sump_k - ZERO_DEGC_K;
+        "torque_nm" a => a.point.output_nm;
+        "throttle" a => a.point.throttle;
+        "pressure_factor" a => a.point.pressure_factor;
+        "total_nm" a => a.total_nm();
+        "belt_nm" a => a.belt_nm();
+        "input_torque_nm" a => a.input_nm;
+        "input_power_w" a => a.input_nm * a.point.input_rad_s;
+        "efficiency_percent" a => 100.0 * efficiency(a);
+        "output_speed_rpm" a => rpm(a.output_rad_s);
+        "pressure_bar" a => a.secondary_pa / 1e5;
+        "belt_degc" a => a.belt_k - ZERO_DEGC_K;
+        "belt_above_sump_k" a => a.belt_k - a.point.sump_k;
+        "slip_percent" a => a.belt.map_or(f64::NAN, |belt| 100.0 * belt.losses.slip_total);
+        "capacity_nm" a => a.belt.map_or(f64::NAN, |belt| belt.losses.capacity_nm);
+        "flow_l_min" a => a.oil_flow_m3_s * 6e4;
+        "segment_compression_n" a => a.belt.map_or(f64::NAN, |belt| belt.tension.compression_n);
+        "flow_limited" a => truth(a.flags.contains(Flags::FLOW_LIMITED));
+        "outside_validity" a => truth(a.flags.contains(Flags::OUTSIDE_VALIDITY));
     }
 });
 
@@ -54,7 +51,8 @@ pub fn columns() -> Vec<&'static str> {
     names.chain(LOSSES.iter().copied()).collect()
 }
 
-fn efficiency(p: &BenchPoint, a: &BenchAnswer) -> f64 {
+fn efficiency(a: &BenchAnswer) -> f64 {
+    let p = &a.point;
     let input_w = a.input_nm * p.input_rad_s;
     let output_w = p.output_nm * a.output_rad_s;
     if p.output_nm < 0.0 {
@@ -74,10 +72,10 @@ pub(super) fn marks(answer: &BenchAnswer) -> Marks {
 }
 
 /// Number of a solved point in a column.
-pub(super) fn number(solved: &Solved, column: usize) -> f64 {
+pub(super) fn number(answer: &BenchAnswer, column: usize) -> f64 {
     match COLUMNS.get(column) {
-        Some(of) => (of.get)(solved),
-        None => solved.1.loss_nm[Component::ALL[column - COLUMNS.len()]],
+        Some(of) => (of.get)(answer),
+        None => answer.loss_nm[Component::ALL[column - COLUMNS.len()]],
     }
 }
 
@@ -151,7 +149,7 @@ pub fn of_points(points: &[BenchPoint], setup: &Setup) -> Result<Table, String> 
     let mut bench = KeptRatio::new(&bench, first.ratio);
     for point in points {
         let answer = bench.at(point.ratio).solve(point);
-        rows.add((*point, answer), &marks(&answer));
+        rows.add(answer, &marks(&answer));
     }
     Ok(rows.table(width(), number))
 }

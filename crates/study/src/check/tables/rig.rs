@@ -9,8 +9,10 @@ use crate::check::expr::{Table, truth};
 use crate::check::keys::{STRIP_DOWN, TRANSIENT};
 use crate::check::source::Source;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::transmission::{Branch, Conditions, Piece, Plan, strip_down, transient};
-use cvtcycle_model::bench::{Bench, BenchPoint};
+use cvtcycle_model::bench::Bench;
+use cvtcycle_model::bench::transmission::{
+    Branch, Conditions, Moment, Piece, Plan, strip_down, transient,
+};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 
 /// Columns of a transient before those of the bench.
@@ -48,32 +50,20 @@ pub fn transients(
     cvt_only(&bench, &ratios)?;
     let mut rows = Rows::new(0);
     for ratio in ratios {
-        let mut result = transient(&bench, conditions, ratio);
-        let moments = std::mem::take(&mut result.moments);
-        let result = Rc::new(result);
-        for m in moments {
-            let point = BenchPoint {
-                ratio,
-                input_rad_s: conditions.transient.speed_rad_s,
-                throttle: conditions.throttle,
-                sump_k: m.sump_k,
-                ..BenchPoint::default()
-            };
-            let head = [
-                m.time_s,
-                truth(m.branch == Branch::Cooling),
-                m.metal_k - ZERO_DEGC_K,
-            ];
-            let marks = bench::marks(&m.answer);
-            rows.add((result.clone(), head, (point, m.answer)), &marks);
+        let result = Rc::new(transient(&bench, conditions, ratio));
+        for (second, m) in result.moments.iter().enumerate() {
+            rows.add((result.clone(), second), &bench::marks(&m.answer));
         }
     }
     let width = OF_MOMENT.len() + bench::width();
-    Ok(rows.table(width, |(result, head, solved), column| {
-        match (head.get(column), column.checked_sub(OF_MOMENT.len())) {
-            (Some(number), _) => *number,
-            (None, Some(of_bench)) => bench::number(solved, of_bench),
-            (None, None) => result.gap_nm(solved.0.sump_k).unwrap_or(f64::NAN),
+    Ok(rows.table(width, |(result, second), column| {
+        let m: &Moment = &result.moments[*second];
+        match column {
+            0 => m.time_s,
+            1 => truth(m.branch == Branch::Cooling),
+            2 => m.metal_k - ZERO_DEGC_K,
+            3 => result.gap_nm(m.sump_k).unwrap_or(f64::NAN),
+            of_bench => bench::number(&m.answer, of_bench - OF_MOMENT.len()),
         }
     }))
 }

@@ -183,7 +183,9 @@ pub fn trace(source: &Source, driven: &Rc<Driven>) -> Table {
 /// The totals of a run as a table of one row.
 pub fn totals(source: &Source, driven: &Driven) -> Table {
     let sum = driven.outcome.totals.over(&driven.phases(source));
-    let own = of_totals().into_iter().map(|column| (column.get)(&(driven, &sum)));
+    let own = of_totals()
+        .into_iter()
+        .map(|column| (column.get)(&(driven, &sum)));
     let numbers: Vec<f64> = own.chain(sum.loss_j.iter().map(|j| j / 1e3)).collect();
     let width = numbers.len();
     let mut rows = Rows::new(1);
