@@ -14,11 +14,13 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{StartWord, name_run};
+use cvtcycle::study::check::published;
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
 use cvtcycle::study::run::{RunQuestion, summary};
 use cvtcycle::study::words::drawn::{differences, prepare};
 
+use super::threads::beside;
 use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::{overrides, problem};
@@ -182,7 +184,9 @@ impl Execute for RunArgs {
         let out = plan.out.take();
         let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
         let conditions = plan.cars.conditions(plan.ambient_degc, out.is_some());
-        let outcomes = plan.cars.drive(&conditions);
+        // Of a car by its own name, which may be a shipped one; read while the cars are driven.
+        let read = || published(&vehicles[0].name, &cycle.name);
+        let (published, outcomes) = beside(read, || plan.cars.drive(&conditions));
         let driven = vehicles::driven(vehicles, &outcomes);
         let question = RunQuestion {
             cycle,
@@ -191,6 +195,7 @@ impl Execute for RunArgs {
             start: plan.cars.start.1.clone(),
             settings: plan.cars.settings(&self.cars, self.strict),
             price: plan.price.wanted(cycle, plan.cars.dt_s),
+            published: Some(published),
         };
         let mut summary = summary(&question, &driven);
         if let Some(study) = &plan.draws {

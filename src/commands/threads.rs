@@ -1,6 +1,7 @@
 //! The threads that compute: the first one of the process, and those that the system starts.
 
 use std::io;
+use std::panic::resume_unwind;
 use std::sync::{OnceLock, mpsc};
 use std::thread;
 
@@ -66,6 +67,23 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
         }
         None => Ok(()),
     }
+}
+
+/// Works out two things at once, one of them on a thread of its own: a run is over before the threads of [`begin`] would pay. One after the other
+/// where a process has one thread, or the system starts no other.
+pub fn beside<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
+    if wanted(None).is_ok_and(|threads| threads < 2) {
+        return (other(), own());
+    }
+    thread::scope(|scope| {
+        let started = thread::Builder::new().spawn_scoped(scope, &other);
+        let own = own();
+        let other = match started {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| resume_unwind(panic)),
+            Err(_) => other(),
+        };
+        (other, own)
+    })
 }
 
 fn wanted(given: Option<u64>) -> Result<u64, Problem> {

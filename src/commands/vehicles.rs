@@ -10,6 +10,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::{Driven, Settings, StartWord};
 
+use super::threads::beside;
 use crate::args::problems::{assigned, overrides};
 use crate::args::{ColumnsArgs, ComparisonArgs, FormulationArgs, VehicleArgs};
 
@@ -46,14 +47,16 @@ impl ComparedArgs {
     ) -> Loaded {
         let word = &self.comparison.cycle.word;
         let columns = self.columns.get(problems);
-        let cycle = problems.take(cycle::open(word, &columns));
-        let formulation = formulation.get(problems);
-        let vehicles = load(
-            &self.car,
-            (&self.comparison, baselines),
-            formulation,
-            problems,
+        let (mut of_form, mut of_vehicles) = (Problems::new(), Problems::new());
+        let formulation = formulation.get(&mut of_form);
+        let comparison = (&self.comparison, baselines);
+        let (cycle, vehicles) = beside(
+            || cycle::open(word, &columns),
+            || load(&self.car, comparison, formulation, &mut of_vehicles),
         );
+        let cycle = problems.take(cycle);
+        problems.extend(of_form);
+        problems.extend(of_vehicles);
         Loaded {
             cycle: own_cycle(word, cycle, &vehicles),
             vehicles,
@@ -119,9 +122,16 @@ impl ComparedVehicles {
 
     /// All of them on the cycle.
     pub fn drive(&self, conditions: &Conditions) -> Vec<Outcome> {
-        let outcomes = self.vehicles.iter();
-        let outcomes = outcomes.map(|car| drive(&car.setup, &self.cycle, conditions));
-        outcomes.collect()
+        let drive = |car: &RunVehicle| drive(&car.setup, &self.cycle, conditions);
+        let Some((subject, baselines)) = self.vehicles.split_first() else {
+            return Vec::new();
+        };
+        if baselines.is_empty() {
+            return vec![drive(subject)];
+        }
+        let others = || baselines.iter().map(drive).collect::<Vec<_>>();
+        let (others, own) = beside(others, || drive(subject));
+        std::iter::once(own).chain(others).collect()
     }
 }
 
@@ -205,14 +215,24 @@ pub fn load(
     let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
     // A twin is made of the subject as it is driven.
     let twin = subject.of_twin(named_by);
-    for name in &names {
+    let of_baseline = |name: &String| {
         let options = match setup::is_twin(name) {
             true => &twin,
             false => &baseline,
         };
         let setup = load_one(name, options, &of_all).map_err(|found| cite_vehicle(option, found));
-        let setup = problems.take(setup);
-        loaded.push((name, setup, options.clone()));
+        (setup, options.clone())
+    };
+    let setups = match names.as_slice() {
+        [first, others @ ..] if !others.is_empty() => {
+            let others = || others.iter().map(of_baseline).collect::<Vec<_>>();
+            let (others, first) = beside(others, || of_baseline(first));
+            std::iter::once(first).chain(others).collect()
+        }
+        names => names.iter().map(of_baseline).collect::<Vec<_>>(),
+    };
+    for (name, (setup, options)) in names.iter().zip(setups) {
+        loaded.push((name, problems.take(setup), options));
     }
     let mut vehicles: Vec<RunVehicle> = Vec::new();
     for (word, setup, options) in loaded {

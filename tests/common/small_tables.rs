@@ -19,17 +19,17 @@ impl SmallTables {
     /// With two groups of rows, `g` 0 and 1.
     pub fn new(x: [f64; 6], y: [f64; 6], evaluations: u64) -> Self {
         let g = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let low = Table {
-            columns: [x, g, y].map(Vec::from).into(),
-            weight: vec![1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
-            gross: vec![false, false, false, false, false, true],
-            outside: Vec::new(),
+        let of = |columns: Vec<Vec<f64>>, weight: &[f64], gross: &[bool]| {
+            let count = columns.len();
+            let make = Box::new(move |place: usize| columns[place].clone());
+            Table::new(count, make, weight.to_vec(), [gross.to_vec(), Vec::new()])
         };
-        let trip = Table {
-            columns: vec![vec![6.5]],
-            weight: vec![1.0],
-            ..Table::default()
-        };
+        let low = of(
+            [x, g, y].map(Vec::from).into(),
+            &[1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
+            &[false, false, false, false, false, true],
+        );
+        let trip = of(vec![vec![6.5]], &[1.0], &[]);
         SmallTables {
             keys: vec!["belt.offset_mm".to_owned()],
             low: Rc::new(low),

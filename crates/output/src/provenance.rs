@@ -60,7 +60,7 @@ fn cycle_text(cycle: &Cycle) -> String {
     ] {
         let Some(trace) = trace else { continue };
         text += &format!("{name} = start_s,end_s,start_m_s,end_m_s,phase,grade,engine_off\n");
-        for row in &trace.intervals {
+        for row in trace.intervals.iter() {
             let (start_m_s, end_m_s) = (row.start_speed_m_s, row.end_speed_m_s);
             let (start_s, end_s, phase) = (row.start_s, row.end_s, row.phase);
             for x in [

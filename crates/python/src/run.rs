@@ -207,6 +207,7 @@ impl Whole {
                 strict: false,
             },
             price: self.price,
+            published: None,
         };
         summary(&question, &self.driven())
     }

@@ -5,6 +5,7 @@ use cvtcycle_model::drive::Conditions;
 use cvtcycle_output::summary::{Driven, Settings, StartWord, Summary, find_maps_left, summarise};
 
 use crate::attribute::{Attribution, Depth, attribute};
+use crate::check::ValidationRow;
 use crate::words;
 
 /// How the cars of a run were driven, and what is wanted of it.
@@ -22,6 +23,8 @@ pub struct RunQuestion<'a> {
     pub settings: Settings,
     /// Whether each car is driven again without each loss, for the fuel that it costs.
     pub price: bool,
+    /// Published numbers about the subject on the cycle, as [`published`](crate::check::published) has them, where they are read already.
+    pub published: Option<Vec<ValidationRow>>,
 }
 
 /// The summary of cars that have been driven; the first is the subject.
@@ -44,6 +47,7 @@ pub struct RunQuestion<'a> {
 ///     start: StartWord::Word("soak".to_owned()),
 ///     settings: Settings::default(),
 ///     price: true,
+///     published: None,
 /// };
 /// let summary = summary(&question, &driven);
 /// let price = summary.runs[0].price.as_ref().expect("asked for");
@@ -66,6 +70,6 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
         };
         run.price = Some(attribute(&priced, run));
     }
-    words::run::assess(&mut summary, cycle, driven);
+    words::run::assess(&mut summary, cycle, driven, of.published.as_deref());
     summary
 }

@@ -2,7 +2,7 @@
 //!
 //! Only the one that is asked for is parsed.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use super::gears::GearCommand;
 use super::plain::plain_trace;
@@ -238,7 +238,7 @@ fn stop_engine(trace: &mut Trace, phases: &[String], soak: &str) {
         .zip(phases)
         .find(|phase| phase.1 == soak)
         .map(|phase| phase.0);
-    for interval in &mut trace.intervals {
+    for interval in Arc::make_mut(&mut trace.intervals) {
         interval.engine_off = Some(interval.phase) == soak;
     }
 }

@@ -57,7 +57,7 @@ pub(super) fn plain_trace(text: &str, phases: &mut Vec<String>) -> Option<Trace>
         let is = |column: &Column| matches!(column, Column::Gear(own) if *own == gear);
         columns.iter().any(is)
     });
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<Row> = Vec::with_capacity(text.lines().count());
     let mut before = phases.len();
     for line in lines {
         before = phases.len();

@@ -68,7 +68,7 @@ pub fn known_keys() -> &'static [KeyInfo] {
 #[must_use]
 pub fn known_names() -> &'static [String] {
     static NAMES: OnceLock<Vec<String>> = OnceLock::new();
-    NAMES.get_or_init(|| known_keys().iter().map(|info| info.key.clone()).collect())
+    NAMES.get_or_init(|| rows().map(|(key, _)| key).collect())
 }
 
 fn gathered() -> Vec<KeyInfo> {

@@ -2,6 +2,7 @@
 
 use super::gears::{GearColumns, GearCommand};
 use crate::math::{Left, Real, exp, larger, ln};
+use std::sync::Arc;
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -180,13 +181,13 @@ impl Step {
     }
 }
 
-/// What a car is asked to drive.
+/// What a car is asked to drive. Copies share its intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The intervals in time order, each beginning where the one before ends; the first begins at 0 s.
-    pub intervals: Vec<Interval>,
+    pub intervals: Arc<Vec<Interval>>,
     /// Of every interval.
-    motions: Vec<Motion>,
+    motions: Arc<Vec<Motion>>,
     gears: GearColumns,
     selector_s: f64,
 }
@@ -200,8 +201,8 @@ impl Trace {
     /// A trace with prescribed gears, one command an interval.
     pub fn with_gears(intervals: Vec<Interval>, gears: GearColumns) -> Self {
         Self {
-            motions: intervals.iter().map(Interval::motion).collect(),
-            intervals,
+            motions: Arc::new(intervals.iter().map(Interval::motion).collect()),
+            intervals: Arc::new(intervals),
             gears,
             selector_s: 0.0,
         }
@@ -323,7 +324,7 @@ impl Trace {
     /// The steps of the simulation: each interval is divided into the least number of equal parts that are not longer than
     /// `max_dt_s` (s). A limit that is not a positive number divides nothing.
     pub fn steps(&self, max_dt_s: f64) -> impl Iterator<Item = Step> + '_ {
-        let intervals = self.intervals.iter().zip(&self.motions).enumerate();
+        let intervals = self.intervals.iter().zip(&*self.motions).enumerate();
         intervals.flat_map(move |(number, (interval, motion))| {
             let parts = interval.parts(max_dt_s);
             let step = move |index| {
@@ -340,7 +341,7 @@ impl Trace {
     /// Gives every step of [`Trace::steps`] to `take`, in order; two plain loops cost a drive less than the iterator.
     #[inline(always)]
     pub fn for_each_step(&self, max_dt_s: f64, mut take: impl FnMut(Step)) {
-        for (number, (interval, motion)) in self.intervals.iter().zip(&self.motions).enumerate() {
+        for (number, (interval, motion)) in self.intervals.iter().zip(&*self.motions).enumerate() {
             let parts = interval.parts(max_dt_s);
             for index in 0..parts {
                 take(if parts == 1 {

@@ -1,6 +1,7 @@
 //! What a run says of its subject: fuel, difference to each baseline with what is known of it, the price of its losses, and the published
 //! numbers that contradict it.
 
+use std::borrow::Cow;
 use std::cell::OnceCell;
 
 use cvtcycle_config::cycle::Cycle;
@@ -16,14 +17,19 @@ use super::intervals as drawn;
 use super::{against_print, between, decimals, more_or_less, of_difference, than};
 use crate::attribute::answer as price;
 use crate::check::rule::Printed;
-use crate::check::{About, published};
+use crate::check::{About, ValidationRow, published};
 use crate::statistics::{Confidence, Enough};
 
 /// Distance of the ambient temperatures up to which a published number is one of this run, K.
 const NEAR_K: f64 = 5.0;
 
 /// Looks up how sure the differences of a run are, and which published numbers it contradicts. Both are only said of cars as they are shipped.
-pub fn assess(summary: &mut Summary, cycle: &Cycle, driven: &[Driven]) {
+pub fn assess(
+    summary: &mut Summary,
+    cycle: &Cycle,
+    driven: &[Driven],
+    known: Option<&[ValidationRow]>,
+) {
     let usual = summary.settings.dt_s >= 1.0 && summary.settings.formulation == "smooth";
     let names = driven.iter().map(|car| car.name);
     let StartWord::Word(start) = summary.start.clone() else {
@@ -36,7 +42,7 @@ pub fn assess(summary: &mut Summary, cycle: &Cycle, driven: &[Driven]) {
     {
         return;
     }
-    summary.contradicted = contradicted(summary, &start, driven);
+    summary.contradicted = contradicted(summary, &start, driven, known);
     let ambient_degc = summary.ambient_degc;
     let Some((subject, baselines)) = driven.split_first() else {
         return;
@@ -62,11 +68,19 @@ fn is_shipped(name: &str, setup: &Setup) -> bool {
     load(name, &Options::default()).is_ok_and(|own| car_sha256(&own) == car_sha256(setup))
 }
 
-fn contradicted(summary: &Summary, start: &str, driven: &[Driven]) -> Vec<Contradiction> {
+fn contradicted(
+    summary: &Summary,
+    start: &str,
+    driven: &[Driven],
+    known: Option<&[ValidationRow]>,
+) -> Vec<Contradiction> {
     let Some(subject) = driven.first() else {
         return Vec::new();
     };
-    let rows = published(subject.name, &summary.cycle);
+    let rows = match known {
+        Some(rows) => Cow::Borrowed(rows),
+        None => Cow::Owned(published(subject.name, &summary.cycle)),
+    };
     // A car is read again once at most, and only where a row is about it.
     let shipped: Vec<OnceCell<bool>> = vec![OnceCell::new(); driven.len()];
     let is_shipped = |k: usize| {

@@ -212,8 +212,11 @@ fn a_senseless_step_limit_divides_nothing() {
 
 #[test]
 fn sums_by_hand() {
-    let mut trace = Trace::without_gears(vec![ramp(0.0, 2.0, 0.0, 4.0), ramp(2.0, 5.0, 4.0, 4.0)]);
-    trace.intervals[1].phase = 1;
+    let last = Interval {
+        phase: 1,
+        ..ramp(2.0, 5.0, 4.0, 4.0)
+    };
+    let trace = Trace::without_gears(vec![ramp(0.0, 2.0, 0.0, 4.0), last]);
     assert_eq!(
         (
             trace.duration_s(),

@@ -166,15 +166,19 @@ impl Context<'_> {
     }
 
     fn compare(&mut self, list: &[Expr], orders: &[Order]) -> Result<f64, String> {
-        let values = self.all(list)?;
+        let mut before = self.eval(&list[0])?;
+        let (mut is_missing, mut holds) = (before.is_nan(), true);
+        for (part, order) in list[1..].iter().zip(orders) {
+            let next = self.eval(part)?;
+            is_missing |= next.is_nan();
+            holds &= order.holds(before, next);
+            before = next;
+        }
         // Within a table a row without the number does not count; outside of one a missing number must not pass for a "no".
-        if self.row.is_none() && values.iter().any(|x| x.is_nan()) {
+        if self.row.is_none() && is_missing {
             return Err("a number of the comparison does not exist".to_owned());
         }
-        let mut pairs = values.windows(2).zip(orders);
-        Ok(truth(
-            pairs.all(|(pair, order)| order.holds(pair[0], pair[1])),
-        ))
+        Ok(truth(holds))
     }
 
     fn looped(&mut self, list: &[Expr], body: &Expr) -> Result<Vec<f64>, String> {
