@@ -19,7 +19,7 @@ fn setup(word: &str) -> Setup {
 /// ECE15+EUDC for automatics, without the gears that a unit does not know.
 fn cycle() -> Cycle {
     let cycle = embedded("ece15_eudc").unwrap();
-    let trace = Trace::without_gears(cycle.trace_for(true).intervals.clone());
+    let trace = Trace::without_gears(cycle.trace_for(true).intervals.to_vec());
     Cycle {
         manual: trace,
         automatic: None,

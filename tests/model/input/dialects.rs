@@ -157,7 +157,7 @@ fn a_cycle_over_distance_covers_its_distance() {
         trace.distance_m()
     );
     let mut at_m = 0.0;
-    for i in &trace.intervals {
+    for i in trace.intervals.iter() {
         let accel = (i.end_speed_m_s - i.start_speed_m_s) / (i.end_s - i.start_s);
         assert!(
             (-1.5 - 1e-6..=1.0 + 1e-6).contains(&accel),

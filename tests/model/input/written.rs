@@ -19,7 +19,7 @@ fn every_cycle_survives_every_form() {
                 let trace = cycle.trace_for(automatic);
                 let written = write(&cycle, trace, format);
                 let other = again(name, &written.text);
-                let pairs = trace.intervals.iter().zip(&other.manual.intervals);
+                let pairs = trace.intervals.iter().zip(other.manual.intervals.iter());
                 assert_eq!(
                     trace.intervals.len(),
                     other.manual.intervals.len(),

@@ -5,7 +5,7 @@
 use crate::belt_properties::{ALL, thesis_belt};
 use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::fluid::{BandFriction, Friction};
-use cvtcycle_model::math::{Gather, Left, Mask, Real, ramp};
+use cvtcycle_model::math::{Curve, Gather, Left, Mask, Real, asin, ramp, tanh};
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
 };
@@ -258,4 +258,80 @@ where
 #[test]
 fn choices_and_bounds_are_those_of_f64() {
     with_lanes!(like => hold_choices(like));
+}
+
+/// One curve of all runs is looked up for the group, curves of their own one by one: both with the bits of each run.
+fn hold_curves<R: Real>(like: R, points: &[Vec<(f64, f64)>], x: &[f64; MOST]) {
+    let curve = |lane: usize| Curve::new(&points[lane % points.len()]).unwrap();
+    let own: Vec<Curve> = (0..R::LANES).map(curve).collect();
+    let y = like.by_lane(|lane| x[lane]).along(&together(like, &own));
+    for (lane, own) in own.iter().enumerate() {
+        let (y, alone) = (y.lane(lane), own.at(x[lane]));
+        assert!(
+            y.to_bits() == alone.to_bits() || y.is_nan() && alone.is_nan(),
+            "{points:?} at {x:?}: {y} in lane {lane}, {alone}"
+        );
+    }
+}
+
+#[test]
+fn curves_are_those_of_f64() {
+    let bent: Vec<(f64, f64)> = (0..40)
+        .map(|k| (f64::from(k * k), f64::from(k % 7)))
+        .collect();
+    let short = vec![(-1.0, 2.0), (0.5, -3.0), (2.0, -0.0)];
+    let flat = vec![(3.0, 4.0)];
+    let curves = [
+        vec![bent.clone()],
+        vec![short.clone()],
+        vec![flat.clone()],
+        vec![bent, short, flat],
+    ];
+    let mut draw = Draw(5);
+    for points in &curves {
+        let mut of = |low: f64, high: f64| std::array::from_fn(|_| draw.between(low, high));
+        let at_points = std::array::from_fn(|lane| points[0][lane % points[0].len()].0);
+        let numbers: [[f64; MOST]; 8] = [
+            EDGES,
+            at_points,
+            [f64::INFINITY; MOST],
+            [f64::NEG_INFINITY; MOST],
+            of(-2.0, 3.0),
+            of(-2.0, 1600.0),
+            of(400.0, 410.0),
+            of(1521.0, 1e9),
+        ];
+        for x in &numbers {
+            with_lanes!(like => hold_curves(like, points, x));
+        }
+    }
+}
+
+/// Inner functions whose lanes are worked out together, and one by one where they lie far apart.
+fn hold_angles<R: Real>(like: R, x: &[f64; MOST]) {
+    let lanes = like.by_lane(|lane| x[lane]);
+    for lane in 0..R::LANES {
+        for (y, alone) in [
+            (lanes.asin(), asin(x[lane])),
+            (lanes.tanh(), tanh(x[lane])),
+        ] {
+            let y = y.lane(lane);
+            assert!(
+                y.to_bits() == alone.to_bits() || y.is_nan() && alone.is_nan(),
+                "{x:?}: {y} in lane {lane}, {alone}"
+            );
+        }
+    }
+}
+
+#[test]
+fn arcsine_and_tanh_are_those_of_f64() {
+    let mut draw = Draw(9);
+    for size in [0.1, 0.499, 0.6, 1.0, 3.0, 40.0] {
+        for _ in 0..50 {
+            let x: [f64; MOST] = std::array::from_fn(|_| draw.between(-size, size));
+            with_lanes!(like => hold_angles(like, &x));
+        }
+    }
+    with_lanes!(like => hold_angles(like, &EDGES));
 }

@@ -1,5 +1,6 @@
 //! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML; `units`: numbers with units), and the overrides put into it.
 
+mod entries;
 pub(crate) mod overrides;
 pub(crate) mod patched;
 mod shape;
@@ -8,12 +9,12 @@ pub(crate) mod target;
 pub(crate) mod units;
 
 use std::cell::Cell;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use toml::de::{DeInteger, DeTable, DeValue};
 
+use self::entries::Entries;
 use self::shape::Excess;
 use crate::problem::place::{Input, Place};
 use crate::problem::source::{MAX_VALUE, Parent, Source, shortened};
@@ -108,7 +109,7 @@ impl Value {
 /// A table: its entries, and the option that an assignment names for it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Table {
-    pub entries: BTreeMap<String, Entry>,
+    pub entries: Entries,
     pub choice: Option<Box<Node>>,
 }
 

@@ -6,7 +6,6 @@ use crate::document::{Document, Entry, Node, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::place::Input;
 use crate::problem::source::Source;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A document with numbers put over those of the file, as overrides would. It has only what the program computes
@@ -225,7 +224,7 @@ fn insert(table: &mut Table, keys: &[Box<str>], node: Node) -> Result<(), usize>
                 span: node.span.clone(),
             },
         };
-        let entry = table.entries.entry(key.to_string()).or_insert_with(empty);
+        let entry = table.entries.get_or_insert_with(key, empty);
         make_room(&mut entry.node);
         match &mut entry.node.value {
             Value::Table(inner) if inner.wrapped().is_none() => table = inner,
@@ -252,8 +251,8 @@ fn make_room(node: &mut Node) {
     if is_word(node) {
         let choice = node.span.is_set().then(|| Box::new(node.clone()));
         node.value = Value::Table(Table {
-            entries: BTreeMap::new(),
             choice,
+            ..Table::default()
         });
     }
 }

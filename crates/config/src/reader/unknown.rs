@@ -216,7 +216,7 @@ pub(crate) fn unread<'t>(
     path: &str,
     unknown: &mut Vec<(String, &'t Entry)>,
 ) {
-    for (name, entry) in &table.entries {
+    for (name, entry) in table.entries.iter() {
         let path = join(path, name);
         if log.read.contains(&path) {
             continue;

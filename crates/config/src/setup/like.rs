@@ -93,7 +93,7 @@ impl<'f> Resolver<'f> {
                 ..
             }) = later.entries.get_mut("vehicle")
             {
-                head.entries.retain(|name, _| !OWN.contains(&name.as_str()));
+                head.entries.retain(|name| !OWN.contains(&name));
             }
             join(&mut later, inherited, "");
             inherited = later;

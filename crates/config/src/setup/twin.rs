@@ -233,9 +233,7 @@ fn take(document: &mut Document, other: Document) {
 }
 
 fn remove(table: &mut Table, names: &[&str]) {
-    table
-        .entries
-        .retain(|name, _| !names.contains(&name.as_str()));
+    table.entries.retain(|name| !names.contains(&name));
 }
 
 /// What is the twin's own, as a file; none where the car has not the values for it.

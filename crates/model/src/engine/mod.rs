@@ -316,7 +316,8 @@ where
 
     #[inline(always)]
     fn full_load_share(&self, speed_rad_s: R) -> R {
-        self.full_load_nm(speed_rad_s) / speed_rad_s.along(&self.engine.full_load)
+        let hot = speed_rad_s.along(&self.engine.full_load);
+        self.full_load_of(hot, speed_rad_s) / hot
     }
 
     #[inline(always)]
@@ -337,15 +338,7 @@ where
 
     #[inline(always)]
     fn full_load_nm(&self, speed_rad_s: R) -> R {
-        let hot = speed_rad_s.along(&self.engine.full_load);
-        let piston_m_s = self.engine.piston_m_s(speed_rad_s);
-        let friction = self
-            .engine
-            .torque_nm(self.engine.fuel.hot_friction_pa(piston_m_s));
-        // Written so that a warm engine in the reference air has its line to the bit.
-        let now =
-            hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
-        now.most(LEAST_FULL_LOAD * hot) // EN-8
+        self.full_load_of(speed_rad_s.along(&self.engine.full_load), speed_rad_s)
     }
 
     /// EN-4: none at standstill.
@@ -369,6 +362,19 @@ impl<R: Real> EngineAtTemperature<'_, R>
 where
     f64: Left<R>,
 {
+    /// Full load at a speed from that of the hot engine there, Nm (EN-8).
+    #[inline(always)]
+    fn full_load_of(&self, hot: R, speed_rad_s: R) -> R {
+        let piston_m_s = self.engine.piston_m_s(speed_rad_s);
+        let friction = self
+            .engine
+            .torque_nm(self.engine.fuel.hot_friction_pa(piston_m_s));
+        // Written so that a warm engine in the reference air has its line to the bit.
+        let now =
+            hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
+        now.most(LEAST_FULL_LOAD * hot) // EN-8
+    }
+
     /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
     #[inline(always)]
     pub fn own_drag_nm(&self, speed_rad_s: R) -> R {

@@ -1,6 +1,5 @@
 //! Piecewise linear curve through points, held at its ends.
 
-use super::real::Real;
 use std::sync::Arc;
 
 /// A curve y(x) through points with strictly rising x; between them linear, outside them held.
@@ -8,22 +7,22 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
     /// The points, each with the piece that begins there; the last piece is flat and has no end.
-    pieces: Arc<[Piece]>,
+    pub(super) pieces: Arc<[Piece]>,
     /// For equal cells of x: the piece in which the cell begins, so that a look-up needs no search.
     cell: Arc<[u16]>,
     cells_per_x: f64,
-    first: (f64, f64),
-    last: (f64, f64),
+    pub(super) first: (f64, f64),
+    pub(super) last: (f64, f64),
 }
 
 /// A point and the straight piece from it to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece {
-    x: f64,
-    y: f64,
-    slope: f64,
+pub(super) struct Piece {
+    pub x: f64,
+    pub y: f64,
+    pub slope: f64,
     /// Where the next piece begins.
-    end: f64,
+    pub end: f64,
 }
 
 /// Cells of the look-up table, a power of two.
@@ -110,7 +109,7 @@ impl Curve {
 
     /// The piece that `x`, between the ends, is on.
     #[inline(always)]
-    fn number(&self, x: f64) -> usize {
+    pub(super) fn number(&self, x: f64) -> usize {
         // The whole number at or below, or one less at an edge: a cast would ask for every number that cannot be here.
         let cells = (x - self.first.0) * self.cells_per_x;
         let cell = (cells - 0.5 + ROUND).to_bits() as usize % CELLS;
@@ -121,74 +120,13 @@ impl Curve {
         number
     }
 
-    /// The values at the lanes of `x`, with the bits of [`Curve::at`]: pieces from the one of the `least` lane on up to that of the `most`; no lane is NaN.
-    #[inline(always)]
-    pub(super) fn across<R: Real>(&self, x: R, (least, most): (f64, f64)) -> R {
-        let (first, last) = (self.first, self.last);
-        let mut number = match least > first.0 && least < last.0 {
-            true => self.number(least),
-            false => 0,
-        };
-        let piece = &self.pieces[number];
-        let (mut from, mut y) = (x.filled(piece.x), x.filled(piece.y));
-        let mut slope = x.filled(piece.slope);
-        while most >= self.pieces[number].end {
-            number += 1;
-            let piece = &self.pieces[number];
-            let beyond = x.reaches(x.filled(piece.x));
-            from = R::pick(beyond, x.filled(piece.x), from);
-            y = R::pick(beyond, x.filled(piece.y), y);
-            slope = R::pick(beyond, x.filled(piece.slope), slope);
-        }
-        let within = y + slope * (x - from);
-        let held = R::pick(x.above(x.filled(first.0)), within, x.filled(first.1));
-        R::pick(x.reaches(x.filled(last.0)), x.filled(last.1), held)
-    }
-
     /// Whether two curves have the same points, most often since they share them.
-    fn is_same(&self, other: &Curve) -> bool {
+    pub(super) fn is_same(&self, other: &Curve) -> bool {
         Arc::ptr_eq(&self.pieces, &other.pieces) || self == other
     }
 
     /// The points (x, y).
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.pieces.iter().map(|p| (p.x, p.y))
-    }
-}
-
-/// The curves of runs side by side.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Curves<const LANES: usize> {
-    of_lane: [Curve; LANES],
-    /// True where all are one: the cars of a study that does not change it.
-    common: bool,
-}
-
-impl<const LANES: usize> Curves<LANES> {
-    /// A curve for each lane, from the lane's place.
-    pub(super) fn new(of: impl FnMut(usize) -> Curve) -> Self {
-        let of_lane: [Curve; LANES] = std::array::from_fn(of);
-        Curves {
-            common: of_lane.iter().all(|curve| curve.is_same(&of_lane[0])),
-            of_lane,
-        }
-    }
-
-    /// The curve of all lanes, if they have one.
-    #[inline(always)]
-    pub(super) fn common(&self) -> Option<&Curve> {
-        self.common.then_some(&self.of_lane[0])
-    }
-
-    /// The values of each lane's own curve at its number.
-    #[inline(never)]
-    pub(super) fn at(&self, x: [f64; LANES]) -> [f64; LANES] {
-        std::array::from_fn(|lane| self.of_lane[lane].at(x[lane]))
-    }
-
-    /// The curve of a lane.
-    #[inline(always)]
-    pub(super) fn one(&self, lane: usize) -> &Curve {
-        &self.of_lane[lane]
     }
 }

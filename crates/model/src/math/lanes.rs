@@ -8,7 +8,8 @@
 //! A record has its lanes by [`gather!`](crate::math::gather), one line next to the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
 //! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::alike`] says which records can be in one group.
 
-use super::curve::{Curve, Curves};
+use super::curve::Curve;
+use super::curves::{Curves, across};
 use super::real::{Mask, Operand, Own, Real};
 use super::{circular, elementary};
 use fearless_simd::{
@@ -154,7 +155,7 @@ macro_rules! lanes {
             fn along(self, curves: &Curves<$count>) -> Self {
                 match curves.common() {
                     Some(curve) if self.reaches(self).all() => {
-                        curve.across(self, (self.reduce_min(), self.reduce_max()))
+                        across(curve, self, (self.reduce_min(), self.reduce_max()))
                     }
                     _ => {
                         let y = curves.at(std::array::from_fn(#[inline(always)] |lane| self[lane]));

@@ -2,6 +2,7 @@
 
 mod circular;
 mod curve;
+mod curves;
 mod elementary;
 mod grid;
 mod lanes;

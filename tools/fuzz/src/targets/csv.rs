@@ -56,7 +56,7 @@ fn drivable(data: &[u8], columns: &Columns) {
             };
             let (own, other) = (&cycle.manual.intervals, &again.manual.intervals);
             assert_eq!(own.len(), other.len(), "{name}");
-            for (a, b) in own.iter().zip(other) {
+            for (a, b) in own.iter().zip(other.iter()) {
                 let is_near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (1.0 + a.abs());
                 assert!(is_near(a.end_s, b.end_s), "{name}: {a:?} {b:?}");
                 assert!(

@@ -16,7 +16,7 @@ impl Answers {
     pub fn add_file(&mut self, file: &str, text: &str) -> Result<(), Problems> {
         let document = Document::parse(file, text)?;
         let mut problems = Problems::new();
-        for (name, entry) in &document.root.entries {
+        for (name, entry) in document.root.entries.iter() {
             let place =
                 |span: &crate::document::Span| document.sources[0].place(span.range.clone());
             let text = match words(&entry.node.value) {

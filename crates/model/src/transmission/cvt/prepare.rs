@@ -144,20 +144,37 @@ impl<R: Real> Powers<R>
 where
     f64: Left<R>,
 {
-    /// All of a step together: five logarithms, then eight exponentials.
+    /// All of a step together: five logarithms, then eight exponentials; without films, as at rest, three and four.
     #[inline(always)]
     fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, b: &Bases<R>) -> Self {
         let loads = b.film_loads;
         let none = b.nu_m2_s.filled(0.0);
         let slides = both!(i => loads[i].above(0.0));
+        let viscosity = b.nu_m2_s / NU_REFERENCE_M2_S;
+        let pump = b.eta_pa_s / ETA_REFERENCE_PA_S;
+        let radius = cvt.low_radius_m / at.geometry.primary_radius_m;
+        if !(slides[0] | slides[1]).any() {
+            let [nu, pump, radius] = R::ln_each([viscosity, pump, radius]);
+            let [shaft, clutch] = ViscosityPowers::exponents(cvt, nu);
+            let [shaft, clutch, viscous_factor, radius_factor] = R::exp_each([
+                shaft,
+                clutch,
+                cvt.pump.viscous_exponent * pump,
+                cvt.radius_exponent * radius,
+            ]);
+            return Powers {
+                viscosity: ViscosityPowers { shaft, clutch },
+                viscous_factor,
+                radius_factor,
+                films: FilmPowers {
+                    carried: [none; 2],
+                    sheared: [none; 2],
+                },
+            };
+        }
         let films = both!(i => R::pick(slides[i], loads[i], loads[i].filled(1.0)));
-        let [nu, pump, inner, outer, radius] = R::ln_each([
-            b.nu_m2_s / NU_REFERENCE_M2_S,
-            b.eta_pa_s / ETA_REFERENCE_PA_S,
-            films[0],
-            films[1],
-            cvt.low_radius_m / at.geometry.primary_radius_m,
-        ]);
+        let [nu, pump, inner, outer, radius] =
+            R::ln_each([viscosity, pump, films[0], films[1], radius]);
         let [shaft, clutch] = ViscosityPowers::exponents(cvt, nu);
         let [carried, sheared] = b.film_exponents;
         let [
@@ -230,7 +247,12 @@ where
 {
     let (oil, friction) = (input.oil, &input.oil.friction);
     let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
-    let [nu_sump, nu_belt] = oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]);
+    // At rest nothing slides, and the oil of the belt carries nothing.
+    let rests = !input.wheel.wheel_rad_s.above(0.0).any();
+    let [nu_sump, nu_belt] = match rests {
+        true => [oil.viscosity.kinematic_m2_s(sump_k), sump_k.filled(0.0)],
+        false => oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]),
+    };
     let sump = OilState {
         kinematic_m2_s: nu_sump,
         density_kg_m3: oil.density_kg_m3(sump_k),
