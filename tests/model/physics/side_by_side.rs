@@ -311,10 +311,7 @@ fn curves_are_those_of_f64() {
 fn hold_angles<R: Real>(like: R, x: &[f64; MOST]) {
     let lanes = like.by_lane(|lane| x[lane]);
     for lane in 0..R::LANES {
-        for (y, alone) in [
-            (lanes.asin(), asin(x[lane])),
-            (lanes.tanh(), tanh(x[lane])),
-        ] {
+        for (y, alone) in [(lanes.asin(), asin(x[lane])), (lanes.tanh(), tanh(x[lane]))] {
             let y = y.lane(lane);
             assert!(
                 y.to_bits() == alone.to_bits() || y.is_nan() && alone.is_nan(),
