@@ -133,7 +133,7 @@ impl Table {
     /// The node at a path of tables in it.
     pub fn node(&self, path: &[&str]) -> Option<&Node> {
         let (first, rest) = path.split_first()?;
-        let node = &self.entries.get(*first)?.node;
+        let node = &self.entries.get(first)?.node;
         match &node.value {
             _ if rest.is_empty() => Some(node),
             Value::Table(inner) => inner.node(rest),
@@ -144,7 +144,7 @@ impl Table {
     /// The table at a path of tables in it.
     pub fn inner_mut(&mut self, path: &[Box<str>]) -> Option<&mut Table> {
         path.iter().try_fold(self, |table, key| {
-            match &mut table.entries.get_mut(&**key)?.node.value {
+            match &mut table.entries.get_mut(key)?.node.value {
                 Value::Table(inner) => Some(inner),
                 _ => None,
             }

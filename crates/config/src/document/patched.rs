@@ -143,7 +143,7 @@ fn bare(table: &Table) -> Table {
 fn outermost_change(root: &Table, path: &[Box<str>]) -> Option<usize> {
     let mut table = root;
     for (depth, key) in path.iter().enumerate() {
-        match table.entries.get(&**key).map(|entry| &entry.node) {
+        match table.entries.get(key).map(|entry| &entry.node) {
             _ if depth + 1 == path.len() => return Some(depth),
             Some(Node {
                 value: Value::Table(inner),
@@ -159,17 +159,17 @@ fn outermost_change(root: &Table, path: &[Box<str>]) -> Option<usize> {
 /// The entry at a path.
 fn entry_mut<'t>(root: &'t mut Table, path: &[Box<str>]) -> Option<&'t mut Entry> {
     let (last, parents) = path.split_last()?;
-    root.inner_mut(parents)?.entries.get_mut(&**last)
+    root.inner_mut(parents)?.entries.get_mut(last)
 }
 
 /// Puts an entry, or none, at a path whose tables exist, and returns the former entry.
 fn replace(root: &mut Table, path: &[Box<str>], entry: Option<Entry>) -> Option<Entry> {
     let (last, parents) = path.split_last()?;
     let table = root.inner_mut(parents)?;
-    match (entry, table.entries.get_mut(&**last)) {
+    match (entry, table.entries.get_mut(last)) {
         (Some(entry), Some(place)) => Some(std::mem::replace(place, entry)),
         (Some(entry), None) => table.entries.insert(last.to_string(), entry),
-        (None, _) => table.entries.remove(&**last),
+        (None, _) => table.entries.remove(last),
     }
 }
 
@@ -204,7 +204,7 @@ impl Document {
         if let Some((last, parents)) = by.path().split_last()
             && let Some(table) = self.root.inner_mut(parents)
         {
-            table.entries.remove(&**last);
+            table.entries.remove(last);
         }
         Ok(())
     }
@@ -231,7 +231,7 @@ fn insert(table: &mut Table, keys: &[Box<str>], node: Node) -> Result<(), usize>
             _ => return Err(depth),
         }
     }
-    if let Some(entry) = table.entries.get_mut(&**last)
+    if let Some(entry) = table.entries.get_mut(last)
         && let Value::Table(options) = &mut entry.node.value
         && matches!(node.value, Value::Text(_))
         && options.wrapped().is_none()

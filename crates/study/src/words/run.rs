@@ -90,7 +90,7 @@ fn contradicted(
     let of_run = |about: &About| {
         about.start == start && (about.ambient_degc - summary.ambient_degc).abs() <= NEAR_K
     };
-    let found = rows.into_iter().filter_map(|row| {
+    let found = rows.iter().filter_map(|row| {
         let about = row.about.clone().filter(of_run)?;
         let baseline = about.baseline.as_deref();
         let other = match baseline {
