@@ -87,6 +87,7 @@ def ratio(rounds=60):
     """Time a step of UDDS, one run of each program after the other, so that both have the same machine."""
     import cvtcycle as cc
     import fastsim as fsim
+    import numpy
 
     cycle, theirs = cc.Cycle("udds"), fsim.Cycle.from_resource("udds.csv")
     steps = {"cvtcycle": len(cc.run("rover_216_cvt", cycle).trace), "FASTSim": len(theirs.to_dict()["time_seconds"])}
@@ -94,21 +95,24 @@ def ratio(rounds=60):
     vehicles = {name: fsim.Vehicle.from_resource(f"2026_Chrysler_Pacifica_Select{name}.yaml") for name in ("", "_thrml")}
     for vehicle in vehicles.values():
         vehicle.set_save_interval(None)
+    families = {name: cc.Family(car, cycle, ["road_load.mass_kg"], threads=1) for name, car in cars.items()}
+    masses_kg = numpy.linspace(950, 1400, 64)[:, None]
     times = {}
 
-    def took(name, of, call, *given):
-        times[name] = min(times.get(name, float("inf")), once_us(call, *given) / steps[of])
+    def took(name, count, call, *given):
+        times[name] = min(times.get(name, float("inf")), once_us(call, *given) / count)
 
     for _ in range(rounds):
         for name, car in cars.items():
-            took(f"cvtcycle {name}", "cvtcycle", lambda: cc.run(car, cycle, trace=False))
+            took(f"cvtcycle {name}", steps["cvtcycle"], lambda: cc.run(car, cycle, trace=False))
+            took(f"cvtcycle {name}, 64 cars on one thread", steps["cvtcycle"] * len(masses_kg), families[name], masses_kg)
         for name, vehicle in vehicles.items():
             sim = fsim.SimDrive(vehicle, theirs)
-            took("FASTSim with its thermal model" if name else "FASTSim without temperatures", "FASTSim", sim.run)
+            took("FASTSim with its thermal model" if name else "FASTSim without temperatures", steps["FASTSim"], sim.run)
     yield from ((f"{name}, us a step", number) for name, number in times.items())
     thermal = times["FASTSim with its thermal model"]
-    for name in cars:
-        yield f"FASTSim with its thermal model / cvtcycle {name}", thermal / times[f"cvtcycle {name}"]
+    for name in [name for name in times if name.startswith("cvtcycle")]:
+        yield f"FASTSim with its thermal model / {name}", thermal / times[name]
 
 
 if __name__ == "__main__":

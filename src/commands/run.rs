@@ -20,7 +20,7 @@ use cvtcycle::study::plan::Base;
 use cvtcycle::study::run::{RunQuestion, summary};
 use cvtcycle::study::words::drawn::{differences, prepare};
 
-use super::threads::beside;
+use super::threads::at_once;
 use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::{overrides, problem};
@@ -186,7 +186,7 @@ impl Execute for RunArgs {
         let conditions = plan.cars.conditions(plan.ambient_degc, out.is_some());
         // Of a car by its own name, which may be a shipped one; read while the cars are driven.
         let read = || published(&vehicles[0].name, &cycle.name);
-        let (published, outcomes) = beside(read, || plan.cars.drive(&conditions));
+        let (published, outcomes) = at_once(read, || plan.cars.drive(&conditions));
         let driven = vehicles::driven(vehicles, &outcomes);
         let question = RunQuestion {
             cycle,

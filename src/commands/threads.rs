@@ -71,7 +71,7 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
 
 /// Works out two things at once, one of them on a thread of its own: a run is over before the threads of [`begin`] would pay. One after the other
 /// where a process has one thread, or the system starts no other.
-pub fn beside<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
+pub fn at_once<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
     if wanted(None).is_ok_and(|threads| threads < 2) {
         return (other(), own());
     }

@@ -10,7 +10,7 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::{Driven, Settings, StartWord};
 
-use super::threads::beside;
+use super::threads::at_once;
 use crate::args::problems::{assigned, overrides};
 use crate::args::{ColumnsArgs, ComparisonArgs, FormulationArgs, VehicleArgs};
 
@@ -50,7 +50,7 @@ impl ComparedArgs {
         let (mut of_form, mut of_vehicles) = (Problems::new(), Problems::new());
         let formulation = formulation.get(&mut of_form);
         let comparison = (&self.comparison, baselines);
-        let (cycle, vehicles) = beside(
+        let (cycle, vehicles) = at_once(
             || cycle::open(word, &columns),
             || load(&self.car, comparison, formulation, &mut of_vehicles),
         );
@@ -130,7 +130,7 @@ impl ComparedVehicles {
             return vec![drive(subject)];
         }
         let others = || baselines.iter().map(drive).collect::<Vec<_>>();
-        let (others, own) = beside(others, || drive(subject));
+        let (others, own) = at_once(others, || drive(subject));
         std::iter::once(own).chain(others).collect()
     }
 }
@@ -226,7 +226,7 @@ pub fn load(
     let setups = match names.as_slice() {
         [first, others @ ..] if !others.is_empty() => {
             let others = || others.iter().map(of_baseline).collect::<Vec<_>>();
-            let (others, first) = beside(others, || of_baseline(first));
+            let (others, first) = at_once(others, || of_baseline(first));
             std::iter::once(first).chain(others).collect()
         }
         names => names.iter().map(of_baseline).collect::<Vec<_>>(),
