@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use cvtcycle::model::drive::MOST_TOGETHER;
 use cvtcycle::study::Progress;
 use cvtcycle::study::family::{Family as CoreFamily, FamilyPoint};
 use pyo3::prelude::*;
@@ -92,17 +93,15 @@ impl Family {
         }
         let (family, places) = (Arc::clone(&self.0), wanted.clone());
         let drive = move |stop: &crate::job::Stop| -> Vec<FamilyPoint> {
-            let point = |worker: &mut _, numbers: &[f64]| match stop.stopped() {
-                // Its result is not looked at any more.
-                true => FamilyPoint {
-                    numbers: vec![f64::NAN; places.len()],
-                    reason: String::new(),
-                },
-                false => family.point(worker, numbers, &places),
+            let some = |worker: &mut _, numbers: &[f64]| match stop.stopped() {
+                // Their results are not looked at any more.
+                true => Vec::new(),
+                false => family.points(worker, numbers.chunks(width), &places),
             };
             numbers
-                .par_chunks(width)
-                .map_init(|| family.worker(), point)
+                .par_chunks(width * MOST_TOGETHER)
+                .map_init(|| family.worker(), some)
+                .flatten_iter()
                 .collect()
         };
         let points = job(py, threads, Interrupted::Ends, drive)?;

@@ -27,6 +27,19 @@ def test_points_are_runs(family: cc.Family) -> None:
         assert tuple(y) == (summary["fuel_l_per_100km"], summary["loss_kj"]["pump"])
 
 
+@pytest.mark.parametrize("vehicle", ["rover_216_cvt", "civic_20_cvt", "rover_216_5mt"])
+def test_groups_are_single_points(vehicle: str) -> None:
+    """Property: points that are driven side by side, some refused between them, are those of calls with one point, bit by bit."""
+    keys = ["road_load.mass_kg", "engine.accessory_nm", "ambient_degc"]
+    family = cc.Family(vehicle, "ece15", keys, threads=2)
+    X = numpy.array([[1000.0 + 17 * k, 0.1 * (k % 7), -20.0 + 3 * k] for k in range(19)])
+    X[[2, 9, 10], [0, 1, 2]] = [-5.0, math.nan, 99.0]
+    together, alone = family.table(X), [family.table(x[None, :]) for x in X]
+    assert numpy.isnan(together["fuel_l_per_100km"]).nonzero()[0].tolist() == [2, 9, 10]
+    for name in together.columns:
+        numpy.testing.assert_array_equal(together[name], numpy.concatenate([one[name] for one in alone]))
+
+
 def test_shapes(family: cc.Family) -> None:
     base = list(family.base.values())
     single, many = family(base), family([base, base])

@@ -1,12 +1,12 @@
 //! One car with other numbers, as a function of them: what optimisers and sensitivity analyses of other programs call.
 //!
-//! A point is driven as a study drives it, and fails as a run of a study fails.
+//! Points are driven side by side as those of a study are, and fail as a run of a study fails.
 
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{AMBIENT, Setup};
 use cvtcycle_config::{Problem, Problems};
-use cvtcycle_model::drive::{Conditions, drive_into};
+use cvtcycle_model::drive::{self, Conditions, Outcome, drive_each};
 use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Settings, run_summary};
 use cvtcycle_output::table::{Column, Head};
@@ -36,9 +36,10 @@ enum Argument {
 /// let family = Family::new(car, cycle::find("ece15")?, conditions, &["road_load.mass_kg"])?;
 /// let fuel = family.outputs_of(&["fuel_l_per_100km"])?;
 /// let mut worker = family.worker();
-/// let fuel = |numbers: &[f64], worker: &mut _| family.point(worker, numbers, &fuel).numbers[0];
-/// assert!(fuel(&[1300.0], &mut worker) > fuel(&[1100.0], &mut worker));
-/// assert!(fuel(&[-1.0], &mut worker).is_nan());
+/// let masses_kg: [&[f64]; 3] = [&[1300.0], &[1100.0], &[-1.0]];
+/// let points = family.points(&mut worker, masses_kg, &fuel);
+/// assert!(points[0].numbers > points[1].numbers);
+/// assert!(points[2].numbers[0].is_nan() && !points[2].reason.is_empty());
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub struct Family {
@@ -152,17 +153,45 @@ impl Family {
         FamilyWorker(self.template.bench())
     }
 
-    /// Drives the car with these values of the arguments, in the units of their keys.
-    pub fn point(
+    /// Drives the car at points, rows of values of the arguments in the units of their keys: side by side,
+    /// [`MOST_TOGETHER`](cvtcycle_model::drive::MOST_TOGETHER) at a time, each with the numbers that it has alone.
+    pub fn points<'n>(
+        &self,
+        worker: &mut FamilyWorker,
+        points: impl IntoIterator<Item = &'n [f64]>,
+        wanted: &[usize],
+    ) -> Vec<FamilyPoint> {
+        let points = points.into_iter();
+        let cars: Vec<_> = points.map(|numbers| self.car_at(worker, numbers)).collect();
+        let mut runs = Vec::with_capacity(cars.len());
+        for (setup, conditions) in cars.iter().flatten() {
+            runs.push(drive::Run {
+                vehicle: setup,
+                conditions: *conditions,
+            });
+        }
+        let mut outcomes = drive_each(&runs, &self.cycle).into_iter();
+        let point = |car: &Result<(Setup, Conditions), String>| {
+            let driven = (car.as_ref())
+                .map_err(String::as_str)
+                .and_then(|(setup, _)| Ok((setup, outcomes.next().ok_or("it was not driven")?)));
+            match driven {
+                Ok((setup, outcome)) => self.finished(setup, &outcome, wanted),
+                Err(reason) => FamilyPoint {
+                    numbers: vec![f64::NAN; wanted.len()],
+                    reason: reason.to_owned(),
+                },
+            }
+        };
+        cars.iter().map(point).collect()
+    }
+
+    /// The car at a point and how it is driven, or why there is none.
+    fn car_at(
         &self,
         FamilyWorker(variant): &mut FamilyWorker,
         numbers: &[f64],
-        wanted: &[usize],
-    ) -> FamilyPoint {
-        let refused = |reason: String| FamilyPoint {
-            numbers: vec![f64::NAN; wanted.len()],
-            reason,
-        };
+    ) -> Result<(Setup, Conditions), String> {
         let mut conditions = self.conditions;
         variant.reset();
         for (argument, number) in self.arguments.iter().zip(numbers) {
@@ -173,20 +202,23 @@ impl Family {
                 }
                 Argument::Ambient => {
                     let allowed = AMBIENT.in_unit("degC");
-                    return refused(format!(
+                    return Err(format!(
                         "`{AMBIENT_DEGC}` is out of range (allowed: {allowed})"
                     ));
                 }
             }
         }
-        let Ok(setup) = variant.build() else {
-            return refused(reason(&variant.problems()));
-        };
-        let outcome = drive_into(&setup, &self.cycle, &conditions, None);
+        let built = variant.build();
+        let setup = built.map_err(|_| reason(&variant.problems()))?;
+        Ok((setup, conditions))
+    }
+
+    /// What comes of a car that has been driven.
+    fn finished(&self, setup: &Setup, outcome: &Outcome, wanted: &[usize]) -> FamilyPoint {
         let driven = Driven {
             name: &self.setup.name,
-            setup: &setup,
-            outcome: &outcome,
+            setup,
+            outcome,
         };
         let summary = run_summary(&self.cycle, "subject", &Settings::default(), &driven);
         let reason = status(&summary).reason().to_owned();
