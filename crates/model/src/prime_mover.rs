@@ -14,8 +14,8 @@ pub trait PrimeMover<R: Real = f64> {
     fn max_rad_s(&self) -> R;
     /// Rated power, W.
     fn rated_w(&self) -> R;
-    /// Full-load torque at a speed over that of the warm machine in the reference air.
-    fn full_load_share(&self, speed_rad_s: R) -> R;
+    /// Power that the warm machine in the reference air has at full load where this one has `power_w`, at a speed, W.
+    fn warm_power_w(&self, power_w: R, speed_rad_s: R) -> R;
     /// Full-load torque at a speed.
     fn full_load_nm(&self, speed_rad_s: R) -> R;
     /// Torque of the accessories at a speed.

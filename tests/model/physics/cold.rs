@@ -104,7 +104,7 @@ fn val_d341_lines_against_published_limits_in_the_cold() {
 }
 
 /// Outside truth: the power laws from before films could warm and the inlet could starve, written out here. A file without the
-/// keys means what it meant, to the last bit.
+/// keys means what it meant, to rounding.
 #[test]
 fn val_files_without_the_keys_keep_the_power_laws() {
     let setup = old_file(CVT);
@@ -119,7 +119,7 @@ fn val_files_without_the_keys_keep_the_power_laws() {
             let s = &cvt.shaft_drag;
             let shaft = s.constant_nm + s.viscous_nm_s * power(s.exponent, nu / 11e-6) * w;
             let now = s.torque_nm(viscosity_power(nu, s.exponent), w);
-            assert_eq!(now.to_bits(), shaft.to_bits(), "{degc} degC");
+            assert!((now / shaft - 1.0).abs() < 2e-15, "{degc} degC");
             let p = &cvt.pump;
             let state = p.state(&p.at(eta), w, 20e5, 1e-4);
             let viscous = p.viscous
@@ -130,7 +130,10 @@ fn val_files_without_the_keys_keep_the_power_laws() {
             let torque = p.displacement_m3_rad * (1.0 + p.friction) * (20e5 + p.line_drop_pa)
                 + viscous
                 + p.constant_nm;
-            assert_eq!(state.torque_nm.to_bits(), torque.to_bits(), "{degc} degC");
+            assert!(
+                (state.torque_nm / torque - 1.0).abs() < 2e-15,
+                "{degc} degC"
+            );
             assert_eq!(
                 state.working_m3_s.to_bits(),
                 (p.displacement_m3_rad * w).to_bits()

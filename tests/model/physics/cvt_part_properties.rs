@@ -150,6 +150,17 @@ proptest! {
         prop_assert_eq!(all.working_m3_s, now.drawn_m3_s(all.flow_m3_s));
     }
 
+    /// A pressure that is held without a look at PU-5's roots is within what the flow keeps up (PU-6); without a bound at the inlet the two agree.
+    #[test]
+    fn pump_holds_what_it_surely_holds(pump in any_pump(), (w, p, _, factor) in any_duty(), flow in 0.0..2e-4f64) {
+        let now = oil(&pump, factor);
+        let most_pa = pump.deliverable_pa(&now, w, flow);
+        let surely = pump.turning(&now, w).surely_holds(p, flow);
+        prop_assert!(!surely || p <= most_pa, "{p} Pa of {most_pa}");
+        let clearly = p < most_pa * (1.0 - 1e-9) && most_pa > 1e4;
+        prop_assert!(surely || !clearly || now.inv_inlet_flow > 0.0);
+    }
+
     /// Twice the displacement at half the speed for the same need: twice the pressure and Coulomb torque at the same flow, while the
     /// viscous torque, which is proportional to speed and displacement, stays (PU-1).
     #[test]

@@ -31,6 +31,12 @@ macro_rules! energy_terms {
             pub fn from_array([$($term),*]: [R; TERM_NAMES.len()]) -> Self {
                 EnergyTerms { $($term),* }
             }
+
+            /// Adds another row's terms, weighted by its length, J.
+            #[inline(always)]
+            pub fn add(&mut self, other: &EnergyTerms<R>, dt_s: f64) {
+                $(self.$term = self.$term + other.$term * dt_s;)*
+            }
         }
     };
 }
@@ -99,15 +105,5 @@ where
         let balance = (self.node_heat - (self.stored + self.to_air)).abs();
         let handed = (self.losses + self.engine_heat - self.node_heat).abs();
         error(handed.most(balance), scale)
-    }
-
-    /// Adds another row's terms, weighted by its length, J.
-    #[inline(always)]
-    pub fn add(&mut self, other: &EnergyTerms<R>, dt_s: f64) {
-        let mut sum = self.as_array();
-        for (s, o) in sum.iter_mut().zip(other.as_array()) {
-            *s = *s + o * dt_s;
-        }
-        *self = EnergyTerms::from_array(sum);
     }
 }

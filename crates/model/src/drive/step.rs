@@ -85,6 +85,8 @@ impl<'a> Drive<'a> {
         let start_stop = &mut state.start_stop;
         let stopping = Stopping::new(car, self.trace, gear, step, &state.heat, start_stop);
         let engine_off = step.engine_off || stopping.as_ref().is_some_and(Stopping::stopped);
+        // First, so that nothing is between the oils of engine and transmission: a processor works on both at once.
+        let mut output = StepOutput::at_rest();
         let wheel = wheel(car, step, &mut state.tyre_k);
         let mut engine = engine(car, step, &wheel, &state.heat, &mut state.running);
         if let Some(stopping) = &stopping {
@@ -113,7 +115,6 @@ impl<'a> Drive<'a> {
             &mut state.transmission,
             &mut state.kinetic_j,
         );
-        let mut output = StepOutput::at_rest();
         car.transmission
             .solve_into(&input, transmission, &mut output);
         let mut electric = Electric::default();
@@ -298,7 +299,7 @@ where
     let w = output.engine_rad_s;
     let zero = w.filled(0.0);
     let rests = zero.reaches(w);
-    let stopped_w = -kinetic_j / input.dt_s;
+    let stopped_w = -kinetic_j * input.dt_s.recip();
     if rests.all() {
         return Inertia {
             crank_nm: zero,
@@ -310,7 +311,7 @@ where
     let engine = input.engine;
     let accessories_nm = engine.accessories_nm(w);
     let steady = output.shaft_nm + accessories_nm;
-    let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / input.dt_s / w;
+    let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / (input.dt_s * w);
     // Faster takes what is left below full load, slower what drag is left; never less than nothing.
     let (faster, slower) = (wanted.above(0.0), zero.above(wanted));
     let mut torque = zero;
@@ -391,16 +392,6 @@ const fn heating<const COUNT: usize>(to: HeatTo) -> [Component; COUNT] {
     found
 }
 
-/// The losses of some components, from `zero` on.
-#[inline(always)]
-fn sum<R: Real>(loss_w: &ByComponent<R>, zero: R, of: &[Component]) -> R {
-    let mut sum = zero;
-    for one in of {
-        sum = sum + loss_w[*one];
-    }
-    sum
-}
-
 /// Heat that the transmission's losses, W, put into each node, W (SI-3).
 #[inline(always)]
 pub fn loss_heat_w<R: Real, T: Driveline<R>>(car: &Car<R, T>, loss_w: &ByComponent<R>) -> [R; NODES]
@@ -413,12 +404,16 @@ where
     const SUMP_HEAT: [Component; 7] = heating(HeatTo::Sump);
     // First the sums of what goes the same way.
     let zero = car.belt_heat_share.filled(0.0);
-    let (belt, metal) = (
-        sum(loss_w, zero, &BELT_HEAT),
-        sum(loss_w, zero, &METAL_HEAT),
-    );
-    let coupling = sum(loss_w, zero, &COUPLING_HEAT);
-    let sump = sum(loss_w, zero, &SUMP_HEAT);
+    // Written out, so that the sums stay in registers.
+    macro_rules! sum {
+        ($components:ident: $($place:literal)*) => {
+            zero $(+ loss_w[$components[$place]])*
+        };
+    }
+    let belt = sum!(BELT_HEAT: 0 1 2 3 4 5);
+    let metal = sum!(METAL_HEAT: 0 1 2 3);
+    let coupling = sum!(COUPLING_HEAT: 0);
+    let sump = sum!(SUMP_HEAT: 0 1 2 3 4 5 6);
     let mut power = [zero; NODES];
     power[BELT] = car.belt_heat_share * belt;
     power[METAL] = metal;

@@ -344,9 +344,10 @@ fn drive_step<R: Real, T: Driveline<R>>(
 where
     f64: Left<R>,
 {
+    let zero = state.tyre_k.filled(0.0);
+    let mut output = StepOutput::like(zero); // first, as one by one
     let wheel = wheel(car, step, &mut state.tyre_k);
     let engine = engine(car, step, &wheel, &state.heat, &mut state.running);
-    let zero = state.tyre_k.filled(0.0);
     let input = StepInput {
         wheel: &wheel,
         engine: &engine,
@@ -364,7 +365,6 @@ where
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);
-    let mut output = StepOutput::like(zero);
     zero.within(
         #[inline(always)]
         || {

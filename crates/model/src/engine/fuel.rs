@@ -182,7 +182,7 @@ where
         let line = self.efficiency(piston_m_s);
         let (least, most) = (*EFFICIENCY.start(), *EFFICIENCY.end());
         let b = line.held(least, most);
-        let need = need_pa / BAR;
+        let need = need_pa * BAR.recip();
         let disc = b * b + 4.0 * self.a2 * need;
         let turned = disc.filled(0.0).above(disc);
         let root = R::pick(turned, disc.filled(0.0), disc.sqrt());

@@ -29,12 +29,14 @@ use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, Left, Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 use std::cell::RefCell;
+use std::f64::consts::{FRAC_1_PI, PI};
 
 /// Fuel power up to which none is burnt, W: a car whose demand is just the engine's own drag has some 1e-12 W of rounding, and a second of cut fuel would depend on the last bit.
 const NO_FUEL_W: f64 = 1e-3;
 
-/// Angle of the two turns of a four-stroke engine, rad.
-const FOUR_PI: f64 = 4.0 * std::f64::consts::PI;
+/// Angle of the two turns of a four-stroke engine, rad, and one over it.
+const FOUR_PI: f64 = 4.0 * PI;
+const PER_FOUR_PI: f64 = 1.0 / FOUR_PI;
 /// Torque taken up over the engine's own drag, up to which rounding explains it.
 const SAME_DRAG: f64 = 1.0 + 1e-4;
 
@@ -258,7 +260,7 @@ where
     fn idle_rad_s(&self, coolant_k: R, running: &Running<R>, dt_s: f64) -> R {
         let width = self.idle_warm_k - self.idle_cold_k;
         let cold = ((self.idle_warm_k - coolant_k) / width).held(0.0, 1.0);
-        let started = ((start::COLD_K - running.start_k) / 30.0).held(0.0, 1.0);
+        let started = ((start::COLD_K - running.start_k) * 30_f64.recip()).held(0.0, 1.0);
         // Integral of 1 - t/t_a: half of what is spent, times t_a.
         let fading = running.spending_per_s(self.idle_after_start_s, dt_s);
         let raised = 0.5 * self.idle_after_start_s * fading * started;
@@ -279,19 +281,19 @@ where
     /// Torque of a mean effective pressure (four-stroke), Nm.
     #[inline(always)]
     pub fn torque_nm(&self, mep_pa: R) -> R {
-        mep_pa * self.displacement_m3 / FOUR_PI
+        mep_pa * self.displacement_m3 * PER_FOUR_PI
     }
 
     /// Mean effective pressure of a torque (four-stroke), Pa.
     #[inline(always)]
     pub fn mep_pa(&self, torque_nm: R) -> R {
-        torque_nm * 4.0 * std::f64::consts::PI / self.displacement_m3
+        torque_nm * FOUR_PI / self.displacement_m3
     }
 
     /// Mean piston speed, m/s.
     #[inline(always)]
     pub fn piston_m_s(&self, speed_rad_s: R) -> R {
-        speed_rad_s * self.stroke_m / std::f64::consts::PI
+        speed_rad_s * self.stroke_m * FRAC_1_PI
     }
 }
 
@@ -315,9 +317,9 @@ where
     }
 
     #[inline(always)]
-    fn full_load_share(&self, speed_rad_s: R) -> R {
+    fn warm_power_w(&self, power_w: R, speed_rad_s: R) -> R {
         let hot = speed_rad_s.along(&self.engine.full_load);
-        self.full_load_of(hot, speed_rad_s) / hot
+        power_w * hot / self.full_load_of(hot, speed_rad_s)
     }
 
     #[inline(always)]
@@ -414,7 +416,7 @@ where
             .fuel
             .fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa);
         let burns = point.fuel_pa.above(0.0);
-        let watts = e.displacement_m3 * speed_rad_s / FOUR_PI;
+        let watts = e.displacement_m3 * speed_rad_s * PER_FOUR_PI;
         let burnt = point.fuel_pa * watts;
         let indicated = point.indicated_pa * watts;
         // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.

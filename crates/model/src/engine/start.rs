@@ -121,7 +121,7 @@ pub(super) fn cold_share<R: Real>(coolant_k: R) -> R
 where
     f64: Left<R>,
 {
-    ((COLD_K - coolant_k) / 60.0).held(0.0, 1.0)
+    ((COLD_K - coolant_k) * 60_f64.recip()).held(0.0, 1.0)
 }
 
 impl<R: Real> Engine<R>
@@ -138,7 +138,7 @@ where
     /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
     #[inline(always)]
     pub(super) fn cut_share(&self, coolant_k: R, running: &Running<R>) -> R {
-        let warm = ramp(coolant_k, self.cut_from_k, self.cut_from_k + 1.0);
+        let warm = (coolant_k - self.cut_from_k).held(0.0, 1.0);
         let speed = running.speed_rad_s;
         warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
     }

@@ -22,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{Left, Real, both, gather};
+use crate::math::{Left, Mask, Real, both, gather};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -88,7 +88,7 @@ impl BandFriction {
     }
 }
 
-/// Logarithms of x = eta dv/N_half by interface as powers: x^q and x^0.4; zeros where nothing slides.
+/// Powers of x = eta dv/N_half by interface: x^q and x^0.4; zeros where nothing slides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmPowers<R: Real = f64> {
     /// x^q (LU-5).
@@ -104,33 +104,44 @@ where
     /// Band friction at belt temperature, dynamic viscosity and sliding speeds (LU-4, LU-5, FI-2).
     #[inline(always)]
     pub fn band(&self, belt_k: R, eta_pa_s: R, sliding_m_s: [R; 2]) -> BandFriction<R> {
-        let x = self.film_loads(eta_pa_s, sliding_m_s);
-        let slides = both!(i => x[i].above(0.0));
-        let log = both!(i => x[i].ln());
-        let [q, rest] = self.film_exponents();
-        let zero = q.filled(0.0);
-        let carried = both!(i => R::pick(slides[i], (q * log[i]).exp(), zero));
-        let sheared = both!(i => R::pick(slides[i], (rest * log[i]).exp(), zero));
-        self.band_on_film(belt_k, FilmPowers { carried, sheared })
+        let films = self.film_powers(self.film_loads(eta_pa_s, sliding_m_s));
+        self.band_on_film(belt_k, films)
     }
 
     /// x = eta dv/N_half of LU-5 by interface; 0 where nothing slides or the film is switched off.
     #[inline(always)]
     pub fn film_loads(&self, eta_pa_s: R, sliding_m_s: [R; 2]) -> [R; 2] {
         if self.film {
-            both!(i => eta_pa_s * sliding_m_s[i] / self.half_n_m)
+            let per_speed = eta_pa_s / self.half_n_m;
+            both!(i => per_speed * sliding_m_s[i])
         } else {
             [eta_pa_s.filled(0.0); 2]
         }
     }
 
-    /// Exponents of x in [`FilmPowers`].
+    /// The powers of the films' loads.
     #[inline(always)]
-    pub fn film_exponents(&self) -> [R; 2] {
-        [
-            self.film_exponent,
-            self.film_exponent.filled(SHEARED_EXPONENT),
-        ]
+    pub fn film_powers(&self, x: [R; 2]) -> FilmPowers<R> {
+        let zero = x[0].filled(0.0);
+        let slides = both!(i => x[i].above(0.0));
+        if !(slides[0] | slides[1]).any() {
+            return FilmPowers {
+                carried: [zero; 2],
+                sheared: [zero; 2],
+            };
+        }
+        let log = R::ln_each(both!(i => R::pick(slides[i], x[i], zero.filled(1.0))));
+        let [carried, sheared] = [self.film_exponent, zero.filled(SHEARED_EXPONENT)];
+        let powers = R::exp_each([
+            carried * log[0],
+            carried * log[1],
+            sheared * log[0],
+            sheared * log[1],
+        ]);
+        FilmPowers {
+            carried: both!(i => R::pick(slides[i], powers[i], zero)),
+            sheared: both!(i => R::pick(slides[i], powers[2 + i], zero)),
+        }
     }
 
     /// Band friction at belt temperature with the powers of the films' loads known (LU-4, LU-5, FI-2).
@@ -173,6 +184,31 @@ pub struct OilState<R: Real = f64> {
     pub kinematic_m2_s: R,
     /// Density, kg/m3.
     pub density_kg_m3: R,
+    /// Dynamic viscosity, Pa s.
+    pub dynamic_pa_s: R,
+    /// Logarithms of the two viscosities in these units, of which losses are powers.
+    pub log_nu: R,
+    /// Of the dynamic one.
+    pub log_eta: R,
+}
+
+impl<R: Real> OilState<R>
+where
+    f64: Left<R>,
+{
+    /// The oil with a kinematic viscosity, m2/s, and a density, kg/m3.
+    #[inline(always)]
+    pub fn new(kinematic_m2_s: R, density_kg_m3: R) -> Self {
+        let dynamic_pa_s = kinematic_m2_s * density_kg_m3;
+        let [log_nu, log_eta] = R::ln_each([kinematic_m2_s, dynamic_pa_s]);
+        OilState {
+            kinematic_m2_s,
+            density_kg_m3,
+            dynamic_pa_s,
+            log_nu,
+            log_eta,
+        }
+    }
 }
 
 /// Validity range of the fluid models, K.
@@ -199,10 +235,7 @@ where
     /// Viscosity and density.
     #[inline(always)]
     pub fn state(&self, temp_k: R) -> OilState<R> {
-        OilState {
-            kinematic_m2_s: self.kinematic_m2_s(temp_k),
-            density_kg_m3: self.density_kg_m3(temp_k),
-        }
+        OilState::new(self.kinematic_m2_s(temp_k), self.density_kg_m3(temp_k))
     }
 
     /// Dynamic viscosity, Pa s.

@@ -68,7 +68,7 @@ where
         let air_w_k = self.still_w_k + self.wind_w_k * motion.speed_power_07;
         let slope_w_k = R::pick(ratio.above(LEAST), self.per_k * warm_w, warm_w.filled(0.0));
         let surplus_w = warm_w * ratio - air_w_k * (tyre_k - ambient_k);
-        tyre_k + surplus_w / (self.capacity_j_k / dt_s + air_w_k + slope_w_k) // RL-7
+        tyre_k + surplus_w / (self.capacity_j_k * dt_s.recip() + air_w_k + slope_w_k) // RL-7
     }
 }
 

@@ -227,7 +227,7 @@ where
     /// Belt to transmission oil by spray at a pump speed, W/K (TH-8).
     #[inline(always)]
     pub fn spray_now_w_k(&self, pump_rad_s: R) -> R {
-        let share = pump_rad_s / SPRAY_REFERENCE_RAD_S;
+        let share = pump_rad_s * SPRAY_REFERENCE_RAD_S.recip();
         self.spray_w_k * share.most(STILL) // TH-8
     }
 
@@ -235,14 +235,14 @@ where
     fn radiator(&self, coolant_k: R, input: &HeatInput<R>) -> (R, R) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
-        let width = self.thermostat_to_k - self.thermostat_from_k;
-        let open = ((coolant_k - self.thermostat_from_k) / width).held(0.0, 1.0);
+        let per_width = 1.0 / (self.thermostat_to_k - self.thermostat_from_k);
+        let open = ((coolant_k - self.thermostat_from_k) * per_width).held(0.0, 1.0);
         let over = coolant_k - input.ambient_k;
         // A coolant that is colder than the air warms towards it: with the opening held, the step ends between the two (TH-9).
         let opens = open.above(0.0) & open.filled(1.0).above(open) & over.above(0.0);
         let flow = full * open;
         let slope = if opens.any() {
-            R::pick(opens, full * (open + over / width), flow)
+            R::pick(opens, full * (open + over * per_width), flow)
         } else {
             flow
         };
@@ -258,7 +258,7 @@ where
         let flow = c.flow_share * input.oil_flow_m3_s;
         let flow = flow.least(c.highest_m3_s);
         let carried = flow * input.oil_volume_heat_j_m3k;
-        let open = ((sump_k - c.bypass_below_k) / 2.0).held(0.0, 1.0);
+        let open = ((sump_k - c.bypass_below_k) * 0.5).held(0.0, 1.0);
         let passed = zero.reaches(carried) | zero.reaches(open);
         if passed.all() {
             return (carried, zero);
@@ -343,13 +343,11 @@ where
                 || self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w)),
             );
         }
-        let mut node_k = *t;
-        let (mut stored_w, mut to_air_w) = (zero, now.radiator.1 * rise[COOLANT]);
-        for i in 0..NODES {
-            node_k[i] = node_k[i] + rise[i];
-            stored_w = stored_w + capacity_w_k[i] * rise[i];
-            to_air_w = to_air_w + (air_w[i] + air_w_k[i] * rise[i]);
-        }
+        let node_k = places!(i in 0, 1, 2, 3, 4 => t[i] + rise[i]);
+        let [s0, s1, s2, s3, s4] = places!(i in 0, 1, 2, 3, 4 => capacity_w_k[i] * rise[i]);
+        let [a0, a1, a2, a3, a4] = places!(i in 0, 1, 2, 3, 4 => air_w[i] + air_w_k[i] * rise[i]);
+        let stored_w = s0 + s1 + s2 + s3 + s4;
+        let to_air_w = now.radiator.1 * rise[COOLANT] + a0 + a1 + a2 + a3 + a4;
         let (cooler_in_k, cooler_out_k) = self.cooler_ends(&now, node_k[SUMP], input.ambient_k);
         HeatStep {
             heat: Heat { node_k },
@@ -370,12 +368,9 @@ where
         capacity_w_k: &[R; NODES],
         (air_w_k, air_w): (&[R; NODES], &[R; NODES]),
     ) -> [R; NODES] {
-        let mut right = now.links.flows_w(t);
-        let mut own = *capacity_w_k;
-        for i in 0..NODES {
-            own[i] = own[i] + air_w_k[i];
-            right[i] = right[i] + (input.power_w[i] - air_w[i]);
-        }
+        let flows_w = now.links.flows_w(t);
+        let mut own = places!(i in 0, 1, 2, 3, 4 => capacity_w_k[i] + air_w_k[i]);
+        let mut right = places!(i in 0, 1, 2, 3, 4 => flows_w[i] + (input.power_w[i] - air_w[i]));
         own[COOLANT] = own[COOLANT] + now.radiator.1;
         let zero = input.ambient_k.filled(0.0);
         let unused = zero.reaches(self.capacity_j_k[BELT]);

@@ -133,7 +133,7 @@ impl Model {
         belt.band_count = numbers[BAND_COUNT];
         let mut at = BeltAtRatio::new(belt, ratio);
         if let Some(angle) = given.numbers[WEDGE_ANGLE] {
-            at.prepared.wedge_half_cot = 0.5 / tan(angle.to_radians());
+            at.fixed.wedge_half_cot = 0.5 / tan(angle.to_radians());
         }
         let wedge_deg = match formulation {
             Formulation::AppendixC => 11.0,

@@ -382,7 +382,10 @@ fn val_torques_by_hand() {
         now.full_load_nm(300.0),
         0.9 * (line + hot) - now.friction_factor * hot,
     );
-    same(now.full_load_share(300.0), now.full_load_nm(300.0) / line);
+    same(
+        now.warm_power_w(5e4, 300.0),
+        5e4 * line / now.full_load_nm(300.0),
+    );
     let thin = e.at(50.0 + ZERO, 40.0 + ZERO, setup.oils().1, 0.1);
     same(thin.full_load_nm(300.0), 0.02 * line);
     let friction = e.fuel.hot_friction_pa(e.piston_m_s(300.0)) * now.friction_factor;

@@ -35,10 +35,9 @@ const FACTORS: BearingFactors = BearingFactors {
     preload: 1.0,
     heating_w: 400.0,
 };
-const WARM: OilState = OilState {
-    kinematic_m2_s: 11e-6,
-    density_kg_m3: 820.0,
-};
+fn warm() -> OilState {
+    OilState::new(11e-6, 820.0)
+}
 
 fn parts() -> GearParts {
     let bearing = |shaft, mean_m, preload_nm| Bearing {
@@ -298,16 +297,7 @@ fn val_no_load_torque_is_the_sum_of_powers() {
     let p = parts();
     for ratios in [[1.8, 3.5], [0.8, 4.0]] {
         let train = p.train(ratios);
-        for (rpm, oil) in [
-            (300.0, WARM),
-            (
-                5000.0,
-                OilState {
-                    kinematic_m2_s: 900e-6,
-                    density_kg_m3: 880.0,
-                },
-            ),
-        ] {
+        for (rpm, oil) in [(300.0, warm()), (5000.0, OilState::new(900e-6, 880.0))] {
             let w = rpm * RPM;
             let got = train.turning(w, 40.0, oil);
             let turns = [1.0, 1.0 / ratios[0], 1.0 / ratios[0] / ratios[1]];
@@ -340,7 +330,7 @@ fn val_no_load_torque_is_the_sum_of_powers() {
             };
             near(got.mesh_share, share(0) + share(1), 1e-10);
         }
-        assert_eq!(train.turning(0.0, 40.0, WARM), TurningTrain::default());
+        assert_eq!(train.turning(0.0, 40.0, warm()), TurningTrain::default());
     }
 }
 
@@ -412,10 +402,7 @@ prop_compose! {
 }
 
 fn oil(nu: f64) -> OilState {
-    OilState {
-        kinematic_m2_s: nu,
-        density_kg_m3: 850.0,
-    }
+    OilState::new(nu, 850.0)
 }
 
 proptest! {

@@ -58,6 +58,19 @@ fn rescales_with_length() {
     assert!((b.primary_wrap_rad - a.primary_wrap_rad).abs() < 1e-12);
 }
 
+/// Property: a belt that has been at other ratios is at a new one as a belt that begins there, bit by bit.
+#[test]
+fn a_belt_forgets_its_ratios() {
+    for (_, formulation) in Formulation::NAMES {
+        let belt = thesis_belt(formulation);
+        let mut moved = BeltAtRatio::new(&belt, 2.4);
+        for ratio in [1.7, 1.0, 0.45, 0.9, 2.1] {
+            moved.move_to(&belt, ratio);
+            assert_eq!(moved, BeltAtRatio::new(&belt, ratio), "I {ratio}");
+        }
+    }
+}
+
 fn load(speed_rpm: f64, torque: f64, bar: f64, mu: f64) -> BeltLoad {
     BeltLoad {
         primary_speed_rad_s: speed_rpm * std::f64::consts::PI / 30.0,

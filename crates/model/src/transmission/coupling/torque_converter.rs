@@ -16,7 +16,7 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
 use crate::keys::{Bound, Quantity, Values, keys};
-use crate::math::{Left, MOST_LANES, Mask, Real, both, gather, gather_each, larger};
+use crate::math::{Curve, Left, MOST_LANES, Mask, Real, both, gather, gather_each, larger, places};
 use std::sync::Arc;
 
 /// Torque ratio and capacity of the original at a speed ratio: [nu, k, lambda/lambda(0)].
@@ -77,10 +77,10 @@ const fn table() -> [[f64; 3]; 29] {
 struct Row {
     /// Speed ratio.
     nu: f64,
-    /// Torque ratio.
-    k: f64,
     /// Capacity, Nm s2.
     lambda: f64,
+    /// 2 a c, a d + b c and b d of the piece that begins here, Nm s2 (TC-2).
+    quadratic: [f64; 3],
     /// k lambda/nu2, Nm s2 (TC-2).
     pull: f64,
     /// Capacity in overrun, which never rises, Nm s2 (TC-6).
@@ -143,12 +143,15 @@ gather!(LockUp {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TorqueConverter<R: Real = f64> {
     rows: R::Each<Rows>,
+    /// Torque ratio over speed ratio.
+    k: R::Curve,
     neutral_idle: R,
     lockup: Option<LockUp<R>>,
 }
 
 gather!(TorqueConverter {
     rows,
+    k,
     neutral_idle,
     lockup
 });
@@ -175,8 +178,8 @@ impl TorqueConverter {
                 let lambda = share * capacity_nm_s2;
                 Row {
                     nu: *nu,
-                    k: *k,
                     lambda,
+                    quadratic: [0.0; 3],
                     pull: k * lambda / (nu * nu),
                     coast: coast_factor * lambda,
                 }
@@ -184,9 +187,17 @@ impl TorqueConverter {
             .collect();
         for i in (1..rows.len()).rev() {
             rows[i - 1].coast = larger(rows[i].coast, rows[i - 1].coast);
+            let per_nu = 1.0 / (rows[i].nu - rows[i - 1].nu);
+            let b = (table[i][1] - table[i - 1][1]) * per_nu;
+            let d = (rows[i].lambda - rows[i - 1].lambda) * per_nu;
+            let a = table[i - 1][1] - b * rows[i - 1].nu;
+            let c = rows[i - 1].lambda - d * rows[i - 1].nu;
+            rows[i - 1].quadratic = [2.0 * a * c, a * d + b * c, b * d]; // TC-2
         }
+        let k: Vec<(f64, f64)> = table.iter().map(|[nu, k, _]| (*nu, *k)).collect();
         TorqueConverter {
             rows: Rows(rows.into()),
+            k: Curve::new(&k).unwrap_or_else(|_| Curve::constant(1.0)),
             neutral_idle,
             lockup,
         }
@@ -210,19 +221,20 @@ impl<R: Real> Piece<'_, R> {
         ))
     }
 
+    /// The numbers of the piece's quadratic equation.
+    #[inline(always)]
+    fn quadratic(&self) -> [R; 3] {
+        places!(place in 0, 1, 2 => self.like.by_lane(
+            #[inline(always)]
+            |lane| R::one(self.rows, lane).0[self.first[lane]].quadratic[place],
+        ))
+    }
+
     #[inline(always)]
     fn nu(&self) -> [R; 2] {
         self.ends(
             #[inline(always)]
             |row| row.nu,
-        )
-    }
-
-    #[inline(always)]
-    fn k(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.k,
         )
     }
 
@@ -264,16 +276,13 @@ where
         }
     }
 
-    /// Torque ratio and capacity, Nm s2, at a speed ratio from 0 to 1.
+    /// Capacity at a speed ratio from 0 to 1, Nm s2.
     #[inline(always)]
-    fn at(&self, nu: R) -> (R, R) {
+    fn lambda_nm_s2(&self, nu: R) -> R {
         let p = self.piece(nu, nu, Row::is_up_to);
-        let (at, k, lambda) = (p.nu(), p.k(), p.lambda());
+        let (at, lambda) = (p.nu(), p.lambda());
         let share = (nu - at[0]) / (at[1] - at[0]);
-        (
-            k[0] + share * (k[1] - k[0]),
-            lambda[0] + share * (lambda[1] - lambda[0]),
-        ) // TC-1
+        lambda[0] + share * (lambda[1] - lambda[0]) // TC-1
     }
 
     /// Speed of the engine that drives a turbine with a torque, rad/s (TC-2).
@@ -281,13 +290,10 @@ where
     fn driving_rad_s(&self, turbine_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
         let p = self.piece(turbine_nm, square, Row::pulls_above);
-        let (nu, k, lambda) = (p.nu(), p.k(), p.lambda());
-        let per_nu = 1.0 / (nu[1] - nu[0]);
-        let (b, d) = ((k[1] - k[0]) * per_nu, (lambda[1] - lambda[0]) * per_nu);
-        let (a, c) = (k[0] - b * nu[0], lambda[0] - d * nu[0]);
-        let linear = -(a * d + b * c) * turbine_rad_s;
-        let rest = linear * linear + 4.0 * a * c * (turbine_nm - b * d * square);
-        (linear + rest.most(0.0).sqrt()) / (2.0 * a * c) // TC-2
+        let [double_ac, ad_bc, bd] = p.quadratic();
+        let linear = -ad_bc * turbine_rad_s;
+        let rest = linear * linear + 2.0 * double_ac * (turbine_nm - bd * square);
+        (linear + rest.most(0.0).sqrt()) / double_ac // TC-2
     }
 
     /// Speed of an engine that takes a torque from the turbine, rad/s (TC-6).
@@ -323,7 +329,7 @@ where
         let coasts = output_nm.below(0.0) & engine_rad_s.at_most(output_rad_s);
         let mut engine_nm = output_nm; // TC-6
         if drives.any() {
-            let driving_nm = output_nm / self.at(output_rad_s / engine_rad_s).0; // TC-5
+            let driving_nm = output_nm / (output_rad_s / engine_rad_s).along(&self.k); // TC-5
             engine_nm = R::pick(drives, driving_nm, engine_nm);
         }
         let mut loss_w = (engine_nm * engine_rad_s - output_nm * output_rad_s).most(0.0); // TC-4
@@ -344,7 +350,7 @@ where
     #[inline(always)]
     fn creeping_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let nu = output_rad_s / idle_rad_s;
-        let (k, lambda) = self.at(nu);
+        let (k, lambda) = (nu.along(&self.k), self.lambda_nm_s2(nu));
         let turns = output_rad_s.above(0.0);
         let share = R::pick(turns, nu.filled(1.0), self.neutral_idle);
         let creep_nm = share * k * lambda * idle_rad_s * idle_rad_s; // TC-3
@@ -451,7 +457,7 @@ where
                 let drives = !drags & engine_rad_s.reaches(output_rad_s);
                 let mut output_nm = engine_nm;
                 if drives.any() {
-                    let driving_nm = engine_nm * self.at(output_rad_s / engine_rad_s).0; // TC-1
+                    let driving_nm = engine_nm * (output_rad_s / engine_rad_s).along(&self.k); // TC-1
                     output_nm = R::pick(drives, driving_nm, output_nm);
                 }
                 let passes = !(drags | drives);

@@ -7,7 +7,7 @@ use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
 use crate::fluid::{Lubricant, OilState};
 use crate::maps::MapPoint;
-use crate::math::{Left, MOST_LANES, Real};
+use crate::math::{Left, MOST_LANES, Mask, Real};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
@@ -503,7 +503,7 @@ where
         let changes = self.changes?;
         let map = changes.maps[Component::BoxMap].as_ref()?;
         let factor = changes.factor[Component::BoxMap];
-        let behind_nm = secondary_nm * self.at.prepared.inv_ratio;
+        let behind_nm = secondary_nm * self.at.geometry.inv_ratio;
         let at = (engine_rad_s, behind_nm, behind_nm.filled(0.0));
         Some(self.looked_up(at, inside, |lane, behind| {
             R::one(map, lane).loss_behind_nm(behind, factor.lane(lane))
@@ -613,12 +613,27 @@ where
     /// that is a measured map says nothing of its flow: it holds any pressure.
     #[inline(always)]
     pub fn held_pa(&self, set_pa: R, pump: &TurningPump<R>, shift_flow_m3_s: R) -> (R, R::Mask) {
+        let mut short = !pump.surely_holds(set_pa, shift_flow_m3_s);
+        if !short.any() {
+            return (set_pa, short);
+        }
         let most_pa = pump.deliverable_pa(shift_flow_m3_s);
-        let short = set_pa.above(most_pa);
+        short = set_pa.above(most_pa);
         if self.cvt.has_map(Component::Pump) {
             return (set_pa, short);
         }
         (R::pick(short, most_pa, set_pa), short)
+    }
+
+    /// Oil flow of the pump with the engine at a speed, at a pressure and a flow into the pulleys, m3/s.
+    #[inline(always)]
+    pub fn oil_flow_m3_s(&self, engine_rad_s: R, pressure_pa: R, shift_flow_m3_s: R) -> R {
+        if !self.parts.pump {
+            return pressure_pa.filled(0.0);
+        }
+        let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
+        let pump = self.turning_pump(engine_rad_s);
+        pump.state(pressure_pa, need).working_m3_s
     }
 
     /// Signals of the clamp law.

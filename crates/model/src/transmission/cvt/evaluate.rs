@@ -119,7 +119,6 @@ pub(super) struct Point<R: Real = f64> {
     /// Loss of the coupling, W.
     pub coupling_w: R,
     pub flow_limited: R::Mask,
-    pub oil_flow_m3_s: R,
     pub inside_maps: R::Mask,
     /// True where the coupling holds engine and primary together (LC-5).
     pub locked: R::Mask,
@@ -152,7 +151,6 @@ where
             flywheel_nm: none,
             coupling_w: none,
             flow_limited: no,
-            oil_flow_m3_s: none,
             inside_maps: no,
             locked: no,
         }
@@ -303,7 +301,7 @@ where
         let primary_rad_s = self.primary_rad_s(slip);
         let locked = self.locked(primary_rad_s);
         // VA-1 with the slip in force, so that the power balance holds for this iterate exactly.
-        let primary_nm = torques.secondary * ((1.0 - slip) * line.at.prepared.inv_ratio)
+        let primary_nm = torques.secondary * ((1.0 - slip) * line.at.geometry.inv_ratio)
             + belt_nm
             + torques.primary_nm();
         Chain {
@@ -376,7 +374,7 @@ where
         let (over_rad_s, own) = (chain.over_rad_s, chain.side);
         let engine_rad_s = own.engine_rad_s;
         let shaft = line.engine_shaft(engine_rad_s);
-        let pump = line.turn_engine(
+        line.turn_engine(
             torques,
             &shaft,
             g.pressure_pa,
@@ -436,7 +434,6 @@ where
         point.flywheel_nm = flywheel_nm;
         point.coupling_w = own.loss_w;
         point.flow_limited = flow_limited;
-        point.oil_flow_m3_s = pump.working_m3_s;
         point.inside_maps = inside_maps;
         point.locked = chain.locked;
     }

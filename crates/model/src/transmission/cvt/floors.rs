@@ -84,7 +84,7 @@ where
     fn each_pa(&self) -> [(R, ClampCause); 5] {
         let (cvt, floors) = (self.cvt, &self.cvt.floors);
         let zero = self.own_n.filled(0.0);
-        let primary_nm = self.load.output_torque_nm.abs() * self.at.prepared.inv_ratio;
+        let primary_nm = self.load.output_torque_nm.abs() * self.at.geometry.inv_ratio;
         let strands_n = floors.strand_n * self.at.geometry.secondary_wrap_rad;
         let (mut down_pa, mut up_pa) = (zero, zero);
         let (down, up) = (self.force_log.above(0.0), zero.above(self.force_log));

@@ -96,7 +96,7 @@ where
     /// Torque at the primary over that at the secondary at a slip, without losses.
     #[inline(always)]
     fn at_primary(&self, slip: R) -> R {
-        (1.0 - slip) * self.line.at.prepared.inv_ratio
+        (1.0 - slip) * self.line.at.geometry.inv_ratio
     }
 
     /// The torque that the clutch gives to its output: what the final drive takes, or at rest what creeps.

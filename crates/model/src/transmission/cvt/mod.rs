@@ -63,12 +63,15 @@ use std::sync::Arc;
 /// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 
+/// Its logarithm.
+const LN_NU_REFERENCE: f64 = -11.417_615_285_165_903;
+
 /// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1).
 pub fn viscosity_power<R: Real>(nu_m2_s: R, exponent: R) -> R
 where
     f64: Left<R>,
 {
-    (exponent * (nu_m2_s / NU_REFERENCE_M2_S).ln()).exp()
+    (exponent * (nu_m2_s.ln() - LN_NU_REFERENCE)).exp()
 }
 
 /// Power in W of a torque in Nm at a speed in rad/s: two numbers of one run, where numbers are otherwise those of several.
@@ -248,8 +251,9 @@ where
         let mut speed = self.ratio.highest_rad_s;
         for _ in 0..3 {
             let before = speed;
-            let share = engine.full_load_share(before);
-            speed = (power_w / share).along(&self.full_load_route); // RC-3
+            speed = engine
+                .warm_power_w(power_w, before)
+                .along(&self.full_load_route); // RC-3
             if (none | speed.is_same(before)).all() {
                 break; // settled: another pass gives the same
             }

@@ -3,11 +3,11 @@
 use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
 use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
 use super::evaluate::Step;
-use super::pump::{ETA_REFERENCE_PA_S, PumpAtTemperature};
+use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
-use super::{Cvt, Hold, NU_REFERENCE_M2_S, Shifting};
-use crate::fluid::{FilmPowers, OilState};
-use crate::math::{Left, Mask, Real, both};
+use super::{Cvt, Hold, LN_NU_REFERENCE, Shifting};
+use crate::fluid::OilState;
+use crate::math::{Left, Mask, Real};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, SUMP};
 use crate::transmission::coupling::{Coupling, LockSignals};
@@ -51,6 +51,10 @@ struct Shift<R: Real> {
     kept: Shifting<R>,
 }
 
+/// Share of the power of full load at a target up to which the route at full load (RC-3) is surely not above it, with a margin for what three
+/// passes leave, and is not worked out.
+const AMPLE: f64 = 0.8;
+
 #[inline(always)]
 fn shift<P: PrimeMover<R>, R: Real>(
     cvt: &Cvt<R>,
@@ -85,13 +89,13 @@ where
         .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
     let free = free.most(0.0);
-    let demand = RatioDemand {
+    let mut demand = RatioDemand {
         secondary_rad_s,
         primary_rad_s,
         speed_m_s: input.wheel.speed_m_s,
         power_w: input.wheel.power_w,
         share,
-        full_load_rad_s: cvt.full_load_rad_s(input.engine, input.wheel.power_w / route.efficiency),
+        full_load_rad_s: zero,
         mapped_rad_s: cvt.mapped_rad_s(input, share),
         cold_rad_s: (cvt.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
         ratio_before: before.ratio,
@@ -102,6 +106,12 @@ where
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
+    let power_w = input.wheel.power_w / route.efficiency;
+    let target_rad_s = cvt.ratio.target_rad_s(&demand);
+    let ample_w = AMPLE * input.engine.full_load_nm(target_rad_s) * target_rad_s;
+    if (power_w.above(0.0) & !ample_w.above(power_w)).any() {
+        demand.full_load_rad_s = cvt.full_load_rad_s(input.engine, power_w);
+    }
     let (ratio, change, short) = match held {
         Some(hold) if hold.paced => cvt.ratio.paced(&demand, hold.ratio), // RC-15
         Some(hold) => (
@@ -112,10 +122,11 @@ where
         None => cvt.ratio.step(&demand),
     };
     let volume = R::pick(change.above(0.0), down_m3 * change, -up_m3 * change);
+    let per_s = input.dt_s.recip();
     Shift {
         ratio,
-        rate_per_s: change / input.dt_s,
-        flow_m3_s: volume / input.dt_s,
+        rate_per_s: change * per_s,
+        flow_m3_s: volume * per_s,
         held: short,
         kept: Shifting {
             direction: direction_after(change, &kept.direction),
@@ -124,92 +135,32 @@ where
     }
 }
 
-/// Powers and exponentials of a step.
+/// Powers of a step.
 struct Powers<R: Real> {
     viscosity: ViscosityPowers<R>,
     viscous_factor: R,
     radius_factor: R,
-    films: FilmPowers<R>,
-}
-
-/// What they are powers of.
-struct Bases<R> {
-    nu_m2_s: R,
-    eta_pa_s: R,
-    film_loads: [R; 2],
-    film_exponents: [R; 2],
 }
 
 impl<R: Real> Powers<R>
 where
     f64: Left<R>,
 {
-    /// All of a step together: five logarithms, then eight exponentials; without films, as at rest, three and four.
+    /// All of them together.
     #[inline(always)]
-    fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, b: &Bases<R>) -> Self {
-        let loads = b.film_loads;
-        let none = b.nu_m2_s.filled(0.0);
-        let slides = both!(i => loads[i].above(0.0));
-        let viscosity = b.nu_m2_s / NU_REFERENCE_M2_S;
-        let pump = b.eta_pa_s / ETA_REFERENCE_PA_S;
-        let radius = cvt.low_radius_m / at.geometry.primary_radius_m;
-        if !(slides[0] | slides[1]).any() {
-            let [nu, pump, radius] = R::ln_each([viscosity, pump, radius]);
-            let [shaft, clutch] = ViscosityPowers::exponents(cvt, nu);
-            let [shaft, clutch, viscous_factor, radius_factor] = R::exp_each([
-                shaft,
-                clutch,
-                cvt.pump.viscous_exponent * pump,
-                cvt.radius_exponent * radius,
-            ]);
-            return Powers {
-                viscosity: ViscosityPowers { shaft, clutch },
-                viscous_factor,
-                radius_factor,
-                films: FilmPowers {
-                    carried: [none; 2],
-                    sheared: [none; 2],
-                },
-            };
-        }
-        let films = both!(i => R::pick(slides[i], loads[i], loads[i].filled(1.0)));
-        let [nu, pump, inner, outer, radius] =
-            R::ln_each([viscosity, pump, films[0], films[1], radius]);
-        let [shaft, clutch] = ViscosityPowers::exponents(cvt, nu);
-        let [carried, sheared] = b.film_exponents;
-        let [
+    fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, sump: &OilState<R>) -> Self {
+        let [shaft, clutch] = ViscosityPowers::exponents(cvt, sump.log_nu - LN_NU_REFERENCE);
+        let radius = cvt.low_radius_m * (at.geometry.ratio * at.prepared.inv_secondary_radius); // GE-1
+        let [shaft, clutch, viscous_factor, radius_factor] = R::exp_each([
             shaft,
             clutch,
-            viscous_factor,
-            radius_factor,
-            inner_carried,
-            outer_carried,
-            inner_sheared,
-            outer_sheared,
-        ] = R::exp_each([
-            shaft,
-            clutch,
-            cvt.pump.viscous_exponent * pump,
-            cvt.radius_exponent * radius,
-            carried * inner,
-            carried * outer,
-            sheared * inner,
-            sheared * outer,
+            cvt.pump.viscous_exponent * (sump.log_eta - LN_ETA_REFERENCE),
+            cvt.radius_exponent * radius.ln(),
         ]);
         Powers {
             viscosity: ViscosityPowers { shaft, clutch },
             viscous_factor,
             radius_factor,
-            films: FilmPowers {
-                carried: [
-                    R::pick(slides[0], inner_carried, none),
-                    R::pick(slides[1], outer_carried, none),
-                ],
-                sheared: [
-                    R::pick(slides[0], inner_sheared, none),
-                    R::pick(slides[1], outer_sheared, none),
-                ],
-            },
         }
     }
 }
@@ -253,13 +204,9 @@ where
         true => [oil.viscosity.kinematic_m2_s(sump_k), sump_k.filled(0.0)],
         false => oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]),
     };
-    let sump = OilState {
-        kinematic_m2_s: nu_sump,
-        density_kg_m3: oil.density_kg_m3(sump_k),
-    };
-    let eta_sump = nu_sump * sump.density_kg_m3;
+    let sump = OilState::new(nu_sump, oil.density_kg_m3(sump_k));
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
-    let inlet = cvt.pump.with_factor(eta_sump, eta_sump.filled(1.0));
+    let inlet = cvt.pump.with_factor(sump.dynamic_pa_s, sump_k.filled(1.0));
     let route = Route {
         pump: inlet,
         efficiency,
@@ -276,7 +223,7 @@ where
     };
     let shift = shift(cvt, input, past, before, route);
     if !shift.ratio.is_same(belt.geometry.ratio).all() {
-        *belt = BeltAtRatio::new(&cvt.belt, shift.ratio);
+        belt.move_to(&cvt.belt, shift.ratio);
     }
     let at = &*belt;
     let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
@@ -289,13 +236,8 @@ where
     let sliding = cvt
         .belt
         .sliding_m_s(shift.ratio, shift.ratio * secondary_rad_s);
-    let bases = Bases {
-        nu_m2_s: nu_sump,
-        eta_pa_s: eta_sump,
-        film_loads: friction.film_loads(eta_belt, sliding),
-        film_exponents: friction.film_exponents(),
-    };
-    let powers = Powers::new(cvt, at, &bases);
+    let powers = Powers::new(cvt, at, &sump);
+    let films = friction.film_powers(friction.film_loads(eta_belt, sliding));
     Step {
         // The demand of the wheels decides the friction of the teeth (GM-2).
         drive: final_drive(
@@ -327,7 +269,7 @@ where
         secondary_rad_s,
         load: BeltLoad::unloaded(
             friction,
-            friction.band_on_film(belt_k, powers.films),
+            friction.band_on_film(belt_k, films),
             at.prepared.film_area_m2,
             sliding,
         ),

@@ -21,6 +21,7 @@ use crate::keys::{Choice, Values, keys};
 use crate::math::{Gather, Left, Real, gather, smooth_ramp};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
+use std::f64::consts::LN_10;
 
 /// How the displacement follows the need for flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,11 +150,14 @@ gather! {
 /// Pressure that is left of a flow that does not cover lubrication and shift, Pa (PU-6).
 const LEAST_PA: f64 = 1e4;
 
-/// Viscosity above which oil runs into lubrication as through leaks, Pa s (PU-2).
-const ETA_THICK_PA_S: f64 = 1.0;
+/// Viscosity above which oil runs into lubrication as through leaks, 1 Pa s, over that at which C_v is defined (PU-2).
+const THICK: f64 = 1.0 / ETA_REFERENCE_PA_S;
 
 /// Viscosity at which C_v is defined, Pa s.
 pub const ETA_REFERENCE_PA_S: f64 = 0.010;
+
+/// Its logarithm.
+pub(super) const LN_ETA_REFERENCE: f64 = -2.0 * LN_10;
 
 /// What the pump's oil does at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -166,6 +170,8 @@ pub struct PumpAtTemperature<R: Real = f64> {
     pub lubrication_m3_s: R,
     /// Leakage per pressure, m3/(s Pa) (PU-2).
     pub leakage_m3_s_pa: R,
+    /// One over it, Pa s/m3; without bound where nothing leaks.
+    pub inv_leakage: R,
 }
 
 impl<R: Real> PumpAtTemperature<R>
@@ -263,7 +269,6 @@ where
             now: *now,
             speed_rad_s,
             flow_m3_s,
-            drawn_m3_s: now.drawn_m3_s(flow_m3_s),
             viscous_nm: self.heating.torque_nm(viscous_nm, speed_rad_s), // PU-1
         }
     }
@@ -271,19 +276,21 @@ where
     /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
     #[inline(always)]
     pub fn at(&self, eta_pa_s: R) -> PumpAtTemperature<R> {
-        let log = (eta_pa_s / ETA_REFERENCE_PA_S).ln();
+        let log = eta_pa_s.ln() - LN_ETA_REFERENCE;
         self.with_factor(eta_pa_s, (self.viscous_exponent * log).exp())
     }
 
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
     #[inline(always)]
     pub fn with_factor(&self, eta_pa_s: R, viscous_factor: R) -> PumpAtTemperature<R> {
-        let drop_pa_s_m3 = self.inlet_pa_s_m3 * eta_pa_s / ETA_REFERENCE_PA_S;
+        let thicker = eta_pa_s * ETA_REFERENCE_PA_S.recip();
+        let thinner = 1.0 / thicker;
         PumpAtTemperature {
             viscous_factor,
-            inv_inlet_flow: drop_pa_s_m3 / self.inlet_depression_pa, // PU-5
-            lubrication_m3_s: self.lubrication_m3_s * (ETA_THICK_PA_S / eta_pa_s).least(1.0), // PU-2
-            leakage_m3_s_pa: self.leakage_m3_s_pa * ETA_REFERENCE_PA_S / eta_pa_s, // PU-2
+            inv_inlet_flow: self.inlet_pa_s_m3 * thicker / self.inlet_depression_pa, // PU-5
+            lubrication_m3_s: self.lubrication_m3_s * (THICK * thinner).least(1.0),  // PU-2
+            leakage_m3_s_pa: self.leakage_m3_s_pa * thinner,                         // PU-2
+            inv_leakage: thicker / self.leakage_m3_s_pa,
         }
     }
 
@@ -321,9 +328,8 @@ pub struct TurningPump<'a, R: Real = f64> {
     pump: &'a Pump<R>,
     now: PumpAtTemperature<R>,
     speed_rad_s: R,
-    /// Flow of the whole displacement, and what it draws, m3/s.
+    /// Flow of the whole displacement, m3/s.
     flow_m3_s: R,
-    drawn_m3_s: R,
     /// The second term of PU-1.
     viscous_nm: R,
 }
@@ -332,19 +338,36 @@ impl<R: Real> TurningPump<'_, R>
 where
     f64: Left<R>,
 {
+    /// What the whole displacement draws, m3/s (PU-5). Its roots take longer than all else of the pump: most often they are not needed.
+    #[inline(always)]
+    fn drawn_m3_s(&self) -> R {
+        self.now.drawn_m3_s(self.flow_m3_s)
+    }
+
+    /// Where a pressure is held with a flow into the pulleys even by the least that PU-5 leaves: (1 + x4)^(-1/4) is at least 1 - x4/4.
+    #[inline(always)]
+    pub fn surely_holds(&self, pressure_pa: R, shift_flow_m3_s: R) -> R::Mask {
+        let now = &self.now;
+        let x = self.flow_m3_s * now.inv_inlet_flow;
+        let square = x * x;
+        let drawn = self.flow_m3_s * (1.0 - 0.25 * (square * square));
+        let spare = drawn - now.lubrication_m3_s - shift_flow_m3_s;
+        spare.above(LEAST_PA * now.leakage_m3_s_pa) & (spare * now.inv_leakage).above(pressure_pa)
+    }
+
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
     #[inline(always)]
     pub fn deliverable_pa(&self, shift_flow_m3_s: R) -> R {
         let now = &self.now;
-        let spare = self.drawn_m3_s - now.lubrication_m3_s - shift_flow_m3_s;
+        let spare = self.drawn_m3_s() - now.lubrication_m3_s - shift_flow_m3_s;
         let enough = spare.above(LEAST_PA * now.leakage_m3_s_pa);
-        R::pick(enough, spare / now.leakage_m3_s_pa, spare.filled(LEAST_PA)) // PU-6
+        R::pick(enough, spare * now.inv_leakage, spare.filled(LEAST_PA)) // PU-6
     }
 
     /// Torque and flow at a pressure and a need (PU-1, PU-4).
     #[inline(always)]
     pub fn state(&self, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
-        let (pump, drawn) = (self.pump, self.drawn_m3_s);
+        let (pump, drawn) = (self.pump, self.drawn_m3_s());
         if let PumpKind::Electric(of) = &pump.kind {
             return self.electric(of, secondary_pa, need_m3_s);
         }
@@ -371,7 +394,7 @@ where
     /// An electric pump (EP-2).
     #[inline(always)]
     fn electric(&self, of: &ElectricPump<R>, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
-        let most_m3_s = self.drawn_m3_s;
+        let most_m3_s = self.drawn_m3_s();
         let working_m3_s = need_m3_s.least(most_m3_s);
         let electric_w = (secondary_pa + self.pump.line_drop_pa) * working_m3_s / of.efficiency; // EP-2
         PumpState {

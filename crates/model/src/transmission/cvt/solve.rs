@@ -376,7 +376,7 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     if input.engine_off {
         return engine_off(input, before.ratio, past, output);
     }
-    let mut work = Work::new(warm_start.slopes);
+    let mut begun = None;
     let mut efficiency = cvt.ratio.route_efficiency;
     let (yes, no) = (efficiency.answer(true), efficiency.answer(false));
     let mut tried_ratio = efficiency.filled(f64::NAN);
@@ -385,25 +385,30 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
         let before = (&before, &*shifting, &hold);
         let step = prepare(cvt, input, past, before, belt, efficiency);
         // All runs of a group are at rest together.
-        if !step.secondary_rad_s.above(0.0).any() {
-            if !cvt.launch_behind {
-                standstill(&step, past, warm_start, output);
-                *shifting = step.shifting;
-                return;
-            }
+        let rests = !step.secondary_rad_s.above(0.0).any();
+        if rests && !cvt.launch_behind {
+            standstill(&step, past, warm_start, output);
+            *shifting = step.shifting;
+            return;
+        }
+        let work = match &mut begun {
+            Some(work) => work,
+            none => none.insert(Work::new(warm_start.slopes)),
+        };
+        if rests {
             let guess = Guess {
                 output_nm: efficiency.filled(0.0),
                 slip: efficiency.filled(0.0),
                 engine_rad_s: past.engine_rad_s,
                 pressure_pa: past.secondary_pa,
             };
-            step.run(&guess, &Limit::none(no), false, yes, &mut work); // LO-4
+            step.run(&guess, &Limit::none(no), false, yes, work); // LO-4
         } else {
             let ratio = step.line.at.geometry.ratio;
             let last = ratio.is_same(tried_ratio)
                 | efficiency.filled(MIN_ROUTE_EFFICIENCY).reaches(efficiency)
                 | efficiency.answer(hold.is_some());
-            let short = step.limited(warm_start, last, trying, &mut work);
+            let short = step.limited(warm_start, last, trying, work);
             if short.any() {
                 // Kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7).
                 tried_ratio = R::pick(short, ratio, tried_ratio);

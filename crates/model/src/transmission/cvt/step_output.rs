@@ -269,7 +269,8 @@ fn finished<P: PrimeMover<R>, R: Real>(
     output.primary_nm = p.primary_nm - p.torques.primary_nm();
     output.secondary_nm = p.torques.secondary;
     output.clamp_safety = p.torques.belt.capacity_nm / p.torques.secondary.abs();
-    output.oil_flow_m3_s = p.oil_flow_m3_s;
+    let line = &step.line;
+    output.oil_flow_m3_s = line.oil_flow_m3_s(we, g.pressure_pa, step.shift_flow_m3_s);
     output.residual = outcome.residual;
     output.iterations = counts(outcome.evaluations);
     let speeds = [we, wp, p.secondary_rad_s, step.secondary_rad_s];

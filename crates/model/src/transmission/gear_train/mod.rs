@@ -21,13 +21,15 @@ use self::churning::Churner;
 use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
 use crate::fluid::OilState;
-use crate::keys::RPM;
 use crate::math::{Left, Mask, Real, gather, larger};
+use std::f64::consts::LN_10;
 
 /// Largest share of the power that a train loses under load.
 const MAX_SHARE: f64 = 0.1;
-/// From rad/s and m2/s to rpm and mm2/s, for their product (BR-1).
-const MICRO_RPM: f64 = 1e6 / RPM;
+/// Logarithm of the factor from rad/s and m2/s to rpm and mm2/s, for their product: ln(30e6/pi) (BR-1).
+const LN_MICRO_RPM: f64 = 16.071_978_053_777_03;
+/// Logarithm of the factor from Pa s to mPa s (GM-2).
+const LN_MILLI: f64 = 3.0 * LN_10;
 
 /// The parts of a train, whatever the ratios of its stages.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,22 +156,23 @@ where
         if rests.all() {
             return TurningTrain::at_rest(first_rad_s);
         }
-        let [log_nu, log_eta, log_n, log_first] = R::ln_each([
-            oil.kinematic_m2_s,
-            1e3 * oil.kinematic_m2_s * oil.density_kg_m3,
-            first_rad_s * MICRO_RPM,
-            first_rad_s,
-        ]);
-        let powers = bearing::film_powers(log_nu + log_n);
+        let log_first = first_rad_s.ln();
+        let powers = bearing::film_powers(oil.log_nu + log_first + LN_MICRO_RPM);
         let mut bearing_nm = first_rad_s.filled(-0.0);
         for bearing in &self.bearings {
             bearing_nm = bearing_nm + bearing.torque_nm(first_rad_s, powers); // GT-1
         }
-        let [first, second] = Mesh::shares(self.meshes.each_ref(), first_rad_s, demand_nm, log_eta);
+        let [first, second] = Mesh::shares(
+            self.meshes.each_ref(),
+            first_rad_s,
+            demand_nm,
+            oil.log_eta + LN_MILLI,
+        );
         let mesh_share = first + second;
         let share = mesh_share + self.bearing_share;
         let held = R::pick(share.above(MAX_SHARE), MAX_SHARE / share, share.filled(1.0));
-        let churning_nm = churning::torque_nm(self.churning, oil.density_kg_m3, log_first, log_nu);
+        let churning_nm =
+            churning::torque_nm(self.churning, oil.density_kg_m3, log_first, oil.log_nu);
         let none = share.filled(0.0);
         TurningTrain {
             bearing_nm: R::pick(rests, none, bearing_nm),

@@ -23,13 +23,11 @@ use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 /// Friction-weighted sliding of the band pack on each pulley per turn of the primary, m: on both with the wrap factor (BT-2 to BT-4), or on
 /// the smaller wrap alone, with the part of the one force that a `direction` of the tension step leaves (BT-6, BT-7).
 #[inline(always)]
-pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2]
+pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, mean_offset_m: R, direction: R) -> [R; 2]
 where
     f64: Left<R>,
 {
-    let n = belt.band_count;
-    let slide = (1.0 / g.ratio - 1.0).abs()
-        * (belt.band_offset_m + belt.band_thickness_m * (n - 1.0) / 2.0);
+    let slide = (g.inv_ratio - 1.0).abs() * mean_offset_m;
     if belt.formulation.by_statics() {
         return on_smaller_wrap(g, direction.abs() * slide);
     }
@@ -52,6 +50,15 @@ fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
     [R::pick(primary, value, none), R::pick(primary, none, value)]
 }
 
+/// Offset of the bands above the rocking edge, weighted by their normal forces, m (BT-2).
+#[inline(always)]
+pub fn mean_offset_m<R: Real>(belt: &Belt<R>) -> R
+where
+    f64: Left<R>,
+{
+    belt.band_offset_m + belt.band_thickness_m * (belt.band_count - 1.0) / 2.0
+}
+
 /// Part of the bands' sliding, weighted by friction, that is not at the innermost interface (BT-2).
 #[inline(always)]
 pub fn outer_part<R: Real>(belt: &Belt<R>) -> R
@@ -59,7 +66,7 @@ where
     f64: Left<R>,
 {
     let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
-    let part = outer / (belt.band_offset_m + outer);
+    let part = outer / mean_offset_m(belt);
     R::pick(outer.above(0.0), part, outer.filled(0.0))
 }
 
@@ -91,7 +98,7 @@ pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> 
 where
     f64: Left<R>,
 {
-    let turns = direction.abs() * (1.0 / g.ratio - 1.0).abs();
+    let turns = direction.abs() * (g.inv_ratio - 1.0).abs();
     [
         turns * belt.band_offset_m,
         turns * belt.band_thickness_m * (belt.band_count - 1.0),
@@ -168,8 +175,8 @@ where
 {
     let shoulder_n = [t.primary_shoulder_n, t.secondary_shoulder_n];
     let [inner, outer] = band.film_share;
-    let lifted = inner + (outer - inner) * at.prepared.outer_part;
-    let coated = at.prepared.coated_part * (1.0 - inner);
+    let lifted = inner + (outer - inner) * at.fixed.outer_part;
+    let coated = at.fixed.coated_part * (1.0 - inner);
     let mu = band.mu * (1.0 - lifted - coated); // BT-8
     both!(i => mu * shoulder_n[i] * at.prepared.slide_m[i]) // BT-3, BT-6
 }

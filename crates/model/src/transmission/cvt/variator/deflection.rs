@@ -10,7 +10,7 @@
 //!
 //! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
 
-use super::{Belt, BeltAtRatio, Geometry, Tension};
+use super::{Belt, BeltAtRatio, Tension};
 use crate::math::{Left, Real, both};
 
 /// Wedge and penetration losses at the primary shaft, Nm; pairs are primary, secondary.
@@ -22,19 +22,9 @@ pub struct Deflection<R: Real = f64> {
     pub penetration_nm: [R; 2],
 }
 
-/// Arcs over twice the segment thickness, referred to the primary shaft, 1/m; primary, secondary (WE-3).
+/// 2/t times depth over deflection, 1/m, with 1/t known (PE-1).
 #[inline(always)]
-pub fn wedge_per_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> [R; 2]
-where
-    f64: Left<R>,
-{
-    let arcs = belt.formulation.wedge_arcs() / (2.0 * belt.segment_thickness_m);
-    [arcs, arcs / g.ratio]
-}
-
-/// 2 `R_p` / t, times depth over deflection (PE-1).
-#[inline(always)]
-pub fn penetration<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R
+pub fn penetration_per_m<R: Real>(belt: &Belt<R>, inv_thickness: R) -> R
 where
     f64: Left<R>,
 {
@@ -43,7 +33,7 @@ where
     } else {
         belt.tan_wedge.filled(1.0)
     };
-    2.0 * g.primary_radius_m * depth / belt.segment_thickness_m
+    2.0 * depth * inv_thickness
 }
 
 /// Wedge and penetration losses, both pulleys side by side (WE-1 to PE-1).
@@ -58,10 +48,7 @@ where
     f64: Left<R>,
 {
     let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
-    mu_flank.within(
-        #[inline(always)]
-        || clamped(belt, at, clamp_n, mu_flank),
-    )
+    clamped(belt, at, clamp_n, mu_flank)
 }
 
 /// The same from the clamping forces, N.
@@ -83,7 +70,7 @@ where
         belt.secondary_compliance_per_n,
     ]; // WE-4
     let delta_m = both!(i => clamp_n[i] * (radius_m[i] * compliance_per_n[i])); // WE-1
-    let (r, q) = (radius_m, both!(i => delta_m[i] * prepared.wedge_half_cot));
+    let (r, q) = (radius_m, both!(i => delta_m[i] * at.fixed.wedge_half_cot));
     // WE-2: sqrt(q (2R+q)) sqrt(2 (R+q) q)
     let chord_m2 = both!(i => q[i] * ((r[i] + r[i] + q[i]) * (r[i] + r[i] + q[i] + q[i])).sqrt());
     let wedge_n = if belt.formulation.own_wedge_force() {

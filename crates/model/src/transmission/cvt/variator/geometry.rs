@@ -18,6 +18,8 @@ use std::f64::consts::PI;
 pub struct Geometry<R: Real = f64> {
     /// Belt ratio I = R_sec / R_pri.
     pub ratio: R,
+    /// One over it.
+    pub inv_ratio: R,
     /// Primary running radius, m.
     pub primary_radius_m: R,
     /// Secondary running radius, m.
@@ -32,6 +34,7 @@ pub struct Geometry<R: Real = f64> {
 
 gather!(Geometry {
     ratio,
+    inv_ratio,
     primary_radius_m,
     secondary_radius_m,
     primary_wrap_rad,
@@ -50,18 +53,19 @@ where
     #[inline(always)]
     pub fn new(ratio: R, centre_distance_m: R, belt_length_m: R) -> Self {
         let (x, l) = (centre_distance_m, belt_length_m);
-        let g = 1.0 - 1.0 / ratio;
-        let h = 1.0 + 1.0 / ratio;
+        let (inv_ratio, inv_x) = (1.0 / ratio, 1.0 / x); // g is 0 at I = 1 to the bit
+        let (g, h) = (1.0 - inv_ratio, 1.0 + inv_ratio);
         let free = l - 2.0 * x;
-        let mut r = 2.0 * free / (PI * h + (PI_SQUARED * h * h + 4.0 * g * g * free / x).sqrt());
-        let mut alpha = (g * r / x).asin();
+        let root = (PI_SQUARED * h * h + 4.0 * g * g * free * inv_x).sqrt();
+        let mut r = 2.0 * free / (PI * h + root);
+        let mut alpha = (g * r * inv_x).asin();
         let mut strut = (x * x - g * r * g * r).sqrt();
         let mut open = !r.above(r); // in every lane
         for _ in 0..4 {
             let f = PI * h * r + 2.0 * alpha * g * r + 2.0 * strut - l;
             let step = f / (PI * h + 2.0 * alpha * g); // GE-4
             r = R::pick(open, r - step, r);
-            alpha = (g * r / x).asin();
+            alpha = (g * r * inv_x).asin();
             strut = (x * x - g * r * g * r).sqrt();
             open = open & step.abs().above(1e-9 * r);
             if !open.any() {
@@ -70,7 +74,8 @@ where
         }
         Geometry {
             ratio,
-            primary_radius_m: r / ratio, // GE-1
+            inv_ratio,
+            primary_radius_m: r * inv_ratio, // GE-1
             secondary_radius_m: r,
             primary_wrap_rad: PI - 2.0 * alpha, // GE-2
             secondary_wrap_rad: PI + 2.0 * alpha,
@@ -82,7 +87,7 @@ where
     #[inline(always)]
     pub fn secondary_radius_slope_m(&self) -> R {
         // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.
-        let bp = self.primary_wrap_rad / self.ratio;
+        let bp = self.primary_wrap_rad * self.inv_ratio;
         bp * self.secondary_radius_m / (bp + self.secondary_wrap_rad)
     }
 }

@@ -32,7 +32,7 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::math::{Left, Real, gather};
+use crate::math::{Left, Mask, Real, gather};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
@@ -247,7 +247,7 @@ where
     let slip = slip::slip(belt, at, &tension, mu_segment);
     Parts {
         slip: if belt.formulation.by_statics() {
-            let net_nm = load.output_torque_nm * at.prepared.inv_ratio;
+            let net_nm = load.output_torque_nm * at.geometry.inv_ratio;
             slip.by_statics(net_nm, sum(band_nm) + film_nm)
         } else {
             slip
@@ -280,8 +280,10 @@ where
     // Slip against the torque relieves bands and film, both by the same share (SL-11).
     let sliding_nm = sum(parts.band_nm) + parts.film_nm;
     let is_relieved = share_nm.filled(0.0).above(share_nm);
-    let relieved = (1.0 + share_nm / sliding_nm).most(0.0);
-    let left = R::pick(is_relieved, relieved, share_nm.filled(1.0));
+    let mut left = share_nm.filled(1.0);
+    if is_relieved.any() {
+        left = R::pick(is_relieved, (1.0 + share_nm / sliding_nm).most(0.0), left);
+    }
     BeltLosses {
         band_nm: left * sum(parts.band_nm),
         film_nm: left * parts.film_nm,

@@ -203,7 +203,10 @@ where
     pub(super) fn by_statics(self, net_nm: R, sliding_nm: R) -> Self {
         let share_nm = (self.primary + self.secondary) * net_nm;
         let beyond = (-sliding_nm).above(share_nm);
-        let kept = R::pick(beyond, -sliding_nm / share_nm, share_nm.filled(1.0)); // SL-12
+        let mut kept = share_nm.filled(1.0);
+        if beyond.any() {
+            kept = R::pick(beyond, -sliding_nm / share_nm, kept); // SL-12
+        }
         let (primary, secondary) = (kept * self.primary, kept * self.secondary);
         Slip {
             primary,
@@ -233,11 +236,8 @@ where
     f64: Left<R>,
 {
     let contact = Contact::new(belt, at, t, mu_segment);
-    let b = mu_segment.within(
-        #[inline(always)]
-        || branches(&contact),
-    );
-    let x = contact.compression_n * at.prepared.per_blend_n;
+    let b = branches(&contact);
+    let x = contact.compression_n * at.fixed.per_blend_n;
     // SL-8: (1 + tanh x)/2
     let (blends, zero) = (!x.abs().above(ALONE), x.filled(0.0));
     let mut w = R::pick(x.above(0.0), x.filled(1.0), zero);
