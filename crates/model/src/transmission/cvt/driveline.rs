@@ -325,9 +325,16 @@ where
 
     /// Loss that a component's map gives at a speed, torque and pressure, times the component's factor, Nm; clears `inside` outside the map.
     #[inline(always)]
-    fn mapped(&self, component: Component, at: (R, R, R), inside: &mut R::Mask) -> Option<R> {
+    fn mapped(
+        &self,
+        component: Component,
+        (rad_s, nm, pa): (R, R, R),
+        inside: &mut R::Mask,
+    ) -> Option<R> {
         let changes = self.changes?;
         let map = changes.maps[component].as_ref()?;
+        // Put together here, so that a car without maps does not store it.
+        let at = (rad_s, nm, pa);
         let loss = self.looked_up(at, inside, |lane, point| R::one(map, lane).loss_nm(point));
         Some(changes.factor[component] * loss) // CV-7
     }
@@ -407,27 +414,24 @@ where
         inside: &mut R::Mask,
         torques: &mut PartTorques<R>,
     ) {
-        *torques = self.through(
-            output_nm,
-            drive,
-            (primary_rad_s, secondary_rad_s),
-            clamp.pressure_pa,
-            inside,
-        );
+        let speeds_rad_s = (primary_rad_s, secondary_rad_s);
+        torques.secondary =
+            self.through_nm(output_nm, drive, speeds_rad_s, clamp.pressure_pa, inside);
+        torques.final_drive = torques.secondary - output_nm;
         self.turn_secondary(torques, clamp);
     }
 
-    /// Torque into the final drive for one behind it, Nm, in place of the secondary's.
+    /// Torque into the final drive for one behind it, Nm.
     #[inline(always)]
-    pub fn through(
+    pub fn through_nm(
         &self,
         output_nm: R,
         drive: impl FnOnce() -> TurningTrain<R>,
         (primary_rad_s, secondary_rad_s): (R, R),
         pressure_pa: R,
         inside: &mut R::Mask,
-    ) -> PartTorques<R> {
-        let through_nm = if self.parts.final_drive && !self.is_mapped() {
+    ) -> R {
+        if self.parts.final_drive && !self.is_mapped() {
             let at = (primary_rad_s, output_nm, pressure_pa);
             match self.mapped(Component::FinalDrive, at, inside) {
                 Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
@@ -435,11 +439,6 @@ where
             }
         } else {
             output_nm
-        };
-        PartTorques {
-            final_drive: through_nm - output_nm,
-            secondary: through_nm,
-            ..PartTorques::none(output_nm)
         }
     }
 

@@ -105,8 +105,7 @@ where
         // All runs of a group are at rest together.
         if self.secondary_rad_s.above(0.0).any() {
             let speeds = (over_rad_s, self.secondary_rad_s);
-            let line = &self.line;
-            return line.through(
+            let secondary = self.line.through_nm(
                 g.output_nm,
                 #[inline(always)]
                 || self.drive,
@@ -114,6 +113,11 @@ where
                 g.pressure_pa,
                 inside,
             );
+            return PartTorques {
+                final_drive: secondary - g.output_nm,
+                secondary,
+                ..PartTorques::none(secondary)
+            };
         }
         let idle_rad_s = self.input.engine.idle_rad_s();
         let in_drive = 1.0 - self.input.neutral_share;
