@@ -345,7 +345,7 @@ where
     f64: Left<R>,
 {
     let zero = state.tyre_k.filled(0.0);
-    let mut output = StepOutput::like(zero); // first, as one by one
+    let mut output = StepOutput::like(zero); // first, as in `Drive::step`
     let wheel = wheel(car, step, &mut state.tyre_k);
     let engine = engine(car, step, &wheel, &state.heat, &mut state.running);
     let input = StepInput {

@@ -186,9 +186,9 @@ pub struct OilState<R: Real = f64> {
     pub density_kg_m3: R,
     /// Dynamic viscosity, Pa s.
     pub dynamic_pa_s: R,
-    /// Logarithms of the two viscosities in these units, of which losses are powers.
+    /// Logarithm of the kinematic viscosity in m2/s: losses are powers of it.
     pub log_nu: R,
-    /// Of the dynamic one.
+    /// Logarithm of the dynamic viscosity in Pa s.
     pub log_eta: R,
 }
 

@@ -307,13 +307,12 @@ where
         parts: Parts,
     ) -> Self {
         let state = oil.state(oil_k);
-        let eta_pa_s = state.kinematic_m2_s * state.density_kg_m3;
         Driveline {
             cvt,
             at,
             parts,
             viscosity: ViscosityPowers::new(cvt, state.kinematic_m2_s),
-            pump: cvt.pump.at(eta_pa_s),
+            pump: cvt.pump.at(state.dynamic_pa_s),
             shafts: PulleyShafts::new(cvt, at, parts),
             radius_factor: cvt.radius_factor(at),
             force_log: oil_k.filled(0.0),
