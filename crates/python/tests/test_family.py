@@ -34,7 +34,8 @@ def test_groups_are_single_points(vehicle: str) -> None:
     family = cc.Family(vehicle, "ece15", keys, threads=2)
     X = numpy.array([[1000.0 + 17 * k, 0.1 * (k % 7), -20.0 + 3 * k] for k in range(19)])
     X[[2, 9, 10], [0, 1, 2]] = [-5.0, math.nan, 99.0]
-    together, alone = family.table(X), [family.table(x[None, :]) for x in X]
+    outputs = ["fuel_l_per_100km", "end_transmission_sump_degc", "solve_residual"]
+    together, alone = family.table(X, outputs=outputs), [family.table(x[None, :], outputs=outputs) for x in X]
     assert numpy.isnan(together["fuel_l_per_100km"]).nonzero()[0].tolist() == [2, 9, 10]
     for name in together.columns:
         numpy.testing.assert_array_equal(together[name], numpy.concatenate([one[name] for one in alone]))
