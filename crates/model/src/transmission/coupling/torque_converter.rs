@@ -164,7 +164,7 @@ const COOLER_K: f64 = 3.0;
 const SLIP_FROM_NM: f64 = 10.0;
 
 impl TorqueConverter {
-    /// A converter of a capacity at stall, Nm s2, by a table [nu, k, lambda/lambda(0)] from 0 to 1, with a factor on its capacity in overrun.
+    /// A converter of a capacity at stall, Nm s2, by a table [nu, k, lambda/lambda(0)] from 0 to 1 whose nu rises, with a factor on its capacity in overrun.
     pub fn new(
         capacity_nm_s2: f64,
         table: &[[f64; 3]],

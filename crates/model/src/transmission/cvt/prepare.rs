@@ -52,7 +52,7 @@ struct Shift<R: Real> {
 }
 
 /// Share of the power of full load at a target up to which the route at full load (RC-3) is surely not above it, with a margin for what three
-/// passes leave, and is not worked out.
+/// passes leave, and is not worked out (ASSUMED; the test of control.rs has cars, temperatures and air for which it holds).
 const AMPLE: f64 = 0.8;
 
 #[inline(always)]
