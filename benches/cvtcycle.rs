@@ -9,6 +9,9 @@
 
 use std::collections::BTreeSet;
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
+use cvtcycle::analysis::levers::{Combine, LeverFile, LeverRequest, prepare};
+use cvtcycle::analysis::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::config::cycle::{Cycle, embedded, read_csv};
 use cvtcycle::config::setup::template::VehicleTemplate;
 use cvtcycle::config::setup::{Options, Setup, load};
@@ -22,14 +25,12 @@ use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
 };
 use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::summary::{Driven, Settings, run_summary};
 use cvtcycle::output::{EnergyTerms, Row};
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
-use cvtcycle::study::levers::{Combine, LeverFile, LeverRequest, prepare};
-use cvtcycle::study::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Rows;
-use cvtcycle::study::{NoProgress, PartWriter, Study};
+use cvtcycle::study::{PartWriter, Study};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, attribute};
+use cvtcycle::analysis::levers::{self, Combine, LeverFile, LeverRequest, LeverRow};
 use cvtcycle::config::Override;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::{self, Cycle};
@@ -9,14 +11,13 @@ use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
-use cvtcycle::study::attribute::{Attribution, Depth, attribute};
 use cvtcycle::study::execute::DirWriter;
-use cvtcycle::study::levers::{self, Combine, LeverFile, LeverRequest, LeverRow};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::store::StudyDir;
-use cvtcycle::study::{NoProgress, StudyManifest, StudyTable};
+use cvtcycle::study::{StudyManifest, StudyTable};
 
 /// A table by its name in the page.
 type Named = (&'static str, fn() -> Result<String, Problems>);

@@ -4,11 +4,11 @@ mod files;
 mod tables;
 
 use clap::Args;
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::config::{Bound, Problems};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, Summary, summarise};
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use serde::Serialize;
 
 use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles};

@@ -12,7 +12,7 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::listed;
 use cvtcycle::output::record::Manifest;
-use cvtcycle::study::points::{self, Counts, Done, Job, Model};
+use cvtcycle::validate::belt::{self, Counts, Done, Job, Model};
 use serde_json::{Map, Value, json};
 
 use super::Execute;
@@ -99,7 +99,7 @@ impl Execute for BeltArgs {
             formulation,
             rows: &mut rows,
         };
-        let Done { counts, ignored } = problems.take(points::read(name, reader, job))?;
+        let Done { counts, ignored } = problems.take(belt::read(name, reader, job))?;
         let setup = setup?;
         let quiet = self.output.quiet;
         let ignored = listed(&ignored, MAX_LISTED);

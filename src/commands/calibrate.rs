@@ -5,14 +5,14 @@ mod tables;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use cvtcycle::calibrate::outcome::Outcome;
+use cvtcycle::calibrate::outcome::tables as csv_tables;
+use cvtcycle::calibrate::plan::CalibrationPlan;
+use cvtcycle::calibrate::{MAX_STARTS, calibrate, fitted, open};
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{ProblemKind, Problems};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::charts::calibration::calibration_pictures;
-use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::outcome::tables as csv_tables;
-use cvtcycle::study::fit::plan::CalibrationPlan;
-use cvtcycle::study::fit::{MAX_STARTS, calibrate, fitted, open};
 
 use super::{Execute, threads};
 use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, count_if_given};

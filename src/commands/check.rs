@@ -3,14 +3,14 @@
 mod physics;
 
 use clap::Args;
+use cvtcycle::analysis::levers::LeverFile;
+use cvtcycle::calibrate::open;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, bounded, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::output::table::wrapped;
 use cvtcycle::study::Study;
-use cvtcycle::study::fit::open;
-use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 

@@ -2,10 +2,10 @@
 
 use clap::Args;
 use cvtcycle::config::{KeyInfo, Override, Problems};
+use cvtcycle::equations::{Equation, of_labels};
+use cvtcycle::explain::{Meanings, plan_keys};
 use cvtcycle::model::keys::Presence;
 use cvtcycle::output::table::TextTable;
-use cvtcycle::study::equations::{Equation, of_labels};
-use cvtcycle::study::explain::{Meanings, plan_keys};
 
 use super::Execute;
 use super::show::value_row;

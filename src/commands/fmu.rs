@@ -8,9 +8,9 @@ use cvtcycle::config::setup::carried::CarriedCar;
 use cvtcycle::config::setup::{Kind as FileKind, Options, Setup};
 use cvtcycle::config::{Problem, Problems, bounded};
 use cvtcycle::output::file::OutputFile;
-use cvtcycle_cosim::Kind;
-use cvtcycle_cosim::description::Fmi;
-use cvtcycle_cosim::package::{Package, Platform};
+use cvtcycle_fmu::Kind;
+use cvtcycle_fmu::description::Fmi;
+use cvtcycle_fmu::package::{Package, Platform};
 
 use super::Execute;
 use crate::args::problems::{bad_value, in_options, of_car, overrides, problem};
@@ -28,7 +28,7 @@ Examples:
   cvtcycle fmu mycar.toml --kind losses --fmi 3 --out mycar_losses.fmu
 
 The FMU holds the car's files and a shared library for each platform. The libraries are taken from the folder of this program, or named with --library; \
-`cargo build --release -p cvtcycle-fmu` builds that of this machine, with --target x86_64-pc-windows-gnu that of Windows. docs/fmu.md has the variables."
+`cargo build --release -p cvtcycle-fmu-library` builds that of this machine, with --target x86_64-pc-windows-gnu that of Windows. docs/fmu.md has the variables."
 )]
 pub struct FmuArgs {
     /// Vehicle
@@ -49,7 +49,7 @@ pub struct FmuArgs {
     /// Override one value of the vehicle; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Shared library of cvtcycle-fmu, for Linux or Windows; repeatable [default: those in the folder of this program]
+    /// Shared library of cvtcycle-fmu-library, for Linux or Windows; repeatable [default: those in the folder of this program]
     #[arg(long, value_name = "FILE")]
     library: Vec<PathBuf>,
     #[command(flatten)]
@@ -164,7 +164,7 @@ fn library(path: &Path) -> Result<(Platform, Vec<u8>), Problem> {
     let value = path.display().to_string();
     let bytes = bounded::read_file(path, bounded::RECORD).map_err(|error| {
         let message = format!("cannot read the library: {error}");
-        let hint = "build it: cargo build --release -p cvtcycle-fmu";
+        let hint = "build it: cargo build --release -p cvtcycle-fmu-library";
         bad_value("--library", &value, "a readable file", &message, hint)
     })?;
     let platform = Platform::of(&bytes).ok_or_else(|| {
@@ -191,6 +191,6 @@ fn own_libraries() -> Result<Vec<(Platform, Vec<u8>)>, Problem> {
         return Ok(found);
     }
     let message = format!("there is no shared library in {}", folder.display());
-    let hint = "build it: cargo build --release -p cvtcycle-fmu";
+    let hint = "build it: cargo build --release -p cvtcycle-fmu-library";
     Err(problem("--library", &message, hint))
 }

@@ -1,6 +1,7 @@
 //! `label`: the figures of a fuel label.
 
 use clap::Args;
+use cvtcycle::analysis::label::{self, COLD_LOAD_FACTOR, Cars, Cycles, Figures};
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
@@ -9,7 +10,6 @@ use cvtcycle::output::number::fixed;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::SCHEMA;
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::study::label::{self, COLD_LOAD_FACTOR, Cars, Cycles, Figures};
 use serde::Serialize;
 
 use super::{Execute, threads};

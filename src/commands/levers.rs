@@ -1,11 +1,11 @@
 //! `levers`: changes of a design next to the car as it is.
 
 use clap::Args;
+use cvtcycle::analysis::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::study::Study;
-use cvtcycle::study::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::plan::{MAX_SAMPLES, Plan};
 
 use super::Execute;

@@ -1,6 +1,7 @@
 //! `list`: what is built in.
 
 use clap::{Args, ValueEnum};
+use cvtcycle::analysis::levers::{Lever, LeverFile};
 use cvtcycle::config::Problems;
 use cvtcycle::config::csv::UNITS;
 use cvtcycle::config::cycle::{self, Cycle};
@@ -10,7 +11,6 @@ use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::model::keys::stem;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::{TextColumns, paragraphs};
-use cvtcycle::study::levers::{Lever, LeverFile};
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 

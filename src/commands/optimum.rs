@@ -6,6 +6,7 @@ mod tables;
 use std::path::Path;
 
 use clap::Args;
+use cvtcycle::analysis::optimum::{self, Answer, LawCar, NoAnswer, Question, ReadFrom};
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, Options, Setup};
@@ -16,7 +17,6 @@ use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, StartWord};
-use cvtcycle::study::optimum::{self, Answer, LawCar, NoAnswer, Question, ReadFrom};
 use serde::Serialize;
 
 use super::{Execute, threads, vehicles};

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use cvtcycle::report::document::Document;
-use cvtcycle::report::live::{LiveSection, of_dir};
 use cvtcycle::report::report;
+use cvtcycle::report::whatif::{LiveSection, of_dir};
 use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};

@@ -9,16 +9,16 @@ pub use tables::failures;
 use std::ops::RangeInclusive;
 
 use clap::Args;
+use cvtcycle::analysis::run::{RunQuestion, summary};
+use cvtcycle::analysis::words::drawn::{differences, prepare};
 use cvtcycle::config::Problems;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{StartWord, name_run};
-use cvtcycle::study::check::published;
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
-use cvtcycle::study::run::{RunQuestion, summary};
-use cvtcycle::study::words::drawn::{differences, prepare};
+use cvtcycle::validate::published;
 
 use super::threads::at_once;
 use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles, RunVehicle};

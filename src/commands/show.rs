@@ -6,9 +6,9 @@ use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
+use cvtcycle::explain::key_json;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
-use cvtcycle::study::explain::key_json;
 use serde_json::{Value, json};
 
 use super::Execute;

@@ -7,7 +7,7 @@ use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation::page;
-use cvtcycle::study::check::{
+use cvtcycle::validate::{
     CandidateVehicle, MECHANISMS, Perturbations, PowerReport, Report, RowFile, ValidationRow, csv,
     files, json, judge, markdown,
 };

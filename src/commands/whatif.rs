@@ -7,7 +7,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::report::document::Document;
-use cvtcycle::report::live::{LiveSection, Scene, State};
+use cvtcycle::report::whatif::{LiveSection, Scene, State};
 use cvtcycle::report::write::{Form, Target};
 
 use super::Execute;

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cvtcycle::study;
+use cvtcycle::output;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Ending;
@@ -133,7 +133,7 @@ fn style(template: &str) -> ProgressStyle {
     )
 }
 
-impl study::Progress for Progress {
+impl output::progress::Progress for Progress {
     fn advance(&self, count: u64) {
         let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
         self.show(count, done);

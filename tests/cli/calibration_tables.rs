@@ -1,6 +1,6 @@
 //! Tables and failures of made-up outcomes.
 
-use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 use super::{date, failures, tables};
 use crate::print::Terminal;

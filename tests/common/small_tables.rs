@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use cvtcycle::study::check::expr::{Names, Table, Tables};
+use cvtcycle::validate::expr::{Names, Table, Tables};
 
 pub struct SmallTables {
     keys: Vec<String>,

@@ -3,6 +3,8 @@
 //! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
 //! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
 
+use cvtcycle::analysis::levers::{Combine, Lever, LeverFile, LeverRequest, prepare};
+use cvtcycle::calibrate;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, Options};
@@ -10,10 +12,8 @@ use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader, r
 use cvtcycle::output::History;
 use cvtcycle::report::cover::Cover;
 use cvtcycle::study::Study;
-use cvtcycle::study::check;
-use cvtcycle::study::fit;
-use cvtcycle::study::levers::{Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::plan::Plan;
+use cvtcycle::validate;
 
 use super::calibration;
 
@@ -48,7 +48,7 @@ pub fn message(kind: &str, case: &str) -> String {
         return calibration::ran(case);
     }
     let problems = match kind {
-        "calibration" => fit::open(case).err(),
+        "calibration" => calibrate::open(case).err(),
         "calibration_points" | "calibration_trace" | "calibration_scalars" => {
             calibration::data(kind, case)
         }
@@ -111,8 +111,8 @@ fn rows(case: &str, bytes: &[u8]) -> Option<Problems> {
         Ok(text) => text,
         Err(problems) => return Some(problems),
     };
-    check::read(
-        ("embedded:common.toml", check::COMMON.1),
+    validate::read(
+        ("embedded:common.toml", validate::COMMON.1),
         &[(case.to_owned(), text)],
     )
     .err()

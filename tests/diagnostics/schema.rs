@@ -2,15 +2,15 @@
 //!
 //! Truth: the rules of JSON Schema draft 07 for the words that the schemas use, written here; any other
 //! word fails the test. `tools/schema_check` does the same with an independent validator.
+use cvtcycle::analysis::levers::keys::LEVER_FILE;
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::schema;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::model::files;
 use cvtcycle::model::keys::Table;
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{COMMON, embedded_rows};
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
+use cvtcycle::validate::keys::VALIDATION;
+use cvtcycle::validate::{COMMON, embedded_rows};
 use serde_json::{Value, json};
 
 /// Where and why a value is not valid.

@@ -28,32 +28,31 @@ const OUTSIDE: &[(&str, &str)] = &[
         "names given to options: only this module, see INSIDE",
     ),
     ("cvtcycle", "options, words of the command line, output"),
-    ("live", "pages that the program wrote: tools/browser"),
     ("output::file", "output"),
     ("output::files", "output"),
     ("python", "arguments of Python: crates/python/tests"),
     ("report::compare", "directories that the program wrote"),
     (
-        "report::live",
+        "report::whatif",
         "pages and records that the program wrote: tools/browser",
     ),
     ("report::problems", "directories that the program wrote"),
     ("report::results", "directories that the program wrote"),
     (
-        "study::check::judge",
+        "validate::judge",
         "found by computing only: tests/results/validate.rs",
     ),
-    ("study::explain", "words given to options: tests/cli"),
     (
         "study::family",
         "arguments of a call: crates/python/tests/test_family.py",
     ),
     (
-        "study::levers::combine",
+        "analysis::levers::combine",
         "names given to options: tests/studies/levers.rs",
     ),
-    ("study::levers::answer", "tables that the program wrote"),
+    ("analysis::levers::answer", "tables that the program wrote"),
     ("study::store", "files that the program wrote"),
+    ("whatif", "pages that the program wrote: tools/browser"),
 ];
 
 /// Submodules of those above that read input files.

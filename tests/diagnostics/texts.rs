@@ -69,7 +69,7 @@ fn names_an_option(line: &&str) -> bool {
 fn no_text_of_the_library_names_an_option() {
     // The command that a page offers to copy is a result.
     let of_library =
-        |module: &str| !module.starts_with("cvtcycle") && module != "report::live::command";
+        |module: &str| !module.starts_with("cvtcycle") && module != "report::whatif::command";
     let mut wrong = Vec::new();
     for source in sources().iter().filter(|source| of_library(&source.module)) {
         let lines = source.code.lines().filter(names_an_option);

@@ -355,7 +355,7 @@ fn titles_are_those_of_the_tables(out: &Path) {
         (least, values.iter().copied().fold(0.0, f64::max))
     };
     let (least, most) = ends(&low(out, "steady.csv", "torque_loss_nm"));
-    let rows = cvtcycle::study::check::with_ids(&["5.04a", "5.04b"]);
+    let rows = cvtcycle::validate::with_ids(&["5.04a", "5.04b"]);
     let printed: Vec<&str> = rows.iter().map(|row| row.printed_text.as_str()).collect();
     assert_eq!(printed, ["8.5 Nm", "13 Nm"]);
     let said = format!(

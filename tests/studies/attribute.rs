@@ -1,12 +1,12 @@
 //! Prices of losses: differences of runs, sums, signs with their causes, threads.
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::config::Override;
 use cvtcycle::config::cycle::{Cycle, embedded};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::output::Component;
 use cvtcycle::output::summary::{Driven, PriceSummary, RunSummary, Settings, run_summary};
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 
 const CVT: &str = "rover_216_cvt";
 const MANUAL: &str = "rover_216_5mt";

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeSet;
 
+use cvtcycle::calibrate::model::Model;
+use cvtcycle::calibrate::outcome::Outcome;
+use cvtcycle::calibrate::plan::{CalibrationPlan, Measured, load, read};
+use cvtcycle::calibrate::solve::Residuals;
+use cvtcycle::calibrate::{calibrate, embedded_calibrations, fitted};
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::study::NoProgress;
-use cvtcycle::study::fit::model::Model;
-use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::plan::{CalibrationPlan, Measured, load, read};
-use cvtcycle::study::fit::solve::Residuals;
-use cvtcycle::study::fit::{calibrate, embedded_calibrations, fitted};
+use cvtcycle::output::progress::NoProgress;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -429,12 +429,12 @@ fn shipped_plans_give_the_shipped_values() {
 /// A row that a shipped plan uses names the parameters that were fitted to it, and only keys that are free in a plan or given by a source.
 #[test]
 fn rows_and_plans_agree_on_what_was_fitted() {
-    let texts: Vec<(String, String)> = cvtcycle::study::check::embedded_rows()
+    let texts: Vec<(String, String)> = cvtcycle::validate::embedded_rows()
         .iter()
         .map(|(n, t)| ((*n).to_owned(), (*t).to_owned()))
         .collect();
-    let files = cvtcycle::study::check::read(cvtcycle::study::check::COMMON, &texts)
-        .expect("the shipped rows");
+    let files =
+        cvtcycle::validate::read(cvtcycle::validate::COMMON, &texts).expect("the shipped rows");
     for (name, _) in embedded_calibrations() {
         let plan = load(name).expect("a shipped plan");
         for id in &plan.rows {

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
-use cvtcycle::study::fit::plan;
+use cvtcycle::calibrate::plan;
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../docs/calibration.md");

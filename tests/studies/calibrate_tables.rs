@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use cvtcycle::study::fit::outcome::tables;
-use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+use cvtcycle::calibrate::outcome::tables;
+use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 #[path = "../fixtures/outcome.rs"]
 mod outcomes;

@@ -1,15 +1,15 @@
 //! Expressions of the validation rows, over a small table; the rule from numbers to a verdict.
 
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::bounded::SOURCE_ROWS;
 use cvtcycle::config::setup::catalogue;
-use cvtcycle::study::check::expr::{
+use cvtcycle::validate::expr::{
     Computed, FUNCTIONS, Fault, Gives, MAX_EVALUATIONS, MAX_TOKENS, REDUCTIONS, compute, parse,
 };
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{
+use cvtcycle::validate::keys::VALIDATION;
+use cvtcycle::validate::{
     COMMON, CandidateVehicle, Printed, Verdict, embedded_rows, judge, read, rule,
 };
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
 
 use crate::small_tables::SmallTables;
 

@@ -1,7 +1,7 @@
 //! Labels of the equations of model and statistics.
 
 use cvtcycle::config::setup::catalogue::known_keys;
-use cvtcycle::study::equations::{by_label, equations};
+use cvtcycle::equations::{by_label, equations};
 
 #[test]
 fn labels_are_unique() {

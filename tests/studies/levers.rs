@@ -3,18 +3,19 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cvtcycle::analysis::levers::{
+    Combine, Lever, LeverAnswer, LeverFile, LeverRequest, LeverRow, csv, lever_answer, prepare,
+};
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{Override, Problem, Problems};
 use cvtcycle::model::drive::{Start, drive, litres_per_100km};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::table::Head;
 use cvtcycle::study::execute::relative;
-use cvtcycle::study::levers::{
-    Combine, Lever, LeverAnswer, LeverFile, LeverRequest, LeverRow, csv, lever_answer, prepare,
-};
 use cvtcycle::study::plan::{Factor, Level, Plan};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::store::{Rows, Values};
-use cvtcycle::study::{NoProgress, Study, StudyManifest, StudyTable, TableSource};
+use cvtcycle::study::{Study, StudyManifest, StudyTable, TableSource};
 
 use crate::common::{at, cycle};
 use crate::parts::Shelf;

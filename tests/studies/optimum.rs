@@ -1,5 +1,8 @@
 //! The least fuel on a cycle: against every controller that drives, against brute force with the model's own steps, and its line.
 
+use cvtcycle::analysis::optimum::{
+    Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line,
+};
 use cvtcycle::config::Override;
 use cvtcycle::config::cycle::{Cycle, embedded};
 use cvtcycle::config::setup::{Options, load};
@@ -10,7 +13,6 @@ use cvtcycle::model::keys::rad_s;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::coupling::Coupling;
 use cvtcycle::model::transmission::cvt::Hold;
-use cvtcycle::study::optimum::{Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line};
 
 const DEGC: f64 = 273.15;
 

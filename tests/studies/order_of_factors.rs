@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use cvtcycle::config::{Problems, render};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Values;
-use cvtcycle::study::{End, NoProgress, Study};
+use cvtcycle::study::{End, Study};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
 

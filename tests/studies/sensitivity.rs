@@ -1,9 +1,9 @@
 //! Effect of every single value on the fuel.
 
+use cvtcycle::analysis::sensitivity::{Named, sensitivity};
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::setup::Options;
 use cvtcycle::model::drive::{Conditions, Start};
-use cvtcycle::study::sensitivity::{Named, sensitivity};
 
 /// Property: more of a loss costs fuel, less saves it, and the answer does not depend on the number of threads.
 #[test]

@@ -7,9 +7,10 @@ use std::sync::{Condvar, Mutex};
 use std::time::Duration;
 
 use cvtcycle::config::Problem;
+use cvtcycle::output::progress::{NoProgress, Progress};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::{Rows, Values};
-use cvtcycle::study::{End, NoProgress, PartWriter, Progress, Study};
+use cvtcycle::study::{End, PartWriter, Study};
 
 /// 70 points of two cars through a short cycle: 24 parts, the last one with a point, the others with three.
 fn study(keep: &str) -> Study {

@@ -9,10 +9,14 @@ use std::path::{Path, PathBuf};
 use sha2::{Digest, Sha256};
 
 /// What counts, below the root of the workspace: a file, or a folder with all files in it.
-pub const INPUTS: [&str; 22] = [
+pub const INPUTS: [&str; 28] = [
     "Cargo.lock",
     "calibrations",
     "classes",
+    "crates/analysis/Cargo.toml",
+    "crates/analysis/src",
+    "crates/calibrate/Cargo.toml",
+    "crates/calibrate/src",
     "crates/config/Cargo.toml",
     "crates/config/src",
     "crates/model/Cargo.toml",
@@ -24,6 +28,8 @@ pub const INPUTS: [&str; 22] = [
     "crates/output/src",
     "crates/study/Cargo.toml",
     "crates/study/src",
+    "crates/validate/Cargo.toml",
+    "crates/validate/src",
     "cycles",
     "intervals",
     "levers",

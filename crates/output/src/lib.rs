@@ -9,6 +9,7 @@ pub mod loss_forms;
 pub mod loss_table;
 pub mod losses;
 pub mod number;
+pub mod progress;
 pub mod provenance;
 pub mod record;
 pub mod rig;

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use cvtcycle::config::setup::template::VehicleTemplate;
 use cvtcycle::config::setup::{self, Disk, NamedBy, Options, Setup, baseline_of};
 use cvtcycle::config::{Override, Problem, Problems};
+use cvtcycle::explain::key_json;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::study::explain::key_json;
 use pyo3::prelude::*;
 use serde_json::Value;
 

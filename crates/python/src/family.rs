@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use cvtcycle::model::drive::MOST_TOGETHER;
-use cvtcycle::study::Progress;
+use cvtcycle::output::progress::Progress;
 use cvtcycle::study::family::{Family as CoreFamily, FamilyPoint};
 use pyo3::prelude::*;
 use rayon::prelude::*;

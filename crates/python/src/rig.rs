@@ -4,8 +4,8 @@ use cvtcycle::config::{Problem, Problems, unit_of};
 use cvtcycle::model::bench::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::losses::{Axis, LossRow, MAX_POINTS, columns};
-use cvtcycle::study::Progress;
-use cvtcycle::study::points::{self, Job, Model, Point, Solved, Take, output_columns};
+use cvtcycle::output::progress::Progress;
+use cvtcycle::validate::belt::{Job, Model, Point, Solved, Take, output_columns};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -171,7 +171,7 @@ pub fn belt(
             formulation,
             rows: &mut kept,
         };
-        points::read(&name, text.as_slice(), job).map(|_| kept)
+        cvtcycle::validate::belt::read(&name, text.as_slice(), job).map(|_| kept)
     };
     let kept = job(py, Some(1), Interrupted::IsLeft, solve)?.map_err(refused)?;
     let columns = output_columns(kept.with_case);

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use cvtcycle::analysis::run::{RunQuestion, summary};
+use cvtcycle::analysis::sensitivity::Named;
 use cvtcycle::config::bounded::kept_steps;
 use cvtcycle::config::cycle::Cycle as CoreCycle;
 use cvtcycle::config::setup::{AMBIENT, Options, START, STEP, Setup};
@@ -19,8 +21,6 @@ use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::report::report;
 use cvtcycle::report::run_files::{self, TraceFormat};
 use cvtcycle::report::write::{Form, Target};
-use cvtcycle::study::run::{RunQuestion, summary};
-use cvtcycle::study::sensitivity::Named;
 use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
 

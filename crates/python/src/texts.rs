@@ -1,19 +1,19 @@
 //! Validation, calibration, explanations and schemas: the JSON that the program prints.
 
+use cvtcycle::analysis::levers::keys::LEVER_FILE;
+use cvtcycle::calibrate::MAX_STARTS;
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{
     Argument, Override, Problem, Problems, bounded, cycle, decode, schema as of,
 };
+use cvtcycle::explain::Meanings;
 use cvtcycle::model::files;
 use cvtcycle::output::BUILD;
 use cvtcycle::output::escape::json_text as text;
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{self, CandidateVehicle, ValidationRow, json};
-use cvtcycle::study::explain::Meanings;
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::fit::{self, MAX_STARTS};
-use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
+use cvtcycle::validate::keys::VALIDATION;
+use cvtcycle::validate::{CandidateVehicle, ValidationRow, json};
 use pyo3::prelude::*;
 
 use crate::errors::{bad, refused};
@@ -94,7 +94,7 @@ pub fn validate(
             Ok((path.clone(), decode(path, &bytes)?))
         };
         let own: Vec<_> = rows.iter().map(own).collect::<Result<_, _>>()?;
-        let files = check::files(&own, embedded)?;
+        let files = cvtcycle::validate::files(&own, embedded)?;
         let is_wanted = |row: &ValidationRow| {
             let is_it = |chapter: &String| chapter.eq_ignore_ascii_case(&row.chapter);
             chapter.as_ref().is_none_or(is_it)
@@ -110,7 +110,9 @@ pub fn validate(
             set,
             ..CandidateVehicle::default()
         };
-        text(&json(&check::judge(&files, &candidate, is_wanted)?))
+        text(&json(&cvtcycle::validate::judge(
+            &files, &candidate, is_wanted,
+        )?))
     };
     job(py, None, Interrupted::IsLeft, compare)?.map_err(refused)
 }
@@ -135,11 +137,11 @@ pub fn calibrate(
         ));
     }
     let search = move |stop: &Stop| -> Result<String, Problems> {
-        let mut plan = fit::open(&plan)?;
+        let mut plan = cvtcycle::calibrate::open(&plan)?;
         plan.search.starts = starts.map_or(plan.search.starts, |n| n as usize);
         plan.search.seed = seed.unwrap_or(plan.search.seed);
         plan.leave_out &= folds;
-        text(&fit::calibrate(&plan, stop)?)
+        text(&cvtcycle::calibrate::calibrate(&plan, stop)?)
     };
     job(py, threads, Interrupted::Ends, search)?.map_err(refused)
 }

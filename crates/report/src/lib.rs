@@ -10,7 +10,7 @@
 //! | `study::levers` | the sections on a study of levers |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
-//! | `live` | a page that can be driven again |
+//! | `whatif` | a page that can be driven again |
 //! | `live_section` | what such a page shows: levers, states, answers |
 //! | `run_files` | the files of a run, of which a report is made |
 //! | `write` | the files of a report |
@@ -22,7 +22,7 @@ pub mod charts;
 pub mod compare;
 pub mod cover;
 pub mod document;
-pub mod live;
+pub mod whatif;
 mod live_section;
 pub mod results;
 pub mod number;

@@ -5,6 +5,7 @@ use std::slice::from_ref;
 
 use rayon::prelude::*;
 
+use cvtcycle_analysis::sensitivity::{Named, sensitivity};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::{Problem, Problems};
@@ -15,7 +16,6 @@ use cvtcycle_output::provenance::{car_record, cycle_record};
 use cvtcycle_output::record::{Manifest, Record, SCHEMA};
 use cvtcycle_output::summary::{Driven, Summary};
 use cvtcycle_output::trace::{columns_for, write_trace};
-use cvtcycle_study::sensitivity::{Named, sensitivity};
 use cvtcycle_study::store::write_trace_parquet;
 
 use crate::charts::{self, Picture, PlotRun};

@@ -4,9 +4,9 @@ use serde_json::Value;
 
 use super::number::degc;
 use super::results::StudyResults;
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, answer_in_words, lever_answer};
+use cvtcycle_analysis::words::study::sentences;
 use cvtcycle_output::summary::Summary;
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, answer_in_words, lever_answer};
-use cvtcycle_study::words::study::sentences;
 
 /// Differences between the cases of a study and of a run; none if they are the same.
 ///

@@ -9,12 +9,12 @@ use crate::charts::study::{
 };
 use crate::document::plain;
 use crate::results::StudyResults;
+use cvtcycle_analysis::levers::LeverAnswer;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_output::escape::json_text;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{Column, OutputAnswer, described, tables};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
-use cvtcycle_study::levers::LeverAnswer;
 use cvtcycle_study::statistics::{Confidence, Groups};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 

@@ -8,10 +8,10 @@ use super::charts::decision::{CheckedNumber, agreement};
 use super::document::{ReportTable, Section};
 use cvtcycle_config::Override;
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::check::expr::short;
-use cvtcycle_study::check::judge::{Judged, Report};
-use cvtcycle_study::check::report::{Counts, computed_text, notes, unit_text};
-use cvtcycle_study::check::rule::{Group, Verdict};
+use cvtcycle_validate::expr::short;
+use cvtcycle_validate::judge::{Judged, Report};
+use cvtcycle_validate::report::{Counts, computed_text, notes, unit_text};
+use cvtcycle_validate::rule::{Group, Verdict};
 
 /// Counts of the verdicts in words.
 fn counts_in_words(counts: &Value) -> String {

@@ -1,10 +1,10 @@
 //! The prices as tables.
 
+use cvtcycle::analysis::attribute::answer;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::summary::{PriceSummary, RunSummary, Saving, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::study::attribute::answer;
 
 use super::AttributionSummary;
 use crate::print::colour::Paint;

@@ -6,7 +6,7 @@ use cvtcycle::config::{Problem, Problems};
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::number::push_exact;
 use cvtcycle::output::table::{Cell, Column, json_row};
-use cvtcycle::study::points::{OUTPUTS, Point, Solved, Take, output_columns};
+use cvtcycle::validate::belt::{OUTPUTS, Point, Solved, Take, output_columns};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use crate::args::problems::problem;

@@ -1,8 +1,8 @@
 //! A calibration as tables: errors first, then the numbers behind them.
 
+use cvtcycle::calibrate::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 use cvtcycle::output::number::{NONE, fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct, paragraphs, wrapped};
-use cvtcycle::study::fit::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 
 use crate::print::colour::Paint;
 use crate::print::sections;

@@ -3,12 +3,12 @@
 use super::OptimumArgs;
 use crate::args::problems::bad_value;
 use crate::args::{count, number};
+use cvtcycle::analysis::optimum::{Infeasible, LimitName, Unheld};
 use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problems};
 use cvtcycle::model::keys::rpm;
 use cvtcycle::output::Row;
 use cvtcycle::output::number::fixed;
-use cvtcycle::study::optimum::{Infeasible, LimitName, Unheld};
 use serde::Serialize;
 
 /// Allowed least engine speed, rpm.

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use cvtcycle::analysis::optimum::LawBound;
 use cvtcycle::config::Problem;
 use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
@@ -10,7 +11,6 @@ use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::summary::StartWord;
 use cvtcycle::output::table::{Column, TextTable, wrapped, write_csv};
 use cvtcycle::output::{Row, columns};
-use cvtcycle::study::optimum::LawBound;
 
 use super::OptimumSummary;
 use crate::print::colour::Paint;

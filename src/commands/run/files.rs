@@ -2,12 +2,12 @@
 
 use std::ffi::OsString;
 
+use cvtcycle::analysis::sensitivity::Named;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::Conditions;
 use cvtcycle::output::record::Record;
 use cvtcycle::report::run_files;
-use cvtcycle::study::sensitivity::Named;
 
 use crate::commands::program::words;
 use crate::commands::vehicles::RunVehicle;

@@ -1,11 +1,11 @@
 //! The summary of a run as tables.
 
+use cvtcycle::analysis::words::run::sentences;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, paragraphs, wrapped};
-use cvtcycle::study::words::run::sentences;
 
 use super::losses::{loss_words, priced_losses};
 use crate::print::colour::Paint;

@@ -2,9 +2,9 @@
 
 mod tables;
 
+use cvtcycle::analysis::levers::{LeverAnswer, csv, lever_answer};
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::study_pictures::lever_pictures;
-use cvtcycle::study::levers::{LeverAnswer, csv, lever_answer};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::{StudyManifest, StudyTable, store};
 

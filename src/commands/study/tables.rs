@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use cvtcycle::analysis::words::study::sentences;
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::ambient::Matrix;
 use cvtcycle::study::answer::{Ended, OutputAnswer};
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{Summary, of_hundred};
-use cvtcycle::study::words::study::sentences;
 use cvtcycle::study::{Answer, StudyManifest};
 
 use super::effects::factors;

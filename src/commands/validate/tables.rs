@@ -2,7 +2,7 @@
 
 use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
 use cvtcycle::report::validation::chapter_title;
-use cvtcycle::study::check::{
+use cvtcycle::validate::{
     Group, Judged, PowerReport, Report, RowPower, Strength, Verdict, computed_text, notes_line,
     unit_text,
 };

@@ -65,7 +65,7 @@ fn what_it_refuses() {
         (vec!["--fmi", "1"], "one of 2, 3"),
         (
             vec!["--library", "none.so"],
-            "cargo build --release -p cvtcycle-fmu",
+            "cargo build --release -p cvtcycle-fmu-library",
         ),
         (vec!["--library", "text.so"], "no such library"),
         (

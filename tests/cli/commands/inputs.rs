@@ -137,7 +137,7 @@ fn explain_knows_the_terms_of_the_field_and_the_summary() {
         );
     }
     // Every name of the table is explained.
-    let table = include_str!("../../../crates/study/src/explain/terms.txt");
+    let table = include_str!("../../../src/explain/terms.txt");
     for line in table.lines() {
         let (terms, names) = line.split_once(':').unwrap();
         let term = terms.split(',').next().unwrap();

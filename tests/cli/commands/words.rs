@@ -1,13 +1,11 @@
 //! The first lines of a run: published numbers that it contradicts, and how sure its differences are.
 
 use super::*;
+use cvtcycle::analysis::words::drawn::prepare;
+use cvtcycle::analysis::words::intervals::{CASES, draw, line};
 use cvtcycle::config::Override;
-use cvtcycle::study::check::{
-    COMMON, CandidateVehicle, Computed, Verdict, embedded_rows, judge, read,
-};
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::words::drawn::prepare;
-use cvtcycle::study::words::intervals::{CASES, draw, line};
+use cvtcycle::validate::{COMMON, CandidateVehicle, Computed, Verdict, embedded_rows, judge, read};
 
 /// The words of a run of a case, without prices.
 fn of_case<'a>(cars: &[&'a str], cycle: &'a str, ambient: &'a str, start: &'a str) -> Vec<&'a str> {

@@ -2,12 +2,12 @@
 
 use super::svg_checks::{check, numbers};
 use crate::titles::{is, number, title, written};
+use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::calibration::{
     calibration_pictures, correlation_plot, parameters_plot, residuals_plot, scatter_plot,
     trace_plots,
 };
-use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 #[path = "../../fixtures/outcome.rs"]
 mod outcomes;

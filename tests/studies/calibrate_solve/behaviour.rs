@@ -2,10 +2,10 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cvtcycle::study::fit::solve::{
+use cvtcycle::calibrate::solve::{
     Fit, FitEnd, Options, Residuals, fit, leave_out, not_identified, uncertainty,
 };
-use cvtcycle::study::{NoProgress, Progress};
+use cvtcycle::output::progress::{NoProgress, Progress};
 
 use super::{Model, ONCE, curve, fitted, near, parameter};
 
@@ -122,7 +122,7 @@ fn answers_that_are_no_numbers_and_parameters_that_are_none() {
         parameter("a", f64::NAN, [2.0, 1.0]),
         parameter("b", 1.0, [0.0, f64::INFINITY]),
     ];
-    bad[1].prior = Some(cvtcycle::study::fit::solve::Prior { mean: 1.0, sd: 0.0 });
+    bad[1].prior = Some(cvtcycle::calibrate::solve::Prior { mean: 1.0, sd: 0.0 });
     assert_eq!(
         fit(&short, &bad, &ONCE, &NoProgress)
             .expect_err("bad")

@@ -5,8 +5,8 @@ mod nist;
 mod unidentified;
 mod worth;
 
-use cvtcycle::study::NoProgress;
-use cvtcycle::study::fit::solve::{Fit, Options, Parameter, Prior, Residuals, fit};
+use cvtcycle::calibrate::solve::{Fit, Options, Parameter, Prior, Residuals, fit};
+use cvtcycle::output::progress::NoProgress;
 
 /// A model that is a function.
 struct Model<F>(usize, F);

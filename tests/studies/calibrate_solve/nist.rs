@@ -1,7 +1,7 @@
 //! Statistical Reference Datasets of NIST, nonlinear regression (<https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml>, public domain): data,
 //! starts, certified values and certified standard deviations. These are scaled by the residual standard deviation, so it is the data's here.
 
-use cvtcycle::study::fit::solve::{FitEnd, uncertainty};
+use cvtcycle::calibrate::solve::{FitEnd, uncertainty};
 
 use super::{curve, fitted, near, parameter};
 

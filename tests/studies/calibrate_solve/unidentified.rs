@@ -1,6 +1,6 @@
 //! Set-ups that the data do not identify are called so, with a solver's noise in the model.
 
-use cvtcycle::study::fit::solve::{FitEnd, Parameter, Residuals, not_identified, uncertainty};
+use cvtcycle::calibrate::solve::{FitEnd, Parameter, Residuals, not_identified, uncertainty};
 
 use super::{Model, fitted, parameter, with_prior};
 

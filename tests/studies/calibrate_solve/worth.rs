@@ -1,6 +1,6 @@
 //! Bounds, priors and intervals against closed forms and counting.
 
-use cvtcycle::study::fit::solve::{Bound, FitEnd, uncertainty};
+use cvtcycle::calibrate::solve::{Bound, FitEnd, uncertainty};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, Normal};

@@ -9,7 +9,7 @@ use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use cvtcycle::study::equations::{Equation, by_label, equations};
+use cvtcycle::equations::{Equation, by_label, equations};
 
 use cvtcycle_book::figures::tables::{keys, labelled};
 use cvtcycle_book::figures::{PAGES, files};
@@ -62,7 +62,7 @@ fn words(status: &str) -> Vec<&'static str> {
 
 /// Equations that have a page: those of the fit are in `docs/calibration.md` in words.
 fn in_book() -> impl Iterator<Item = Equation> {
-    equations().filter(|equation| !equation.module.starts_with("study::fit"))
+    equations().filter(|equation| !equation.module.starts_with("calibrate"))
 }
 
 #[test]

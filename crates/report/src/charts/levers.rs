@@ -6,7 +6,7 @@ use super::engine::{
 };
 use super::picture::{Picture, PictureTable};
 use crate::number::{capital_first, degc};
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
 
 /// Right edge of the plot with room for the counts, left edge of what lies below it, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 96.0;

@@ -3,7 +3,7 @@
 use super::lines::PrintedMark;
 use cvtcycle_model::bench::transmission::Piece;
 use cvtcycle_output::summary::{StartWord, Summary};
-use cvtcycle_study::check::{Printed, ValidationRow, with_ids};
+use cvtcycle_validate::{Printed, ValidationRow, with_ids};
 
 /// The car whose box and belt were on the rigs, and which drove the cycles.
 pub(crate) const THESIS_CAR: &str = "rover_216_cvt";

@@ -7,11 +7,11 @@ use super::super::{study, study_answers, validation};
 use super::{Car, conditions_line, cycle_title, doubts};
 use crate::charts::decision::{Against, against, answer_strip, level};
 use crate::charts::{foremost_levers, lever_title, saves};
+use cvtcycle_analysis::attribute;
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
+use cvtcycle_analysis::words::decimals;
+use cvtcycle_analysis::words::run::contradictions;
 use cvtcycle_output::summary::{Comparison, Contradiction, RunSummary, Summary};
-use cvtcycle_study::attribute;
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_study::words::decimals;
-use cvtcycle_study::words::run::contradictions;
 
 /// Levers on page 1, and among the decisions, at most.
 const OPTIONS: (usize, usize) = (6, 2);

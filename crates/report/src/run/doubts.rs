@@ -5,8 +5,8 @@ use super::super::number::{Quantity, capital_first, grouped, list_of, percent, p
 use super::super::results::{RunResults, StudyResults};
 use super::super::{study_answers, validation};
 use super::{Car, energy};
+use cvtcycle_analysis::words::run::{intervals, maps_left};
 use cvtcycle_output::summary::{RunSummary, Summary};
-use cvtcycle_study::words::run::{intervals, maps_left};
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("results", "Results, and what to doubt");

@@ -1,9 +1,9 @@
 //! The results of a study of levers: as a section of a run's report, or as a report of its own.
 
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
+use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
 use cvtcycle_study::execute::side_effects::{FLOOR, LUGGING};
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
-use cvtcycle_study::words::decimals;
 
 use super::conditions::{conditions, reproduce};
 use super::{ended_badly, unfinished};

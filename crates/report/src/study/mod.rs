@@ -13,12 +13,12 @@ use crate::number::{Quantity, degc, grouped, phase, sign, words};
 use crate::results::StudyResults;
 use crate::study_answers::answers;
 use crate::study_pictures::study_pictures;
+use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
 use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::answer::{Ended, Information, KnownFactor};
 use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::of_hundred;
-use cvtcycle_study::words::decimals;
 
 /// The study as a section of a report; `known` are numbers of its differences that are none of its runs, by baseline.
 ///

@@ -18,7 +18,7 @@ pub mod side_effects;
 
 pub use cars::{Column, StudyCar};
 pub use manifest::StudyManifest;
-pub(crate) use notes::idle;
+pub use notes::idle;
 pub use pilot::Pilot;
 pub(crate) use point::{reason, status};
 pub use prepare::{Columns, Study};
@@ -30,12 +30,12 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ScopedJoinHandle};
 
-use crate::Progress;
 use crate::plan::{Factor, FactorValue, FactorValues, STUDY};
 use crate::store::{PartTable, Rows, StudyDir, TRACE_ROWS};
 use cvtcycle_config::bounded::{CELLS, kept_steps};
 use cvtcycle_config::{Place, Problem};
 use cvtcycle_model::drive::MOST_TOGETHER;
+use cvtcycle_output::progress::Progress;
 use manifest::{RUNS, TRACES};
 use point::Worker;
 use rows::{Filler, Traces};
@@ -417,8 +417,8 @@ impl<'s> Queue<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::NoProgress;
     use crate::plan::Plan;
+    use cvtcycle_output::progress::NoProgress;
 
     /// Keeps the rows of every part in words: a missing number is equal to another.
     #[derive(Default)]

@@ -139,7 +139,7 @@ struct Ready {
 
 impl Study {
     /// A number of each car at the first point, with whether its run is fine; NaN where there is none.
-    pub(crate) fn first_point(&self, output: &str) -> Vec<(f64, bool)> {
+    pub fn first_point(&self, output: &str) -> Vec<(f64, bool)> {
         let at = self.outputs.iter().position(|column| column.name == output);
         let runs = self.point(0);
         let number = |run: PointRun| {
@@ -150,7 +150,7 @@ impl Study {
     }
 
     /// Factors of a car with draws outside the range of their keys, and their numbers of such draws.
-    pub(crate) fn held(&self, car: &StudyCar) -> Vec<(usize, usize)> {
+    pub fn held(&self, car: &StudyCar) -> Vec<(usize, usize)> {
         let Plan {
             factors, design, ..
         } = &self.plan;

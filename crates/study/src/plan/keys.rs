@@ -137,7 +137,8 @@ const ACTS: &[Choice] = &[
     Choice::word("offset", "it is added to the value"),
 ];
 
-pub(crate) const STATUSES: &[Choice] = &[
+/// Words of the status of a value in a plan.
+pub const STATUSES: &[Choice] = &[
     Choice::word("source", "a reference states them"),
     Choice::word("derived", "computed from known values"),
     Choice::word("fitted", "fitted to measurements"),
@@ -221,7 +222,8 @@ fn vehicles() -> String {
     )
 }
 
-pub(crate) fn lubricants() -> String {
+/// Lubricants that a plan or a lever can name, for messages.
+pub fn lubricants() -> String {
     format!(
         "{}, or the path of a TOML file",
         File::Lubricant.names().join(", ")

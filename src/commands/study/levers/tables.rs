@@ -1,10 +1,10 @@
 //! What the levers save, as tables.
 
+use cvtcycle::analysis::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words};
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
 use cvtcycle::study::answer::Ended;
 use cvtcycle::study::execute::side_effects::{FLOOR, LUGGING};
-use cvtcycle::study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words};
 
 use super::super::tables::MAX_REASONS;
 use crate::print::colour::Paint;

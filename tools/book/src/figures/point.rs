@@ -3,7 +3,7 @@
 use super::reference::Reference;
 use cvtcycle::config::{Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::study::points::{Job, Model, OUTPUTS, Solved, Take, read};
+use cvtcycle::validate::belt::{Job, Model, OUTPUTS, Solved, Take, read};
 
 /// Columns of the table that `cvtcycle belt` reads.
 pub const HEAD: &str = "ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm";

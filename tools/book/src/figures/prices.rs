@@ -1,5 +1,6 @@
 //! What each loss of the CVT costs, warm and cold: a picture and a table.
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, load};
@@ -8,7 +9,6 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::summary::{Driven, RunSummary, Settings, run_summary};
 use cvtcycle::report::charts::price_bars;
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use std::fmt::Write as _;
 
 const CAR: &str = "rover_216_cvt";

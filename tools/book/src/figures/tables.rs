@@ -4,7 +4,7 @@ use super::{PAGES, Page};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{KeyInfo, render};
-use cvtcycle::study::equations::by_label;
+use cvtcycle::equations::by_label;
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -9,7 +9,7 @@ use cvtcycle::model::transmission::cvt::variator::point::belt_point;
 use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_capacity_nm, belt_losses, belt_state,
 };
-use cvtcycle::study::points::NUMBERS;
+use cvtcycle::validate::belt::NUMBERS;
 
 use super::csv::table_of_points;
 use super::range::range;

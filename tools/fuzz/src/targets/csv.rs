@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use cvtcycle::calibrate::data::{self, Form};
 use cvtcycle::config::bounded::ReadError;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{Format, read_columns, read_csv, write};
@@ -10,8 +11,7 @@ use cvtcycle::config::{Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::model::transmission::cvt::variator::point::PointStatus;
 use cvtcycle::output::History;
-use cvtcycle::study::fit::data::{self, Form};
-use cvtcycle::study::points::{self, Job, Model, Solved, Take};
+use cvtcycle::validate::belt::{self, Job, Model, Solved, Take};
 
 use super::within_memory;
 
@@ -183,7 +183,7 @@ pub fn table_of_points(text: &[u8], formulation: Formulation) {
             formulation,
             rows: &mut look,
         };
-        checked(points::read("fuzz.csv", text, job))
+        checked(belt::read("fuzz.csv", text, job))
     });
 }
 

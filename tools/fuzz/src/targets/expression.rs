@@ -1,6 +1,6 @@
 //! Expressions of rows and calibrations, over two small tables.
 
-use cvtcycle::study::check::expr::{Computed, compute, parse};
+use cvtcycle::validate::expr::{Computed, compute, parse};
 
 use super::small_tables::SmallTables;
 use super::within_memory;

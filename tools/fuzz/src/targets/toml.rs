@@ -2,14 +2,14 @@
 
 use std::sync::OnceLock;
 
+use cvtcycle::analysis::levers::LeverFile;
+use cvtcycle::calibrate::{embedded_calibrations, plan as calibration};
 use cvtcycle::config::setup::new_car::{self, Answers};
 use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
 use cvtcycle::config::{Override, Problems, decode, render};
 use cvtcycle::report::cover::Cover;
-use cvtcycle::study::check::{self, COMMON, embedded_rows};
-use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
-use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::{Plan, embedded_plans};
+use cvtcycle::validate::{self, COMMON, embedded_rows};
 
 use super::{edits, within_memory};
 
@@ -100,7 +100,7 @@ pub fn rows(data: &[u8]) {
     static SHIPPED: Texts = OnceLock::new();
     let text = edits::text(data, texts(&SHIPPED, embedded_rows()));
     read(&text, |text| {
-        check::read(COMMON, &[("fuzz.toml".to_owned(), text.to_owned())])
+        validate::read(COMMON, &[("fuzz.toml".to_owned(), text.to_owned())])
     });
 }
 

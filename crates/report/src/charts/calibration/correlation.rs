@@ -6,7 +6,7 @@ use crate::charts::engine::{
     optional_cell, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::fit::outcome::Outcome;
+use cvtcycle_calibrate::outcome::Outcome;
 
 /// Most parameters that are drawn: more could not be read.
 const MAX_DRAWN: usize = 50;

@@ -9,8 +9,8 @@ mod trace;
 use super::engine::{PLOT_LEFT, Symbol, WIDTH, optional_cell, round_step};
 use super::picture::Picture;
 use crate::number::sign;
+use cvtcycle_calibrate::outcome::{Outcome, Residual};
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 pub use correlation::correlation_plot;
 pub use parameters::parameters_plot;

@@ -7,7 +7,7 @@ use crate::charts::engine::{
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::charts::study::value;
-use cvtcycle_study::fit::outcome::{Outcome, Parameter};
+use cvtcycle_calibrate::outcome::{Outcome, Parameter};
 
 const ROW: f64 = 32.0;
 /// Room for names on the left and for numbers on the right, pixels.

@@ -9,7 +9,7 @@ use crate::charts::engine::{
     optional_cell, range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
+use cvtcycle_calibrate::outcome::{Outcome, Residual};
 
 /// Residuals within so many standard deviations are no surprise.
 const BAND: f64 = 2.0;

@@ -9,8 +9,8 @@ use crate::charts::engine::{
     range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use cvtcycle_calibrate::outcome::{Outcome, Residual};
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 /// Most panels: more do not fit on a page.
 const MAX_PANELS: usize = 8;

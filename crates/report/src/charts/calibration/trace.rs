@@ -7,7 +7,7 @@ use crate::charts::engine::{
 use crate::charts::picture::{Picture, PictureTable};
 use crate::charts::study::value;
 use crate::number::words;
-use cvtcycle_study::fit::outcome::{Outcome, Residual, rms};
+use cvtcycle_calibrate::outcome::{Outcome, Residual, rms};
 
 const TALL: f64 = 330.0;
 /// Standard deviations on either side of what was measured.

@@ -1,7 +1,7 @@
 //! Titles of figures: sentences with the numbers of their table, each only where it is true.
 
 use crate::number::{grouped, list_of, signed};
-use cvtcycle_study::words::{between, decimals, more_or_less, than};
+use cvtcycle_analysis::words::{between, decimals, more_or_less, than};
 
 /// "7 % more than the baseline", with the digits that an interval leaves.
 pub fn against(percent: f64, interval: Option<[f64; 2]>, baseline: &str) -> String {

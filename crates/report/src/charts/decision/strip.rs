@@ -6,7 +6,7 @@ use crate::charts::engine::{
     optional_cell, row_middle, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::words::decimals;
+use cvtcycle_analysis::words::decimals;
 
 /// Right edge of the plot with room for the numbers in words, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 212.0;

@@ -7,8 +7,8 @@ use crate::charts::engine::{
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{list_of, phase};
+use cvtcycle_analysis::words::{more_or_less, than};
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::words::{more_or_less, than};
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 340.0;

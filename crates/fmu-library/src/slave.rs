@@ -1,0 +1,323 @@
+//! An instance as C sees it: a pointer, statuses, and the logger of the master.
+#![expect(
+    unsafe_code,
+    reason = "pointers of C are read and written, and the master's logger is called"
+)]
+
+use std::any::Any;
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::{ptr, slice};
+
+use cvtcycle_fmu::ProblemKind::{Conflict, Missing, TooLarge, WrongType};
+use cvtcycle_fmu::unit::Saved;
+use cvtcycle_fmu::{Refusal, Unit};
+
+/// Statuses: those of `fmi2Status` and `fmi3Status` have the same numbers.
+pub const OK: c_int = 0;
+pub const WARNING: c_int = 1;
+pub const ERROR: c_int = 3;
+pub const FATAL: c_int = 4;
+
+/// `fmi2CallbackLogger`.
+pub type Log2 =
+    unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
+
+/// `fmi3LogMessageCallback`.
+pub type Log3 = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
+
+/// The logger of a master, with what it wants to be given.
+#[derive(Clone, Copy)]
+pub enum Logger {
+    Fmi2(Option<Log2>, *mut c_void),
+    Fmi3(Option<Log3>, *mut c_void),
+}
+
+impl Logger {
+    /// Gives the master a message with a status.
+    pub fn log(self, name: &CStr, status: c_int, message: &str) {
+        let text = |message: &str| CString::new(message.replace('\0', " ")).unwrap_or_default();
+        let category = match status {
+            OK | WARNING => c"logStatusWarning",
+            FATAL => c"logStatusFatal",
+            _ => c"logStatusError",
+        };
+        match self {
+            Logger::Fmi2(Some(log), environment) => {
+                // The message is a format of printf.
+                let message = text(&message.replace('%', "%%"));
+                // SAFETY: the logger and its environment are those of fmi2Instantiate, valid as long as the instance; texts end with 0.
+                unsafe {
+                    log(
+                        environment,
+                        name.as_ptr(),
+                        status,
+                        category.as_ptr(),
+                        message.as_ptr(),
+                    );
+                }
+            }
+            Logger::Fmi3(Some(log), environment) => {
+                let message = text(message);
+                // SAFETY: as above, of fmi3InstantiateCoSimulation.
+                unsafe { log(environment, status, category.as_ptr(), message.as_ptr()) };
+            }
+            Logger::Fmi2(None, _) | Logger::Fmi3(None, _) => {}
+        }
+    }
+}
+
+/// An instance.
+pub struct Slave {
+    pub unit: Unit,
+    /// Start of the simulation, s, of FMI 2 and 3 given before initialization.
+    pub start_s: f64,
+    name: CString,
+    logger: Logger,
+    /// Whether a panic may have left it in pieces.
+    broken: bool,
+}
+
+/// What a master gives to make an instance.
+pub struct Wanted {
+    pub name: *const c_char,
+    pub token: *const c_char,
+    pub resources: *const c_char,
+    pub logger: Logger,
+}
+
+/// Words of a panic.
+fn words(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+    format!("defect in cvtcycle: {}", text.unwrap_or_default())
+}
+
+/// A text of C; none for a null pointer.
+pub fn text(text: *const c_char) -> Option<String> {
+    if text.is_null() {
+        return None;
+    }
+    // SAFETY: not null, and the standard has texts end with 0.
+    let text = unsafe { CStr::from_ptr(text) };
+    Some(text.to_string_lossy().into_owned())
+}
+
+/// A new instance from the folder that `folder` makes of the resources; null, with a message, where there is none.
+pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>) -> *mut c_void {
+    let name = CString::new(text(wanted.name).unwrap_or_default()).unwrap_or_default();
+    let made = catch_unwind(|| {
+        let absent = |what: &str| Refusal::new(Missing, format!("the {what} is missing"));
+        let token = text(wanted.token).ok_or_else(|| absent("token (FMI 2: GUID)"))?;
+        let resources = text(wanted.resources).ok_or_else(|| absent("path of the resources"))?;
+        Unit::open(Path::new(&folder(&resources)?), &token)
+    });
+    let refused = |status: c_int, message: &str| {
+        wanted.logger.log(&name, status, message);
+        ptr::null_mut()
+    };
+    match made {
+        Ok(Ok(unit)) => {
+            let slave = Slave {
+                unit,
+                start_s: 0.0,
+                name,
+                logger: wanted.logger,
+                broken: false,
+            };
+            Box::into_raw(Box::new(slave)).cast()
+        }
+        Ok(Err(refusal)) => refused(ERROR, &refusal.message),
+        Err(panic) => refused(FATAL, &words(&*panic)),
+    }
+}
+
+/// Calls a function of an instance; its status.
+pub fn call(instance: *mut c_void, f: impl FnOnce(&mut Slave) -> Result<(), Refusal>) -> c_int {
+    // SAFETY: null, or a pointer of `instantiate` that is not freed; the standard has one call at a time for each instance.
+    let Some(slave) = (unsafe { instance.cast::<Slave>().as_mut() }) else {
+        return ERROR;
+    };
+    if slave.broken {
+        return FATAL;
+    }
+    let (status, message) = match catch_unwind(AssertUnwindSafe(|| f(slave))) {
+        Ok(Ok(())) => return OK,
+        Ok(Err(refusal)) if refusal.warns => (WARNING, refusal.message),
+        Ok(Err(refusal)) => (ERROR, refusal.message),
+        Err(panic) => {
+            slave.broken = true;
+            (FATAL, words(&*panic))
+        }
+    };
+    slave.logger.log(&slave.name, status, &message);
+    status
+}
+
+/// Frees an instance.
+pub fn free(instance: *mut c_void) {
+    if !instance.is_null() {
+        // SAFETY: a pointer of `instantiate`, which the master gives back once.
+        let slave = unsafe { Box::from_raw(instance.cast::<Slave>()) };
+        // A panic while dropping must not pass either.
+        drop(catch_unwind(AssertUnwindSafe(|| drop(slave))));
+    }
+}
+
+/// Numbers that the master gives.
+pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
+    if count == 0 {
+        return Ok(&[]);
+    }
+    match first.is_null() {
+        true => Err(Refusal::new(Missing, "an array is missing")),
+        // SAFETY: not null; the master says that there are so many, and lends them for the call.
+        false => Ok(unsafe { slice::from_raw_parts(first, count) }),
+    }
+}
+
+/// Where the master wants numbers.
+pub fn wanted<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    match first.is_null() {
+        true => Err(Refusal::new(Missing, "an array is missing")),
+        // SAFETY: as in `given`, and the master lends them to this call alone.
+        false => Ok(unsafe { slice::from_raw_parts_mut(first, count) }),
+    }
+}
+
+/// Writes one value where the master wants it, if it does.
+pub fn put<T>(place: *mut T, value: T) {
+    if !place.is_null() {
+        // SAFETY: not null, and the master lends it for the call.
+        unsafe { place.write(value) };
+    }
+}
+
+impl Slave {
+    /// Values of variables of a type: `whole` numbers or not.
+    pub fn get<T>(
+        &mut self,
+        (references, count): (*const u32, usize),
+        (values, value_count): (*mut T, usize),
+        whole: bool,
+        of: fn(f64) -> T,
+    ) -> Result<(), Refusal> {
+        self.fits(count, value_count)?;
+        let places = wanted(values, count)?;
+        for (reference, place) in given(references, count)?.iter().zip(places) {
+            self.is_of_type(*reference, whole)?;
+            *place = of(self.unit.get(*reference)?);
+        }
+        Ok(())
+    }
+
+    /// Sets variables of a type; where one is refused, none of those after it is set.
+    pub fn set<T: Copy>(
+        &mut self,
+        (references, count): (*const u32, usize),
+        (values, value_count): (*const T, usize),
+        whole: bool,
+        of: fn(T) -> f64,
+    ) -> Result<(), Refusal> {
+        self.fits(count, value_count)?;
+        let values = given(values, count)?;
+        for (reference, value) in given(references, count)?.iter().zip(values) {
+            self.is_of_type(*reference, whole)?;
+            self.unit.set(*reference, of(*value))?;
+        }
+        Ok(())
+    }
+
+    fn fits(&self, references: usize, values: usize) -> Result<(), Refusal> {
+        match references == values {
+            true => Ok(()),
+            false => {
+                let message = format!("{references} value references and {values} values");
+                Err(Refusal::new(Conflict, message))
+            }
+        }
+    }
+
+    fn is_of_type(&self, reference: u32, whole: bool) -> Result<(), Refusal> {
+        if self.unit.is_whole(reference)? == whole {
+            return Ok(());
+        }
+        let kind = if whole { "whole" } else { "real" };
+        let message = format!("the variable with value reference {reference} is no {kind} number");
+        Err(Refusal::new(WrongType, message))
+    }
+
+    /// Saves the state at a place, where there may be one already.
+    pub fn save(&mut self, place: *mut *mut c_void) -> Result<(), Refusal> {
+        let [state] = wanted(place, 1)? else {
+            return Ok(());
+        };
+        // SAFETY: null, or a state of this function that is not freed.
+        match unsafe { state.cast::<Saved>().as_mut() } {
+            Some(saved) => *saved = self.unit.save(),
+            None => *state = Box::into_raw(Box::new(self.unit.save())).cast(),
+        }
+        Ok(())
+    }
+
+    /// A saved state.
+    pub fn saved<'a>(&self, state: *mut c_void) -> Result<&'a Saved, Refusal> {
+        // SAFETY: null, or a state of `save` that is not freed.
+        let saved = unsafe { state.cast::<Saved>().as_ref() };
+        saved.ok_or_else(|| Refusal::new(Missing, "the saved state is missing"))
+    }
+
+    /// Frees a saved state.
+    pub fn free_saved(&mut self, place: *mut *mut c_void) -> Result<(), Refusal> {
+        if place.is_null() {
+            return Ok(());
+        }
+        let [state] = wanted(place, 1)? else {
+            return Ok(());
+        };
+        if !state.is_null() {
+            // SAFETY: a state of `save`; the pointer is null from now on, so that it is freed once.
+            drop(unsafe { Box::from_raw(state.cast::<Saved>()) });
+            *state = ptr::null_mut();
+        }
+        Ok(())
+    }
+
+    /// A saved state as bytes.
+    pub fn bytes_of(&self, state: *mut c_void) -> Result<Vec<u8>, Refusal> {
+        Ok(self.unit.bytes_of(self.saved(state)?))
+    }
+
+    /// Writes a saved state as bytes.
+    pub fn write_bytes(
+        &self,
+        state: *mut c_void,
+        (first, size): (*mut u8, usize),
+    ) -> Result<(), Refusal> {
+        let bytes = self.bytes_of(state)?;
+        let Some(place) = wanted(first, size)?.get_mut(..bytes.len()) else {
+            let needed = bytes.len();
+            let message = format!("the state has {needed} bytes, the array {size}");
+            return Err(Refusal::new(TooLarge, message));
+        };
+        place.copy_from_slice(&bytes);
+        Ok(())
+    }
+
+    /// The state of bytes at a place; the unit stays as it is.
+    pub fn read_bytes(
+        &mut self,
+        (first, size): (*const u8, usize),
+        place: *mut *mut c_void,
+    ) -> Result<(), Refusal> {
+        let before = self.unit.save();
+        self.unit.restore_bytes(given(first, size)?)?;
+        let made = self.save(place);
+        self.unit.restore(&before)?;
+        made
+    }
+}
