@@ -43,7 +43,7 @@ Examples:
   cvtcycle study my_plan.toml --out s_3 --shard 3/100
   cvtcycle study merge my_study s_*
   cvtcycle study show my_study
-  cvtcycle study export my_study --out my_study.xlsx
+  cvtcycle study export my_study --out my_study.parquet
 
 docs/plan_format.md describes plans. Exit codes: 0 success; 1 some runs failed, with the reason in their rows; 2 bad input or a \
 full disk; 130 stopped by Ctrl-C: finished parts are kept, --resume continues."
@@ -61,7 +61,7 @@ enum StudyCommand {
     Ambient(Box<ambient::StudyAmbientArgs>),
     /// Summarise a finished or partial study
     Show(StudyShowArgs),
-    /// Write the table of all runs as one file: CSV, Parquet or Excel workbook
+    /// Write the table of all runs as one file: CSV or Parquet
     Export(export::StudyExportArgs),
     /// Put the shards of a study together, driven by other processes or machines
     Merge(Box<merge::StudyMergeArgs>),

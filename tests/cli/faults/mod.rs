@@ -38,7 +38,7 @@ const WRITERS: [&str; 12] = [
     "run --cycle minute.csv --sensitivity never --quiet --format both --out OUT",
     "study plan.toml --quiet --out OUT",
     "study export made_study --quiet --out OUT.csv",
-    "study export made_study --quiet --out OUT.xlsx",
+    "study export made_study --quiet --out OUT.parquet",
     "study export made_study --quiet --table traces --out OUT.parquet",
     "report made_run --quiet --out OUT.html",
     "report made_run --quiet --out OUT.md",

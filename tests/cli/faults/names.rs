@@ -158,7 +158,7 @@ fn names_in_files_lead_nowhere() {
         for line in [
             "run --vehicle car.toml --cycle minute.csv --sensitivity never --quiet --format both --out out/run",
             "study plan.toml --quiet --format both --out out/study",
-            "study export out/study --quiet --out out/runs.xlsx",
+            "study export out/study --quiet --out out/runs.parquet",
             "report out/run --cover cover.toml --quiet --out out/report.html",
             "report out/study --quiet --out out/study.html",
             "losses --vehicle car.toml --quiet --out out/losses",
