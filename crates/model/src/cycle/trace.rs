@@ -1,7 +1,7 @@
 //! A speed trace: intervals over which speed is linear, and their division into steps.
 
 use super::gears::{GearColumns, GearCommand};
-use crate::math::{Left, Real, exp, larger, ln};
+use crate::math::{Real, exp, larger, ln};
 use std::sync::Arc;
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
@@ -120,10 +120,7 @@ pub struct Motion {
 
 /// Means of a speed that is linear from one value to another, of its square and of its cube.
 #[inline(always)]
-pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3]
-where
-    f64: Left<R>,
-{
+pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3] {
     [
         0.5 * (v0 + v1),
         (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,

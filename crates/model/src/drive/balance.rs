@@ -6,7 +6,7 @@
 //! | LE-2 | transmission losses + heat to the engine = heat into the nodes = stored + given to the air | derived: first law |
 //! | LE-3 | error = \|in - out\| / sum of absolute terms, 0 for an empty row | contract |
 
-use crate::math::{Left, Real};
+use crate::math::{Mask, Real};
 
 macro_rules! energy_terms {
     ($($term:ident: $doc:literal;)*) => {
@@ -59,24 +59,19 @@ energy_terms! {
 
 #[inline(always)]
 fn error<R: Real>(difference: R, scale: R) -> R {
-    R::pick(
-        scale.above(scale.filled(0.0)),
-        difference / scale,
-        scale.filled(0.0),
-    ) // LE-3
+    scale
+        .gt(scale.splat(0.0))
+        .select(difference / scale, scale.splat(0.0)) // LE-3
 }
 
-impl<R: Real> EnergyTerms<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> EnergyTerms<R> {
     /// Relative error of the power ledger (LE-1).
     #[inline(always)]
     pub fn power_error(&self) -> R {
-        let zero = self.wheels.filled(0.0);
-        let driven = zero.above(self.wheels);
-        let from = R::pick(driven, -self.wheels, zero);
-        let to = R::pick(driven, zero, self.wheels);
+        let zero = self.wheels.splat(0.0);
+        let driven = zero.gt(self.wheels);
+        let from = driven.select(-self.wheels, zero);
+        let to = driven.select(zero, self.wheels);
         let out = to
             + self.brake
             + self.accessories
@@ -104,6 +99,6 @@ where
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
         let balance = (self.node_heat - (self.stored + self.to_air)).abs();
         let handed = (self.losses + self.engine_heat - self.node_heat).abs();
-        error(handed.most(balance), scale)
+        error(handed.max(balance), scale)
     }
 }

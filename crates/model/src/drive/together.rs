@@ -11,7 +11,7 @@ use super::step::{begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::math::{Gather, Left, Level, Real, Simd, four};
+use crate::math::{Gather, Level, Real, Simd, four};
 use crate::thermal::Heat;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
@@ -68,7 +68,7 @@ fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
     let mut others = Vec::new();
     for run in runs {
         let joins = match group.first() {
-            Some((_, first)) => group.len() < most && first.alike(&run.1),
+            Some((_, first)) => group.len() < most && first.groups_with(&run.1),
             None => true,
         };
         if joins {
@@ -153,10 +153,10 @@ impl<'a> Prepared<'a> {
     }
 
     /// Whether another run can be in one group with this one.
-    fn alike(&self, other: &Self) -> bool {
+    fn groups_with(&self, other: &Self) -> bool {
         let boxes = match (&self.car.transmission, &other.car.transmission) {
-            (Transmission::Manual(own), Transmission::Manual(others)) => own.alike(others),
-            (Transmission::Cvt(own), Transmission::Cvt(others)) => own.alike(others),
+            (Transmission::Manual(own), Transmission::Manual(others)) => own.groups_with(others),
+            (Transmission::Cvt(own), Transmission::Cvt(others)) => own.groups_with(others),
             _ => false,
         };
         let (a, b) = (&self.car, &other.car);
@@ -170,10 +170,10 @@ impl<'a> Prepared<'a> {
             && from.max_dt_s.to_bits() == to.max_dt_s.to_bits()
             && matches!(from.start, Start::Warm) == matches!(to.start, Start::Warm)
             && boxes
-            && a.engine.alike(&b.engine)
-            && a.network.alike(&b.network)
-            && a.oil.alike(&b.oil)
-            && a.engine_oil.alike(&b.engine_oil)
+            && a.engine.groups_with(&b.engine)
+            && a.network.groups_with(&b.network)
+            && a.oil.groups_with(&b.oil)
+            && a.engine_oil.groups_with(&b.engine_oil)
     }
 }
 
@@ -227,10 +227,7 @@ fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outco
 
 /// A group in the lanes of a number; a lane without a run repeats the last one.
 #[inline(always)]
-fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome>
-where
-    f64: Left<R>,
-{
+fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome> {
     let of_lane: Vec<&Prepared> = (0..R::LANES)
         .map(|lane| &group[lane.min(group.len() - 1)])
         .collect();
@@ -255,13 +252,10 @@ fn in_cars<R: Real, T: Driveline<R>>(
     (car, gears): (&Car<R, T>, Option<&[GearCommand]>),
     of_lane: &[&Prepared],
     (group, phases): (&[Prepared], usize),
-) -> Vec<Outcome>
-where
-    f64: Left<R>,
-{
+) -> Vec<Outcome> {
     let trace = &*group[0].trace;
     let (conditions, max_dt_s) = (group[0].run.conditions, group[0].run.conditions.max_dt_s);
-    let start_k = like.by_lane(|lane| match of_lane[lane].run.conditions.start {
+    let start_k = like.map_lanes(|lane| match of_lane[lane].run.conditions.start {
         Start::At(temp_k) => temp_k,
         Start::Soak | Start::Warm => of_lane[lane].run.conditions.ambient_k,
     });
@@ -318,9 +312,7 @@ fn simulate_together<R: Real, T: Driveline<R>>(
     max_dt_s: f64,
     state: &mut State<R, T::State>,
     recorder: &mut impl Recorder<R>,
-) where
-    f64: Left<R>,
-{
+) {
     trace.for_each_step(
         max_dt_s,
         #[inline(always)]
@@ -340,11 +332,8 @@ fn drive_step<R: Real, T: Driveline<R>>(
     step: &Step,
     gear: Option<GearCommand>,
     state: &mut State<R, T::State>,
-) -> (Row<R>, EnergyTerms<R>)
-where
-    f64: Left<R>,
-{
-    let zero = state.tyre_k.filled(0.0);
+) -> (Row<R>, EnergyTerms<R>) {
+    let zero = state.tyre_k.splat(0.0);
     let mut output = StepOutput::like(zero); // first, as in `Drive::step`
     let wheel = wheel(car, step, &mut state.tyre_k);
     let engine = engine(car, step, &wheel, &state.heat, &mut state.running);
@@ -365,7 +354,7 @@ where
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);
-    zero.within(
+    zero.vectorize(
         #[inline(always)]
         || {
             car.transmission

@@ -9,7 +9,7 @@
 
 use super::Engine;
 use crate::fluid::ZERO_DEGC_K;
-use crate::math::{Left, Mask, Real, both, ramp};
+use crate::math::{Mask, Real, both, ramp};
 
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
 pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
@@ -62,14 +62,14 @@ impl<R: Real> Running<R> {
     #[must_use]
     #[inline(always)]
     pub fn rolled(self, wheel_rad_s: R) -> Running<R> {
-        let keeps = wheel_rad_s.reaches(self.wheel_rad_s);
+        let keeps = wheel_rad_s.ge(self.wheel_rad_s);
         if keeps.all() {
             return self;
         }
         let slowed = self.speed_rad_s * wheel_rad_s / self.wheel_rad_s;
         Running {
-            speed_rad_s: R::pick(keeps, self.speed_rad_s, slowed),
-            wheel_rad_s: R::pick(keeps, self.wheel_rad_s, wheel_rad_s),
+            speed_rad_s: keeps.select(self.speed_rad_s, slowed),
+            wheel_rad_s: keeps.select(self.wheel_rad_s, wheel_rad_s),
             ..self
         }
     }
@@ -79,7 +79,7 @@ impl<R: Real> Running<R> {
     #[must_use]
     pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (R, R)) -> Running<R> {
         if off {
-            let zero = engine_rad_s.filled(0.0);
+            let zero = engine_rad_s.splat(0.0);
             return Running {
                 since_s: 0.0,
                 start_k: zero,
@@ -87,8 +87,10 @@ impl<R: Real> Running<R> {
                 wheel_rad_s: zero,
             };
         }
+        let mut since_s = self.since_s;
+        since_s += dt_s;
         Running {
-            since_s: self.since_s + dt_s,
+            since_s,
             speed_rad_s: engine_rad_s,
             wheel_rad_s,
             ..self
@@ -96,38 +98,29 @@ impl<R: Real> Running<R> {
     }
 }
 
-impl<R: Real> Running<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Running<R> {
     /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
     #[inline(always)]
     pub(super) fn spending_per_s(&self, within_s: R, dt_s: f64) -> R {
-        let zero = within_s.filled(0.0);
-        let since = within_s.filled(self.since_s);
-        let over = since.reaches(within_s);
+        let zero = within_s.splat(0.0);
+        let since = within_s.splat(self.since_s);
+        let over = since.ge(within_s);
         if over.all() {
             return zero; // all is spent
         }
-        let u = both!(end => ([since, since + dt_s][end] / within_s).least(1.0));
+        let u = both!(end => ([since, since + dt_s][end] / within_s).min(1.0));
         let spent = both!(end => u[end] * (2.0 - u[end]));
-        R::pick(over, zero, (spent[1] - spent[0]) / dt_s)
+        over.select(zero, (spent[1] - spent[0]) / dt_s)
     }
 }
 
 /// Share of the fuel of a start that it takes at a temperature of the coolant, K.
 #[inline(always)]
-pub(super) fn cold_share<R: Real>(coolant_k: R) -> R
-where
-    f64: Left<R>,
-{
-    ((COLD_K - coolant_k) * 60_f64.recip()).held(0.0, 1.0)
+pub(super) fn cold_share<R: Real>(coolant_k: R) -> R {
+    ((COLD_K - coolant_k) * 60_f64.recip()).clamp(0.0, 1.0)
 }
 
-impl<R: Real> Engine<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Engine<R> {
     /// Fuel of the start in a step, kg/s.
     #[inline(always)]
     pub(super) fn start_kg_s(&self, running: &Running<R>, dt_s: f64) -> R {
@@ -138,7 +131,7 @@ where
     /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
     #[inline(always)]
     pub(super) fn cut_share(&self, coolant_k: R, running: &Running<R>) -> R {
-        let warm = (coolant_k - self.cut_from_k).held(0.0, 1.0);
+        let warm = (coolant_k - self.cut_from_k).clamp(0.0, 1.0);
         let speed = running.speed_rad_s;
         warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
     }

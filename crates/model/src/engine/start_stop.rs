@@ -206,7 +206,7 @@ impl<R: Real> Electric<R> {
     /// Without start-stop, for the runs of a number.
     #[inline(always)]
     pub fn none(number: R) -> Self {
-        let zero = number.filled(0.0);
+        let zero = number.splat(0.0);
         Electric {
             store_w: zero,
             loss_w: zero,

@@ -10,7 +10,7 @@
 use super::GRAVITY_M_S2;
 use crate::cycle::Motion;
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Mask, Real, gather};
 
 /// The checked tyres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,14 +44,11 @@ gather!(Tyre {
 /// Least rolling resistance over that of the warm tyre.
 const LEAST: f64 = 0.5;
 
-impl<R: Real> Tyre<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Tyre<R> {
     /// Rolling resistance over that of the warm tyre.
     #[inline(always)]
     fn ratio(&self, tyre_k: R) -> R {
-        (1.0 + self.per_k * (self.warm_k - tyre_k)).most(LEAST)
+        (1.0 + self.per_k * (self.warm_k - tyre_k)).max(LEAST)
     }
 
     /// Force that tyres at a temperature add to the road load, N.
@@ -66,7 +63,9 @@ where
         let ratio = self.ratio(tyre_k);
         let warm_w = self.warm_n * motion.speed_m_s;
         let air_w_k = self.still_w_k + self.wind_w_k * motion.speed_power_07;
-        let slope_w_k = R::pick(ratio.above(LEAST), self.per_k * warm_w, warm_w.filled(0.0));
+        let slope_w_k = ratio
+            .gt(LEAST)
+            .select(self.per_k * warm_w, warm_w.splat(0.0));
         let surplus_w = warm_w * ratio - air_w_k * (tyre_k - ambient_k);
         tyre_k + surplus_w / (self.capacity_j_k * dt_s.recip() + air_w_k + slope_w_k) // RL-7
     }

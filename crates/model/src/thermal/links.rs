@@ -4,7 +4,7 @@
 //! and metal are left for Gauss. The matrix is symmetric and diagonally dominant, so no pivot is zero.
 
 use super::{BELT, COOLANT, ENGINE_OIL, METAL, NODES, SUMP};
-use crate::math::{Left, Real};
+use crate::math::Real;
 
 /// Conductances between nodes, W/K.
 pub(super) struct Links<R: Real = f64> {
@@ -15,10 +15,7 @@ pub(super) struct Links<R: Real = f64> {
     pub sump_belt: R,
 }
 
-impl<R: Real> Links<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Links<R> {
     /// Heat that flows into each node from the others, W.
     #[inline(always)]
     pub fn flows_w(&self, t: &[R; NODES]) -> [R; NODES] {

@@ -18,7 +18,7 @@
 //! The film is taken to be in step with its dissipation: it holds grams of oil, and is there within a second.
 
 use crate::keys::{Key, Values, spec};
-use crate::math::{Left, Real, gather};
+use crate::math::{Real, gather};
 
 /// Heating of a film by its own drag.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -41,10 +41,7 @@ impl ViscousSelfHeating {
     }
 }
 
-impl<R: Real> ViscousSelfHeating<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> ViscousSelfHeating<R> {
     /// Heating by the dissipation in W that halves the drag (FH-1).
     #[inline(always)]
     pub fn halving(halving_w: R) -> Self {

@@ -17,7 +17,7 @@ pub use torque_converter::{LockUp, TorqueConverter};
 use self::friction_clutch::FrictionClutchKeys;
 use self::torque_converter::TorqueConverterKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{Left, Mask, Real, ramp};
+use crate::math::{Mask, Real, ramp};
 use std::fmt::Debug;
 
 const CLUTCH: Choice = Choice::new(
@@ -97,11 +97,11 @@ pub struct EngineSide<R: Real = f64> {
 impl<R: Real> EngineSide<R> {
     /// `yes` where the mask says so, else `no`.
     #[inline(always)]
-    pub(super) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         EngineSide {
-            engine_nm: R::pick(mask, yes.engine_nm, no.engine_nm),
-            engine_rad_s: R::pick(mask, yes.engine_rad_s, no.engine_rad_s),
-            loss_w: R::pick(mask, yes.loss_w, no.loss_w),
+            engine_nm: mask.select(yes.engine_nm, no.engine_nm),
+            engine_rad_s: mask.select(yes.engine_rad_s, no.engine_rad_s),
+            loss_w: mask.select(yes.loss_w, no.loss_w),
         }
     }
 }
@@ -146,25 +146,19 @@ pub struct Turning<R: Real = f64> {
 /// 1 where the engine is no faster than the box, falling to 0 at 2 % more: a slipping coupling whose engine is faster cannot take torque from
 /// the box; faded, so that a solve sees no step.
 #[inline(always)]
-fn together<R: Real>(at: &Turning<R>) -> R
-where
-    f64: Left<R>,
-{
-    let one = at.engine_rad_s.filled(1.0);
-    let ahead = at.engine_rad_s.above(at.output_rad_s);
+fn together<R: Real>(at: &Turning<R>) -> R {
+    let one = at.engine_rad_s.splat(1.0);
+    let ahead = at.engine_rad_s.gt(at.output_rad_s);
     if !ahead.any() {
         return one;
     }
     let over = at.engine_rad_s / at.output_rad_s;
-    let faded = 1.0 - ramp(over, one, one.filled(1.02));
-    R::pick(ahead, faded, one)
+    let faded = 1.0 - ramp(over, one, one.splat(1.02));
+    ahead.select(faded, one)
 }
 
 /// A coupling between engine and box.
-pub trait Coupling<R: Real = f64>: Debug + Send + Sync
-where
-    f64: Left<R>,
-{
+pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     /// Engine speed in steady state for a torque into the box, rad/s.
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R;
 
@@ -186,11 +180,11 @@ where
     #[inline(always)]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         let idle_rad_s = now.idle_rad_s;
-        let never = idle_rad_s.filled(f64::INFINITY);
+        let never = idle_rad_s.splat(f64::INFINITY);
         Hold {
             coupled: past,
-            locked_from_rad_s: R::pick(past, self.locked_from_rad_s(idle_rad_s), never),
-            slip_rad_s: idle_rad_s.filled(0.0),
+            locked_from_rad_s: past.select(self.locked_from_rad_s(idle_rad_s), never),
+            slip_rad_s: idle_rad_s.splat(0.0),
         }
     }
 
@@ -215,14 +209,14 @@ where
     /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
     #[inline(always)]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
-        let creeps = at.output_rad_s.below(at.idle_rad_s);
-        let mut least_nm = absorbed_nm.filled(0.0);
+        let creeps = at.output_rad_s.lt(at.idle_rad_s);
+        let mut least_nm = absorbed_nm.splat(0.0);
         if creeps.any() {
             least_nm = self.creep_nm(at.output_rad_s, at.idle_rad_s);
         }
         if !creeps.all() {
             let share = self.overrun_share(at.output_rad_s, at.idle_rad_s);
-            least_nm = R::pick(creeps, least_nm, -together(at) * share * absorbed_nm);
+            least_nm = creeps.select(least_nm, -together(at) * share * absorbed_nm);
         }
         least_nm
     }
@@ -249,7 +243,7 @@ where
     fn solve(&self, load: &CouplingLoad<R>, reach: &Reach<R>) -> EngineSide<R> {
         let reached = reach.nearest(self.engine_rad_s(load));
         let least = self.min_engine_rad_s(load.output_rad_s);
-        self.engine_side(load.output_nm, load.output_rad_s, reached.most(least))
+        self.engine_side(load.output_nm, load.output_rad_s, reached.max(least))
     }
 }
 
@@ -264,14 +258,11 @@ pub struct Reach<R: Real = f64> {
     pub fastest_rad_s: R,
 }
 
-impl<R: Real> Reach<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Reach<R> {
     /// The nearest speed within reach, rad/s.
     #[inline(always)]
     pub fn nearest(&self, wanted_rad_s: R) -> R {
-        wanted_rad_s.held(self.slowest_rad_s, self.fastest_rad_s)
+        wanted_rad_s.clamp(self.slowest_rad_s, self.fastest_rad_s)
     }
 
     /// Mean over the step of how much faster the engine is than at its end, to which it slows down as fast as it can, rad/s.
@@ -279,11 +270,11 @@ where
     pub fn mean_excess_rad_s(&self, end_rad_s: R) -> R {
         let fall = self.from_rad_s - end_rad_s;
         let most = self.from_rad_s - self.slowest_rad_s;
-        let falls = fall.above(0.0) & most.above(0.0);
-        let none = fall.filled(0.0);
+        let falls = fall.gt(0.0) & most.gt(0.0);
+        let none = fall.splat(0.0);
         if !falls.any() {
             return none;
         }
-        R::pick(falls, 0.5 * fall * (fall / most).least(1.0), none) // EN-12
+        falls.select(0.5 * fall * (fall / most).min(1.0), none) // EN-12
     }
 }

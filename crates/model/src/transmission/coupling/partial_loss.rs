@@ -6,7 +6,7 @@
 
 use super::FrictionClutch;
 use super::{Coupling, CouplingLoad, EngineSide, Hold, Launch, LockSignals, Turning};
-use crate::math::{Left, Real, gather};
+use crate::math::{Mask, Real, gather};
 
 /// The clutch of a manual box, which the driver opens, with factors on its loss.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,10 +38,7 @@ impl DriverClutch {
     }
 }
 
-impl<R: Real> DriverClutch<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> DriverClutch<R> {
     /// The engine's side with the first of the factors.
     #[inline(always)]
     fn side(
@@ -58,10 +55,7 @@ where
     }
 }
 
-impl<R: Real> Coupling<R> for DriverClutch<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Coupling<R> for DriverClutch<R> {
     #[inline(always)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
         self.clutch.engine_rad_s(load)
@@ -142,10 +136,7 @@ impl PartialLoss {
     }
 }
 
-impl<R: Real> EngineSide<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> EngineSide<R> {
     /// The engine's side with the loss times a factor.
     #[inline(always)]
     fn with_loss_times(self, factor: R) -> Self {
@@ -160,8 +151,8 @@ where
 /// Torque into the box, Nm, of which the engine gives no more than its own, where it would need another.
 #[inline(always)]
 fn passed_nm<R: Real>(most_nm: R, needed_nm: R, engine_nm: R) -> R {
-    let lacks = needed_nm.above(engine_nm) & engine_nm.above(engine_nm.filled(0.0));
-    R::pick(lacks, most_nm * engine_nm / needed_nm, most_nm) // LC-6
+    let lacks = needed_nm.gt(engine_nm) & engine_nm.gt(engine_nm.splat(0.0));
+    lacks.select(most_nm * engine_nm / needed_nm, most_nm) // LC-6
 }
 
 impl Coupling for PartialLoss {

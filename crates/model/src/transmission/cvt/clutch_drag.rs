@@ -12,7 +12,7 @@
 //! q n_p. Without n_p the drag is T_f at every speed.
 
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Real, gather};
 
 /// Clearance at which `drag_nm` holds, m.
 pub const CLEARANCE_M: f64 = 0.3e-3;
@@ -49,10 +49,7 @@ gather!(ClutchDrag {
     set_nm_s
 });
 
-impl<R: Real> ClutchDrag<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> ClutchDrag<R> {
     /// Torque, Nm, with the power (nu/nu_80)^m known, at a speed of the primary, rad/s (CD-1 to CD-3).
     #[inline(always)]
     pub fn torque_nm(&self, power: R, primary_rad_s: R) -> R {
@@ -64,7 +61,7 @@ where
     #[inline(always)]
     fn film_nm(&self, power: R, primary_rad_s: R) -> R {
         let film_nm = self.drag_nm * power * (CLEARANCE_M / self.clearance_m);
-        let film_nm = film_nm.least(self.cap_nm); // CD-1
+        let film_nm = film_nm.min(self.cap_nm); // CD-1
         let Some(peak_rad_s) = self.peak_rad_s else {
             return film_nm;
         };

@@ -7,7 +7,7 @@ use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
 use crate::fluid::{Lubricant, OilState};
 use crate::maps::MapPoint;
-use crate::math::{Left, MOST_LANES, Mask, Real};
+use crate::math::{MOST_LANES, Mask, Real};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
@@ -54,10 +54,7 @@ pub(crate) struct ViscosityPowers<R: Real = f64> {
     pub clutch: R,
 }
 
-impl<R: Real> ViscosityPowers<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> ViscosityPowers<R> {
     /// The powers at a viscosity.
     pub fn new(cvt: &Cvt<R>, nu_m2_s: R) -> Self {
         ViscosityPowers {
@@ -85,14 +82,11 @@ pub(crate) struct PulleyShafts<R: Real = f64> {
     ring_per_pa: R,
 }
 
-impl<R: Real> PulleyShafts<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> PulleyShafts<R> {
     /// What the parts in the box leave of them. The printed forms know neither, and a measured map of the belt holds the bearings.
     #[inline(always)]
     pub fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, parts: Parts) -> Self {
-        let none = at.direction.filled(0.0);
+        let none = at.direction.splat(0.0);
         let counted = cvt.belt.formulation.by_statics();
         let pulled = counted && parts.belt && !cvt.has_map(Component::BeltMap);
         PulleyShafts {
@@ -173,14 +167,11 @@ pub(crate) struct PartTorques<R: Real = f64> {
     pub shaft: R,
 }
 
-impl<R: Real> PartTorques<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> PartTorques<R> {
     /// None; `like` has the lanes.
     #[inline(always)]
     pub fn none(like: R) -> Self {
-        let none = like.filled(0.0);
+        let none = like.splat(0.0);
         PartTorques {
             final_drive: none,
             secondary: none,
@@ -194,7 +185,7 @@ where
                 penetration_nm: none,
                 slip_total: none,
                 capacity_nm: none,
-                gross_slip: like.answer(false),
+                gross_slip: like.splat_mask(false),
             },
             belt_map: None,
             box_map: None,
@@ -215,7 +206,7 @@ where
     #[inline(always)]
     pub fn belt_in_force(&self) -> (R, R) {
         match self.belt_map {
-            Some(loss) => (loss.filled(0.0), loss),
+            Some(loss) => (loss.splat(0.0), loss),
             None => (self.belt.slip_total, self.belt.sum_nm()),
         }
     }
@@ -231,7 +222,7 @@ where
     fn box_map_nm(&self) -> R {
         match self.box_map {
             Some(loss) => loss,
-            None => self.pump.filled(0.0),
+            None => self.pump.splat(0.0),
         }
     }
 
@@ -280,10 +271,7 @@ pub(super) fn final_drive<R: Real>(
     secondary_rad_s: R,
     demand_nm: R,
     oil: OilState<R>,
-) -> TurningTrain<R>
-where
-    f64: Left<R>,
-{
+) -> TurningTrain<R> {
     let train = &cvt.final_drive.train;
     let turning = train.turning(secondary_rad_s, demand_nm, oil);
     match cvt.changes.as_deref() {
@@ -294,10 +282,7 @@ where
     }
 }
 
-impl<'a, R: Real> Driveline<'a, R>
-where
-    f64: Left<R>,
-{
+impl<'a, R: Real> Driveline<'a, R> {
     /// The box with some of its parts at an oil temperature, K.
     pub fn new(
         cvt: &'a Cvt<R>,
@@ -315,7 +300,7 @@ where
             pump: cvt.pump.at(state.dynamic_pa_s),
             shafts: PulleyShafts::new(cvt, at, parts),
             radius_factor: cvt.radius_factor(at),
-            force_log: oil_k.filled(0.0),
+            force_log: oil_k.splat(0.0),
             oil_k,
             oil: state,
             changes: cvt.changes.as_deref(),
@@ -334,7 +319,7 @@ where
         let map = changes.maps[component].as_ref()?;
         // Put together here, so that a car without maps does not store it.
         let at = (rad_s, nm, pa);
-        let loss = self.looked_up(at, inside, |lane, point| R::one(map, lane).loss_nm(point));
+        let loss = self.looked_up(at, inside, |lane, point| R::get(map, lane).loss_nm(point));
         Some(changes.factor[component] * loss) // CV-7
     }
 
@@ -358,7 +343,7 @@ where
             (nm, *within) = of(lane, &point);
             loss = loss.with_lane(lane, nm);
         }
-        *inside = *inside & loss.ask(|lane| within[lane]);
+        *inside = *inside & loss.mask_lanes(|lane| within[lane]);
         loss
     }
 
@@ -465,7 +450,7 @@ where
     /// Torque of the primary's rings, Nm, or of those of both pulleys where a map has them (SR-1).
     #[inline(always)]
     fn primary_ring_nm(&self, primary_rad_s: R, clamp: &Clamp<R>, inside: &mut R::Mask) -> R {
-        let none = primary_rad_s.filled(0.0);
+        let none = primary_rad_s.splat(0.0);
         if !self.parts.pump {
             return none;
         }
@@ -502,9 +487,9 @@ where
         let map = changes.maps[Component::BoxMap].as_ref()?;
         let factor = changes.factor[Component::BoxMap];
         let behind_nm = secondary_nm * self.at.geometry.inv_ratio;
-        let at = (engine_rad_s, behind_nm, behind_nm.filled(0.0));
+        let at = (engine_rad_s, behind_nm, behind_nm.splat(0.0));
         Some(self.looked_up(at, inside, |lane, behind| {
-            R::one(map, lane).loss_behind_nm(behind, factor.lane(lane))
+            R::get(map, lane).loss_behind_nm(behind, factor.lane(lane))
         })) // MP-3
     }
 
@@ -518,7 +503,7 @@ where
         inside: &mut R::Mask,
     ) -> Option<R> {
         if self.is_mapped() {
-            return Some(secondary_nm.filled(0.0)); // MP-3
+            return Some(secondary_nm.splat(0.0)); // MP-3
         }
         let at = (primary_rad_s, secondary_nm, pressure_pa);
         self.mapped(Component::BeltMap, at, inside)
@@ -539,7 +524,7 @@ where
         torques.bearing[0] = self.bearing_nm(0, clamp);
         torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
-            let at = (primary_rad_s, primary_rad_s.filled(0.0), clamp.pressure_pa);
+            let at = (primary_rad_s, primary_rad_s.splat(0.0), clamp.pressure_pa);
             let clutch = &self.cvt.clutch_drag;
             torques.clutch = self.loss_nm(
                 Component::ClutchDrag,
@@ -577,7 +562,7 @@ where
         shift_flow_m3_s: R,
         inside: &mut R::Mask,
     ) -> PumpState<R> {
-        let at = (shaft.rad_s, pressure_pa.filled(0.0), pressure_pa);
+        let at = (shaft.rad_s, pressure_pa.splat(0.0), pressure_pa);
         let mut state = PumpState::none(pressure_pa);
         if self.parts.pump {
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
@@ -616,18 +601,18 @@ where
             return (set_pa, short);
         }
         let most_pa = pump.deliverable_pa(shift_flow_m3_s);
-        short = set_pa.above(most_pa);
+        short = set_pa.gt(most_pa);
         if self.cvt.has_map(Component::Pump) {
             return (set_pa, short);
         }
-        (R::pick(short, most_pa, set_pa), short)
+        (short.select(most_pa, set_pa), short)
     }
 
     /// Oil flow of the pump with the engine at a speed, at a pressure and a flow into the pulleys, m3/s.
     #[inline(always)]
     pub fn oil_flow_m3_s(&self, engine_rad_s: R, pressure_pa: R, shift_flow_m3_s: R) -> R {
         if !self.parts.pump {
-            return pressure_pa.filled(0.0);
+            return pressure_pa.splat(0.0);
         }
         let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
         let pump = self.turning_pump(engine_rad_s);

@@ -55,7 +55,7 @@ use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Mask, Real, gather};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
@@ -67,10 +67,7 @@ pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 const LN_NU_REFERENCE: f64 = -11.417_615_285_165_903;
 
 /// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1).
-pub fn viscosity_power<R: Real>(nu_m2_s: R, exponent: R) -> R
-where
-    f64: Left<R>,
-{
+pub fn viscosity_power<R: Real>(nu_m2_s: R, exponent: R) -> R {
     (exponent * (nu_m2_s.ln() - LN_NU_REFERENCE)).exp()
 }
 
@@ -83,7 +80,7 @@ fn product_of(torque_nm: f64, speed_rad_s: f64) -> f64 {
 #[derive(Clone, Debug)]
 pub struct LossChanges<R: Real = f64> {
     /// Measured maps in place of models.
-    pub maps: ByComponent<Option<R::Each<LossMap>>>,
+    pub maps: ByComponent<Option<R::PerLane<LossMap>>>,
     /// Factors on the losses (CV-7).
     pub factor: ByComponent<R>,
     /// Loss of a box that is a map with the car at rest, Nm, where it is known (MP-3).
@@ -136,7 +133,7 @@ pub struct Cvt<R: Real = f64> {
     /// Clamp law.
     pub clamp: ClampLaw<R>,
     /// Table of the law that is one (PC-6).
-    pub pressure_table: Option<R::Each<Arc<PressureTable>>>,
+    pub pressure_table: Option<R::PerLane<Arc<PressureTable>>>,
     /// Exponent of the primary radius in the clamp map.
     pub radius_exponent: R,
     /// Causes of a smallest secondary pressure.
@@ -197,15 +194,12 @@ pub struct Hold<R: Real = f64> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shifting<R: Real = f64> {
     /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
-    pub direction: R::Each<i8>,
+    pub direction: R::PerLane<i8>,
     /// Share of rated power that gentle driving looks at (RC-9).
     pub share: R,
 }
 
-impl<R: Real> CvtState<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> CvtState<R> {
     /// A belt at a ratio before its first step.
     pub fn new(belt: BeltAtRatio<R>) -> Self {
         let like = belt.direction;
@@ -213,18 +207,15 @@ where
             belt,
             warm_start: WarmStart::new(like),
             shifting: Shifting {
-                direction: R::every(|_| 0),
-                share: like.filled(0.0),
+                direction: R::per_lane(|_| 0),
+                share: like.splat(0.0),
             },
             hold: None,
         }
     }
 }
 
-impl<R: Real> Cvt<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Cvt<R> {
     /// Clamping force of the secondary at a pressure, N (VA-3).
     #[inline(always)]
     pub fn secondary_clamp_n(&self, pressure_pa: R, secondary_rad_s: R) -> R {
@@ -243,24 +234,24 @@ where
     /// that line falls with speed, so three passes from the speed of greatest power settle it.
     #[inline(always)]
     pub fn full_load_rad_s<P: PrimeMover<R>>(&self, engine: &P, power_w: R) -> R {
-        let zero = power_w.filled(0.0);
-        let none = zero.reaches(power_w);
+        let zero = power_w.splat(0.0);
+        let none = zero.ge(power_w);
         if none.all() {
-            return zero.along(&self.full_load_route);
+            return zero.interpolate(&self.full_load_route);
         }
         let mut speed = self.ratio.highest_rad_s;
         for _ in 0..3 {
             let before = speed;
             speed = engine
                 .warm_power_w(power_w, before)
-                .along(&self.full_load_route); // RC-3
-            if (none | speed.is_same(before)).all() {
+                .interpolate(&self.full_load_route); // RC-3
+            if (none | speed.bits_eq(before)).all() {
                 break; // settled: another pass gives the same
             }
         }
         if none.any() {
-            let least = zero.along(&self.full_load_route);
-            speed = R::pick(none, least, speed);
+            let least = zero.interpolate(&self.full_load_route);
+            speed = none.select(least, speed);
         }
         speed
     }
@@ -272,15 +263,15 @@ where
         let engine = input.engine;
         let secondary_rad_s = self.final_drive.ratio * input.wheel.wheel_rad_s;
         let power_w = share * engine.rated_w();
-        Some(share.by_lane(|lane| {
+        Some(share.map_lanes(|lane| {
             let at = ShiftPoint {
                 speed_m_s: input.wheel.speed_m_s,
                 secondary_rad_s: secondary_rad_s.lane(lane),
                 power_w: power_w.lane(lane),
                 efficiency: self.ratio.route_efficiency.lane(lane),
             };
-            R::one(maps, lane).target_rad_s(&at, |speed| {
-                let full_load_nm = engine.full_load_nm(share.filled(speed));
+            R::get(maps, lane).target_rad_s(&at, |speed| {
+                let full_load_nm = engine.full_load_nm(share.splat(speed));
                 product_of(full_load_nm.lane(lane), speed)
             })
         }))
@@ -304,7 +295,7 @@ where
     fn primary_rad_s(&self, ratio: R, secondary_rad_s: R, past: &DrivelineState<R>) -> R {
         let locked = ratio * secondary_rad_s;
         if self.launch_behind {
-            R::pick(past.coupled, locked, past.engine_rad_s.most(locked)) // LO-1
+            past.coupled.select(locked, past.engine_rad_s.max(locked)) // LO-1
         } else {
             locked
         }
@@ -321,7 +312,7 @@ where
         running_s: f64,
     ) -> R {
         if step.motion.speed_m_s > 0.0 {
-            return self.selector.neutral_after_s.filled(0.0);
+            return self.selector.neutral_after_s.splat(0.0);
         }
         self.selector.neutral_share(&SelectorSignals {
             procedure_s: trace.map_or(0.0, Trace::selector_s),
@@ -337,7 +328,7 @@ where
         input: &StepInput<P, R>,
     ) -> (CvtState<R>, DrivelineState<R>) {
         let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
-        let zero = secondary.filled(0.0);
+        let zero = secondary.splat(0.0);
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
@@ -354,26 +345,26 @@ where
             ratio_before: self.ratio.low,
             flow_down_per_s: zero,
             flow_up_per_s: zero,
-            coupled: zero.answer(true),
-            last_direction: R::every(|_| 0),
+            coupled: zero.splat_mask(true),
+            last_direction: R::per_lane(|_| 0),
             free_up_to_rad_s: zero,
             dt_s: input.dt_s,
         };
-        let rolls = secondary.above(0.0);
+        let rolls = secondary.gt(0.0);
         let target = self.ratio.target_rad_s(&demand) / secondary;
-        let in_range = target.held(self.ratio.high, self.ratio.low);
-        let ratio = R::pick(rolls, in_range, self.ratio.low);
+        let in_range = target.clamp(self.ratio.high, self.ratio.low);
+        let ratio = rolls.select(in_range, self.ratio.low);
         let idle = input.engine.idle_rad_s();
         let primary = ratio * secondary;
         let mut own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
         own.shifting.share = share;
         let driveline = DrivelineState {
-            gear: R::every(|_| 0),
-            engine_rad_s: primary.most(idle),
-            throttle: zero.filled(0.1),
+            gear: R::per_lane(|_| 0),
+            engine_rad_s: primary.max(idle),
+            throttle: zero.splat(0.1),
             secondary_pa: self.floors.control_pa,
-            coupled: primary.above(idle),
-            stood: zero.reaches(secondary).all(),
+            coupled: primary.gt(idle),
+            stood: zero.ge(secondary).all(),
             rested_s: 0.0,
         };
         (own, driveline)
@@ -392,7 +383,7 @@ where
     ) -> (R, R) {
         let (wanted, cause) = match law {
             ClampLaw::Map(map) => {
-                let by_law = secondary_rad_s.filled(ClampCause::Law.number());
+                let by_law = secondary_rad_s.splat(ClampCause::Law.number());
                 (map.pressure_pa(signals), by_law)
             }
             law => Clamping {
@@ -404,17 +395,14 @@ where
             }
             .pressure_pa(law),
         };
-        let (capped, open) = (
-            wanted.above(self.cap_pa),
-            wanted.above(self.floors.control_pa),
-        );
-        let by_control = cause.filled(ClampCause::Control.number());
-        let by_cap = cause.filled(ClampCause::Cap.number());
-        let held_pa = R::pick(open, wanted, self.floors.control_pa);
-        let held_by = R::pick(open, cause, by_control);
+        let (capped, open) = (wanted.gt(self.cap_pa), wanted.gt(self.floors.control_pa));
+        let by_control = cause.splat(ClampCause::Control.number());
+        let by_cap = cause.splat(ClampCause::Cap.number());
+        let held_pa = open.select(wanted, self.floors.control_pa);
+        let held_by = open.select(cause, by_control);
         (
-            R::pick(capped, self.cap_pa, held_pa),
-            R::pick(capped, by_cap, held_by),
+            capped.select(self.cap_pa, held_pa),
+            capped.select(by_cap, held_by),
         )
     }
 
@@ -431,10 +419,7 @@ where
     }
 }
 
-impl<R: Real> super::Driveline<R> for Cvt<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> super::Driveline<R> for Cvt<R> {
     type State = (CvtState<R>, DrivelineState<R>);
 
     #[inline(always)]

@@ -11,7 +11,7 @@
 
 use super::variator::{Belt, BeltAtRatio};
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Real, gather};
 
 /// The checked bearings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,10 +24,7 @@ pub struct PulleyBearing<R: Real = f64> {
 
 gather!(PulleyBearing { friction, bore_m });
 
-impl<R: Real> PulleyBearing<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> PulleyBearing<R> {
     /// Radial force on each shaft per clamping force of the secondary (PB-1).
     #[inline(always)]
     pub fn pull_per_clamp(belt: &Belt<R>, at: &BeltAtRatio<R>) -> R {

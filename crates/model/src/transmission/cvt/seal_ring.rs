@@ -8,7 +8,7 @@
 //! (Gronitzki and Poll 2007): no term of viscosity or speed. Valid for p >= 0.
 
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Real, gather};
 use std::f64::consts::PI;
 
 /// The checked rings of one pulley; both have the same.
@@ -34,10 +34,7 @@ gather!(SealRing {
     pressed_share
 });
 
-impl<R: Real> SealRing<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> SealRing<R> {
     /// Torque over the pressure of a cylinder, Nm/Pa (SR-1).
     #[inline(always)]
     pub fn torque_per_pa(&self) -> R {

@@ -1,7 +1,7 @@
 //! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real};
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
@@ -58,7 +58,7 @@ impl<R: Real> WarmStart<R> {
         WarmStart {
             trend: Trend::new(like),
             slopes: Slopes::new(like),
-            overrun: like.answer(false),
+            overrun: like.splat_mask(false),
         }
     }
 }
@@ -80,7 +80,7 @@ pub(crate) struct Series<R: Real = f64> {
 impl<R: Real> Series<R> {
     /// A value without a past.
     fn new(value: R) -> Self {
-        let none = value.filled(0.0);
+        let none = value.splat(0.0);
         Series {
             value,
             first: none,
@@ -91,7 +91,7 @@ impl<R: Real> Series<R> {
     /// The value that follows, with as many differences as there are steps alike before the last.
     #[inline(always)]
     pub fn next(&self, alike: u32) -> R {
-        let none = self.value.filled(0.0);
+        let none = self.value.splat(0.0);
         let first = if alike > 0 { self.first } else { none };
         self.value + first + if alike > 1 { self.second } else { none }
     }
@@ -110,7 +110,7 @@ impl<R: Real> Series<R> {
 impl<R: Real> Trend<R> {
     /// Nothing is known; `like` has the lanes.
     fn new(like: R) -> Self {
-        let none = Series::new(like.filled(0.0));
+        let none = Series::new(like.splat(0.0));
         Trend {
             accel_m_s2: 0.0,
             alike: 0,
@@ -174,17 +174,14 @@ impl<R: Real> Slopes<R> {
     /// Before anything is known: pressure acts on nothing, torque passes without loss. `like` has the lanes.
     pub fn new(like: R) -> Self {
         Slopes {
-            pressure: like.filled(0.0),
-            slip_per_pa: like.filled(0.0),
-            torque: like.filled(1.0),
+            pressure: like.splat(0.0),
+            slip_per_pa: like.splat(0.0),
+            torque: like.splat(1.0),
         }
     }
 }
 
-impl<R: Real> Slopes<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Slopes<R> {
     /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it. `open`: over a
     /// torque converter that is not locked.
     #[inline(always)]
@@ -195,22 +192,18 @@ where
         open: R::Mask,
     ) {
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
-        let moved = step_pa.abs().above(SECANT_FROM_PA);
+        let moved = step_pa.abs().gt(SECANT_FROM_PA);
         if !moved.any() {
             return;
         }
-        let most_gain = R::pick(
-            open,
-            step_pa.filled(MAX_GAIN_OPEN),
-            step_pa.filled(MAX_GAIN),
-        );
+        let most_gain = open.select(step_pa.splat(MAX_GAIN_OPEN), step_pa.splat(MAX_GAIN));
         let gain = (now.next_pressure_pa - before_next_pa) / step_pa;
-        self.pressure = R::pick(moved, gain.held(-most_gain, most_gain), self.pressure);
-        let alone = moved & now.guess.output_nm.is_same(before.output_nm);
+        self.pressure = moved.select(gain.clamp(-most_gain, most_gain), self.pressure);
+        let alone = moved & now.guess.output_nm.bits_eq(before.output_nm);
         if alone.any() {
             let most = MAX_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
-            let slope = ((now.guess.slip - before.slip) / step_pa).held(-most, most);
-            self.slip_per_pa = R::pick(alone, slope, self.slip_per_pa);
+            let slope = ((now.guess.slip - before.slip) / step_pa).clamp(-most, most);
+            self.slip_per_pa = alone.select(slope, self.slip_per_pa);
         }
     }
 
@@ -231,10 +224,7 @@ pub(super) struct TorqueSecant<R: Real> {
     last: Option<(R, R)>,
 }
 
-impl<R: Real> TorqueSecant<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> TorqueSecant<R> {
     #[inline(always)]
     pub fn new(ratio: R, first_nm: R) -> Self {
         TorqueSecant {
@@ -256,18 +246,18 @@ where
     ) -> (R, R::Mask) {
         let (x, miss_nm) = (now.guess.output_nm, now.miss_nm);
         if let Some((x0, miss0)) = self.last {
-            let moved = bound & (x - x0).abs().above(SECANT_FROM_NM);
+            let moved = bound & (x - x0).abs().gt(SECANT_FROM_NM);
             if moved.any() {
-                let slope = ((miss_nm - miss0) / (x - x0) * self.ratio).held(0.5, 2.0);
-                slopes.torque = R::pick(moved, slope, slopes.torque);
+                let slope = ((miss_nm - miss0) / (x - x0) * self.ratio).clamp(0.5, 2.0);
+                slopes.torque = moved.select(slope, slopes.torque);
             }
         }
         self.last = Some((x, miss_nm));
-        let slope = if plain { x.filled(1.0) } else { slopes.torque };
+        let slope = if plain { x.splat(1.0) } else { slopes.torque };
         let carried = 1.05 * now.torques.belt.capacity_nm;
-        let carried = carried.most(self.allowed_nm);
-        let next = (x - miss_nm * self.ratio / slope).held(-carried, carried); // CV-5
-        (next, (1e-9 * carried).reaches((next - x).abs()))
+        let carried = carried.max(self.allowed_nm);
+        let next = (x - miss_nm * self.ratio / slope).clamp(-carried, carried); // CV-5
+        (next, (1e-9 * carried).ge((next - x).abs()))
     }
 }
 

@@ -9,7 +9,7 @@
 //! A car that moves is in drive, so a cycle that begins at once has no neutral.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{Left, Real, clamp, gather};
+use crate::math::{Real, clamp, gather};
 
 /// The checked selector.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,17 +43,14 @@ impl SelectorSignals {
     }
 }
 
-impl<R: Real> Selector<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Selector<R> {
     /// Share of a step at rest that the box is in neutral, 0..1.
     #[inline(always)]
     pub fn neutral_share(&self, now: &SelectorSignals) -> R {
         let (started, rested_s) = now.started();
         let started = if self.by_cycle { started } else { 0.0 };
         let late_s = rested_s - self.neutral_after_s;
-        (late_s / now.dt_s).held(0.0, 1.0).most(started) // SE-2
+        (late_s / now.dt_s).clamp(0.0, 1.0).max(started) // SE-2
     }
 }
 

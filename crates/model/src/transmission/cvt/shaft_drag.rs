@@ -8,7 +8,7 @@
 //! extrapolated, bounded by the heating of its film (FH-1). Unmeasured there.
 
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Real, gather};
 use crate::transmission::viscous_self_heating::{SELF_HEATING, ViscousSelfHeating};
 
 /// The checked input shaft.
@@ -31,10 +31,7 @@ gather!(ShaftDrag {
     heating
 });
 
-impl<R: Real> ShaftDrag<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> ShaftDrag<R> {
     /// Torque, Nm, at a speed, rad/s, with the power (nu/nu_80)^m known (IS-1).
     #[inline(always)]
     pub fn torque_nm(&self, power: R, speed_rad_s: R) -> R {

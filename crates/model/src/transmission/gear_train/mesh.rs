@@ -11,7 +11,7 @@
 //! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
 //! before the torques are.
 
-use crate::math::{Left, Real, cos, exp, gather, larger, ln, tan};
+use crate::math::{Real, cos, exp, gather, larger, ln, tan};
 use std::f64::consts::PI;
 
 /// Normal pressure angle, rad.
@@ -122,10 +122,7 @@ impl Stage {
     }
 }
 
-impl<R: Real> Mesh<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Mesh<R> {
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
     pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
@@ -144,15 +141,15 @@ where
         for (mesh, log) in meshes.iter().zip(&mut logs) {
             let load = torque_nm.abs() * mesh.line_load_per_nm;
             let pitch_m_s = first_rad_s * mesh.pinion_turns * mesh.pitch_radius_m;
-            *log = load.most(LEAST_LINE_LOAD_N_MM) / pitch_m_s.most(LEAST_PITCH_M_S);
+            *log = load.max(LEAST_LINE_LOAD_N_MM) / pitch_m_s.max(LEAST_PITCH_M_S);
         }
-        logs = R::ln_each(logs);
+        logs = R::ln_array(logs);
         for log in &mut logs {
             *log = 0.2 * *log - 0.05 * log_eta;
         }
-        let mut frictions = R::exp_each(logs);
+        let mut frictions = R::exp_array(logs);
         for (mesh, friction) in meshes.iter().zip(&mut frictions) {
-            *friction = (mesh.friction_factor * *friction).least(MAX_FRICTION); // GM-2
+            *friction = (mesh.friction_factor * *friction).min(MAX_FRICTION); // GM-2
         }
         frictions
     }

@@ -4,7 +4,7 @@ use super::engaged::sum_nm;
 use super::{Action, Engaged, Manual, PartLosses};
 use crate::flags::Flags;
 use crate::fluid::OilState;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
@@ -22,27 +22,24 @@ pub(super) struct ManualStep<'a, P, R: Real = f64> {
     pub oil: OilState<R>,
 }
 
-impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R>
-where
-    f64: Left<R>,
-{
+impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     /// What the drivers do: each kind of it once for all runs, of which those take it over that do it.
     #[inline(always)]
-    pub fn act(&self, actions: &R::Each<Action>, output: &mut StepOutput<R>) {
+    pub fn act(&self, actions: &R::PerLane<Action>, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
         if R::LANES == 1 {
-            return self.act_alike(*R::one(actions, 0), output);
+            return self.act_alike(*R::get(actions, 0), output);
         }
-        let mut left = like.answer(true);
+        let mut left = like.splat_mask(true);
         for run in 0..R::LANES {
             if !left.lane(run) {
                 continue;
             }
-            let action = *R::one(actions, run);
+            let action = *R::get(actions, run);
             let alike = left
-                & like.ask(
+                & like.mask_lanes(
                     #[inline(always)]
-                    |run| *R::one(actions, run) == action,
+                    |run| *R::get(actions, run) == action,
                 );
             let mut of_action = StepOutput::like(like);
             self.act_alike(action, &mut of_action);
@@ -60,7 +57,7 @@ where
     fn act_alike(&self, action: Action, output: &mut StepOutput<R>) {
         match action {
             Action::Engaged(gear) => {
-                self.engaged(gear, self.oil.density_kg_m3.answer(true), output);
+                self.engaged(gear, self.oil.density_kg_m3.splat_mask(true), output);
             }
             Action::Coasting(gear) => self.coasting(gear, output),
             Action::Neutral => self.neutral(output),
@@ -85,7 +82,7 @@ where
     fn free_engine_rad_s(&self) -> R {
         let before_rad_s = self.state.engine_rad_s;
         self.step
-            .reach(before_rad_s, before_rad_s.filled(0.0))
+            .reach(before_rad_s, before_rad_s.splat(0.0))
             .nearest(self.step.engine.idle_rad_s())
     }
 
@@ -93,7 +90,7 @@ where
     #[inline(always)]
     fn coasting(&self, gear: u8, output: &mut StepOutput<R>) {
         self.declutched(gear, output);
-        let lags = output.deficit_w.above(0.0);
+        let lags = output.deficit_w.gt(0.0);
         if lags.any() {
             self.engaged(gear.max(1), lags, output);
         }
@@ -102,7 +99,7 @@ where
     #[inline(always)]
     fn neutral(&self, output: &mut StepOutput<R>) {
         let w = self.free_engine_rad_s();
-        let losses = self.box_in(self.top(), w, w.filled(0.0)).unloaded_nm();
+        let losses = self.box_in(self.top(), w, w.splat(0.0)).unloaded_nm();
         let share = self.manual.neutral_share;
         output.engine_rad_s = w;
         output.shaft_nm = share * sum_nm(&losses);
@@ -115,11 +112,11 @@ where
     fn declutched(&self, gear: u8, output: &mut StepOutput<R>) {
         let gear = if gear == 0 { self.top() } else { gear };
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
-        let losses = self.box_in(gear, input, input.filled(0.0)).unloaded_nm();
+        let losses = self.box_in(gear, input, input.splat(0.0)).unloaded_nm();
         output.engine_rad_s = self.free_engine_rad_s();
-        output.gear = R::every(|_| gear);
-        output.flag(Flags::CLUTCH_OPEN, input.answer(true));
-        let turns = input.above(0.0);
+        output.gear = R::per_lane(|_| gear);
+        output.flag(Flags::CLUTCH_OPEN, input.splat_mask(true));
+        let turns = input.gt(0.0);
         if turns.any() {
             let output_nm = -sum_nm(&losses);
             lose(output, &losses, input);
@@ -132,7 +129,7 @@ where
     /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
     fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
-        like.within(
+        like.vectorize(
             #[inline(always)]
             || {
                 let (mut gear, mut open) = (gear, runs);
@@ -163,9 +160,9 @@ where
         let wheel_rad_s = self.step.wheel.wheel_rad_s;
         match usize::from(gear).checked_sub(2) {
             Some(below) => {
-                (self.manual.overall[below] * wheel_rad_s).below(self.step.engine.max_rad_s())
+                (self.manual.overall[below] * wheel_rad_s).lt(self.step.engine.max_rad_s())
             }
-            None => wheel_rad_s.answer(false),
+            None => wheel_rad_s.splat_mask(false),
         }
     }
 
@@ -175,8 +172,8 @@ where
         let engine = self.step.engine;
         let crank_nm = output.shaft_nm + engine.accessories_nm(output.engine_rad_s);
         let share = crank_nm / full_load_nm;
-        output.throttle = share.held(0.0, 1.0);
-        output.flag(Flags::OUTSIDE_VALIDITY, share.above(FULL_LOAD_LIMIT));
+        output.throttle = share.clamp(0.0, 1.0);
+        output.flag(Flags::OUTSIDE_VALIDITY, share.gt(FULL_LOAD_LIMIT));
     }
 
     /// The box in a gear: the torque demanded, or the one at the engine's limit. Yes where the gear lacks torque; it does too where only an
@@ -196,41 +193,41 @@ where
             output_rad_s: input,
             engine_rad_s: w,
             idle_rad_s: engine.idle_rad_s(),
-            locked: w.answer(false),
+            locked: w.splat_mask(false),
         };
         let least = coupling.min_output_nm(&turning, absorbed_nm);
         let mut full_load_nm = engine.full_load_nm(w);
         let most = self.most_nm(input, w, full_load_nm);
-        let mut lacks_torque = at.input_nm.above(most);
+        let mut lacks_torque = at.input_nm.gt(most);
         let settled = speed.settled_rad_s;
-        if (settled.above(w) | w.above(settled)).any() {
+        if (settled.gt(w) | w.gt(settled)).any() {
             let settled_nm = self.most_nm(input, settled, engine.full_load_nm(settled));
-            lacks_torque = lacks_torque | at.input_nm.above(settled_nm);
+            lacks_torque = lacks_torque | at.input_nm.gt(settled_nm);
         }
-        let below = at.input_nm.below(least);
-        let above = at.input_nm.above(most);
+        let below = at.input_nm.lt(least);
+        let above = at.input_nm.gt(most);
         let limited = below | above;
         *output = StepOutput {
-            gear: R::every(|_| gear),
-            iterations: R::every(|_| 1),
+            gear: R::per_lane(|_| gear),
+            iterations: R::per_lane(|_| 1),
             ..StepOutput::like(input)
         };
         if limited.any() {
             output.flag(Flags::MISSED_TRACE, above);
-            let torque = R::pick(below, least, most);
+            let torque = below.select(least, most);
             let (output_nm, iterations) = engaged.output_for(torque);
             for run in (0..R::LANES).filter(|run| limited.lane(*run)) {
-                *R::one_mut(&mut output.iterations, run) = *R::one(&iterations, run);
+                *R::get_mut(&mut output.iterations, run) = *R::get(&iterations, run);
             }
             let held = engaged.at(output_nm);
             let residual = (held.input_nm - torque).abs() / full_load_nm;
-            output.residual = R::pick(limited, residual, output.residual);
+            output.residual = limited.select(residual, output.residual);
             at = held.or(limited, at);
-            let drags = limited & torque.at_most(least);
+            let drags = limited & torque.le(least);
             if drags.any() {
                 speed = self.engine_speed(torque, input).or(drags, speed);
                 let dragged_nm = engine.full_load_nm(speed.end_rad_s);
-                full_load_nm = R::pick(drags, dragged_nm, full_load_nm);
+                full_load_nm = drags.select(dragged_nm, full_load_nm);
             }
         }
         let w = speed.end_rad_s;
@@ -243,18 +240,18 @@ where
         if limited.any() {
             output.split_of(limited, wheel, at.output_nm * input);
         }
-        let slips = w.above(input * SLIPS_FROM) & at.input_nm.above(0.0);
+        let slips = w.gt(input * SLIPS_FROM) & at.input_nm.gt(0.0);
         output.flag(Flags::CLUTCH_SLIPPING, slips);
-        output.flag(Flags::OVERRUN, at.input_nm.below(0.0));
+        output.flag(Flags::OVERRUN, at.input_nm.lt(0.0));
         output.flag(Flags::OUTSIDE_VALIDITY, !at.inside_map);
-        output.flag(Flags::NOT_CONVERGED, output.residual.above(1e-8));
+        output.flag(Flags::NOT_CONVERGED, output.residual.gt(1e-8));
         self.set_throttle(output, full_load_nm);
         // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it. Where that lags at
         // full load nothing else may: no more than full load is passed on.
         let mean_rad_s = w + speed.excess_rad_s;
         let at_mean = coupling.engine_side(at.input_nm, input, mean_rad_s);
         let room_nm = full_load_nm - engine.accessories_nm(w) - side.engine_nm;
-        let on_the_way_w = (at_mean.loss_w - side.loss_w).least(room_nm.most(0.0) * w);
+        let on_the_way_w = (at_mean.loss_w - side.loss_w).min(room_nm.max(0.0) * w);
         output.shaft_nm = output.shaft_nm + on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
         lacks_torque
@@ -265,7 +262,7 @@ where
     fn most_nm(&self, input_rad_s: R, engine_rad_s: R, full_load_nm: R) -> R {
         let engine = self.step.engine;
         // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
-        let engine_nm = (full_load_nm - engine.accessories_nm(engine_rad_s)).most(0.0);
+        let engine_nm = (full_load_nm - engine.accessories_nm(engine_rad_s)).max(0.0);
         (self.manual.coupling).output_nm(engine_nm, input_rad_s, engine_rad_s)
     }
 
@@ -282,12 +279,12 @@ where
         let least = self.manual.coupling.min_engine_rad_s(input_rad_s);
         let before_rad_s = self.state.engine_rad_s;
         // What passes on at full load is no more than that; the rest of a demand is missing.
-        let passed_nm = input_nm.held(0.0, self.step.engine.full_load_nm(before_rad_s));
+        let passed_nm = input_nm.clamp(0.0, self.step.engine.full_load_nm(before_rad_s));
         let reach = self.step.reach(before_rad_s, passed_nm);
-        let end_rad_s = reach.nearest(wanted).most(least);
+        let end_rad_s = reach.nearest(wanted).max(least);
         EngineSpeed {
             end_rad_s,
-            settled_rad_s: wanted.most(least),
+            settled_rad_s: wanted.max(least),
             excess_rad_s: reach.mean_excess_rad_s(end_rad_s),
         }
     }
@@ -308,18 +305,15 @@ impl<R: Real> EngineSpeed<R> {
     #[inline(always)]
     fn or(self, chosen: R::Mask, other: EngineSpeed<R>) -> EngineSpeed<R> {
         EngineSpeed {
-            end_rad_s: R::pick(chosen, self.end_rad_s, other.end_rad_s),
-            settled_rad_s: R::pick(chosen, self.settled_rad_s, other.settled_rad_s),
-            excess_rad_s: R::pick(chosen, self.excess_rad_s, other.excess_rad_s),
+            end_rad_s: chosen.select(self.end_rad_s, other.end_rad_s),
+            settled_rad_s: chosen.select(self.settled_rad_s, other.settled_rad_s),
+            excess_rad_s: chosen.select(self.excess_rad_s, other.excess_rad_s),
         }
     }
 }
 
 #[inline(always)]
-fn lose<R: Real>(output: &mut StepOutput<R>, losses_nm: &PartLosses<R>, speed: R)
-where
-    f64: Left<R>,
-{
+fn lose<R: Real>(output: &mut StepOutput<R>, losses_nm: &PartLosses<R>, speed: R) {
     for (component, nm) in losses_nm {
         output.add_loss(*component, *nm * speed);
     }

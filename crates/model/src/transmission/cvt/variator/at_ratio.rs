@@ -1,7 +1,7 @@
 //! The belt at one ratio: what every operating point there has in common.
 
 use super::{Belt, Geometry, bands, deflection};
-use crate::math::{Left, Real, both, gather, ramp};
+use crate::math::{Real, both, gather, ramp};
 
 /// The belt at one ratio: everything that does not depend on torque or pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,10 +108,7 @@ gather! {
     }
 }
 
-impl<R: Real> Fixed<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Fixed<R> {
     #[inline(always)]
     fn new(belt: &Belt<R>) -> Self {
         let inv_pitch = 1.0 / belt.segment_thickness_m;
@@ -132,10 +129,7 @@ where
     }
 }
 
-impl<R: Real> Prepared<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Prepared<R> {
     #[inline(always)]
     fn new(
         belt: &Belt<R>,
@@ -152,8 +146,8 @@ where
         let inv_radius = [g.ratio * inv_secondary_radius, inv_secondary_radius]; // GE-1
         let inv_wrap = [1.0 / g.primary_wrap_rad, 1.0 / g.secondary_wrap_rad];
         let inv_segments = both!(i => pitch * (inv_radius[i] * inv_wrap[i]));
-        let least = g.primary_wrap_rad.least(g.secondary_wrap_rad);
-        let inv_least = inv_wrap[0].most(inv_wrap[1]);
+        let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
+        let inv_least = inv_wrap[0].max(inv_wrap[1]);
         Prepared {
             arc_m,
             count: both!(i => arc_m[i] * fixed.inv_pitch),
@@ -178,13 +172,10 @@ where
     }
 }
 
-impl<R: Real> BeltAtRatio<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> BeltAtRatio<R> {
     /// Prepares a ratio.
     pub fn new(belt: &Belt<R>, ratio: R) -> Self {
-        ratio.within(
+        ratio.vectorize(
             #[inline(always)]
             || Self::prepare(belt, Fixed::new(belt), ratio),
         )
@@ -202,7 +193,7 @@ where
         let log = ratio.ln();
         let direction = -(log * fixed.inv_unity_width).tanh(); // TE-6
         let thrust_ratio = match &belt.thrust_ratio {
-            Some(curve) => log.along(curve),
+            Some(curve) => log.interpolate(curve),
             None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
         };
         BeltAtRatio {

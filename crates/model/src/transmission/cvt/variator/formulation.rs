@@ -53,8 +53,8 @@ impl Formulation {
     pub fn segment_friction<R: Real>(self, fluid: R) -> R {
         match self {
             Formulation::Smooth => fluid,
-            Formulation::AppendixC => fluid.filled(0.125),
-            Formulation::Chapter8 => fluid.filled(0.13),
+            Formulation::AppendixC => fluid.splat(0.125),
+            Formulation::Chapter8 => fluid.splat(0.13),
         }
     }
 
@@ -130,7 +130,7 @@ impl Formulation {
     #[inline(always)]
     pub fn wedge_tan<R: Real>(self, own: R) -> R {
         if self == Formulation::AppendixC {
-            own.filled(tan(11.0f64.to_radians()))
+            own.splat(tan(11.0f64.to_radians()))
         } else {
             own
         }
@@ -140,7 +140,7 @@ impl Formulation {
     #[inline(always)]
     pub fn primary_stop<R: Real>(self, ramp: R) -> R {
         match self {
-            Formulation::AppendixC => ramp.filled(1.0),
+            Formulation::AppendixC => ramp.splat(1.0),
             Formulation::Smooth | Formulation::Chapter8 => ramp,
         }
     }
@@ -155,7 +155,7 @@ impl Formulation {
         };
         match self {
             Formulation::Smooth => cx,
-            Formulation::AppendixC | Formulation::Chapter8 => cx.each(lifted),
+            Formulation::AppendixC | Formulation::Chapter8 => cx.map(lifted),
         }
     }
 }

@@ -10,7 +10,7 @@
 //! Symbols: X centre distance, L belt length, all m; angles rad. Valid for ratios 0.3 to 3.3 of the shipped belt; the configured
 //! limits lie within. f is convex and rising in R, so Newton from the series start needs at most three steps.
 
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Mask, Real, gather};
 use std::f64::consts::PI;
 
 /// Geometry of the belt at one ratio.
@@ -45,10 +45,7 @@ gather!(Geometry {
 /// Square of pi.
 const PI_SQUARED: f64 = PI * PI;
 
-impl<R: Real> Geometry<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Geometry<R> {
     /// Solves the belt's geometry for a ratio, centre distance and belt length (GE-1 to GE-4).
     #[inline(always)]
     pub fn new(ratio: R, centre_distance_m: R, belt_length_m: R) -> Self {
@@ -60,14 +57,14 @@ where
         let mut r = 2.0 * free / (PI * h + root);
         let mut alpha = (g * r * inv_x).asin();
         let mut strut = (x * x - g * r * g * r).sqrt();
-        let mut open = !r.above(r); // in every lane
+        let mut open = !r.gt(r); // in every lane
         for _ in 0..4 {
             let f = PI * h * r + 2.0 * alpha * g * r + 2.0 * strut - l;
             let step = f / (PI * h + 2.0 * alpha * g); // GE-4
-            r = R::pick(open, r - step, r);
+            r = open.select(r - step, r);
             alpha = (g * r * inv_x).asin();
             strut = (x * x - g * r * g * r).sqrt();
-            open = open & step.abs().above(1e-9 * r);
+            open = open & step.abs().gt(1e-9 * r);
             if !open.any() {
                 break;
             }

@@ -2,7 +2,7 @@
 
 use super::{Belt, Geometry, bands};
 use crate::fluid::{BandFriction, Friction, Lubricant};
-use crate::math::{Left, Real};
+use crate::math::{Mask, Real};
 
 /// What acts on the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +25,7 @@ pub struct BeltLoad<R: Real = f64> {
     pub flank_friction: R,
 }
 
-impl<R: Real> BeltLoad<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> BeltLoad<R> {
     /// The lubricated belt without speed, torque and clamping force, for a band friction in a contact area, m2, that slides at speeds, m/s.
     #[inline(always)]
     pub fn unloaded(
@@ -37,7 +34,7 @@ where
         film_area_m2: R,
         sliding_m_s: [R; 2],
     ) -> Self {
-        let none = film_area_m2.filled(0.0);
+        let none = film_area_m2.splat(0.0);
         BeltLoad {
             primary_speed_rad_s: none,
             output_torque_nm: none,
@@ -54,8 +51,8 @@ where
 impl<R: Real> BeltLoad<R> {
     /// `yes` where the mask says so, else `no`: loads of the same fluid.
     #[inline(always)]
-    pub(in crate::transmission::cvt) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let of = |yes: R, no: R| R::pick(mask, yes, no);
+    pub(in crate::transmission::cvt) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        let of = |yes: R, no: R| mask.select(yes, no);
         let pair = |yes: [R; 2], no: [R; 2]| [of(yes[0], no[0]), of(yes[1], no[1])];
         BeltLoad {
             primary_speed_rad_s: of(yes.primary_speed_rad_s, no.primary_speed_rad_s),

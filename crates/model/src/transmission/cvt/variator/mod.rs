@@ -32,7 +32,7 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Mask, Real, gather};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
@@ -97,10 +97,7 @@ gather! {
     } same { formulation }
 }
 
-impl<R: Real> Belt<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> Belt<R> {
     /// Cross-section of both band packs, m2.
     #[inline(always)]
     pub fn band_area_m2(&self) -> R {
@@ -113,7 +110,7 @@ where
         let bands = if self.formulation.by_statics() {
             self.band_mass_kg_m
         } else {
-            self.mass_kg_m.filled(0.0)
+            self.mass_kg_m.splat(0.0)
         };
         [self.mass_kg_m - bands, bands] // TE-8
     }
@@ -124,7 +121,7 @@ where
         if self.formulation.has_film() {
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
-            [ratio.filled(0.0); 2]
+            [ratio.splat(0.0); 2]
         }
     }
 }
@@ -221,7 +218,7 @@ impl BeltState {
 /// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
 #[inline(always)]
 fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, friction: R) -> R {
-    let weaker = t.primary_clamp_n.least(t.secondary_clamp_n);
+    let weaker = t.primary_clamp_n.min(t.secondary_clamp_n);
     weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
@@ -236,10 +233,7 @@ struct Parts<R: Real> {
 }
 
 #[inline(always)]
-fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R>
-where
-    f64: Left<R>,
-{
+fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R> {
     let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
     let band_nm = bands::band_loss_nm(at, &tension, &load.band);
@@ -271,36 +265,30 @@ fn sum<R: Real>(pair: [R; 2]) -> R {
 }
 
 #[inline(always)]
-fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R>
-where
-    f64: Left<R>,
-{
+fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
     let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
     let share_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
     // Slip against the torque relieves bands and film, both by the same share (SL-11).
     let sliding_nm = sum(parts.band_nm) + parts.film_nm;
-    let is_relieved = share_nm.filled(0.0).above(share_nm);
-    let mut left = share_nm.filled(1.0);
+    let is_relieved = share_nm.splat(0.0).gt(share_nm);
+    let mut left = share_nm.splat(1.0);
     if is_relieved.any() {
-        left = R::pick(is_relieved, (1.0 + share_nm / sliding_nm).most(0.0), left);
+        left = is_relieved.select((1.0 + share_nm / sliding_nm).max(0.0), left);
     }
     BeltLosses {
         band_nm: left * sum(parts.band_nm),
         film_nm: left * parts.film_nm,
-        slip_nm: share_nm.most(0.0),
+        slip_nm: share_nm.max(0.0),
         wedge_nm: sum(parts.deflection.wedge_nm),
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
         capacity_nm,
-        gross_slip: slip.held | load.output_torque_nm.abs().above(capacity_nm),
+        gross_slip: slip.held | load.output_torque_nm.abs().gt(capacity_nm),
     }
 }
 
 #[inline(always)]
-fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> BeltState<R>
-where
-    f64: Left<R>,
-{
+fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> BeltState<R> {
     let losses = losses(load, parts);
     BeltState {
         input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - losses.slip_total)
@@ -319,19 +307,13 @@ pub fn belt_losses<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
     load: &BeltLoad<R>,
-) -> BeltLosses<R>
-where
-    f64: Left<R>,
-{
+) -> BeltLosses<R> {
     losses(load, &parts(belt, at, load))
 }
 
 /// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
 #[inline(always)]
-pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R
-where
-    f64: Left<R>,
-{
+pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     belt_losses(belt, at, load).capacity_nm
 }
 
@@ -353,9 +335,10 @@ where
 /// assert!(state.losses.slip_total > 0.0 && !state.losses.gross_slip);
 /// ```
 #[inline(always)]
-pub fn belt_state<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> BeltState<R>
-where
-    f64: Left<R>,
-{
+pub fn belt_state<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    load: &BeltLoad<R>,
+) -> BeltState<R> {
     state(at, load, &parts(belt, at, load))
 }
