@@ -19,7 +19,7 @@ pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Step, mean_powers};
-use crate::math::{Mask, Operand, Real, exp, gather, ln};
+use crate::math::{Gather, Mask, Operand, Real, exp, ln, physics};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -29,7 +29,7 @@ pub const REFERENCE_K: f64 = 293.15;
 const CHARGE_REFERENCE_K: f64 = 298.15;
 
 /// The checked road load, coefficients in force for one ambient.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct RoadLoad<R: Real = f64> {
     /// f0, N.
     pub f0_n: R,
@@ -44,15 +44,6 @@ pub struct RoadLoad<R: Real = f64> {
     /// Dynamic tyre radius, m.
     pub wheel_radius_m: R,
 }
-
-gather!(RoadLoad {
-    f0_n,
-    f1_n_per_m_s,
-    f2_n_per_m_s2,
-    mass_kg,
-    inertia_kg,
-    wheel_radius_m
-});
 
 /// How the coefficients depend on ambient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,16 +108,15 @@ fn along_the_road(grade: f64) -> f64 {
     (1.0 + grade * grade).sqrt()
 }
 
+#[physics]
 impl<R: Real> RoadLoad<R> {
     /// Mean power, W, with a constant part of force `c` and the means of speed, its square and its cube.
-    #[inline(always)]
     fn power_w(&self, c: R, [speed, square, cube]: [impl Operand<R>; 3]) -> R {
         let [speed, square, cube] = [speed.broadcast(c), square.broadcast(c), cube.broadcast(c)];
         c * speed + self.f1_n_per_m_s * square + self.f2_n_per_m_s2 * cube // RL-5
     }
 
     /// Speeds at which the force is zero, m/s, the lower first; NaN where there is none. Only a negative f1 has two.
-    #[inline(always)]
     fn zero_force_speeds(&self, c: R) -> [R; 2] {
         let (f1, f2) = (self.f1_n_per_m_s, self.f2_n_per_m_s2);
         let (straight, falls) = (f2.le(0.0), f1.lt(0.0));
@@ -137,7 +127,6 @@ impl<R: Real> RoadLoad<R> {
     }
 
     /// What a step demands of the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
-    #[inline(always)]
     pub fn wheel(&self, step: &Step, extra_n: R) -> WheelDemand<R> {
         let motion = &step.motion;
         if motion.speed_m_s <= 0.0 {
@@ -169,7 +158,6 @@ impl<R: Real> RoadLoad<R> {
     }
 
     /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).
-    #[inline(always)]
     fn split_j(&self, c: R, step: &Step, whole_j: R) -> (R, R) {
         let (v0, v1) = (step.start_speed_m_s, step.end_speed_m_s);
         let (mut drive_j, mut brake_j) = (c.splat(0.0), c.splat(0.0));

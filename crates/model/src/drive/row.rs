@@ -6,7 +6,7 @@ use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
@@ -143,7 +143,7 @@ pub(super) struct Solved<'a, R: Real = f64> {
 }
 
 /// Energy terms of a step, each from the model that owns it.
-#[inline(always)]
+#[physics]
 fn terms<R: Real>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R> {
     let (d, b, wheel) = (a.output, a.burn, input.wheel);
     let engine_heat = b.to_coolant_w + b.to_oil_w;
@@ -167,7 +167,7 @@ fn terms<R: Real>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R> {
 }
 
 /// The row of a step with its energy terms; `is_cvt`: the car has a belt.
-#[inline(always)]
+#[physics]
 pub(super) fn row<R: Real>(
     is_cvt: bool,
     step: &Step,

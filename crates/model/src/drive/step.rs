@@ -14,7 +14,7 @@ use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, Running};
 use crate::flags::Flags;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, SUMP};
@@ -77,7 +77,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Drives one step: its row and its energy terms.
-    #[inline(always)]
+    #[physics]
     pub fn step(&mut self, step: &Step) -> (Row, EnergyTerms) {
         let car = self.car;
         let state = &mut self.state;
@@ -140,7 +140,7 @@ impl<'a> Drive<'a> {
 }
 
 /// What a step demands of the wheels; the tyres warm up meanwhile.
-#[inline(always)]
+#[physics]
 pub(super) fn wheel<R: Real, T>(car: &Car<R, T>, step: &Step, tyre_k: &mut R) -> WheelDemand<R> {
     let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
     *tyre_k = car
@@ -150,7 +150,7 @@ pub(super) fn wheel<R: Real, T>(car: &Car<R, T>, step: &Step, tyre_k: &mut R) ->
 }
 
 /// The engine at the beginning of a step, after what it did before.
-#[inline(always)]
+#[physics]
 pub(super) fn engine<'a, R: Real, T: Driveline<R>>(
     car: &'a Car<R, T>,
     step: &Step,
@@ -173,7 +173,7 @@ pub(super) fn engine<'a, R: Real, T: Driveline<R>>(
 }
 
 /// The transmission in a step; before its first one it begins, and with it the rotating energy.
-#[inline(always)]
+#[physics]
 pub(super) fn begun<'s, R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     step: &Step,
@@ -201,7 +201,7 @@ pub(super) fn begun<'s, R: Real, T: Driveline<R>>(
 }
 
 /// What follows from a solved transmission: its row, its energy terms and the temperatures after the step; rotating energy and what the engine did are brought up to date.
-#[inline(always)]
+#[physics]
 pub(super) fn end<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     step: &Step,
@@ -247,7 +247,7 @@ pub(super) fn end<R: Real, T: Driveline<R>>(
 }
 
 /// What a slower engine gives beyond its drag and load goes into a coupling that slips, else to the wheels.
-#[inline(always)]
+#[physics]
 fn spend<R: Real, T: Driveline<R>>(car: &Car<R, T>, output: &mut StepOutput<R>, surplus_w: R) {
     let slips = output.has(Flags::CLUTCH_SLIPPING);
     if !slips.any() {
@@ -264,14 +264,14 @@ fn spend<R: Real, T: Driveline<R>>(car: &Car<R, T>, output: &mut StepOutput<R>, 
 }
 
 /// Power of the slower engine that reaches the wheels: it makes up for a deficit, or the brakes take it.
-#[inline(always)]
+#[physics]
 fn give_back<R: Real>(output: &mut StepOutput<R>, surplus_w: R) {
     let helps_w = surplus_w.min(output.deficit_w);
     output.deficit_w = output.deficit_w - helps_w;
     output.brake_w = output.brake_w + (surplus_w - helps_w); // SI-4
 }
 
-#[inline(always)]
+#[physics]
 fn inertia<R: Real, T>(
     car: &Car<R, T>,
     input: &Input<R>,
@@ -313,7 +313,7 @@ fn inertia<R: Real, T>(
     } // SI-1
 }
 
-#[inline(always)]
+#[physics]
 pub(super) fn advance<R: Real, T>(
     car: &Car<R, T>,
     power_w: [R; NODES],
@@ -340,7 +340,7 @@ pub(super) fn advance<R: Real, T>(
 }
 
 /// Heat into each node, W (SI-3).
-#[inline(always)]
+#[physics]
 fn node_power<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     output: &StepOutput<R>,
@@ -369,7 +369,7 @@ const fn heating<const COUNT: usize>(to: HeatTo) -> [Component; COUNT] {
 }
 
 /// Heat that the transmission's losses, W, put into each node, W (SI-3).
-#[inline(always)]
+#[physics]
 pub fn loss_heat_w<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     loss_w: &ByComponent<R>,

@@ -11,7 +11,7 @@ use super::step::{begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::math::{Gather, Level, Real, Simd, four};
+use crate::math::{Gather, Level, Real, Simd, four, physics};
 use crate::thermal::Heat;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
@@ -188,45 +188,30 @@ fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outco
     ))]
     {
         if let Some(simd) = level.as_avx512() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || in_lanes(crate::math::eight(simd), group, phases),
-            ));
+            return Some(simd.vectorize(|| in_lanes(crate::math::eight(simd), group, phases)));
         }
         if let Some(simd) = level.as_avx2() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || in_lanes(crate::math::eight(simd), group, phases),
-            ));
+            return Some(simd.vectorize(|| in_lanes(crate::math::eight(simd), group, phases)));
         }
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if let Some(simd) = level.as_sse2() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || in_lanes(four(simd), group, phases),
-        ));
+        return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));
     }
     #[cfg(target_arch = "aarch64")]
     if let Some(simd) = level.as_neon() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || in_lanes(four(simd), group, phases),
-        ));
+        return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));
     }
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     if let Some(simd) = level.as_wasm_simd128() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || in_lanes(four(simd), group, phases),
-        ));
+        return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));
     }
     let _ = (level, group, phases);
     None
 }
 
 /// A group in the lanes of a number; a lane without a run repeats the last one.
-#[inline(always)]
+#[physics]
 fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome> {
     let of_lane: Vec<&Prepared> = (0..R::LANES)
         .map(|lane| &group[lane.min(group.len() - 1)])
@@ -246,7 +231,7 @@ fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome>
 }
 
 /// Drives the cars of a group, gathered, with the gears that the cycle prescribes.
-#[inline(always)]
+#[physics]
 fn in_cars<R: Real, T: Driveline<R>>(
     like: R,
     (car, gears): (&Car<R, T>, Option<&[GearCommand]>),
@@ -305,7 +290,7 @@ fn gathered<R: Real, T>(like: R, of: &[&Prepared], transmission: T) -> Car<R, T>
 }
 
 /// Drives a trace with its gears from a state on. No allocation a step.
-#[inline(always)]
+#[physics]
 fn simulate_together<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     (trace, gears): (&Trace, Option<&[GearCommand]>),
@@ -313,19 +298,15 @@ fn simulate_together<R: Real, T: Driveline<R>>(
     state: &mut State<R, T::State>,
     recorder: &mut impl Recorder<R>,
 ) {
-    trace.for_each_step(
-        max_dt_s,
-        #[inline(always)]
-        |step| {
-            let gear = gears.and_then(|gears| gears.get(step.interval).copied());
-            let (row, terms) = drive_step(car, trace, &step, gear, state);
-            recorder.record(&row, &terms);
-        },
-    );
+    trace.for_each_step(max_dt_s, |step| {
+        let gear = gears.and_then(|gears| gears.get(step.interval).copied());
+        let (row, terms) = drive_step(car, trace, &step, gear, state);
+        recorder.record(&row, &terms);
+    });
 }
 
 /// One step of cars without start-stop.
-#[inline(always)]
+#[physics]
 fn drive_step<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     trace: &Trace,
@@ -354,13 +335,10 @@ fn drive_step<R: Real, T: Driveline<R>>(
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);
-    zero.vectorize(
-        #[inline(always)]
-        || {
-            car.transmission
-                .solve_into(&input, transmission, &mut output)
-        },
-    );
+    zero.vectorize(|| {
+        car.transmission
+            .solve_into(&input, transmission, &mut output)
+    });
     let past = (&mut state.kinetic_j, &mut state.running, state.tyre_k);
     let electric = Electric::none(zero);
     let (result, heat) = end(car, step, &input, (&mut output, &electric), past);

@@ -2,7 +2,7 @@
 
 use super::{EnergyTerms, HIGHEST_K, Recorder, Row, TERM_NAMES};
 use crate::flags::Flags;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::{ByComponent, Component};
 
@@ -224,8 +224,8 @@ impl<R: Real> Totals<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Totals<R> {
-    #[inline(always)]
     fn extremes(&mut self, row: &Row<R>) {
         let at_s = row.deficit_w.splat(row.time_s);
         let error = row.power_ledger_error.max(row.heat_ledger_error);
@@ -276,7 +276,6 @@ impl<R: Real> Totals<R> {
     }
 
     /// The worst deficit of the runs that miss the trace.
-    #[inline(always)]
     fn deficit(&mut self, row: &Row<R>, lacks: R::Mask, at_s: R) {
         let misses = |run| R::get(&row.flags, run).contains(Flags::MISSED_TRACE);
         let lacks = lacks & at_s.mask_lanes(misses);
@@ -314,14 +313,14 @@ impl<R: Real> Totals<R> {
 }
 
 /// Adds to a time that is one run's own.
-#[inline(always)]
+#[physics]
 fn lengthen(time_s: &mut f64, by_s: f64) {
     *time_s += by_s;
 }
 
+#[physics]
 impl<R: Real> Recorder<R> for Totals<R> {
     // Within the loop, so that the parts of a row that no total looks at are never put together.
-    #[inline(always)]
     fn record(&mut self, row: &Row<R>, terms: &EnergyTerms<R>) {
         let index = usize::from(row.phase).min(self.phases.len() - 1);
         let p = &mut self.phases[index];

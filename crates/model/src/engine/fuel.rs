@@ -12,7 +12,7 @@
 //! line that would leave these bounds below the engine's highest speed.
 
 use crate::maps::BsfcMap;
-use crate::math::{Gather, Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 
 const BAR: f64 = 1e5;
 /// Fuel over indicated work, both near zero, from which rounding explains that it is less.
@@ -21,7 +21,7 @@ const ALMOST_ALL: f64 = 1.0 - 1e-6;
 pub const EFFICIENCY: std::ops::RangeInclusive<f64> = 0.05..=1.0;
 
 /// Coefficients of the extended Willans line, per displacement, in bar and m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Willans<R: Real = f64> {
     /// a.
     pub a: R,
@@ -36,8 +36,6 @@ pub struct Willans<R: Real = f64> {
     /// Friction over piston speed squared, bar s2/m2, positive.
     pub l2: R,
 }
-
-gather!(Willans { a, b, c, a2, l, l2 });
 
 /// A fuel model.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,9 +92,9 @@ pub struct FuelPoint<R: Real = f64> {
     pub outside: R::Mask,
 }
 
+#[physics]
 impl<R: Real> FuelModel<R> {
     /// Friction mean effective pressure of the hot engine, Pa.
-    #[inline(always)]
     pub fn hot_friction_pa(&self, piston_m_s: R) -> R {
         match self {
             FuelModel::Willans(w) => (w.l + w.l2 * piston_m_s * piston_m_s) * BAR,
@@ -109,7 +107,6 @@ impl<R: Real> FuelModel<R> {
     }
 
     /// Fuel for a brake mean effective pressure with friction in force, both Pa.
-    #[inline(always)]
     pub fn fuel_mep(
         &self,
         piston_m_s: R,
@@ -139,7 +136,6 @@ impl<R: Real> FuelModel<R> {
     }
 
     /// Fuel of a measured map for an indicated mean effective pressure, Pa (BM-3).
-    #[inline(always)]
     fn of_map(
         &self,
         map: &R::PerLane<BsfcMap>,
@@ -164,14 +160,13 @@ impl<R: Real> FuelModel<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Willans<R> {
     /// Indicated efficiency at no load, B.
-    #[inline(always)]
     pub fn efficiency(&self, piston_m_s: R) -> R {
         self.a + (self.b + self.c * piston_m_s) * piston_m_s
     }
 
-    #[inline(always)]
     fn fuel(&self, piston_m_s: R, need_pa: R) -> FuelPoint<R> {
         let line = self.efficiency(piston_m_s);
         let (least, most) = (*EFFICIENCY.start(), *EFFICIENCY.end());

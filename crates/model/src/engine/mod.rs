@@ -26,7 +26,7 @@ pub use start::Running;
 pub use start_stop::StartStop;
 
 use crate::fluid::{Lubricant, ZERO_DEGC_K};
-use crate::math::{Curve, Mask, Real, gather};
+use crate::math::{Curve, Gather, Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use std::cell::RefCell;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -51,7 +51,7 @@ thread_local! {
 }
 
 /// The checked engine.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Engine<R: Real = f64> {
     /// Displacement, m3.
     pub displacement_m3: R,
@@ -122,16 +122,8 @@ pub struct Engine<R: Real = f64> {
     /// Fuel model.
     pub fuel: FuelModel<R>,
     /// Start-stop, if there is one.
+    #[gather(same)]
     pub start_stop: Option<StartStop>,
-}
-
-gather! {
-    Engine {
-        displacement_m3, stroke_m, rated_w, full_load, highest_rad_s, inertia_kg_m2, inertia_torque_nm, idle_hot_rad_s, idle_cold_rad_s,
-        idle_cold_k, idle_warm_k, idle_after_start_rad_s, idle_after_start_s, hot_k, viscous_share, viscous_exponent, reference_m2_s,
-        film_coolant_share, overrun_drag, enrichment, start_kg, start_s, cut_from_k, cut_above_rad_s, fuel_back_rad_s, electrical_w,
-        accessory_nm, exhaust_idle, exhaust_fast, friction_to_oil, heating_value_j_kg, fuel_density_kg_m3, co2_kg_kg, fuel,
-    } same { start_stop }
 }
 
 /// The engine at one temperature state, in one air.
@@ -227,9 +219,9 @@ impl Engine {
     }
 }
 
+#[physics]
 impl<R: Real> Engine<R> {
     /// The engine in a step of `dt_s`, after what it did before.
-    #[inline(always)]
     pub fn in_step(
         &self,
         coolant_k: R,
@@ -253,7 +245,6 @@ impl<R: Real> Engine<R> {
     }
 
     /// Idle speed, its mean over a step, rad/s.
-    #[inline(always)]
     fn idle_rad_s(&self, coolant_k: R, running: &Running<R>, dt_s: f64) -> R {
         let width = self.idle_warm_k - self.idle_cold_k;
         let cold = ((self.idle_warm_k - coolant_k) / width).clamp(0.0, 1.0);
@@ -267,7 +258,6 @@ impl<R: Real> Engine<R> {
     }
 
     /// Friction over that of the warm engine with the reference oil.
-    #[inline(always)]
     fn friction_factor(&self, coolant_k: R, oil_k: R, oil: &Lubricant<R>) -> R {
         let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
         let film_k = film_k.min(self.hot_k);
@@ -276,53 +266,45 @@ impl<R: Real> Engine<R> {
     }
 
     /// Torque of a mean effective pressure (four-stroke), Nm.
-    #[inline(always)]
     pub fn torque_nm(&self, mep_pa: R) -> R {
         mep_pa * self.displacement_m3 * PER_FOUR_PI
     }
 
     /// Mean effective pressure of a torque (four-stroke), Pa.
-    #[inline(always)]
     pub fn mep_pa(&self, torque_nm: R) -> R {
         torque_nm * FOUR_PI / self.displacement_m3
     }
 
     /// Mean piston speed, m/s.
-    #[inline(always)]
     pub fn piston_m_s(&self, speed_rad_s: R) -> R {
         speed_rad_s * self.stroke_m * FRAC_1_PI
     }
 }
 
+#[physics]
 impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R> {
-    #[inline(always)]
     fn idle_rad_s(&self) -> R {
         self.idle_rad_s
     }
 
-    #[inline(always)]
     fn max_rad_s(&self) -> R {
         self.engine.highest_rad_s
     }
 
-    #[inline(always)]
     fn rated_w(&self) -> R {
         self.engine.rated_w
     }
 
-    #[inline(always)]
     fn warm_power_w(&self, power_w: R, speed_rad_s: R) -> R {
         let hot = speed_rad_s.interpolate(&self.engine.full_load);
         power_w * hot / self.full_load_of(hot, speed_rad_s)
     }
 
-    #[inline(always)]
     fn max_accel_rad_s2(&self) -> R {
         self.engine.inertia_torque_nm / self.engine.inertia_kg_m2
     }
 
     /// EN-12: the drag at idle is that of the slowest engine, so that none of it is missing on the way.
-    #[inline(always)]
     fn slowed_rad_s(&self, from_rad_s: R, load_nm: R, dt_s: f64) -> R {
         let drag_nm = self.own_drag_nm(self.idle_rad_s);
         let per_nm = dt_s / self.engine.inertia_kg_m2;
@@ -332,13 +314,11 @@ impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R> {
         (square.max(0.0).sqrt() - b).max(0.0) // EN-12
     }
 
-    #[inline(always)]
     fn full_load_nm(&self, speed_rad_s: R) -> R {
         self.full_load_of(speed_rad_s.interpolate(&self.engine.full_load), speed_rad_s)
     }
 
     /// EN-4: none at standstill.
-    #[inline(always)]
     fn accessories_nm(&self, speed_rad_s: R) -> R {
         let least = 0.5 * self.engine.idle_hot_rad_s;
         let w = speed_rad_s.max(least);
@@ -348,15 +328,14 @@ impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R> {
     }
 
     /// EN-7: in overrun with fuel cut off; where it is not cut, the engine burns what turns it and drags nothing (EN-11).
-    #[inline(always)]
     fn drag_nm(&self, speed_rad_s: R) -> R {
         self.cut_share * self.own_drag_nm(speed_rad_s) // EN-11
     }
 }
 
+#[physics]
 impl<R: Real> EngineAtTemperature<'_, R> {
     /// Full load at a speed from that of the hot engine there, Nm (EN-8).
-    #[inline(always)]
     fn full_load_of(&self, hot: R, speed_rad_s: R) -> R {
         let piston_m_s = self.engine.piston_m_s(speed_rad_s);
         let friction = self
@@ -369,13 +348,11 @@ impl<R: Real> EngineAtTemperature<'_, R> {
     }
 
     /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
-    #[inline(always)]
     pub fn own_drag_nm(&self, speed_rad_s: R) -> R {
         self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
     }
 
     /// Friction mean effective pressure at the present temperature, Pa.
-    #[inline(always)]
     pub fn friction_pa(&self, speed_rad_s: R) -> R {
         self.engine
             .fuel
@@ -384,7 +361,6 @@ impl<R: Real> EngineAtTemperature<'_, R> {
     }
 
     /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.
-    #[inline(always)]
     pub fn burn(&self, speed_rad_s: R, torque_nm: R) -> Burn<R> {
         let e = self.engine;
         let zero = speed_rad_s.splat(0.0);

@@ -9,7 +9,7 @@
 
 use super::Engine;
 use crate::fluid::ZERO_DEGC_K;
-use crate::math::{Mask, Real, both, ramp};
+use crate::math::{Mask, Real, both, physics, ramp};
 
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
 pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
@@ -44,10 +44,10 @@ impl Running {
     };
 }
 
+#[physics]
 impl<R: Real> Running<R> {
     /// The same with the coolant of the start, K, where it starts now.
     #[must_use]
-    #[inline(always)]
     pub fn started(self, coolant_k: R) -> Running<R> {
         if self.since_s > 0.0 {
             return self;
@@ -60,7 +60,6 @@ impl<R: Real> Running<R> {
 
     /// The same with an engine in gear slowed down as the wheels are in a step, so that EN-11 has no lag of a step.
     #[must_use]
-    #[inline(always)]
     pub fn rolled(self, wheel_rad_s: R) -> Running<R> {
         let keeps = wheel_rad_s.ge(self.wheel_rad_s);
         if keeps.all() {
@@ -75,7 +74,6 @@ impl<R: Real> Running<R> {
     }
 
     /// After a step of a running engine, or of one that is off: `(engine_rad_s, wheel_rad_s)` are the speeds in the step.
-    #[inline(always)]
     #[must_use]
     pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (R, R)) -> Running<R> {
         if off {
@@ -98,9 +96,9 @@ impl<R: Real> Running<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Running<R> {
     /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
-    #[inline(always)]
     pub(super) fn spending_per_s(&self, within_s: R, dt_s: f64) -> R {
         let zero = within_s.splat(0.0);
         let since = within_s.splat(self.since_s);
@@ -115,21 +113,20 @@ impl<R: Real> Running<R> {
 }
 
 /// Share of the fuel of a start that it takes at a temperature of the coolant, K.
-#[inline(always)]
+#[physics]
 pub(super) fn cold_share<R: Real>(coolant_k: R) -> R {
     ((COLD_K - coolant_k) * 60_f64.recip()).clamp(0.0, 1.0)
 }
 
+#[physics]
 impl<R: Real> Engine<R> {
     /// Fuel of the start in a step, kg/s.
-    #[inline(always)]
     pub(super) fn start_kg_s(&self, running: &Running<R>, dt_s: f64) -> R {
         let cold = cold_share(running.start_k);
         self.start_kg * cold * running.spending_per_s(self.start_s, dt_s) // EN-9
     }
 
     /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
-    #[inline(always)]
     pub(super) fn cut_share(&self, coolant_k: R, running: &Running<R>) -> R {
         let warm = (coolant_k - self.cut_from_k).clamp(0.0, 1.0);
         let speed = running.speed_rad_s;

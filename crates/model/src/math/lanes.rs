@@ -431,36 +431,3 @@ impl<T: Gather> Gather for Box<T> {
         (**self).groups_with(other)
     }
 }
-
-/// `gather!(Name { own, fields } same { shared, fields });`: lanes for a struct `Name<R = f64>`, whose first fields each run has of its own.
-macro_rules! gather {
-    ($name:ident { $($own:ident),* $(,)? } $(same { $($same:ident),* $(,)? })?) => {
-        impl $crate::math::Gather for $name {
-            type Together<R: $crate::math::Real> = $name<R>;
-
-            fn gather<R: $crate::math::Real>(like: R, of: &[&Self]) -> $name<R> {
-                $name {
-                    $($own: {
-                        let each: Vec<_> = of.iter().map(|one| &one.$own).collect();
-                        $crate::math::Gather::gather(like, &each)
-                    },)*
-                    $($($same: of[0].$same.clone(),)*)?
-                }
-            }
-
-            fn lane<R: $crate::math::Real>(together: &$name<R>, lane: usize) -> Self {
-                $name {
-                    $($own: $crate::math::Gather::lane::<R>(&together.$own, lane),)*
-                    $($($same: together.$same.clone(),)*)?
-                }
-            }
-
-            fn groups_with(&self, other: &Self) -> bool {
-                true
-                    $(&& $crate::math::Gather::groups_with(&self.$own, &other.$own))*
-                    $($(&& self.$same == other.$same)*)?
-            }
-        }
-    };
-}
-pub(crate) use gather;

@@ -11,20 +11,21 @@ mod scalar;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
+pub use cvtcycle_macros::{Gather, physics};
 pub use elementary::{exp, exp_array, ln, ln_array, tanh};
 pub use grid::{GRID_AXES, Grid};
 pub use lanes::{Gather, LaneMask, Level, Simd, dispatch, eight, f64x4, f64x8, four};
-pub(crate) use lanes::{MOST_LANES, gather, gather_each};
+pub(crate) use lanes::{MOST_LANES, gather_each};
 pub use real::{Implied, LaneValue, Left, Mask, Named, Operand, Real, Selectable};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
-#[inline(always)]
+#[physics]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers; the second where one is no number.
-#[inline(always)]
+#[physics]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
@@ -40,7 +41,7 @@ pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
 ///
 /// `from` and `to` may be in either order; equal ends give a step: 0 below them, 1 at them and above.
-#[inline(always)]
+#[physics]
 pub fn ramp<R: Real>(x: R, from: R, to: R) -> R {
     let width = to - from;
     let step = x.ge(from).select(x.splat(1.0), x.splat(0.0));
@@ -49,14 +50,14 @@ pub fn ramp<R: Real>(x: R, from: R, to: R) -> R {
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).
-#[inline(always)]
+#[physics]
 pub fn smooth_ramp<R: Real>(x: R, from: R, to: R) -> R {
     let u = ramp(x, from, to);
     u * u * (3.0 - 2.0 * u)
 }
 
 /// The same of two sides, as an array: the compiler then works on both at once where it can.
-#[inline(always)]
+#[physics]
 pub fn pair(f: impl Fn(usize) -> f64) -> [f64; 2] {
     [f(0), f(1)]
 }

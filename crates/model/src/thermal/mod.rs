@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{Mask, Real, exp, gather, ln, places, ramp};
+use crate::math::{Gather, Mask, Real, exp, ln, physics, places, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -39,7 +39,7 @@ pub const METAL: usize = 3;
 pub const BELT: usize = 4;
 
 /// The oil-to-air cooler.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Cooler<R: Real = f64> {
     /// U at standstill, W/K.
     pub still_w_k: R,
@@ -54,7 +54,7 @@ pub struct Cooler<R: Real = f64> {
 }
 
 /// The checked network.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Network<R: Real = f64> {
     /// Heat capacities, J/K; 0 for an unused node.
     pub capacity_j_k: [R; NODES],
@@ -96,18 +96,6 @@ pub struct Network<R: Real = f64> {
     pub cooler: Option<Cooler<R>>,
     /// Under-bonnet air: rise as a share of coolant over ambient.
     pub under_bonnet: R,
-}
-
-gather! {
-    Cooler { still_w_k, per_speed_w_s_k_m, flow_share, highest_m3_s, bypass_below_k }
-}
-
-gather! {
-    Network {
-        capacity_j_k, sump_oil_m3, coolant_oil_w_k, block_air_w_k, block_air_per_speed, pan_air_w_k, pan_air_per_speed, radiator_w_k,
-        radiator_per_speed, thermostat_from_k, thermostat_to_k, oil_metal_w_k, case_air_w_k, case_air_per_speed, bell_housing_w_k, spray_w_k,
-        exchanger_w_k, exchanger_opens_k, cooler, under_bonnet,
-    }
 }
 
 /// Share of a conductance that is left with nothing turning (TH-6).
@@ -186,9 +174,9 @@ struct Now<R: Real = f64> {
     cooler_w_k: R,
 }
 
+#[physics]
 impl<R: Real> Now<R> {
     /// Conductance of each node to its air, W/K; the radiator's slope is kept apart.
-    #[inline(always)]
     fn air_w_k(&self) -> [R; NODES] {
         [
             self.block_air_w_k,
@@ -200,7 +188,6 @@ impl<R: Real> Now<R> {
     }
 
     /// Heat from each node to its air at the beginning of the step, W, that of the radiator included.
-    #[inline(always)]
     fn air_w(&self, t: &[R; NODES], ambient_k: R) -> [R; NODES] {
         [
             self.block_air_w_k * (t[COOLANT] - self.bonnet_k) + self.radiator.0,
@@ -217,15 +204,14 @@ pub(crate) fn speed_power(v: f64) -> f64 {
     if v > 0.0 { exp(0.7 * ln(v)) } else { 0.0 }
 }
 
+#[physics]
 impl<R: Real> Network<R> {
     /// Belt to transmission oil by spray at a pump speed, W/K (TH-8).
-    #[inline(always)]
     pub fn spray_now_w_k(&self, pump_rad_s: R) -> R {
         let share = pump_rad_s * SPRAY_REFERENCE_RAD_S.recip();
         self.spray_w_k * share.max(STILL) // TH-8
     }
 
-    #[inline(always)]
     fn radiator(&self, coolant_k: R, input: &HeatInput<R>) -> (R, R) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
@@ -243,7 +229,6 @@ impl<R: Real> Network<R> {
         (flow * over, slope) // TH-2
     }
 
-    #[inline(always)]
     fn cooler(&self, sump_k: R, input: &HeatInput<R>) -> (R, R) {
         let zero = sump_k.splat(0.0);
         let Some(c) = &self.cooler else {
@@ -263,7 +248,6 @@ impl<R: Real> Network<R> {
     }
 
     /// The heat exchanger between coolant and transmission oil, W/K, with the pumps at a share of their flow (TH-7).
-    #[inline(always)]
     fn exchanger_now_w_k(&self, coolant_k: R, stirred: f64) -> R {
         let there = self.exchanger_w_k.gt(0.0);
         let none = coolant_k.splat(0.0);
@@ -275,7 +259,6 @@ impl<R: Real> Network<R> {
         there.select(stirred * self.exchanger_w_k * open, none) // TH-7
     }
 
-    #[inline(always)]
     fn now(&self, heat: &Heat<R>, input: &HeatInput<R>, speed_power_07: f64) -> Now<R> {
         let t = &heat.node_k;
         let v = input.speed_m_s;
@@ -310,7 +293,6 @@ impl<R: Real> Network<R> {
     }
 
     /// The same, with the road speed to the power of 0.7, which a trace knows.
-    #[inline(always)]
     pub fn advance_in_wind(
         &self,
         heat: &Heat<R>,
@@ -332,10 +314,8 @@ impl<R: Real> Network<R> {
             now.radiator.1 = shuts.select(zero, now.radiator.1);
             air_w = now.air_w(t, input.ambient_k);
             // Rare: kept out of the way of the other steps.
-            rise = zero.vectorize(
-                #[inline(always)]
-                || self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w)),
-            );
+            rise =
+                zero.vectorize(|| self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w)));
         }
         let node_k = places!(i in 0, 1, 2, 3, 4 => t[i] + rise[i]);
         let [s0, s1, s2, s3, s4] = places!(i in 0, 1, 2, 3, 4 => capacity_w_k[i] * rise[i]);
@@ -353,7 +333,6 @@ impl<R: Real> Network<R> {
     }
 
     /// Rise of the nodes within the step, K, with conductance and heat to the air of each (TH-5).
-    #[inline(always)]
     fn rise_k(
         &self,
         now: &Now<R>,
@@ -376,7 +355,6 @@ impl<R: Real> Network<R> {
         now.links.rise_k(&own, &right)
     }
 
-    #[inline(always)]
     fn cooler_ends(&self, now: &Now<R>, sump_k: R, ambient_k: R) -> (R, R) {
         if self.cooler.is_none() {
             let none = sump_k.splat(f64::NAN);

@@ -6,7 +6,7 @@ use super::coupling::Reach;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
 use crate::fluid::Lubricant;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::Heat;
@@ -32,9 +32,9 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub neutral_share: R,
 }
 
+#[physics]
 impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
     /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
-    #[inline(always)]
     pub(super) fn reach(&self, from_rad_s: R, load_nm: R) -> Reach<R> {
         Reach {
             from_rad_s,
@@ -110,17 +110,17 @@ pub struct StepOutput<R: Real = f64> {
     pub flags: R::PerLane<Flags>,
 }
 
+#[physics]
 impl StepOutput {
     /// Nothing turns.
-    #[inline(always)]
     pub fn at_rest() -> Self {
         StepOutput::like(0.0)
     }
 }
 
+#[physics]
 impl<R: Real> StepOutput<R> {
     /// Nothing turns in any of the runs of a number.
-    #[inline(always)]
     pub fn like(number: R) -> Self {
         let (zero, none) = (number.splat(0.0), number.splat(f64::NAN));
         StepOutput {
@@ -149,13 +149,11 @@ impl<R: Real> StepOutput<R> {
     }
 
     /// Splits the difference between the power given and the power demanded into brake and deficit.
-    #[inline(always)]
     pub(super) fn split_brake_and_shortfall(&mut self, wheel: &WheelDemand<R>, output_w: R) {
         self.split_of(output_w.splat_mask(true), wheel, output_w);
     }
 
     /// The same for the runs of a mask.
-    #[inline(always)]
     pub(super) fn split_of(&mut self, runs: R::Mask, wheel: &WheelDemand<R>, output_w: R) {
         let over = output_w - wheel.power_w;
         let brakes = over.ge(0.0);
@@ -165,26 +163,22 @@ impl<R: Real> StepOutput<R> {
     }
 
     /// Adds a loss power.
-    #[inline(always)]
     pub(super) fn add_loss(&mut self, component: Component, watts: R) {
         self.loss_w[component] = self.loss_w[component] + watts;
     }
 
     /// Sets a flag where the mask says so.
-    #[inline(always)]
     pub fn flag(&mut self, flag: Flags, on: R::Mask) {
         set_flag::<R>(&mut self.flags, flag, on);
     }
 
     /// Where a flag is set.
-    #[inline(always)]
     pub fn has(&self, flag: Flags) -> R::Mask {
         let has = |run| R::get(&self.flags, run).contains(flag);
         self.engine_rad_s.mask_lanes(has)
     }
 
     /// Takes over what another output has for the runs of a mask.
-    #[inline(always)]
     pub(super) fn take(&mut self, runs: R::Mask, other: &StepOutput<R>) {
         macro_rules! numbers {
             ($($field:ident),*) => {
@@ -224,7 +218,7 @@ impl<R: Real> StepOutput<R> {
 }
 
 /// Sets a flag of the runs where the mask says so.
-#[inline(always)]
+#[physics]
 pub(crate) fn set_flag<R: Real>(flags: &mut R::PerLane<Flags>, flag: Flags, on: R::Mask) {
     if R::LANES == 1 {
         R::get_mut(flags, 0).set(flag, on.any());

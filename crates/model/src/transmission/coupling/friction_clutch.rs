@@ -11,10 +11,10 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Launch};
 use crate::keys::{Values, keys};
-use crate::math::{Mask, Real, gather, ramp};
+use crate::math::{Gather, Mask, Real, physics, ramp};
 
 /// A friction clutch that slips at launch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct FrictionClutch<R: Real = f64> {
     /// Engine speed at which it begins to engage, rad/s.
     pub engage_rad_s: R,
@@ -26,13 +26,6 @@ pub struct FrictionClutch<R: Real = f64> {
     pub release_rad_s: R,
 }
 
-gather!(FrictionClutch {
-    engage_rad_s,
-    gain_nm_s2,
-    creep_nm,
-    release_rad_s
-});
-
 /// Input speed over idle speed from which a coupled clutch does not slip (LC-5).
 const LOCKED_OVER_IDLE: f64 = 1.2;
 /// Width of the transition from creeping to launching, Nm.
@@ -42,21 +35,19 @@ const ROUND_RAD_S: f64 = 20.944;
 /// Its square.
 const ROUND_SQUARED: f64 = ROUND_RAD_S * ROUND_RAD_S;
 
+#[physics]
 impl<R: Real> Coupling<R> for FrictionClutch<R> {
     /// LC-1, LC-5: never below idle nor below the input shaft.
-    #[inline(always)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
         self.steady_rad_s(load)
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         LOCKED_OVER_IDLE * idle_rad_s
     }
 
     /// CV-6: in overrun the power passes unchanged, since a clutch whose engine still slows down from a higher speed can neither give
     /// nor take energy.
-    #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         let overruns = output_nm.lt(0.0);
         let mut engine_nm = output_nm;
@@ -75,17 +66,14 @@ impl<R: Real> Coupling<R> for FrictionClutch<R> {
         Some(Launch::clutch(self.of_least_speed()))
     }
 
-    #[inline(always)]
     fn output_nm(&self, engine_nm: R, _output_rad_s: R, _engine_rad_s: R) -> R {
         engine_nm
     }
 
-    #[inline(always)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         self.creep_nm * (1.0 - ramp(output_rad_s, idle_rad_s.splat(0.0), idle_rad_s)) // LC-2
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let from = 1.1 * idle_rad_s;
         let to = self.release_rad_s.max(from);
@@ -104,7 +92,7 @@ impl<R: Real> FrictionClutch<R> {
     }
 
     /// LC-1, LC-5.
-    #[inline(always)]
+    #[physics]
     fn steady_rad_s(&self, load: &CouplingLoad<R>) -> R {
         let CouplingLoad {
             output_nm,

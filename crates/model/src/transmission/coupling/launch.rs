@@ -4,7 +4,7 @@ use super::{
     Coupling, CouplingLoad, DriverClutch, EngineSide, FrictionClutch, Hold, LockSignals,
     TorqueConverter, Turning,
 };
-use crate::math::{Gather, Mask, Real};
+use crate::math::{Gather, Mask, Real, physics};
 use std::sync::Arc;
 
 /// The coupling of a box.
@@ -101,7 +101,7 @@ impl Gather for Launch {
 }
 
 /// The engine's side of each run.
-#[inline(always)]
+#[physics]
 fn sides<R: Real>(like: R, side: impl Fn(usize) -> EngineSide) -> EngineSide<R> {
     let mut all = EngineSide {
         engine_nm: like,
@@ -118,13 +118,13 @@ fn sides<R: Real>(like: R, side: impl Fn(usize) -> EngineSide) -> EngineSide<R> 
 }
 
 /// The device of a lane.
-#[inline(always)]
+#[physics]
 fn one<R: Real>(devices: &R::PerLane<Device>, lane: usize) -> &dyn Coupling {
     &*R::get(devices, lane).0
 }
 
 /// The turning speeds of a lane.
-#[inline(always)]
+#[physics]
 fn turning<R: Real>(at: &Turning<R>, lane: usize) -> Turning {
     Turning {
         output_rad_s: at.output_rad_s.lane(lane),
@@ -166,8 +166,8 @@ macro_rules! ask {
     };
 }
 
+#[physics]
 impl<R: Real> Coupling<R> for Launch<R> {
-    #[inline(always)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
         let like = load.output_nm;
         let own = |lane: usize| CouplingLoad {
@@ -179,7 +179,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         ask!(self, like, lane, engine_rad_s(load), &own(lane))
     }
 
-    #[inline(always)]
     fn min_engine_rad_s(&self, output_rad_s: R) -> R {
         ask!(
             self,
@@ -190,7 +189,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         ask!(
             self,
@@ -201,7 +199,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
-    #[inline(always)]
     fn by_command(&self) -> bool {
         match self {
             Launch::Clutch(clutch) => clutch.by_command(),
@@ -210,7 +207,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
-    #[inline(always)]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         match self {
             Launch::Clutch(clutch) => clutch.hold(now, past),
@@ -219,7 +215,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
-    #[inline(always)]
     fn locked_side(&self, output_nm: R, output_rad_s: R, slip_rad_s: R) -> EngineSide<R> {
         match self {
             Launch::Clutch(clutch) => clutch.locked_side(output_nm, output_rad_s, slip_rad_s),
@@ -233,7 +228,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
-    #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         match self {
             Launch::Clutch(clutch) => clutch.engine_side(output_nm, output_rad_s, engine_rad_s),
@@ -247,7 +241,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
-    #[inline(always)]
     fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
         ask!(
             self,
@@ -260,7 +253,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
-    #[inline(always)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         ask!(
             self,
@@ -272,7 +264,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         ask!(
             self,
@@ -284,7 +275,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
-    #[inline(always)]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
         ask!(
             self,
@@ -317,7 +307,6 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
-    #[inline(always)]
     fn loss_factor(&self) -> Option<R> {
         match self {
             Launch::Clutch(clutch) => clutch.loss_factor(),

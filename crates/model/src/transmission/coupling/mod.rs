@@ -17,7 +17,7 @@ pub use torque_converter::{LockUp, TorqueConverter};
 use self::friction_clutch::FrictionClutchKeys;
 use self::torque_converter::TorqueConverterKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{Mask, Real, ramp};
+use crate::math::{Mask, Real, physics, ramp};
 use std::fmt::Debug;
 
 const CLUTCH: Choice = Choice::new(
@@ -70,9 +70,9 @@ pub struct CouplingLoad<R: Real = f64> {
     pub coupled: R::Mask,
 }
 
+#[physics]
 impl<R: Real> CouplingLoad<R> {
     /// A torque into the box, Nm, at its speed over an engine with an idle speed, rad/s.
-    #[inline(always)]
     pub fn new(output_nm: R, output_rad_s: R, idle_rad_s: R, coupled: R::Mask) -> Self {
         CouplingLoad {
             output_nm,
@@ -94,9 +94,9 @@ pub struct EngineSide<R: Real = f64> {
     pub loss_w: R,
 }
 
+#[physics]
 impl<R: Real> EngineSide<R> {
     /// `yes` where the mask says so, else `no`.
-    #[inline(always)]
     pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         EngineSide {
             engine_nm: mask.select(yes.engine_nm, no.engine_nm),
@@ -145,7 +145,7 @@ pub struct Turning<R: Real = f64> {
 
 /// 1 where the engine is no faster than the box, falling to 0 at 2 % more: a slipping coupling whose engine is faster cannot take torque from
 /// the box; faded, so that a solve sees no step.
-#[inline(always)]
+#[physics]
 fn together<R: Real>(at: &Turning<R>) -> R {
     let one = at.engine_rad_s.splat(1.0);
     let ahead = at.engine_rad_s.gt(at.output_rad_s);
@@ -163,7 +163,7 @@ pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R;
 
     /// Lowest engine speed over a box that turns at a speed, rad/s. A clutch cannot give energy back: its engine is never slower.
-    #[inline(always)]
+    #[physics]
     fn min_engine_rad_s(&self, output_rad_s: R) -> R {
         output_rad_s
     }
@@ -177,7 +177,7 @@ pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     }
 
     /// How it holds engine and box together in a step; `past`: it had locked before.
-    #[inline(always)]
+    #[physics]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         let idle_rad_s = now.idle_rad_s;
         let never = idle_rad_s.splat(f64::INFINITY);
@@ -189,7 +189,7 @@ pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     }
 
     /// The engine's side where the coupling is locked, with the slip of [`Coupling::hold`].
-    #[inline(always)]
+    #[physics]
     fn locked_side(&self, output_nm: R, output_rad_s: R, _slip_rad_s: R) -> EngineSide<R> {
         self.engine_side(output_nm, output_rad_s, output_rad_s)
     }
@@ -207,7 +207,7 @@ pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R;
 
     /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
-    #[inline(always)]
+    #[physics]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
         let creeps = at.output_rad_s.lt(at.idle_rad_s);
         let mut least_nm = absorbed_nm.splat(0.0);
@@ -233,13 +233,13 @@ pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     }
 
     /// Factor on its loss (LC-6); none where it loses what its model says.
-    #[inline(always)]
+    #[physics]
     fn loss_factor(&self) -> Option<R> {
         None
     }
 
     /// The engine's side for a torque into the box, its speed the one of steady state as far as `reach` has it.
-    #[inline(always)]
+    #[physics]
     fn solve(&self, load: &CouplingLoad<R>, reach: &Reach<R>) -> EngineSide<R> {
         let reached = reach.nearest(self.engine_rad_s(load));
         let least = self.min_engine_rad_s(load.output_rad_s);
@@ -258,15 +258,14 @@ pub struct Reach<R: Real = f64> {
     pub fastest_rad_s: R,
 }
 
+#[physics]
 impl<R: Real> Reach<R> {
     /// The nearest speed within reach, rad/s.
-    #[inline(always)]
     pub fn nearest(&self, wanted_rad_s: R) -> R {
         wanted_rad_s.clamp(self.slowest_rad_s, self.fastest_rad_s)
     }
 
     /// Mean over the step of how much faster the engine is than at its end, to which it slows down as fast as it can, rad/s.
-    #[inline(always)]
     pub fn mean_excess_rad_s(&self, end_rad_s: R) -> R {
         let fall = self.from_rad_s - end_rad_s;
         let most = self.from_rad_s - self.slowest_rad_s;

@@ -16,7 +16,9 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
 use crate::keys::{Bound, Quantity, Values, keys};
-use crate::math::{Curve, MOST_LANES, Mask, Real, both, gather, gather_each, larger, places};
+use crate::math::{
+    Curve, Gather, MOST_LANES, Mask, Real, both, gather_each, larger, physics, places,
+};
 use std::sync::Arc;
 
 /// Torque ratio and capacity of the original at a speed ratio: [nu, k, lambda/lambda(0)].
@@ -87,21 +89,19 @@ struct Row {
     coast: f64,
 }
 
+#[physics]
 impl Row {
     /// Whether it is at or before a speed ratio; it needs no second number.
-    #[inline(always)]
     fn is_up_to(&self, nu: f64, _: f64) -> bool {
         self.nu <= nu
     }
 
     /// Whether the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
-    #[inline(always)]
     fn pulls_above(&self, turbine_nm: f64, square: f64) -> bool {
         self.pull * square > turbine_nm
     }
 
     /// Whether the engine takes more than a torque in overrun, Nm.
-    #[inline(always)]
     fn coasts_above(&self, drag_nm: f64, square: f64) -> bool {
         self.coast * square > drag_nm
     }
@@ -114,7 +114,7 @@ struct Rows(Arc<[Row]>);
 gather_each!(Rows);
 
 /// When the lock-up clutch closes, and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct LockUp<R: Real = f64> {
     /// Road speed above which it closes, m/s.
     pub from_m_s: R,
@@ -130,17 +130,8 @@ pub struct LockUp<R: Real = f64> {
     pub slip_until_k: R,
 }
 
-gather!(LockUp {
-    from_m_s,
-    until_m_s,
-    from_k,
-    open_rad_s,
-    slip_rad_s,
-    slip_until_k
-});
-
 /// The checked torque converter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct TorqueConverter<R: Real = f64> {
     rows: R::PerLane<Rows>,
     /// Torque ratio over speed ratio.
@@ -148,13 +139,6 @@ pub struct TorqueConverter<R: Real = f64> {
     neutral_idle: R,
     lockup: Option<LockUp<R>>,
 }
-
-gather!(TorqueConverter {
-    rows,
-    k,
-    neutral_idle,
-    lockup
-});
 
 /// Speed of the turbine from which the lock-up clutch closes, over that below which it opens (TC-7).
 const CLOSES_OVER_OPEN: f64 = 1.1;
@@ -211,53 +195,38 @@ struct Piece<'a, R: Real> {
     like: R,
 }
 
+#[physics]
 impl<R: Real> Piece<'_, R> {
     /// A number of the rows at both ends.
-    #[inline(always)]
     fn ends(&self, of: fn(&Row) -> f64) -> [R; 2] {
         both!(end => self.like.map_lanes(
-            #[inline(always)]
             |lane| of(&R::get(self.rows, lane).0[self.first[lane] + end]),
         ))
     }
 
     /// The numbers of the piece's quadratic equation.
-    #[inline(always)]
     fn quadratic(&self) -> [R; 3] {
         places!(place in 0, 1, 2 => self.like.map_lanes(
-            #[inline(always)]
             |lane| R::get(self.rows, lane).0[self.first[lane]].quadratic[place],
         ))
     }
 
-    #[inline(always)]
     fn nu(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.nu,
-        )
+        self.ends(|row| row.nu)
     }
 
-    #[inline(always)]
     fn lambda(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.lambda,
-        )
+        self.ends(|row| row.lambda)
     }
 
-    #[inline(always)]
     fn coast(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.coast,
-        )
+        self.ends(|row| row.coast)
     }
 }
 
+#[physics]
 impl<R: Real> TorqueConverter<R> {
     /// The piece that begins with the last row for which `before` holds with the numbers of a lane, the first one at least.
-    #[inline(always)]
     fn piece(&self, x: R, y: R, before: fn(&Row, f64, f64) -> bool) -> Piece<'_, R> {
         let mut first = [0; MOST_LANES];
         for (lane, first) in first.iter_mut().enumerate().take(R::LANES) {
@@ -274,7 +243,6 @@ impl<R: Real> TorqueConverter<R> {
     }
 
     /// Capacity at a speed ratio from 0 to 1, Nm s2.
-    #[inline(always)]
     fn lambda_nm_s2(&self, nu: R) -> R {
         let p = self.piece(nu, nu, Row::is_up_to);
         let (at, lambda) = (p.nu(), p.lambda());
@@ -283,7 +251,6 @@ impl<R: Real> TorqueConverter<R> {
     }
 
     /// Speed of the engine that drives a turbine with a torque, rad/s (TC-2).
-    #[inline(always)]
     fn driving_rad_s(&self, turbine_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
         let p = self.piece(turbine_nm, square, Row::pulls_above);
@@ -294,7 +261,6 @@ impl<R: Real> TorqueConverter<R> {
     }
 
     /// Speed of an engine that takes a torque from the turbine, rad/s (TC-6).
-    #[inline(always)]
     fn coasting_rad_s(&self, drag_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
         let p = self.piece(drag_nm, square, Row::coasts_above);
@@ -302,15 +268,11 @@ impl<R: Real> TorqueConverter<R> {
         let share = (coast[0] * square - drag_nm) / ((coast[0] - coast[1]) * square);
         let speed = (nu[0] + share * (nu[1] - nu[0])) * turbine_rad_s; // TC-6
         // No engine at rest takes more.
-        let most = square.map_lanes(
-            #[inline(always)]
-            |lane| R::get(&self.rows, lane).0[0].coast,
-        );
+        let most = square.map_lanes(|lane| R::get(&self.rows, lane).0[0].coast);
         (most * square).le(drag_nm).select(speed.splat(0.0), speed)
     }
 
     /// Largest torque that an idling engine's pump wheel takes from the turbine, Nm (TC-6).
-    #[inline(always)]
     fn coast_at_idle_nm(&self, turbine_rad_s: R, idle_rad_s: R) -> R {
         let r = idle_rad_s / turbine_rad_s;
         let p = self.piece(r, r, Row::is_up_to);
@@ -320,7 +282,6 @@ impl<R: Real> TorqueConverter<R> {
     }
 
     /// The engine's side at known speeds.
-    #[inline(always)]
     fn side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         let drives = output_nm.ge(0.0) & engine_rad_s.ge(output_rad_s);
         let coasts = output_nm.lt(0.0) & engine_rad_s.le(output_rad_s);
@@ -344,7 +305,6 @@ impl<R: Real> TorqueConverter<R> {
     }
 
     /// Torque into the box that the idling engine passes on, Nm.
-    #[inline(always)]
     fn creeping_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let nu = output_rad_s / idle_rad_s;
         let (k, lambda) = (nu.interpolate(&self.k), self.lambda_nm_s2(nu));
@@ -356,24 +316,22 @@ impl<R: Real> TorqueConverter<R> {
 }
 
 /// The parts with a look-up in the table are functions of their own, so that cars with a clutch do not carry them.
+#[physics]
 impl<R: Real> Coupling<R> for TorqueConverter<R> {
     #[inline(never)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
-        load.output_nm.vectorize(
-            #[inline(always)]
-            || {
-                let (nm, rad_s) = (load.output_nm, load.output_rad_s);
-                let drives = nm.gt(0.0);
-                let mut wanted = nm;
-                if drives.any() {
-                    wanted = self.driving_rad_s(nm, rad_s);
-                }
-                if !drives.all() {
-                    wanted = drives.select(wanted, self.coasting_rad_s(-nm, rad_s));
-                }
-                wanted.max(load.idle_rad_s)
-            },
-        )
+        load.output_nm.vectorize(|| {
+            let (nm, rad_s) = (load.output_nm, load.output_rad_s);
+            let drives = nm.gt(0.0);
+            let mut wanted = nm;
+            if drives.any() {
+                wanted = self.driving_rad_s(nm, rad_s);
+            }
+            if !drives.all() {
+                wanted = drives.select(wanted, self.coasting_rad_s(-nm, rad_s));
+            }
+            wanted.max(load.idle_rad_s)
+        })
     }
 
     fn device(&self) -> &'static str {
@@ -381,12 +339,10 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
     }
 
     /// The engine may be slower than the turbine that drives it.
-    #[inline(always)]
     fn min_engine_rad_s(&self, output_rad_s: R) -> R {
         output_rad_s.splat(0.0)
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         match &self.lockup {
             Some(lockup) => lockup.open_rad_s.max(idle_rad_s),
@@ -394,12 +350,10 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
         }
     }
 
-    #[inline(always)]
     fn by_command(&self) -> bool {
         true
     }
 
-    #[inline(always)]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         let zero = now.sump_k.splat(0.0);
         let Some(lockup) = &self.lockup else {
@@ -424,7 +378,6 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
         }
     }
 
-    #[inline(always)]
     fn locked_side(&self, output_nm: R, output_rad_s: R, slip_rad_s: R) -> EngineSide<R> {
         let slip_rad_s = slip_rad_s * (output_nm / SLIP_FROM_NM).clamp(0.0, 1.0); // TC-8
         EngineSide {
@@ -436,43 +389,33 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
 
     #[inline(never)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
-        output_nm.vectorize(
-            #[inline(always)]
-            || self.side(output_nm, output_rad_s, engine_rad_s),
-        )
+        output_nm.vectorize(|| self.side(output_nm, output_rad_s, engine_rad_s))
     }
 
     #[inline(never)]
     fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
-        engine_nm.vectorize(
-            #[inline(always)]
-            || {
-                let drags = engine_nm.lt(0.0);
-                let drives = !drags & engine_rad_s.ge(output_rad_s);
-                let mut output_nm = engine_nm;
-                if drives.any() {
-                    let driving_nm = engine_nm * (output_rad_s / engine_rad_s).interpolate(&self.k); // TC-1
-                    output_nm = drives.select(driving_nm, output_nm);
-                }
-                let passes = !(drags | drives);
-                if passes.any() {
-                    let passed_nm = engine_nm * engine_rad_s / output_rad_s;
-                    output_nm = passes.select(passed_nm, output_nm);
-                }
-                output_nm
-            },
-        )
+        engine_nm.vectorize(|| {
+            let drags = engine_nm.lt(0.0);
+            let drives = !drags & engine_rad_s.ge(output_rad_s);
+            let mut output_nm = engine_nm;
+            if drives.any() {
+                let driving_nm = engine_nm * (output_rad_s / engine_rad_s).interpolate(&self.k); // TC-1
+                output_nm = drives.select(driving_nm, output_nm);
+            }
+            let passes = !(drags | drives);
+            if passes.any() {
+                let passed_nm = engine_nm * engine_rad_s / output_rad_s;
+                output_nm = passes.select(passed_nm, output_nm);
+            }
+            output_nm
+        })
     }
 
     #[inline(never)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
-        idle_rad_s.vectorize(
-            #[inline(always)]
-            || self.creeping_nm(output_rad_s, idle_rad_s),
-        )
+        idle_rad_s.vectorize(|| self.creeping_nm(output_rad_s, idle_rad_s))
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let one = idle_rad_s.splat(1.0);
         output_rad_s.gt(idle_rad_s).select(one, one.splat(0.0))
@@ -480,24 +423,21 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
 
     #[inline(never)]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
-        absorbed_nm.vectorize(
-            #[inline(always)]
-            || {
-                let mut least_nm = -absorbed_nm;
-                let creeps = !at.locked & at.output_rad_s.lt(at.idle_rad_s);
-                if creeps.any() {
-                    let creep_nm = self.creeping_nm(at.output_rad_s, at.idle_rad_s);
-                    least_nm = creeps.select(creep_nm, least_nm);
-                }
-                let coasts = !(at.locked | creeps);
-                if coasts.any() {
-                    let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
-                    let coast_nm = -together(at) * absorbed_nm.min(carried_nm); // TC-6
-                    least_nm = coasts.select(coast_nm, least_nm);
-                }
-                least_nm
-            },
-        )
+        absorbed_nm.vectorize(|| {
+            let mut least_nm = -absorbed_nm;
+            let creeps = !at.locked & at.output_rad_s.lt(at.idle_rad_s);
+            if creeps.any() {
+                let creep_nm = self.creeping_nm(at.output_rad_s, at.idle_rad_s);
+                least_nm = creeps.select(creep_nm, least_nm);
+            }
+            let coasts = !(at.locked | creeps);
+            if coasts.any() {
+                let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
+                let coast_nm = -together(at) * absorbed_nm.min(carried_nm); // TC-6
+                least_nm = coasts.select(coast_nm, least_nm);
+            }
+            least_nm
+        })
     }
 }
 

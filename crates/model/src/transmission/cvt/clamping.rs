@@ -4,7 +4,7 @@ use super::Cvt;
 use super::controller::{ClampLaw, PressurePoint};
 use super::floors::Held;
 use super::variator::{BeltAtRatio, BeltLoad, belt_state};
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 
 /// Steps of the slip-limited law's walk from its lowest pressure to the cap.
@@ -20,17 +20,14 @@ pub(super) struct Clamping<'a, R: Real = f64> {
     pub force_log: R,
 }
 
+#[physics]
 impl<R: Real> Clamping<'_, R> {
     /// Secondary pressure that a law and PC-5 demand, Pa, not yet below the cap, and the number of the cause.
     #[inline(never)]
     pub fn pressure_pa(&self, law: &ClampLaw<R>) -> (R, R) {
-        self.force_log.vectorize(
-            #[inline(always)]
-            || self.by_law_pa(law),
-        )
+        self.force_log.vectorize(|| self.by_law_pa(law))
     }
 
-    #[inline(always)]
     fn by_law_pa(&self, law: &ClampLaw<R>) -> (R, R) {
         match *law {
             // Looks at the engine only.
@@ -62,7 +59,6 @@ impl<R: Real> Clamping<'_, R> {
     }
 
     /// Pressure of the table, or that of the cause that needs more (PC-6, PC-5); without a table that of the torque.
-    #[inline(always)]
     fn of_table_pa(&self) -> (R, R) {
         let torque_nm = self.load.output_torque_nm;
         let held = self.held(torque_nm.splat(1.0), torque_nm.abs());
@@ -78,7 +74,6 @@ impl<R: Real> Clamping<'_, R> {
     }
 
     /// Pressure for the torque with a safety factor, or that of the cause that needs more (PC-3, PC-5).
-    #[inline(always)]
     fn for_torque_pa(&self, safety: R, least_nm: R) -> (R, R) {
         let torque = self.load.output_torque_nm.abs().max(least_nm);
         let held = self.held(safety, torque);
@@ -86,7 +81,6 @@ impl<R: Real> Clamping<'_, R> {
     }
 
     /// The belt at a torque with a safety factor, Nm (PC-3).
-    #[inline(always)]
     fn held(&self, safety: R, torque: R) -> Held<'_, R> {
         let (cvt, at, load) = (self.cvt, self.at, self.load);
         let formulation = cvt.belt.formulation;

@@ -8,7 +8,7 @@ use super::Shifting;
 use super::controller::ClampLaw;
 use super::driveline::{Clamp, Driveline, PartTorques};
 use super::variator::BeltLoad;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::coupling::{Coupling, CouplingLoad, EngineSide, Hold, Reach, Turning};
 use crate::transmission::gear_train::TurningTrain;
@@ -51,9 +51,9 @@ pub(super) struct Guess<R: Real = f64> {
     pub pressure_pa: R,
 }
 
+#[physics]
 impl<R: Real> Guess<R> {
     /// The middle between two guesses.
-    #[inline(always)]
     pub(super) fn halfway(&self, other: &Self) -> Self {
         Guess {
             output_nm: 0.5 * (self.output_nm + other.output_nm),
@@ -64,7 +64,6 @@ impl<R: Real> Guess<R> {
     }
 
     /// `yes` where the mask says so, else `no`.
-    #[inline(always)]
     pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         Guess {
             output_nm: mask.select(yes.output_nm, no.output_nm),
@@ -75,7 +74,6 @@ impl<R: Real> Guess<R> {
     }
 
     /// All zero; `like` has the lanes.
-    #[inline(always)]
     pub(super) fn none(like: R) -> Self {
         let none = like.splat(0.0);
         Guess {
@@ -121,9 +119,9 @@ pub(super) struct Point<R: Real = f64> {
     pub locked: R::Mask,
 }
 
+#[physics]
 impl<R: Real> Point<R> {
     /// Before the first evaluation; `like` has the lanes.
-    #[inline(always)]
     pub(super) fn none(like: R) -> Self {
         let (none, no) = (like.splat(0.0), like.splat_mask(false));
         Point {
@@ -151,7 +149,6 @@ impl<R: Real> Point<R> {
     }
 
     /// Largest change of the unknowns by the evaluation.
-    #[inline(always)]
     pub(super) fn moved(&self) -> R {
         let g = &self.guess;
         let pressure = (g.pressure_pa / self.next_pressure_pa - 1.0).abs();
@@ -165,7 +162,6 @@ impl<R: Real> Point<R> {
     }
 
     /// The guess that follows without a secant.
-    #[inline(always)]
     pub(super) fn next(&self) -> Guess<R> {
         Guess {
             engine_rad_s: self.next_engine_rad_s,
@@ -204,9 +200,9 @@ pub(super) struct Limit<M> {
     pub full_load: M,
 }
 
+#[physics]
 impl<M: Mask> Limit<M> {
     /// No limit; `no` in every lane.
-    #[inline(always)]
     pub(super) fn none(no: M) -> Self {
         Limit {
             engine_drag: no,
@@ -215,13 +211,11 @@ impl<M: Mask> Limit<M> {
     }
 
     /// Where there is a limit.
-    #[inline(always)]
     pub(super) fn binds(&self) -> M {
         self.engine_drag | self.full_load
     }
 
     /// `yes` where the mask says so, else `no`.
-    #[inline(always)]
     pub(super) fn select(mask: M, yes: &Self, no: &Self) -> Self {
         Limit {
             engine_drag: mask.select(yes.engine_drag, no.engine_drag),
@@ -230,15 +224,14 @@ impl<M: Mask> Limit<M> {
     }
 }
 
+#[physics]
 impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// Primary speed at a slip, rad/s (CV-1).
-    #[inline(always)]
     pub(super) fn primary_rad_s(&self, slip: R) -> R {
         self.line.at.geometry.ratio * self.secondary_rad_s / (1.0 - slip) // CV-1
     }
 
     /// Sets the torques of final drive, belt, pulley shafts and reverse clutch at a guess.
-    #[inline(always)]
     fn turn_box(
         &self,
         g: &Guess<R>,
@@ -251,7 +244,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         let line = &self.line;
         line.secondary(
             g.output_nm,
-            #[inline(always)]
             || self.drive,
             (primary_rad_s, self.secondary_rad_s),
             clamp,
@@ -268,7 +260,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// From the wheels to a launch device in front of the variator.
-    #[inline(always)]
     fn launch_ahead(
         &self,
         g: &Guess<R>,
@@ -315,22 +306,18 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// output torque gives: so the two unknowns do not disturb each other.
     #[inline(never)]
     pub(super) fn evaluate(&self, g: &Guess<R>, limit: &Limit<R::Mask>, point: &mut Point<R>) {
-        g.slip.vectorize(
-            #[inline(always)]
-            || {
-                let mut inside_maps = g.slip.splat_mask(true);
-                let chain = if self.line.cvt.launch_behind {
-                    self.launch_behind(g, limit, &mut inside_maps, &mut point.torques)
-                } else {
-                    self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques)
-                };
-                self.follow(g, limit, chain, inside_maps, point);
-            },
-        );
+        g.slip.vectorize(|| {
+            let mut inside_maps = g.slip.splat_mask(true);
+            let chain = if self.line.cvt.launch_behind {
+                self.launch_behind(g, limit, &mut inside_maps, &mut point.torques)
+            } else {
+                self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques)
+            };
+            self.follow(g, limit, chain, inside_maps, point);
+        });
     }
 
     /// Torque that the coupling passes on under a limit, Nm: that of the chain where there is none.
-    #[inline(always)]
     fn wanted_nm(
         &self,
         limit: &Limit<R::Mask>,
@@ -351,7 +338,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// What follows from the torques up to the engine, which are in the point: those of its own shaft, and engine speed, throttle and pressure under a limit.
-    #[inline(always)]
     fn follow(
         &self,
         g: &Guess<R>,
@@ -395,7 +381,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             self.clamp,
             &signals,
             line.at,
-            #[inline(always)]
             || BeltLoad {
                 output_torque_nm: secondary_nm,
                 ..chain.load
@@ -430,7 +415,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// Torque at the flywheel, Nm, and engine speed, rad/s, where a limit has the coupling pass on a torque at the speeds of its two sides.
-    #[inline(always)]
     fn under_limit(
         &self,
         passed_nm: R,
@@ -457,7 +441,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
 
     /// The engine's side of the coupling at a guess. A clutch has its engine never slower than the primary, and at the same speed while
     /// locked, so that it cannot give energy back.
-    #[inline(always)]
     pub(super) fn engine_side(
         &self,
         g: &Guess<R>,
@@ -488,13 +471,11 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// True where the coupling holds engine and primary together (LC-5).
-    #[inline(always)]
     pub(super) fn locked(&self, primary_rad_s: R) -> R::Mask {
         primary_rad_s.ge(self.hold.locked_from_rad_s)
     }
 
     /// Engine over a slipping coupling, within the speeds that its inertia allows.
-    #[inline(always)]
     fn free_engine(&self, primary_nm: R, primary_rad_s: R) -> EngineSide<R> {
         let load = CouplingLoad {
             output_nm: primary_nm,
@@ -506,7 +487,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// The speeds around the coupling.
-    #[inline(always)]
     pub(super) fn turning(&self, primary_rad_s: R, engine_rad_s: R) -> Turning<R> {
         Turning {
             output_rad_s: primary_rad_s,
@@ -517,7 +497,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// Least torque that engine and coupling pass on, Nm at the primary, with all between them taking `spin_nm` (CV-3).
-    #[inline(always)]
     pub(super) fn min_passed_nm(&self, at: &Turning<R>, spin_nm: R) -> R {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let absorbed_nm = engine.drag_nm(w) + engine.accessories_nm(w) + spin_nm;
@@ -525,7 +504,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// Largest torque passed on at full load, Nm at the primary (CV-4).
-    #[inline(always)]
     pub(super) fn max_passed_nm(&self, at: &Turning<R>, spin_nm: R) -> R {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let engine_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - spin_nm;

@@ -11,11 +11,11 @@
 use super::Cvt;
 use super::variator::{BeltAtRatio, BeltLoad};
 use crate::keys::{Values, keys};
-use crate::math::{Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 
 /// The checked floors.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Floors<R: Real = f64> {
     /// Pressure that valves, cooler and lubrication need, Pa.
     pub control_pa: R,
@@ -42,17 +42,9 @@ impl Floors {
     }
 }
 
-gather!(Floors {
-    control_pa,
-    clutch_return_pa,
-    clutch_pa_per_nm,
-    strand_n,
-    creep_per_rad
-});
-
+#[physics]
 impl<R: Real> Floors<R> {
     /// Logarithm of the force ratio over tau that shifts ln I at a rate: positive towards low, negative towards high, 0 at rest.
-    #[inline(always)]
     pub fn force_log(&self, rate_per_s: R, primary_rad_s: R) -> R {
         let creep = primary_rad_s * self.creep_per_rad;
         creep.gt(0.0).select(rate_per_s / creep, creep.splat(0.0))
@@ -72,9 +64,9 @@ pub(super) struct Held<'a, R: Real = f64> {
     pub force_log: R,
 }
 
+#[physics]
 impl<R: Real> Held<'_, R> {
     /// The pressure that each cause needs, Pa (PC-5).
-    #[inline(always)]
     fn each_pa(&self) -> [(R, ClampCause); 5] {
         let (cvt, floors) = (self.cvt, &self.cvt.floors);
         let zero = self.own_n.splat(0.0);
@@ -110,19 +102,16 @@ impl<R: Real> Held<'_, R> {
     }
 
     /// Pressure for a force, Pa.
-    #[inline(always)]
     fn pressure_pa(&self, force_n: R) -> R {
         (force_n - self.own_n) / self.cvt.secondary_piston_m2
     }
 
     /// Pressure for the force that the torque needs, Pa.
-    #[inline(always)]
     pub fn of_torque_pa(&self) -> R {
         self.pressure_pa(self.need_n)
     }
 
     /// The larger of a law's pressure, Pa, and what each cause needs, with the number of the cause.
-    #[inline(always)]
     pub fn raised(&self, law_pa: R) -> (R, R) {
         let mut most = (law_pa, law_pa.splat(ClampCause::Law.number()));
         for (floor_pa, cause) in self.each_pa() {

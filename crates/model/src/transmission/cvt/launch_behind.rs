@@ -12,14 +12,14 @@
 use super::driveline::{Clamp, PartTorques};
 use super::evaluate::{Chain, Guess, Limit, Step};
 use super::variator::BeltLoad;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::BELT;
 use crate::transmission::coupling::{Coupling, EngineSide};
 
+#[physics]
 impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// From the wheels through a clutch behind the variator to the engine.
-    #[inline(always)]
     pub(super) fn launch_behind(
         &self,
         g: &Guess<R>,
@@ -91,25 +91,18 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// Torque at the primary over that at the secondary at a slip, without losses.
-    #[inline(always)]
     fn at_primary(&self, slip: R) -> R {
         (1.0 - slip) * self.line.at.geometry.inv_ratio
     }
 
     /// The torque that the clutch gives to its output: what the final drive takes, or at rest what creeps.
-    #[inline(always)]
     fn behind_clutch(&self, g: &Guess<R>, over_rad_s: R, inside: &mut R::Mask) -> PartTorques<R> {
         // All runs of a group are at rest together.
         if self.secondary_rad_s.gt(0.0).any() {
             let speeds = (over_rad_s, self.secondary_rad_s);
-            let secondary = self.line.through_nm(
-                g.output_nm,
-                #[inline(always)]
-                || self.drive,
-                speeds,
-                g.pressure_pa,
-                inside,
-            );
+            let secondary =
+                self.line
+                    .through_nm(g.output_nm, || self.drive, speeds, g.pressure_pa, inside);
             return PartTorques {
                 final_drive: secondary - g.output_nm,
                 secondary,
@@ -131,20 +124,17 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// True where the engine turns as fast as the locked clutch has it.
-    #[inline(always)]
     fn together(&self, side: &EngineSide<R>, slip: R) -> R::Mask {
         self.primary_rad_s(slip).ge(side.engine_rad_s)
     }
 
     /// Torque of the clutch at the secondary's shaft, Nm.
-    #[inline(always)]
     fn shaft_nm(&self, clutch_nm: R, side: &EngineSide<R>, slip: R) -> R {
         let slipping_nm = side.engine_nm / self.at_primary(slip);
         self.together(side, slip).select(clutch_nm, slipping_nm)
     }
 
     /// Speed of the secondary, rad/s (LO-1).
-    #[inline(always)]
     fn behind_belt_rad_s(&self, side: &EngineSide<R>, slip: R) -> R {
         let slipping = side.engine_rad_s * self.at_primary(slip); // LO-1
         self.together(side, slip)
@@ -152,7 +142,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// The unloaded belt at the engine's speed.
-    #[inline(always)]
     fn turning_load(&self, side: &EngineSide<R>, slip: R) -> BeltLoad<R> {
         let together = self.together(side, slip);
         if together.all() {

@@ -55,7 +55,7 @@ use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::{Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
@@ -77,7 +77,7 @@ fn product_of(torque_nm: f64, speed_rad_s: f64) -> f64 {
 }
 
 /// Losses that are not those of the models.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Gather)]
 pub struct LossChanges<R: Real = f64> {
     /// Measured maps in place of models.
     pub maps: ByComponent<Option<R::PerLane<LossMap>>>,
@@ -86,12 +86,6 @@ pub struct LossChanges<R: Real = f64> {
     /// Loss of a box that is a map with the car at rest, Nm, where it is known (MP-3).
     pub at_rest_nm: Option<R>,
 }
-
-gather!(LossChanges {
-    maps,
-    factor,
-    at_rest_nm
-});
 
 impl Default for LossChanges {
     fn default() -> Self {
@@ -104,7 +98,7 @@ impl Default for LossChanges {
 }
 
 /// The checked CVT.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Gather)]
 pub struct Cvt<R: Real = f64> {
     /// Final drive.
     pub final_drive: FinalDrive<R>,
@@ -145,6 +139,7 @@ pub struct Cvt<R: Real = f64> {
     /// Launch device.
     pub coupling: Launch<R>,
     /// True where that is a clutch behind the variator, so that belt and pulleys turn with the engine (LO-1).
+    #[gather(same)]
     pub launch_behind: bool,
     /// Selector at rest.
     pub selector: Selector<R>,
@@ -154,14 +149,6 @@ pub struct Cvt<R: Real = f64> {
     pub changes: Option<Box<LossChanges<R>>>,
     /// Share of belt loss that heats the belt node.
     pub belt_heat_share: R,
-}
-
-gather! {
-    Cvt {
-        final_drive, belt, secondary_piston_m2, primary_piston_m2, spring_n, centrifugal_n_s2, pump, shaft_drag, clutch_drag, pulley_bearing,
-        seal_ring, ratio, clamp, pressure_table, radius_exponent, floors, cap_pa, low_radius_m, coupling, selector, full_load_route, changes,
-        belt_heat_share,
-    } same { launch_behind }
 }
 
 /// What the CVT keeps of the step before.
@@ -215,9 +202,9 @@ impl<R: Real> CvtState<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Cvt<R> {
     /// Clamping force of the secondary at a pressure, N (VA-3).
-    #[inline(always)]
     pub fn secondary_clamp_n(&self, pressure_pa: R, secondary_rad_s: R) -> R {
         pressure_pa * self.secondary_piston_m2
             + self.spring_n
@@ -225,14 +212,12 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Pressure of the primary for a clamping force of the secondary, Pa (TE-1).
-    #[inline(always)]
     pub fn primary_pa(&self, secondary_clamp_n: R, at: &BeltAtRatio<R>) -> R {
         secondary_clamp_n * at.thrust_ratio / self.primary_piston_m2
     }
 
     /// Lowest engine speed at which full load gives a power, rad/s (RC-3). The hot line knows it at once; what air and cold friction leave of
     /// that line falls with speed, so three passes from the speed of greatest power settle it.
-    #[inline(always)]
     pub fn full_load_rad_s<P: PrimeMover<R>>(&self, engine: &P, power_w: R) -> R {
         let zero = power_w.splat(0.0);
         let none = zero.ge(power_w);
@@ -257,7 +242,6 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Speed that the shift map has for a share of rated power, rad/s (RC-14); none without one.
-    #[inline(always)]
     fn mapped_rad_s<P: PrimeMover<R>>(&self, input: &StepInput<P, R>, share: R) -> Option<R> {
         let maps = self.ratio.shift_map.as_ref()?;
         let engine = input.engine;
@@ -283,7 +267,6 @@ impl<R: Real> Cvt<R> {
     }
 
     /// True where a measured map replaces the model of a component.
-    #[inline(always)]
     pub fn has_map(&self, component: Component) -> bool {
         self.changes
             .as_ref()
@@ -291,7 +274,6 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Speed of the primary at the beginning of a step, rad/s, at a ratio over a secondary that has a speed once the clutch has locked.
-    #[inline(always)]
     fn primary_rad_s(&self, ratio: R, secondary_rad_s: R, past: &DrivelineState<R>) -> R {
         let locked = ratio * secondary_rad_s;
         if self.launch_behind {
@@ -303,7 +285,6 @@ impl<R: Real> Cvt<R> {
 
     /// Share of a step that the box is in neutral after a rest, s, with an engine that has run since its start for a time, s (SE-1, SE-2); none
     /// where the car moves, which is in drive.
-    #[inline(always)]
     pub(super) fn neutral_share_after(
         &self,
         rested_s: f64,
@@ -372,7 +353,6 @@ impl<R: Real> Cvt<R> {
 
     /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and the number of the cause that decided it; `load` is called by
     /// the laws that use the belt.
-    #[inline(always)]
     fn pressure_by(
         &self,
         law: &ClampLaw<R>,
@@ -407,7 +387,6 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Solves one step (CV-1 to CV-5); fills an output at rest.
-    #[inline(always)]
     pub(super) fn solve<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -419,15 +398,14 @@ impl<R: Real> Cvt<R> {
     }
 }
 
+#[physics]
 impl<R: Real> super::Driveline<R> for Cvt<R> {
     type State = (CvtState<R>, DrivelineState<R>);
 
-    #[inline(always)]
     fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State {
         Cvt::start(self, input)
     }
 
-    #[inline(always)]
     fn solve_into<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -437,17 +415,14 @@ impl<R: Real> super::Driveline<R> for Cvt<R> {
         self.solve(input, own, past, output);
     }
 
-    #[inline(always)]
     fn engine_rad_s((_, past): &Self::State) -> R {
         past.engine_rad_s
     }
 
-    #[inline(always)]
     fn is_cvt(&self) -> bool {
         true
     }
 
-    #[inline(always)]
     fn neutral_share(
         &self,
         state: Option<&Self::State>,
@@ -459,7 +434,6 @@ impl<R: Real> super::Driveline<R> for Cvt<R> {
         self.neutral_share_after(rested_s, trace, step, running_s)
     }
 
-    #[inline(always)]
     fn coupling_factor(&self) -> Option<R> {
         self.coupling.loss_factor()
     }
@@ -491,7 +465,7 @@ impl Cvt {
     }
 
     /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and what decided it; `load` is called by the laws that use the belt.
-    #[inline(always)]
+    #[physics]
     pub fn pressure_pa(
         &self,
         signals: &ClampSignals,

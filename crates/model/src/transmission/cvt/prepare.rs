@@ -7,14 +7,14 @@ use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, Hold, LN_NU_REFERENCE, Shifting};
 use crate::fluid::OilState;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, SUMP};
 use crate::transmission::coupling::{Coupling, LockSignals};
 use crate::transmission::step::{DrivelineState, StepInput};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
-#[inline(always)]
+#[physics]
 fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R) {
     let slope = g.secondary_radius_slope_m();
     let primary = (g.secondary_radius_m - slope) / g.ratio;
@@ -52,7 +52,7 @@ struct Shift<R: Real> {
 /// passes leave, and is not worked out (ASSUMED; the test of control.rs has cars, temperatures and air for which it holds).
 const AMPLE: f64 = 0.8;
 
-#[inline(always)]
+#[physics]
 fn shift<P: PrimeMover<R>, R: Real>(
     cvt: &Cvt<R>,
     input: &StepInput<P, R>,
@@ -136,9 +136,9 @@ struct Powers<R: Real> {
     radius_factor: R,
 }
 
+#[physics]
 impl<R: Real> Powers<R> {
     /// All of them together.
-    #[inline(always)]
     fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, sump: &OilState<R>) -> Self {
         let [shaft, clutch] = ViscosityPowers::exponents(cvt, sump.log_nu - LN_NU_REFERENCE);
         let radius = cvt.low_radius_m * (at.geometry.ratio * at.prepared.inv_secondary_radius); // GE-1
@@ -166,13 +166,10 @@ pub(super) fn prepare<'a, P: PrimeMover<R>, R: Real>(
     belt: &'a mut BeltAtRatio<R>,
     efficiency: R,
 ) -> Step<'a, P, R> {
-    efficiency.vectorize(
-        #[inline(always)]
-        || prepared(cvt, input, past, before, belt, efficiency),
-    )
+    efficiency.vectorize(|| prepared(cvt, input, past, before, belt, efficiency))
 }
 
-#[inline(always)]
+#[physics]
 fn prepared<'a, P: PrimeMover<R>, R: Real>(
     cvt: &'a Cvt<R>,
     input: &'a StepInput<'a, P, R>,
@@ -197,13 +194,10 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
         efficiency,
         last_direction: {
             let kicks = cvt.ratio.route_efficiency.gt(efficiency);
-            R::per_lane(
-                #[inline(always)]
-                |lane| match kicks.lane(lane) {
-                    true => 0,
-                    false => *R::get(&before.1.direction, lane),
-                },
-            )
+            R::per_lane(|lane| match kicks.lane(lane) {
+                true => 0,
+                false => *R::get(&before.1.direction, lane),
+            })
         },
     };
     let shift = shift(cvt, input, past, before, route);

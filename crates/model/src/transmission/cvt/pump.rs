@@ -18,7 +18,7 @@
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{Gather, Mask, Real, gather, smooth_ramp};
+use crate::math::{Gather, Mask, Real, physics, smooth_ramp};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 use std::f64::consts::LN_10;
@@ -93,7 +93,7 @@ impl PumpKind {
 }
 
 /// Motor and alternator of an electric pump.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ElectricPump<R: Real = f64> {
     /// Hydraulic over electric power.
     pub efficiency: R,
@@ -103,14 +103,8 @@ pub struct ElectricPump<R: Real = f64> {
     pub fastest_rad_s: R,
 }
 
-gather!(ElectricPump {
-    efficiency,
-    alternator,
-    fastest_rad_s
-});
-
 /// The checked pump.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Pump<R: Real = f64> {
     /// Kind.
     pub kind: PumpKind<R>,
@@ -140,13 +134,6 @@ pub struct Pump<R: Real = f64> {
     pub leakage_m3_s_pa: R,
 }
 
-gather! {
-    Pump {
-        kind, displacement_m3_rad, friction, viscous, viscous_exponent, heating, inlet_pa_s_m3, inlet_depression_pa, constant_nm, line_drop_pa,
-        residual_pa, lubrication_m3_s, leakage_m3_s_pa,
-    }
-}
-
 /// Pressure that is left of a flow that does not cover lubrication and shift, Pa (PU-6).
 const LEAST_PA: f64 = 1e4;
 
@@ -174,15 +161,14 @@ pub struct PumpAtTemperature<R: Real = f64> {
     pub inv_leakage: R,
 }
 
+#[physics]
 impl<R: Real> PumpAtTemperature<R> {
     /// Flow that is needed without shifting, m3/s (PU-2).
-    #[inline(always)]
     pub fn need_m3_s(&self, secondary_pa: R) -> R {
         self.lubrication_m3_s + secondary_pa * self.leakage_m3_s_pa // PU-2
     }
 
     /// Flow that is drawn of the flow of a displacement, m3/s (PU-5).
-    #[inline(always)]
     pub fn drawn_m3_s(&self, flow_m3_s: R) -> R {
         let x = flow_m3_s * self.inv_inlet_flow;
         let square = x * x;
@@ -205,9 +191,9 @@ pub struct PumpState<R: Real = f64> {
     pub flow_limited: R::Mask,
 }
 
+#[physics]
 impl<R: Real> PumpState<R> {
     /// Of no pump; `like` has the lanes.
-    #[inline(always)]
     pub fn none(like: R) -> Self {
         let none = like.splat(0.0);
         PumpState {
@@ -220,9 +206,9 @@ impl<R: Real> PumpState<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Pump<R> {
     /// Flow of the whole displacement with an engine at a speed, m3/s.
-    #[inline(always)]
     pub fn full_flow_m3_s(&self, engine_rad_s: R) -> R {
         let speed_rad_s = match &self.kind {
             PumpKind::Electric(electric) => electric.fastest_rad_s,
@@ -238,7 +224,6 @@ impl<R: Real> Pump<R> {
     }
 
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
-    #[inline(always)]
     pub fn deliverable_pa(
         &self,
         now: &PumpAtTemperature<R>,
@@ -250,7 +235,6 @@ impl<R: Real> Pump<R> {
     }
 
     /// The pump with an engine at a speed, in its oil.
-    #[inline(always)]
     pub fn turning(&self, now: &PumpAtTemperature<R>, speed_rad_s: R) -> TurningPump<'_, R> {
         let flow_m3_s = self.full_flow_m3_s(speed_rad_s);
         let viscous_nm = self.viscous
@@ -268,14 +252,12 @@ impl<R: Real> Pump<R> {
     }
 
     /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
-    #[inline(always)]
     pub fn at(&self, eta_pa_s: R) -> PumpAtTemperature<R> {
         let log = eta_pa_s.ln() - LN_ETA_REFERENCE;
         self.with_factor(eta_pa_s, (self.viscous_exponent * log).exp())
     }
 
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
-    #[inline(always)]
     pub fn with_factor(&self, eta_pa_s: R, viscous_factor: R) -> PumpAtTemperature<R> {
         let thicker = eta_pa_s * ETA_REFERENCE_PA_S.recip();
         let thinner = 1.0 / thicker;
@@ -289,7 +271,6 @@ impl<R: Real> Pump<R> {
     }
 
     /// Share of the displacement that works against pressure (PU-4), from the flow that all of it draws.
-    #[inline(always)]
     fn share(&self, need_m3_s: R, drawn_m3_s: R) -> R {
         let whole = drawn_m3_s.splat(1.0);
         let wanted = drawn_m3_s.gt(0.0).select(need_m3_s / drawn_m3_s, whole);
@@ -303,7 +284,6 @@ impl<R: Real> Pump<R> {
     }
 
     /// Torque and flow (PU-1, PU-4).
-    #[inline(always)]
     pub fn state(
         &self,
         now: &PumpAtTemperature<R>,
@@ -328,15 +308,14 @@ pub struct TurningPump<'a, R: Real = f64> {
     viscous_nm: R,
 }
 
+#[physics]
 impl<R: Real> TurningPump<'_, R> {
     /// What the whole displacement draws, m3/s (PU-5). Its roots take longer than all else of the pump: most often they are not needed.
-    #[inline(always)]
     fn drawn_m3_s(&self) -> R {
         self.now.drawn_m3_s(self.flow_m3_s)
     }
 
     /// Where a pressure is held with a flow into the pulleys even by the least that PU-5 leaves: (1 + x4)^(-1/4) is at least 1 - x4/4.
-    #[inline(always)]
     pub fn surely_holds(&self, pressure_pa: R, shift_flow_m3_s: R) -> R::Mask {
         let now = &self.now;
         let x = self.flow_m3_s * now.inv_inlet_flow;
@@ -347,7 +326,6 @@ impl<R: Real> TurningPump<'_, R> {
     }
 
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
-    #[inline(always)]
     pub fn deliverable_pa(&self, shift_flow_m3_s: R) -> R {
         let now = &self.now;
         let spare = self.drawn_m3_s() - now.lubrication_m3_s - shift_flow_m3_s;
@@ -356,7 +334,6 @@ impl<R: Real> TurningPump<'_, R> {
     }
 
     /// Torque and flow at a pressure and a need (PU-1, PU-4).
-    #[inline(always)]
     pub fn state(&self, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
         let (pump, drawn) = (self.pump, self.drawn_m3_s());
         if let PumpKind::Electric(of) = &pump.kind {
@@ -383,7 +360,6 @@ impl<R: Real> TurningPump<'_, R> {
     }
 
     /// An electric pump (EP-2).
-    #[inline(always)]
     fn electric(&self, of: &ElectricPump<R>, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
         let most_m3_s = self.drawn_m3_s();
         let working_m3_s = need_m3_s.min(most_m3_s);

@@ -1,7 +1,7 @@
 //! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
@@ -77,6 +77,7 @@ pub(crate) struct Series<R: Real = f64> {
     second: R,
 }
 
+#[physics]
 impl<R: Real> Series<R> {
     /// A value without a past.
     fn new(value: R) -> Self {
@@ -89,14 +90,12 @@ impl<R: Real> Series<R> {
     }
 
     /// The value that follows, with as many differences as there are steps alike before the last.
-    #[inline(always)]
     pub fn next(&self, alike: u32) -> R {
         let none = self.value.splat(0.0);
         let first = if alike > 0 { self.first } else { none };
         self.value + first + if alike > 1 { self.second } else { none }
     }
 
-    #[inline(always)]
     pub fn push(&mut self, value: R) {
         let first = value - self.value;
         *self = Series {
@@ -107,6 +106,7 @@ impl<R: Real> Series<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Trend<R> {
     /// Nothing is known; `like` has the lanes.
     fn new(like: R) -> Self {
@@ -120,7 +120,6 @@ impl<R: Real> Trend<R> {
     }
 
     /// Steps alike before one with an acceleration, m/s2.
-    #[inline(always)]
     fn alike(&self, accel_m_s2: f64) -> u32 {
         if is_alike(accel_m_s2, self.accel_m_s2) {
             self.alike
@@ -130,7 +129,6 @@ impl<R: Real> Trend<R> {
     }
 
     /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
-    #[inline(always)]
     pub(super) fn next(&self, accel_m_s2: f64) -> (R, R) {
         let alike = self.alike(accel_m_s2);
         (self.slip.next(alike), self.loss.next(alike))
@@ -145,7 +143,6 @@ impl<R: Real> Trend<R> {
     }
 
     /// Takes a solved step.
-    #[inline(always)]
     pub(super) fn push(&mut self, accel_m_s2: f64, slip: R, loss_nm: R) {
         self.alike = if is_alike(accel_m_s2, self.accel_m_s2) {
             self.alike.saturating_add(1)
@@ -159,7 +156,7 @@ impl<R: Real> Trend<R> {
 }
 
 /// Whether two accelerations, m/s2, are the same but for rounding.
-#[inline(always)]
+#[physics]
 fn is_alike(a_m_s2: f64, b_m_s2: f64) -> bool {
     (a_m_s2 - b_m_s2).abs() < ALIKE_M_S2
 }
@@ -181,10 +178,10 @@ impl<R: Real> Slopes<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Slopes<R> {
     /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it. `open`: over a
     /// torque converter that is not locked.
-    #[inline(always)]
     pub(super) fn update(
         &mut self,
         (before, before_next_pa): (&Guess<R>, R),
@@ -208,7 +205,6 @@ impl<R: Real> Slopes<R> {
     }
 
     /// Pressure at which the line through an evaluation meets its fixed point, Pa (CV-5).
-    #[inline(always)]
     pub(super) fn pressure_pa(&self, now: &Point<R>) -> R {
         let p = now.guess.pressure_pa;
         p + (now.next_pressure_pa - p) / (1.0 - self.pressure)
@@ -224,8 +220,8 @@ pub(super) struct TorqueSecant<R: Real> {
     last: Option<(R, R)>,
 }
 
+#[physics]
 impl<R: Real> TorqueSecant<R> {
-    #[inline(always)]
     pub fn new(ratio: R, first_nm: R) -> Self {
         TorqueSecant {
             ratio,
@@ -236,7 +232,6 @@ impl<R: Real> TorqueSecant<R> {
 
     /// Next output torque after an evaluation, and whether it moves no more for the bound
     /// of the belt: the belt carries no more than its capacity, whatever the engine could take or give (VA-2). `bound` where the engine binds it.
-    #[inline(always)]
     pub fn next_nm(
         &mut self,
         now: &Point<R>,

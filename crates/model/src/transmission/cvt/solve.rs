@@ -14,7 +14,7 @@ use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
 use crate::flags::Flags;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::coupling::Coupling;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
@@ -30,9 +30,9 @@ const CLEARLY: f64 = 0.02;
 /// ... and how far it may still be from its fixed point: so near, no torque moves by as much.
 const NEAR: f64 = 0.02;
 
+#[physics]
 impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// The limit that a point at the demanded torque violates; violations within `margin_nm` are ignored.
-    #[inline(always)]
     fn violated(&self, p: &Point<R>, margin_nm: R) -> Limit<R::Mask> {
         let above_idle = p.over_rad_s.ge(self.input.engine.idle_rad_s());
         let partly = p.throttle.splat(1.0).gt(p.throttle);
@@ -53,7 +53,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// The route's efficiency for another try, after one with `efficiency` that full load does not give (RC-7).
-    #[inline(always)]
     fn kick_down(&self, efficiency: R, p: &Point<R>) -> R {
         let w = p.guess.engine_rad_s;
         let asked_w = (p.flywheel_nm + self.input.engine.accessories_nm(w)) * w;
@@ -62,21 +61,18 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// Slip and loss torque in Nm that go on as in the steps before.
-    #[inline(always)]
     fn extrapolated(&self, warm_start: &WarmStart<R>) -> (R, R) {
         let (slip, loss_nm) = warm_start.trend.next(self.input.wheel.accel_m_s2);
         (self.possible(slip), loss_nm)
     }
 
     /// The nearest slip that the belt can have: a line through slips leads anywhere, and at a slip of 1 no speed belongs to it (CV-1).
-    #[inline(always)]
     fn possible(&self, slip: R) -> R {
         let most = 2.0 * self.line.cvt.belt.slip_bound;
         slip.clamp(-most, most)
     }
 
     /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
-    #[inline(always)]
     fn first_guess(&self, warm_start: &WarmStart<R>) -> Guess<R> {
         let (slip, loss_nm) = self.extrapolated(warm_start);
         let engine_rad_s = self.first_engine_rad_s(slip);
@@ -95,7 +91,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
                     self.clamp,
                     &signals,
                     self.line.at,
-                    #[inline(always)]
                     || BeltLoad {
                         output_torque_nm: output_nm,
                         ..self.load
@@ -113,7 +108,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         }
     }
 
-    #[inline(always)]
     fn first_engine_rad_s(&self, slip: R) -> R {
         let primary = self.primary_rad_s(slip);
         let from = self.reach.from_rad_s;
@@ -121,7 +115,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// Output torque at which the engine's least torque is likely to be the limit: its drag with the losses that are expected, Nm.
-    #[inline(always)]
     fn likely_overrun_nm(&self, warm_start: &WarmStart<R>) -> R {
         let engine = self.input.engine;
         let (slip, loss_nm) = self.extrapolated(warm_start);
@@ -142,18 +135,14 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         runs: R::Mask,
         work: &mut Work<R>,
     ) {
-        first.slip.vectorize(
-            #[inline(always)]
-            || {
-                work.guess = Guess::select(runs, first, &work.guess);
-                work.limit = Limit::select(runs, limit, &work.limit);
-                self.iterate(may_leave, runs, work);
-            },
-        );
+        first.slip.vectorize(|| {
+            work.guess = Guess::select(runs, first, &work.guess);
+            work.limit = Limit::select(runs, limit, &work.limit);
+            self.iterate(may_leave, runs, work);
+        });
     }
 
     /// Evaluates until no lane of `busy` moves any more.
-    #[inline(always)]
     fn iterate(&self, may_leave: bool, mut busy: R::Mask, work: &mut Work<R>) {
         let by_command = self.line.cvt.coupling.by_command();
         let mut last: Option<(Guess<R>, R)> = None;
@@ -199,7 +188,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     }
 
     /// The guess that follows from an evaluation by the secants, or damped half the way to it.
-    #[inline(always)]
     fn next_guess(
         &self,
         next_nm: R,
@@ -230,7 +218,6 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// it leaves more at the output than the wheels demand, full load when it leaves less; so a limit may be tried before it is certain: in
     /// overrun that of the step before, else that of a run at the demand that ends early. The lanes for which full load is the limit, and is
     /// not wanted yet.
-    #[inline(always)]
     fn limited(
         &self,
         warm_start: &WarmStart<R>,
@@ -300,9 +287,9 @@ struct Work<R: Real> {
     slopes: Slopes<R>,
 }
 
+#[physics]
 impl<R: Real> Work<R> {
     /// Before the first evaluation, with the slopes of the step before.
-    #[inline(always)]
     fn new(slopes: Slopes<R>) -> Self {
         let like = slopes.pressure;
         Work {
@@ -316,7 +303,6 @@ impl<R: Real> Work<R> {
     }
 
     /// How the solve ended.
-    #[inline(always)]
     fn outcome(&self) -> Outcome<R> {
         Outcome {
             limit: self.limit,
@@ -347,7 +333,7 @@ fn engine_off<P: PrimeMover<R>, R: Real>(
 }
 
 /// Solves one step of the CVT; the belt of `own` follows the ratio, and an output at rest is filled.
-#[inline(always)]
+#[physics]
 pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     cvt: &Cvt<R>,
     input: &StepInput<P, R>,

@@ -7,7 +7,7 @@ use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::variator::{BeltLoad, belt_capacity_nm};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::clamp_cause::ClampCause;
@@ -33,7 +33,7 @@ struct Idling<R: Real> {
 
 /// Fixed point of throttle and pressure with an engine at `w` that passes on `creep_nm` and takes `coupling_nm` for it. A lane that has settled
 /// keeps its throttle, from which all else follows again.
-#[inline(always)]
+#[physics]
 fn idling<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     w: R,
@@ -70,14 +70,7 @@ fn idling<P: PrimeMover<R>, R: Real>(
         guess = busy.select(at.throttle, guess);
         let signals = line.signals(guess, w);
         let set_pa;
-        (set_pa, at.clamp_cause) = cvt.pressure_by(
-            step.clamp,
-            &signals,
-            line.at,
-            #[inline(always)]
-            || load,
-            none,
-        );
+        (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
         (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, &shaft.pump, step.shift_flow_m3_s);
         let pump = line.turn_engine(
             &mut at.torques,
@@ -98,21 +91,15 @@ fn idling<P: PrimeMover<R>, R: Real>(
 }
 
 /// The causes of their numbers.
-#[inline(always)]
+#[physics]
 fn causes<R: Real>(number: R) -> R::PerLane<ClampCause> {
-    R::per_lane(
-        #[inline(always)]
-        |lane| ClampCause::of(number.lane(lane)),
-    )
+    R::per_lane(|lane| ClampCause::of(number.lane(lane)))
 }
 
 /// Evaluations as whole numbers.
-#[inline(always)]
+#[physics]
 fn counts<R: Real>(number: R) -> R::PerLane<u16> {
-    R::per_lane(
-        #[inline(always)]
-        |lane| number.lane(lane) as u16,
-    )
+    R::per_lane(|lane| number.lane(lane) as u16)
 }
 
 /// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn. Fills an output at rest.
@@ -123,13 +110,11 @@ pub(super) fn standstill<P: PrimeMover<R>, R: Real>(
     warm_start: &mut WarmStart<R>,
     output: &mut StepOutput<R>,
 ) {
-    step.secondary_rad_s.vectorize(
-        #[inline(always)]
-        || rest(step, past, warm_start, output),
-    );
+    step.secondary_rad_s
+        .vectorize(|| rest(step, past, warm_start, output));
 }
 
-#[inline(always)]
+#[physics]
 fn rest<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     past: &mut DrivelineState<R>,
@@ -177,34 +162,31 @@ fn rest<P: PrimeMover<R>, R: Real>(
 }
 
 /// Adds the losses of all parts at the speeds of engine, primary, secondary and the shaft into the final drive, rad/s.
-#[inline(always)]
+#[physics]
 fn add_part_losses<R: Real>(
     output: &mut StepOutput<R>,
     torques: &PartTorques<R>,
     [engine, primary, secondary, output_shaft]: [R; 4],
 ) {
-    torques.for_each_loss(
-        #[inline(always)]
-        |component, shaft, torque_nm| {
-            let speed_rad_s = match shaft {
-                Shaft::Engine => engine,
-                Shaft::Primary => primary,
-                Shaft::Secondary => secondary,
-                Shaft::Output => output_shaft,
-            };
-            output.add_loss(component, torque_nm * speed_rad_s);
-        },
-    );
+    torques.for_each_loss(|component, shaft, torque_nm| {
+        let speed_rad_s = match shaft {
+            Shaft::Engine => engine,
+            Shaft::Primary => primary,
+            Shaft::Secondary => secondary,
+            Shaft::Output => output_shaft,
+        };
+        output.add_loss(component, torque_nm * speed_rad_s);
+    });
 }
 
-#[inline(always)]
+#[physics]
 fn primary_pa<P, R: Real>(step: &Step<P, R>, pa: R, secondary_rad_s: R) -> R {
     let cvt = step.line.cvt;
     cvt.primary_pa(cvt.secondary_clamp_n(pa, secondary_rad_s), step.line.at)
 }
 
 /// True for a residual within tolerance, false for NaN.
-#[inline(always)]
+#[physics]
 fn converged<R: Real>(residual: R) -> R::Mask {
     residual.splat(TOLERANCE).ge(residual)
 }
@@ -226,13 +208,11 @@ pub(super) fn finish<P: PrimeMover<R>, R: Real>(
     outcome: &Outcome<R>,
     output: &mut StepOutput<R>,
 ) {
-    step.secondary_rad_s.vectorize(
-        #[inline(always)]
-        || finished(step, p, kept, outcome, output),
-    );
+    step.secondary_rad_s
+        .vectorize(|| finished(step, p, kept, outcome, output));
 }
 
-#[inline(always)]
+#[physics]
 fn finished<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     p: &Point<R>,
@@ -288,7 +268,7 @@ const JUST_ABOVE: f64 = 1.0 + 1e-9;
 const JUST_BELOW: f64 = 1.0 - 1e-9;
 
 /// What the wheels get: what they demand, or where a limit binds what there is, and the rest to the brakes or as a deficit.
-#[inline(always)]
+#[physics]
 fn give<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     g: &Guess<R>,
@@ -307,7 +287,7 @@ fn give<P: PrimeMover<R>, R: Real>(
 }
 
 /// Flags of a solved step.
-#[inline(always)]
+#[physics]
 fn solve_flags<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     p: &Point<R>,
@@ -353,7 +333,7 @@ fn solve_flags<P: PrimeMover<R>, R: Real>(
 }
 
 /// Whether a clamp law that is a table has the belt's ratio, its torque at the secondary, Nm, and its speed, rad/s; of another law true (PC-6).
-#[inline(always)]
+#[physics]
 fn table_holds<P, R: Real>(step: &Step<P, R>, secondary_nm: R, secondary_rad_s: R) -> R::Mask {
     let (ClampLaw::Table, Some(tables)) = (step.clamp, &step.line.cvt.pressure_table) else {
         return secondary_nm.splat_mask(true);
@@ -367,14 +347,14 @@ fn table_holds<P, R: Real>(step: &Step<P, R>, secondary_nm: R, secondary_rad_s: 
 }
 
 /// Where a temperature, K, is one for which the fluid models hold.
-#[inline(always)]
+#[physics]
 fn is_valid<R: Real>(temp_k: R) -> R::Mask {
     let (least, most) = (*VALID_K.start(), *VALID_K.end());
     temp_k.ge(temp_k.splat(least)) & temp_k.splat(most).ge(temp_k)
 }
 
 /// Flags of any step; `valid` from maps and full load.
-#[inline(always)]
+#[physics]
 fn common_flags<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     output: &mut StepOutput<R>,
@@ -395,7 +375,7 @@ fn common_flags<P: PrimeMover<R>, R: Real>(
 }
 
 /// Keeps what the next step looks at; `rest_s`: how long a car at rest was.
-#[inline(always)]
+#[physics]
 fn remember<R: Real>(past: &mut DrivelineState<R>, output: &StepOutput<R>, rest_s: Option<f64>) {
     past.engine_rad_s = output.engine_rad_s;
     past.throttle = output.throttle;

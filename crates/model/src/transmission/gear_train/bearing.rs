@@ -10,7 +10,7 @@
 //! preloaded bearing loses less torque the faster it turns and the thicker its oil is, down to a third: its rollers lift off. Its power
 //! still rises with speed.
 
-use crate::math::{Real, gather, ln};
+use crate::math::{Gather, Real, ln, physics};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Ends of the mixed friction of a bearing over its boundary friction (BR-2).
@@ -79,14 +79,14 @@ impl Bearing {
 }
 
 /// The powers (nu n)^(2/3) and (nu n)^1.4 from the logarithm of nu n in mm2/s rpm (BR-1, BR-2).
-#[inline(always)]
+#[physics]
 pub fn film_powers<R: Real>(log_nu_n: R) -> [R; 2] {
     R::exp_array([TWO_THIRDS * log_nu_n, 1.4 * log_nu_n])
 }
 
 /// The bearings of one kind in a train: what depends on neither speed nor oil is known. Powers of nu n are those of shaft 0; a shaft with
 /// another speed has a constant times them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct TrainBearing<R: Real = f64> {
     /// Speed of the shaft over that of shaft 0.
     turns: R,
@@ -100,18 +100,9 @@ pub struct TrainBearing<R: Real = f64> {
     film: R,
 }
 
-gather!(TrainBearing {
-    turns,
-    unheated_nm,
-    least_nm,
-    heating,
-    preload_nm,
-    film
-});
-
+#[physics]
 impl<R: Real> TrainBearing<R> {
     /// Torque at shaft 0, Nm, at a speed of that shaft and with the powers of its nu n (BR-1, BR-2).
-    #[inline(always)]
     pub fn torque_nm(&self, first_rad_s: R, [power_23, power_14]: [R; 2]) -> R {
         let unheated_nm = (self.unheated_nm * power_23).max(self.least_nm);
         let boundary = (self.film * power_14).exp();

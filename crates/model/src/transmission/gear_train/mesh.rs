@@ -11,7 +11,7 @@
 //! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
 //! before the torques are.
 
-use crate::math::{Real, cos, exp, gather, larger, ln, tan};
+use crate::math::{Gather, Real, cos, exp, larger, ln, physics, tan};
 use std::f64::consts::PI;
 
 /// Normal pressure angle, rad.
@@ -46,7 +46,7 @@ pub struct Teeth {
 }
 
 /// A mesh at its ratio, in a train.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Mesh<R: Real = f64> {
     /// H_V (GM-1).
     pub loss_factor: R,
@@ -59,14 +59,6 @@ pub struct Mesh<R: Real = f64> {
     /// What of GM-2 follows from the wheels and the oil's kind.
     friction_factor: R,
 }
-
-gather!(Mesh {
-    loss_factor,
-    pinion_turns,
-    pitch_radius_m,
-    line_load_per_nm,
-    friction_factor
-});
 
 impl Stage {
     /// Ratio of wheel to pinion: an overdrive turned round.
@@ -122,6 +114,7 @@ impl Stage {
     }
 }
 
+#[physics]
 impl<R: Real> Mesh<R> {
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
@@ -130,7 +123,6 @@ impl<R: Real> Mesh<R> {
     }
 
     /// The same of several meshes of a train.
-    #[inline(always)]
     fn frictions<const COUNT: usize>(
         meshes: [&Mesh<R>; COUNT],
         first_rad_s: R,
@@ -155,7 +147,6 @@ impl<R: Real> Mesh<R> {
     }
 
     /// Lost shares of the power through several meshes of a train (GM-3).
-    #[inline(always)]
     pub fn shares<const COUNT: usize>(
         meshes: [&Mesh<R>; COUNT],
         first_rad_s: R,

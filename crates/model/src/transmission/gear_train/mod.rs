@@ -21,7 +21,7 @@ use self::churning::Churner;
 use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
 use crate::fluid::OilState;
-use crate::math::{Mask, Real, gather, larger};
+use crate::math::{Gather, Mask, Real, larger, physics};
 use std::f64::consts::LN_10;
 
 /// Largest share of the power that a train loses under load.
@@ -53,7 +53,7 @@ pub struct GearParts {
 }
 
 /// A train at the ratios of its stages.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct GearTrain<R: Real = f64> {
     meshes: [Mesh<R>; 2],
     bearings: Vec<TrainBearing<R>>,
@@ -64,14 +64,6 @@ pub struct GearTrain<R: Real = f64> {
     /// Lost in the bearings under the load of both stages (BR-3).
     bearing_share: R,
 }
-
-gather!(GearTrain {
-    meshes,
-    bearings,
-    churning,
-    seal_nm,
-    bearing_share
-});
 
 /// A train at a speed, an oil and a demand: what does not depend on the torque that passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -145,9 +137,9 @@ impl GearParts {
     }
 }
 
+#[physics]
 impl<R: Real> GearTrain<R> {
     /// The train at a speed of shaft 0 in its oil, with the torque at shaft 0 that the demanded power gives (GT-1).
-    #[inline(always)]
     pub fn turning(&self, first_rad_s: R, demand_nm: R, oil: OilState<R>) -> TurningTrain<R> {
         let rests = first_rad_s.splat(0.0).ge(first_rad_s);
         if rests.all() {
@@ -195,9 +187,9 @@ impl<R: Real> TrainLosses<R> {
     }
 }
 
+#[physics]
 impl<R: Real> TurningTrain<R> {
     /// Nothing is lost; `like` has the lanes.
-    #[inline(always)]
     pub(crate) fn at_rest(like: R) -> Self {
         let none = like.splat(0.0);
         TurningTrain {
@@ -210,7 +202,6 @@ impl<R: Real> TurningTrain<R> {
     }
 
     /// Each loss times its factor (CV-7, MB-6).
-    #[inline(always)]
     pub fn times(&self, factor: &TrainLosses<R>) -> Self {
         TurningTrain {
             bearing_nm: factor.bearing * self.bearing_nm,
@@ -222,26 +213,22 @@ impl<R: Real> TurningTrain<R> {
     }
 
     /// Torque without load, at shaft 0, Nm (GT-1).
-    #[inline(always)]
     pub fn no_load_nm(&self) -> R {
         self.bearing_nm + self.churning_nm + self.seal_nm // GT-1
     }
 
     /// Share of the power that is lost under load (GT-2).
-    #[inline(always)]
     pub fn share(&self) -> R {
         self.mesh_share + self.bearing_share
     }
 
     /// Torque at shaft 0 for a torque behind the train, both at the speed of shaft 0, Nm (GT-2).
-    #[inline(always)]
     pub fn input_nm(&self, output_nm: R) -> R {
         let (through, kept) = (output_nm + self.no_load_nm(), 1.0 - self.share());
         through.ge(0.0).select(through / kept, through * kept) // GT-2
     }
 
     /// Torque behind the train for a torque at shaft 0: the inverse of GT-2.
-    #[inline(always)]
     pub fn output_nm(&self, input_nm: R) -> R {
         let kept = 1.0 - self.share();
         let through = input_nm.ge(0.0).select(input_nm * kept, input_nm / kept);
@@ -249,7 +236,6 @@ impl<R: Real> TurningTrain<R> {
     }
 
     /// Losses by part for a torque behind the train; their sum is the torque before it less the one behind it.
-    #[inline(always)]
     pub fn losses(&self, output_nm: R) -> TrainLosses<R> {
         let through_nm = (output_nm + self.no_load_nm()).abs();
         let larger_nm = through_nm.max(self.input_nm(output_nm).abs());

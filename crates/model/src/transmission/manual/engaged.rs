@@ -3,7 +3,7 @@
 use super::Manual;
 use crate::fluid::OilState;
 use crate::maps::{LossMap, MapPoint};
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
@@ -30,9 +30,9 @@ pub(super) struct Loaded<R: Real = f64> {
     pub inside_map: R::Mask,
 }
 
+#[physics]
 impl<R: Real> Loaded<R> {
     /// This one where the mask says so, else the other.
-    #[inline(always)]
     pub fn or(self, chosen: R::Mask, other: Loaded<R>) -> Loaded<R> {
         let mut losses_nm = self.losses_nm;
         for (own, other) in losses_nm.iter_mut().zip(other.losses_nm) {
@@ -47,10 +47,10 @@ impl<R: Real> Loaded<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Manual<R> {
     /// The box in a gear at a speed of its input shaft, in its oil at a temperature, K, with the torque at that shaft that the demanded power
     /// gives.
-    #[inline(always)]
     pub fn engaged(
         &self,
         gear: u8,
@@ -86,7 +86,7 @@ impl<R: Real> Manual<R> {
 }
 
 /// Losses of a train, or of a whole box.
-#[inline(always)]
+#[physics]
 fn by_component<R: Real>(train: TrainLosses<R>, map_nm: R) -> PartLosses<R> {
     [
         (Component::GearMesh, train.mesh),
@@ -98,15 +98,15 @@ fn by_component<R: Real>(train: TrainLosses<R>, map_nm: R) -> PartLosses<R> {
 }
 
 /// Sum of the losses, Nm.
-#[inline(always)]
+#[physics]
 pub(super) fn sum_nm<R: Real>(losses: &PartLosses<R>) -> R {
     let [(_, first), (_, second), (_, third), (_, fourth), (_, fifth)] = *losses;
     first + second + third + fourth + fifth
 }
 
+#[physics]
 impl<R: Real> Engaged<'_, R> {
     /// Losses for an output torque referred to the input, Nm (MB-1 to MB-4), and whether the map, if there is one, holds the point.
-    #[inline(always)]
     pub fn losses_nm(&self, output_nm: R) -> (PartLosses<R>, R::Mask) {
         let zero = output_nm.splat(0.0);
         match self.map {
@@ -122,7 +122,6 @@ impl<R: Real> Engaged<'_, R> {
     }
 
     /// Losses of the box with nothing on its input shaft, or the map's without torque.
-    #[inline(always)]
     pub(super) fn unloaded_nm(&self) -> PartLosses<R> {
         let output_nm = match self.map {
             Some(_) => self.input_rad_s.splat(0.0),
@@ -132,7 +131,6 @@ impl<R: Real> Engaged<'_, R> {
     }
 
     /// Input torque and losses for an output torque referred to the input (MB-1).
-    #[inline(always)]
     pub(super) fn at(&self, output_nm: R) -> Loaded<R> {
         let (losses_nm, inside_map) = self.losses_nm(output_nm);
         let input_nm = match self.map {
@@ -149,7 +147,6 @@ impl<R: Real> Engaged<'_, R> {
 
     /// Output torque referred to the input for an input torque, and how often losses were asked: the inverse of MB-1, by secant where a map is
     /// used.
-    #[inline(always)]
     pub(super) fn output_for(&self, input_nm: R) -> (R, R::PerLane<u16>) {
         let Some(maps) = self.map else {
             return (self.train.output_nm(input_nm), R::per_lane(|_| 1));
@@ -161,7 +158,6 @@ impl<R: Real> Engaged<'_, R> {
     }
 
     /// Loss of a measured map, whose torque axis is the input torque, for an output torque (MP-4).
-    #[inline(always)]
     fn map_loss(&self, maps: &R::PerLane<LossMap>, output_nm: R) -> (R, R::Mask) {
         let found =
             R::per_lane(|run| self.map_loss_of(R::get(maps, run), output_nm.lane(run), run));

@@ -33,12 +33,12 @@ use crate::cycle::{GearCommand, Step, Trace};
 use crate::flags::Flags;
 use crate::fluid::VALID_K;
 use crate::maps::LossMap;
-use crate::math::{Mask, Real, gather, gather_each};
+use crate::math::{Gather, Mask, Real, gather_each, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::SUMP;
 
 /// The checked manual box.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Gather)]
 pub struct Manual<R: Real = f64> {
     /// Overall ratios from first gear, engine speed over wheel speed.
     pub overall: Vec<R>,
@@ -58,25 +58,14 @@ pub struct Manual<R: Real = f64> {
 
 gather_each!(ShiftSpeeds, LossMap);
 
-gather!(Manual {
-    overall,
-    trains,
-    neutral_share,
-    shifts,
-    coupling,
-    map,
-    factor
-});
-
+#[physics]
 impl<R: Real> Driveline<R> for Manual<R> {
     type State = DrivelineState<R>;
 
-    #[inline(always)]
     fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> DrivelineState<R> {
         self.begin(input)
     }
 
-    #[inline(always)]
     fn solve_into<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -86,17 +75,14 @@ impl<R: Real> Driveline<R> for Manual<R> {
         self.solve(input, state, output);
     }
 
-    #[inline(always)]
     fn engine_rad_s(state: &DrivelineState<R>) -> R {
         state.engine_rad_s
     }
 
-    #[inline(always)]
     fn is_cvt(&self) -> bool {
         false
     }
 
-    #[inline(always)]
     fn neutral_share(
         &self,
         _: Option<&DrivelineState<R>>,
@@ -107,7 +93,6 @@ impl<R: Real> Driveline<R> for Manual<R> {
         self.neutral_share.splat(0.0)
     }
 
-    #[inline(always)]
     fn coupling_factor(&self) -> Option<R> {
         self.coupling.loss_factor()
     }
@@ -171,9 +156,9 @@ fn is_below_idle(overall: f64, wheel_rad_s: f64, idle_rad_s: f64) -> bool {
     overall * wheel_rad_s < LEAST_OVER_IDLE * idle_rad_s
 }
 
+#[physics]
 impl<R: Real> Manual<R> {
     /// State at the beginning of a cycle.
-    #[inline(always)]
     pub(super) fn begin<P: PrimeMover<R>>(&self, step: &StepInput<P, R>) -> DrivelineState<R> {
         let wheel = step.wheel;
         let rolls = wheel.wheel_rad_s.gt(0.0);
@@ -200,7 +185,6 @@ impl<R: Real> Manual<R> {
     }
 
     /// Speed of the input shaft in the gear of each run, rad/s; 0 without one.
-    #[inline(always)]
     fn input_rad_s(&self, gear: &R::PerLane<u8>, wheel_rad_s: R) -> R {
         let first = *R::get(gear, 0);
         if (1..R::LANES).all(|run| *R::get(gear, run) == first) {
@@ -217,7 +201,6 @@ impl<R: Real> Manual<R> {
     }
 
     /// What the driver of a run does: what the cycle commands, else what the shift speeds say (MB-5).
-    #[inline(always)]
     fn action<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
@@ -247,7 +230,6 @@ impl<R: Real> Manual<R> {
     }
 
     /// Where the cycle has no gear in force, and one was needed to drive the car faster.
-    #[inline(always)]
     fn is_wrong_gear<P: PrimeMover<R>>(step: &StepInput<P, R>, output: &StepOutput<R>) -> R::Mask {
         let no_gear = matches!(
             step.gear,
@@ -261,7 +243,6 @@ impl<R: Real> Manual<R> {
     }
 
     /// Solves one step; fills an output at rest.
-    #[inline(always)]
     pub(super) fn solve<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
@@ -285,10 +266,7 @@ impl<R: Real> Manual<R> {
         };
         // The road speed is that of all runs.
         let rolls = step.wheel.wheel_rad_s.gt(0.0).any();
-        let actions = R::per_lane(
-            #[inline(always)]
-            |run| self.action(step, *R::get(&state.gear, run), rolls, run),
-        );
+        let actions = R::per_lane(|run| self.action(step, *R::get(&state.gear, run), rolls, run));
         at.act(&actions, output);
         output.flag(
             Flags::OVERSPEED,
@@ -302,7 +280,6 @@ impl<R: Real> Manual<R> {
     }
 
     /// Keeps of a step what the next one needs.
-    #[inline(always)]
     fn keep<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,

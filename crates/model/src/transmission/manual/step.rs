@@ -4,7 +4,7 @@ use super::engaged::sum_nm;
 use super::{Action, Engaged, Manual, PartLosses};
 use crate::flags::Flags;
 use crate::fluid::OilState;
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
@@ -22,9 +22,9 @@ pub(super) struct ManualStep<'a, P, R: Real = f64> {
     pub oil: OilState<R>,
 }
 
+#[physics]
 impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     /// What the drivers do: each kind of it once for all runs, of which those take it over that do it.
-    #[inline(always)]
     pub fn act(&self, actions: &R::PerLane<Action>, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
         if R::LANES == 1 {
@@ -36,11 +36,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
                 continue;
             }
             let action = *R::get(actions, run);
-            let alike = left
-                & like.mask_lanes(
-                    #[inline(always)]
-                    |run| *R::get(actions, run) == action,
-                );
+            let alike = left & like.mask_lanes(|run| *R::get(actions, run) == action);
             let mut of_action = StepOutput::like(like);
             self.act_alike(action, &mut of_action);
             if alike.all() {
@@ -53,7 +49,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// What all drivers do alike.
-    #[inline(always)]
     fn act_alike(&self, action: Action, output: &mut StepOutput<R>) {
         match action {
             Action::Engaged(gear) => {
@@ -65,7 +60,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// The box in a gear at an input speed and a demanded torque.
-    #[inline(always)]
     fn box_in(&self, gear: u8, input_rad_s: R, demand_nm: R) -> Engaged<'_, R> {
         let oil_k = self.step.heat.node_k[SUMP];
         self.manual
@@ -78,7 +72,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// Speed of the free engine at the end of the step, rad/s.
-    #[inline(always)]
     fn free_engine_rad_s(&self) -> R {
         let before_rad_s = self.state.engine_rad_s;
         self.step
@@ -87,7 +80,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
-    #[inline(always)]
     fn coasting(&self, gear: u8, output: &mut StepOutput<R>) {
         self.declutched(gear, output);
         let lags = output.deficit_w.gt(0.0);
@@ -96,7 +88,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         }
     }
 
-    #[inline(always)]
     fn neutral(&self, output: &mut StepOutput<R>) {
         let w = self.free_engine_rad_s();
         let losses = self.box_in(self.top(), w, w.splat(0.0)).unloaded_nm();
@@ -108,7 +99,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
-    #[inline(always)]
     fn declutched(&self, gear: u8, output: &mut StepOutput<R>) {
         let gear = if gear == 0 { self.top() } else { gear };
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
@@ -129,33 +119,29 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
     fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
-        like.vectorize(
-            #[inline(always)]
-            || {
-                let (mut gear, mut open) = (gear, runs);
-                loop {
-                    let mut other = StepOutput::like(like);
-                    let alone = R::LANES == 1;
-                    let lacks = self.in_gear(gear, if alone { &mut *output } else { &mut other });
-                    if !alone {
-                        output.take(open, &other);
-                    }
-                    open = open & lacks;
-                    if !open.any() {
-                        break;
-                    }
-                    open = open & self.may_shift_down(gear);
-                    if !open.any() {
-                        break;
-                    }
-                    gear -= 1;
+        like.vectorize(|| {
+            let (mut gear, mut open) = (gear, runs);
+            loop {
+                let mut other = StepOutput::like(like);
+                let alone = R::LANES == 1;
+                let lacks = self.in_gear(gear, if alone { &mut *output } else { &mut other });
+                if !alone {
+                    output.take(open, &other);
                 }
-            },
-        );
+                open = open & lacks;
+                if !open.any() {
+                    break;
+                }
+                open = open & self.may_shift_down(gear);
+                if !open.any() {
+                    break;
+                }
+                gear -= 1;
+            }
+        });
     }
 
     /// Where there is a gear below, and the engine may turn as fast as the wheels would have it there.
-    #[inline(always)]
     fn may_shift_down(&self, gear: u8) -> R::Mask {
         let wheel_rad_s = self.step.wheel.wheel_rad_s;
         match usize::from(gear).checked_sub(2) {
@@ -167,7 +153,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// Sets the throttle, for the engine's full load at its speed.
-    #[inline(always)]
     fn set_throttle(&self, output: &mut StepOutput<R>, full_load_nm: R) {
         let engine = self.step.engine;
         let crank_nm = output.shaft_nm + engine.accessories_nm(output.engine_rad_s);
@@ -178,7 +163,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
 
     /// The box in a gear: the torque demanded, or the one at the engine's limit. Yes where the gear lacks torque; it does too where only an
     /// engine that still comes down from a lower gear has enough.
-    #[inline(always)]
     fn in_gear(&self, gear: u8, output: &mut StepOutput<R>) -> R::Mask {
         let (engine, wheel) = (self.step.engine, self.step.wheel);
         let coupling = &self.manual.coupling;
@@ -258,7 +242,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// Torque into the box at the engine's full load, Nm, at speeds of box and engine.
-    #[inline(always)]
     fn most_nm(&self, input_rad_s: R, engine_rad_s: R, full_load_nm: R) -> R {
         let engine = self.step.engine;
         // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
@@ -268,7 +251,6 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
 
     /// Engine speed over the coupling in this step: at once that of a faster box; over a slower one, as after a change up, the coupling slips
     /// until the engine's rotating energy is spent.
-    #[inline(always)]
     fn engine_speed(&self, input_nm: R, input_rad_s: R) -> EngineSpeed<R> {
         let wanted = self.manual.coupling.engine_rad_s(&CouplingLoad {
             output_nm: input_nm,
@@ -300,9 +282,9 @@ struct EngineSpeed<R> {
     excess_rad_s: R,
 }
 
+#[physics]
 impl<R: Real> EngineSpeed<R> {
     /// This one where the mask says so, else the other.
-    #[inline(always)]
     fn or(self, chosen: R::Mask, other: EngineSpeed<R>) -> EngineSpeed<R> {
         EngineSpeed {
             end_rad_s: chosen.select(self.end_rad_s, other.end_rad_s),
@@ -312,7 +294,7 @@ impl<R: Real> EngineSpeed<R> {
     }
 }
 
-#[inline(always)]
+#[physics]
 fn lose<R: Real>(output: &mut StepOutput<R>, losses_nm: &PartLosses<R>, speed: R) {
     for (component, nm) in losses_nm {
         output.add_loss(*component, *nm * speed);

@@ -11,11 +11,11 @@
 
 use super::pressure_table::{PressureTable, TableKeys, pressure_table};
 use crate::keys::{Choice, Key, Values, keys};
-use crate::math::{Gather, Mask, Real, gather, ramp};
+use crate::math::{Gather, Mask, Real, physics, ramp};
 use std::sync::Arc;
 
 /// The Rover's law.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct MapLaw<R: Real = f64> {
     /// Pressure in low at closed throttle, Pa.
     pub base_pa: R,
@@ -57,16 +57,6 @@ pub enum ClampLaw<R: Real = f64> {
     /// PC-6, with the table of the box.
     Table,
 }
-
-gather!(MapLaw {
-    base_pa,
-    throttle_pa,
-    cold_per_k,
-    slow_factor,
-    slow_rad_s,
-    full_rad_s,
-    fall_s
-});
 
 /// The numbers of a law that looks at the belt: its slip, safety and least torque.
 fn numbers(law: &ClampLaw) -> [f64; 3] {
@@ -157,9 +147,9 @@ pub struct ClampSignals<R: Real = f64> {
     pub force_log: R,
 }
 
+#[physics]
 impl<R: Real> MapLaw<R> {
     /// Pressure before the cap, Pa (PC-1, PC-2).
-    #[inline(always)]
     pub fn pressure_pa(&self, s: &ClampSignals<R>) -> R {
         let rise = self.slow_factor
             + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);

@@ -21,11 +21,11 @@
 
 use super::shift_map::{ShiftMap, shift_map};
 use crate::keys::{Bound, Choice, Values, curve, keys};
-use crate::math::{Mask, Real, gather, ramp};
+use crate::math::{Gather, Mask, Real, physics, ramp};
 use std::sync::Arc;
 
 /// The checked controller.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct RatioControl<R: Real = f64> {
     /// Lowest gear: largest belt ratio.
     pub low: R,
@@ -61,23 +61,14 @@ pub struct RatioControl<R: Real = f64> {
     pub cold: ColdRise<R>,
 }
 
-gather! {
-    RatioControl {
-        low, high, gentle_rad_s, gentle_share, rise_rad_s, overrun_rad_s, highest_rad_s, route_efficiency, up_per_s, down_per_s,
-        rate_speed_rad_s, hysteresis, filter_s, line, shift_map, cold,
-    }
-}
-
 /// Target speeds in place of RC-1 and RC-2 (RC-13).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct OperatingLine<R: Real = f64> {
     /// Engine speed over the share of rated power asked for, rad/s.
     pub drive: Option<R::Curve>,
     /// Engine speed over road speed in m/s while no power is asked for, rad/s.
     pub overrun: Option<R::Curve>,
 }
-
-gather!(OperatingLine { drive, overrun });
 
 impl Default for OperatingLine {
     fn default() -> Self {
@@ -88,9 +79,9 @@ impl Default for OperatingLine {
     }
 }
 
+#[physics]
 impl<R: Real> OperatingLine<R> {
     /// The target at a demand, rad/s, where a line has it, else `other`.
-    #[inline(always)]
     fn target_rad_s(&self, d: &RatioDemand<R>, other: R) -> R {
         let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
         let drives = d.power_w.gt(0.0);
@@ -109,7 +100,7 @@ impl<R: Real> OperatingLine<R> {
 }
 
 /// What a cold car adds to the target of engine speed (RC-11).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ColdRise<R: Real = f64> {
     /// Rise in full, rad/s.
     pub rise_rad_s: R,
@@ -118,6 +109,7 @@ pub struct ColdRise<R: Real = f64> {
     /// Temperature from which there is none, K.
     pub to_k: R,
     /// True where the sump's temperature counts, false for the coolant's.
+    #[gather(same)]
     pub by_sump: bool,
 }
 
@@ -131,11 +123,9 @@ impl ColdRise {
     };
 }
 
-gather!(ColdRise { rise_rad_s, from_k, to_k } same { by_sump });
-
+#[physics]
 impl<R: Real> ColdRise<R> {
     /// The rise at the temperatures of coolant and sump, K, rad/s.
-    #[inline(always)]
     pub fn at(&self, coolant_k: R, sump_k: R) -> R {
         let temp_k = if self.by_sump { sump_k } else { coolant_k };
         self.rise_rad_s * (1.0 - ramp(temp_k, self.from_k, self.to_k)) // RC-11
@@ -177,9 +167,9 @@ pub struct RatioDemand<R: Real = f64> {
     pub dt_s: f64,
 }
 
+#[physics]
 impl<R: Real> RatioControl<R> {
     /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13, RC-14).
-    #[inline(always)]
     pub fn target_rad_s(&self, d: &RatioDemand<R>) -> R {
         let mut speed = match d.mapped_rad_s {
             Some(mapped) => mapped.max(ABOVE_LOCK * d.free_up_to_rad_s), // RC-14
@@ -200,7 +190,6 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// Target at a share of rated power, rad/s.
-    #[inline(always)]
     fn gentle_target_rad_s(&self, share: R) -> R {
         let drive = (share / self.gentle_share.max(LEAST_GENTLE_SHARE)).clamp(0.0, 1.0);
         let speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
@@ -209,7 +198,6 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
-    #[inline(always)]
     pub fn filtered_share(&self, before: R, asked: R, dt_s: f64) -> R {
         let filters = self.filter_s.gt(0.0);
         if !filters.any() {
@@ -220,7 +208,6 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
-    #[inline(always)]
     pub fn step(&self, d: &RatioDemand<R>) -> (R, R, R::Mask) {
         let before = d.ratio_before;
         let zero = before.splat(0.0);
@@ -244,7 +231,6 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// The same towards a ratio that is asked for from outside (RC-15).
-    #[inline(always)]
     pub fn paced(&self, d: &RatioDemand<R>, asked: R) -> (R, R, R::Mask) {
         let before = d.ratio_before;
         let wanted = asked.clamp(self.high, self.low);
@@ -256,7 +242,6 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// As much of a change of ln I, to a wanted ratio, as the rates allow (RC-4, RC-5); none where the ratio stays.
-    #[inline(always)]
     fn limited(
         &self,
         d: &RatioDemand<R>,
@@ -288,12 +273,8 @@ impl<R: Real> RatioControl<R> {
     }
 
     /// True where a change of ln I is a reversal too small to be made (RC-10).
-    #[inline(always)]
     fn stays(&self, d: &RatioDemand<R>, wanted: R, change: R) -> R::Mask {
-        let direction = change.map_lanes(
-            #[inline(always)]
-            |lane| f64::from(*R::get(&d.last_direction, lane)),
-        );
+        let direction = change.map_lanes(|lane| f64::from(*R::get(&d.last_direction, lane)));
         change.splat(0.0).gt(direction * change)
             & self.hysteresis.ge(change.abs())
             & wanted.gt(self.high)
@@ -315,16 +296,13 @@ const LEAST_GENTLE_SHARE: f64 = 0.01;
 const LEAST_CHANGE: f64 = 1e-4;
 
 /// Direction of the last change, after a change of ln I (RC-10).
-#[inline(always)]
+#[physics]
 pub fn direction_after<R: Real>(change: R, last_direction: &R::PerLane<i8>) -> R::PerLane<i8> {
-    R::per_lane(
-        #[inline(always)]
-        |lane| match change.lane(lane) {
-            change if change > LEAST_CHANGE => 1,
-            change if change < -LEAST_CHANGE => -1,
-            _ => *R::get(last_direction, lane),
-        },
-    )
+    R::per_lane(|lane| match change.lane(lane) {
+        change if change > LEAST_CHANGE => 1,
+        change if change < -LEAST_CHANGE => -1,
+        _ => *R::get(last_direction, lane),
+    })
 }
 
 keys! {

@@ -17,12 +17,12 @@
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
 use crate::fluid::{BandFriction, Friction};
-use crate::math::{Mask, Real, both};
+use crate::math::{Mask, Real, both, physics};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Friction-weighted sliding of the band pack on each pulley per turn of the primary, m: on both with the wrap factor (BT-2 to BT-4), or on
 /// the smaller wrap alone, with the part of the one force that a `direction` of the tension step leaves (BT-6, BT-7).
-#[inline(always)]
+#[physics]
 pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, mean_offset_m: R, direction: R) -> [R; 2] {
     let slide = (g.inv_ratio - 1.0).abs() * mean_offset_m;
     if belt.formulation.by_statics() {
@@ -38,7 +38,7 @@ pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, mean_offset_m: R, direc
 }
 
 /// A value of the pulley of smaller wrap, where the bands slide, and nothing of the other (BT-7).
-#[inline(always)]
+#[physics]
 fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
     let (primary, none) = (
         g.secondary_wrap_rad.gt(g.primary_wrap_rad),
@@ -48,13 +48,13 @@ fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
 }
 
 /// Offset of the bands above the rocking edge, weighted by their normal forces, m (BT-2).
-#[inline(always)]
+#[physics]
 pub fn mean_offset_m<R: Real>(belt: &Belt<R>) -> R {
     belt.band_offset_m + belt.band_thickness_m * (belt.band_count - 1.0) / 2.0
 }
 
 /// Part of the bands' sliding, weighted by friction, that is not at the innermost interface (BT-2).
-#[inline(always)]
+#[physics]
 pub fn outer_part<R: Real>(belt: &Belt<R>) -> R {
     let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
     let part = outer / mean_offset_m(belt);
@@ -62,13 +62,13 @@ pub fn outer_part<R: Real>(belt: &Belt<R>) -> R {
 }
 
 /// Part of the bands' sliding that a coating of the shoulders takes away (BT-8).
-#[inline(always)]
+#[physics]
 pub fn coated_part<R: Real>(belt: &Belt<R>) -> R {
     (1.0 - belt.shoulder_friction) * (1.0 - outer_part(belt)) // BT-8
 }
 
 /// Contact area of a film, on the smaller wrap, m2 (FI-1).
-#[inline(always)]
+#[physics]
 pub fn film_area_m2<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R {
     let arcs_m = [
         g.primary_radius_m * g.primary_wrap_rad,
@@ -78,7 +78,7 @@ pub fn film_area_m2<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R {
 }
 
 /// Levers of the films' forces, at the primary shaft, m: innermost interface, all others together (FI-1).
-#[inline(always)]
+#[physics]
 pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2] {
     let turns = direction.abs() * (g.inv_ratio - 1.0).abs();
     [
@@ -88,7 +88,7 @@ pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> 
 }
 
 /// Forces of the films on the innermost interface and on each other one, N (FI-1, FH-1).
-#[inline(always)]
+#[physics]
 pub fn film_n<R: Real>(
     friction: &Friction<R>,
     band: &BandFriction<R>,
@@ -100,7 +100,7 @@ pub fn film_n<R: Real>(
 }
 
 /// Adopted band speed of a formulation as `travel_m` takes it (BT-1, BT-7).
-#[inline(always)]
+#[physics]
 pub fn speed_share<R: Real>(belt: &Belt<R>) -> f64 {
     if belt.formulation.by_statics() {
         -0.5
@@ -121,7 +121,7 @@ pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
 }
 
 /// Sliding speed at the innermost interface and at each other one where the bands slide, m/s (BT-1, BT-7).
-#[inline(always)]
+#[physics]
 pub fn sliding_speed_m_s<R: Real>(belt: &Belt<R>, ratio: R, primary_speed_rad_s: R) -> [R; 2] {
     let share = if belt.formulation.by_statics() {
         1.0 // BT-7
@@ -144,7 +144,7 @@ pub fn pulley_sliding_m_s(belt: &Belt, g: &Geometry, primary_speed_rad_s: f64) -
 }
 
 /// Boundary friction loss of the bands on the arcs of primary and secondary, Nm at the primary shaft (BT-3, BT-6).
-#[inline(always)]
+#[physics]
 pub fn band_loss_nm<R: Real>(
     at: &BeltAtRatio<R>,
     t: &Tension<R>,
@@ -159,7 +159,7 @@ pub fn band_loss_nm<R: Real>(
 }
 
 /// Viscous shear of the films, torque at the primary shaft, Nm (FI-1).
-#[inline(always)]
+#[physics]
 pub fn film_loss_nm<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     let [inner, outer] = at.prepared.film_levers_m;
     load.film_n[0] * inner + load.film_n[1] * outer // FI-1

@@ -11,7 +11,7 @@
 //! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{Real, both};
+use crate::math::{Real, both, physics};
 
 /// Wedge and penetration losses at the primary shaft, Nm; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Deflection<R: Real = f64> {
 }
 
 /// 2/t times depth over deflection, 1/m, with 1/t known (PE-1).
-#[inline(always)]
+#[physics]
 pub fn penetration_per_m<R: Real>(belt: &Belt<R>, inv_thickness: R) -> R {
     let depth = if belt.formulation.radial_penetration() {
         0.5 / belt.tan_wedge
@@ -34,7 +34,7 @@ pub fn penetration_per_m<R: Real>(belt: &Belt<R>, inv_thickness: R) -> R {
 }
 
 /// Wedge and penetration losses, both pulleys side by side (WE-1 to PE-1).
-#[inline(always)]
+#[physics]
 pub fn deflection<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
@@ -46,7 +46,7 @@ pub fn deflection<R: Real>(
 }
 
 /// The same from the clamping forces, N.
-#[inline(always)]
+#[physics]
 fn clamped<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,

@@ -2,7 +2,7 @@
 
 use super::{Belt, Geometry, bands};
 use crate::fluid::{BandFriction, Friction, Lubricant};
-use crate::math::{Mask, Real};
+use crate::math::{Mask, Real, physics};
 
 /// What acts on the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,9 +25,9 @@ pub struct BeltLoad<R: Real = f64> {
     pub flank_friction: R,
 }
 
+#[physics]
 impl<R: Real> BeltLoad<R> {
     /// The lubricated belt without speed, torque and clamping force, for a band friction in a contact area, m2, that slides at speeds, m/s.
-    #[inline(always)]
     pub fn unloaded(
         friction: &Friction<R>,
         band: BandFriction<R>,
@@ -48,9 +48,9 @@ impl<R: Real> BeltLoad<R> {
     }
 }
 
+#[physics]
 impl<R: Real> BeltLoad<R> {
     /// `yes` where the mask says so, else `no`: loads of the same fluid.
-    #[inline(always)]
     pub(in crate::transmission::cvt) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         let of = |yes: R, no: R| mask.select(yes, no);
         let pair = |yes: [R; 2], no: [R; 2]| [of(yes[0], no[0]), of(yes[1], no[1])];

@@ -32,12 +32,12 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::math::{Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
 /// The checked belt and pulleys.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Belt<R: Real = f64> {
     /// Centre distance of the pulleys, m.
     pub centre_distance_m: R,
@@ -86,26 +86,18 @@ pub struct Belt<R: Real = f64> {
     /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
     pub thrust_ratio: Option<R::Curve>,
     /// Reading of the thesis.
+    #[gather(same)]
     pub formulation: Formulation,
 }
 
-gather! {
-    Belt {
-        centre_distance_m, length_m, segment_thickness_m, cos_wedge, tan_wedge, band_count, band_thickness_m, band_width_m, band_offset_m,
-        shoulder_friction, mass_kg_m, band_mass_kg_m, youngs_pa, strut_area_m2, initial_gap_m, primary_compliance_per_n,
-        secondary_compliance_per_n, stop_from_ratio, stop_to_ratio, unity_width, blend_n, slip_bound, thrust_ratio,
-    } same { formulation }
-}
-
+#[physics]
 impl<R: Real> Belt<R> {
     /// Cross-section of both band packs, m2.
-    #[inline(always)]
     pub fn band_area_m2(&self) -> R {
         self.band_count * self.band_width_m * self.band_thickness_m
     }
 
     /// Mass per length that presses on the bands, and that of the bands where they carry themselves, kg/m (TE-8).
-    #[inline(always)]
     pub fn masses_kg_m(&self) -> [R; 2] {
         let bands = if self.formulation.by_statics() {
             self.band_mass_kg_m
@@ -116,7 +108,6 @@ impl<R: Real> Belt<R> {
     }
 
     /// Sliding speeds that can carry a film, at the innermost interface and at each other one, m/s; 0 for formulations without a film.
-    #[inline(always)]
     pub fn sliding_m_s(&self, ratio: R, primary_rad_s: R) -> [R; 2] {
         if self.formulation.has_film() {
             sliding_speed_m_s(self, ratio, primary_rad_s)
@@ -164,17 +155,17 @@ pub struct BeltLosses<R: Real = f64> {
     pub gross_slip: R::Mask,
 }
 
+#[physics]
 impl<R: Real> BeltLosses<R> {
     /// All belt losses, Nm at the primary shaft.
-    #[inline(always)]
     pub fn sum_nm(&self) -> R {
         self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
     }
 }
 
+#[physics]
 impl<R: Real> BeltLosses<R> {
     /// Each loss times its factor, slip with the loss that it makes (CV-7).
-    #[inline(always)]
     pub fn times(self, factor: &ByComponent<R>) -> Self {
         let slips = factor[Component::BeltSlip];
         BeltLosses {
@@ -216,7 +207,7 @@ impl BeltState {
 }
 
 /// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
-#[inline(always)]
+#[physics]
 fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, friction: R) -> R {
     let weaker = t.primary_clamp_n.min(t.secondary_clamp_n);
     weaker * friction * at.prepared.capacity_m // VA-2, VA-4
@@ -232,7 +223,7 @@ struct Parts<R: Real> {
     capacity_nm: R,
 }
 
-#[inline(always)]
+#[physics]
 fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R> {
     let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
@@ -259,12 +250,12 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
     }
 }
 
-#[inline(always)]
+#[physics]
 fn sum<R: Real>(pair: [R; 2]) -> R {
     pair[0] + pair[1]
 }
 
-#[inline(always)]
+#[physics]
 fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
     let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
     let share_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
@@ -287,7 +278,7 @@ fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
     }
 }
 
-#[inline(always)]
+#[physics]
 fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> BeltState<R> {
     let losses = losses(load, parts);
     BeltState {
@@ -302,7 +293,7 @@ fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> 
 }
 
 /// Slip, losses and capacity at one operating point: the sums of [`belt_state`] without its detail.
-#[inline(always)]
+#[physics]
 pub fn belt_losses<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
@@ -312,7 +303,7 @@ pub fn belt_losses<R: Real>(
 }
 
 /// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
-#[inline(always)]
+#[physics]
 pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     belt_losses(belt, at, load).capacity_nm
 }
@@ -334,7 +325,7 @@ pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &Bel
 /// let state = belt_state(belt, &BeltAtRatio::new(belt, 2.0), &load);
 /// assert!(state.losses.slip_total > 0.0 && !state.losses.gross_slip);
 /// ```
-#[inline(always)]
+#[physics]
 pub fn belt_state<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,

@@ -19,7 +19,7 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{Mask, Real, both};
+use crate::math::{Mask, Real, both, physics};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,14 +58,14 @@ const ALONE: f64 = 9.0;
 pub(super) const MAX_AREA_N: f64 = 4492.0;
 
 /// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`MAX_AREA_N`] (SL-3 without holding).
-#[inline(always)]
+#[physics]
 pub(super) fn printed_area_m2<R: Real>(compression_n: R) -> R {
     let c = compression_n;
     1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
 }
 
 /// Contact area between segments in an arc for a compression \|C_x\|, m2 (SL-3).
-#[inline(always)]
+#[physics]
 fn arc_area_m2<R: Real>(compression_n: R) -> R {
     printed_area_m2(compression_n.min(MAX_AREA_N))
 }
@@ -85,8 +85,8 @@ pub(super) struct Contact<'a, R: Real = f64> {
     pub compression_n: R,
 }
 
+#[physics]
 impl<'a, R: Real> Contact<'a, R> {
-    #[inline(always)]
     pub fn new(belt: &'a Belt<R>, at: &'a BeltAtRatio<R>, t: &Tension<R>, mu_segment: R) -> Self {
         let prepared = &at.prepared;
         let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
@@ -122,7 +122,7 @@ struct Branches<R> {
 }
 
 /// Works out both branches (SL-2 to SL-7, SL-9, SL-10). One of them carries no compression; processors do two at once for one.
-#[inline(always)]
+#[physics]
 fn branches<R: Real>(c: &Contact<'_, R>) -> Branches<R> {
     let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
     let pitch = belt.segment_thickness_m;
@@ -181,10 +181,10 @@ fn branches<R: Real>(c: &Contact<'_, R>) -> Branches<R> {
     branches
 }
 
+#[physics]
 impl<R: Real> Slip<R> {
     /// The slip with its share of the loss by statics: `net_nm` is the output torque at the primary shaft, `sliding_nm` what bands and film
     /// lose before it (SL-11, SL-12).
-    #[inline(always)]
     pub(super) fn by_statics(self, net_nm: R, sliding_nm: R) -> Self {
         let share_nm = (self.primary + self.secondary) * net_nm;
         let beyond = (-sliding_nm).gt(share_nm);
@@ -206,13 +206,13 @@ impl<R: Real> Slip<R> {
 }
 
 /// A value of both branches by the weight of the first (SL-8).
-#[inline(always)]
+#[physics]
 fn mixed<R: Real>(weight: R, conventional: R, inverted: R) -> R {
     weight * conventional + (1.0 - weight) * inverted
 }
 
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
-#[inline(always)]
+#[physics]
 pub fn slip<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
