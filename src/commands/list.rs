@@ -6,7 +6,7 @@ use cvtcycle::config::csv::UNITS;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::catalogue::{self, File};
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
-use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::model::keys::stem;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::{TextColumns, paragraphs};

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use cvtcycle::config::Problem;
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, plain, signed};

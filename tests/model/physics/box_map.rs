@@ -4,7 +4,7 @@
 use cvtcycle_config::cycle::embedded;
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
-use cvtcycle_model::bench::{Bench, BenchPoint};
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::keys::file_table::FileRows;

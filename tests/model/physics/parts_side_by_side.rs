@@ -4,7 +4,7 @@
 
 use crate::side_by_side::{Draw, assert_alone, numbers, together, with_lanes};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::lubricant::Lubricant;
 use cvtcycle_model::math::{Mask, Real};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, Launch, Reach, Turning};

@@ -4,7 +4,7 @@
 
 use crate::belt_properties::{ALL, thesis_belt};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::fluid::{BandFriction, Friction};
+use cvtcycle_model::lubricant::{BandFriction, Friction};
 use cvtcycle_model::math::{Curve, Gather, Mask, Real, asin, ramp, tanh};
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,

@@ -5,7 +5,7 @@ use crate::cycle::Step;
 use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 use crate::math::{Mask, Real, physics};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::clamp_cause::ClampCause;

@@ -81,7 +81,7 @@ fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
 }
 
 /// Most runs that are side by side.
-pub const MOST_TOGETHER: usize = 8;
+pub const MAX_TOGETHER: usize = 8;
 
 /// Whether the program is built for processors that may have vectors. A page's simulator is not: it would be larger for nothing.
 const HAS_LANES: bool = cfg!(any(
@@ -98,7 +98,7 @@ fn width(level: Level) -> usize {
         not(debug_assertions)
     ))]
     if level.as_avx2().is_some() {
-        return MOST_TOGETHER;
+        return MAX_TOGETHER;
     }
     let _ = level;
     4

@@ -25,7 +25,7 @@ pub use keys::{ENGINE, EngineKeys};
 pub use start::Running;
 pub use start_stop::StartStop;
 
-use crate::fluid::{Lubricant, ZERO_DEGC_K};
+use crate::lubricant::{Lubricant, ZERO_DEGC_K};
 use crate::math::{Curve, Gather, Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use std::cell::RefCell;
@@ -41,7 +41,7 @@ const PER_FOUR_PI: f64 = 1.0 / FOUR_PI;
 const SAME_DRAG: f64 = 1.0 + 1e-4;
 
 /// Part of the full-load line that is left to an engine whose air does not carry its friction: keeps the throttle finite.
-const LEAST_FULL_LOAD: f64 = 0.02;
+const MIN_FULL_LOAD: f64 = 0.02;
 /// Highest temperature of the coolant, K: a half-and-half mix of water and glycol boils at 129 degC with 1 bar over ambient.
 pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
 
@@ -344,7 +344,7 @@ impl<R: Real> EngineAtTemperature<'_, R> {
         // Written so that a warm engine in the reference air has its line to the bit.
         let now =
             hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
-        now.max(LEAST_FULL_LOAD * hot) // EN-8
+        now.max(MIN_FULL_LOAD * hot) // EN-8
     }
 
     /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.

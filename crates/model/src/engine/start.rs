@@ -8,7 +8,7 @@
 //! With ramps in place of a hysteresis the fuel of a step is a continuous function of what went before, and no state is carried.
 
 use super::Engine;
-use crate::fluid::ZERO_DEGC_K;
+use crate::lubricant::ZERO_DEGC_K;
 use crate::math::{Mask, Real, both, physics, ramp};
 
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).

@@ -256,7 +256,7 @@ macro_rules! lanes {
 lanes!(f64x4 mask64x4 u64x4 4, f64x8 mask64x8 u64x8 8);
 
 /// Most runs that are side by side.
-pub(crate) const MOST_LANES: usize = 8;
+pub(crate) const MAX_LANES: usize = 8;
 
 /// Four zeros, from which other numbers take their lanes.
 #[inline(always)]

@@ -15,7 +15,7 @@ pub use cvtcycle_macros::{Gather, physics};
 pub use elementary::{exp, exp_array, ln, ln_array, tanh};
 pub use grid::{GRID_AXES, Grid};
 pub use lanes::{Gather, LaneMask, Level, Simd, dispatch, eight, f64x4, f64x8, four};
-pub(crate) use lanes::{MOST_LANES, gather_each};
+pub(crate) use lanes::{MAX_LANES, gather_each};
 pub use real::{Implied, LaneValue, Left, Mask, Named, Operand, Real, Selectable};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.

@@ -5,7 +5,7 @@ use super::component::{ByComponent, Component};
 use super::coupling::Reach;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
-use crate::fluid::Lubricant;
+use crate::lubricant::Lubricant;
 use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;

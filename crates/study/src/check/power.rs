@@ -21,7 +21,7 @@ use super::store::{Cars, once};
 use crate::Progress;
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{KeyInfo, Override, Problems, Target};
-use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::rig::transmission::Conditions;
 use cvtcycle_output::columns;
 use cvtcycle_output::table::{Column, csv_bytes};
 

@@ -17,7 +17,7 @@
 use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
 use crate::keys::{Bound, Quantity, Values, keys};
 use crate::math::{
-    Curve, Gather, MOST_LANES, Mask, Real, both, gather_each, larger, physics, places,
+    Curve, Gather, MAX_LANES, Mask, Real, both, gather_each, larger, physics, places,
 };
 use std::sync::Arc;
 
@@ -191,7 +191,7 @@ impl TorqueConverter {
 /// A piece of the table, for each run: the rows at its ends.
 struct Piece<'a, R: Real> {
     rows: &'a R::PerLane<Rows>,
-    first: [usize; MOST_LANES],
+    first: [usize; MAX_LANES],
     like: R,
 }
 
@@ -228,7 +228,7 @@ impl<R: Real> Piece<'_, R> {
 impl<R: Real> TorqueConverter<R> {
     /// The piece that begins with the last row for which `before` holds with the numbers of a lane, the first one at least.
     fn piece(&self, x: R, y: R, before: fn(&Row, f64, f64) -> bool) -> Piece<'_, R> {
-        let mut first = [0; MOST_LANES];
+        let mut first = [0; MAX_LANES];
         for (lane, first) in first.iter_mut().enumerate().take(R::LANES) {
             let rows = &R::get(&self.rows, lane).0;
             // Plain numbers: the search is a function of its own, which does not have the processor's vectors.

@@ -5,9 +5,9 @@ use super::pulley_bearing::PulleyBearing;
 use super::pump::{PumpAtTemperature, PumpState, TurningPump};
 use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
-use crate::fluid::{Lubricant, OilState};
+use crate::lubricant::{Lubricant, OilState};
 use crate::maps::MapPoint;
-use crate::math::{MOST_LANES, Mask, Real, physics};
+use crate::math::{MAX_LANES, Mask, Real, physics};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
@@ -324,7 +324,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         inside: &mut R::Mask,
         of: impl Fn(usize, &MapPoint) -> (f64, bool),
     ) -> R {
-        let (mut loss, mut within) = (torque_nm, [true; MOST_LANES]);
+        let (mut loss, mut within) = (torque_nm, [true; MAX_LANES]);
         for (lane, within) in within.iter_mut().enumerate().take(R::LANES) {
             let point = MapPoint {
                 ratio: self.at.geometry.ratio.lane(lane),

@@ -6,7 +6,7 @@ use super::evaluate::Step;
 use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, Hold, LN_NU_REFERENCE, Shifting};
-use crate::fluid::OilState;
+use crate::lubricant::OilState;
 use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, SUMP};

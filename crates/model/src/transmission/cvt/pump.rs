@@ -135,7 +135,7 @@ pub struct Pump<R: Real = f64> {
 }
 
 /// Pressure that is left of a flow that does not cover lubrication and shift, Pa (PU-6).
-const LEAST_PA: f64 = 1e4;
+const MIN_PA: f64 = 1e4;
 
 /// Viscosity above which oil runs into lubrication as through leaks, 1 Pa s, over that at which C_v is defined (PU-2).
 const THICK: f64 = 1.0 / ETA_REFERENCE_PA_S;
@@ -322,15 +322,15 @@ impl<R: Real> TurningPump<'_, R> {
         let square = x * x;
         let drawn = self.flow_m3_s * (1.0 - 0.25 * (square * square));
         let spare = drawn - now.lubrication_m3_s - shift_flow_m3_s;
-        spare.gt(LEAST_PA * now.leakage_m3_s_pa) & (spare * now.inv_leakage).gt(pressure_pa)
+        spare.gt(MIN_PA * now.leakage_m3_s_pa) & (spare * now.inv_leakage).gt(pressure_pa)
     }
 
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
     pub fn deliverable_pa(&self, shift_flow_m3_s: R) -> R {
         let now = &self.now;
         let spare = self.drawn_m3_s() - now.lubrication_m3_s - shift_flow_m3_s;
-        let enough = spare.gt(LEAST_PA * now.leakage_m3_s_pa);
-        enough.select(spare * now.inv_leakage, spare.splat(LEAST_PA)) // PU-6
+        let enough = spare.gt(MIN_PA * now.leakage_m3_s_pa);
+        enough.select(spare * now.inv_leakage, spare.splat(MIN_PA)) // PU-6
     }
 
     /// Torque and flow at a pressure and a need (PU-1, PU-4).

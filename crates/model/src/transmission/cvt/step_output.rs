@@ -6,7 +6,7 @@ use super::driveline::{PartTorques, Shaft};
 use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::variator::{BeltLoad, belt_capacity_nm};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 use crate::math::{Mask, Real, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::{BELT, SUMP};

@@ -17,7 +17,7 @@ use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 const FULL_FILM: f64 = 0.04 / 0.12;
 const BOUNDARY: f64 = 0.08 / 0.12;
 /// Logarithm of the nu n below which M_0 falls no more, 2000 mm2/s rpm.
-const LEAST_LOG_NU_N: f64 = 7.600_902_459_542_082;
+const MIN_LOG_NU_N: f64 = 7.600_902_459_542_082;
 /// Exponent of nu n in M_0 (BR-1).
 const TWO_THIRDS: f64 = 2.0 / 3.0;
 /// Load of a shaft's bearings over the tangential force of its wheel.
@@ -70,7 +70,7 @@ impl Bearing {
         TrainBearing {
             turns,
             unheated_nm: per_power_nm * turns_23,
-            least_nm: per_power_nm * film_powers(LEAST_LOG_NU_N)[0],
+            least_nm: per_power_nm * film_powers(MIN_LOG_NU_N)[0],
             heating: ViscousSelfHeating::halving_at_w(Some(self.count * factors.heating_w)),
             preload_nm: factors.preload * self.preload_nm,
             film: -2.6e-8 * mean_mm * turns_14, // BR-2

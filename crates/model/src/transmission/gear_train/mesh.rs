@@ -17,9 +17,9 @@ use std::f64::consts::PI;
 /// Normal pressure angle, rad.
 const PRESSURE_ANGLE_RAD: f64 = PI / 9.0;
 /// Least load of the teeth for which GM-2 holds, N/mm.
-const LEAST_LINE_LOAD_N_MM: f64 = 150.0;
+const MIN_LINE_LOAD_N_MM: f64 = 150.0;
 /// Least speed of the pitch circles for which GM-2 holds, m/s.
-const LEAST_PITCH_M_S: f64 = 0.5;
+const MIN_PITCH_M_S: f64 = 0.5;
 /// Largest friction of the teeth.
 const MAX_FRICTION: f64 = 0.15;
 
@@ -133,7 +133,7 @@ impl<R: Real> Mesh<R> {
         for (mesh, log) in meshes.iter().zip(&mut logs) {
             let load = torque_nm.abs() * mesh.line_load_per_nm;
             let pitch_m_s = first_rad_s * mesh.pinion_turns * mesh.pitch_radius_m;
-            *log = load.max(LEAST_LINE_LOAD_N_MM) / pitch_m_s.max(LEAST_PITCH_M_S);
+            *log = load.max(MIN_LINE_LOAD_N_MM) / pitch_m_s.max(MIN_PITCH_M_S);
         }
         logs = R::ln_array(logs);
         for log in &mut logs {

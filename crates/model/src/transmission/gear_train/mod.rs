@@ -20,7 +20,7 @@ use self::bearing::{Bearing, BearingFactors, TrainBearing, load_share};
 use self::churning::Churner;
 use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
-use crate::fluid::OilState;
+use crate::lubricant::OilState;
 use crate::math::{Gather, Mask, Real, larger, physics};
 use std::f64::consts::LN_10;
 

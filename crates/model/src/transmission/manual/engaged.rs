@@ -1,7 +1,7 @@
 //! The box in a gear: its gear train, or the measured map in place of it.
 
 use super::Manual;
-use crate::fluid::OilState;
+use crate::lubricant::OilState;
 use crate::maps::{LossMap, MapPoint};
 use crate::math::{Mask, Real, physics};
 use crate::transmission::component::Component;

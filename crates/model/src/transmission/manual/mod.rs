@@ -31,7 +31,7 @@ use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 use crate::maps::LossMap;
 use crate::math::{Gather, Mask, Real, gather_each, physics};
 use crate::prime_mover::PrimeMover;
@@ -99,7 +99,7 @@ impl<R: Real> Driveline<R> for Manual<R> {
 }
 
 /// Speed of the input shaft over idle speed below which the driver of a car that slows down opens the clutch (MB-5).
-const LEAST_OVER_IDLE: f64 = 1.05;
+const MIN_OVER_IDLE: f64 = 1.05;
 
 impl Manual {
     /// Factors on the losses of the box (MB-6), the coupling apart.
@@ -153,7 +153,7 @@ impl<R: Real> Manual<R> {
 
 /// True where a closed clutch would turn the engine near or below its idle speed.
 fn is_below_idle(overall: f64, wheel_rad_s: f64, idle_rad_s: f64) -> bool {
-    overall * wheel_rad_s < LEAST_OVER_IDLE * idle_rad_s
+    overall * wheel_rad_s < MIN_OVER_IDLE * idle_rad_s
 }
 
 #[physics]

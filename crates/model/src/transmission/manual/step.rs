@@ -3,7 +3,7 @@
 use super::engaged::sum_nm;
 use super::{Action, Engaged, Manual, PartLosses};
 use crate::flags::Flags;
-use crate::fluid::OilState;
+use crate::lubricant::OilState;
 use crate::math::{Mask, Real, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;

@@ -5,7 +5,7 @@ use crate::check::expr::Table;
 use crate::check::source::{Kind, Source};
 use crate::points::{GivenFriction, belt_k, belt_load};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::lubricant::{Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::PointStatus;

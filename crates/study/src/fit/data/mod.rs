@@ -16,7 +16,7 @@ use crate::check::tables;
 use crate::check::tables::bench::{self, SETTINGS};
 use cvtcycle_config::csv::{Cells, Column};
 use cvtcycle_config::{Bound, Place, Problem, Problems, bounded, did_you_mean};
-use cvtcycle_model::bench::{BenchPoint, Parts};
+use cvtcycle_model::rig::{BenchPoint, Parts};
 use cvtcycle_model::keys::Presence;
 use sheet::{Measured, Sheet, and_more};
 

@@ -25,7 +25,7 @@ use crate::check::rows::RowFile;
 use crate::check::source::Source;
 use crate::fit::solve::{Options, Prior};
 use cvtcycle_config::{Place, Problem, ProblemKind};
-use cvtcycle_model::bench::BenchPoint;
+use cvtcycle_model::rig::BenchPoint;
 
 /// A parameter that is fitted.
 #[derive(Clone, Debug, PartialEq)]

@@ -180,7 +180,7 @@ impl<R: Real> RatioControl<R> {
         }
         let cold = d.cold_rad_s.gt(0.0);
         if cold.any() {
-            let raised = speed + d.cold_rad_s * (d.share / LEAST_GENTLE_SHARE).clamp(0.0, 1.0); // RC-11
+            let raised = speed + d.cold_rad_s * (d.share / MIN_GENTLE_SHARE).clamp(0.0, 1.0); // RC-11
             speed = cold.select(raised, speed);
         }
         let binds = d.power_w.gt(0.0) & d.full_load_rad_s.gt(speed);
@@ -191,7 +191,7 @@ impl<R: Real> RatioControl<R> {
 
     /// Target at a share of rated power, rad/s.
     fn gentle_target_rad_s(&self, share: R) -> R {
-        let drive = (share / self.gentle_share.max(LEAST_GENTLE_SHARE)).clamp(0.0, 1.0);
+        let drive = (share / self.gentle_share.max(MIN_GENTLE_SHARE)).clamp(0.0, 1.0);
         let speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         let risen = speed + self.rise_rad_s * (share - self.gentle_share); // RC-1
         share.gt(self.gentle_share).select(risen, speed)
@@ -290,17 +290,17 @@ pub const FREE_OVER_IDLE: f64 = 1.2;
 const ABOVE_LOCK: f64 = 1.006;
 
 /// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2, RC-11).
-const LEAST_GENTLE_SHARE: f64 = 0.01;
+const MIN_GENTLE_SHARE: f64 = 0.01;
 
 /// Change of ln I that counts as one (RC-10).
-const LEAST_CHANGE: f64 = 1e-4;
+const MIN_CHANGE: f64 = 1e-4;
 
 /// Direction of the last change, after a change of ln I (RC-10).
 #[physics]
 pub fn direction_after<R: Real>(change: R, last_direction: &R::PerLane<i8>) -> R::PerLane<i8> {
     R::per_lane(|lane| match change.lane(lane) {
-        change if change > LEAST_CHANGE => 1,
-        change if change < -LEAST_CHANGE => -1,
+        change if change > MIN_CHANGE => 1,
+        change if change < -MIN_CHANGE => -1,
         _ => *R::get(last_direction, lane),
     })
 }

@@ -16,7 +16,7 @@
 //! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
-use crate::fluid::{BandFriction, Friction};
+use crate::lubricant::{BandFriction, Friction};
 use crate::math::{Mask, Real, both, physics};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 

@@ -1,7 +1,7 @@
 //! What acts on the belt: speed, torque, clamping force, and the friction that its fluid lends.
 
 use super::{Belt, Geometry, bands};
-use crate::fluid::{BandFriction, Friction, Lubricant};
+use crate::lubricant::{BandFriction, Friction, Lubricant};
 use crate::math::{Mask, Real, physics};
 
 /// What acts on the belt at one operating point.

@@ -312,7 +312,7 @@ pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &Bel
 ///
 /// ```
 /// use cvtcycle_config::setup::{Options, load};
-/// use cvtcycle_model::bench::Bench;
+/// use cvtcycle_model::rig::Bench;
 /// use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
 ///
 /// let bench = Bench::new(&load("rover_216_cvt", &Options::default()).expect("a shipped car"));

@@ -46,7 +46,7 @@ pub struct Slip<R: Real = f64> {
 const MIN_GRIP: f64 = 0.05;
 
 /// Least lambda of an idle segment (SL-10).
-const LEAST_LAMBDA: f64 = MIN_GRIP - 1.0;
+const MIN_LAMBDA: f64 = MIN_GRIP - 1.0;
 
 /// Grip never below this force, N (ASSUMED; negligible against any real one): without clamping slip is at its bound and not 0/0.
 const NO_GRIP_N: f64 = 1e-6;
@@ -139,7 +139,7 @@ fn branches<R: Real>(c: &Contact<'_, R>) -> Branches<R> {
     let idle_arc = both!(i => arc[i] - active[i]);
     let gap = both!(i => (c.slack_m + e_segs[i]) / (idle_arc[i] + 1e-9)); // SL-5
     let per_grip = both!(i => 1.0 / c.grip_n[i]);
-    let lambda = both!(i => (shoulder[i] * per_grip[i]).max(LEAST_LAMBDA)); // SL-10
+    let lambda = both!(i => (shoulder[i] * per_grip[i]).max(MIN_LAMBDA)); // SL-10
     // Conventional loading takes the magnitude: the larger of the number and its opposite.
     let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
     let idle = both!(i => gap[i] * (turned[i] * lambda[i]).max(lambda[i])); // SL-6

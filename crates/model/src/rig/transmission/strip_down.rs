@@ -13,7 +13,7 @@
 
 use super::conditions::Conditions;
 use super::steady::Plan;
-use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
+use crate::rig::{AtRatio, Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 use crate::transmission::component::Component;
 
 /// Stages of the sequence.
