@@ -18,7 +18,7 @@ use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, Problem, render};
 use cvtcycle::model::drive::{Car, Recorder, State, simulate};
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::lubricant::BandFriction;
 use cvtcycle::model::road::WheelDemand;
 use cvtcycle::model::thermal::{Heat, HeatInput};
 use cvtcycle::model::transmission::cvt::variator::{

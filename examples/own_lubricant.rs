@@ -12,7 +12,7 @@ use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{Override, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
 
 const AMBIENT_DEGC: f64 = -10.0;

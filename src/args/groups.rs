@@ -7,7 +7,7 @@ use cvtcycle::config::setup::{
 };
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::drive::Start;
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::statistics::Confidence;

@@ -12,7 +12,7 @@ use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Problems, cycle};
 use cvtcycle::model::drive::{Conditions, Start};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;

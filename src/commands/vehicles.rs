@@ -6,7 +6,7 @@ use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::{Driven, Settings, StartWord};
 

@@ -66,7 +66,7 @@ const INSIDE: &[&str] = &[
 const PASSED_ON: [&str; 4] = [
     "model::math::curve",
     "model::math::grid",
-    "model::fluid::viscosity",
+    "model::lubricant::viscosity",
     "model::maps::bsfc",
 ];
 

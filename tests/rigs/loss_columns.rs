@@ -1,6 +1,6 @@
 //! Columns and maps of the losses command against the bench: powers and efficiency, units, flags, the torque that each map takes.
 use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
-use cvtcycle::model::bench::{Bench, BenchPoint, Parts};
+use cvtcycle::model::rig::{Bench, BenchPoint, Parts};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::Component;
 use cvtcycle::output::losses::{Axis, LossRow};

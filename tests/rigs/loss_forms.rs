@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use crate::common::{RPM, ZERO, car};
-use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use serde_json::Value;
 
 fn good(words: &[&str]) -> String {

@@ -10,7 +10,7 @@ use crate::common::{RPM, ZERO, car};
 use crate::titles::{is, title_of_file, written};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
-use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{Axis, LossGrid, columns};
@@ -466,7 +466,7 @@ fn printed_forms() {
         Formulation::Chapter8,
     ]
     .map(at);
-    let segments = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().slip.active_segments;
+    let segments = |a: &cvtcycle::model::rig::BenchAnswer| a.belt.unwrap().slip.active_segments;
     assert!(segments(&smooth).fract() > 1e-9);
     for printed in [&appendix, &chapter] {
         assert!(segments(printed).fract().abs() < 1e-15 && segments(printed) >= 1.0);
@@ -476,7 +476,7 @@ fn printed_forms() {
     // Eq. 49 unscaled, both wedge arcs: the chapter loses more in bands.
     assert!(chapter.part_nm(Component::BeltBand) > appendix.part_nm(Component::BeltBand) + 0.3);
     // 0.02 % slip rms against integer k (physics.md 1).
-    let slip = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().losses.slip_total;
+    let slip = |a: &cvtcycle::model::rig::BenchAnswer| a.belt.unwrap().losses.slip_total;
     assert!(
         (slip(&smooth) - slip(&appendix)).abs() < 2e-3,
         "{} {}",

@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::common::{RPM, car};
 use crate::titles::title_of_file;
 use assert_cmd::Command;
-use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use serde_json::Value;
 
 const CAR: &str = "rover_216_cvt";

@@ -17,7 +17,7 @@ use cvtcycle_model::drive::{
     Conditions, Outcome, Start, Vehicle, co2_g_per_km, drive, litres_per_100km,
 };
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use serde::Serialize;
 
 /// Litres for 100 km of a mile a US gallon.

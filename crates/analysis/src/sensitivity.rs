@@ -9,7 +9,7 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Options, Setup};
 use cvtcycle_config::{Problems, unit_of};
-use cvtcycle_model::drive::{Conditions, MOST_TOGETHER, Outcome, Run, drive, drive_each};
+use cvtcycle_model::drive::{Conditions, MAX_TOGETHER, Outcome, Run, drive, drive_each};
 use cvtcycle_model::transmission::loss_factor;
 use cvtcycle_output::number::finite;
 use cvtcycle_output::record::{Effect, Sensitivity};
@@ -83,7 +83,7 @@ pub fn sensitivity(
         };
         // Both sides of some values are driven together.
         let found: Vec<Vec<Effect>> = slots
-            .par_chunks(MOST_TOGETHER / 2)
+            .par_chunks(MAX_TOGETHER / 2)
             .map_init(|| blueprint.bench(), of_slots)
             .collect();
         let found = found.into_iter().flatten();

@@ -1,9 +1,9 @@
 //! Keys of whole files: vehicle, lubricant, rig.
 
-use crate::bench::transmission::RigKeys;
 use crate::engine::EngineKeys;
-use crate::fluid::FluidKeys;
 use crate::keys::{Choice, Kind, Presence, Table, keys};
+use crate::lubricant::FluidKeys;
+use crate::rig::transmission::RigKeys;
 use crate::road::RoadLoadKeys;
 use crate::thermal::ThermalKeys;
 use crate::transmission::cvt::CvtKeys;

@@ -8,8 +8,8 @@
 
 use std::io::{self, Write};
 
-use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::keys::rpm;
+use cvtcycle_model::rig::{Bench, BenchPoint};
 
 use crate::losses::{Axis, LossGrid, bench_point};
 

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use super::losses::{Axis, LossGrid, bench_point};
 use crate::Component;
 use crate::table::{Column, write_csv};
-use cvtcycle_model::bench::{Bench, BenchPoint, Parts};
+use cvtcycle_model::rig::{Bench, BenchPoint, Parts};
 
 /// A component that a map can replace, named like its key in the vehicle file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

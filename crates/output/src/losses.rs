@@ -10,7 +10,7 @@ use std::io::{self, Write};
 
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::to_si;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 

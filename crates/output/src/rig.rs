@@ -1,12 +1,12 @@
 //! The tables of the transmission rig's tests.
 
-use cvtcycle_model::bench::transmission::{
+use cvtcycle_model::keys::RAD_S;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::rig::transmission::{
     self as rig, Branch, Conditions, Loop, Moment, Piece, Plan, Stage, SteadyPoint, StripDown,
     TwoBoxes,
 };
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys::RAD_S;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint};
 use serde_json::{Map, Value, json};
 
 use crate::number::fixed;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use cvtcycle_model::bench::variator::{CurveSummary, Held, Resolution, VariatorRig, VariatorRow};
+use cvtcycle_model::rig::variator::{CurveSummary, Held, Resolution, VariatorRig, VariatorRow};
 use serde_json::json;
 
 use crate::columns;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use cvtcycle::model::drive::MOST_TOGETHER;
+use cvtcycle::model::drive::MAX_TOGETHER;
 use cvtcycle::output::progress::Progress;
 use cvtcycle::study::family::{Family as CoreFamily, FamilyPoint};
 use pyo3::prelude::*;
@@ -99,7 +99,7 @@ impl Family {
                 false => family.points(worker, numbers.chunks(width), &places),
             };
             numbers
-                .par_chunks(width * MOST_TOGETHER)
+                .par_chunks(width * MAX_TOGETHER)
                 .map_init(|| family.worker(), some)
                 .flatten_iter()
                 .collect()

@@ -1,7 +1,7 @@
 //! A transmission on the bench: losses of its parts, and the belt by itself, at given points.
 
 use cvtcycle::config::{Problem, Problems, unit_of};
-use cvtcycle::model::bench::Bench;
+use cvtcycle::model::rig::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::losses::{Axis, LossRow, MAX_POINTS, columns};
 use cvtcycle::output::progress::Progress;

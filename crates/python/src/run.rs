@@ -10,7 +10,7 @@ use cvtcycle::config::cycle::Cycle as CoreCycle;
 use cvtcycle::config::setup::{AMBIENT, Options, START, STEP, Setup};
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive, fuel_map, litres_per_100km};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::History;
 use cvtcycle::output::escape::json_text;
 use cvtcycle::output::files::OutputDir;

@@ -11,7 +11,7 @@ use super::source::Source;
 use super::store::{Cars, Store, View, once};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, load};
 use cvtcycle_config::{KeyInfo, Override, Problem, ProblemKind, Problems, Target, rig};
-use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::rig::transmission::Conditions;
 
 /// A row with its result.
 #[derive(Clone, Debug)]

@@ -20,7 +20,7 @@ use super::source::Source;
 use super::store::{Cars, once};
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{KeyInfo, Override, Problems, Target};
-use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::rig::transmission::Conditions;
 use cvtcycle_output::columns;
 use cvtcycle_output::progress::Progress;
 use cvtcycle_output::table::{Column, csv_bytes};

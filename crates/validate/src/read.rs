@@ -11,8 +11,8 @@ use super::source::{self, Source};
 use cvtcycle_config::ProblemKind;
 use cvtcycle_config::ProblemKind::{Conflict, Missing};
 use cvtcycle_config::{Document, Problem, Problems, Reader, Section, did_you_mean};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::Values;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 
 /// Reads files: name and text each. `common` comes first and lends its tolerances and sources.
 ///

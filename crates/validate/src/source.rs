@@ -9,8 +9,8 @@ use cvtcycle_config::bounded::{SOURCE_ROWS, long_enough_s};
 use cvtcycle_config::cycle::{CONSTANT, Cycle, constant_speed, names, read_csv, shared};
 use cvtcycle_config::setup::is_path;
 use cvtcycle_config::{Override, Place, Problem, Section, did_you_mean, unit_of};
-use cvtcycle_model::bench::transmission::MAX_DURATION_S;
 use cvtcycle_model::keys::{Key, Presence, Values};
+use cvtcycle_model::rig::transmission::MAX_DURATION_S;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// What a source computes.

@@ -11,7 +11,7 @@ use super::tables::{self, Driven};
 use cvtcycle_config::Target;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::{KeyInfo, Place, Problems};
-use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::rig::transmission::Conditions;
 
 /// Where the cars and the rig of the sources come from.
 pub trait Cars {

@@ -4,7 +4,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
 use cvtcycle::model::drive::{Finding, check_physics};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::table::TextColumns;
 use serde_json::{Value, json};
 

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problem, Problems};
-use cvtcycle::model::bench::Bench;
+use cvtcycle::model::rig::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;

@@ -1,6 +1,6 @@
 //! Losses as tables.
 
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::losses::{Axis, LossRow, LossTable};
 use cvtcycle::output::number::{NONE, fixed, percent};
 use cvtcycle::output::table::{TextColumns, TextTable, wrapped};

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use cvtcycle::analysis::optimum::LawBound;
 use cvtcycle::config::Problem;
-use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::summary::StartWord;

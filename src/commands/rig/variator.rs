@@ -4,7 +4,7 @@ mod plan;
 
 use clap::Args;
 use cvtcycle::config::Problems;
-use cvtcycle::model::bench::variator::RigFlags;
+use cvtcycle::model::rig::variator::RigFlags;
 use cvtcycle::output::number::{fixed, percent, plain};
 use cvtcycle::output::table::{TextColumns, wrapped};
 use cvtcycle::output::variator::{Curve, VariatorCurves};

@@ -1,7 +1,7 @@
 //! The drives of a car with changed losses, and the fuel that they save.
 
 use super::{Attribution, Fuel, shapley};
-use cvtcycle_model::drive::{Conditions, MOST_TOGETHER, Outcome, Run, Vehicle, drive_each};
+use cvtcycle_model::drive::{Conditions, MAX_TOGETHER, Outcome, Run, Vehicle, drive_each};
 use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_model::transmission::loss_factor::LossFactors;
 use cvtcycle_output::Component;
@@ -82,7 +82,7 @@ impl<'a> Runs<'a> {
         };
         let counts = changed.each_ref().map(Vec::len);
         let burnt: Vec<Vec<Burnt>> = (changed.concat())
-            .par_chunks(MOST_TOGETHER)
+            .par_chunks(MAX_TOGETHER)
             .map(some)
             .collect();
         let burnt: Vec<Burnt> = burnt.into_iter().flatten().collect();

@@ -13,8 +13,8 @@ pub(super) mod sheet;
 
 use cvtcycle_config::csv::{Cells, Column};
 use cvtcycle_config::{Bound, Place, Problem, Problems, bounded, did_you_mean};
-use cvtcycle_model::bench::{BenchPoint, Parts};
 use cvtcycle_model::keys::Presence;
+use cvtcycle_model::rig::{BenchPoint, Parts};
 use cvtcycle_validate::source::Kind;
 use cvtcycle_validate::tables;
 use cvtcycle_validate::tables::bench::{self, SETTINGS};

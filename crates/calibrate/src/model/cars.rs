@@ -8,7 +8,7 @@ use cvtcycle_config::ProblemKind::{Conflict, Missing, OutOfRange};
 use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{Setup, load};
 use cvtcycle_config::{Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems};
-use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::rig::transmission::Conditions;
 use cvtcycle_validate::source::Source;
 
 /// A car of the plan with parameters that the fit changes.

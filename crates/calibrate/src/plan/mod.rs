@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use crate::solve::{Options, Prior};
 use cvtcycle_config::{Place, Problem, ProblemKind};
-use cvtcycle_model::bench::BenchPoint;
+use cvtcycle_model::rig::BenchPoint;
 use cvtcycle_validate::CandidateVehicle;
 use cvtcycle_validate::checks::FileNames;
 use cvtcycle_validate::expr::Expr;

@@ -12,8 +12,8 @@ use cvtcycle_config::ProblemKind::{
 };
 use cvtcycle_config::setup::{Setup, carried};
 use cvtcycle_config::{ProblemKind, Problems, bounded, one_line};
-use cvtcycle_model::bench::Bench;
 use cvtcycle_model::drive::Car;
+use cvtcycle_model::rig::Bench;
 use cvtcycle_model::transmission::component::ByComponent;
 
 use crate::UNIT_FILE;

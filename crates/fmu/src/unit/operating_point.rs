@@ -1,8 +1,8 @@
 //! The transmission at an operating point.
 
 use cvtcycle_config::ProblemKind::Failed;
-use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::transmission::component::ByComponent;
 
 use super::{Refusal, Unit, show};

@@ -1,6 +1,6 @@
 //! The variables of a CVT that is driven by a torque.
 
-use cvtcycle_model::fluid::VALID_K;
+use cvtcycle_model::lubricant::VALID_K;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 

@@ -7,9 +7,9 @@ pub mod car;
 pub mod forward;
 pub mod point;
 
-use cvtcycle_model::bench::{BenchAnswer, BenchPoint};
 use cvtcycle_model::drive::{Car, Row, Turned};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{BenchAnswer, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::{ByComponent, Component};
 use cvtcycle_model::transmission::cvt::Cvt;

@@ -1,7 +1,7 @@
 //! The variables of an operating point.
 
-use cvtcycle_model::bench::solvable_ratios;
-use cvtcycle_model::fluid::VALID_K;
+use cvtcycle_model::lubricant::VALID_K;
+use cvtcycle_model::rig::solvable_ratios;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 

@@ -1,7 +1,7 @@
 //! A speed trace: intervals over which speed is linear, and their division into steps.
 
 use super::gears::{GearColumns, GearCommand};
-use crate::math::{Left, Real, exp, larger, ln};
+use crate::math::{Real, exp, larger, ln, physics};
 use std::sync::Arc;
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
@@ -119,11 +119,8 @@ pub struct Motion {
 }
 
 /// Means of a speed that is linear from one value to another, of its square and of its cube.
-#[inline(always)]
-pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3] {
     [
         0.5 * (v0 + v1),
         (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,
@@ -173,9 +170,9 @@ pub struct Step {
     pub interval: usize,
 }
 
+#[physics]
 impl Step {
     /// Distance driven, m.
-    #[inline(always)]
     pub fn distance_m(&self) -> f64 {
         self.motion.speed_m_s * self.dt_s
     }
@@ -339,7 +336,7 @@ impl Trace {
     }
 
     /// Gives every step of [`Trace::steps`] to `take`, in order; two plain loops cost a drive less than the iterator.
-    #[inline(always)]
+    #[physics]
     pub fn for_each_step(&self, max_dt_s: f64, mut take: impl FnMut(Step)) {
         for (number, (interval, motion)) in self.intervals.iter().zip(&*self.motions).enumerate() {
             let parts = interval.parts(max_dt_s);

@@ -22,7 +22,7 @@ use crate::transmission::cvt::Hold;
 use crate::transmission::{StepInput, StepOutput, TransmissionState};
 
 /// Slowest wheels, rad/s (FO-3).
-pub const LEAST_WHEEL_RAD_S: f64 = 0.02;
+pub const MIN_WHEEL_RAD_S: f64 = 0.02;
 /// Torque up to which a step is solved, Nm. ASSUMED, numerical: a millionth of what is measured on a rig; less is rounding of the box's own solve.
 const NEAR_NM: f64 = 1e-7;
 /// Tries for a power; a step that needs them all takes the nearest.
@@ -252,7 +252,7 @@ impl<'a> Forward<'a> {
     /// The demand of wheels that turn as they do.
     fn demand(&self, given: &Given, power_w: f64) -> WheelDemand {
         let [from, to] = given.wheel_rad_s;
-        let wheel_rad_s = larger(0.5 * (from + to), LEAST_WHEEL_RAD_S); // FO-3
+        let wheel_rad_s = larger(0.5 * (from + to), MIN_WHEEL_RAD_S); // FO-3
         let radius_m = self.car.road_load.wheel_radius_m;
         WheelDemand {
             speed_m_s: wheel_rad_s * radius_m,

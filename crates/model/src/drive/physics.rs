@@ -18,7 +18,7 @@
 use super::{Car, EnergyTerms, Recorder, Row, State, Vehicle, simulate};
 use crate::cycle::Cycle;
 use crate::flags::Flags;
-use crate::fluid::{BandFriction, VALID_K};
+use crate::lubricant::{BandFriction, VALID_K};
 use crate::math::{larger, ln, pair, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat};

@@ -29,11 +29,11 @@ pub struct State<R: Real = f64, S = TransmissionState> {
 impl<R: Real, S> State<R, S> {
     /// Everything at one temperature, engine about to start.
     pub fn at(temp_k: R) -> Self {
-        let zero = temp_k.filled(0.0);
+        let zero = temp_k.splat(0.0);
         State {
             heat: Heat::uniform(temp_k),
             transmission: None,
-            kinetic_j: temp_k.filled(f64::NAN),
+            kinetic_j: temp_k.splat(f64::NAN),
             running: Running {
                 since_s: 0.0,
                 start_k: zero,

@@ -5,7 +5,7 @@ use super::row::Input;
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::{Command, Conditions, Electric, StartStopState};
 use crate::engine::{Burn, StartStop};
-use crate::math::{Real, larger};
+use crate::math::{Real, larger, physics};
 use crate::thermal::{COOLANT, Heat, SUMP};
 use crate::transmission::component::Component;
 use crate::transmission::{StepOutput, Transmission, TransmissionState};
@@ -99,7 +99,7 @@ impl<'a> Stopping<'a> {
 }
 
 /// Adds to what the engine burns the fuel of a start, and the heat of cranking.
-#[inline(always)]
+#[physics]
 pub(super) fn add_start<R: Real>(
     burn: &mut Burn<R>,
     electric: &Electric<R>,

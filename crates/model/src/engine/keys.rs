@@ -2,8 +2,8 @@
 
 use super::start_stop::{StartStop, StartStopKeys};
 use super::{EFFICIENCY, Engine, FuelModel, Willans};
-use crate::fluid::{Viscosity, viscosity};
 use crate::keys::{Bound, Choice, Repeat, Values, curve, keys};
+use crate::lubricant::{Viscosity, viscosity};
 use crate::maps::BsfcMap;
 use crate::math::{Curve, clamp};
 

@@ -17,7 +17,7 @@
 
 use super::{Engine, EngineAtTemperature};
 use crate::keys::{Values, keys};
-use crate::math::{Real, clamp, exp, larger, smaller};
+use crate::math::{Real, clamp, exp, larger, physics, smaller};
 use crate::prime_mover::PrimeMover;
 
 /// The checked start-stop.
@@ -202,11 +202,11 @@ pub struct Electric<R: Real = f64> {
     pub pump_w: R,
 }
 
+#[physics]
 impl<R: Real> Electric<R> {
     /// Without start-stop, for the runs of a number.
-    #[inline(always)]
     pub fn none(number: R) -> Self {
-        let zero = number.filled(0.0);
+        let zero = number.splat(0.0);
         Electric {
             store_w: zero,
             loss_w: zero,

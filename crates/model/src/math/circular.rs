@@ -52,10 +52,10 @@ fn asin_series<R: Real>(z: R) -> R {
 /// asin of several numbers side by side, the same bits as one by one.
 #[inline(always)]
 pub(super) fn asin_lanes<R: Real>(x: R) -> R {
-    if x.filled(ASIN_REACH).reaches(x.abs()).all() {
+    if x.splat(ASIN_REACH).ge(x.abs()).all() {
         x + x * asin_series(x * x)
     } else {
-        x.each(asin_of_one)
+        x.map(asin_of_one)
     }
 }
 

@@ -82,12 +82,12 @@ const fn artanh_ln(x: f64) -> f64 {
 /// e to the power of x.
 #[inline]
 pub fn exp(x: f64) -> f64 {
-    exp_each([x])[0]
+    exp_array([x])[0]
 }
 
 /// e to the power of each x, the same bits as one by one: several together cost little more than one, since processors work in pairs.
 #[inline(always)]
-pub fn exp_each<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+pub fn exp_array<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     // A loop, as `map` is a function of its own without the processor's features. One comparison for all: a sum within reach has every term within it. Beyond, each is asked.
     let sum = x.iter().fold(0.0, |sum, x| sum + x.abs());
     if sum < EXP_REACH {
@@ -121,12 +121,15 @@ fn exp_within<R: Real>(x: R) -> R {
     const PER_PART: f64 = PARTS as f64 / LN_2;
     const PART_HIGH: f64 = LN_2_HIGH / PARTS as f64;
     const PART_LOW: f64 = LN_2_LOW / PARTS as f64;
+    const INV_6: f64 = 1.0 / 6.0;
+    const INV_24: f64 = 1.0 / 24.0;
+    const INV_120: f64 = 1.0 / 120.0;
     let shifted = x * PER_PART + ROUND;
     let n = shifted - ROUND;
     let r = (x - n * PART_HIGH) - n * PART_LOW;
     let r2 = r * r;
-    let part = r + r2 * ((r * (1.0 / 6.0) + 0.5) + r2 * (r * (1.0 / 120.0) + 1.0 / 24.0));
-    let power = shifted.each(
+    let part = r + r2 * ((r * INV_6 + 0.5) + r2 * (r * INV_120 + INV_24));
+    let power = shifted.map(
         #[inline(always)]
         |shifted| {
             let whole = shifted.to_bits();
@@ -140,22 +143,22 @@ fn exp_within<R: Real>(x: R) -> R {
 /// exp of several numbers side by side, the same bits as one by one.
 #[inline(always)]
 pub(super) fn exp_lanes<R: Real>(x: R) -> R {
-    if x.filled(EXP_REACH).above(x.abs()).all() {
+    if x.splat(EXP_REACH).gt(x.abs()).all() {
         exp_within(x)
     } else {
-        x.each(exp_anywhere)
+        x.map(exp_anywhere)
     }
 }
 
 /// Natural logarithm.
 #[inline]
 pub fn ln(x: f64) -> f64 {
-    ln_each([x])[0]
+    ln_array([x])[0]
 }
 
-/// Natural logarithm of each x, the same bits as one by one; see [`exp_each`].
+/// Natural logarithm of each x, the same bits as one by one; see [`exp_array`].
 #[inline(always)]
-pub fn ln_each<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+pub fn ln_array<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     // One comparison for all: between 2^-511 and 2^512 the two leading bits of this difference are zero. Beyond, each is asked.
     const LEAST: u64 = 512 << 52;
     let bits = x
@@ -200,6 +203,10 @@ fn ln_plain<R: Real>(x: R) -> R {
     const BIAS: u64 = 1023 << 52;
     /// A whole number below it, put in its lowest bits, is added to it.
     const TWO_52: f64 = 4_503_599_627_370_496.0;
+    const TWO_52_BIASED: f64 = TWO_52 + 1023.0;
+    const INV_3: f64 = 1.0 / 3.0;
+    const INV_6: f64 = 1.0 / 6.0;
+    const INV_7: f64 = 1.0 / 7.0;
     #[inline(always)]
     fn above(x: f64) -> u64 {
         x.to_bits().wrapping_add(BIAS - FIRST_CELL)
@@ -208,19 +215,19 @@ fn ln_plain<R: Real>(x: R) -> R {
     fn cell(x: f64) -> (f64, f64) {
         CELL[(above(x) >> 45) as usize % CELLS]
     }
-    let inverse = x.each(
+    let inverse = x.map(
         #[inline(always)]
         |x| cell(x).0,
     );
-    let ln_c = x.each(
+    let ln_c = x.map(
         #[inline(always)]
         |x| cell(x).1,
     );
-    let e = x.each(
+    let e = x.map(
         #[inline(always)]
         |x| f64::from_bits(above(x) >> 52 | TWO_52.to_bits()),
-    ) - (TWO_52 + 1023.0);
-    let scaled = x.each(
+    ) - TWO_52_BIASED;
+    let scaled = x.map(
         #[inline(always)]
         |x| {
             let exponent = above(x) & 0xfff0_0000_0000_0000;
@@ -229,20 +236,20 @@ fn ln_plain<R: Real>(x: R) -> R {
     );
     let r = scaled * inverse - 1.0;
     let r2 = r * r;
-    let low = r2 * (r * (1.0 / 3.0) - 0.5);
-    let high = r2 * r2 * ((r * 0.2 - 0.25) + r2 * (r * (1.0 / 7.0) - 1.0 / 6.0));
+    let low = r2 * (r * INV_3 - 0.5);
+    let high = r2 * r2 * ((r * 0.2 - 0.25) + r2 * (r * INV_7 - INV_6));
     (e * LN_2_HIGH + ln_c) + (r + (low + (high + e * LN_2_LOW)))
 }
 
 /// ln of several numbers side by side, the same bits as one by one.
 #[inline(always)]
 pub(super) fn ln_lanes<R: Real>(x: R) -> R {
-    let (least, most) = (x.filled(f64::MIN_POSITIVE), x.filled(f64::MAX));
-    let plain = x.reaches(least) & most.reaches(x);
+    let (least, most) = (x.splat(f64::MIN_POSITIVE), x.splat(f64::MAX));
+    let plain = x.ge(least) & most.ge(x);
     if plain.all() {
         ln_plain(x)
     } else {
-        x.each(ln_anywhere)
+        x.map(ln_anywhere)
     }
 }
 
@@ -258,21 +265,21 @@ fn tanh_near<R: Real>(x: R, z: R) -> R {
 /// tanh for |x| >= 1, but for its sign.
 #[inline(always)]
 fn tanh_beyond<R: Real>(e: R) -> R {
-    e.filled(1.0) - e.filled(2.0) / (e + 1.0)
+    e.splat(1.0) - e.splat(2.0) / (e + 1.0)
 }
 
 /// tanh of several numbers side by side, the same bits as one by one.
 #[inline(always)]
 pub(super) fn tanh_lanes<R: Real>(x: R) -> R {
     let z = x * x;
-    let near = z.filled(1.0).above(z);
+    let near = z.splat(1.0).gt(z);
     let tanh = tanh_near(x, z);
     if near.all() {
         return tanh;
     }
     let beyond = tanh_beyond(exp_lanes(x.abs() * 2.0));
-    let beyond = R::pick(x.filled(0.0).above(x), -beyond, beyond);
-    R::pick(near, tanh, beyond)
+    let beyond = x.splat(0.0).gt(x).select(-beyond, beyond);
+    near.select(tanh, beyond)
 }
 
 /// Hyperbolic tangent.

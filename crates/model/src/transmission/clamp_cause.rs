@@ -23,7 +23,7 @@ pub enum ClampCause {
 
 impl ClampCause {
     /// The cause as a number, which lanes can pick; [`ClampCause::of`] is the way back.
-    #[inline(always)]
+    #[crate::math::physics]
     pub(crate) const fn number(self) -> f64 {
         self as u8 as f64
     }

@@ -20,7 +20,7 @@ use self::cvt::CvtState;
 use self::loss_factor::LossFactors;
 use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::Real;
+use crate::math::{Real, physics};
 use crate::prime_mover::PrimeMover;
 use std::fmt::Debug;
 
@@ -68,6 +68,7 @@ pub trait Driveline<R: Real = f64> {
     fn coupling_factor(&self) -> Option<R>;
 }
 
+#[physics]
 impl Driveline for Transmission {
     type State = TransmissionState;
 
@@ -102,17 +103,14 @@ impl Driveline for Transmission {
         }
     }
 
-    #[inline(always)]
     fn engine_rad_s(state: &TransmissionState) -> f64 {
         state.driveline.engine_rad_s
     }
 
-    #[inline(always)]
     fn is_cvt(&self) -> bool {
         matches!(self, Transmission::Cvt(_))
     }
 
-    #[inline(always)]
     fn neutral_share(
         &self,
         state: Option<&TransmissionState>,
@@ -129,7 +127,6 @@ impl Driveline for Transmission {
         }
     }
 
-    #[inline(always)]
     fn coupling_factor(&self) -> Option<f64> {
         self.coupling().loss_factor()
     }

@@ -18,16 +18,14 @@
 //! The film is taken to be in step with its dissipation: it holds grams of oil, and is there within a second.
 
 use crate::keys::{Key, Values, spec};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Real, physics};
 
 /// Heating of a film by its own drag.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Gather, PartialEq)]
 pub struct ViscousSelfHeating<R: Real = f64> {
     /// Four over the dissipation that halves the drag, 1/W; 0 without heating.
     four_per_halving_w: R,
 }
-
-gather!(ViscousSelfHeating { four_per_halving_w });
 
 impl ViscousSelfHeating {
     /// No heating: the drag follows the viscosity of the sump.
@@ -41,12 +39,9 @@ impl ViscousSelfHeating {
     }
 }
 
-impl<R: Real> ViscousSelfHeating<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> ViscousSelfHeating<R> {
     /// Heating by the dissipation in W that halves the drag (FH-1).
-    #[inline(always)]
     pub fn halving(halving_w: R) -> Self {
         ViscousSelfHeating {
             four_per_halving_w: 4.0 / halving_w,
@@ -54,7 +49,6 @@ where
     }
 
     /// Viscous drag, Nm, from the drag without heating, Nm, and the speed, rad/s (FH-1); both not below zero.
-    #[inline(always)]
     pub fn torque_nm(self, unheated_nm: R, speed_rad_s: R) -> R {
         2.0 * unheated_nm
             / (1.0 + (1.0 + unheated_nm * speed_rad_s * self.four_per_halving_w).sqrt()) // FH-1

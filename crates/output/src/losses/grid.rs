@@ -2,7 +2,7 @@
 
 use crate::number::plain;
 use cvtcycle_config::Bound;
-use cvtcycle_model::bench::solvable_ratios;
+use cvtcycle_model::rig::solvable_ratios;
 use cvtcycle_model::transmission::Transmission;
 
 /// Most points of a grid.

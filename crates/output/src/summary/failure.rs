@@ -15,8 +15,8 @@ use crate::Flags;
 use crate::number::{finite, fixed};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::{HIGHEST_K, Totals};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::rpm;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::math::larger;
 
 /// Ledger error above which a row fails, and a run whose sums round less.

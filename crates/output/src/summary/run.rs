@@ -10,7 +10,7 @@ use crate::number::{finite, fixed, tiny};
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::Outcome;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::clamp_cause::ClampCause;

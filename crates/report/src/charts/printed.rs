@@ -1,7 +1,7 @@
 //! Which numbers of the thesis belong into which figure. The numbers are those of the validation rows; here are only their ids and places.
 
 use super::lines::PrintedMark;
-use cvtcycle_model::bench::transmission::Piece;
+use cvtcycle_model::rig::transmission::Piece;
 use cvtcycle_output::summary::{StartWord, Summary};
 use cvtcycle_validate::{Printed, ValidationRow, with_ids};
 

@@ -7,7 +7,7 @@ use super::engine::{
 use super::picture::PictureTable;
 use super::printed::{THESIS_CAR, number};
 use crate::number::{grouped, signed};
-use cvtcycle_model::bench::variator::{RigFlags, VariatorRow};
+use cvtcycle_model::rig::variator::{RigFlags, VariatorRow};
 use cvtcycle_output::variator::{Curve, VariatorCurves};
 
 const X: &str = "Torque at the secondary pulley [Nm]";

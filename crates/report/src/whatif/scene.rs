@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use cvtcycle_config::setup::{AMBIENT, Options, START};
 use cvtcycle_config::{Argument, Override, Problem, Problems, carried};
 use cvtcycle_model::drive::Start;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use cvtcycle_output::summary::{DrawnDifference, StartWord};
 use serde::{Deserialize, Serialize};

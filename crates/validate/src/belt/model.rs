@@ -2,8 +2,8 @@
 
 use cvtcycle_config::Problem;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::keys::rad_s;
+use cvtcycle_model::lubricant::{BandFriction, Friction, Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::math::{cos, tan};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;

@@ -2,7 +2,7 @@
 
 use cvtcycle_config::csv::{Collector, Row};
 use cvtcycle_config::{Bound, Problem, did_you_mean};
-use cvtcycle_model::fluid::FRICTION;
+use cvtcycle_model::lubricant::FRICTION;
 use cvtcycle_model::transmission::cvt::variator::{BELT, Formulation, VARIATOR};
 
 /// A number that a row gives: name, unit, and range in that unit.

@@ -5,7 +5,7 @@ use crate::belt::{GivenFriction, belt_k, belt_load};
 use crate::expr::Table;
 use crate::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::lubricant::{Lubricant, ZERO_DEGC_K};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::point::PointStatus;

@@ -8,10 +8,10 @@ use crate::expr::{Table, truth};
 use crate::keys::BENCH;
 use crate::source::Source;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::Key;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 

@@ -7,7 +7,7 @@ use crate::expr::Table;
 use crate::keys::FLUID;
 use crate::source::Source;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle_model::lubricant::{Lubricant, ZERO_DEGC_K};
 
 /// Oil and temperature in K.
 type Point = (Rc<Lubricant>, f64);

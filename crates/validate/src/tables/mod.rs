@@ -18,7 +18,7 @@ use std::rc::Rc;
 use super::expr::Table;
 use super::source::{Kind, Source};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::transmission::Conditions;
+use cvtcycle_model::rig::transmission::Conditions;
 
 use cvtcycle_model::keys::rpm;
 pub use run::{Driven, drive};

@@ -9,11 +9,11 @@ use crate::expr::{Table, truth};
 use crate::keys::{STRIP_DOWN, TRANSIENT};
 use crate::source::Source;
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::Bench;
-use cvtcycle_model::bench::transmission::{
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::rig::Bench;
+use cvtcycle_model::rig::transmission::{
     Branch, Conditions, Moment, Piece, Plan, strip_down, transient,
 };
-use cvtcycle_model::fluid::ZERO_DEGC_K;
 
 /// Columns of a transient before those of the bench.
 const OF_MOMENT: [&str; 4] = ["time_s", "cooling", "metal_degc", "gap_nm"];

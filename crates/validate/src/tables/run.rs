@@ -11,7 +11,7 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::{Conditions, Outcome, PhaseTotals, Row, Start, litres_per_100km};
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_output::trace::COLUMNS;

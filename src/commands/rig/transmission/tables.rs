@@ -1,10 +1,10 @@
 //! The tests of the transmission rig as tables.
 
-use cvtcycle::model::bench::BenchPoint;
-use cvtcycle::model::bench::transmission::{
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
+use cvtcycle::model::rig::BenchPoint;
+use cvtcycle::model::rig::transmission::{
     Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
-use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::Flags;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::rig::{MEETING_NM, Range, RigResults, is_near, oil_degc, ranges, rpm};

@@ -2,8 +2,8 @@
 
 use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problems, to_si};
-use cvtcycle::model::bench::solvable_ratios;
-use cvtcycle::model::bench::variator::{Held, MAX_RAD_S, VariatorRig};
+use cvtcycle::model::rig::solvable_ratios;
+use cvtcycle::model::rig::variator::{Held, MAX_RAD_S, VariatorRig};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::losses::MAX_POINTS;
 use cvtcycle::output::variator::{Curve, VariatorCurves};

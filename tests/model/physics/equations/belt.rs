@@ -3,7 +3,7 @@
 
 use super::{near, same};
 use crate::common::car;
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, Geometry, belt_losses, belt_state,

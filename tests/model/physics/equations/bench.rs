@@ -4,8 +4,8 @@ use super::{near, same};
 use crate::common::bench_step::{Bench as StepBench, Setting};
 use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::point::LIMIT_SLACK;
@@ -316,7 +316,7 @@ fn val_solvable_ratios_are_the_last_that_fit() {
             let pitch = belt.segment_thickness_m;
             p >= pitch && s >= pitch && (p + s + 2.0 * g.strut_m - length).abs() <= 1e-9 * length
         };
-        let (high, low) = cvtcycle_model::bench::solvable_ratios(&belt);
+        let (high, low) = cvtcycle_model::rig::solvable_ratios(&belt);
         assert!(
             (0.05..=1.0).contains(&high) && (1.0..=20.0).contains(&low),
             "{high} {low}"

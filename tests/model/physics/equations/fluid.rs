@@ -2,7 +2,7 @@
 
 use super::same;
 use crate::common::{ZERO, car};
-use cvtcycle_model::fluid::{BandFriction, FilmPowers, Friction, Lubricant, Viscosity};
+use cvtcycle_model::lubricant::{BandFriction, FilmPowers, Friction, Lubricant, Viscosity};
 
 fn friction() -> Friction {
     Friction {

@@ -1,7 +1,7 @@
 //! Unit tests of `model::math` and of the ranges and units of `model::keys`.
 
 use cvtcycle_model::keys::{Bound, Quantity, stem};
-use cvtcycle_model::math::{Curve, GRID_AXES, Grid, exp, exp_each, ln, ln_each};
+use cvtcycle_model::math::{Curve, GRID_AXES, Grid, exp, exp_array, ln, ln_array};
 use std::f64::consts::LN_2;
 
 #[test]
@@ -117,10 +117,10 @@ fn several_together_are_each_alone() {
         [0.3, f64::NEG_INFINITY, 701.0, -12.5, 0.0],
         [f64::MIN_POSITIVE, 0.0, 3.0, 1e300, 0.7],
     ] {
-        assert_eq!(bits(exp_each(x)), bits(x.map(exp)), "{x:?}");
+        assert_eq!(bits(exp_array(x)), bits(x.map(exp)), "{x:?}");
         let positive = x.map(f64::abs);
         assert_eq!(
-            bits(ln_each(positive)),
+            bits(ln_array(positive)),
             bits(positive.map(ln)),
             "{positive:?}"
         );

@@ -2,8 +2,8 @@
 
 use crate::common::{RPM, ZERO, car};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::transmission::Piece;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use cvtcycle_model::rig::transmission::Piece;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle_model::transmission::cvt::seal_ring::SealRing;

@@ -2,7 +2,7 @@
 
 use super::reference::{At, HIGH, LOW, RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
-use cvtcycle::model::fluid::{BandFriction, ZERO_DEGC_K};
+use cvtcycle::model::lubricant::{BandFriction, ZERO_DEGC_K};
 use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltState, Formulation, Geometry, sliding_speed_m_s,
 };

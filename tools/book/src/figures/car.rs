@@ -4,7 +4,7 @@ use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::config::cycle;
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::maps::{LossMap, MapPoint};
 use cvtcycle::model::math::Grid;
 use cvtcycle::model::prime_mover::PrimeMover;

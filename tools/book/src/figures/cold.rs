@@ -3,9 +3,9 @@
 use super::reference::RPM;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
-use cvtcycle::model::bench::{Bench, BenchPoint};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::prime_mover::PrimeMover;
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use cvtcycle::output::Component;
 use std::fmt::Write as _;
 

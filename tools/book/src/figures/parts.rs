@@ -2,7 +2,7 @@
 
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::coupling::{Coupling, CouplingLoad};
 use cvtcycle::model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};

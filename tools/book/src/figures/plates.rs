@@ -6,7 +6,7 @@ use crate::sketch::{Sketch, colour};
 use cvtcycle::config::render;
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::{Kind, load_lubricant};
-use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
 
 /// All of them, by file name.
 ///

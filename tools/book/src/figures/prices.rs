@@ -5,7 +5,7 @@ use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::summary::{Driven, RunSummary, Settings, run_summary};
 use cvtcycle::report::charts::price_bars;

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::fluid::{BandFriction, Lubricant};
+use cvtcycle::model::lubricant::{BandFriction, Lubricant};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::Cvt;
 use cvtcycle::model::transmission::cvt::variator::{

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::lubricant::BandFriction;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::point::belt_point;
 use cvtcycle::model::transmission::cvt::variator::{

@@ -77,7 +77,7 @@ pub static MANUAL_BOX: FileTable = FileTable {
 };
 
 /// Least torque of which an efficiency says something, Nm: below it is 0/0.
-const LEAST_NM: f64 = 2.0;
+const MIN_NM: f64 = 2.0;
 /// Largest efficiency of a table whose numbers are likely to be shares.
 const SHARE: f64 = 0.01;
 /// Place of the torque among the axes of a [`LossMap`].
@@ -169,7 +169,7 @@ fn of_efficiency(
             "multiply a share by 100",
         ));
     }
-    let is_small = |(x, _): &&Point| x[OF_TORQUE].abs() < LEAST_NM;
+    let is_small = |(x, _): &&Point| x[OF_TORQUE].abs() < MIN_NM;
     if !has_torque || rows.iter().any(|point| is_small(&point)) {
         return Err(NoMap::new(
             "input_torque_nm of at least 2 N m, or at most -2",

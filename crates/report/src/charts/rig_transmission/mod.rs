@@ -5,12 +5,12 @@ mod says;
 
 use super::lines::{LineChart, LinePanel, Look, Palette, Points, PrintedMark, line_chart};
 use super::printed::{RigNumber, rig};
-use cvtcycle_model::bench::BenchPoint;
-use cvtcycle_model::bench::transmission::{
+use cvtcycle_model::keys;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::rig::BenchPoint;
+use cvtcycle_model::rig::transmission::{
     Branch, Conditions, Loop, Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
-use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys;
 use cvtcycle_output::Component;
 use cvtcycle_output::rig::{given, oil_degc, rpm};
 

@@ -3,7 +3,7 @@
 use super::PrintedMark;
 use crate::charts::engine;
 use crate::number::grouped;
-use cvtcycle_model::bench::BenchPoint;
+use cvtcycle_model::rig::BenchPoint;
 use cvtcycle_output::number::signed;
 use cvtcycle_output::rig::rpm;
 

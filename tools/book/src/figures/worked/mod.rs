@@ -6,7 +6,7 @@ mod slip;
 
 use super::point::{Answer, HEAD, POINT, answers, numbers};
 use super::reference::{RPM, Reference};
-use cvtcycle::model::fluid::Friction;
+use cvtcycle::model::lubricant::Friction;
 use cvtcycle::model::transmission::cvt::variator::{Belt, BeltAtRatio};
 use std::fmt::Write as _;
 

@@ -6,7 +6,7 @@ use super::slip::{Contact, MAX_AREA_N};
 use super::{
     Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts, printed, state,
 };
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 
 /// How the solution of a point ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

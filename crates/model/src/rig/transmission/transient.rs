@@ -9,10 +9,10 @@
 //! so that heat in = stored + to the air + to the cooler holds to rounding. Nothing drives the output shaft.
 
 use super::conditions::Conditions;
-use crate::bench::cvt_bench::Near;
-use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint};
 use crate::drive::loss_heat_w;
 use crate::math::exp;
+use crate::rig::cvt_bench::Near;
+use crate::rig::{AtRatio, Bench, BenchAnswer, BenchPoint};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, METAL, Network, SUMP};
 use crate::transmission::cvt::Series;
 

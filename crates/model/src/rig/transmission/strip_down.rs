@@ -13,7 +13,7 @@
 
 use super::conditions::Conditions;
 use super::steady::Plan;
-use crate::bench::{AtRatio, Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
+use crate::rig::{AtRatio, Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 use crate::transmission::component::Component;
 
 /// Stages of the sequence.
@@ -158,7 +158,7 @@ impl Found {
 pub struct StripDown {
     /// Ratio, speed and temperature.
     pub set: BenchPoint,
-    /// Answers of the stages, by [`Stage`]; the clutch is removed in low ratio only, so is what is left after it.
+    /// LaneMask of the stages, by [`Stage`]; the clutch is removed in low ratio only, so is what is left after it.
     pub stages: [BenchAnswer; 5],
     /// What was found, by [`Piece`].
     pub found: [Found; 5],

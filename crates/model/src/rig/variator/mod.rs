@@ -18,7 +18,7 @@ pub use summary::{CurveSummary, Resolution};
 
 use crate::drive::Vehicle;
 use crate::flags::flags;
-use crate::fluid::{Lubricant, VALID_K};
+use crate::lubricant::{Lubricant, VALID_K};
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::variator::{

@@ -22,7 +22,7 @@ pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 
-use crate::math::{Left, Mask, Real, both, gather};
+use crate::math::{Gather, Mask, Real, both, physics};
 
 pub use crate::keys::ZERO_DEGC_K;
 
@@ -34,7 +34,7 @@ const MAX_BAND_FRICTION: f64 = 0.5;
 const MIN_DENSITY: f64 = 0.3;
 
 /// Friction that a fluid lends to the belt's contacts.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Friction<R: Real = f64> {
     /// Boundary friction band on band and band on segment at 85 degC.
     pub band: R,
@@ -47,6 +47,7 @@ pub struct Friction<R: Real = f64> {
     /// Friction in wedging and penetration.
     pub flank: R,
     /// Whether the bands can ride on oil at all (LU-5).
+    #[gather(same)]
     pub film: bool,
     /// eta dv at which the film carries half, N/m.
     pub half_n_m: R,
@@ -57,8 +58,6 @@ pub struct Friction<R: Real = f64> {
     /// Dissipation of an interface that halves the shear of its film, W (FH-1).
     pub film_heating_w: R,
 }
-
-gather!(Friction { band, band_rise_per_k, segment, capacity, flank, half_n_m, film_exponent, half_thickness_m, film_heating_w } same { film });
 
 /// Exponent of thickness in FI-2.
 const THICKNESS_EXPONENT: f64 = 0.6;
@@ -97,63 +96,57 @@ pub struct FilmPowers<R: Real = f64> {
     pub sheared: [R; 2],
 }
 
-impl<R: Real> Friction<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Friction<R> {
     /// Band friction at belt temperature, dynamic viscosity and sliding speeds (LU-4, LU-5, FI-2).
-    #[inline(always)]
     pub fn band(&self, belt_k: R, eta_pa_s: R, sliding_m_s: [R; 2]) -> BandFriction<R> {
         let films = self.film_powers(self.film_loads(eta_pa_s, sliding_m_s));
         self.band_on_film(belt_k, films)
     }
 
     /// x = eta dv/N_half of LU-5 by interface; 0 where nothing slides or the film is switched off.
-    #[inline(always)]
     pub fn film_loads(&self, eta_pa_s: R, sliding_m_s: [R; 2]) -> [R; 2] {
         if self.film {
             let per_speed = eta_pa_s / self.half_n_m;
             both!(i => per_speed * sliding_m_s[i])
         } else {
-            [eta_pa_s.filled(0.0); 2]
+            [eta_pa_s.splat(0.0); 2]
         }
     }
 
     /// The powers of the films' loads.
-    #[inline(always)]
     pub fn film_powers(&self, x: [R; 2]) -> FilmPowers<R> {
-        let zero = x[0].filled(0.0);
-        let slides = both!(i => x[i].above(0.0));
+        let zero = x[0].splat(0.0);
+        let slides = both!(i => x[i].gt(0.0));
         if !(slides[0] | slides[1]).any() {
             return FilmPowers {
                 carried: [zero; 2],
                 sheared: [zero; 2],
             };
         }
-        let log = R::ln_each(both!(i => R::pick(slides[i], x[i], zero.filled(1.0))));
-        let [carried, sheared] = [self.film_exponent, zero.filled(SHEARED_EXPONENT)];
-        let powers = R::exp_each([
+        let log = R::ln_array(both!(i => slides[i].select(x[i], zero.splat(1.0))));
+        let [carried, sheared] = [self.film_exponent, zero.splat(SHEARED_EXPONENT)];
+        let powers = R::exp_array([
             carried * log[0],
             carried * log[1],
             sheared * log[0],
             sheared * log[1],
         ]);
         FilmPowers {
-            carried: both!(i => R::pick(slides[i], powers[i], zero)),
-            sheared: both!(i => R::pick(slides[i], powers[2 + i], zero)),
+            carried: both!(i => slides[i].select(powers[i], zero)),
+            sheared: both!(i => slides[i].select(powers[2 + i], zero)),
         }
     }
 
     /// Band friction at belt temperature with the powers of the films' loads known (LU-4, LU-5, FI-2).
-    #[inline(always)]
     pub fn band_on_film(&self, belt_k: R, powers: FilmPowers<R>) -> BandFriction<R> {
         let warm = (self.band_rise_per_k * (belt_k - ZERO_DEGC_K - 85.0)).exp();
         let z = powers.carried;
-        let is_finite = both!(i => z[i].filled(f64::MAX).reaches(z[i].abs()));
-        let film_share = both!(i => R::pick(is_finite[i], z[i] / (1.0 + z[i]), z[i].filled(1.0))); // LU-5
+        let is_finite = both!(i => z[i].splat(f64::MAX).ge(z[i].abs()));
+        let film_share = both!(i => is_finite[i].select(z[i] / (1.0 + z[i]), z[i].splat(1.0))); // LU-5
         let most_pa = self.half_n_m / self.half_thickness_m; // eta dv/h where the film carries half
         BandFriction {
-            mu: (self.band * warm).least(MAX_BAND_FRICTION), // LU-4
+            mu: (self.band * warm).min(MAX_BAND_FRICTION), // LU-4
             film_share,
             shear_pa: both!(i => film_share[i] * most_pa * powers.sheared[i]), // FI-1, FI-2
         }
@@ -161,11 +154,13 @@ where
 }
 
 /// A checked lubricant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Lubricant<R: Real = f64> {
     /// Short name as in `--lubricant`.
+    #[gather(same)]
     pub name: String,
     /// Name for people.
+    #[gather(same)]
     pub title: String,
     /// Kinematic viscosity.
     pub viscosity: Viscosity<R>,
@@ -174,8 +169,6 @@ pub struct Lubricant<R: Real = f64> {
     /// Friction in the belt's contacts.
     pub friction: Friction<R>,
 }
-
-gather!(Lubricant { viscosity, density15_kg_m3, friction } same { name, title });
 
 /// Viscosity and density of an oil at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -192,15 +185,12 @@ pub struct OilState<R: Real = f64> {
     pub log_eta: R,
 }
 
-impl<R: Real> OilState<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> OilState<R> {
     /// The oil with a kinematic viscosity, m2/s, and a density, kg/m3.
-    #[inline(always)]
     pub fn new(kinematic_m2_s: R, density_kg_m3: R) -> Self {
         let dynamic_pa_s = kinematic_m2_s * density_kg_m3;
-        let [log_nu, log_eta] = R::ln_each([kinematic_m2_s, dynamic_pa_s]);
+        let [log_nu, log_eta] = R::ln_array([kinematic_m2_s, dynamic_pa_s]);
         OilState {
             kinematic_m2_s,
             density_kg_m3,
@@ -214,38 +204,31 @@ where
 /// Validity range of the fluid models, K.
 pub const VALID_K: std::ops::RangeInclusive<f64> = 233.15..=433.15;
 
-impl<R: Real> Lubricant<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Lubricant<R> {
     /// Kinematic viscosity, m2/s (LU-1).
-    #[inline(always)]
     pub fn kinematic_m2_s(&self, temp_k: R) -> R {
         self.viscosity.kinematic_m2_s(temp_k)
     }
 
     /// Density, kg/m3 (LU-2).
-    #[inline(always)]
     pub fn density_kg_m3(&self, temp_k: R) -> R {
         let share = 1.0 - 0.000_68 * (temp_k - ZERO_DEGC_K - 15.0);
         // Far beyond its validity the line would reach zero, and there is no oil of negative mass.
-        self.density15_kg_m3 * share.filled(MIN_DENSITY).most(share) // LU-2
+        self.density15_kg_m3 * share.splat(MIN_DENSITY).max(share) // LU-2
     }
 
     /// Viscosity and density.
-    #[inline(always)]
     pub fn state(&self, temp_k: R) -> OilState<R> {
         OilState::new(self.kinematic_m2_s(temp_k), self.density_kg_m3(temp_k))
     }
 
     /// Dynamic viscosity, Pa s.
-    #[inline(always)]
     pub fn dynamic_pa_s(&self, temp_k: R) -> R {
         self.kinematic_m2_s(temp_k) * self.density_kg_m3(temp_k)
     }
 
     /// Specific heat capacity, J/kgK (LU-3).
-    #[inline(always)]
     pub fn heat_capacity_j_kgk(&self, temp_k: R) -> R {
         1000.0 * (1.685 + 0.0034 * (temp_k - ZERO_DEGC_K)) / (self.density15_kg_m3 / 1000.0).sqrt() // LU-3
     }

@@ -1,7 +1,7 @@
 //! Steady tests: torque loss and secondary pressure at held speed, oil temperature, ratio and load (thesis 5.3.1, 5.3.4).
 
 use super::conditions::Conditions;
-use crate::bench::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
+use crate::rig::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 
 /// Which points are tested.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,13 @@
 //! Kinematic viscosity in the coordinates of ASTM D341 (LU-1): straight lines between points, the end lines continued.
 
-use crate::math::{Left, Real, gather, ln};
+use crate::math::{Gather, Mask, Real, ln, physics};
 
 /// Steepest fall of ln ln(nu + 0.7) over ln T. Usual oils have 2.5 to 4; the steepest that is sold, a polyphenyl ether, 4.6. A slip of the pen
 /// beyond it would be solid in the cold.
 const STEEPEST: f64 = 5.0;
 
 /// ln ln(nu + 0.7) against ln T: one line from two points, or a polyline through a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Viscosity<R: Real = f64> {
     /// ln T of the points, rising.
     x: Vec<R>,
@@ -16,8 +16,6 @@ pub struct Viscosity<R: Real = f64> {
     /// Slope of the line that ends at each point; the first point has the second's.
     slope: Vec<R>,
 }
-
-gather!(Viscosity { x, w, slope });
 
 impl Viscosity {
     /// From points (temperature K, kinematic viscosity m2/s).
@@ -57,24 +55,20 @@ impl Viscosity {
     }
 }
 
-impl<R: Real> Viscosity<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Viscosity<R> {
     /// Kinematic viscosity at a temperature, m2/s.
-    #[inline(always)]
     pub fn kinematic_m2_s(&self, temp_k: R) -> R {
         self.kinematic_each_m2_s([temp_k])[0]
     }
 
     /// Kinematic viscosity at several temperatures together, m2/s.
-    #[inline(always)]
     pub fn kinematic_each_m2_s<const N: usize>(&self, temp_k: [R; N]) -> [R; N] {
-        let mut w = R::ln_each(temp_k);
+        let mut w = R::ln_array(temp_k);
         for x in &mut w {
             *x = self.line(*x);
         }
-        let mut nu = R::exp_each(R::exp_each(w));
+        let mut nu = R::exp_array(R::exp_array(w));
         for nu in &mut nu {
             *nu = (*nu - 0.7) * 1e-6; // LU-1
         }
@@ -82,12 +76,11 @@ where
     }
 
     /// ln ln(nu + 0.7) at ln T.
-    #[inline(always)]
     fn line(&self, x: R) -> R {
         let mut line = self.w[1] + self.slope[1] * (x - self.x[1]);
         for hi in 2..self.x.len() {
-            let beyond = x.reaches(self.x[hi - 1]);
-            line = R::pick(beyond, self.w[hi] + self.slope[hi] * (x - self.x[hi]), line);
+            let beyond = x.ge(self.x[hi - 1]);
+            line = beyond.select(self.w[hi] + self.slope[hi] * (x - self.x[hi]), line);
         }
         line
     }

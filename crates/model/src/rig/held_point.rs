@@ -13,7 +13,7 @@ use super::cvt_bench::{self, Near};
 use super::point::{BenchAnswer, BenchPoint};
 use crate::drive::{Car, Vehicle};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 use crate::transmission::Transmission;
 use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
@@ -24,7 +24,7 @@ use crate::transmission::manual::Manual;
 ///
 /// ```
 /// use cvtcycle_config::setup::{Options, load};
-/// use cvtcycle_model::bench::{Bench, BenchPoint};
+/// use cvtcycle_model::rig::{Bench, BenchPoint};
 ///
 /// let car = load("rover_216_cvt", &Options::default()).expect("a shipped car");
 /// let cold = BenchPoint { ratio: 0.5, sump_k: 298.15, ..BenchPoint::default() };

@@ -3,7 +3,7 @@
 use super::point::{BenchAnswer, BenchPoint, belt_nm};
 use crate::drive::Car;
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 use crate::transmission::component::ByComponent;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::cvt::controller::ClampLaw;
