@@ -11,10 +11,10 @@ pub mod range;
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, read_csv};
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
-use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::drive::Recorder;
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
 use cvtcycle_model::drive::{EnergyTerms, Row};
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::transmission::component::Component;
 
 /// Shipped vehicles.

@@ -9,12 +9,12 @@ use crate::common::bench_step::{self, Setting};
 use crate::common::{RPM, ZERO, car, larger};
 use cvtcycle_config::Override;
 use cvtcycle_config::setup::{Options, load};
+use cvtcycle_model::flags::Flags;
 use cvtcycle_model::rig::transmission::{
     Branch, Conditions, Loop, Piece, Plan, Stage, StripDown, loaded, on_the_rig, second_box,
     steady, strip_down, transient,
 };
 use cvtcycle_model::rig::{Bench, BenchPoint};
-use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::{Heat, HeatInput, METAL, SUMP};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, Formulation};

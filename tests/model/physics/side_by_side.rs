@@ -180,7 +180,7 @@ fn each_lane_has_the_bits_of_its_run_alone() {
     }
 }
 
-/// What the belt meets at its bounds: at rest, without clamping, at ratio 1, with NaN; one lane's does not spread.
+/// Bounds of the belt: at rest, without clamping, at ratio 1, with NaN. A lane at one of them does not change the others.
 #[test]
 fn bounds_of_one_lane_leave_the_others_alone() {
     let point: [State<f64>; 4] = [
@@ -252,7 +252,9 @@ fn choices_and_bounds_are_those_of_f64() {
 fn hold_curves<R: Real>(like: R, points: &[Vec<(f64, f64)>], x: &[f64; MOST]) {
     let curve = |lane: usize| Curve::new(&points[lane % points.len()]).unwrap();
     let own: Vec<Curve> = (0..R::LANES).map(curve).collect();
-    let y = like.map_lanes(|lane| x[lane]).interpolate(&together(like, &own));
+    let y = like
+        .map_lanes(|lane| x[lane])
+        .interpolate(&together(like, &own));
     for (lane, own) in own.iter().enumerate() {
         let (y, alone) = (y.lane(lane), own.at(x[lane]));
         assert!(

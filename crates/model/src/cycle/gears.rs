@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-/// What the driver of a manual car does over one interval.
+/// Action of the driver of a manual car over one interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GearCommand {
     /// No gear engaged, clutch engaged.

@@ -1,9 +1,9 @@
-//! What a key accepts, in words.
+//! Allowed values of a key, in words.
 
 use super::{Bound, Choice, Key, Kind, Quantity};
 
 impl Key<'_> {
-    /// What the key accepts, such as "0.5 to 10 mm".
+    /// Allowed values, such as "0.5 to 10 mm".
     pub fn allowed(&self) -> String {
         self.kind.allowed(self.quantity)
     }
@@ -29,7 +29,7 @@ impl Key<'_> {
         }
     }
 
-    /// Whether the value is a single number.
+    /// True if the value is a single number.
     pub fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Number(_) | Kind::Integer(..))
     }

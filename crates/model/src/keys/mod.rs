@@ -25,7 +25,7 @@ pub struct Key<'k> {
     pub quantity: Quantity,
     /// Allowed values.
     pub kind: Kind<'k>,
-    /// Whether it has to be given, and its value if it is not.
+    /// Requirement, with the value where the key is missing.
     pub presence: Presence<'k>,
     /// Meaning.
     pub doc: &'k str,
@@ -33,7 +33,7 @@ pub struct Key<'k> {
     pub labels: &'static [&'static str],
 }
 
-/// What a key accepts.
+/// Allowed values of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind<'k> {
     /// A number within a range, in the key's unit.
@@ -75,7 +75,7 @@ pub struct Choice {
     pub name: &'static str,
     /// Meaning.
     pub doc: &'static str,
-    /// Its keys.
+    /// Keys of the table.
     pub table: Table,
 }
 
@@ -94,7 +94,7 @@ impl Choice {
 /// One column of a key that holds rows; the unit is the end of its name.
 pub type Column<'k> = (&'k str, Bound);
 
-/// Whether a key has to be given.
+/// Requirement of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum Presence<'k> {
     /// Always.
@@ -239,10 +239,10 @@ pub trait Values: Sized {
     /// The table `name` in this one.
     fn table(&self, name: &str) -> Self;
 
-    /// Whether the table is present.
+    /// True if the table is present.
     fn exists(&self) -> bool;
 
-    /// Whether the key is given.
+    /// True if the key is given.
     fn has(&self, key: &Key<'_>) -> bool;
 
     /// A number in SI units: the value given or the key's default.

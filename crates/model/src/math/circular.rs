@@ -9,7 +9,7 @@
 use super::real::{Mask, Real};
 use std::f64::consts::FRAC_PI_2;
 
-/// What the nearest f64 lacks of pi/2.
+/// Difference of pi/2 and the nearest f64.
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
 /// Leading 33 bits of pi/2, so that a small whole number times it is exact.
 const FRAC_PI_2_HIGH: f64 = f64::from_bits(FRAC_PI_2.to_bits() & !0xf_ffff);
@@ -100,7 +100,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     let quarters = (x / FRAC_PI_2).round();
     let far = x - quarters * FRAC_PI_2_HIGH;
     let r = far - quarters * FRAC_PI_2_REST;
-    // What the second difference rounds off.
+    // Rounding error of the second difference.
     let low = (far - r) - quarters * FRAC_PI_2_REST;
     let z = r * r;
     let sin = r + (r * z * (taylor(z, 3) / -6.0) + low * (1.0 - 0.5 * z));

@@ -120,7 +120,7 @@ impl Curve {
         number
     }
 
-    /// Whether two curves have the same points, most often since they share them.
+    /// True if two curves have the same points, most often since they share them.
     pub(super) fn is_same(&self, other: &Curve) -> bool {
         Arc::ptr_eq(&self.pieces, &other.pieces) || self == other
     }

@@ -2,11 +2,11 @@
 //!
 //! [`f64x4`] and [`f64x8`] are [`Real`]: an equation that is written over `R` works on a whole group of runs. Which instructions the processor
 //! has is found at run time; [`dispatch`] calls a function once for the best of them, and every part that is inlined into it, or called by
-//! [`Real::within`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
+//! [`Real::vectorize`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
 //! lane by lane in f64.
 //!
-//! A record has its lanes by [`gather!`](crate::math::gather), one line next to the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
-//! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::groups_with`] says which records can be in one group.
+//! `derive(Gather)` makes the record of a group from one record a run. Fields with `#[gather(same)]` are shared by the runs of a group, so an equation
+//! may branch on them; [`Gather::groups_with`] compares them.
 
 use super::curve::Curve;
 use super::curves::{Curves, across};
@@ -20,7 +20,7 @@ use std::ops::{BitAnd, BitOr, Not};
 
 pub use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 
-/// Yes or no, for each lane of a vector of the processor.
+/// A bool for each lane of a vector of the processor.
 #[derive(Clone, Copy)]
 pub struct LaneMask<M>(M);
 
@@ -146,13 +146,13 @@ macro_rules! lanes {
             }
 
             #[inline(always)]
-            fn get<T: LaneValue>(of: &[T; $count], lane: usize) -> &T {
-                &of[lane]
+            fn get<T: LaneValue>(values: &[T; $count], lane: usize) -> &T {
+                &values[lane]
             }
 
             #[inline(always)]
-            fn get_mut<T: LaneValue>(of: &mut [T; $count], lane: usize) -> &mut T {
-                &mut of[lane]
+            fn get_mut<T: LaneValue>(values: &mut [T; $count], lane: usize) -> &mut T {
+                &mut values[lane]
             }
 
             #[inline(always)]
@@ -255,7 +255,7 @@ macro_rules! lanes {
 
 lanes!(f64x4 mask64x4 u64x4 4, f64x8 mask64x8 u64x8 8);
 
-/// Most runs that are side by side.
+/// Largest number of lanes.
 pub(crate) const MAX_LANES: usize = 8;
 
 /// Four zeros, from which other numbers take their lanes.
@@ -276,20 +276,20 @@ pub trait Gather: Sized {
     type Together<R: Real>;
 
     /// The record of the runs of a group, one for each lane of `like`; they are [`Gather::groups_with`].
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R>;
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R>;
 
     /// The record of one run out of that of a group.
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self;
 
-    /// Whether two records can be in one group: what its runs share is the same in them.
+    /// True if two records fit in one group: their shared fields are equal.
     fn groups_with(&self, other: &Self) -> bool;
 }
 
 impl Gather for f64 {
     type Together<R: Real> = R;
 
-    fn gather<R: Real>(like: R, of: &[&f64]) -> R {
-        like.map_lanes(|lane| *of[lane])
+    fn gather<R: Real>(like: R, runs: &[&f64]) -> R {
+        like.map_lanes(|lane| *runs[lane])
     }
 
     fn lane<R: Real>(together: &R, lane: usize) -> f64 {
@@ -304,8 +304,8 @@ impl Gather for f64 {
 impl Gather for bool {
     type Together<R: Real> = R::Mask;
 
-    fn gather<R: Real>(like: R, of: &[&bool]) -> R::Mask {
-        like.mask_lanes(|lane| *of[lane])
+    fn gather<R: Real>(like: R, runs: &[&bool]) -> R::Mask {
+        like.mask_lanes(|lane| *runs[lane])
     }
 
     fn lane<R: Real>(together: &R::Mask, lane: usize) -> bool {
@@ -317,14 +317,14 @@ impl Gather for bool {
     }
 }
 
-/// What is looked up lane by lane.
+/// Implements `Gather` for types that are looked up lane by lane.
 macro_rules! gather_each {
     ($($name:ty),* $(,)?) => {$(
         impl $crate::math::Gather for $name {
             type Together<R: $crate::math::Real> = R::PerLane<$name>;
 
-            fn gather<R: $crate::math::Real>(_: R, of: &[&Self]) -> R::PerLane<$name> {
-                R::per_lane(|lane| of[lane].clone())
+            fn gather<R: $crate::math::Real>(_: R, runs: &[&Self]) -> R::PerLane<$name> {
+                R::per_lane(|lane| runs[lane].clone())
             }
 
             fn lane<R: $crate::math::Real>(together: &R::PerLane<$name>, lane: usize) -> Self {
@@ -342,8 +342,8 @@ pub(crate) use gather_each;
 impl Gather for Curve {
     type Together<R: Real> = R::Curve;
 
-    fn gather<R: Real>(_: R, of: &[&Self]) -> R::Curve {
-        R::curves(|lane| of[lane].clone())
+    fn gather<R: Real>(_: R, runs: &[&Self]) -> R::Curve {
+        R::curves(|lane| runs[lane].clone())
     }
 
     fn lane<R: Real>(together: &R::Curve, lane: usize) -> Self {
@@ -358,9 +358,9 @@ impl Gather for Curve {
 impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
     type Together<R: Real> = [T::Together<R>; COUNT];
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
         std::array::from_fn(|k| {
-            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            let each: Vec<&T> = runs.iter().map(|one| &one[k]).collect();
             T::gather(like, &each)
         })
     }
@@ -377,12 +377,12 @@ impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
 impl<T: Gather> Gather for Vec<T> {
     type Together<R: Real> = Vec<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
         let part = |k: usize| {
-            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            let each: Vec<&T> = runs.iter().map(|one| &one[k]).collect();
             T::gather(like, &each)
         };
-        (0..of[0].len()).map(part).collect()
+        (0..runs[0].len()).map(part).collect()
     }
 
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
@@ -397,8 +397,8 @@ impl<T: Gather> Gather for Vec<T> {
 impl<T: Gather> Gather for Option<T> {
     type Together<R: Real> = Option<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Option<Vec<&T>> = of.iter().map(|one| one.as_ref()).collect();
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
+        let each: Option<Vec<&T>> = runs.iter().map(|one| one.as_ref()).collect();
         each.map(|each| T::gather(like, &each))
     }
 
@@ -418,8 +418,8 @@ impl<T: Gather> Gather for Option<T> {
 impl<T: Gather> Gather for Box<T> {
     type Together<R: Real> = Box<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Vec<&T> = of.iter().map(|one| &***one).collect();
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
+        let each: Vec<&T> = runs.iter().map(|one| &***one).collect();
         Box::new(T::gather(like, &each))
     }
 

@@ -1,6 +1,6 @@
-//! What can decide the secondary pressure of a CVT.
+//! Causes of the secondary pressure of a CVT.
 
-/// What decided the secondary pressure.
+/// Cause of the secondary pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(usize)]
 pub enum ClampCause {

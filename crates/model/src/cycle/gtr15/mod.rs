@@ -22,7 +22,7 @@ use self::possible::Possible;
 use self::repair::Schedule;
 use super::GearCommand;
 
-/// What the procedure knows of a car.
+/// Data of a car for the procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GtrVehicle {
     /// Test mass, kg.
@@ -62,9 +62,9 @@ pub const SAFETY: f64 = 0.1;
 pub struct GtrGears {
     /// Gear of each second, 0 for none.
     pub gear: Vec<u8>,
-    /// Whether the clutch is open or slips.
+    /// True with the clutch open or slipping.
     pub clutch: Vec<bool>,
-    /// Whether the second is of a deceleration.
+    /// True in a second of a deceleration.
     slows: Vec<bool>,
     /// Highest speed of gears below that of the highest car speed, rpm (GS-1).
     pub n95_rpm: f64,
@@ -106,7 +106,7 @@ pub fn gears(trace_kmh: &[f64], car: &GtrVehicle) -> GtrGears {
 }
 
 impl GtrGears {
-    /// What the driver does in each second. A gear change is driven in the gear that follows it; the last gear before a standstill may be none.
+    /// Action of the driver in each second. A gear change is driven in the gear that follows it; the last gear before a standstill may be none.
     #[must_use]
     pub fn commands(&self, trace_kmh: &[f64]) -> Vec<GearCommand> {
         let mut next = 0;

@@ -7,7 +7,7 @@ const CONSTANT_KMH: f64 = 1e-3;
 /// A rise or a fall of no more seconds belongs to no phase.
 const SHORT: usize = 2;
 
-/// What the speed does from a second to the next.
+/// Change of speed from a second to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     Rest,
@@ -31,7 +31,7 @@ pub(super) struct Run {
 /// A trace by its phases.
 #[derive(Clone, Debug)]
 pub(super) struct Phases {
-    /// Of each second.
+    /// Change of speed in each second.
     pub change: Vec<Change>,
     /// In their order.
     pub runs: Vec<Run>,

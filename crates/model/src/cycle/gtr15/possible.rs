@@ -31,7 +31,7 @@ pub(super) struct Limits {
     pub top_kmh: f64,
 }
 
-/// What is possible in each second.
+/// Possible gears in each second.
 #[derive(Clone, Debug)]
 pub(super) struct Possible {
     pub limits: Limits,
@@ -45,9 +45,9 @@ pub(super) struct Possible {
     pub greatest: Vec<i32>,
     /// First choice (GS-4).
     pub chosen: Vec<i32>,
-    /// Whether first gear is possible.
+    /// True if first gear is possible.
     first: Vec<bool>,
-    /// Whether the clutch is open or slips, by second and gear from first.
+    /// True with a clutch open or slipping, by second and gear from first.
     slips: Vec<bool>,
 }
 
@@ -315,7 +315,7 @@ impl Possible {
         } // GS-4
     }
 
-    /// Whether the clutch is open or slips in a gear (GS-2).
+    /// True if the clutch is open or slips in a gear (GS-2).
     pub(super) fn slips(&self, t: usize, gear: i32) -> bool {
         (1..=self.gears as i32).contains(&gear) && self.slips[t * self.gears + gear as usize - 1]
     }

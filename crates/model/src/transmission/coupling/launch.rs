@@ -134,7 +134,7 @@ fn turning<R: Real>(at: &Turning<R>, lane: usize) -> Turning {
     }
 }
 
-/// What a device of one run holds, in each lane.
+/// Hold of the device of one run, in each lane.
 fn holds<R: Real>(devices: &R::PerLane<Device>, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
     let like = now.output_rad_s;
     let hold = |lane: usize| {

@@ -91,17 +91,17 @@ struct Row {
 
 #[physics]
 impl Row {
-    /// Whether it is at or before a speed ratio; it needs no second number.
+    /// True at or before a speed ratio; needs no second number.
     fn is_up_to(&self, nu: f64, _: f64) -> bool {
         self.nu <= nu
     }
 
-    /// Whether the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
+    /// True if the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
     fn pulls_above(&self, turbine_nm: f64, square: f64) -> bool {
         self.pull * square > turbine_nm
     }
 
-    /// Whether the engine takes more than a torque in overrun, Nm.
+    /// True if the engine takes more than a torque in overrun, Nm.
     fn coasts_above(&self, drag_nm: f64, square: f64) -> bool {
         self.coast * square > drag_nm
     }

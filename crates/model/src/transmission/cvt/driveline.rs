@@ -84,7 +84,7 @@ pub(crate) struct PulleyShafts<R: Real = f64> {
 
 #[physics]
 impl<R: Real> PulleyShafts<R> {
-    /// What the parts in the box leave of them. The printed forms know neither, and a measured map of the belt holds the bearings.
+    /// Keeps those of the parts in the box. The printed forms have neither, and a measured map of the belt includes the bearings.
     pub fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, parts: Parts) -> Self {
         let none = at.direction.splat(0.0);
         let counted = cvt.belt.formulation.by_statics();
@@ -125,7 +125,7 @@ pub(crate) struct Driveline<'a, R: Real = f64> {
     pub changes: Option<&'a LossChanges<R>>,
 }
 
-/// What turns with the engine's shaft, at its speed.
+/// Parts on the engine's shaft, at its speed.
 #[derive(Clone, Copy)]
 pub(crate) struct EngineShaft<'a, R: Real = f64> {
     pub rad_s: R,
@@ -317,7 +317,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         Some(changes.factor[component] * loss) // CV-7
     }
 
-    /// What the maps of the runs give at a speed, torque and pressure, one by one; clears `inside` outside a map.
+    /// Looks up the maps of the runs at a speed, torque and pressure, one by one; clears `inside` outside a map.
     fn looked_up(
         &self,
         (speed_rad_s, torque_nm, pressure_pa): (R, R, R),
@@ -446,7 +446,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         })
     }
 
-    /// Whether a map is in the place of all losses of the box (MP-3).
+    /// True if a map replaces all losses of the box (MP-3).
     fn is_mapped(&self) -> bool {
         self.changes
             .is_some_and(|changes| changes.maps[Component::BoxMap].is_some())
@@ -510,7 +510,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         }
     }
 
-    /// What turns with the engine's shaft at a speed.
+    /// Computes the parts on the engine's shaft at a speed.
     pub fn engine_shaft(&self, rad_s: R) -> EngineShaft<'_, R> {
         EngineShaft {
             rad_s,

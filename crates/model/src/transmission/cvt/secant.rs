@@ -1,4 +1,4 @@
-//! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
+//! Slopes from the evaluations of a solve for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
 use crate::math::{Mask, Real, physics};
@@ -41,7 +41,7 @@ pub struct Trend<R: Real = f64> {
     slip: Series<R>,
 }
 
-/// What a solve begins with, from the step before.
+/// Start of a solve from the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmStart<R: Real = f64> {
     /// Losses and slip.
@@ -155,7 +155,7 @@ impl<R: Real> Trend<R> {
     }
 }
 
-/// Whether two accelerations, m/s2, are the same but for rounding.
+/// True if two accelerations, m/s2, are equal but for rounding.
 #[physics]
 fn is_alike(a_m_s2: f64, b_m_s2: f64) -> bool {
     (a_m_s2 - b_m_s2).abs() < ALIKE_M_S2

@@ -56,7 +56,7 @@ pub struct Mesh<R: Real = f64> {
     pitch_radius_m: R,
     /// Load of the teeth for a torque at the train's first shaft, N/mm per Nm.
     line_load_per_nm: R,
-    /// What of GM-2 follows from the wheels and the oil's kind.
+    /// Factor of GM-2 from the wheels and the oil's kind.
     friction_factor: R,
 }
 

@@ -12,9 +12,9 @@ pub struct BeltAtRatio<R: Real = f64> {
     pub direction: R,
     /// Primary clamp over secondary clamp (TE-1).
     pub thrust_ratio: R,
-    /// What the loss equations need of the belt, whatever its ratio.
+    /// Constants of the loss equations at any ratio.
     pub fixed: Fixed<R>,
-    /// What they need of this ratio, worked out once.
+    /// Constants of the loss equations at this ratio.
     pub prepared: Prepared<R>,
 }
 
