@@ -157,7 +157,7 @@ impl GearColumns {
 
     /// The columns with one command for each of some intervals, by their numbers.
     #[must_use]
-    pub fn of(&self, intervals: &[usize]) -> Self {
+    pub fn at_intervals(&self, intervals: &[usize]) -> Self {
         let of = |column: &Option<Vec<GearCommand>>| {
             let column = column.as_ref()?;
             Some(intervals.iter().map(|i| column[*i]).collect())

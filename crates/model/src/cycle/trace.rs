@@ -287,7 +287,7 @@ impl Trace {
             intervals.push(rest);
             from.push(number);
         }
-        Self::with_gears(intervals, self.gears.of(&from)).with_selector_s(self.selector_s)
+        Self::with_gears(intervals, self.gears.at_intervals(&from)).with_selector_s(self.selector_s)
     }
 
     /// Duration, s.

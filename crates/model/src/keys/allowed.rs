@@ -12,7 +12,9 @@ impl Key<'_> {
     pub fn unit(&self) -> String {
         match &self.kind {
             Kind::Rows(columns) => {
-                let units = columns.iter().map(|(name, _)| Quantity::of(name).unit());
+                let units = columns
+                    .iter()
+                    .map(|(name, _)| Quantity::from_key(name).unit());
                 units.collect::<Vec<_>>().join(", ")
             }
             _ => self.quantity.unit().to_owned(),
@@ -56,7 +58,7 @@ impl Kind<'_> {
             Kind::Texts => "a list of texts".to_owned(),
             Kind::Rows(columns) => {
                 let words = columns.iter().map(|(name, range)| {
-                    format!("{name} {}", range.in_unit(Quantity::of(name).unit()))
+                    format!("{name} {}", range.in_unit(Quantity::from_key(name).unit()))
                 });
                 format!("rows of {}", words.collect::<Vec<_>>().join(", "))
             }

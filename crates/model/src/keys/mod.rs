@@ -151,7 +151,7 @@ impl Table {
     };
 
     /// A file, or a part without keys of its own, of these tables.
-    pub const fn of(tables: &'static [Table]) -> Self {
+    pub const fn from_tables(tables: &'static [Table]) -> Self {
         Table {
             tables,
             ..Table::EMPTY
@@ -191,7 +191,7 @@ impl<'k> Key<'k> {
     pub const fn new(name: &'k str, spec: (Kind<'k>, Presence<'k>), doc: &'k str) -> Self {
         Key {
             name,
-            quantity: Quantity::of(name),
+            quantity: Quantity::from_key(name),
             kind: spec.0,
             presence: spec.1,
             doc,
@@ -212,7 +212,7 @@ impl<'k> Key<'k> {
     /// The key with the unit of this suffix, which its name does not end in.
     pub const fn in_unit_of(self, suffix: &str) -> Self {
         Key {
-            quantity: Quantity::of(suffix),
+            quantity: Quantity::from_key(suffix),
             ..self
         }
     }

@@ -288,6 +288,7 @@ impl<R: Real> Network<R> {
     }
 
     /// Advances the nodes by one step (TH-5).
+    #[inline]
     pub fn advance(&self, heat: &Heat<R>, input: &HeatInput<R>) -> HeatStep<R> {
         self.advance_in_wind(heat, input, speed_power(input.speed_m_s))
     }

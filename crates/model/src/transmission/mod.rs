@@ -72,6 +72,7 @@ pub trait Driveline<R: Real = f64> {
 impl Driveline for Transmission {
     type State = TransmissionState;
 
+    #[inline]
     fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
         match self {
             Transmission::Cvt(cvt) => {

@@ -77,8 +77,8 @@ pub struct GtrGears {
 /// The gears of a car on a trace of one speed in km/h a second.
 #[must_use]
 pub fn gears(trace_kmh: &[f64], car: &GtrVehicle) -> GtrGears {
-    let phases = Phases::of(trace_kmh);
-    let possible = Possible::of(trace_kmh, car, &phases);
+    let phases = Phases::new(trace_kmh);
+    let possible = Possible::new(trace_kmh, car, &phases);
     let limits = possible.limits;
     let mut schedule = Schedule::new(trace_kmh, possible, &phases);
     // Corrections may open the way for others: twice, as the regulation has it (GS-5).

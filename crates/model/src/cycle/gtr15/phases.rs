@@ -46,7 +46,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn of(trace_kmh: &[f64]) -> Phases {
+    pub(super) fn new(trace_kmh: &[f64]) -> Phases {
         let change = |t: usize| {
             let now = trace_kmh[t];
             let by = trace_kmh.get(t + 1).map_or(-now, |next| next - now);

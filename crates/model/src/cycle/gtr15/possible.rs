@@ -67,7 +67,7 @@ fn between(points: &[[f64; 3]], x: f64, y: impl Fn(&[f64; 3]) -> f64) -> f64 {
 }
 
 impl Limits {
-    fn of(trace_kmh: &[f64], car: &GtrVehicle) -> Limits {
+    fn new(trace_kmh: &[f64], car: &GtrVehicle) -> Limits {
         let curve = &car.full_load;
         let rated_kw = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
         let nearly = NEARLY_RATED * rated_kw;
@@ -203,7 +203,7 @@ impl Second<'_> {
 }
 
 impl Possible {
-    pub(super) fn of(trace_kmh: &[f64], car: &GtrVehicle, phases: &Phases) -> Possible {
+    pub(super) fn new(trace_kmh: &[f64], car: &GtrVehicle, phases: &Phases) -> Possible {
         let gears = car.rpm_per_kmh.len();
         let rated = car
             .full_load
@@ -211,7 +211,7 @@ impl Possible {
             .fold([0.0; 3], |best, p| if p[1] > best[1] { *p } else { best });
         let at = Second {
             car,
-            limits: Limits::of(trace_kmh, car),
+            limits: Limits::new(trace_kmh, car),
             rated_rpm: rated[0],
         };
         let second = car.rpm_per_kmh.get(1).copied().unwrap_or(f64::INFINITY);

@@ -18,7 +18,7 @@ pub struct Plan {
 
 impl Plan {
     /// The rig's own points.
-    pub fn of(c: &Conditions) -> Self {
+    pub fn from_conditions(c: &Conditions) -> Self {
         Plan {
             ratios: vec![c.low_ratio, c.high_ratio],
             speeds_rad_s: None,

@@ -62,6 +62,7 @@ impl<R: Real> Coupling<R> for FrictionClutch<R> {
         }
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         Some(Launch::clutch(self.of_least_speed()))
     }

@@ -286,6 +286,7 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         match self {
             Launch::Clutch(clutch) => clutch.at_least_speed(),
@@ -299,6 +300,7 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
+    #[inline]
     fn device(&self) -> &'static str {
         match self {
             Launch::Clutch(clutch) => clutch.device(),

@@ -334,6 +334,7 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
         })
     }
 
+    #[inline]
     fn device(&self) -> &'static str {
         super::CONVERTER.name
     }
@@ -466,7 +467,7 @@ impl TorqueConverter {
     /// A converter from the values of its keys.
     pub(super) fn from_values<V: Values>(s: &V) -> Self {
         // Given at 1000 rpm.
-        let thousand_rpm = Quantity::of("_rpm").to_si(1000.0);
+        let thousand_rpm = Quantity::from_key("_rpm").to_si(1000.0);
         let per_square = thousand_rpm * thousand_rpm;
         let capacity_nm_s2 = s.number(&TORQUE_CONVERTER.capacity_nm) / per_square;
         let own = s.rows(&TORQUE_CONVERTER.table).unwrap_or_default();

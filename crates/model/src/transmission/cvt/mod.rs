@@ -262,6 +262,7 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
+    #[inline]
     pub fn radius_factor(&self, at: &BeltAtRatio<R>) -> R {
         (self.radius_exponent * (self.low_radius_m / at.geometry.primary_radius_m).ln()).exp()
     }
@@ -304,6 +305,7 @@ impl<R: Real> Cvt<R> {
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
+    #[inline]
     pub fn start<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -402,6 +404,7 @@ impl<R: Real> Cvt<R> {
 impl<R: Real> super::Driveline<R> for Cvt<R> {
     type State = (CvtState<R>, DrivelineState<R>);
 
+    #[inline]
     fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State {
         Cvt::start(self, input)
     }
@@ -456,7 +459,7 @@ impl Cvt {
     /// Multiplies each loss by a factor (CV-7, LC-6).
     pub fn scale_losses(&mut self, factors: &LossFactors) {
         let launch = factors[Component::LaunchClutch];
-        self.coupling = PartialLoss::of(self.coupling.clone(), launch);
+        self.coupling = PartialLoss::scaled(self.coupling.clone(), launch);
         let mut own = product(&self.loss_factors(), factors);
         own[Component::LaunchClutch] = 1.0; // the coupling has it
         if loss_factor::changes(&own) || self.changes.is_some() {
@@ -475,6 +478,6 @@ impl Cvt {
     ) -> (f64, ClampCause) {
         let (pressure_pa, cause) =
             self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s);
-        (pressure_pa, ClampCause::of(cause))
+        (pressure_pa, ClampCause::from_number(cause))
     }
 }

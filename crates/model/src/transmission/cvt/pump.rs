@@ -218,6 +218,7 @@ impl<R: Real> Pump<R> {
     }
 
     /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
+    #[inline]
     pub fn steady_need_m3_s(&self, secondary_pa: R, eta_pa_s: R) -> R {
         self.with_factor(eta_pa_s, eta_pa_s.splat(1.0))
             .need_m3_s(secondary_pa)

@@ -80,6 +80,7 @@ pub(crate) struct Series<R: Real = f64> {
 #[physics]
 impl<R: Real> Series<R> {
     /// A value without a past.
+    #[inline]
     fn new(value: R) -> Self {
         let none = value.splat(0.0);
         Series {
@@ -109,6 +110,7 @@ impl<R: Real> Series<R> {
 #[physics]
 impl<R: Real> Trend<R> {
     /// Nothing is known; `like` has the lanes.
+    #[inline]
     fn new(like: R) -> Self {
         let none = Series::new(like.splat(0.0));
         Trend {
@@ -135,6 +137,7 @@ impl<R: Real> Trend<R> {
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
+    #[inline]
     pub(super) fn reset_at_standstill(&mut self) {
         *self = Trend {
             loss: Series::new(self.loss.value),
@@ -222,6 +225,7 @@ pub(super) struct TorqueSecant<R: Real> {
 
 #[physics]
 impl<R: Real> TorqueSecant<R> {
+    #[inline]
     pub fn new(ratio: R, first_nm: R) -> Self {
         TorqueSecant {
             ratio,

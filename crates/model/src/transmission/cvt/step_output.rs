@@ -93,7 +93,7 @@ fn idling<P: PrimeMover<R>, R: Real>(
 /// The causes of their numbers.
 #[physics]
 fn causes<R: Real>(number: R) -> R::PerLane<ClampCause> {
-    R::per_lane(|lane| ClampCause::of(number.lane(lane)))
+    R::per_lane(|lane| ClampCause::from_number(number.lane(lane)))
 }
 
 /// Evaluations as whole numbers.

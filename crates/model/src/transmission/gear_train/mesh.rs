@@ -118,6 +118,7 @@ impl Stage {
 impl<R: Real> Mesh<R> {
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
+    #[inline]
     pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::frictions([self], first_rad_s, torque_nm, log_eta)[0]
     }
@@ -161,6 +162,7 @@ impl<R: Real> Mesh<R> {
     }
 
     /// Lost share of the power through the mesh (GM-3).
+    #[inline]
     pub fn share(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::shares([self], first_rad_s, torque_nm, log_eta)[0]
     }

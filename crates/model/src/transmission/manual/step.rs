@@ -67,6 +67,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// The highest gear.
+    #[inline]
     fn top(&self) -> u8 {
         self.manual.overall.len() as u8
     }
@@ -117,6 +118,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
+    #[inline]
     fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
         like.vectorize(|| {
