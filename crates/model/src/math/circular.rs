@@ -6,6 +6,7 @@
 //!
 //! asin, sin, cos: at most one unit of the last place; tan two. sin and cos for |x| <= 100, within 1e-24 where they vanish. asin is NaN beyond 1.
 
+use super::physics;
 use super::real::{Mask, Real};
 use std::f64::consts::FRAC_PI_2;
 
@@ -37,9 +38,9 @@ const ASIN: [f64; 13] = [
 ];
 
 /// z P(z), in pieces of three coefficients that wait for no other.
-#[inline(always)]
+#[physics]
 fn asin_series<R: Real>(z: R) -> R {
-    #[inline(always)]
+    #[physics]
     fn three<R: Real>(z: R, k: usize) -> R {
         z * (z * ASIN[k + 2] + ASIN[k + 1]) + ASIN[k]
     }
@@ -50,7 +51,7 @@ fn asin_series<R: Real>(z: R) -> R {
 }
 
 /// asin of several numbers side by side, the same bits as one by one.
-#[inline(always)]
+#[physics]
 pub(super) fn asin_lanes<R: Real>(x: R) -> R {
     if x.splat(ASIN_REACH).ge(x.abs()).all() {
         x + x * asin_series(x * x)

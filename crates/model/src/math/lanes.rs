@@ -10,6 +10,7 @@
 
 use super::curve::Curve;
 use super::curves::{Curves, across};
+use super::physics;
 use super::real::{LaneValue, Mask, Operand, Real, Selectable};
 use super::{circular, elementary};
 use fearless_simd::{
@@ -26,25 +27,25 @@ pub struct LaneMask<M>(M);
 
 macro_rules! lanes {
     ($($vector:ident $mask:ident $bits:ident $count:literal),*) => {$(
+        #[physics]
         impl<S: Simd> BitAnd for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn bitand(self, other: Self) -> Self {
                 LaneMask(self.0 & other.0)
             }
         }
 
+        #[physics]
         impl<S: Simd> BitOr for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn bitor(self, other: Self) -> Self {
                 LaneMask(self.0 | other.0)
             }
         }
 
+        #[physics]
         impl<S: Simd> Not for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn not(self) -> Self {
                 LaneMask(!self.0)
             }
@@ -64,177 +65,152 @@ macro_rules! lanes {
             }
         }
 
+        #[physics]
         impl<S: Simd> Mask for LaneMask<$mask<S>> {
-            #[inline(always)]
             fn any(self) -> bool {
                 self.0.any_true()
             }
 
-            #[inline(always)]
             fn all(self) -> bool {
                 self.0.all_true()
             }
 
-            #[inline(always)]
             fn lane(self, lane: usize) -> bool {
                 (self.0.to_bitmask() >> lane) & 1 == 1
             }
         }
 
+        #[physics]
         impl<S: Simd> Selectable<Self> for LaneMask<$mask<S>> {
-            #[inline(always)]
             fn select(mask: Self, if_true: Self, if_false: Self) -> Self {
                 (mask & if_true) | (!mask & if_false)
             }
         }
 
+        #[physics]
         impl<S: Simd> Selectable<LaneMask<$mask<S>>> for $vector<S> {
-            #[inline(always)]
             fn select(mask: LaneMask<$mask<S>>, if_true: Self, if_false: Self) -> Self {
                 mask.0.select(if_true, if_false)
             }
         }
 
+        #[physics]
         impl<S: Simd> Operand<$vector<S>> for f64 {
-            #[inline(always)]
             fn broadcast(self, like: $vector<S>) -> $vector<S> {
                 like.splat(self)
             }
         }
 
+        #[physics]
         impl<S: Simd> Real for $vector<S> {
             type Mask = LaneMask<$mask<S>>;
             type PerLane<T: LaneValue> = [T; $count];
             type Curve = Curves<$count>;
             const LANES: usize = $count;
 
-            #[inline(always)]
             fn splat(self, number: f64) -> Self {
                 SimdBase::splat(self.simd, number)
             }
 
-            #[inline(always)]
             fn map_lanes(self, f: impl Fn(usize) -> f64) -> Self {
                 Self::from_fn(self.simd, f)
             }
 
-            #[inline(always)]
             fn lane(self, lane: usize) -> f64 {
                 self[lane]
             }
 
-            #[inline(always)]
             fn with_lane(mut self, lane: usize, number: f64) -> Self {
                 self[lane] = number;
                 self
             }
 
-            #[inline(always)]
             fn splat_mask(self, yes: bool) -> Self::Mask {
                 LaneMask($mask::splat(self.simd, yes))
             }
 
-            #[inline(always)]
             fn mask_lanes(self, f: impl Fn(usize) -> bool) -> Self::Mask {
                 let bits = (0..$count).fold(0, |bits, lane| bits | (u64::from(f(lane)) << lane));
                 LaneMask($mask::from_bitmask(self.simd, bits))
             }
 
-            #[inline(always)]
             fn per_lane<T: LaneValue>(f: impl FnMut(usize) -> T) -> [T; $count] {
                 std::array::from_fn(f)
             }
 
-            #[inline(always)]
             fn get<T: LaneValue>(values: &[T; $count], lane: usize) -> &T {
                 &values[lane]
             }
 
-            #[inline(always)]
             fn get_mut<T: LaneValue>(values: &mut [T; $count], lane: usize) -> &mut T {
                 &mut values[lane]
             }
 
-            #[inline(always)]
             fn curves(of: impl FnMut(usize) -> Curve) -> Curves<$count> {
                 Curves::new(of)
             }
 
-            #[inline(always)]
             fn curve(of: &Curves<$count>, lane: usize) -> &Curve {
                 of.one(lane)
             }
 
-            #[inline(always)]
             fn interpolate(self, curves: &Curves<$count>) -> Self {
                 match curves.common() {
                     Some(curve) if self.ge(self).all() => {
                         across(curve, self, (self.reduce_min(), self.reduce_max()))
                     }
                     _ => {
-                        let y = curves.at(std::array::from_fn(#[inline(always)] |lane| self[lane]));
-                        Real::map_lanes(self, #[inline(always)] |lane| y[lane])
+                        let y = curves.at(std::array::from_fn(|lane| self[lane]));
+                        Real::map_lanes(self, |lane| y[lane])
                     }
                 }
             }
 
-            #[inline(always)]
             fn map(self, f: impl Fn(f64) -> f64) -> Self {
-                Self::from_fn(self.simd, #[inline(always)] |lane| f(self[lane]))
+                Self::from_fn(self.simd, |lane| f(self[lane]))
             }
 
-            #[inline(always)]
             fn gt(self, other: impl Operand<Self>) -> Self::Mask {
                 LaneMask(self.simd_gt(other.broadcast(self)))
             }
 
-            #[inline(always)]
             fn ge(self, other: impl Operand<Self>) -> Self::Mask {
                 LaneMask(self.simd_ge(other.broadcast(self)))
             }
 
-            #[inline(always)]
             fn bits_eq(self, other: Self) -> Self::Mask {
                 let bits: $bits<S> = self.bitcast();
                 LaneMask(bits.simd_eq(other.bitcast::<$bits<S>>()))
             }
 
-            #[inline(always)]
             fn abs(self) -> Self {
                 <Self as SimdBase<S>>::abs(self)
             }
 
-            #[inline(always)]
             fn sqrt(self) -> Self {
                 <Self as SimdFloat<S>>::sqrt(self)
             }
 
-            #[inline(always)]
             fn vectorize<T>(self, part: impl FnOnce() -> T) -> T {
                 self.simd.vectorize(part)
             }
 
-            #[inline(always)]
             fn exp(self) -> Self {
                 elementary::exp_lanes(self)
             }
 
-            #[inline(always)]
             fn ln(self) -> Self {
                 elementary::ln_lanes(self)
             }
 
-            #[inline(always)]
             fn tanh(self) -> Self {
                 elementary::tanh_lanes(self)
             }
 
-            #[inline(always)]
             fn asin(self) -> Self {
                 circular::asin_lanes(self)
             }
 
-            #[inline(always)]
             fn exp_array<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
                 for x in &mut x {
                     *x = x.exp();
@@ -242,7 +218,6 @@ macro_rules! lanes {
                 x
             }
 
-            #[inline(always)]
             fn ln_array<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
                 for x in &mut x {
                     *x = x.ln();
@@ -259,13 +234,13 @@ lanes!(f64x4 mask64x4 u64x4 4, f64x8 mask64x8 u64x8 8);
 pub(crate) const MAX_LANES: usize = 8;
 
 /// Four zeros, from which other numbers take their lanes.
-#[inline(always)]
+#[physics]
 pub fn four<S: Simd>(simd: S) -> f64x4<S> {
     SimdBase::splat(simd, 0.0)
 }
 
 /// Eight zeros.
-#[inline(always)]
+#[physics]
 pub fn eight<S: Simd>(simd: S) -> f64x8<S> {
     SimdBase::splat(simd, 0.0)
 }
