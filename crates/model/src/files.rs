@@ -47,4 +47,4 @@ pub const VEHICLE: Table = VehicleKeys::TABLE;
 /// A lubricant file.
 pub const LUBRICANT: Table = FluidKeys::TABLE;
 /// A rig file.
-pub const RIG: Table = Table::of(&[RigKeys::TABLE]);
+pub const RIG: Table = Table::from_tables(&[RigKeys::TABLE]);

@@ -126,7 +126,7 @@ impl<R: Real> RoadLoad<R> {
         [lower, straight.select(-c / f1, upper)]
     }
 
-    /// What a step demands of the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
+    /// Computes the demand of a step at the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
     pub fn wheel(&self, step: &Step, extra_n: R) -> WheelDemand<R> {
         let motion = &step.motion;
         if motion.speed_m_s <= 0.0 {

@@ -120,7 +120,7 @@ fn demand<R: Real>(c: &RatioControl<R>, p: Point<R>) -> RatioDemand<R> {
     }
 }
 
-/// What the parts give at a point, by one text.
+/// Results of the parts at a point, by one text.
 fn parts<R: Real>(cvt: &Cvt<R>, oil: &Lubricant<R>, p: Point<R>) -> (Vec<R>, Vec<R::Mask>) {
     let [sump_k, speed, w, nm, pa, flow, _, _] = p;
     let state = oil.state(sump_k);

@@ -180,7 +180,7 @@ fn each_lane_has_the_bits_of_its_run_alone() {
     }
 }
 
-/// What the belt meets at its bounds: at rest, without clamping, at ratio 1, with NaN; one lane's does not spread.
+/// Bounds of the belt: at rest, without clamping, at ratio 1, with NaN. A lane at one of them does not change the others.
 #[test]
 fn bounds_of_one_lane_leave_the_others_alone() {
     let point: [State<f64>; 4] = [

@@ -6,7 +6,7 @@ use cvtcycle_study::plan::{STATUSES, lubricants};
 
 /// A lever file: its head and its levers.
 pub const LEVER_FILE: Table =
-    Table::of(&[LeversKeys::TABLE, LeverKeys::TABLE.repeated(Repeat::List)]);
+    Table::from_tables(&[LeversKeys::TABLE, LeverKeys::TABLE.repeated(Repeat::List)]);
 
 /// Boxes that a file is for.
 const BOXES: &[Choice] = &[

@@ -72,7 +72,7 @@ impl Line {
     #[must_use]
     pub fn on(&self, car: &Car) -> Car {
         let curve = |points: &[(f64, f64)], unit: &str| {
-            let (x, y) = (Quantity::of(unit), Quantity::of("speed_rpm"));
+            let (x, y) = (Quantity::from_key(unit), Quantity::from_key("speed_rpm"));
             let points: Vec<(f64, f64)> = points
                 .iter()
                 .map(|(a, b)| (x.to_si(*a), y.to_si(*b)))

@@ -4,7 +4,7 @@ use cvtcycle_model::keys::{Bound, Choice, Kind, Presence, Repeat, Table, keys};
 use cvtcycle_validate::keys::SOURCES;
 
 /// A calibration plan.
-pub const CALIBRATION: Table = Table::of(&[
+pub const CALIBRATION: Table = Table::from_tables(&[
     HeadKeys::TABLE,
     SOURCES,
     ParameterKeys::TABLE.repeated(Repeat::List),

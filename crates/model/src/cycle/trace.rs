@@ -29,7 +29,7 @@ impl Interval {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s) * (self.end_s - self.start_s)
     }
 
-    /// Whether the car moves in it.
+    /// True if the car moves in it.
     fn moves(&self) -> bool {
         self.start_speed_m_s > 0.0 || self.end_speed_m_s > 0.0
     }
@@ -103,7 +103,7 @@ impl Interval {
     }
 }
 
-/// What follows from the speeds of a step alone: a trace has it once for all cars and drives.
+/// Quantities from the speeds of a step alone: a trace computes them once for all cars and drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Mean speed, m/s.
@@ -158,7 +158,7 @@ pub struct Step {
     pub start_speed_m_s: f64,
     /// Speed at the end, m/s.
     pub end_speed_m_s: f64,
-    /// What follows from these.
+    /// Quantities from these speeds.
     pub motion: Motion,
     /// Index into [`super::Cycle::phases`]; 0 in a cycle without phases.
     pub phase: u16,
@@ -178,12 +178,12 @@ impl Step {
     }
 }
 
-/// What a car is asked to drive. Copies share its intervals.
+/// Speed trace with grades and commands. Copies share the intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The intervals in time order, each beginning where the one before ends; the first begins at 0 s.
     pub intervals: Arc<Vec<Interval>>,
-    /// Of every interval.
+    /// Quantities of every interval.
     motions: Arc<Vec<Motion>>,
     gears: GearColumns,
     selector_s: f64,
@@ -226,7 +226,7 @@ impl Trace {
         self.gears.columns()
     }
 
-    /// Whether the trace prescribes gears for some gearbox.
+    /// True if the trace prescribes gears for some gearbox.
     pub fn has_gears(&self) -> bool {
         !self.gears.is_empty()
     }
@@ -287,7 +287,7 @@ impl Trace {
             intervals.push(rest);
             from.push(number);
         }
-        Self::with_gears(intervals, self.gears.of(&from)).with_selector_s(self.selector_s)
+        Self::with_gears(intervals, self.gears.at_intervals(&from)).with_selector_s(self.selector_s)
     }
 
     /// Duration, s.

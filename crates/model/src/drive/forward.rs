@@ -36,7 +36,7 @@ const MARGIN: f64 = 0.05;
 /// ... and how near, W. ASSUMED, numerical: some millionth of a rated power.
 const NEAR_W: f64 = 0.1;
 
-/// What is known of a step.
+/// Input of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Torque at the flywheel, that of inertia included, Nm.
@@ -53,7 +53,7 @@ pub struct Given {
     pub dt_s: f64,
 }
 
-/// What a step gives.
+/// Result of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Turned {
     /// The driveline.
@@ -241,7 +241,7 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Whether a lock-up closes in a step.
+    /// True if a lock-up closes in a step.
     fn closes(&self, output: &StepOutput) -> bool {
         let by_command = self.car.transmission.coupling().by_command();
         by_command

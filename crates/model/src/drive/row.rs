@@ -60,7 +60,7 @@ pub struct Row<R: Real = f64> {
     pub primary_pressure_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pressure_pa: R,
-    /// What decided the secondary pressure (PC-5); of no meaning for a manual box.
+    /// Cause of the secondary pressure (PC-5); without meaning for a manual box.
     pub clamp_cause: R::PerLane<ClampCause>,
     /// Belt slip as a fraction; NaN for a manual box.
     pub slip: R,
@@ -110,7 +110,7 @@ pub struct Row<R: Real = f64> {
     pub power_ledger_error: R,
     /// Heat ledger: |in - stored - to air| over the sum of absolute terms.
     pub heat_ledger_error: R,
-    /// What the implicit solve left, as a fraction of full-load torque.
+    /// Residual of the implicit solve, as a fraction of full-load torque.
     pub solve_residual: R,
     /// Evaluations of the driveline that the implicit solve needed.
     pub iterations: R::PerLane<u16>,

@@ -9,7 +9,7 @@ use crate::math::Real;
 use crate::thermal::Heat;
 use crate::transmission::TransmissionState;
 
-/// What a drive carries from step to step.
+/// State of a drive between steps.
 #[derive(Clone, Copy, Debug)]
 pub struct State<R: Real = f64, S = TransmissionState> {
     /// Temperatures.
@@ -18,11 +18,11 @@ pub struct State<R: Real = f64, S = TransmissionState> {
     pub transmission: Option<S>,
     /// Rotating energy of engine and primary side, J; NaN before the first step.
     pub kinetic_j: R,
-    /// What the engine did.
+    /// State of the engine's start.
     pub running: Running<R>,
     /// Temperature of the tyres, K.
     pub tyre_k: R,
-    /// What start-stop did.
+    /// State of start-stop.
     pub start_stop: StartStopState,
 }
 

@@ -40,7 +40,7 @@ use crate::transmission::{Driveline, StepInput, StepOutput, Transmission};
 #[derive(Clone, Debug)]
 pub struct Drive<'a> {
     car: &'a Car,
-    /// What is driven, where it is known before.
+    /// Trace driven, if known before.
     trace: Option<&'a Trace>,
     /// Gears of the cycle, one an interval.
     gears: Option<&'a [GearCommand]>,
@@ -139,7 +139,7 @@ impl<'a> Drive<'a> {
     }
 }
 
-/// What a step demands of the wheels; the tyres warm up meanwhile.
+/// Computes the demand of a step at the wheels; the tyres warm up meanwhile.
 #[physics]
 pub(super) fn wheel<R: Real, T>(car: &Car<R, T>, step: &Step, tyre_k: &mut R) -> WheelDemand<R> {
     let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
@@ -200,7 +200,7 @@ pub(super) fn begun<'s, R: Real, T: Driveline<R>>(
     transmission
 }
 
-/// What follows from a solved transmission: its row, its energy terms and the temperatures after the step; rotating energy and what the engine did are brought up to date.
+/// Completes a step from its solved transmission: row, energy terms, temperatures after the step, rotating energy and state of the engine.
 #[physics]
 pub(super) fn end<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
@@ -246,7 +246,7 @@ pub(super) fn end<R: Real, T: Driveline<R>>(
     (result, heat_step.heat)
 }
 
-/// What a slower engine gives beyond its drag and load goes into a coupling that slips, else to the wheels.
+/// Rotating energy of a slowing engine beyond its drag and load goes into a coupling that slips, else to the wheels.
 #[physics]
 fn spend<R: Real, T: Driveline<R>>(car: &Car<R, T>, output: &mut StepOutput<R>, surplus_w: R) {
     let slips = output.has(Flags::CLUTCH_SLIPPING);

@@ -83,7 +83,7 @@ fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
 /// Most runs that are side by side.
 pub const MAX_TOGETHER: usize = 8;
 
-/// Whether the program is built for processors that may have vectors. A page's simulator is not: it would be larger for nothing.
+/// True in a build for processors that may have vectors. The simulator of a page leaves the lanes out, which would only enlarge it.
 const HAS_LANES: bool = cfg!(any(
     target_arch = "x86",
     target_arch = "x86_64",
@@ -146,13 +146,13 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// Whether the car drives alone: with start-stop, or where each run would search its own way through its clamp law or shift map.
+    /// True for a car that drives alone: with start-stop, or where each run would search its own way through its clamp law or shift map.
     fn is_alone(&self) -> bool {
         let searches = self.cvt().is_some_and(Cvt::searches);
         self.car.engine.start_stop.is_some() || searches
     }
 
-    /// Whether another run can be in one group with this one.
+    /// True if another run can join the group of this one.
     fn groups_with(&self, other: &Self) -> bool {
         let boxes = match (&self.car.transmission, &other.car.transmission) {
             (Transmission::Manual(own), Transmission::Manual(others)) => own.groups_with(others),

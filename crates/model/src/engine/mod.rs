@@ -147,7 +147,7 @@ pub struct EngineAtTemperature<'a, R: Real = f64> {
     pub charging_w: R,
 }
 
-/// What the engine burns and rejects at one operating point, W unless said.
+/// Fuel and heat of the engine at one operating point, W unless said.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Burn<R: Real = f64> {
     /// Fuel mass flow, kg/s.
@@ -160,9 +160,9 @@ pub struct Burn<R: Real = f64> {
     pub to_oil_w: R,
     /// Exhaust, sensible heat and unburnt fuel.
     pub exhaust_w: R,
-    /// Whether fuel is cut off.
+    /// True where fuel is cut off.
     pub cut: R::Mask,
-    /// Whether the fuel model left its validity.
+    /// True where the fuel model left its validity.
     pub outside: R::Mask,
 }
 

@@ -1,4 +1,4 @@
-//! What the engine did before a step: the laws that follow a start and the fuel cut look back at it.
+//! History of the engine before a step, for the laws that follow a start and the fuel cut.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -14,7 +14,7 @@ use crate::math::{Mask, Real, both, physics, ramp};
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
 pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
 
-/// What the engine did before a step.
+/// History of the engine before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Running<R: Real = f64> {
     /// Time since the start, s: 0 at the start, infinite where it is long ago.

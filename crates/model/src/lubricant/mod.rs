@@ -46,7 +46,7 @@ pub struct Friction<R: Real = f64> {
     pub capacity: R,
     /// Friction in wedging and penetration.
     pub flank: R,
-    /// Whether the bands can ride on oil at all (LU-5).
+    /// True if the bands can ride on oil (LU-5).
     #[gather(same)]
     pub film: bool,
     /// eta dv at which the film carries half, N/m.

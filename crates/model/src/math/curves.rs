@@ -1,10 +1,11 @@
 //! Curves of several runs side by side.
 
 use super::curve::Curve;
+use super::physics;
 use super::real::{Mask, Real};
 
 /// The values at the lanes of `x`, with the bits of [`Curve::at`]: pieces from the one of the `least` lane on up to that of the `most`; no lane is NaN.
-#[inline(always)]
+#[physics]
 pub(super) fn across<R: Real>(curve: &Curve, x: R, (least, most): (f64, f64)) -> R {
     let (first, last) = (curve.first, curve.last);
     let flat = curve.pieces.len() - 1; // the last piece
@@ -39,6 +40,7 @@ pub struct Curves<const LANES: usize> {
     common: bool,
 }
 
+#[physics]
 impl<const LANES: usize> Curves<LANES> {
     /// A curve for each lane, from the lane's place.
     pub(super) fn new(of: impl FnMut(usize) -> Curve) -> Self {
@@ -50,7 +52,6 @@ impl<const LANES: usize> Curves<LANES> {
     }
 
     /// The curve of all lanes, if they have one.
-    #[inline(always)]
     pub(super) fn common(&self) -> Option<&Curve> {
         self.common.then_some(&self.of_lane[0])
     }
@@ -62,7 +63,6 @@ impl<const LANES: usize> Curves<LANES> {
     }
 
     /// The curve of a lane.
-    #[inline(always)]
     pub(super) fn one(&self, lane: usize) -> &Curve {
         &self.of_lane[lane]
     }

@@ -2,14 +2,15 @@
 //!
 //! [`f64x4`] and [`f64x8`] are [`Real`]: an equation that is written over `R` works on a whole group of runs. Which instructions the processor
 //! has is found at run time; [`dispatch`] calls a function once for the best of them, and every part that is inlined into it, or called by
-//! [`Real::within`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
+//! [`Real::vectorize`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
 //! lane by lane in f64.
 //!
-//! A record has its lanes by [`gather!`](crate::math::gather), one line next to the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
-//! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::groups_with`] says which records can be in one group.
+//! `derive(Gather)` makes the record of a group from one record a run. Fields with `#[gather(same)]` are shared by the runs of a group, so an equation
+//! may branch on them; [`Gather::groups_with`] compares them.
 
 use super::curve::Curve;
 use super::curves::{Curves, across};
+use super::physics;
 use super::real::{LaneValue, Mask, Operand, Real, Selectable};
 use super::{circular, elementary};
 use fearless_simd::{
@@ -20,31 +21,31 @@ use std::ops::{BitAnd, BitOr, Not};
 
 pub use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 
-/// Yes or no, for each lane of a vector of the processor.
+/// A bool for each lane of a vector of the processor.
 #[derive(Clone, Copy)]
 pub struct LaneMask<M>(M);
 
 macro_rules! lanes {
     ($($vector:ident $mask:ident $bits:ident $count:literal),*) => {$(
+        #[physics]
         impl<S: Simd> BitAnd for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn bitand(self, other: Self) -> Self {
                 LaneMask(self.0 & other.0)
             }
         }
 
+        #[physics]
         impl<S: Simd> BitOr for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn bitor(self, other: Self) -> Self {
                 LaneMask(self.0 | other.0)
             }
         }
 
+        #[physics]
         impl<S: Simd> Not for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn not(self) -> Self {
                 LaneMask(!self.0)
             }
@@ -64,177 +65,152 @@ macro_rules! lanes {
             }
         }
 
+        #[physics]
         impl<S: Simd> Mask for LaneMask<$mask<S>> {
-            #[inline(always)]
             fn any(self) -> bool {
                 self.0.any_true()
             }
 
-            #[inline(always)]
             fn all(self) -> bool {
                 self.0.all_true()
             }
 
-            #[inline(always)]
             fn lane(self, lane: usize) -> bool {
                 (self.0.to_bitmask() >> lane) & 1 == 1
             }
         }
 
+        #[physics]
         impl<S: Simd> Selectable<Self> for LaneMask<$mask<S>> {
-            #[inline(always)]
             fn select(mask: Self, if_true: Self, if_false: Self) -> Self {
                 (mask & if_true) | (!mask & if_false)
             }
         }
 
+        #[physics]
         impl<S: Simd> Selectable<LaneMask<$mask<S>>> for $vector<S> {
-            #[inline(always)]
             fn select(mask: LaneMask<$mask<S>>, if_true: Self, if_false: Self) -> Self {
                 mask.0.select(if_true, if_false)
             }
         }
 
+        #[physics]
         impl<S: Simd> Operand<$vector<S>> for f64 {
-            #[inline(always)]
             fn broadcast(self, like: $vector<S>) -> $vector<S> {
                 like.splat(self)
             }
         }
 
+        #[physics]
         impl<S: Simd> Real for $vector<S> {
             type Mask = LaneMask<$mask<S>>;
             type PerLane<T: LaneValue> = [T; $count];
             type Curve = Curves<$count>;
             const LANES: usize = $count;
 
-            #[inline(always)]
             fn splat(self, number: f64) -> Self {
                 SimdBase::splat(self.simd, number)
             }
 
-            #[inline(always)]
             fn map_lanes(self, f: impl Fn(usize) -> f64) -> Self {
                 Self::from_fn(self.simd, f)
             }
 
-            #[inline(always)]
             fn lane(self, lane: usize) -> f64 {
                 self[lane]
             }
 
-            #[inline(always)]
             fn with_lane(mut self, lane: usize, number: f64) -> Self {
                 self[lane] = number;
                 self
             }
 
-            #[inline(always)]
             fn splat_mask(self, yes: bool) -> Self::Mask {
                 LaneMask($mask::splat(self.simd, yes))
             }
 
-            #[inline(always)]
             fn mask_lanes(self, f: impl Fn(usize) -> bool) -> Self::Mask {
                 let bits = (0..$count).fold(0, |bits, lane| bits | (u64::from(f(lane)) << lane));
                 LaneMask($mask::from_bitmask(self.simd, bits))
             }
 
-            #[inline(always)]
             fn per_lane<T: LaneValue>(f: impl FnMut(usize) -> T) -> [T; $count] {
                 std::array::from_fn(f)
             }
 
-            #[inline(always)]
-            fn get<T: LaneValue>(of: &[T; $count], lane: usize) -> &T {
-                &of[lane]
+            fn get<T: LaneValue>(values: &[T; $count], lane: usize) -> &T {
+                &values[lane]
             }
 
-            #[inline(always)]
-            fn get_mut<T: LaneValue>(of: &mut [T; $count], lane: usize) -> &mut T {
-                &mut of[lane]
+            fn get_mut<T: LaneValue>(values: &mut [T; $count], lane: usize) -> &mut T {
+                &mut values[lane]
             }
 
-            #[inline(always)]
             fn curves(of: impl FnMut(usize) -> Curve) -> Curves<$count> {
                 Curves::new(of)
             }
 
-            #[inline(always)]
             fn curve(of: &Curves<$count>, lane: usize) -> &Curve {
                 of.one(lane)
             }
 
-            #[inline(always)]
             fn interpolate(self, curves: &Curves<$count>) -> Self {
                 match curves.common() {
                     Some(curve) if self.ge(self).all() => {
                         across(curve, self, (self.reduce_min(), self.reduce_max()))
                     }
                     _ => {
-                        let y = curves.at(std::array::from_fn(#[inline(always)] |lane| self[lane]));
-                        Real::map_lanes(self, #[inline(always)] |lane| y[lane])
+                        let y = curves.at(std::array::from_fn(|lane| self[lane]));
+                        Real::map_lanes(self, |lane| y[lane])
                     }
                 }
             }
 
-            #[inline(always)]
             fn map(self, f: impl Fn(f64) -> f64) -> Self {
-                Self::from_fn(self.simd, #[inline(always)] |lane| f(self[lane]))
+                Self::from_fn(self.simd, |lane| f(self[lane]))
             }
 
-            #[inline(always)]
             fn gt(self, other: impl Operand<Self>) -> Self::Mask {
                 LaneMask(self.simd_gt(other.broadcast(self)))
             }
 
-            #[inline(always)]
             fn ge(self, other: impl Operand<Self>) -> Self::Mask {
                 LaneMask(self.simd_ge(other.broadcast(self)))
             }
 
-            #[inline(always)]
             fn bits_eq(self, other: Self) -> Self::Mask {
                 let bits: $bits<S> = self.bitcast();
                 LaneMask(bits.simd_eq(other.bitcast::<$bits<S>>()))
             }
 
-            #[inline(always)]
             fn abs(self) -> Self {
                 <Self as SimdBase<S>>::abs(self)
             }
 
-            #[inline(always)]
             fn sqrt(self) -> Self {
                 <Self as SimdFloat<S>>::sqrt(self)
             }
 
-            #[inline(always)]
             fn vectorize<T>(self, part: impl FnOnce() -> T) -> T {
                 self.simd.vectorize(part)
             }
 
-            #[inline(always)]
             fn exp(self) -> Self {
                 elementary::exp_lanes(self)
             }
 
-            #[inline(always)]
             fn ln(self) -> Self {
                 elementary::ln_lanes(self)
             }
 
-            #[inline(always)]
             fn tanh(self) -> Self {
                 elementary::tanh_lanes(self)
             }
 
-            #[inline(always)]
             fn asin(self) -> Self {
                 circular::asin_lanes(self)
             }
 
-            #[inline(always)]
             fn exp_array<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
                 for x in &mut x {
                     *x = x.exp();
@@ -242,7 +218,6 @@ macro_rules! lanes {
                 x
             }
 
-            #[inline(always)]
             fn ln_array<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
                 for x in &mut x {
                     *x = x.ln();
@@ -255,17 +230,17 @@ macro_rules! lanes {
 
 lanes!(f64x4 mask64x4 u64x4 4, f64x8 mask64x8 u64x8 8);
 
-/// Most runs that are side by side.
+/// Largest number of lanes.
 pub(crate) const MAX_LANES: usize = 8;
 
 /// Four zeros, from which other numbers take their lanes.
-#[inline(always)]
+#[physics]
 pub fn four<S: Simd>(simd: S) -> f64x4<S> {
     SimdBase::splat(simd, 0.0)
 }
 
 /// Eight zeros.
-#[inline(always)]
+#[physics]
 pub fn eight<S: Simd>(simd: S) -> f64x8<S> {
     SimdBase::splat(simd, 0.0)
 }
@@ -276,20 +251,20 @@ pub trait Gather: Sized {
     type Together<R: Real>;
 
     /// The record of the runs of a group, one for each lane of `like`; they are [`Gather::groups_with`].
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R>;
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R>;
 
     /// The record of one run out of that of a group.
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self;
 
-    /// Whether two records can be in one group: what its runs share is the same in them.
+    /// True if two records fit in one group: their shared fields are equal.
     fn groups_with(&self, other: &Self) -> bool;
 }
 
 impl Gather for f64 {
     type Together<R: Real> = R;
 
-    fn gather<R: Real>(like: R, of: &[&f64]) -> R {
-        like.map_lanes(|lane| *of[lane])
+    fn gather<R: Real>(like: R, runs: &[&f64]) -> R {
+        like.map_lanes(|lane| *runs[lane])
     }
 
     fn lane<R: Real>(together: &R, lane: usize) -> f64 {
@@ -304,8 +279,8 @@ impl Gather for f64 {
 impl Gather for bool {
     type Together<R: Real> = R::Mask;
 
-    fn gather<R: Real>(like: R, of: &[&bool]) -> R::Mask {
-        like.mask_lanes(|lane| *of[lane])
+    fn gather<R: Real>(like: R, runs: &[&bool]) -> R::Mask {
+        like.mask_lanes(|lane| *runs[lane])
     }
 
     fn lane<R: Real>(together: &R::Mask, lane: usize) -> bool {
@@ -317,14 +292,14 @@ impl Gather for bool {
     }
 }
 
-/// What is looked up lane by lane.
+/// Implements `Gather` for types that are looked up lane by lane.
 macro_rules! gather_each {
     ($($name:ty),* $(,)?) => {$(
         impl $crate::math::Gather for $name {
             type Together<R: $crate::math::Real> = R::PerLane<$name>;
 
-            fn gather<R: $crate::math::Real>(_: R, of: &[&Self]) -> R::PerLane<$name> {
-                R::per_lane(|lane| of[lane].clone())
+            fn gather<R: $crate::math::Real>(_: R, runs: &[&Self]) -> R::PerLane<$name> {
+                R::per_lane(|lane| runs[lane].clone())
             }
 
             fn lane<R: $crate::math::Real>(together: &R::PerLane<$name>, lane: usize) -> Self {
@@ -342,8 +317,8 @@ pub(crate) use gather_each;
 impl Gather for Curve {
     type Together<R: Real> = R::Curve;
 
-    fn gather<R: Real>(_: R, of: &[&Self]) -> R::Curve {
-        R::curves(|lane| of[lane].clone())
+    fn gather<R: Real>(_: R, runs: &[&Self]) -> R::Curve {
+        R::curves(|lane| runs[lane].clone())
     }
 
     fn lane<R: Real>(together: &R::Curve, lane: usize) -> Self {
@@ -358,9 +333,9 @@ impl Gather for Curve {
 impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
     type Together<R: Real> = [T::Together<R>; COUNT];
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
         std::array::from_fn(|k| {
-            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            let each: Vec<&T> = runs.iter().map(|one| &one[k]).collect();
             T::gather(like, &each)
         })
     }
@@ -377,12 +352,12 @@ impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
 impl<T: Gather> Gather for Vec<T> {
     type Together<R: Real> = Vec<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
         let part = |k: usize| {
-            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            let each: Vec<&T> = runs.iter().map(|one| &one[k]).collect();
             T::gather(like, &each)
         };
-        (0..of[0].len()).map(part).collect()
+        (0..runs[0].len()).map(part).collect()
     }
 
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
@@ -397,8 +372,8 @@ impl<T: Gather> Gather for Vec<T> {
 impl<T: Gather> Gather for Option<T> {
     type Together<R: Real> = Option<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Option<Vec<&T>> = of.iter().map(|one| one.as_ref()).collect();
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
+        let each: Option<Vec<&T>> = runs.iter().map(|one| one.as_ref()).collect();
         each.map(|each| T::gather(like, &each))
     }
 
@@ -418,8 +393,8 @@ impl<T: Gather> Gather for Option<T> {
 impl<T: Gather> Gather for Box<T> {
     type Together<R: Real> = Box<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Vec<&T> = of.iter().map(|one| &***one).collect();
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
+        let each: Vec<&T> = runs.iter().map(|one| &***one).collect();
         Box::new(T::gather(like, &each))
     }
 

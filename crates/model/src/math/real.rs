@@ -9,10 +9,12 @@
 //! `x.splat(1.0)`. The methods with names of f64 differ from those in one point: `max` and `min` return the argument where one of the two is NaN.
 
 use super::curve::Curve;
+use super::physics;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 /// A bool for each lane.
+#[physics]
 pub trait Mask:
     Copy
     + Debug
@@ -32,7 +34,6 @@ pub trait Mask:
     fn lane(self, lane: usize) -> bool;
 
     /// `if_true` in the lanes that are true, else `if_false`. Both are computed, so neither may panic.
-    #[inline(always)]
     fn select<T: Selectable<Self>>(self, if_true: T, if_false: T) -> T {
         T::select(self, if_true, if_false)
     }
@@ -44,25 +45,23 @@ pub trait Selectable<M> {
     fn select(mask: M, if_true: Self, if_false: Self) -> Self;
 }
 
+#[physics]
 impl Selectable<bool> for bool {
-    #[inline(always)]
     fn select(mask: bool, if_true: bool, if_false: bool) -> bool {
         if mask { if_true } else { if_false }
     }
 }
 
+#[physics]
 impl Mask for bool {
-    #[inline(always)]
     fn any(self) -> bool {
         self
     }
 
-    #[inline(always)]
     fn all(self) -> bool {
         self
     }
 
-    #[inline(always)]
     fn lane(self, _: usize) -> bool {
         self
     }
@@ -74,8 +73,8 @@ pub trait Operand<R>: Copy {
     fn broadcast(self, like: R) -> R;
 }
 
+#[physics]
 impl<R: Real> Operand<R> for R {
-    #[inline(always)]
     fn broadcast(self, _: R) -> R {
         self
     }
@@ -118,6 +117,7 @@ pub trait LaneValue: Clone + Debug + PartialEq + Send + Sync {}
 impl<T: Clone + Debug + PartialEq + Send + Sync> LaneValue for T {}
 
 /// Number type of the equations.
+#[physics]
 pub trait Real:
     Copy
     + Debug
@@ -194,13 +194,11 @@ pub trait Real:
     fn ge(self, other: impl Operand<Self>) -> Self::Mask;
 
     /// `self < other`; false where one is NaN.
-    #[inline(always)]
     fn lt(self, other: impl Operand<Self>) -> Self::Mask {
         other.broadcast(self).gt(self)
     }
 
     /// `self <= other`; false where one is NaN.
-    #[inline(always)]
     fn le(self, other: impl Operand<Self>) -> Self::Mask {
         other.broadcast(self).ge(self)
     }
@@ -218,21 +216,18 @@ pub trait Real:
     fn vectorize<T>(self, part: impl FnOnce() -> T) -> T;
 
     /// The larger of two numbers; `other` where one is NaN.
-    #[inline(always)]
     fn max(self, other: impl Operand<Self>) -> Self {
         let other = other.broadcast(self);
         self.gt(other).select(self, other)
     }
 
     /// The smaller of two numbers; `other` where one is NaN.
-    #[inline(always)]
     fn min(self, other: impl Operand<Self>) -> Self {
         let other = other.broadcast(self);
         other.gt(self).select(self, other)
     }
 
     /// Limits to `low` and `high`; NaN stays NaN, and the bounds are not checked.
-    #[inline(always)]
     fn clamp(self, low: impl Operand<Self>, high: impl Operand<Self>) -> Self {
         let (low, high) = (low.broadcast(self), high.broadcast(self));
         let x = low.gt(self).select(low, self);
@@ -258,7 +253,6 @@ pub trait Real:
     fn asin(self) -> Self;
 
     /// Sum of numbers in their order, as `Iterator::sum` makes it.
-    #[inline(always)]
     fn sum(self, numbers: &[Self]) -> Self {
         let mut sum = self.splat(-0.0);
         for number in numbers {

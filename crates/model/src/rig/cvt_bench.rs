@@ -20,7 +20,7 @@ const DAMPED_FROM: u32 = 30;
 /// It stops when slip and belt temperature (K) move less than this, and the pressure (Pa) 1e5 times as much.
 const STILL: f64 = 1e-10;
 
-/// What the fixed point looks for.
+/// Unknowns of the fixed point.
 #[derive(Clone, Copy)]
 struct Unknown {
     slip: f64,
@@ -86,7 +86,7 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
     }
 }
 
-/// What does not change during the fixed point.
+/// Constants of the fixed point.
 struct OnBench<'a> {
     car: &'a Car,
     point: &'a BenchPoint,

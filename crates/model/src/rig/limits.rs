@@ -1,4 +1,4 @@
-//! What the belt's geometry allows.
+//! Limits from the belt's geometry.
 
 use crate::transmission::cvt::variator::{Belt, Geometry};
 

@@ -1,11 +1,11 @@
-//! What a bench is set to at one operating point, and its answer.
+//! Settings and answer of the rig at one operating point.
 
 use crate::flags::Flags;
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::cvt::Parts;
 use crate::transmission::cvt::variator::BeltState;
 
-/// What the bench is set to.
+/// Settings of the rig.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchPoint {
     /// Belt ratio; gear number of a manual box.
@@ -65,7 +65,7 @@ pub struct BenchAnswer {
     pub belt: Option<BeltState>,
     /// Flow of the pump that works against pressure, m3/s.
     pub oil_flow_m3_s: f64,
-    /// What applies at this point.
+    /// Flags that apply at this point.
     pub flags: Flags,
 }
 

@@ -120,7 +120,7 @@ impl<R: Real> Heat<R> {
     }
 }
 
-/// What happens around the nodes in a step.
+/// Inputs of the nodes in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeatInput<R: Real = f64> {
     /// Heat into the nodes, W.
@@ -135,7 +135,7 @@ pub struct HeatInput<R: Real = f64> {
     pub oil_flow_m3_s: R,
     /// Heat capacity flow of the oil per volume flow, J/(m3 K).
     pub oil_volume_heat_j_m3k: R,
-    /// Whether engine and pumps turn.
+    /// True with engine and pumps turning.
     pub running: bool,
     /// Step, s.
     pub dt_s: f64,
@@ -288,6 +288,7 @@ impl<R: Real> Network<R> {
     }
 
     /// Advances the nodes by one step (TH-5).
+    #[inline]
     pub fn advance(&self, heat: &Heat<R>, input: &HeatInput<R>) -> HeatStep<R> {
         self.advance_in_wind(heat, input, speed_power(input.speed_m_s))
     }

@@ -190,7 +190,7 @@ impl Component {
         self.entry().title
     }
 
-    /// What the loss is, one phrase.
+    /// Meaning of the loss, one phrase.
     pub const fn doc(self) -> &'static str {
         self.entry().doc
     }

@@ -35,7 +35,7 @@ pub enum Transmission {
 
 /// A transmission as the loop over a cycle sees it, of one run or of several side by side.
 pub trait Driveline<R: Real = f64> {
-    /// What it carries from step to step.
+    /// State between steps.
     type State: Clone + Debug;
 
     /// State at the beginning of a cycle.
@@ -72,6 +72,7 @@ pub trait Driveline<R: Real = f64> {
 impl Driveline for Transmission {
     type State = TransmissionState;
 
+    #[inline]
     fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
         match self {
             Transmission::Cvt(cvt) => {
@@ -132,7 +133,7 @@ impl Driveline for Transmission {
     }
 }
 
-/// What a transmission carries from step to step.
+/// State of a transmission between steps.
 #[derive(Clone, Copy, Debug)]
 pub struct TransmissionState {
     /// CVT: its belt and the start of its solve.

@@ -1,4 +1,4 @@
-//! What a driveline receives and gives in a time step.
+//! Input, state and output of a driveline in a time step.
 
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
@@ -11,7 +11,7 @@ use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::Heat;
 
-/// What a driveline receives for a step.
+/// Input of a driveline for a step.
 #[derive(Debug)]
 pub struct StepInput<'a, P, R: Real = f64> {
     /// Demand at the wheels.
@@ -44,7 +44,7 @@ impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
     }
 }
 
-/// What a driveline keeps of the step before.
+/// State of a driveline after the step before.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivelineState<R: Real = f64> {
     /// Manual box: gear engaged.
@@ -63,7 +63,7 @@ pub struct DrivelineState<R: Real = f64> {
     pub rested_s: f64,
 }
 
-/// What a driveline gives for a step, powers in W.
+/// Output of a driveline for a step, powers in W.
 #[derive(Clone, Copy, Debug)]
 pub struct StepOutput<R: Real = f64> {
     /// Engine speed, rad/s.
@@ -80,7 +80,7 @@ pub struct StepOutput<R: Real = f64> {
     pub primary_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pa: R,
-    /// What decided the secondary pressure; of no meaning for a manual box.
+    /// Cause of the secondary pressure; without meaning for a manual box.
     pub clamp_cause: R::PerLane<ClampCause>,
     /// Belt slip; NaN for a manual box.
     pub slip: R,

@@ -9,7 +9,7 @@
 //!
 //!   T (1 + T w/P_h) = T_0, P_h = 1/(m b R): the dissipation at which the drag has fallen to one half.
 //!
-//! Its positive root is FH-1. Since exp x >= 1 + x, FH-1 is never below the drag with the full exponential: a bound from above. T_0 w/P_h
+//! The positive root is FH-1. Since exp x >= 1 + x, FH-1 is never below the drag with the full exponential: a bound from above. T_0 w/P_h
 //! is the Nahme number. Limits: T = T_0 for P_h without bound (to the last bit) and for w = 0; T = sqrt(T_0 P_h/w) far above, so drag
 //! grows with the root of the power law only. T never exceeds T_0, never falls as T_0 rises, and T w never falls as w rises.
 //!

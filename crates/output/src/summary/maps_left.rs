@@ -78,7 +78,7 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
             percent: 100.0 * left.any_s / running_s,
             column: column.to_owned(),
             side: ["below", "above"][side].to_owned(),
-            end: end.and_then(|si| finite(Quantity::of(column).from_si(si))),
+            end: end.and_then(|si| finite(Quantity::from_key(column).from_si(si))),
         })
     };
     maps.iter().zip(&times).filter_map(of_map).collect()

@@ -75,7 +75,7 @@ pub fn strip_downs(
     conditions: &Conditions,
 ) -> Result<Table, String> {
     let bench = Bench::new(setup);
-    let own = Plan::of(conditions);
+    let own = Plan::from_conditions(conditions);
     let plan = Plan {
         ratios: source.given(&STRIP_DOWN.ratio).unwrap_or(own.ratios),
         speeds_rad_s: source.given(&STRIP_DOWN.speed_rpm),

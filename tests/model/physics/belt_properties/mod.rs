@@ -151,7 +151,7 @@ impl Point {
     }
 }
 
-/// What must be finite and continuous, with names.
+/// Quantities that must be finite and continuous, with names.
 pub const NAMES: [&str; 11] = [
     "band",
     "film",

@@ -67,7 +67,7 @@ struct Branch {
     active: f64,
 }
 
-/// What a branch looks at: of the loaded pulley first, then of the other.
+/// Inputs of a branch: the loaded pulley first, then the other.
 struct Side {
     cx: f64,
     slack: f64,

@@ -11,7 +11,7 @@ use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::point::LIMIT_SLACK;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Formulation, belt_point};
 
-/// What a bench is set to where nothing is said: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
+/// Default settings of the rig: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
 #[test]
 fn defaults_of_the_bench() {
     let p = BenchPoint::default();
@@ -406,7 +406,7 @@ fn val_the_bench_loses_what_a_step_of_driving_loses() {
         let answer = bench.solve(&BenchPoint {
             ratio,
             input_rad_s: drive.engine_rad_s,
-            // What really passed the output shaft: in overrun the brakes take a part.
+            // Torque that passed the output shaft: in overrun the brakes take a part.
             output_nm: drive.output_w / wheel_rad_s,
             pressure_pa: Some(drive.secondary_pa),
             sump_k: s.sump_degc + ZERO,

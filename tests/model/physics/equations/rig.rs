@@ -144,7 +144,7 @@ fn val_transient_from_its_seconds() {
 fn val_second_box_is_a_difference() {
     use cvtcycle_model::rig::transmission::{Plan, second_box};
     let c = cvtcycle_config::rig::load(&[]).unwrap().0;
-    for two in second_box(&rover_bench(), &c, &Plan::of(&c)) {
+    for two in second_box(&rover_bench(), &c, &Plan::from_conditions(&c)) {
         same(
             two.difference_nm(),
             two.second.answer.total_nm() - two.first.answer.total_nm(),

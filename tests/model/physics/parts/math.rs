@@ -285,7 +285,7 @@ const EXPECTED: [(&str, f64, f64, &str); 67] = [
 #[test]
 fn every_unit_converts_as_worked_out_by_hand() {
     for (key, value, si, name) in EXPECTED {
-        let quantity = Quantity::of(key);
+        let quantity = Quantity::from_key(key);
         let found = quantity.to_si(value);
         assert!(
             (found - si).abs() <= 1e-12 * si.abs(),
@@ -302,7 +302,7 @@ fn the_table_above_leaves_no_unit_out() {
     for unit in Quantity::ALL {
         let tried = EXPECTED
             .iter()
-            .any(|(key, ..)| Quantity::of(key).suffix() == unit.suffix());
+            .any(|(key, ..)| Quantity::from_key(key).suffix() == unit.suffix());
         assert!(tried, "{} is not tried", unit.suffix());
         let same = |other: &&Quantity| other.suffix() == unit.suffix();
         assert_eq!(Quantity::ALL.iter().filter(same).count(), 1, "{unit:?}");

@@ -22,7 +22,7 @@ pub(super) struct Schedule<'a> {
     pub phases: &'a Phases,
     /// Gear of each second, 0 for none, below 0 where none is possible.
     pub gear: Vec<i32>,
-    /// Whether the clutch is open.
+    /// True with the clutch open.
     pub clutch: Vec<bool>,
     /// Seconds of decelerations that were held down once.
     held_down: Vec<bool>,

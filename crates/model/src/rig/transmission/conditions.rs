@@ -1,4 +1,4 @@
-//! What the transmission rig is set to.
+//! Settings of the transmission rig.
 
 /// Most speeds of one test.
 const MAX_SPEEDS: f64 = 400.0;

@@ -3,7 +3,7 @@
 use super::conditions::Conditions;
 use crate::rig::{Bench, BenchAnswer, BenchPoint, KeptRatio, Parts};
 
-/// Which points are tested.
+/// Test points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     /// Belt ratios.
@@ -18,7 +18,7 @@ pub struct Plan {
 
 impl Plan {
     /// The rig's own points.
-    pub fn of(c: &Conditions) -> Self {
+    pub fn from_conditions(c: &Conditions) -> Self {
         Plan {
             ratios: vec![c.low_ratio, c.high_ratio],
             speeds_rad_s: None,
@@ -57,9 +57,9 @@ impl Plan {
 /// A point and what the bench answered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SteadyPoint {
-    /// What the bench was set to.
+    /// Settings of the rig.
     pub set: BenchPoint,
-    /// Its answer.
+    /// Answer of the rig.
     pub answer: BenchAnswer,
 }
 

@@ -74,7 +74,7 @@ impl Stage {
     }
 }
 
-/// What the strip-down finds a part of.
+/// Piece whose loss the strip-down finds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum Piece {
@@ -126,7 +126,7 @@ impl Piece {
     }
 }
 
-/// What the differences say of a piece, and what the model has for it; Nm at the input shaft.
+/// Loss of a piece by differences and by the model; Nm at the input shaft.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
     /// Difference of the totals as they are.
@@ -147,7 +147,7 @@ impl Found {
         self.by_pressure_nm + self.by_torque_nm
     }
 
-    /// What neither the true loss nor the interaction explains, Nm.
+    /// Remainder that neither the true loss nor the interaction explains, Nm.
     pub fn remainder_nm(&self) -> f64 {
         self.corrected_nm - self.true_nm - self.interaction_nm()
     }
@@ -160,7 +160,7 @@ pub struct StripDown {
     pub set: BenchPoint,
     /// LaneMask of the stages, by [`Stage`]; the clutch is removed in low ratio only, so is what is left after it.
     pub stages: [BenchAnswer; 5],
-    /// What was found, by [`Piece`].
+    /// Losses found, by [`Piece`].
     pub found: [Found; 5],
 }
 
@@ -170,7 +170,7 @@ impl StripDown {
         &self.stages[stage as usize]
     }
 
-    /// What was found of a piece.
+    /// Losses found of a piece.
     pub fn piece(&self, piece: Piece) -> &Found {
         &self.found[piece as usize]
     }

@@ -72,7 +72,7 @@ pub struct LoopEnergy {
 }
 
 impl LoopEnergy {
-    /// What does not balance, over the energy put in.
+    /// Imbalance over the energy put in.
     pub fn error(&self) -> f64 {
         (self.shaft_j - self.stored_j - self.to_air_j - self.to_cooler_j) / self.shaft_j
     }
@@ -87,9 +87,9 @@ pub struct Loop {
     pub moments: Vec<Moment>,
     /// Where the energy went.
     pub energy: LoopEnergy,
-    /// Whether both branches reached their ends.
+    /// True if both branches reached their ends.
     pub complete: bool,
-    /// Whether the sump only warms while warming and only cools while cooling.
+    /// True if the sump only warms while warming and only cools while cooling.
     monotone: bool,
     /// Sump, K, and total loss, Nm, of each second: searched again and again.
     line: Vec<(f64, f64)>,

@@ -43,7 +43,7 @@ pub struct VariatorRig {
     oil: Lubricant,
 }
 
-/// What is held along a curve.
+/// Values held along a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
     /// Belt ratio.
@@ -56,7 +56,7 @@ pub struct Held {
     pub belt_k: f64,
 }
 
-/// What the geometric radii are taken from.
+/// Source of the geometric radii.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zero {
     /// Pulse ratio at zero torque.
@@ -92,7 +92,7 @@ impl RigFlags {
 /// One point of a curve; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VariatorRow {
-    /// What is held.
+    /// Values held.
     pub held: Held,
     /// Torque at the secondary pulley, Nm.
     pub output_nm: f64,
@@ -106,7 +106,7 @@ pub struct VariatorRow {
     pub shaft_rad_s: [f64; 2],
     /// Belt speed, m/s.
     pub belt_m_s: f64,
-    /// What applies.
+    /// Flags that apply.
     pub flags: RigFlags,
 }
 

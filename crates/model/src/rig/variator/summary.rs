@@ -1,4 +1,4 @@
-//! What a curve of slip against torque comes to, and how finely the rig can read it.
+//! Summary of a curve of slip against torque, and the resolution of the rig.
 
 use super::{Held, MAX_OUTPUT_NM, VariatorRig, VariatorRow};
 use crate::math::larger;
@@ -11,7 +11,7 @@ const POINTS: u32 = 400;
 /// One curve in numbers; slips are fractions, NaN where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurveSummary {
-    /// What is held.
+    /// Values held.
     pub held: Held,
     /// Torque at which the compression between segments changes sign, Nm.
     pub breakpoint_nm: f64,
@@ -25,7 +25,7 @@ pub struct CurveSummary {
     pub slip_at_capacity: f64,
     /// Largest slip within the rig's limits and below capacity.
     pub most_slip: f64,
-    /// Its torque, Nm.
+    /// Torque, Nm.
     pub most_slip_nm: f64,
     /// Largest primary and secondary slip speed there, m/s.
     pub most_slip_m_s: [f64; 2],
@@ -135,7 +135,7 @@ fn determination(points: &[(f64, f64)]) -> f64 {
 pub struct Resolution {
     /// Time of one measurement, s: 10 s in high ratio, 100 belt turns in low.
     pub gate_s: f64,
-    /// Whether the gate is 100 belt turns; otherwise 10 s, in which segments are counted.
+    /// True for a gate of 100 belt turns; otherwise 10 s, in which segments are counted.
     pub belt_turns: bool,
     /// Segments counted in the gate; none where belt turns make the gate.
     pub segments: f64,

@@ -97,11 +97,11 @@ type Point = ([f64; GRID_AXES], f64);
 /// Why rows are no map: what is allowed, what is wrong, what helps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoMap {
-    /// What is accepted.
+    /// Accepted values.
     pub allowed: String,
-    /// What is wrong, one sentence.
+    /// Problem, one sentence.
     pub message: String,
-    /// What to do.
+    /// Remedy.
     pub hint: String,
 }
 
@@ -118,7 +118,7 @@ impl NoMap {
 /// The points of a table as loss torque (MP-6); `idle_nm` is the loss without torque, where it is given.
 ///
 /// # Errors
-/// What is wrong with an efficiency or a power.
+/// Problem of an efficiency or a power.
 pub fn points(table: &FileRows, idle_nm: Option<f64>) -> Result<Vec<Point>, NoMap> {
     let axes = AXES.map(|names| names.iter().find_map(|name| table.position(name)));
     let at = |row: &[f64]| {

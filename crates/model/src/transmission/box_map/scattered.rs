@@ -36,7 +36,7 @@ struct Axes {
 }
 
 impl Axes {
-    fn of(points: &[Point]) -> Self {
+    fn new(points: &[Point]) -> Self {
         let mut axes = Axes {
             used: Vec::new(),
             low: [0.0; GRID_AXES],
@@ -82,7 +82,7 @@ impl Axes {
 /// # Errors
 /// Too few or too many points, points in one plane, a node far from all points.
 pub fn gridded(points: &[Point]) -> Result<Vec<Point>, NoMap> {
-    let axes = Axes::of(points);
+    let axes = Axes::new(points);
     if points.len() <= NEAREST || points.len() > MAX_POINTS {
         return Err(NoMap {
             allowed: format!("{} to {MAX_POINTS} points", NEAREST + 1),
@@ -98,7 +98,7 @@ pub fn gridded(points: &[Point]) -> Result<Vec<Point>, NoMap> {
 /// Each point against the plane of the others; none where the others lie in one plane.
 #[must_use]
 pub fn leave_one_out(points: &[Point]) -> Option<Scatter> {
-    let axes = Axes::of(points);
+    let axes = Axes::new(points);
     let (mut squares, mut largest_nm) = (0.0, 0.0f64);
     for k in 0..points.len() {
         let others = [&points[..k], &points[k + 1..]].concat();

@@ -32,7 +32,7 @@ const LOCKED_OVER_IDLE: f64 = 1.2;
 const CREEP_WIDTH_NM: f64 = 5.0;
 /// Speed that rounds off the square root at zero torque, rad/s (200 rpm).
 const ROUND_RAD_S: f64 = 20.944;
-/// Its square.
+/// Square of that speed, (rad/s)2.
 const ROUND_SQUARED: f64 = ROUND_RAD_S * ROUND_RAD_S;
 
 #[physics]
@@ -62,6 +62,7 @@ impl<R: Real> Coupling<R> for FrictionClutch<R> {
         }
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         Some(Launch::clutch(self.of_least_speed()))
     }

@@ -134,7 +134,7 @@ fn turning<R: Real>(at: &Turning<R>, lane: usize) -> Turning {
     }
 }
 
-/// What a device of one run holds, in each lane.
+/// Hold of the device of one run, in each lane.
 fn holds<R: Real>(devices: &R::PerLane<Device>, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
     let like = now.output_rad_s;
     let hold = |lane: usize| {
@@ -286,6 +286,7 @@ impl<R: Real> Coupling<R> for Launch<R> {
         )
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         match self {
             Launch::Clutch(clutch) => clutch.at_least_speed(),
@@ -299,6 +300,7 @@ impl<R: Real> Coupling<R> for Launch<R> {
         }
     }
 
+    #[inline]
     fn device(&self) -> &'static str {
         match self {
             Launch::Clutch(clutch) => clutch.device(),

@@ -57,7 +57,7 @@ pub(super) fn drivers_clutch<V: Values>(s: &V, key: &Key<'_>) -> DriverClutch {
     DriverClutch::new(FrictionClutch::from_values(&own, 0.0))
 }
 
-/// What the coupling is to pass on.
+/// Load that the coupling passes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingLoad<R: Real = f64> {
     /// Torque into the box, Nm; negative in overrun.
@@ -106,7 +106,7 @@ impl<R: Real> EngineSide<R> {
     }
 }
 
-/// What a coupling that locks by command looks at before a step.
+/// Inputs of the command of a coupling that locks by command, before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LockSignals<R: Real = f64> {
     /// Mean road speed of the step, m/s.

@@ -85,6 +85,7 @@ impl<R: Real> Coupling<R> for DriverClutch<R> {
         self.clutch.overrun_share(output_rad_s, idle_rad_s)
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         Some(Launch::Clutch(DriverClutch {
             clutch: self.clutch.of_least_speed(),
@@ -111,7 +112,7 @@ pub(crate) struct PartialLoss {
 
 impl PartialLoss {
     /// A coupling with its loss times a factor; itself for 1.
-    pub fn of(inner: Launch, factor: f64) -> Launch {
+    pub fn scaled(inner: Launch, factor: f64) -> Launch {
         match inner {
             Launch::Clutch(mut clutch) => {
                 clutch.scale(factor);
@@ -205,7 +206,7 @@ impl Coupling for PartialLoss {
 
     fn at_least_speed(&self) -> Option<Launch> {
         let inner = self.inner.at_least_speed()?;
-        Some(PartialLoss::of(inner, self.factor))
+        Some(PartialLoss::scaled(inner, self.factor))
     }
 
     fn loss_factor(&self) -> Option<f64> {

@@ -91,17 +91,17 @@ struct Row {
 
 #[physics]
 impl Row {
-    /// Whether it is at or before a speed ratio; it needs no second number.
+    /// True at or before a speed ratio; needs no second number.
     fn is_up_to(&self, nu: f64, _: f64) -> bool {
         self.nu <= nu
     }
 
-    /// Whether the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
+    /// True if the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
     fn pulls_above(&self, turbine_nm: f64, square: f64) -> bool {
         self.pull * square > turbine_nm
     }
 
-    /// Whether the engine takes more than a torque in overrun, Nm.
+    /// True if the engine takes more than a torque in overrun, Nm.
     fn coasts_above(&self, drag_nm: f64, square: f64) -> bool {
         self.coast * square > drag_nm
     }
@@ -334,6 +334,7 @@ impl<R: Real> Coupling<R> for TorqueConverter<R> {
         })
     }
 
+    #[inline]
     fn device(&self) -> &'static str {
         super::CONVERTER.name
     }
@@ -466,7 +467,7 @@ impl TorqueConverter {
     /// A converter from the values of its keys.
     pub(super) fn from_values<V: Values>(s: &V) -> Self {
         // Given at 1000 rpm.
-        let thousand_rpm = Quantity::of("_rpm").to_si(1000.0);
+        let thousand_rpm = Quantity::from_key("_rpm").to_si(1000.0);
         let per_square = thousand_rpm * thousand_rpm;
         let capacity_nm_s2 = s.number(&TORQUE_CONVERTER.capacity_nm) / per_square;
         let own = s.rows(&TORQUE_CONVERTER.table).unwrap_or_default();

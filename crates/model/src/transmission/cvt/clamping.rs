@@ -100,6 +100,7 @@ impl<R: Real> Clamping<'_, R> {
     }
 
     /// Slip of a run at a pressure, Pa.
+    #[inline]
     fn slip(&self, lane: usize, pressure_pa: f64) -> f64 {
         let pressure_pa = self.force_log.splat(pressure_pa);
         let load = BeltLoad {
@@ -116,6 +117,7 @@ impl<R: Real> Clamping<'_, R> {
     }
 
     /// The pressure of a run, Pa, for its limit of slip.
+    #[inline]
     fn for_slip_pa(&self, lane: usize, limit: R, least_pa: R) -> f64 {
         let (cap_pa, limit) = (self.cvt.cap_pa.lane(lane), limit.lane(lane));
         least_for_slip_pa(limit, (least_pa.lane(lane), cap_pa), |pa| {

@@ -84,7 +84,8 @@ pub(crate) struct PulleyShafts<R: Real = f64> {
 
 #[physics]
 impl<R: Real> PulleyShafts<R> {
-    /// What the parts in the box leave of them. The printed forms know neither, and a measured map of the belt holds the bearings.
+    /// Keeps those of the parts in the box. The printed forms have neither, and a measured map of the belt includes the bearings.
+    #[inline]
     pub fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, parts: Parts) -> Self {
         let none = at.direction.splat(0.0);
         let counted = cvt.belt.formulation.by_statics();
@@ -102,6 +103,14 @@ impl<R: Real> PulleyShafts<R> {
             },
         }
     }
+}
+
+/// Inputs of a component's map.
+#[derive(Clone, Copy)]
+struct MapInputs<R> {
+    speed_rad_s: R,
+    torque_nm: R,
+    pressure_pa: R,
 }
 
 /// The CVT at one ratio and oil temperature: what depends on neither torque, pressure nor speed.
@@ -125,7 +134,7 @@ pub(crate) struct Driveline<'a, R: Real = f64> {
     pub changes: Option<&'a LossChanges<R>>,
 }
 
-/// What turns with the engine's shaft, at its speed.
+/// Parts on the engine's shaft, at its speed.
 #[derive(Clone, Copy)]
 pub(crate) struct EngineShaft<'a, R: Real = f64> {
     pub rad_s: R,
@@ -279,6 +288,7 @@ pub(super) fn final_drive<R: Real>(
 #[physics]
 impl<'a, R: Real> Driveline<'a, R> {
     /// The box with some of its parts at an oil temperature, K.
+    #[inline]
     pub fn new(
         cvt: &'a Cvt<R>,
         at: &'a BeltAtRatio<R>,
@@ -303,34 +313,30 @@ impl<'a, R: Real> Driveline<'a, R> {
     }
 
     /// Loss that a component's map gives at a speed, torque and pressure, times the component's factor, Nm; clears `inside` outside the map.
-    fn mapped(
-        &self,
-        component: Component,
-        (rad_s, nm, pa): (R, R, R),
-        inside: &mut R::Mask,
-    ) -> Option<R> {
+    fn mapped(&self, component: Component, at: MapInputs<R>, inside: &mut R::Mask) -> Option<R> {
         let changes = self.changes?;
         let map = changes.maps[component].as_ref()?;
-        // Put together here, so that a car without maps does not store it.
-        let at = (rad_s, nm, pa);
+        // Copied here, so that a car without maps does not store it.
+        let at = MapInputs { ..at };
         let loss = self.looked_up(at, inside, |lane, point| R::get(map, lane).loss_nm(point));
         Some(changes.factor[component] * loss) // CV-7
     }
 
-    /// What the maps of the runs give at a speed, torque and pressure, one by one; clears `inside` outside a map.
+    /// Looks up the maps of the runs at a speed, torque and pressure, one by one; clears `inside` outside a map.
+    #[inline]
     fn looked_up(
         &self,
-        (speed_rad_s, torque_nm, pressure_pa): (R, R, R),
+        at: MapInputs<R>,
         inside: &mut R::Mask,
         of: impl Fn(usize, &MapPoint) -> (f64, bool),
     ) -> R {
-        let (mut loss, mut within) = (torque_nm, [true; MAX_LANES]);
+        let (mut loss, mut within) = (at.torque_nm, [true; MAX_LANES]);
         for (lane, within) in within.iter_mut().enumerate().take(R::LANES) {
             let point = MapPoint {
                 ratio: self.at.geometry.ratio.lane(lane),
-                input_speed_rad_s: speed_rad_s.lane(lane),
-                torque_nm: torque_nm.lane(lane),
-                pressure_pa: pressure_pa.lane(lane),
+                input_speed_rad_s: at.speed_rad_s.lane(lane),
+                torque_nm: at.torque_nm.lane(lane),
+                pressure_pa: at.pressure_pa.lane(lane),
                 oil_k: self.oil_k.lane(lane),
             };
             let nm;
@@ -353,7 +359,7 @@ impl<'a, R: Real> Driveline<'a, R> {
     fn loss_nm(
         &self,
         component: Component,
-        at: (R, R, R),
+        at: MapInputs<R>,
         inside: &mut R::Mask,
         model_nm: impl FnOnce() -> R,
     ) -> R {
@@ -373,6 +379,7 @@ impl<'a, R: Real> Driveline<'a, R> {
     }
 
     /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
+    #[inline]
     pub fn final_drive(&self, secondary_rad_s: R, demand_nm: R) -> TurningTrain<R> {
         final_drive(self.cvt, secondary_rad_s, demand_nm, self.oil)
     }
@@ -405,7 +412,11 @@ impl<'a, R: Real> Driveline<'a, R> {
         inside: &mut R::Mask,
     ) -> R {
         if self.parts.final_drive && !self.is_mapped() {
-            let at = (primary_rad_s, output_nm, pressure_pa);
+            let at = MapInputs {
+                speed_rad_s: primary_rad_s,
+                torque_nm: output_nm,
+                pressure_pa,
+            };
             match self.mapped(Component::FinalDrive, at, inside) {
                 Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
                 None => drive().input_nm(output_nm), // FD-2
@@ -440,19 +451,24 @@ impl<'a, R: Real> Driveline<'a, R> {
         if !self.parts.pump {
             return none;
         }
-        let at = (primary_rad_s, none, clamp.pressure_pa);
+        let at = MapInputs {
+            speed_rad_s: primary_rad_s,
+            torque_nm: none,
+            pressure_pa: clamp.pressure_pa,
+        };
         self.loss_nm(Component::SealRing, at, inside, || {
             self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
         })
     }
 
-    /// Whether a map is in the place of all losses of the box (MP-3).
+    /// True if a map replaces all losses of the box (MP-3).
     fn is_mapped(&self) -> bool {
         self.changes
             .is_some_and(|changes| changes.maps[Component::BoxMap].is_some())
     }
 
     /// Sets the loss of a box that is replaced by a map to that at rest, where it is known (MP-3).
+    #[inline]
     pub fn rest(&self, torques: &mut PartTorques<R>) {
         if let (Some(changes), Some(loss)) = (self.changes, &mut torques.box_map)
             && let Some(nm) = changes.at_rest_nm
@@ -467,7 +483,11 @@ impl<'a, R: Real> Driveline<'a, R> {
         let map = changes.maps[Component::BoxMap].as_ref()?;
         let factor = changes.factor[Component::BoxMap];
         let behind_nm = secondary_nm * self.at.geometry.inv_ratio;
-        let at = (engine_rad_s, behind_nm, behind_nm.splat(0.0));
+        let at = MapInputs {
+            speed_rad_s: engine_rad_s,
+            torque_nm: behind_nm,
+            pressure_pa: behind_nm.splat(0.0),
+        };
         Some(self.looked_up(at, inside, |lane, behind| {
             R::get(map, lane).loss_behind_nm(behind, factor.lane(lane))
         })) // MP-3
@@ -484,7 +504,11 @@ impl<'a, R: Real> Driveline<'a, R> {
         if self.is_mapped() {
             return Some(secondary_nm.splat(0.0)); // MP-3
         }
-        let at = (primary_rad_s, secondary_nm, pressure_pa);
+        let at = MapInputs {
+            speed_rad_s: primary_rad_s,
+            torque_nm: secondary_nm,
+            pressure_pa,
+        };
         self.mapped(Component::BeltMap, at, inside)
     }
 
@@ -502,7 +526,11 @@ impl<'a, R: Real> Driveline<'a, R> {
         torques.bearing[0] = self.bearing_nm(0, clamp);
         torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
-            let at = (primary_rad_s, primary_rad_s.splat(0.0), clamp.pressure_pa);
+            let at = MapInputs {
+                speed_rad_s: primary_rad_s,
+                torque_nm: primary_rad_s.splat(0.0),
+                pressure_pa: clamp.pressure_pa,
+            };
             let clutch = &self.cvt.clutch_drag;
             torques.clutch = self.loss_nm(Component::ClutchDrag, at, inside, || {
                 clutch.torque_nm(self.viscosity.clutch, primary_rad_s)
@@ -510,7 +538,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         }
     }
 
-    /// What turns with the engine's shaft at a speed.
+    /// Computes the parts on the engine's shaft at a speed.
     pub fn engine_shaft(&self, rad_s: R) -> EngineShaft<'_, R> {
         EngineShaft {
             rad_s,
@@ -533,7 +561,11 @@ impl<'a, R: Real> Driveline<'a, R> {
         shift_flow_m3_s: R,
         inside: &mut R::Mask,
     ) -> PumpState<R> {
-        let at = (shaft.rad_s, pressure_pa.splat(0.0), pressure_pa);
+        let at = MapInputs {
+            speed_rad_s: shaft.rad_s,
+            torque_nm: pressure_pa.splat(0.0),
+            pressure_pa,
+        };
         let mut state = PumpState::none(pressure_pa);
         if self.parts.pump {
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;

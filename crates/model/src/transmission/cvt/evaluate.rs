@@ -30,7 +30,7 @@ pub(super) struct Step<'a, P, R: Real = f64> {
     pub shift_flow_m3_s: R,
     /// True where pump flow held the shift back.
     pub shift_held: R::Mask,
-    /// What the ratio control keeps.
+    /// State of the ratio control.
     pub shifting: Shifting<R>,
     /// Engine speeds within reach.
     pub reach: Reach<R>,
@@ -337,7 +337,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         wanted_nm
     }
 
-    /// What follows from the torques up to the engine, which are in the point: those of its own shaft, and engine speed, throttle and pressure under a limit.
+    /// Continues from the torques up to the engine, which are in the point: adds those of the engine's shaft, engine speed, throttle and pressure under a limit.
     fn follow(
         &self,
         g: &Guess<R>,

@@ -16,7 +16,7 @@ use crate::transmission::gear_train::{GearParts, GearTrain};
 pub struct FinalDrive<R: Real = f64> {
     /// Speed of the secondary over that of the wheels (CV-1).
     pub ratio: R,
-    /// Its gears, bearings and seals (FD-1, FD-2).
+    /// Gears, bearings and seals (FD-1, FD-2).
     pub train: GearTrain<R>,
 }
 

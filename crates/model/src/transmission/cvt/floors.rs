@@ -1,4 +1,4 @@
-//! What needs a smallest secondary pressure besides the belt's torque, in a box with one line pressure.
+//! Lower bounds of the secondary pressure other than the belt's torque, in a box with one line pressure.
 //!
 //! | label | statement | status |
 //! |---|---|---|

@@ -156,7 +156,7 @@ impl Cvt {
     }
 }
 
-/// Whether the launch clutch is behind the variator; a converter there, or a map of the whole box, is reported.
+/// Reads the place of the launch clutch, true behind the variator; a converter there, or a map of the whole box, is reported.
 fn launch_behind<V: Values>(s: &V, launch: &dyn Coupling, changes: Option<&LossChanges>) -> bool {
     let behind = s.word(&CVT.launch_at) == "output";
     if behind && launch.by_command() {

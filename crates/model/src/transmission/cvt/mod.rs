@@ -63,7 +63,7 @@ use std::sync::Arc;
 /// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 
-/// Its logarithm.
+/// Logarithm of the reference viscosity.
 const LN_NU_REFERENCE: f64 = -11.417_615_285_165_903;
 
 /// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1).
@@ -151,33 +151,33 @@ pub struct Cvt<R: Real = f64> {
     pub belt_heat_share: R,
 }
 
-/// What the CVT keeps of the step before.
+/// State of the CVT after the step before.
 #[derive(Clone, Debug)]
 pub struct CvtState<R: Real = f64> {
     /// Belt at the ratio in force.
     pub belt: BeltAtRatio<R>,
     /// Start of the solve.
     pub warm_start: WarmStart<R>,
-    /// What the ratio control keeps of the step before.
+    /// State of the ratio control after the step before.
     pub shifting: Shifting<R>,
-    /// What the next step is held at, if it is.
+    /// Imposed values of the next step, if any.
     pub hold: Option<Hold<R>>,
 }
 
 impl Copy for CvtState {}
 
-/// What is imposed on a CVT in a step, in place of its controller (RC-12).
+/// Values imposed on a CVT in a step, in place of its controller (RC-12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold<R: Real = f64> {
     /// Belt ratio at the end of the step; the one before at rest.
     pub ratio: R,
     /// Clamp law; that of the box without one.
     pub clamp: Option<ClampLaw<R>>,
-    /// Whether the ratio is only asked for: the box goes there as fast as it can (RC-4, RC-5).
+    /// True if the ratio is a target: the box goes there as fast as it can (RC-4, RC-5).
     pub paced: bool,
 }
 
-/// What the ratio control keeps of the step before.
+/// State of the ratio control after the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shifting<R: Real = f64> {
     /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
@@ -262,6 +262,7 @@ impl<R: Real> Cvt<R> {
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
+    #[inline]
     pub fn radius_factor(&self, at: &BeltAtRatio<R>) -> R {
         (self.radius_exponent * (self.low_radius_m / at.geometry.primary_radius_m).ln()).exp()
     }
@@ -304,6 +305,7 @@ impl<R: Real> Cvt<R> {
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
+    #[inline]
     pub fn start<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -402,6 +404,7 @@ impl<R: Real> Cvt<R> {
 impl<R: Real> super::Driveline<R> for Cvt<R> {
     type State = (CvtState<R>, DrivelineState<R>);
 
+    #[inline]
     fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State {
         Cvt::start(self, input)
     }
@@ -440,7 +443,7 @@ impl<R: Real> super::Driveline<R> for Cvt<R> {
 }
 
 impl Cvt {
-    /// Whether a step searches through a law of its own: several cars side by side would each wait for the searches of all.
+    /// True if a step searches through a law of the car: several cars side by side would each wait for the searches of all.
     pub fn searches(&self) -> bool {
         let by_slip = matches!(self.clamp, ClampLaw::SlipLimited { .. });
         by_slip || self.ratio.shift_map.is_some()
@@ -456,7 +459,7 @@ impl Cvt {
     /// Multiplies each loss by a factor (CV-7, LC-6).
     pub fn scale_losses(&mut self, factors: &LossFactors) {
         let launch = factors[Component::LaunchClutch];
-        self.coupling = PartialLoss::of(self.coupling.clone(), launch);
+        self.coupling = PartialLoss::scaled(self.coupling.clone(), launch);
         let mut own = product(&self.loss_factors(), factors);
         own[Component::LaunchClutch] = 1.0; // the coupling has it
         if loss_factor::changes(&own) || self.changes.is_some() {
@@ -475,6 +478,6 @@ impl Cvt {
     ) -> (f64, ClampCause) {
         let (pressure_pa, cause) =
             self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s);
-        (pressure_pa, ClampCause::of(cause))
+        (pressure_pa, ClampCause::from_number(cause))
     }
 }

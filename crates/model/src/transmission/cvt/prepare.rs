@@ -1,4 +1,4 @@
-//! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
+//! Prepares a step of the CVT: the ratio after shifting, and everything that depends on ratio and temperature only.
 
 use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
 use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
@@ -28,7 +28,7 @@ fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R) {
 /// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
 pub(super) type Before<'a, R> = (&'a Geometry<R>, &'a Shifting<R>, &'a Option<Hold<R>>);
 
-/// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
+/// Inputs of the shift: the pump's free flow, efficiency for the full-load route.
 struct Route<R: Real> {
     pump: PumpAtTemperature<R>,
     efficiency: R,
@@ -44,7 +44,7 @@ struct Shift<R: Real> {
     flow_m3_s: R,
     /// True where pump flow held it back.
     held: R::Mask,
-    /// What the control keeps.
+    /// State of the control.
     kept: Shifting<R>,
 }
 

@@ -143,10 +143,10 @@ const THICK: f64 = 1.0 / ETA_REFERENCE_PA_S;
 /// Viscosity at which C_v is defined, Pa s.
 pub const ETA_REFERENCE_PA_S: f64 = 0.010;
 
-/// Its logarithm.
+/// Logarithm of the reference viscosity.
 pub(super) const LN_ETA_REFERENCE: f64 = -2.0 * LN_10;
 
-/// What the pump's oil does at one temperature.
+/// Pump quantities of the oil at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpAtTemperature<R: Real = f64> {
     /// Factor (eta/eta_r)^m of PU-1.
@@ -187,13 +187,13 @@ pub struct PumpState<R: Real = f64> {
     pub flow_m3_s: R,
     /// Flow drawn by the displacement that works against pressure, m3/s.
     pub working_m3_s: R,
-    /// Whether the flow that the whole displacement draws falls short of the need.
+    /// True where the flow of the whole displacement falls short of the need.
     pub flow_limited: R::Mask,
 }
 
 #[physics]
 impl<R: Real> PumpState<R> {
-    /// Of no pump; `like` has the lanes.
+    /// State without a pump; `like` has the lanes.
     pub fn none(like: R) -> Self {
         let none = like.splat(0.0);
         PumpState {
@@ -218,6 +218,7 @@ impl<R: Real> Pump<R> {
     }
 
     /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
+    #[inline]
     pub fn steady_need_m3_s(&self, secondary_pa: R, eta_pa_s: R) -> R {
         self.with_factor(eta_pa_s, eta_pa_s.splat(1.0))
             .need_m3_s(secondary_pa)
@@ -251,7 +252,7 @@ impl<R: Real> Pump<R> {
         }
     }
 
-    /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
+    /// Computes the pump quantities of the oil at a viscosity (PU-1, PU-2, PU-5).
     pub fn at(&self, eta_pa_s: R) -> PumpAtTemperature<R> {
         let log = eta_pa_s.ln() - LN_ETA_REFERENCE;
         self.with_factor(eta_pa_s, (self.viscous_exponent * log).exp())
@@ -310,7 +311,7 @@ pub struct TurningPump<'a, R: Real = f64> {
 
 #[physics]
 impl<R: Real> TurningPump<'_, R> {
-    /// What the whole displacement draws, m3/s (PU-5). Its roots take longer than all else of the pump: most often they are not needed.
+    /// Flow of the whole displacement, m3/s (PU-5). The roots take longer than the rest of the pump and are seldom needed.
     fn drawn_m3_s(&self) -> R {
         self.now.drawn_m3_s(self.flow_m3_s)
     }

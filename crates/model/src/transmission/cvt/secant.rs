@@ -1,4 +1,4 @@
-//! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
+//! Slopes from the evaluations of a solve for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
 use crate::math::{Mask, Real, physics};
@@ -41,7 +41,7 @@ pub struct Trend<R: Real = f64> {
     slip: Series<R>,
 }
 
-/// What a solve begins with, from the step before.
+/// Start of a solve from the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmStart<R: Real = f64> {
     /// Losses and slip.
@@ -80,6 +80,7 @@ pub(crate) struct Series<R: Real = f64> {
 #[physics]
 impl<R: Real> Series<R> {
     /// A value without a past.
+    #[inline]
     fn new(value: R) -> Self {
         let none = value.splat(0.0);
         Series {
@@ -109,6 +110,7 @@ impl<R: Real> Series<R> {
 #[physics]
 impl<R: Real> Trend<R> {
     /// Nothing is known; `like` has the lanes.
+    #[inline]
     fn new(like: R) -> Self {
         let none = Series::new(like.splat(0.0));
         Trend {
@@ -135,6 +137,7 @@ impl<R: Real> Trend<R> {
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
+    #[inline]
     pub(super) fn reset_at_standstill(&mut self) {
         *self = Trend {
             loss: Series::new(self.loss.value),
@@ -155,7 +158,7 @@ impl<R: Real> Trend<R> {
     }
 }
 
-/// Whether two accelerations, m/s2, are the same but for rounding.
+/// True if two accelerations, m/s2, are equal but for rounding.
 #[physics]
 fn is_alike(a_m_s2: f64, b_m_s2: f64) -> bool {
     (a_m_s2 - b_m_s2).abs() < ALIKE_M_S2
@@ -222,6 +225,7 @@ pub(super) struct TorqueSecant<R: Real> {
 
 #[physics]
 impl<R: Real> TorqueSecant<R> {
+    #[inline]
     pub fn new(ratio: R, first_nm: R) -> Self {
         TorqueSecant {
             ratio,

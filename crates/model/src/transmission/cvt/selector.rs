@@ -21,7 +21,7 @@ pub struct Selector<R: Real = f64> {
     pub neutral_after_s: R,
 }
 
-/// What the selector looks at in a step at rest.
+/// Inputs of the selector in a step at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelectorSignals {
     /// Time from a start of the engine until the cycle has the selector in drive, s.

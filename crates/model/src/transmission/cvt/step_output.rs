@@ -15,7 +15,7 @@ use crate::transmission::component::Component;
 use crate::transmission::coupling::Coupling;
 use crate::transmission::step::{DrivelineState, StepOutput};
 
-/// What pump and clamp law settle on with the car at rest in gear.
+/// Equilibrium of pump and clamp law with the car at rest in gear.
 struct Idling<R: Real> {
     pressure_pa: R,
     /// Number of the cause.
@@ -93,7 +93,7 @@ fn idling<P: PrimeMover<R>, R: Real>(
 /// The causes of their numbers.
 #[physics]
 fn causes<R: Real>(number: R) -> R::PerLane<ClampCause> {
-    R::per_lane(|lane| ClampCause::of(number.lane(lane)))
+    R::per_lane(|lane| ClampCause::from_number(number.lane(lane)))
 }
 
 /// Evaluations as whole numbers.
@@ -267,7 +267,7 @@ const TOGETHER: f64 = 1.0 + 1e-4;
 const JUST_ABOVE: f64 = 1.0 + 1e-9;
 const JUST_BELOW: f64 = 1.0 - 1e-9;
 
-/// What the wheels get: what they demand, or where a limit binds what there is, and the rest to the brakes or as a deficit.
+/// Splits the power at the wheels: their demand, or under a limit the power there is, with the rest to the brakes or as a deficit.
 #[physics]
 fn give<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
@@ -332,7 +332,7 @@ fn solve_flags<P: PrimeMover<R>, R: Real>(
     common_flags(step, output, inside & within);
 }
 
-/// Whether a clamp law that is a table has the belt's ratio, its torque at the secondary, Nm, and its speed, rad/s; of another law true (PC-6).
+/// True if the table of a clamp law covers the belt's ratio, its torque at the secondary, Nm, and its speed, rad/s; true for other laws (PC-6).
 #[physics]
 fn table_holds<P, R: Real>(step: &Step<P, R>, secondary_nm: R, secondary_rad_s: R) -> R::Mask {
     let (ClampLaw::Table, Some(tables)) = (step.clamp, &step.line.cvt.pressure_table) else {

@@ -40,7 +40,7 @@ pub struct Bearing {
     pub preload_nm: f64,
 }
 
-/// What all bearings of a train share.
+/// Data shared by all bearings of a train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BearingFactors {
     /// Friction under load (BR-3).

@@ -38,7 +38,7 @@ impl Churner {
         2.0 * r * r * (half - sin * cos) + 2.0 * half * r * self.face_m
     }
 
-    /// What of CH-1 depends on neither speed nor oil, Nm over density, speed^0.59 and viscosity^0.21, SI.
+    /// Factor of CH-1 without speed and oil, Nm over density, speed^0.59 and viscosity^0.21, SI.
     pub fn factor(&self, oil_m3: f64) -> f64 {
         let r = self.radius_m;
         let d = 2.0 * r;

@@ -56,7 +56,7 @@ pub struct Mesh<R: Real = f64> {
     pitch_radius_m: R,
     /// Load of the teeth for a torque at the train's first shaft, N/mm per Nm.
     line_load_per_nm: R,
-    /// What of GM-2 follows from the wheels and the oil's kind.
+    /// Factor of GM-2 from the wheels and the oil's kind.
     friction_factor: R,
 }
 
@@ -118,6 +118,7 @@ impl Stage {
 impl<R: Real> Mesh<R> {
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
+    #[inline]
     pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::frictions([self], first_rad_s, torque_nm, log_eta)[0]
     }
@@ -161,6 +162,7 @@ impl<R: Real> Mesh<R> {
     }
 
     /// Lost share of the power through the mesh (GM-3).
+    #[inline]
     pub fn share(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::shares([self], first_rad_s, torque_nm, log_eta)[0]
     }

@@ -40,7 +40,7 @@ pub struct GearParts {
     pub teeth: Teeth,
     /// Bearings.
     pub bearings: Vec<Bearing>,
-    /// What the bearings share.
+    /// Data shared by the bearings.
     pub bearing: BearingFactors,
     /// Wheels in the sump.
     pub churners: Vec<Churner>,

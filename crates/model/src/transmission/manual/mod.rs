@@ -117,7 +117,7 @@ impl Manual {
     }
 }
 
-/// What a driver does with the box in a step.
+/// Action of a driver on the box in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Action {
     /// Drives in a gear.
@@ -200,7 +200,7 @@ impl<R: Real> Manual<R> {
         ratio * wheel_rad_s
     }
 
-    /// What the driver of a run does: what the cycle commands, else what the shift speeds say (MB-5).
+    /// Action of the driver of a run: the command of the cycle, else that of the shift speeds (MB-5).
     fn action<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,

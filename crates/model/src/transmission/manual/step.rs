@@ -24,7 +24,7 @@ pub(super) struct ManualStep<'a, P, R: Real = f64> {
 
 #[physics]
 impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
-    /// What the drivers do: each kind of it once for all runs, of which those take it over that do it.
+    /// Computes each kind of action once for all runs and selects it in the runs that take it.
     pub fn act(&self, actions: &R::PerLane<Action>, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
         if R::LANES == 1 {
@@ -48,7 +48,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         }
     }
 
-    /// What all drivers do alike.
+    /// Computes one action for all runs.
     fn act_alike(&self, action: Action, output: &mut StepOutput<R>) {
         match action {
             Action::Engaged(gear) => {
@@ -67,6 +67,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// The highest gear.
+    #[inline]
     fn top(&self) -> u8 {
         self.manual.overall.len() as u8
     }
@@ -117,6 +118,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
     }
 
     /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
+    #[inline]
     fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
         like.vectorize(|| {
@@ -260,7 +262,7 @@ impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
         });
         let least = self.manual.coupling.min_engine_rad_s(input_rad_s);
         let before_rad_s = self.state.engine_rad_s;
-        // What passes on at full load is no more than that; the rest of a demand is missing.
+        // Full load bounds the torque that passes; the rest of a demand is missing.
         let passed_nm = input_nm.clamp(0.0, self.step.engine.full_load_nm(before_rad_s));
         let reach = self.step.reach(before_rad_s, passed_nm);
         let end_rad_s = reach.nearest(wanted).max(least);

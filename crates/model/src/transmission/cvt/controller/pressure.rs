@@ -132,7 +132,7 @@ impl Gather for ClampLaw {
     }
 }
 
-/// What the law looks at.
+/// Inputs of the law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClampSignals<R: Real = f64> {
     /// Throttle 0..1.

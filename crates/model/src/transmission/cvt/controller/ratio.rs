@@ -1,4 +1,4 @@
-//! Which ratio the box takes: a variogram with a limited shift rate.
+//! Ratio control: a variogram with a limited shift rate.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -57,7 +57,7 @@ pub struct RatioControl<R: Real = f64> {
     pub line: Option<Box<OperatingLine<R>>>,
     /// A table in place of gentle driving, if there is one; lines come before it.
     pub shift_map: Option<R::PerLane<Arc<ShiftMap>>>,
-    /// What a cold car adds to the target.
+    /// Rise of the target in a cold car.
     pub cold: ColdRise<R>,
 }
 
@@ -99,7 +99,7 @@ impl<R: Real> OperatingLine<R> {
     }
 }
 
-/// What a cold car adds to the target of engine speed (RC-11).
+/// Rise of the target of engine speed in a cold car (RC-11).
 #[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ColdRise<R: Real = f64> {
     /// Rise in full, rad/s.
@@ -132,7 +132,7 @@ impl<R: Real> ColdRise<R> {
     }
 }
 
-/// What the controller looks at.
+/// Inputs of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RatioDemand<R: Real = f64> {
     /// Speed of the secondary once the clutch has locked, rad/s.
@@ -147,9 +147,9 @@ pub struct RatioDemand<R: Real = f64> {
     pub share: R,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: R,
-    /// What the shift map has for it, rad/s (RC-14); none without one.
+    /// Engine speed of the shift map, rad/s (RC-14); `None` without one.
     pub mapped_rad_s: Option<R>,
-    /// What a cold car adds to the target, rad/s.
+    /// Rise of the target in a cold car, rad/s.
     pub cold_rad_s: R,
     /// Ratio before the step.
     pub ratio_before: R,
@@ -157,7 +157,7 @@ pub struct RatioDemand<R: Real = f64> {
     pub flow_down_per_s: R,
     /// Limit from pump flow towards high, 1/s.
     pub flow_up_per_s: R,
-    /// Whether the launch clutch has locked.
+    /// True with the launch clutch locked.
     pub coupled: R::Mask,
     /// Direction of the last change: 1 towards low, -1 towards high, 0 before the first.
     pub last_direction: R::PerLane<i8>,

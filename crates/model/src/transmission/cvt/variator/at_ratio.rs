@@ -12,9 +12,9 @@ pub struct BeltAtRatio<R: Real = f64> {
     pub direction: R,
     /// Primary clamp over secondary clamp (TE-1).
     pub thrust_ratio: R,
-    /// What the loss equations need of the belt, whatever its ratio.
+    /// Constants of the loss equations at any ratio.
     pub fixed: Fixed<R>,
-    /// What they need of this ratio, worked out once.
+    /// Constants of the loss equations at this ratio.
     pub prepared: Prepared<R>,
 }
 
@@ -88,6 +88,7 @@ pub struct Prepared<R: Real = f64> {
 
 #[physics]
 impl<R: Real> Fixed<R> {
+    #[inline]
     fn new(belt: &Belt<R>) -> Self {
         let inv_pitch = 1.0 / belt.segment_thickness_m;
         Fixed {
@@ -109,6 +110,7 @@ impl<R: Real> Fixed<R> {
 
 #[physics]
 impl<R: Real> Prepared<R> {
+    #[inline]
     fn new(
         belt: &Belt<R>,
         fixed: &Fixed<R>,
@@ -153,6 +155,7 @@ impl<R: Real> Prepared<R> {
 #[physics]
 impl<R: Real> BeltAtRatio<R> {
     /// Prepares a ratio.
+    #[inline]
     pub fn new(belt: &Belt<R>, ratio: R) -> Self {
         ratio.vectorize(|| Self::prepare(belt, Fixed::new(belt), ratio))
     }

@@ -6,7 +6,7 @@
 use crate::keys::Choice;
 use crate::math::{Real, physics, tan};
 
-/// Which reading of the belt model is used.
+/// Reading of the belt model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
     /// For driving: Appendix C, with chapter 8's sign of the primary slip in inverted loading and the end-stop ramp.
@@ -37,7 +37,7 @@ impl Formulation {
         Choice::word(Self::NAMES[2].0, "as the equations of chapter 8"),
     ];
 
-    /// Its name.
+    /// Name of the formulation.
     pub fn name(self) -> &'static str {
         let own = Self::NAMES.iter().find(|(_, other)| *other == self);
         own.map_or("", |(name, _)| name)
@@ -66,7 +66,7 @@ impl Formulation {
         }
     }
 
-    /// Whether the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
+    /// True if the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
     #[inline]
     pub fn has_film(self) -> bool {
         self == Formulation::Smooth

@@ -79,7 +79,7 @@ impl<R: Real> Geometry<R> {
 }
 
 impl Geometry {
-    /// Whether a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
+    /// True if a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
     pub fn is_real(&self, belt_length_m: f64, segment_thickness_m: f64) -> bool {
         let arcs = [
             self.primary_radius_m * self.primary_wrap_rad,

@@ -1,10 +1,10 @@
-//! What acts on the belt: speed, torque, clamping force, and the friction that its fluid lends.
+//! Load of the belt: speed, torque, clamping force and the friction of its lubricant.
 
 use super::{Belt, Geometry, bands};
 use crate::lubricant::{BandFriction, Friction, Lubricant};
 use crate::math::{Mask, Real, physics};
 
-/// What acts on the belt at one operating point.
+/// Load of the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeltLoad<R: Real = f64> {
     /// Primary speed, rad/s.

@@ -134,7 +134,7 @@ pub struct BeltState<R: Real = f64> {
     pub losses: BeltLosses<R>,
 }
 
-/// What the driveline needs of the belt: losses as torques at the primary shaft, Nm, never negative.
+/// Losses of the belt as torques at the primary shaft, Nm, never negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BeltLosses<R: Real = f64> {
     /// Boundary friction of the bands.
@@ -185,7 +185,7 @@ impl BeltState {
     pub fn times(self, factor: &LossFactors, output_nm: f64, ratio: f64) -> Self {
         let losses = self.losses.times(factor);
         let slips = factor[Component::BeltSlip];
-        // What a printed sum holds besides VA-1 stays as it is.
+        // Parts of a printed sum other than VA-1 stay as they are.
         let own_nm = |l: &BeltLosses| output_nm / ratio * (1.0 - l.slip_total) + l.sum_nm(); // VA-1
         BeltState {
             input_torque_nm: self.input_torque_nm + own_nm(&losses) - own_nm(&self.losses),

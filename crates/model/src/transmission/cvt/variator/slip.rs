@@ -38,7 +38,7 @@ pub struct Slip<R: Real = f64> {
     pub secondary_loss_nm: R,
     /// Segments in the active arc of the branch in force.
     pub active_segments: R,
-    /// Whether the bound of SL-9 holds the slip.
+    /// True where the bound of SL-9 limits the slip.
     pub held: R::Mask,
 }
 
@@ -70,7 +70,7 @@ fn arc_area_m2<R: Real>(compression_n: R) -> R {
     printed_area_m2(compression_n.min(MAX_AREA_N))
 }
 
-/// What the slip equations of both branches look at; pairs are primary, secondary.
+/// Inputs of the slip equations of both branches; pairs are primary, secondary.
 #[derive(Clone, Copy)]
 pub(super) struct Contact<'a, R: Real = f64> {
     pub belt: &'a Belt<R>,

@@ -108,6 +108,7 @@ impl<R: Real> Tension<R> {
     }
 
     /// Step of tension without compression, N: the torque at which compression changes sign gives it (TE-5, TE-7 with Z = 0).
+    #[inline]
     pub fn bare_step_n(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
         let (clamp_n, [centrifugal_n, _]) = forces_n(belt, at, load);
         let g = &at.geometry;
