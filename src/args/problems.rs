@@ -15,12 +15,12 @@ pub fn bad_value(option: &str, value: &str, allowed: &str, message: &str, hint: 
     problem(option, message, hint).value(value).allowed(allowed)
 }
 
-/// A question for the known names that are similar to the given one; empty if there are none.
+/// Asks about known names similar to the given one; empty without any.
 pub fn did_you_mean(value: &str, known: &[&str]) -> String {
     cvtcycle::config::did_you_mean(value, known.iter().copied()).unwrap_or_default()
 }
 
-/// The overrides that an option gives, except those that are none, which are reported under it.
+/// Parses the overrides of an option. Invalid ones are reported under it and left out.
 pub fn overrides(option: &str, texts: &[String], problems: &mut Problems) -> Vec<Override> {
     let parse = |text: &String| {
         let found = text.parse::<Override>();
@@ -37,19 +37,19 @@ pub fn assigned(option: &str, text: &str, problem: Problem) -> Problem {
 /// Problems of arguments of the library under the option that gives them.
 pub fn cite(option: &str, found: impl Into<Problems>) -> Problems {
     found.into().map(|problem| match problem.place.input {
-        // It has an option of its own.
+        // Columns have an option of their own.
         Input::Argument(Argument::Columns) => in_options(problem),
         Input::Argument(_) => problem.in_file(option).key(option),
         _ => problem,
     })
 }
 
-/// A problem under the option or argument of the command line that it is about, with the options that its hint speaks about.
+/// Cites the option or argument of the command line that a problem is about, and those that its hint mentions.
 pub fn in_options(mut problem: Problem) -> Problem {
     if !problem.settings.is_empty() {
         let options: Vec<&str> = problem.settings.iter().map(|s| flag_of(*s)).collect();
         problem.hint += &format!(" ({})", options.join(", "));
-        // Once, however often it is handed on.
+        // Added once, even if the problem passes here again.
         problem.settings = &[];
     }
     match &problem.place.input {

@@ -21,7 +21,7 @@ use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Allowed factor on a loss.
 const FACTOR: Bound = Bound::closed(0.0, 5.0);
-/// Which pairs are given.
+/// Names of the choices of `--pairs`.
 const PAIRS: [(&str, Pairs); 3] = [
     ("large", Pairs::Large),
     ("all", Pairs::All),
@@ -148,7 +148,7 @@ impl Execute for AttributeArgs {
 }
 
 impl AttributeArgs {
-    /// The runs at one ambient temperature, with their prices.
+    /// Drives the cars at one ambient temperature and computes their prices.
     fn priced(&self, plan: &AttributePlan, ambient_degc: f64) -> Summary {
         let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
         let conditions = plan.cars.conditions(ambient_degc, false);
@@ -172,7 +172,7 @@ impl AttributeArgs {
     }
 }
 
-/// One line for each failed check, of a car as it is and of one with changed losses.
+/// One line for each failed check, of the original cars and of those with changed losses.
 fn failures(summary: &AttributionSummary) -> Vec<String> {
     let of = |summary: &Summary| {
         let runs = summary.runs.iter();

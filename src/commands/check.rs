@@ -56,7 +56,7 @@ pub struct CheckArgs {
     output: JsonArgs,
 }
 
-/// Kind of a file, and what its reader should know.
+/// Kind of a file and notes for its reader, or its problems.
 type Checked = Result<(InputKind, Vec<String>), Problems>;
 
 impl Execute for CheckArgs {
@@ -84,7 +84,7 @@ impl Execute for CheckArgs {
     }
 }
 
-/// What is checked.
+/// Checked input of `check`.
 pub enum CheckPlan {
     Files(Vec<(String, Checked)>),
     Physics(Box<PhysicsPlan>),
@@ -141,7 +141,7 @@ fn check(file: &str, columns: &Columns) -> Checked {
             }
             Err(found) => Err(of_map(&word).map_or(found, Into::into)),
         },
-        // Only embedded.
+        // Classes and rigs are embedded and have no files.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
         InputKind::Levers => LeverFile::open(&word).map(drop).map(none),
@@ -156,10 +156,10 @@ fn check(file: &str, columns: &Columns) -> Checked {
     Ok((kind, notes))
 }
 
-/// Columns that only the measured maps of a vehicle have.
+/// Columns found in measured maps of a vehicle and nowhere else.
 const OF_MAPS: [&str; 2] = ["torque_loss_nm", "bsfc_g_kwh"];
 
-/// What is said of a table that is a map of a vehicle, and no cycle.
+/// Problem of a table that is a map of a vehicle instead of a cycle.
 fn of_map(word: &str) -> Option<Problem> {
     let bytes = bytes("FILE", word, bounded::TABLE).ok()?;
     let text = String::from_utf8_lossy(&bytes);
@@ -179,7 +179,7 @@ fn of_map(word: &str) -> Option<Problem> {
     })
 }
 
-/// Only a run reads the baselines; what is wrong with them is reported here, and what makes that they are not like for like is doubted.
+/// Reads the baselines as well, which otherwise only a run does. Their problems are reported, and differences that spoil the comparison give a note.
 fn check_vehicle(file: &str, word: &str) -> Result<Vec<String>, Problems> {
     let setup = setup::load(word, &Options::default())?;
     let mut problems = Problems::default();

@@ -14,9 +14,9 @@ use crate::args::problems::bad_value;
 use crate::print::colour::Paint;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text, sections};
 
-/// Most runs of a comparison.
+/// Maximum number of runs of a comparison.
 const MOST: usize = 20;
-/// Runs next to each other in a table.
+/// Maximum number of runs abreast in a table.
 const ABREAST: usize = 5;
 
 /// Arguments of `compare`.

@@ -24,7 +24,7 @@ Examples:
 
 How the file was read, and what the new form cannot hold, is said on standard error; `cvtcycle list columns` prints the names that are known.")]
 pub struct ConvertArgs {
-    /// What the file is
+    /// Kind of the file
     #[arg(value_enum)]
     what: ConvertedKind,
     /// Cycle: a name, constant_V (V in km/h), or a file
@@ -49,14 +49,14 @@ pub struct ConvertArgs {
     force: bool,
 }
 
-/// What can be converted.
+/// Kinds of input that can be converted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ConvertedKind {
     /// A drive cycle
     Cycle,
 }
 
-/// The text, what is said about it, and where it goes.
+/// Converted text, notes about it, and its destination.
 pub struct ConvertPlan {
     written: Written,
     said: Vec<String>,
@@ -130,7 +130,7 @@ impl Execute for ConvertArgs {
 }
 
 impl ConvertArgs {
-    /// Puts the gears of a car into the cycle, and says what decides them; none, with a problem, where they are not known beforehand.
+    /// Adds the gears of a car to the cycle and notes their origin. Records a problem and returns None if they depend on the drive.
     fn shift(
         &self,
         cycle: &mut Cycle,

@@ -13,7 +13,7 @@ use crate::args::JsonArgs;
 use crate::print::colour::Paint;
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
-/// Longest value in the column of values.
+/// Maximum length in the column of values.
 const MAX_VALUE_LEN: usize = 24;
 /// Arguments of `explain`.
 #[derive(Args, Clone, Debug)]
@@ -115,7 +115,7 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
     text + &table.text()
 }
 
-/// The value of a key that is not given, with its unit.
+/// Default of a key with its unit.
 fn default_of(known: &KeyInfo) -> Option<String> {
     let value = match Override::number(&known.key, 0.0).row()?.presence {
         Presence::Number(x) => x.to_string(),

@@ -56,7 +56,7 @@ pub struct FmuArgs {
     out: OutArgs,
 }
 
-/// An FMU, and the file that it goes to.
+/// Contents of an FMU, and its file.
 pub struct FmuPlan {
     kind: Kind,
     fmi: Fmi,
@@ -118,7 +118,7 @@ impl Execute for FmuArgs {
             car: plan.car,
             libraries: plan.libraries,
         };
-        // A zip is written with going back, which a file under way has not.
+        // Writing a zip needs seeking, which a pending output file does not allow.
         let mut bytes = io::Cursor::new(Vec::new());
         let written = package.write(&mut bytes);
         let written = written.and_then(|()| io::Write::write_all(&mut file, bytes.get_ref()));
@@ -134,7 +134,7 @@ impl Execute for FmuArgs {
 }
 
 impl FmuArgs {
-    /// The shared libraries, one a platform.
+    /// Shared libraries, at most one for each platform.
     fn libraries(&self) -> Result<Vec<(Platform, Vec<u8>)>, Problems> {
         let mut problems = Problems::new();
         let mut found: Vec<(Platform, Vec<u8>)> = Vec::new();
@@ -159,7 +159,7 @@ impl FmuArgs {
     }
 }
 
-/// A library that is named.
+/// Reads a library named by the option.
 fn library(path: &Path) -> Result<(Platform, Vec<u8>), Problem> {
     let value = path.display().to_string();
     let bytes = bounded::read_file(path, bounded::RECORD).map_err(|error| {
@@ -175,7 +175,7 @@ fn library(path: &Path) -> Result<(Platform, Vec<u8>), Problem> {
     Ok((platform, bytes))
 }
 
-/// The libraries in the folder of this program, with that of Windows also where Cargo puts it.
+/// Libraries next to this program; that for Windows is also searched in Cargo's target folder.
 fn own_libraries() -> Result<Vec<(Platform, Vec<u8>)>, Problem> {
     let program = std::env::current_exe().unwrap_or_default();
     let folder = program.parent().unwrap_or(Path::new("."));

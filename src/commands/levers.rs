@@ -16,9 +16,9 @@ use crate::args::problems::{bad_value, cite, did_you_mean, in_options};
 use crate::args::{AmbientsArgs, CycleArgs, DriveArgs, Names, count, number};
 use crate::print::{CommandResult, Terminal};
 
-/// Allowed speed below which a loaded engine is heard and felt, rpm.
+/// Allowed `--nvh-rpm`, rpm: engine speed below which load causes noise and vibration.
 const HEARD: Bound = Bound::closed(500.0, 4000.0);
-/// Most columns of a study: each is a car that is held in memory.
+/// Maximum number of vehicle variants of a study, all of which are in memory.
 const MOST_COLUMNS: usize = 500;
 
 /// Arguments of `levers`.
@@ -110,7 +110,7 @@ impl Execute for LeversArgs {
 }
 
 impl LeversArgs {
-    /// The study of all levers; none after a problem.
+    /// Builds the study of all levers. None after a problem.
     fn study(&self, problems: &mut Problems) -> Option<Study> {
         let levers = self.levers(problems);
         let cycle = problems.take(cycle::find(&self.cycle.word));
@@ -157,7 +157,7 @@ impl LeversArgs {
     }
 }
 
-/// The levers of a file; a vehicle in its place has a hint.
+/// Reads a lever file; the problem of a vehicle file in its place has a hint.
 fn of_levers(word: &str) -> Result<LeverFile, Problems> {
     let is_vehicle = || matches!(InputKind::detect(word, true), Ok((InputKind::Vehicle, _)));
     if is_path(word) && is_vehicle() {
@@ -169,7 +169,7 @@ fn of_levers(word: &str) -> Result<LeverFile, Problems> {
 }
 
 impl LeversArgs {
-    /// The levers of all files that are asked for; none after a problem.
+    /// Reads the levers of all requested files. None after a problem.
     fn levers(&self, problems: &mut Problems) -> Option<Vec<Lever>> {
         let is_named = !self.files.is_empty();
         let shipped = || {
@@ -222,7 +222,7 @@ impl LeversArgs {
         Some(levers)
     }
 
-    /// Names of levers in an option; one that is none is a problem.
+    /// Parses names of levers; unknown ones are problems.
     fn named(
         &self,
         option: &str,
@@ -239,7 +239,7 @@ impl LeversArgs {
         names.to_vec()
     }
 
-    /// The plan, the number of draws and the seed; none inside for no draws.
+    /// Parses the plan, the number of draws and the seed. The inner value is None for no draws.
     fn draws(&self, problems: &mut Problems) -> Option<Option<(Plan, u64, u64)>> {
         let samples = problems.take(count("--samples", &self.samples, 0..=MAX_SAMPLES));
         let seed = problems.take(count("--seed", &self.seed, 0..=u64::MAX));

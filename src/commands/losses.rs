@@ -23,7 +23,7 @@ use crate::print::{
 };
 use plan::LossesPlan;
 
-/// Largest number of points that are drawn.
+/// Maximum number of points drawn.
 const MAX_DRAWN: usize = 100_000;
 const NOT_DRAWN: &str = "  no plots: more than 100000 points\n";
 

@@ -28,7 +28,7 @@ use crate::args::{
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use limits::{LEAST_RPM, Numbers, infeasible};
 
-/// Least engine speeds for which the bound is printed, rpm.
+/// Minimum engine speeds for which the bound is printed, rpm.
 const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
 
 /// Arguments of `optimum`.
@@ -124,7 +124,7 @@ pub struct OptimumArgs {
 /// Checked input.
 pub struct OptimumPlan {
     cycle: Cycle,
-    /// Other cycles for its line.
+    /// Further cycles for its line.
     elsewhere: Vec<Cycle>,
     /// The car under its own clamp law, then under the others.
     cars: Vec<(&'static str, Setup)>,
@@ -262,7 +262,7 @@ fn conditions(numbers: &Numbers, start: Start) -> Conditions {
 }
 
 impl OptimumArgs {
-    /// The cycle; columns may be those of a file of `--prove` alone.
+    /// Reads the cycle. Columns may be meant for the files of `--prove` only.
     fn own_cycle(&self, columns: &Columns) -> Result<Cycle, Problems> {
         let is_file = |word: &String| word.ends_with(".csv");
         match !is_file(&self.cycle.word) && self.prove.iter().any(is_file) {
@@ -271,7 +271,7 @@ impl OptimumArgs {
         }
     }
 
-    /// Other cycles for the line, as they are named; the columns are those of any of their files.
+    /// Reads the further cycles of the line by their names on the command line. The columns may apply to any of their files.
     fn elsewhere(&self, columns: &Columns, problems: &mut Problems) -> Vec<(String, Cycle)> {
         let others = |word: &&String| word.as_str() != "none";
         let mut open = |word: &String| {
@@ -296,7 +296,7 @@ impl OptimumArgs {
         problems.take(vehicles::kept_count(trace.step_count(dt_s), dt_s));
     }
 
-    /// The car under its own clamp law, then under each other one that its file has values for.
+    /// The car under its own clamp law, then under each other law that its file has values for.
     fn laws(&self, own: Setup, options: &Options) -> Vec<(&'static str, Setup)> {
         let name = law_of(&own);
         let mut cars = vec![(name, own)];
@@ -312,7 +312,7 @@ impl OptimumArgs {
     }
 }
 
-/// How a file in a directory names what a name or a path from here means: a path is one from that directory.
+/// Converts a name, or a path from the current folder, for a file in another directory.
 fn named_from(dir: Option<&Path>, word: &str) -> String {
     let Some(dir) = dir.filter(|_| word.ends_with(".toml")) else {
         return word.to_owned();

@@ -55,7 +55,7 @@ pub struct ReportArgs {
 }
 
 impl ReportArgs {
-    /// Whether the report can have a section that is driven again.
+    /// Checks the options of the interactive section, and returns whether it is wanted.
     fn check_live(&self, form: Form, problems: &mut Problems) -> bool {
         let refused = match (&self.dirs[..], form) {
             (_, Form::Markdown) => Some(("levers are in a page alone", "choose --format html")),
@@ -88,7 +88,7 @@ impl Execute for ReportArgs {
         let document = problems.take(report(&self.dirs, &self.with, self.cover.as_deref()));
         let file = match out {
             Some(file) => file.to_path_buf(),
-            // Without a readable directory, a problem of the file in it would repeat the problem of the directory.
+            // An unreadable directory would be reported a second time through the file in it.
             None if document.is_none() => return None,
             None => self
                 .dirs

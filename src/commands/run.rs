@@ -95,7 +95,7 @@ pub struct RunPlan {
 }
 
 impl RunArgs {
-    /// The run as a plan has it, for its draws.
+    /// Plan of this run for its draws.
     fn base(
         &self,
         (ambient_degc, start, dt_s, formulation): (f64, &StartWord, f64, Formulation),
@@ -184,7 +184,7 @@ impl Execute for RunArgs {
         let out = plan.out.take();
         let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
         let conditions = plan.cars.conditions(plan.ambient_degc, out.is_some());
-        // Of a car by its own name, which may be a shipped one; read while the cars are driven.
+        // Looks up published values by the name of a shipped vehicle, in parallel with the drive.
         let read = || published(&vehicles[0].name, &cycle.name);
         let (published, outcomes) = at_once(read, || plan.cars.drive(&conditions));
         let driven = vehicles::driven(vehicles, &outcomes);
@@ -213,7 +213,7 @@ impl Execute for RunArgs {
         let files = WrittenFiles::write(out, |dir| {
             run_files::write(dir, plan.format, &summary, cycle, &driven)?;
             dir.put("summary.json", &json)?;
-            // Last: it lists the others.
+            // Written last, because it lists the other files.
             if let Some(mut record) = record {
                 record.files = dir.sums().clone();
                 dir.put(FILE, json_text(&record)?)?;

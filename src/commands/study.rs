@@ -124,7 +124,7 @@ impl Execute for StudyPlanArgs {
 }
 
 impl StudyPlanArgs {
-    /// The plan with what the options change.
+    /// Applies the options to the plan.
     fn prepared(&self, word: &str, problems: &mut Problems) -> Option<Study> {
         let mut count = |option, text: &Option<String>, range| {
             count_if_given(option, text.as_ref(), range, problems)
@@ -140,7 +140,7 @@ impl StudyPlanArgs {
         self.run.prepare(plan, problems)
     }
 
-    /// The plan for another vehicle.
+    /// Adapts the plan to another vehicle.
     fn of_vehicle(&self, plan: Plan, vehicle: &str, problems: &mut Problems) -> Option<Plan> {
         let (mut plan, _) = problems.take(relative(plan))?;
         let named = self.baseline.iter().filter(|name| *name != "none");
@@ -151,7 +151,7 @@ impl StudyPlanArgs {
             None | Some([]) => String::new(),
             Some(_) => format!(" against {}", self.baseline.join(", ")),
         };
-        // Title and question of the plan are of its own cars.
+        // Title and question of the plan describe its own cars.
         let of = self.plan.as_deref().unwrap_or_default();
         let is_varied = |key: &str| plan.factors.iter().any(|factor| factor.key == key);
         let mut at = String::new();
@@ -167,7 +167,7 @@ impl StudyPlanArgs {
     }
 }
 
-/// The problem of a number that an option gives.
+/// Cites the option of a number.
 fn of_option(found: Problem) -> Problem {
     let option = format!("--{}", found.key);
     found.in_file(option.as_str()).key(option)

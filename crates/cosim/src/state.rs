@@ -1,5 +1,5 @@
-//! A saved state as bytes: what was asked for in each step since the start. Reading it drives these steps again, so that the state has every
-//! bit of the one that was saved, and bytes of any origin give a state that can be reached, or a refusal.
+//! Saved states as bytes: the inputs of each step since the start. Reading repeats these steps. So a restored state equals the
+//! saved one bit by bit, and bytes of any origin give a reachable state or an error.
 //!
 //! Little endian: magic, kind, number of variables, steps; then numbers of 8 bytes: values, time, the start of the drive, the steps.
 
@@ -10,16 +10,16 @@ use crate::variables::{Causality, Kind, car, forward};
 use crate::{Refusal, Unit};
 
 const MAGIC: [u8; 8] = *b"cvtcy-2\n";
-/// Magic, kind and three counts of 8 bytes.
+/// Header: magic, kind and three counts of 8 bytes.
 const HEAD: usize = 8 * 5;
 const NUMBERS_A_STEP: usize = 2 + INPUTS;
 
-/// The bytes are none of these.
+/// Error for bytes that are not a saved state.
 fn damaged() -> Refusal {
     Refusal::new(Damaged, "the bytes are no state of this unit")
 }
 
-/// The step of its numbers.
+/// Reads a step from its numbers.
 fn asked(numbers: &[f64]) -> Option<Asked> {
     let (&[from_s, dt_s], inputs) = numbers.split_first_chunk::<2>()?;
     Some(Asked {
@@ -30,7 +30,7 @@ fn asked(numbers: &[f64]) -> Option<Asked> {
 }
 
 impl Unit {
-    /// Its state as bytes, with [`crate::unit::Saved`] in place of its own.
+    /// Serialises the unit's state, with `saved` in place of its current one.
     #[must_use]
     pub fn bytes_of(&self, saved: &crate::unit::Saved) -> Vec<u8> {
         let start = saved.drive.as_ref().map(|drive| drive.start);
@@ -54,10 +54,9 @@ impl Unit {
         bytes
     }
 
-    /// Takes the state of bytes.
-    ///
+    /// Restores a state from bytes.
     /// # Errors
-    /// They are no state of this unit; the unit is then as it was.
+    /// Bytes that are not a state of this unit; the unit keeps its previous state.
     pub fn restore_bytes(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
         let before = self.save();
         let read = self.read_bytes(bytes);
@@ -116,7 +115,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Drives the steps of a state.
+    /// Repeats the steps of a state.
     fn drive_again(&mut self, start: [f64; 3], steps: &[f64]) -> Result<(), Refusal> {
         let variables = self.variables();
         let range = |place: usize, value: f64| {

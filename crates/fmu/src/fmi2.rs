@@ -12,7 +12,7 @@ use cvtcycle_cosim::Refusal;
 use crate::both::{both, refused, values, without};
 use crate::slave::{ERROR, Log2, Logger, Wanted, call, free, given, instantiate, put};
 
-/// `fmi2CallbackFunctions`: of these only the logger is used.
+/// `fmi2CallbackFunctions`, of which only the logger is used.
 #[repr(C)]
 struct Callbacks {
     logger: Option<Log2>,
@@ -25,13 +25,13 @@ struct Callbacks {
 /// `fmi2CoSimulation`.
 const CO_SIMULATION: c_int = 1;
 
-/// The folder of a URI `file:///PATH`, percent-encoded.
+/// Decodes the folder of a URI `file:///PATH`.
 fn folder(uri: &str) -> Result<String, Refusal> {
     let rest = uri
         .strip_prefix("file://localhost/")
         .map(|path| format!("/{path}"));
     let rest = rest.or_else(|| uri.strip_prefix("file://").map(str::to_owned));
-    // Some masters write one slash only.
+    // Some masters write a single slash.
     let rest = rest.or_else(|| uri.strip_prefix("file:").map(str::to_owned));
     let Some(path) = rest else {
         let message = format!("the location of the resources `{uri}` is no file:// URI");
@@ -54,7 +54,7 @@ fn folder(uri: &str) -> Result<String, Refusal> {
         }
     }
     let path = String::from_utf8_lossy(&bytes).into_owned();
-    // Of file:///C:/folder the path is C:/folder.
+    // file:///C:/folder has the path C:/folder.
     let is_drive = path.as_bytes().get(2) == Some(&b':');
     Ok(match path.strip_prefix('/').filter(|_| is_drive) {
         Some(path) => path.to_owned(),
@@ -79,7 +79,7 @@ extern "C" fn fmi2SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> c_int {
-    // There is no debug logging: refusals are logged whatever is asked for.
+    // There is no debug logging; errors are always logged.
     call(instance, |_| Ok(()))
 }
 

@@ -28,7 +28,7 @@ extern "C" fn fmi3SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> c_int {
-    // There is no debug logging: refusals are logged whatever is asked for.
+    // There is no debug logging; errors are always logged.
     call(instance, |_| Ok(()))
 }
 
@@ -119,7 +119,7 @@ refused!(
     fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates fmi3ActivateModelPartition
 );
 
-/// Kinds of FMU that this is not: no instance.
+/// Defines instantiation of unsupported kinds of FMU: always null.
 macro_rules! no_instance {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]

@@ -1,4 +1,4 @@
-//! An instance as C sees it: a pointer, statuses, and the logger of the master.
+//! Instances behind C pointers, statuses, and the master's logger.
 #![expect(
     unsafe_code,
     reason = "pointers of C are read and written, and the master's logger is called"
@@ -14,7 +14,7 @@ use cvtcycle_cosim::ProblemKind::{Conflict, Missing, TooLarge, WrongType};
 use cvtcycle_cosim::unit::Saved;
 use cvtcycle_cosim::{Refusal, Unit};
 
-/// Statuses: those of `fmi2Status` and `fmi3Status` have the same numbers.
+/// Statuses, equal in `fmi2Status` and `fmi3Status`.
 pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;
 pub const ERROR: c_int = 3;
@@ -27,7 +27,7 @@ pub type Log2 =
 /// `fmi3LogMessageCallback`.
 pub type Log3 = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
 
-/// The logger of a master, with what it wants to be given.
+/// Logger of the master, with its context.
 #[derive(Clone, Copy)]
 pub enum Logger {
     Fmi2(Option<Log2>, *mut c_void),
@@ -35,7 +35,7 @@ pub enum Logger {
 }
 
 impl Logger {
-    /// Gives the master a message with a status.
+    /// Sends a message with a status to the master.
     pub fn log(self, name: &CStr, status: c_int, message: &str) {
         let text = |message: &str| CString::new(message.replace('\0', " ")).unwrap_or_default();
         let category = match status {
@@ -45,7 +45,7 @@ impl Logger {
         };
         match self {
             Logger::Fmi2(Some(log), environment) => {
-                // The message is a format of printf.
+                // The logger expects a printf format.
                 let message = text(&message.replace('%', "%%"));
                 // SAFETY: the logger and its environment are those of fmi2Instantiate, valid as long as the instance; texts end with 0.
                 unsafe {
@@ -68,18 +68,18 @@ impl Logger {
     }
 }
 
-/// An instance.
+/// Instance of a unit.
 pub struct Slave {
     pub unit: Unit,
-    /// Start of the simulation, s, of FMI 2 and 3 given before initialization.
+    /// Start time of the simulation, s. FMI 2 and 3 give it before initialization.
     pub start_s: f64,
     name: CString,
     logger: Logger,
-    /// Whether a panic may have left it in pieces.
+    /// True after a panic, which may have left the unit inconsistent.
     broken: bool,
 }
 
-/// What a master gives to make an instance.
+/// Arguments of an instantiation.
 pub struct Wanted {
     pub name: *const c_char,
     pub token: *const c_char,
@@ -87,14 +87,14 @@ pub struct Wanted {
     pub logger: Logger,
 }
 
-/// Words of a panic.
+/// Message of a panic.
 fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
     format!("defect in cvtcycle: {}", text.unwrap_or_default())
 }
 
-/// A text of C; none for a null pointer.
+/// Converts a C string; None for a null pointer.
 pub fn text(text: *const c_char) -> Option<String> {
     if text.is_null() {
         return None;
@@ -104,7 +104,7 @@ pub fn text(text: *const c_char) -> Option<String> {
     Some(text.to_string_lossy().into_owned())
 }
 
-/// A new instance from the folder that `folder` makes of the resources; null, with a message, where there is none.
+/// Creates an instance; `folder` converts the path of the resources. Null, with a log message, on failure.
 pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>) -> *mut c_void {
     let name = CString::new(text(wanted.name).unwrap_or_default()).unwrap_or_default();
     let made = catch_unwind(|| {
@@ -133,7 +133,7 @@ pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>)
     }
 }
 
-/// Calls a function of an instance; its status.
+/// Calls a function of an instance and returns its status.
 pub fn call(instance: *mut c_void, f: impl FnOnce(&mut Slave) -> Result<(), Refusal>) -> c_int {
     // SAFETY: null, or a pointer of `instantiate` that is not freed; the standard has one call at a time for each instance.
     let Some(slave) = (unsafe { instance.cast::<Slave>().as_mut() }) else {
@@ -160,12 +160,12 @@ pub fn free(instance: *mut c_void) {
     if !instance.is_null() {
         // SAFETY: a pointer of `instantiate`, which the master gives back once.
         let slave = unsafe { Box::from_raw(instance.cast::<Slave>()) };
-        // A panic while dropping must not pass either.
+        // A panic in a destructor must not cross the C boundary either.
         drop(catch_unwind(AssertUnwindSafe(|| drop(slave))));
     }
 }
 
-/// Numbers that the master gives.
+/// Views an input array of the master.
 pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
     if count == 0 {
         return Ok(&[]);
@@ -177,7 +177,7 @@ pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
     }
 }
 
-/// Where the master wants numbers.
+/// Views an output array of the master.
 pub fn wanted<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
     if count == 0 {
         return Ok(&mut []);
@@ -189,7 +189,7 @@ pub fn wanted<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal
     }
 }
 
-/// Writes one value where the master wants it, if it does.
+/// Writes one value through an optional output pointer.
 pub fn put<T>(place: *mut T, value: T) {
     if !place.is_null() {
         // SAFETY: not null, and the master lends it for the call.
@@ -198,7 +198,7 @@ pub fn put<T>(place: *mut T, value: T) {
 }
 
 impl Slave {
-    /// Values of variables of a type: `whole` numbers or not.
+    /// Reads variables of a type, integers if `whole`.
     pub fn get<T>(
         &mut self,
         (references, count): (*const u32, usize),
@@ -215,7 +215,7 @@ impl Slave {
         Ok(())
     }
 
-    /// Sets variables of a type; where one is refused, none of those after it is set.
+    /// Sets variables of a type. Stops at the first refused one.
     pub fn set<T: Copy>(
         &mut self,
         (references, count): (*const u32, usize),
@@ -251,7 +251,7 @@ impl Slave {
         Err(Refusal::new(WrongType, message))
     }
 
-    /// Saves the state at a place, where there may be one already.
+    /// Saves the state at a place, reusing a state already there.
     pub fn save(&mut self, place: *mut *mut c_void) -> Result<(), Refusal> {
         let [state] = wanted(place, 1)? else {
             return Ok(());
@@ -264,7 +264,7 @@ impl Slave {
         Ok(())
     }
 
-    /// A saved state.
+    /// Checks and returns a saved state.
     pub fn saved<'a>(&self, state: *mut c_void) -> Result<&'a Saved, Refusal> {
         // SAFETY: null, or a state of `save` that is not freed.
         let saved = unsafe { state.cast::<Saved>().as_ref() };
@@ -287,12 +287,12 @@ impl Slave {
         Ok(())
     }
 
-    /// A saved state as bytes.
+    /// Serialises a saved state.
     pub fn bytes_of(&self, state: *mut c_void) -> Result<Vec<u8>, Refusal> {
         Ok(self.unit.bytes_of(self.saved(state)?))
     }
 
-    /// Writes a saved state as bytes.
+    /// Serialises a saved state into an array of the master.
     pub fn write_bytes(
         &self,
         state: *mut c_void,
@@ -308,7 +308,7 @@ impl Slave {
         Ok(())
     }
 
-    /// The state of bytes at a place; the unit stays as it is.
+    /// Deserialises a state to a place, without changing the unit.
     pub fn read_bytes(
         &mut self,
         (first, size): (*const u8, usize),

@@ -1,4 +1,4 @@
-//! One car with other numbers, as a function of them.
+//! A car with varied numbers, as a function of them.
 
 use std::sync::Arc;
 
@@ -15,14 +15,13 @@ use crate::job::{Interrupted, job};
 use crate::run::Asked;
 use crate::table::{Cells, Table, TableColumn};
 
-/// A car, a cycle, and the keys that are the arguments.
+/// Car, cycle, and the keys that are arguments.
 #[pyclass(frozen)]
 pub struct Family(Arc<CoreFamily>);
 
-/// The doubles of bytes in the order of this machine.
-///
+/// Converts bytes to doubles in native byte order.
 /// # Errors
-/// The exception of an argument whose bytes are no whole doubles.
+/// The exception of an argument whose length is not a multiple of 8.
 pub fn doubles(argument: &str, bytes: &[u8]) -> PyResult<Vec<f64>> {
     let (whole, rest) = bytes.as_chunks::<8>();
     match rest.is_empty() {
@@ -60,7 +59,7 @@ impl Family {
         made.map(|family| Family(Arc::new(family))).map_err(refused)
     }
 
-    /// Key, unit and value of each argument in the car as it is.
+    /// Key, unit and unchanged value of each argument.
     #[getter]
     fn arguments(&self) -> Vec<(String, &'static str, f64)> {
         let arguments = self.0.arguments().into_iter().zip(self.0.base());
@@ -76,7 +75,7 @@ impl Family {
         self.0.outputs().into_iter().map(head).collect()
     }
 
-    /// Drives the car at points, rows of doubles: a table of the outputs, with the column `reason`.
+    /// Drives the car at points, rows of doubles. Returns a table of the outputs, with the column `reason`.
     fn points(
         &self,
         py: Python<'_>,
@@ -94,7 +93,7 @@ impl Family {
         let (family, places) = (Arc::clone(&self.0), wanted.clone());
         let drive = move |stop: &crate::job::Stop| -> Vec<FamilyPoint> {
             let some = |worker: &mut _, numbers: &[f64]| match stop.stopped() {
-                // Their results are not looked at any more.
+                // After an interruption the results are dropped.
                 true => Vec::new(),
                 false => family.points(worker, numbers.chunks(width), &places),
             };

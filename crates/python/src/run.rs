@@ -1,4 +1,4 @@
-//! Cars through one cycle: summary, traces, plots, report.
+//! Drives of cars through a cycle: summary, traces, plots, report.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -30,10 +30,10 @@ use crate::errors::{bad, number, refused};
 use crate::job::{Interrupted, job};
 use crate::table::{Table, TableColumn};
 
-/// Steps of a cycle from which on a drive is a job of its own, some ten milliseconds: before that the thread would cost more than it is worth.
+/// Number of steps, some ten milliseconds, from which a drive gets a thread of its own; below, starting one would cost more than it gains.
 const LONG: usize = 20_000;
 
-/// What a run is asked for.
+/// Arguments of a run.
 #[derive(Clone, Debug)]
 pub struct Asked {
     pub ambient_degc: f64,
@@ -42,10 +42,9 @@ pub struct Asked {
 }
 
 impl Asked {
-    /// The checked arguments of a run. `start` is `soak`, `warm` or a temperature.
-    ///
+    /// Checks the arguments of a run. `start` is `soak`, `warm` or a temperature in degC.
     /// # Errors
-    /// The exception of an argument.
+    /// The exception of the argument.
     pub fn new(
         ambient_degc: f64,
         start: &Bound<'_, PyAny>,
@@ -87,7 +86,7 @@ fn start(given: &Bound<'_, PyAny>) -> PyResult<(Start, StartWord)> {
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
 
-/// A car that has been driven.
+/// Car with its drive.
 #[derive(Debug)]
 struct DrivenCar {
     name: String,
@@ -98,7 +97,7 @@ struct DrivenCar {
     outcome: Outcome,
 }
 
-/// All that a run has.
+/// Data of a run.
 #[derive(Debug)]
 struct Whole {
     asked: Asked,
@@ -107,7 +106,7 @@ struct Whole {
     cars: Vec<DrivenCar>,
 }
 
-/// Cars that have been driven; the first is the subject.
+/// Run of cars through a cycle; the first is the subject.
 #[pyclass(frozen)]
 pub struct Run(Arc<Whole>);
 
@@ -171,7 +170,7 @@ pub fn run(
     })))
 }
 
-/// A name that no car before has.
+/// Makes a name unique among those before.
 fn unique(name: &str, before: &[DrivenCar]) -> String {
     let taken = |name: &String| before.iter().any(|car| car.name.eq_ignore_ascii_case(name));
     let numbered = (2..).map(|n| format!("{name}_{n}"));
@@ -225,7 +224,7 @@ impl Whole {
         History::of(&car.outcome.rows, &columns, self.phases())
     }
 
-    /// A picture of one car, or of all.
+    /// Picture of one car, or of all.
     fn picture(&self, kind: &str, car: usize) -> Option<String> {
         let summary = self.summary();
         let histories: Vec<History> = self.cars.iter().map(|car| self.history(car)).collect();
@@ -289,7 +288,7 @@ impl Whole {
 
 #[pymethods]
 impl Run {
-    /// Names of the cars, the subject first.
+    /// Names of the cars, subject first.
     #[getter]
     fn cars(&self) -> Vec<String> {
         self.0.cars.iter().map(|car| car.name.clone()).collect()
@@ -300,7 +299,7 @@ impl Run {
         self.0.asked.conditions.keep_rows
     }
 
-    /// Fuel of the subject over the whole cycle, L/100 km; NaN for less than a metre.
+    /// Fuel of the subject over the whole cycle, L/100 km; NaN below a distance of one metre.
     #[getter]
     fn fuel_l_per_100km(&self) -> f64 {
         let car = &self.0.cars[0];
@@ -312,7 +311,7 @@ impl Run {
         )
     }
 
-    /// The object of `run --json`.
+    /// JSON of `run --json`.
     fn summary(&self, py: Python<'_>) -> PyResult<String> {
         let whole = Arc::clone(&self.0);
         let text = match whole.price {
@@ -324,7 +323,7 @@ impl Run {
         text.map_err(refused)
     }
 
-    /// The trace of a car.
+    /// Trace of a car.
     fn trace(&self, py: Python<'_>, car: usize) -> PyResult<Table> {
         let whole = &self.0;
         let one = whole
@@ -339,7 +338,7 @@ impl Run {
         }))
     }
 
-    /// A picture as SVG.
+    /// Picture as SVG.
     fn picture(&self, py: Python<'_>, kind: &str, car: usize) -> PyResult<String> {
         if car >= self.0.cars.len() {
             return Err(PyIndexError::new_err(car));
@@ -351,7 +350,7 @@ impl Run {
         })
     }
 
-    /// Writes the files of a run into a folder, and gives their paths.
+    /// Writes the files of a run into a folder, and returns their paths.
     fn write(
         &self,
         py: Python<'_>,
@@ -374,7 +373,7 @@ impl Run {
         job(py, None, Interrupted::Ends, write)?.map_err(refused)
     }
 
-    /// Writes a report, and gives the paths of its files, the document first.
+    /// Writes a report, and returns the paths of its files, the document first.
     fn report(
         &self,
         py: Python<'_>,

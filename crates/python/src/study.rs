@@ -1,4 +1,4 @@
-//! Studies: their points in whole parts, on disk or in memory, and their answer.
+//! Studies: points computed in whole parts, on disk or in memory, and their results.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -19,11 +19,11 @@ use crate::errors::{bad, number, refused};
 use crate::job::{Interrupted, Stop, job};
 use crate::table::{Table, TableColumn};
 
-/// A plan with its cars loaded and every value tried.
+/// Plan with its cars loaded and every value tried.
 #[pyclass(frozen)]
 pub struct Study(Arc<CoreStudy>);
 
-/// Keeps parts in memory.
+/// Collects parts in memory.
 #[derive(Default)]
 struct Shelf(Mutex<BTreeMap<u64, Rows>>);
 
@@ -36,7 +36,7 @@ impl PartWriter for Shelf {
 }
 
 impl Study {
-    /// The parts of a range that is in the study.
+    /// Checks a range of parts and returns it.
     fn parts_of(&self, (from, to): (u64, u64)) -> PyResult<BTreeSet<u64>> {
         let all = self.0.parts();
         if from <= to && to <= all {
@@ -54,7 +54,7 @@ impl Study {
 
 #[pymethods]
 impl Study {
-    /// From the name or path of a plan, or from a text that problems call `word`.
+    /// Reads the name or path of a plan, or a text cited as `word`.
     #[new]
     fn new(
         py: Python<'_>,
@@ -101,7 +101,7 @@ impl Study {
         self.0.points_per_part()
     }
 
-    /// Drives the points of some parts and gives their runs.
+    /// Drives the points of some parts and returns their runs.
     fn run(&self, py: Python<'_>, parts: (u64, u64), threads: Option<usize>) -> PyResult<Table> {
         let (study, wanted) = (Arc::clone(&self.0), self.parts_of(parts)?);
         let drive = move |stop: &Stop| -> Result<Rows, Problem> {
@@ -119,7 +119,7 @@ impl Study {
         Ok(Table::new(TableColumn::of_study(&self.0.columns, rows)))
     }
 
-    /// Drives the points of some parts that are not there, and writes these parts into a folder; gives the number of parts that are there.
+    /// Drives the points of missing parts, writes these parts into a folder, and returns the number of parts there.
     fn write_parts(
         &self,
         py: Python<'_>,
@@ -145,7 +145,7 @@ impl Study {
     }
 }
 
-/// A study in a folder, finished or not.
+/// Study in a folder, finished or not.
 #[pyclass(frozen)]
 pub struct StoredStudy(PathBuf);
 
@@ -158,7 +158,7 @@ impl StoredStudy {
         Ok(StoredStudy(folder))
     }
 
-    /// Number of parts that are there, and that there will be.
+    /// Number of parts present, and in total.
     #[getter]
     fn parts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
         let store = py.detach(|| Store::open(&self.0)).map_err(refused)?;
@@ -166,7 +166,7 @@ impl StoredStudy {
         Ok((status.present, status.expected))
     }
 
-    /// Puts the parts of shards into a new folder, with the results over all of them.
+    /// Merges the parts of shards into a new folder, with the results over all of them.
     #[staticmethod]
     fn merge(py: Python<'_>, folder: PathBuf, shards: Vec<PathBuf>, force: bool) -> PyResult<Self> {
         let whole = folder.clone();
@@ -180,7 +180,7 @@ impl StoredStudy {
         Ok(StoredStudy(folder))
     }
 
-    /// What the study says, as the JSON of `study show --json`.
+    /// Results of the study, as the JSON of `study show --json`.
     fn answer(&self, py: Python<'_>, confidence: Option<f64>) -> PyResult<String> {
         let confidence = match confidence {
             None => Confidence::default(),
@@ -196,7 +196,7 @@ impl StoredStudy {
         job(py, None, Interrupted::IsLeft, answer)?.map_err(refused)
     }
 
-    /// The runs of the parts that are there; some columns, or all.
+    /// Runs of the parts present; some columns, or all.
     fn table(&self, py: Python<'_>, columns: Vec<String>) -> PyResult<Table> {
         let folder = self.0.clone();
         let read = move |_: &Stop| -> Result<_, Problem> {

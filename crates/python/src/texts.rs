@@ -1,4 +1,4 @@
-//! Validation, calibration, explanations and schemas: the JSON that the program prints.
+//! Validation, calibration, explanations and schemas, as the JSON of the program.
 
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{
@@ -25,7 +25,7 @@ pub fn version() -> (&'static str, &'static str) {
     (env!("CARGO_PKG_VERSION"), BUILD)
 }
 
-/// Names of what the library carries: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`.
+/// Names of embedded inputs of a kind: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`.
 #[pyfunction]
 pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     let kinds = [
@@ -47,7 +47,7 @@ pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     }
 }
 
-/// The meaning of a word.
+/// Explains a word.
 #[pyfunction]
 pub fn explain(py: Python<'_>, word: &str) -> PyResult<String> {
     let found = py.detach(|| Meanings::of(word));
@@ -76,7 +76,7 @@ pub fn schema(kind: &str) -> PyResult<String> {
     }
 }
 
-/// Compares with published values, and with rows of the user's own files.
+/// Compares with published values, and with the user's own files of rows.
 #[pyfunction]
 pub fn validate(
     py: Python<'_>,

@@ -10,7 +10,7 @@ use super::AttributionSummary;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// All prices for people.
+/// Prints all prices.
 pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint: Paint) -> String {
     let mut text = format!("{}  {}\n", paint.heading(&cycle.name), cycle.title);
     text.extend(
@@ -76,7 +76,7 @@ fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> 
     sections(parts, paint) + &notes.collect::<String>()
 }
 
-/// A name as people write it.
+/// Name of a loss in words.
 fn words(name: &str) -> String {
     name.replace('_', " ")
 }
@@ -116,7 +116,7 @@ fn losses(price: &PriceSummary, run: &RunSummary) -> String {
     table.text()
 }
 
-/// Both orders of each pair.
+/// Tabulates each pair in both orders.
 fn pairs(price: &PriceSummary, run: &RunSummary) -> String {
     let mut table = TextTable::new("llrrrrr");
     if !price.pairs.is_empty() {

@@ -1,4 +1,4 @@
-//! Limits within which the least fuel is sought: their options, and the message where they cannot be held.
+//! Limits of the search for minimum fuel: their options, and the message for infeasible ones.
 
 use super::OptimumArgs;
 use crate::args::problems::bad_value;
@@ -11,18 +11,18 @@ use cvtcycle::output::number::fixed;
 use cvtcycle::study::optimum::{Infeasible, LimitName, Unheld};
 use serde::Serialize;
 
-/// Allowed least engine speed, rpm.
+/// Allowed minimum engine speed, rpm.
 pub(super) const LEAST_RPM: Bound = Bound::closed(300.0, 8000.0);
-/// Allowed share of full load that is kept, per cent.
+/// Allowed torque reserve, per cent of full load.
 const RESERVE: Bound = Bound::closed(0.0, 90.0);
-/// Allowed least safety factor.
+/// Allowed minimum safety factor.
 const SAFETY: Bound = Bound::closed(1.0, 10.0);
-/// Allowed largest slip, per cent.
+/// Allowed maximum slip, per cent.
 const SLIP: Bound = Bound::closed(0.1, 20.0);
-/// Fewest and most ratios of the grid.
+/// Allowed numbers of ratios of the grid.
 const GRID: std::ops::RangeInclusive<u64> = 49..=769;
 
-/// Numbers of the question.
+/// Parsed limits.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Numbers {
     pub(super) ambient_degc: f64,
@@ -88,7 +88,7 @@ impl OptimumArgs {
     }
 }
 
-/// The limits that cannot be held, where, and how much of each can be.
+/// Reports each infeasible limit with its place and its feasible value.
 pub(super) fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
     if why.unheld.is_empty() {
         let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
@@ -122,7 +122,7 @@ pub(super) fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
     why.unheld.iter().map(problem).collect()
 }
 
-/// A number with one decimal, rounded down.
+/// Formats with one decimal, rounded down, so that the printed limit is feasible.
 fn floored(x: f64) -> String {
     fixed((10.0 * x).floor() / 10.0, 1)
 }

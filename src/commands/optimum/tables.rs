@@ -1,4 +1,4 @@
-//! The answer as text and files.
+//! Text and files of `optimum`.
 
 use std::borrow::Cow;
 
@@ -16,7 +16,7 @@ use super::OptimumSummary;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// Everything for people.
+/// Prints all results.
 pub fn text(of: &OptimumSummary, paint: Paint) -> String {
     let n = &of.numbers;
     let head = format!(
@@ -37,7 +37,7 @@ pub fn text(of: &OptimumSummary, paint: Paint) -> String {
     head + &sections(parts, paint)
 }
 
-/// The answer in words.
+/// One-sentence answer.
 fn sentence(of: &OptimumSummary) -> String {
     let own = &of.answer.bounds[0];
     let least = own.bound_l_per_100km;
@@ -103,7 +103,7 @@ fn bounds(of: &OptimumSummary) -> String {
     table.text() + &weaker(of) + &idle(of) + &outside(of) + &warm(of)
 }
 
-/// Name of a bound: its clamp law, and its launch where it is another one.
+/// Name of a bound: its clamp law, and its launch if it differs from the car's.
 fn name(bound: &LawBound) -> String {
     let clamp = bound.clamp.replace('_', " ");
     match bound.launch {
@@ -112,7 +112,7 @@ fn name(bound: &LawBound) -> String {
     }
 }
 
-/// What an idle launch is.
+/// Note that defines an idle launch.
 fn idle(of: &OptimumSummary) -> String {
     match of.answer.bounds.iter().any(|bound| bound.launch == "idle") {
         true => wrapped(
@@ -123,7 +123,7 @@ fn idle(of: &OptimumSummary) -> String {
     }
 }
 
-/// How warm drives begin.
+/// Note on the start of warm drives.
 fn warm(of: &OptimumSummary) -> String {
     match &of.start {
         StartWord::Word(word) if word == "warm" => wrapped(
@@ -134,7 +134,7 @@ fn warm(of: &OptimumSummary) -> String {
     }
 }
 
-/// Cars that do not keep the limits all the time, so that they may burn less than the bound.
+/// Note on cars that violate the limits at times and may therefore burn less than the bound.
 fn outside(of: &OptimumSummary) -> String {
     let seconds = |b: &LawBound, what: &str, time_s: Option<f64>| {
         let time_s = time_s.filter(|time_s| *time_s > 0.0)?;
@@ -157,7 +157,7 @@ fn outside(of: &OptimumSummary) -> String {
     }
 }
 
-/// Laws with which less can be burnt than with a free clamp, which has more safety.
+/// Note on laws that burn less than a free clamp, because their safety is lower.
 fn weaker(of: &OptimumSummary) -> String {
     let bounds = &of.answer.bounds;
     let Some(free) = bounds.iter().find(|bound| bound.clamp == "free") else {
@@ -192,7 +192,7 @@ fn speeds(of: &OptimumSummary) -> String {
     table.text() + &floor(of)
 }
 
-/// Where the coupling decides the least speed and not the limit.
+/// Note on minimum speeds set by the coupling instead of the limit.
 fn floor(of: &OptimumSummary) -> String {
     let floor = of.answer.lock_floor.filter(|floor| floor.above_s > 0.0);
     let Some(floor) = floor else {

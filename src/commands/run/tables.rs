@@ -14,7 +14,7 @@ use crate::print::{bold, sections};
 /// Widths of the two leading columns, which align the tables.
 const LEAD: [usize; 2] = [22, 8];
 
-/// All results for people.
+/// Prints all results.
 pub fn tables(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     let comparisons = summary.comparison.iter().map(compared);
     let text = |title: &str, body: String| (title.to_owned(), body);
@@ -64,7 +64,7 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     text + "\n" + &table.text()
 }
 
-/// What the run says of the subject, in sentences; the first is the answer.
+/// Sentences about the subject; the first is the answer.
 fn answers(summary: &Summary, paint: Paint) -> String {
     let sentences = sentences(summary);
     let paragraphs = sentences.iter().enumerate().map(|(k, sentence)| match k {
@@ -98,7 +98,7 @@ impl<'a> ByVehicle<'a> {
         self.table.row(head.chain(self.runs.iter().map(cell)));
     }
 
-    /// A row of numbers; none where no vehicle has the number.
+    /// Adds a row of numbers, unless no vehicle has one.
     fn number(
         &mut self,
         name: &str,
@@ -140,7 +140,7 @@ fn fuel(summary: &Summary) -> String {
     table.text(&LEAD)
 }
 
-/// Difference to a baseline by phase, and whether the two cars are alike.
+/// Difference to a baseline by phase, and a note if the cars are not like for like.
 fn compared(comparison: &Comparison) -> String {
     let Some(difference) = comparison.fuel_percent else {
         return String::new();
@@ -163,7 +163,7 @@ fn compared(comparison: &Comparison) -> String {
     wrapped(&line, &format!("over {}: ", comparison.baseline))
 }
 
-/// Energy in kJ and as per cent of the fuel energy.
+/// Energy in kJ and in per cent of the fuel energy.
 fn kj_and_share(kj: Option<f64>, run: &RunSummary) -> String {
     let share = percent(kj, run.fuel_energy_kj, 1);
     kj.map_or(NONE.to_owned(), |kj| {
@@ -216,7 +216,7 @@ fn balance(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
     for (term, name) in BALANCE {
         let share = |run: &RunSummary| percent(run.term_kj(term), run.fuel_energy_kj, 1);
-        // A row of zeros is left out; the JSON has the unrounded numbers.
+        // Leaves out rows of zeros; the JSON has the unrounded values.
         let may_be_left_out = ["kinetic", "electric"].contains(&term);
         if !may_be_left_out
             || summary

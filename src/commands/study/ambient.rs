@@ -40,7 +40,7 @@ pub struct StudyAmbientArgs {
 const DEGC: &str = "-10,0,10,25,40";
 /// Default starts.
 const STARTS: &str = "soak,warm";
-/// Columns of the traces that the warm-up figures need.
+/// Trace columns for the figures of the warm-up.
 const TRACES: [&str; 6] = [
     "time_s",
     "speed_kmh",
@@ -49,7 +49,7 @@ const TRACES: [&str; 6] = [
     "engine_oil_degc",
     "coolant_degc",
 ];
-/// Keys of the plan with the options that give them.
+/// Options by the key of the plan that they set.
 const OPTIONS: [(&str, &str); 7] = [
     ("vehicle", "--vehicle"),
     ("baselines", "--baseline"),
@@ -79,7 +79,7 @@ impl Execute for StudyAmbientArgs {
     }
 }
 
-/// A problem of a key of the plan is one of the option.
+/// Cites the option that set a key of the plan.
 fn of_option(problem: Problem) -> Problem {
     let option = problem.place.file_name().unwrap_or_default().to_owned();
     let is_option = ["--ambient", "--start"].contains(&option.as_str())
@@ -92,7 +92,7 @@ fn of_option(problem: Problem) -> Problem {
 }
 
 impl StudyAmbientArgs {
-    /// The plan of these options; none after a problem with one of them.
+    /// Builds the plan from the options. None after a problem.
     fn matrix(&self, problems: &mut Problems) -> Option<Plan> {
         let (car, comparison) = (&self.car, &self.comparison);
         let before = problems.len();

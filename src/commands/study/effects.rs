@@ -11,14 +11,14 @@ use cvtcycle::study::statistics::{
 };
 use cvtcycle::study::{Answer, StudyManifest};
 
-/// Number of factors that are listed for an output.
+/// Maximum number of factors listed for an output.
 const MAX_FACTORS: usize = 10;
-/// Number of factors above chance that are listed.
+/// Maximum number of factors above chance listed.
 const MAX_CAUSES: usize = 5;
-/// Rows and columns of a matrix that fit on a page.
+/// Maximum rows and columns of a printed matrix.
 const MATRIX: [usize; 2] = [40, 10];
 
-/// Factors of the first output of the subject, and of the difference to each baseline.
+/// Tables of factors for the first output of the subject, and for the difference to each baseline.
 pub(super) fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
     let Some(first) = answer.outputs.first() else {
         return String::new();
@@ -38,13 +38,13 @@ fn effects(output: &OutputAnswer, outline: &StudyManifest, confidence: Confidenc
     match (output.sobol.last(), &output.tornado) {
         (Some(indices), _) => sobol(outline, indices, confidence) + &known,
         (None, Some(of)) => tornado(of),
-        // A matrix has all that the means of its rows and columns have.
+        // The matrix contains the means of its rows and columns.
         (None, None) if output.matrix.is_some() => grid(output),
         (None, None) => known + &rank(output) + &levels(output),
     }
 }
 
-/// The matrix of a grid of two factors, its smallest numbers marked.
+/// Matrix of a grid of two factors, with a mark at the minimum of all cells, of each row or of each column.
 fn grid(output: &OutputAnswer) -> String {
     let Some(matrix) = &output.matrix else {
         return String::new();
@@ -81,7 +81,7 @@ fn grid(output: &OutputAnswer) -> String {
     format!("{}  * least{of}\n", table.text())
 }
 
-/// Every level of each factor, the widest swing first.
+/// Every level of each factor, ordered by the width of the bar.
 fn tornado(tornado: &Tornado) -> String {
     let mut table = TextTable::new("llrrr").indented();
     table.row(["factor", "level", "value", "effect", "swing"]);
@@ -99,7 +99,7 @@ fn tornado(tornado: &Tornado) -> String {
     format!("  base {base}\n{}", table.text())
 }
 
-/// What knowing a factor would leave of the spread: the factors above chance, and how many are not.
+/// Spread that remains after learning a factor, for the factors above chance, and the number of others.
 fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
     let mut table = TextTable::new("lrrl").indented();
     let left = format!("sd left, {unit}");

@@ -25,7 +25,7 @@ use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
 };
 
-/// Options of every study that runs.
+/// Options of all studies that run.
 #[derive(Args, Clone, Debug)]
 #[command(mut_arg("out", |out| out.help("Keep tables, statistics and plots in this directory; without it they are deleted after the results are printed")))]
 pub struct StudyRunArgs {
@@ -66,7 +66,7 @@ pub enum PartFormat {
 }
 
 impl StudyRunArgs {
-    /// Checks the options that need no plan, and begins the threads.
+    /// Checks the options that do not depend on the plan, and starts the threads.
     pub fn begin(&self, problems: &mut Problems) {
         handle_interrupts();
         self.out.path(problems);
@@ -75,7 +75,7 @@ impl StudyRunArgs {
         problems.take(threads::begin(threads));
     }
 
-    /// Looks at the directory as well where there are problems, so that all are reported at once.
+    /// Checks the directory even after other problems, so that all are reported at once.
     pub fn look(&self, problems: &mut Problems) {
         let begins = !self.resume && !self.share.dry_run && !problems.is_empty();
         if let Some(path) = self.out.out.as_deref().filter(|_| begins) {
@@ -106,7 +106,7 @@ impl StudyRunArgs {
         Some(study)
     }
 
-    /// Runs a study, writes its files and returns what it says.
+    /// Runs a study, writes its files and returns the text to print.
     pub fn run<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
         let results = self.results::<S>(study, terminal);
         results.map_err(|problems| match self.out.out {
@@ -119,7 +119,7 @@ impl StudyRunArgs {
         if self.share.dry_run {
             return share::estimate(study, &self.output);
         }
-        // Without --out the parts are written to a directory that is deleted afterwards.
+        // Without --out the parts go to a temporary directory.
         let temporary = match &self.out.out {
             Some(_) => None,
             None => Some(temporary_dir()?),
@@ -133,7 +133,7 @@ impl StudyRunArgs {
         if self.share.is_given() && !dir.is_complete() {
             return share::driven(study, &dir, &self.output);
         }
-        // Checked when the study began.
+        // Already checked when the study began.
         let confidence = self.confidence.get(&mut Problems::default());
         let found = S::of(StudyManifest::of(study), dir.study()?, confidence)?;
         let list = match &self.out.out {
@@ -153,10 +153,10 @@ impl StudyRunArgs {
         }
     }
 
-    /// Runs the parts that are missing in the directory.
+    /// Runs the parts missing in the directory.
     fn compute(&self, study: &Study, dir: &StudyDir) -> Result<End, Problems> {
         let missing = dir.missing().into_iter().map(|part| part as u64);
-        // Checked when the study began.
+        // Already checked when the study began.
         let wanted = self.share.parts(study, &mut Problems::default());
         let missing: BTreeSet<u64> = missing.filter(|part| wanted.contains(part)).collect();
         let done = (0..study.parts())
@@ -189,22 +189,22 @@ impl StudyRunArgs {
     }
 }
 
-/// What a study says, from the parts that are there.
+/// Results of a study, evaluated from its finished parts.
 pub trait Says: Sized {
-    /// Answers.
+    /// Evaluates the finished parts.
     fn of(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
     ) -> Result<Self, Problem>;
 
-    /// For other programs, with a line for failed runs.
+    /// JSON object, with one line for failed runs.
     fn results(&self) -> Result<Results, Problems>;
 
-    /// Files of a finished study: numbers and figures.
+    /// Files of a finished study: tables and figures.
     fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Problems>;
 
-    /// For people.
+    /// Tables for the terminal.
     fn tables(&self, paint: Paint) -> String;
 }
 
@@ -232,7 +232,7 @@ impl Says for StudyResults {
     }
 }
 
-/// A problem of a directory that is deleted: nothing in it can be continued or replaced.
+/// Replaces the hint for a temporary directory, which can be neither resumed nor replaced.
 fn of_nothing_kept(problem: Problem) -> Problem {
     if problem.settings.is_empty() {
         return problem;

@@ -1,4 +1,4 @@
-//! `study merge`: shards of a study, driven by other processes or machines, as one.
+//! `study merge`: merges the shards of a study.
 
 use std::path::PathBuf;
 

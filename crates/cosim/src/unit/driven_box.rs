@@ -1,4 +1,4 @@
-//! A CVT that is driven by a torque, step by step.
+//! Steps of a CVT driven by a torque.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use super::{Asked, Refusal, Unit, show};
 use crate::variables::{CvtResult, Get, forward};
 
 impl Unit {
-    /// Begins with the speed of the wheels, the oil in the sump and the engine, rad/s and K.
+    /// Starts from wheel speed, rad/s, and temperatures of sump and engine, K.
     pub(crate) fn begin_forward(&mut self, start: [f64; 3]) {
         let [wheel_rad_s, oil_k, _] = start;
         self.saved.drive = Some(Driven {
@@ -25,13 +25,13 @@ impl Unit {
         });
     }
 
-    /// Drives a step.
+    /// Computes a step.
     pub(crate) fn drive_forward(&mut self, asked: &Asked) -> Result<(), Refusal> {
         let driven = self.saved.drive.as_mut().ok_or_else(not_begun)?;
         let [engine_nm, wheel_rad_s, ratio, sump_k, engine_k] = asked.inputs;
         let manual = || Refusal::new(WrongTransmission, "a manual box is not driven by a torque");
         let mut drive = Forward::new(&self.car, driven.state).ok_or_else(manual)?;
-        // A longer step is divided; torque and heat are then those of its last part.
+        // Divides a longer step. Torque and heat are those of its last part.
         let parts = (asked.dt_s / MODEL_STEP_S).ceil().max(1.0);
         let (from, rise) = (driven.speed, (wheel_rad_s - driven.speed) / parts);
         let mut part = |k: f64| {
@@ -73,7 +73,7 @@ impl Unit {
         Ok(())
     }
 
-    /// What is asked for in a step.
+    /// Inputs for the next step.
     pub(super) fn asked_forward(&self) -> [f64; 5] {
         [
             forward::TORQUE,

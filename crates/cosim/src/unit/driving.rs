@@ -1,4 +1,4 @@
-//! A whole car, step by step.
+//! Steps of a whole car.
 
 use std::sync::Arc;
 
@@ -11,42 +11,42 @@ use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use super::{Refusal, Unit, show};
 use crate::variables::{CarResult, Get, car};
 
-/// Longest step of the model, s, as in a run; a longer communication step is divided.
+/// Maximum step of the model, s, as in a run. Longer communication steps are divided.
 pub(super) const MODEL_STEP_S: f64 = 1.0;
 
-/// Inputs of a step, of any kind of unit.
+/// Number of inputs of a step, the same for all kinds of unit.
 pub(crate) const INPUTS: usize = 5;
 
-/// One step that was asked for: all that the state after it follows from.
+/// Inputs of one step. The following state depends on nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Asked {
     pub from_s: f64,
     pub dt_s: f64,
-    /// Of a car: speed, grade, ambient, gear. Of a CVT: torque, speed, ratio, oil, engine.
+    /// Car: speed, grade, ambient, gear. CVT: torque, speed, ratio, oil, engine.
     pub inputs: [f64; INPUTS],
 }
 
-/// A drive so far.
+/// Drive up to the current time.
 #[derive(Clone, Debug)]
 pub(crate) struct Driven {
     pub(super) state: State,
     pub(super) fuel_kg: f64,
     pub(super) distance_m: f64,
-    /// Speed at its end: of a car m/s, of the wheels of a CVT rad/s.
+    /// Final speed: of the car in m/s, of the wheels of a CVT in rad/s.
     pub(super) speed: f64,
-    /// What it began with: speed, ambient and temperature of a car, m/s and K; speed, oil and engine of a CVT, rad/s and K.
+    /// Initial values: speed, ambient and temperature of a car, m/s and K; speed, oil and engine of a CVT, rad/s and K.
     pub start: [f64; 3],
-    /// All steps since the start; shared with saved states until one of them goes on.
+    /// All steps since the start, copied on write because saved states share them.
     pub steps: Arc<Vec<Asked>>,
 }
 
-/// A step before its time.
+/// Error for a step before initialization.
 pub(super) fn not_begun() -> Refusal {
     Refusal::new(Conflict, "a step before the end of initialization")
 }
 
 impl Unit {
-    /// Begins a drive with speed, ambient and temperature of all parts.
+    /// Starts a drive with speed, ambient and temperature of all parts, m/s and K.
     pub(crate) fn begin(&mut self, start: [f64; 3]) -> Result<(), Refusal> {
         let [speed_m_s, ambient_k, start_k] = start;
         let lowest_k = car::AMBIENT_K.0;
@@ -81,7 +81,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Drives a step.
+    /// Computes a step.
     pub(crate) fn drive(&mut self, asked: &Asked) -> Result<(), Refusal> {
         let Some(driven) = &mut self.saved.drive else {
             return Err(not_begun());

@@ -1,4 +1,4 @@
-//! The transmission at an operating point.
+//! Operating points of a transmission.
 
 use cvtcycle_config::ProblemKind::Failed;
 use cvtcycle_model::bench::{Bench, BenchPoint};
@@ -9,7 +9,7 @@ use super::{Refusal, Unit, show};
 use crate::variables::{Get, LossResult, point};
 
 impl Unit {
-    /// Solves the operating point of the inputs.
+    /// Solves the operating point of the current inputs.
     pub(super) fn solve(&mut self) -> Result<(), Refusal> {
         let Some(bench) = &self.bench else {
             return Ok(());
@@ -61,7 +61,7 @@ impl Unit {
     }
 }
 
-/// A box whose input shaft does not turn: it loses no power, and passes the torque on.
+/// Result for an input shaft at rest: no power loss, torque passed on.
 fn at_rest(bench: &Bench, asked: &BenchPoint, wanted_nm: f64) -> LossResult {
     let turning = BenchPoint {
         input_rad_s: 1.0,

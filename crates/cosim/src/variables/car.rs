@@ -13,18 +13,18 @@ pub const GRADE: usize = 2;
 pub const AMBIENT: usize = 3;
 /// Temperature at the start, K.
 pub const START: usize = 4;
-/// Gear, of a manual box.
+/// Gear of a manual box.
 pub const GEAR: usize = 5;
 
-/// Steepest road of a cycle, as its table may have it.
+/// Maximum grade, as in tables of cycles.
 const STEEPEST: f64 = 0.35;
 /// Ambient temperatures of a run, K.
 pub(crate) const AMBIENT_K: (f64, f64) = (233.15, 333.15);
-/// Ambient where none is set, K: that of a run.
+/// Default ambient, K, as in a run.
 pub(crate) const START_AMBIENT_K: f64 = 298.15;
-/// 300 km/h, the highest speed of a cycle, m/s.
+/// Maximum speed, m/s: that of a cycle, 300 km/h.
 const FASTEST_M_S: f64 = 300.0 / 3.6;
-/// Highest temperature of all parts at the start, K; 0 for the ambient.
+/// Range of the initial temperature of all parts, K; 0 stands for the ambient.
 pub(crate) const START_K: (f64, f64) = (0.0, 403.15);
 
 /// Adds the rows for a transmission.
@@ -87,7 +87,7 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
 
 type CarOutput<'f> = dyn FnMut(&str, &'static str, fn(&CarResult) -> f64, &str) + 'f;
 
-/// Means over the last step; temperatures are those at its end. A unit of `""` marks a whole number.
+/// Means over the last step, and temperatures at its end. The unit `""` marks an integer.
 fn outputs(is_cvt: bool, output: &mut CarOutput) {
     motion(output);
     ratio(is_cvt, output);

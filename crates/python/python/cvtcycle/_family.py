@@ -1,4 +1,4 @@
-"""One car with other numbers, as a function of them."""
+"""A car with varied numbers, as a function of them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Family:
     """A car and a cycle as a function of some keys, for optimisers and sensitivity analyses.
 
     ``keys`` are numbers of the car's files (``lubricant.`` and ``engine_oil.`` for the fluids), and ``ambient_degc``. Calls are
-    vectorised: each row of ``X`` is a point, driven on all cores. A car that cannot be driven gives NaN, and :meth:`table` says why.
+    vectorised: each row of ``X`` is a point, driven on all cores. A car that cannot be driven gives NaN; :meth:`table` has the reason.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Family:
 
     @property
     def keys(self) -> list[str]:
-        """The keys, in the order of the columns of ``X``."""
+        """Keys in the order of the columns of ``X``."""
         return [key for key, _, _ in self._family.arguments]
 
     @property
@@ -55,20 +55,20 @@ class Family:
 
     @property
     def base(self) -> dict[str, float]:
-        """The value of each key in the car as it is; NaN where its files have none."""
+        """Value of each key in the unchanged car; NaN for a key missing in its files."""
         return {key: base for key, _, base in self._family.arguments}
 
     @property
     def outputs(self) -> dict[str, str]:
-        """Every output with its unit and meaning."""
+        """Outputs with unit and meaning."""
         return {name: f"{unit}: {doc}" if unit else doc for name, unit, doc in self._family.outputs}
 
     def table(self, X: Any, outputs: Iterable[str] | str = ()) -> Table:
-        """The outputs at the points of ``X`` (N, D), and in the column ``reason`` why a car was not driven or failed a check."""
+        """Computes all outputs at the points of ``X`` (N, D). The column ``reason`` explains cars that were not driven or failed a check."""
         return Table(self._family.points(self._points(X), texts("outputs", outputs), self.threads))
 
     def __call__(self, X: Any, outputs: Iterable[str] | str = "headline_fuel_l_per_100km") -> NDArray[numpy.float64]:
-        """The outputs at the points of ``X`` (N, D) or at one point (D,): one number a point for one name, a column a name for a list.
+        """Computes outputs at the points of ``X`` (N, D) or at one point (D,): one number per point for one name, one column per name for a list.
 
         Needs NumPy.
         """
