@@ -23,7 +23,7 @@ fn every_outcome_is_printed_without_broken_numbers_and_within_its_width() {
         );
         assert!(text.contains("A fit is no validation"), "{name}");
         if name != "odd" {
-            // The columns of numbers cannot be wrapped: a little more than what prose keeps to.
+            // Columns of numbers cannot be wrapped, so they may exceed the width of prose slightly.
             for line in text.lines().skip(1) {
                 assert!(
                     line.chars().count() <= 118,
@@ -164,7 +164,7 @@ fn numbers_have_the_digits_that_their_error_leaves() {
 
 #[test]
 fn val_known_days() {
-    // As `date -u -d @SECONDS +%F` has them.
+    // As printed by `date -u -d @SECONDS +%F`.
     assert_eq!(
         [0, 58, 59].map(date),
         ["1970-01-01", "1970-02-28", "1970-03-01"]

@@ -1,8 +1,8 @@
-//! `attribute`, and the prices of `run`.
+//! `attribute`, and the prices printed by `run`.
 
 use super::*;
 
-/// The number at a path of names and indices.
+/// Number at a path of names and indices.
 fn at(value: &Value, path: &str) -> f64 {
     let found = value.pointer(path);
     found
@@ -73,7 +73,7 @@ fn tables_and_files_of_an_attribution() {
     let file = |name: &str| fs::read_to_string(dir.path().join("prices").join(name)).unwrap();
     let prices = file("attribution.csv");
     assert!(prices.starts_with("vehicle,ambient_degc,phase,component,group,loss_kj,energy_percent,saved_l_per_100km,saved_percent,alone_l_per_100km\n"));
-    // Of each car and ambient: its losses, together, interaction; for the whole and both parts of the cycle.
+    // For each car and ambient: its losses, all together, interaction; for the whole and both parts of the cycle.
     assert_eq!(prices.lines().count(), 1 + 2 * 3 * (12 + 2 + 5 + 2));
     assert_eq!(file("pairs.csv").lines().count(), 1 + 2 * (66 + 10));
     assert_eq!(file("shapley.csv").lines().count(), 1 + 2 * (5 + 4));

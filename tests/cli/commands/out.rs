@@ -1,13 +1,13 @@
-//! `--out` of every command: what is wrong with it is reported with the other mistakes, and nothing is written.
+//! `--out` of every command: its problems are reported with all others, and nothing is written.
 
 use std::fs;
 
 use super::{one_line, run_in, stderr};
 
-/// Words of a command with another mistake than that of `--out`, and what the program says about it.
+/// Words of a command with a second mistake besides `--out`, and the message about it.
 type Case<'a> = (&'a [&'a str], &'a str);
 
-/// Commands that write into a directory.
+/// Commands that write a directory.
 const OF_DIRECTORY: [Case; 11] = [
     (&["run", "--ambient", "900"], "--ambient"),
     (&["losses", "--as-map", "box", "--temp", "900"], "--temp"),
@@ -22,7 +22,7 @@ const OF_DIRECTORY: [Case; 11] = [
     (&["levers", "--ambient", "900"], "--ambient"),
 ];
 
-/// Commands that write a file, and the name that it cannot have.
+/// Commands that write a file, with a refused name.
 const OF_FILE: [(Case, &str); 7] = [
     (
         (&["fmu", "rover_216_cvt", "--kind", "cars"], "--kind"),
@@ -48,7 +48,7 @@ const OF_ANY_NAME: [Case; 2] = [
     (&["belt", "--points", "none.csv"], "none.csv"),
 ];
 
-/// All lines of the problems of a command, each of which has to have a part.
+/// Runs a command that must be refused, and checks that each part occurs in the problems.
 fn refused(words: &[&str], out: &str, parts: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path();
@@ -99,7 +99,7 @@ fn a_wrong_ending_is_reported_with_other_mistakes() {
     }
 }
 
-/// A form that is none has no ending: nothing is said about the name of the file. And levers that a form cannot have are named with it.
+/// An unknown form requires no extension, so the name of the file is not reported. Levers in a form without them are reported too.
 #[test]
 fn a_form_that_is_none_has_no_ending() {
     let folder = tempfile::tempdir().unwrap();
