@@ -9,14 +9,14 @@ pub struct SmallTables {
     keys: Vec<String>,
     low: Rc<Table>,
     trip: Rc<Table>,
-    /// Rows at gross slip so far.
+    /// Number of rows left out at gross slip.
     pub left_out: Cell<usize>,
-    /// Evaluations that are left.
+    /// Evaluations left.
     pub left: Cell<u64>,
 }
 
 impl SmallTables {
-    /// With two groups of rows, `g` 0 and 1.
+    /// Creates tables with two groups of rows, `g` 0 and 1.
     pub fn new(x: [f64; 6], y: [f64; 6], evaluations: u64) -> Self {
         let g = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
         let of = |columns: Vec<Vec<f64>>, weight: &[f64], gross: &[bool]| {

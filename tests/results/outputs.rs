@@ -263,7 +263,7 @@ fn a_failing_commit_puts_the_earlier_run_back() {
     }
 }
 
-/// Of two that write into one directory the second is refused and removes nothing; when the first has ended it is free.
+/// The second writer of a directory is refused and removes nothing. After the first has ended, the directory is free.
 #[test]
 fn one_at_a_time_writes_into_a_directory() {
     let home = tempfile::tempdir().unwrap();
@@ -281,7 +281,7 @@ fn one_at_a_time_writes_into_a_directory() {
     assert_eq!(names_in(&path), ["summary.json"]);
 }
 
-/// What a killed process left half written goes with the next run, but for what another process still writes, and links.
+/// The next run removes partial files of a killed process, but not those of a running one, and not links.
 #[test]
 fn what_was_left_half_written_goes_with_the_next_run() {
     let home = tempfile::tempdir().unwrap();
@@ -305,7 +305,7 @@ fn what_was_left_half_written_goes_with_the_next_run() {
     assert_eq!(names_in(home.path()), ["points.csv"]);
 }
 
-/// A file that appears while another one of that name is written is not replaced without being asked.
+/// A file that appears while another one of that name is written is not replaced without --force.
 #[test]
 fn a_file_that_appeared_meanwhile_is_not_replaced() {
     let home = tempfile::tempdir().unwrap();

@@ -1,11 +1,11 @@
-//! Pictures of a matrix of ambient temperatures: sound, and their titles true.
+//! Pictures of a matrix of ambient temperatures: valid, with correct titles.
 
 use super::svg_checks::check;
 use crate::titles::{is, title, written};
 use cvtcycle::report::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
 use cvtcycle::study::answer::ambient::{FuelPart, Matrix, WarmUp};
 
-/// Made-up fuel of two cars from two starts at three temperatures, not in their order.
+/// Artificial fuel of two cars from two starts at three unsorted temperatures.
 fn matrix(excess: [f64; 3]) -> Matrix {
     Matrix {
         cars: vec!["car".to_owned(), "other".to_owned()],

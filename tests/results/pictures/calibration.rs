@@ -57,7 +57,7 @@ fn a_picture_is_there_where_it_has_data() {
     assert!(names("nothing").is_empty());
 }
 
-/// A cell against the number of the outcome, to half of its last digit.
+/// Asserts that a cell equals a number of the outcome, to half a unit in its last digit.
 fn same(cell: &str, wanted: Option<f64>) {
     match wanted {
         None => assert_eq!(cell, ""),
@@ -160,7 +160,7 @@ fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
 
 #[test]
 fn marks_stand_where_the_numbers_are() {
-    // A fitted residual of zero is in the middle of the grey band, for the band is as wide on both sides.
+    // A fitted residual of zero is in the middle of the grey band, which is symmetric.
     let mut outcome = named("one");
     (
         outcome.residuals[0].after_sd,
@@ -184,13 +184,13 @@ fn marks_stand_where_the_numbers_are() {
         .expect("a mark");
     let centre = number(&band, "x") + 0.5 * number(&band, "width");
     assert!((number(&mark, "cx") - centre).abs() <= 2.0);
-    // 40 standard deviations are beyond three times the others, and marked as such.
+    // 40 standard deviations are beyond three times the others, and marked so.
     assert!(
         picture.table.note.contains("1 residuals"),
         "{}",
         picture.table.note
     );
-    // With what is computed = measured the mark is on the line of agreement, which goes from corner to corner.
+    // With computed = measured the mark is on the diagonal of agreement.
     outcome.residuals[0].low = Some(outcome.residuals[0].after);
     outcome.residuals[0].high = outcome.residuals[0].low;
     let picture = scatter_plot(&outcome);
@@ -258,14 +258,14 @@ fn unknown_correlations_are_crossed_out_and_strong_ones_written() {
         .filter_map(|n| n.text());
     let written = written
         .map(|text| text.trim_start_matches('\u{2212}'))
-        // Those of the key have one decimal.
+        // Correlations of the colour key have one decimal.
         .filter(|text| text.len() == 4 && text.starts_with("0."))
         .count();
     assert!(strong > 0);
     assert_eq!(written, strong);
 }
 
-/// What a title says up to the subject of the calibration.
+/// Title without the subject of the calibration.
 fn sentence(picture: &Picture, outcome: &Outcome) -> String {
     let title = title(&picture.svg);
     let subject = outcome.title.replace('&', "&amp;");
@@ -345,7 +345,7 @@ fn the_title_of_a_trace_has_its_distance_from_the_measured_one() {
             (rows.iter().map(square).sum::<f64>() / rows.len() as f64).sqrt()
         };
         let said = written(&text);
-        // The cells are rounded.
+        // Cells are rounded.
         assert!(
             (number(&said[0]) - off(3)).abs() < 0.02,
             "{} {}: {text}",

@@ -1,4 +1,4 @@
-//! Figures that a decision is made on: true titles, whole sums, pictures of nothing.
+//! Figures for decisions: correct titles, complete sums, empty pictures.
 
 use super::svg_checks::{check, numbers};
 use cvtcycle::model::transmission::component::LossGroup;
@@ -7,7 +7,7 @@ use cvtcycle::report::charts::decision::{
 };
 use cvtcycle::report::charts::figures::Term;
 
-/// Its title with plain spaces.
+/// Title with plain spaces.
 fn title(svg: &str) -> String {
     let title = svg.split("<title>").nth(1).unwrap();
     title

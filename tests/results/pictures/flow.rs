@@ -27,7 +27,7 @@ fn car() -> CarEnergy {
     car
 }
 
-/// Energy of the rows of one way, kJ/km.
+/// Energy of the rows of one direction, kJ/km.
 fn sum(picture: &Picture, way: &str) -> f64 {
     picture
         .table
@@ -38,7 +38,7 @@ fn sum(picture: &Picture, way: &str) -> f64 {
         .sum()
 }
 
-/// Heights of the ribbons at both ends, canvas units, by row of the table.
+/// Widths of the ribbons at both ends, canvas units, by row of the table.
 fn widths(svg: &str) -> Vec<(usize, f64, f64)> {
     let doc = roxmltree::Document::parse(svg).expect("well-formed");
     let ribbons = doc
@@ -116,7 +116,7 @@ fn every_flow_has_its_label_however_thin() {
     );
 }
 
-/// Truth: the sum by hand. Parts below half a per cent of the work at the flywheel are one flow with their names.
+/// Truth: the sum by hand. Parts below half a per cent of the work at the flywheel are merged into one flow with their names.
 #[test]
 fn small_parts_are_one_flow() {
     let mut car = car();

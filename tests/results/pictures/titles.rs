@@ -1,4 +1,4 @@
-//! Titles are sentences, and their numbers those of the table.
+//! Titles are sentences with numbers of their table.
 
 use cvtcycle::output::Component;
 use cvtcycle::report::charts::figures::{
@@ -14,17 +14,17 @@ use super::svg_checks::{check, numbers};
 use crate::fixtures::{history, phases, rows, run};
 use crate::titles::{number, written};
 
-/// The title, without the subject after it where it is asked for.
+/// Title, without the subject on request.
 fn title(picture: &Picture) -> String {
     crate::titles::title(&picture.svg)
 }
 
-/// The numbers of a text.
+/// Numbers of a text.
 fn numbers_in(text: &str) -> Vec<f64> {
     written(text).iter().map(|text| number(text)).collect()
 }
 
-/// The sum of a column over rows.
+/// Sum of a column over rows.
 fn sum<'a>(rows: impl Iterator<Item = &'a Vec<String>>, column: usize) -> f64 {
     rows.map(|row| numbers(&row[column])).sum()
 }
@@ -79,7 +79,7 @@ fn temperatures_pressures_and_fuel_of_a_title_are_those_of_the_table() {
     );
 
     let picture = pressure(&car);
-    // The table lists every second step, the title knows all.
+    // The table lists every second step; the title uses all.
     let finite = |column: &str| {
         let all = history.column(column).iter().copied();
         all.filter(|x| x.is_finite()).collect::<Vec<_>>()

@@ -1,4 +1,4 @@
-//! `cvtcycle validate`: the shipped rows, the rule, users' rows, every form of the output. The truths are in the rows themselves.
+//! `cvtcycle validate`: shipped rows, verdicts, users' rows, every form of the output. The rows contain their own truth.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 mod fleet;
@@ -31,7 +31,7 @@ fn json(args: &[&str]) -> (Option<i32>, Value) {
     (output.status.code(), value)
 }
 
-/// Rows of a file of our own, as `validate --only-rows --json` has them.
+/// Rows of a user's file, as in `validate --only-rows --json`.
 struct Own {
     dir: tempfile::TempDir,
 }
@@ -61,7 +61,7 @@ impl Own {
     }
 }
 
-/// A row that is computed without any source; `more` are further keys.
+/// Row without any source; `more` are further keys.
 fn row(id: &str, more: &str) -> String {
     format!(
         "[[row]]\nid = \"{id}\"\nchapter = \"own\"\nmechanism = \"user\"\nwhat = \"a number\"\nprinted = \"3\"\n{more}\n"
@@ -124,8 +124,8 @@ fn the_shipped_rows_keep_their_recorded_verdicts() {
     }
 }
 
-/// Truth: the reason of the tolerance `indicative` itself. A size that the thesis quotes of another car, box or fluid is held as such, whatever its verdict; a bound or an identity
-/// may be held more closely, and two rows compare the project's own cars.
+/// Truth: the definition of the tolerance `indicative`. A size that the thesis quotes of another car, box or fluid has this tolerance, whatever its verdict. A bound or an identity
+/// may have a narrower one, and two rows compare the project's own cars.
 #[test]
 fn quoted_sizes_are_held_as_quoted_sizes() {
     let (_, all) = json(&["validate", "--json", "--all"]);
@@ -434,7 +434,7 @@ fn the_book_shows_the_rows_of_every_mechanism() {
     assert_eq!(shown, all, "a row is on no page, or on two");
 }
 
-/// One problem, not one for every key that a manual box does not have; own rows may look into it.
+/// One problem instead of one for every key that a manual box lacks. Users' own rows may be about it.
 #[test]
 fn the_programs_rows_need_a_cvt() {
     let output = cvtcycle(&["validate", "--vehicle", "rover_216_5mt"]);
@@ -453,7 +453,7 @@ fn the_programs_rows_need_a_cvt() {
     );
 }
 
-/// The page says how wide "agrees" is: 3 to 4 within 0.5 on both sides, a share of each end for itself.
+/// The page has the tolerance of "agrees": 3 to 4 within 0.5 on both sides, or a share of each end.
 #[test]
 fn the_page_shows_the_tolerance() {
     let head =

@@ -1,4 +1,4 @@
-//! Rows of the user.
+//! Users' own rows.
 
 use super::*;
 
@@ -80,7 +80,7 @@ fn users_rows_reach_every_source() {
         computed(4)
     );
     assert!((computed(5) - 3.0).abs() < 1e-12);
-    // A vehicle file of the user in the folder of the rows.
+    // User's vehicle file in the folder of the rows.
     let car = include_str!("../../../vehicles/rover_216_cvt.toml").replace(
         "band_offset_mm = { value = 3.0",
         "band_offset_mm = { value = 2.0",
@@ -210,7 +210,7 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
         let page = text(&own.run(&["--format", "html"]).stdout);
         assert!(page.contains("1 cannot be computed for this") && page.contains(why));
     }
-    // A number behind a reason that does not exist leaves the verdict.
+    // A `cause` without a value leaves the verdict unchanged.
     let cause = "verdict = \"differs\"\nreason = \"so.\"\ncause = { what = \"none\", compute = \"one(box: total_nm)\" }";
     let three = "value = 4\ntolerance = \"exact\"\ncompute = \"3\"\n";
     let own = Own::new(&(SOURCES.to_owned() + &row("a", &format!("{three}{cause}"))));
@@ -233,7 +233,7 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
     );
 }
 
-/// A ratio that the box does not have is computed and reported.
+/// A ratio out of range is computed and flagged.
 #[test]
 fn points_outside_validity_are_reported() {
     let source =

@@ -1,4 +1,4 @@
-//! `--power`. Truth: which value each row has, and at which factors it leaves its range.
+//! `--power`. Truth: the known value of each row, and the factors at which it leaves its range.
 
 use super::*;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ set = ["transmission.cvt.belt.band_offset_mm=2"]
 
 const OFFSET: &str = "transmission.cvt.belt.band_offset_mm";
 
-/// Rows named after what flips them. The offset is 3 mm, and 0.5 to 10 mm are allowed; the band is 20 mm wide, the wedge has 11 degrees.
+/// Rows named after the change that flips them. The offset is 3 mm with an allowed range of 0.5 to 10 mm, the band is 20 mm wide, the wedge angle is 11 degrees.
 fn rows() -> String {
     let number = |id: &str, range: &str, compute: &str| {
         row(
