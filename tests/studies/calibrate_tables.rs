@@ -1,4 +1,4 @@
-//! Tables of made-up outcomes of a calibration.
+//! Tables of artificial outcomes of a calibration.
 
 use std::collections::HashMap;
 
@@ -9,7 +9,7 @@ use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residua
 mod outcomes;
 use outcomes::{named, noise};
 
-/// Rows of a CSV file by the names of its columns.
+/// Rows of a CSV file by column name.
 fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
     let mut reader = csv::Reader::from_reader(bytes);
     reader

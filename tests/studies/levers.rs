@@ -1,5 +1,5 @@
-//! Changes of a design next to the car as it is. Truth: single cars read and driven by hand with the values of a draw, the plan itself, and
-//! the same study put together in another way.
+//! Design changes compared with the unchanged car. Truth: single cars loaded and driven with the values of a draw, the plan itself, and
+//! the same study composed in another way.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -22,7 +22,7 @@ use crate::parts::Shelf;
 const CVT: &str = "rover_216_cvt";
 const FUEL: &str = "headline_fuel_l_per_100km";
 
-/// The table of a study in memory.
+/// In-memory table of a study.
 struct Table {
     columns: Vec<Head>,
     parts: BTreeMap<u64, Rows>,
@@ -44,7 +44,7 @@ impl TableSource for Table {
     }
 }
 
-/// A study with its table and its answer.
+/// Finished study with table and answer.
 struct Done {
     study: Study,
     table: Table,
@@ -52,7 +52,7 @@ struct Done {
 }
 
 impl Done {
-    /// Numbers of a column of the table, by car and point.
+    /// Column of the table, by car and point.
     fn of(&self, name: &str) -> Vec<Vec<f64>> {
         let manifest = StudyManifest::of(&self.study);
         let frame = StudyTable::new(&manifest, &self.table).unwrap();
@@ -111,7 +111,7 @@ fn uncertainty() -> Plan {
     Plan::open("uncertainty_rover").unwrap()
 }
 
-/// Some draws of the Rover through ECE15.
+/// Request with a number of draws of the Rover on ECE15.
 fn request(text: &str, draws: u64) -> LeverRequest {
     LeverRequest {
         levers: levers(text),
@@ -133,7 +133,7 @@ fn problems(text: &str, change: impl Fn(&mut LeverRequest)) -> Problems {
     prepare(&request).map(drop).unwrap_err()
 }
 
-/// The plan of the Rover is relative for any car, and for the Rover itself it stays what it is. Truth: the values of the plan.
+/// The Rover's plan becomes relative for any car, without effect for the Rover itself. Truth: the values of the plan.
 #[test]
 fn the_rovers_draws_are_those_of_its_plan() {
     let plan = uncertainty();
@@ -174,7 +174,7 @@ fn the_rovers_draws_are_those_of_its_plan() {
     assert!(changed > 70, "{changed}");
 }
 
-/// What no draw moves is named: of a car of a class, whose engine has no enrichment and whose clamp is another, and of its twin with six gears, where
+/// Factors without effect are named: for a car of a class, whose engine has no enrichment and whose clamp law differs, and for its twin with six gears, where
 /// the plan has lists of five.
 #[test]
 fn a_study_names_the_factors_that_do_not_act() {
@@ -205,7 +205,7 @@ fn a_study_names_the_factors_that_do_not_act() {
     ] {
         assert!(parts.iter().all(|part| note.contains(part)), "{note}");
     }
-    // Their draws are those of a car without the factor: no value of theirs is in the table.
+    // The draws equal those of a car without the factor, and the table has no values for it.
     let gears = study
         .plan
         .factors
@@ -213,11 +213,11 @@ fn a_study_names_the_factors_that_do_not_act() {
         .position(|f| f.name == "gear set")
         .unwrap();
     assert!(study.cars[1].idle.contains(&gears) && !study.cars[0].idle.contains(&gears));
-    // The shipped study has nothing to name.
+    // The shipped study has no such factors.
     assert!(Study::prepare(uncertainty()).unwrap().notes.is_empty());
 }
 
-/// Truth: the car read by `setup::load` with the draw's values and the lever's words as overrides, and driven.
+/// Truth: the car loaded by `setup::load` with the draw's values and the lever's words as overrides, and driven.
 #[test]
 fn a_draw_is_the_car_with_its_values() {
     let text = lever("pump", &["transmission.cvt.pump.kind=variable"])
@@ -234,7 +234,7 @@ fn a_draw_is_the_car_with_its_values() {
         let mut set: Vec<Override> = words.iter().map(|text| text.parse().unwrap()).collect();
         for factor in &done.study.plan.factors {
             let value = done.of(&factor.key)[car][point];
-            // Words are of the baselines alone.
+            // Words apply to the baselines only.
             let is_number = factor.values.are_numbers();
             if is_number && value.is_finite() {
                 set.push(Override::number(&factor.key, value));
@@ -265,8 +265,8 @@ fn a_draw_is_the_car_with_its_values() {
     assert!(done.answer.enough.median && !done.answer.enough.ends);
 }
 
-/// Property: a value that a lever gives leaves its factor out, in its reference as well, and moves no other factor; a relative one acts
-/// on what was drawn.
+/// Property: an absolute lever removes its factor, in the reference too, and changes no other factor. A relative one modifies
+/// the drawn value.
 #[test]
 fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
     let (line, pump) = (
@@ -298,7 +298,7 @@ fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
     );
 }
 
-/// Property: order, other levers and threads do not change what a lever saves, and a combination of one lever is that lever.
+/// Property: order, other levers and threads do not change the saving of a lever, and a combination of one lever equals it.
 #[test]
 fn a_lever_does_not_depend_on_others() {
     let pump = lever("pump", &["transmission.cvt.pump.kind=variable"]);
@@ -335,7 +335,7 @@ fn a_lever_does_not_depend_on_others() {
     assert!((together.fuel_percent.value - sum).abs() < 0.3);
 }
 
-/// Every built-in lever changes each car that it is for, and says where its size is from.
+/// Every built-in lever changes each applicable car, and has a source for its size.
 #[test]
 fn built_in_levers_change_something() {
     let mut count = 0;
@@ -389,7 +389,7 @@ fn built_in_levers_change_something() {
     assert_eq!(count, 29);
 }
 
-/// A file serves any car: what it cannot have of a built-in file is left out and named.
+/// A file applies to any car: levers of a built-in file that the car cannot have are left out and named.
 #[test]
 fn another_car_has_the_levers_that_it_can() {
     let (name, text) = Kind::Levers.embedded()[0];
@@ -463,14 +463,14 @@ fn combinations_that_do_not_go_together_are_refused() {
         );
         assert_eq!(problems[0].key, "combine");
     }
-    // Two factors on one value go together in any order.
+    // Two factors on one value combine in any order.
     let mut both = request(&text, 0);
     both.combine = Combine::Lists(vec![vec!["cut".to_owned(), "cut_more".to_owned()]]);
     let done = run(&both, 1);
     let together = done.answer.blocks[0].rows.last().unwrap();
     let single = done.row("cut_more");
     assert!(together.fuel_percent.value < single.fuel_percent.value);
-    // And the automatic one takes the better of two that do not.
+    // The automatic combination takes the better of two incompatible levers.
     let automatic = LeverRequest {
         combine: Combine::Automatic,
         ..both
@@ -484,7 +484,7 @@ fn combinations_that_do_not_go_together_are_refused() {
     );
 }
 
-/// Property: a plan leaves out what a car does not have, and holds a draw in the range of its key, only where it says so.
+/// Property: only an explicit option makes a plan skip keys that a car lacks, or clamp a draw to the range of its key.
 #[test]
 fn missing_keys_and_bounds_of_a_plan() {
     let text = |head: &str, key: &str, low: f64, high: f64| {
@@ -541,7 +541,7 @@ fn a_factor_does_not_replace_what_a_plan_sets() {
     assert!(read(text("road_load.mass_kg=1000", mass, "scale")).is_ok());
 }
 
-/// The example of the page is a lever file, and a car can have it.
+/// The example of the page is a valid lever file for a car.
 #[test]
 fn the_example_of_the_page_is_a_lever_file() {
     let page = include_str!("../../docs/book/src/levers.md");

@@ -1,4 +1,4 @@
-//! The least fuel on a cycle: against every controller that drives, against brute force with the model's own steps, and its line.
+//! Minimum fuel of a cycle: compared with every controller, with brute force over the model's own steps, and with its line.
 
 use cvtcycle::config::Override;
 use cvtcycle::config::cycle::{Cycle, embedded};
@@ -58,7 +58,7 @@ fn steps(cycle: &Cycle, dt_s: f64) -> (Trace, Vec<Step>) {
     (trace.clone(), trace.steps(dt_s).collect())
 }
 
-/// Fuel of a car by its own controller, kg.
+/// Fuel with the car's own controller, kg.
 fn own_kg(car: &Car, task: &Task) -> f64 {
     let mut drive = Drive::along(car, task.trace, task.start);
     let rows = task.steps.iter().map(|step| drive.step(step).0);
@@ -69,7 +69,7 @@ fn least(task: &Task) -> Bound {
     bound(task).unwrap_or_else(|why| panic!("{why:?}"))
 }
 
-/// Truth: cars that drive. Shipped control, constant lines, and the best path with its ratios disturbed, all at 1100 rpm or more where it counts.
+/// Truth: driven cars. Shipped control, constant lines, and the best path with perturbed ratios, all at 1100 rpm or more where the limit applies.
 #[test]
 fn bound_is_below_every_car_that_drives() {
     let own = car(&[], 25.0);
@@ -109,7 +109,7 @@ fn bound_is_below_every_car_that_drives() {
     }
 }
 
-/// Six seconds, each 0.3 m/s faster than the one before.
+/// Six seconds, accelerating by 0.3 m/s each.
 fn rising(from_m_s: f64) -> Cycle {
     let interval = |k: u32| Interval {
         start_s: f64::from(k),
@@ -123,8 +123,8 @@ fn rising(from_m_s: f64) -> Cycle {
     Cycle::from_intervals("rising", (0..6).map(interval).collect()).unwrap()
 }
 
-/// Least fuel, kg, of all paths over nine ratios a step in the five steps after the first, each path driven by the model's own steps; `change` is
-/// that of ln I at a share of the nine, `may` says which rows are within the limits.
+/// Minimum fuel, kg, of all paths over nine ratios in each of the five steps after the first, driven by the model's own steps. `change` is
+/// the change of ln I for a share of the nine, `may` selects rows within the limits.
 fn by_brute_force(
     of: &Task,
     mut start: Drive<'_>,
@@ -169,7 +169,7 @@ fn bound_is_that_of_brute_force_over_driven_paths() {
         row.engine_speed_rad_s >= of.limits.least_rad_s
     });
     assert!(found.least_kg() <= best, "{} {best}", found.least_kg());
-    // Nine changes a step are a coarse set, so that the least of them is a little above.
+    // Nine changes per step are a coarse set, so their minimum is slightly higher.
     assert!(best < 1.01 * found.fuel_kg, "{} {best}", found.fuel_kg);
 }
 
@@ -216,7 +216,7 @@ fn a_finer_grid_moves_the_bound_less_and_less() {
     );
 }
 
-/// A grid whose distances are longer than a step's shift leaves no ratio from which the box cannot go on.
+/// On a grid coarser than a step's shift, the box can still continue from every ratio.
 #[test]
 fn a_coarse_grid_with_short_steps_is_no_limit() {
     for sets in [&[][..], &["transmission.cvt.clamp=torque_following"]] {
@@ -232,7 +232,7 @@ fn a_coarse_grid_with_short_steps_is_no_limit() {
     }
 }
 
-/// The best line is within 0.3 % of the bound on ECE15+EUDC, holds the least speed, and burns less than the car as it is.
+/// The best line is within 0.3 % of the bound on ECE15+EUDC, keeps the minimum speed, and burns less than the unchanged car.
 #[test]
 fn the_line_is_near_the_bound() {
     let own = car(&[], 25.0);
@@ -271,12 +271,12 @@ fn a_limit_that_cannot_be_held_is_named_with_what_can() {
     assert_eq!(limit.name, LimitName::Reserve);
     assert!((0.1..0.7).contains(&most), "{most}");
     assert!(limit.row.wheel_power_w > 10e3);
-    // What is said to be possible is.
+    // The reported feasible value is feasible.
     of.limits.reserve = most;
     least(&of);
 }
 
-/// Two limits that cannot be held are both named, each with its own place and with what can be held of it.
+/// Two infeasible limits are both named, each with its own place and its feasible value.
 #[test]
 fn each_limit_that_cannot_be_held_has_its_place() {
     let own = car(&[], 25.0);
@@ -289,7 +289,7 @@ fn each_limit_that_cannot_be_held_has_its_place() {
     assert_eq!(names, [LimitName::LeastSpeed, LimitName::Reserve]);
     let [speed, reserve] = [0, 1].map(|k| why.unheld[k].most.expect("a number"));
     assert!(speed < rad_s(5500.0) && reserve < 0.85, "{why:?}");
-    // Each alone can be held as far as it says.
+    // Each alone is feasible at its reported value.
     (of.limits.least_rad_s, of.limits.reserve) = (speed, 0.0);
     least(&of);
     (of.limits.least_rad_s, of.limits.reserve) = (0.0, reserve);
@@ -299,7 +299,7 @@ fn each_limit_that_cannot_be_held_has_its_place() {
 /// A car of the modern classes with a torque converter.
 const CONVERTER: &str = "civic_20_cvt";
 
-/// A converter car on its trace, from a soak at a temperature.
+/// Converter car with its trace, from a soak at a temperature.
 fn converter(sets: &[&str], degc: f64, cycle: &str) -> (Car, (Trace, Vec<Step>)) {
     let own = shipped(CONVERTER, sets, degc);
     let trace = own_trace(&own, embedded(cycle).unwrap().trace_for(true)).into_owned();
@@ -307,7 +307,7 @@ fn converter(sets: &[&str], degc: f64, cycle: &str) -> (Car, (Trace, Vec<Step>))
     (own, (trace, steps))
 }
 
-/// Fuel of a line that holds a speed, kg.
+/// Fuel of a line of constant speed, kg.
 fn line_kg(rpm: f64, of: &Task) -> f64 {
     let line = Line {
         drive: vec![(0.0, rpm), (15.0, rpm), (100.0, 6000.0)],
@@ -316,7 +316,7 @@ fn line_kg(rpm: f64, of: &Task) -> f64 {
     own_kg(&line.on(of.car), of)
 }
 
-/// Truth: cars that drive, whose lock-up clutch goes by its own law: in the cold it is open for minutes, warm it closes at every launch.
+/// Truth: driven cars, with the lock-up clutch under its own law: in the cold it is open for minutes, warm it closes at every launch.
 #[test]
 fn bound_of_a_converter_car_is_below_every_drive_and_is_driven() {
     for (degc, start_degc) in [(25.0, 60.0), (-10.0, 12.0), (-10.0, -10.0)] {
@@ -343,7 +343,7 @@ fn bound_of_a_converter_car_is_below_every_drive_and_is_driven() {
             .iter()
             .filter(|row| row.flags.contains(Flags::LOCKUP_OPEN));
         let open_s: f64 = open.map(|row| row.dt_s).sum();
-        // Below 20 degC of the sump the lock-up clutch does not close (TC-7).
+        // The lock-up clutch does not close below a sump temperature of 20 degC (TC-7).
         assert!(
             if start_degc < 0.0 {
                 open_s > 120.0
@@ -355,7 +355,7 @@ fn bound_of_a_converter_car_is_below_every_drive_and_is_driven() {
     }
 }
 
-/// Truth: paths that drive. The best path with its ratios moved at random burns more, lock-up by its own law in each.
+/// Truth: driven paths. Random changes of the ratios of the best path burn more, with the lock-up under its own law.
 #[test]
 fn random_paths_of_a_converter_car_are_above_its_bound() {
     let (own, steps) = converter(&[], 25.0, "ece15");
@@ -380,8 +380,8 @@ fn random_paths_of_a_converter_car_are_above_its_bound() {
     }
 }
 
-/// Truth: every path over nine ratios in five steps through the speeds at which the lock-up clutch closes, each driven by the model's own steps
-/// from the same state (59 049 drives), with the lock-up by its law.
+/// Truth: every path over nine ratios in five steps, across the speeds at which the lock-up clutch closes, each driven by the model's own steps
+/// from the same state (59 049 drives), with the lock-up under its law.
 #[test]
 fn bound_of_a_converter_car_is_that_of_brute_force() {
     let own = shipped(CONVERTER, &[], 25.0);
@@ -407,7 +407,7 @@ fn bound_of_a_converter_car_is_that_of_brute_force() {
     assert!(best < 1.02 * found.fuel_kg, "{} {best}", found.fuel_kg);
 }
 
-/// Truth: the drive of the same car. Stops, restarts and the store go by their own law along the best path, which saves the fuel of idling.
+/// Truth: the drive of the same car. Stops, restarts and battery follow their own law along the best path, which saves the fuel of idling.
 #[test]
 fn bound_of_a_car_with_start_stop_is_driven() {
     let sets = [
@@ -435,7 +435,7 @@ fn bound_of_a_car_with_start_stop_is_driven() {
     assert!(stopping_kg < running_kg, "{stopping_kg} {running_kg}");
 }
 
-/// LC-7 and LC-1: a launch at a higher engine speed burns more, one at idle less, and the bounds keep that order.
+/// LC-7 and LC-1: a launch at a higher engine speed burns more, one at idle less, and the bounds have the same order.
 #[test]
 fn a_launch_at_least_speed_burns_least() {
     let at = |sets: &[&str], idle: bool| {
@@ -456,7 +456,7 @@ fn a_launch_at_least_speed_burns_least() {
     assert!(fuel.windows(2).all(|pair| pair[0] < pair[1]), "{fuel:?}");
 }
 
-/// Every car of a drive that begins warm is warmed up by itself.
+/// Each car is warmed up separately for a warm start.
 #[test]
 fn a_warm_path_begins_as_warm_as_it_leaves_its_car() {
     let own = car(&[], 25.0);
@@ -474,7 +474,7 @@ fn a_warm_path_begins_as_warm_as_it_leaves_its_car() {
     assert!((0.0..5e-3).contains(&found.gap()), "{}", found.gap());
 }
 
-/// The same bytes on any number of threads.
+/// Any number of threads gives the same bytes.
 #[test]
 fn threads_change_no_bit() {
     let own = car(&[], 25.0);

@@ -1,4 +1,4 @@
-//! Cars that a template refuses, and keys that it has no place for. Truth: the ordinary reading.
+//! Cars that a template refuses, and keys that cannot be set. Truth: the ordinary reading.
 
 use super::*;
 
@@ -71,7 +71,7 @@ fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
     ));
 }
 
-/// Unknown keys get the words of `--set`; keys without a single number say so.
+/// Unknown keys get the messages of `--set`; keys without a single number have a message of their own.
 #[test]
 fn keys_without_a_slot() {
     let unknown = [

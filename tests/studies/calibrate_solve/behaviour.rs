@@ -1,4 +1,4 @@
-//! Failing regions, several starts, threads, who stops, and groups left out.
+//! Failing regions, several starts, threads, interruption, and groups left out.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -11,7 +11,7 @@ use super::{Model, ONCE, curve, fitted, near, parameter};
 
 const X: [f64; 9] = [0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8, 3.2];
 
-/// (sqrt(a - 1) + b x) against a truth, without an answer where a is below 1 or b above `most`.
+/// sqrt(a - 1) + b x against a truth; undefined for a below 1 or b above `most`.
 fn rooted(truth: [f64; 2], most: f64) -> impl Residuals {
     let f = move |a: f64, b: f64, x: f64| (a - 1.0).sqrt() + b * x;
     Model(X.len(), move |v: &[f64]| {
@@ -202,7 +202,7 @@ impl Progress for Patience {
     }
 }
 
-/// A start that failed before the stop says nothing of the others.
+/// An earlier failure of a start does not turn an interruption into a failure.
 #[test]
 fn a_stop_after_a_failed_start_is_a_stop() {
     let model = Model(1, |_: &[f64]| Err("no number".to_owned()));
@@ -244,7 +244,7 @@ fn who_stops_keeps_the_best_so_far_and_limits_hold() {
         whole.cost < stopped.cost && stopped.cost < fitted_cost(&model),
         "{stopped:?}"
     );
-    // Without derivatives nothing is claimed.
+    // Without derivatives no uncertainty is reported.
     let worth = uncertainty(&stopped, &parameters);
     assert!(
         stopped.jacobian.iter().all(|slope| slope.is_nan())

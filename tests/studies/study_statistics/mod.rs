@@ -19,16 +19,16 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
 
-/// The confidence of every table of statistics.
+/// Default confidence of all tables of statistics.
 pub const USUAL: Confidence = Confidence {
     intervals: 0.95,
     draws: 0.9,
 };
 
-/// A function of points of the unit cube.
+/// Function on the unit cube.
 pub type Function = Box<dyn Fn(&[f64]) -> f64>;
 
-/// A function with its indices.
+/// Function with its indices.
 pub struct Known {
     pub name: &'static str,
     pub of: Function,
@@ -74,7 +74,7 @@ pub fn sobol_g() -> Known {
     }
 }
 
-/// 100 + 3 x + 2 y + z + 0 w: far from zero, adds up, the last factor does nothing.
+/// 100 + 3 x + 2 y + z + 0 w: far from zero, additive, the last factor inert.
 pub fn additive() -> Known {
     let c = [3.0, 2.0, 1.0, 0.0];
     let share: Vec<f64> = c.iter().map(|c| c * c / 14.0).collect();
@@ -99,7 +99,7 @@ impl Outputs {
         }
     }
 
-    /// From points of 2 d numbers: those of A, then those of B.
+    /// Evaluates points of 2 d numbers: those of A, then those of B.
     pub fn of(known: &Known, points: impl Iterator<Item = Vec<f64>>) -> Self {
         let d = known.first.len();
         let mut columns = vec![Vec::new(); d + 2];
@@ -116,7 +116,7 @@ impl Outputs {
         Outputs(columns)
     }
 
-    /// An Owen-scrambled Sobol sequence.
+    /// Evaluates an Owen-scrambled Sobol sequence.
     pub fn sobol(known: &Known, n: u32, seed: u32) -> Self {
         let d = known.first.len() as u32;
         Self::of(
@@ -129,7 +129,7 @@ impl Outputs {
         )
     }
 
-    /// Independent draws.
+    /// Evaluates independent draws.
     pub fn random(known: &Known, n: usize, seed: u64) -> Self {
         let mut random = Pcg64::seed_from_u64(seed);
         let d = known.first.len();

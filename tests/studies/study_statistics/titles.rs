@@ -1,4 +1,4 @@
-//! Titles of pictures of statistics: their numbers are those of the table under the picture.
+//! Titles of pictures of statistics contain the numbers of the table below the picture.
 
 use super::drawn::{every_plot, sample};
 use super::{Outputs, additive};
@@ -9,7 +9,7 @@ use cvtcycle::report::charts::study::{
 use cvtcycle::report::charts::{Picture, PictureTable};
 use cvtcycle::study::statistics::{Bootstrap, sobol_indices};
 
-/// Pictures of outputs of the size of fuel whose name begins so, with their titles.
+/// Pictures of outputs of the magnitude of fuel whose name has a prefix, with their titles.
 fn named(start: &str) -> Vec<(String, Picture)> {
     let of_fuel = |name: &str| name.ends_with(" x1") || name.ends_with(" x-1");
     let all = every_plot().into_iter();
@@ -21,7 +21,7 @@ fn named(start: &str) -> Vec<(String, Picture)> {
     own
 }
 
-/// Indices of a function that adds up, of which the first factor is 9/14 of the variance.
+/// Indices of an additive function, with the first factor at 9/14 of the variance.
 fn apart() -> (String, Picture) {
     let outputs = Outputs::sobol(&additive(), 1024, 3);
     let names: Vec<String> = ["first", "second", "third", "idle"]
@@ -39,7 +39,7 @@ fn apart() -> (String, Picture) {
     (title(&picture.svg), picture)
 }
 
-/// Rows by a column, the largest number first; rows without one last.
+/// Rows sorted by a column in descending order; rows without a number last.
 fn ordered(table: &PictureTable, column: usize) -> Vec<&Vec<String>> {
     let mut rows: Vec<&Vec<String>> = table.rows.iter().collect();
     let size = |row: &Vec<String>| {
@@ -50,7 +50,7 @@ fn ordered(table: &PictureTable, column: usize) -> Vec<&Vec<String>> {
     rows
 }
 
-/// A name as a title begins with it, and as XML has it.
+/// True if the title begins with the name, as displayed or as escaped for XML.
 fn begins(title: &str, name: &str) -> bool {
     let name = name
         .replace('&', "&amp;")
@@ -132,7 +132,7 @@ fn effects_titles_have_the_widest_range_of_means() {
     }
 }
 
-/// Truth: the values themselves, drawn again.
+/// Truth: the values, drawn again.
 #[test]
 fn distribution_titles_have_the_counts_and_ends_of_the_values() {
     let draw = |name, values: &[f64], differences| {

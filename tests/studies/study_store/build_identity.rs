@@ -1,4 +1,4 @@
-//! The identity of a build: one for one set of sources, another one after any change of them.
+//! Identity of a build: equal for equal sources, different after any change of them.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ mod build;
 
 use build::{INPUTS, identity};
 
-/// A workspace of one file for each input that counts.
+/// Workspace with one file for each input that counts.
 fn workspace() -> TempDir {
     let dir = TempDir::new().unwrap();
     for input in INPUTS {

@@ -1,4 +1,4 @@
-//! A study as one file.
+//! Export of a study to one file.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -16,7 +16,7 @@ use crate::parts::write_runs;
 use super::{PLAN, RUN, head, heads, manifest, manifest_of, rows, whole, write_part};
 
 const PARTS: usize = 3;
-/// Names of its columns with their units.
+/// Names of the columns with units.
 const HEADER: [&str; 5] = [
     "run",
     "vehicle",
@@ -33,7 +33,7 @@ fn exported(study: &Path, table: &str, to: &Path) -> Result<Exported, cvtcycle::
     Ok(exported)
 }
 
-/// A study of three parts, exported.
+/// Exports a study of three parts.
 fn to(name: &str) -> (TempDir, PathBuf) {
     let dir = TempDir::new().unwrap();
     let study = dir.path().join("study");
@@ -47,7 +47,7 @@ fn to(name: &str) -> (TempDir, PathBuf) {
     (dir, file)
 }
 
-/// All cells as they are in CSV.
+/// All cells as in CSV.
 fn cells() -> Vec<Vec<String>> {
     let row = |rows: &Rows, k: usize| {
         let cell = |values: &Values| match values {
@@ -129,7 +129,7 @@ fn parquet_has_a_row_group_a_part_and_the_manifest() {
     assert_eq!(table.read(&["run", "reason", "vehicle"]).unwrap(), all);
 }
 
-/// A part of a workbook.
+/// Reads a part of a workbook.
 fn inside(file: &Path, name: &str) -> String {
     let mut archive = zip::ZipArchive::new(File::open(file).unwrap()).unwrap();
     let mut text = String::new();
@@ -141,7 +141,7 @@ fn inside(file: &Path, name: &str) -> String {
     text
 }
 
-/// The cells of a sheet: place, whether it is a number, and its text.
+/// Cells of a sheet: place, whether numeric, and text.
 fn sheet(file: &Path, name: &str) -> Vec<(String, bool, String)> {
     fn text(node: roxmltree::Node) -> String {
         let texts = node.descendants().filter(roxmltree::Node::is_text);

@@ -14,10 +14,10 @@ use super::{PLAN, files, manifest, results, whole, write_part};
 
 const PARTS: usize = 3;
 
-/// Something done to a file.
+/// Damage done to a file.
 type Spoil = fn(&Path);
 
-/// The files of a study in the order in which they appear.
+/// Files of a study in order of creation.
 fn order() -> Vec<String> {
     let part = |k: usize| {
         let names = [
@@ -52,7 +52,7 @@ fn finish(path: &Path) -> Vec<usize> {
     missing
 }
 
-/// Files appear one after the other, each whole: a killed process leaves the first few of them, and one half written.
+/// Files are created one after the other, each complete: a killed process leaves the first few, and a partial one.
 #[test]
 fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
     let reference = TempDir::new().unwrap();
@@ -69,7 +69,7 @@ fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
         for folder in ["", "parts/"] {
             fs::write(dir.path().join(format!("{folder}.cvtcycle-x7.tmp")), "half").unwrap();
         }
-        // The file that earlier versions locked.
+        // Lock file of earlier versions.
         fs::write(dir.path().join(".lock"), "").unwrap();
         let parts = (there.saturating_sub(2) / 5).min(PARTS);
         assert_eq!(
@@ -149,7 +149,7 @@ fn a_part_that_went_while_the_study_ran_is_in_no_results() {
         assert_eq!(study.study().unwrap().present().len(), PARTS);
         spoil(&dir.path().join("parts").join(name));
         let mut problems = vec![study.finish(&results()).unwrap_err()];
-        // A part without its mark would be missing from the answer; one with other bytes is noticed when it is read.
+        // A part without its mark would be missing in the answer; one with changed bytes is detected when read.
         if name.starts_with("part_") {
             problems.push(study.study().unwrap_err());
         }
@@ -175,7 +175,7 @@ fn what_is_read_belongs_to_the_manifest_that_was_read_before() {
     whole(dir.path(), PARTS);
     let study = Study::open(dir.path()).unwrap();
     study.unchanged().unwrap();
-    // The same study computed anew has the same parts.
+    // The same study computed again has the same parts.
     drop(StudyDir::create(dir.path(), &manifest(PARTS), PLAN, true).unwrap());
     study.unchanged().unwrap();
     drop(StudyDir::create(dir.path(), &manifest(PARTS + 1), PLAN, true).unwrap());
@@ -206,7 +206,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         "{said}"
     );
     assert!(!said.contains("more values"), "{said}");
-    // Another program has another build, which says nothing more.
+    // Another program has another build, which has no further message.
     let said = refused(dir.path(), |m| {
         m["program"] = "cvtcycle 9.9.9".into();
         m["build"] = "0123456789abcdef".into();
@@ -215,7 +215,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`program` is") && !said.contains("more value"),
         "{said}"
     );
-    // Nor does the word of the run, which is another one with every difference.
+    // The identifying word of the run differs with every difference, and has no message either.
     let said = refused(dir.path(), |m| {
         m["build"] = "0123456789abcdef".into();
         m["run"] = "fedcba9876543210".into();
@@ -240,7 +240,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`seed` is 7 there and 8 now (and 2 more values)"),
         "{said}"
     );
-    // A plan that is another one is reported by its line, not by what follows from it.
+    // A changed plan is reported by its line, without the consequences.
     let mut other: Value = serde_json::from_slice(&manifest(PARTS)).unwrap();
     other["plan_sha256"] = "abc".into();
     let problem = StudyDir::resume(

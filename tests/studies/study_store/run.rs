@@ -1,4 +1,4 @@
-//! `run --format`: traces as CSV, as Parquet, or both.
+//! `run --format`: traces as CSV, Parquet, or both.
 
 use std::fs;
 use std::path::Path;
