@@ -1,16 +1,16 @@
-//! The belt's path, drawn to scale from the geometry.
+//! Path of the belt, drawn to scale from the geometry.
 
 use super::reference::Reference;
 use crate::sketch::Anchor::{Middle, Start};
 use crate::sketch::{Sketch, colour};
 use cvtcycle::model::transmission::cvt::variator::Geometry;
 
-/// Pixels in a metre.
+/// Pixels per metre.
 const SCALE: f64 = 1300.0;
 /// Centre of the primary, pixels.
 const CENTRE: (f64, f64) = (100.0, 148.0);
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     let (x, l) = (r.cvt().belt.centre_distance_m, r.cvt().belt.length_m);
     let path = |ratio: f64, word: &str| path(&Geometry::new(ratio, x, l), x, word);
@@ -20,7 +20,7 @@ pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// One belt.
+/// Draws one belt.
 fn path(g: &Geometry, distance_m: f64, word: &str) -> String {
     let (cx, cy) = CENTRE;
     let sx = cx + SCALE * distance_m;
@@ -77,7 +77,7 @@ fn path(g: &Geometry, distance_m: f64, word: &str) -> String {
     )
 }
 
-/// A pulley at `x` with its radius on the drawing, drawn at an angle; its name and index, its radius in m and its wrap in rad.
+/// Draws a pulley at `x` with its radius at an angle, labelled with name and index; radius in m, wrap in rad.
 fn pulley(
     of: &mut Sketch,
     (x, r, a): (f64, f64, f64),

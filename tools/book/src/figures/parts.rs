@@ -15,7 +15,7 @@ use cvtcycle::output::Component;
 const SPEED: &str = "Engine speed [rpm]";
 const LITRES_MIN: f64 = 60_000.0;
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     vec![
         ("pump_torque", pump(r)),

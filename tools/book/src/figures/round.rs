@@ -1,4 +1,4 @@
-//! Force against the way round both pulleys, and the chain of losses of the belt at one point.
+//! Force along the path round both pulleys, and the losses of the belt at one point.
 
 use super::point::{Answer, POINT, answers, numbers};
 use super::reference::{RPM, Reference};
@@ -8,10 +8,9 @@ use crate::sketch::{Sketch, colour};
 const CONVENTIONAL: &str = "2.417,2000,30,150";
 const INVERTED: &str = "2.417,2000,30,40";
 
-/// All of them, by file name.
-///
+/// Figures by file name.
 /// # Errors
-/// A sentence, if the belt does not answer.
+/// A sentence, if the belt has no result.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     let rows = answers(r, &[CONVENTIONAL, INVERTED, POINT])?;
     let pitch = r.cvt().belt.segment_thickness_m;
@@ -22,13 +21,13 @@ pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     ])
 }
 
-/// Left edge and width of the way round, pixels.
+/// Left edge and width of the path, pixels.
 const WAY: (f64, f64) = (52.0, 338.0);
 /// Zero lines of compression and tension, and height of a panel, pixels.
 const ZEROS: [f64; 2] = [172.0, 316.0];
 const TALL: f64 = 92.0;
 
-/// Lengths of the way round: arc of the primary, strut, arc of the secondary, strut; pixels at their ends, the start first.
+/// Path lengths: arc of the primary, strut, arc of the secondary, strut; pixels at their ends, including the start.
 struct Way {
     ends: [f64; 5],
     per_m: f64,
@@ -50,7 +49,7 @@ impl Way {
     }
 }
 
-/// Where the pulleys are, and idle and active arc of the loading one; the place at which they meet.
+/// Draws the pulleys, and idle and active arc of the loading one. Returns the place where these meet.
 fn ground(s: &mut Sketch, way: &Way, active: f64, forward: bool) -> f64 {
     let [x0, x1, x2, x3, _] = way.ends;
     for (from, to, word) in [(x0, x1, "primary"), (x2, x3, "secondary")] {
@@ -73,7 +72,7 @@ fn ground(s: &mut Sketch, way: &Way, active: f64, forward: bool) -> f64 {
     split
 }
 
-/// Forces of a point round both pulleys.
+/// Draws the forces of a point round both pulleys.
 fn round(of: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
     let [.., torque_nm] = numbers(row)?;
     let way = Way::new(of);
@@ -123,7 +122,7 @@ fn round(of: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
     Ok(s.finish(&format!("Forces round both pulleys, {name} loading"), desc))
 }
 
-/// Tension of the bands: large before the primary and small behind it where the step is positive.
+/// Tension of the bands: large before the primary and small behind it for a positive step.
 fn tension(s: &mut Sketch, of: &Answer, way: &Way) {
     let [x0, x1, x2, x3, x4] = way.ends;
     let (mean, step) = (
@@ -179,7 +178,7 @@ fn axes(s: &mut Sketch, way: &Way) {
     );
 }
 
-/// Losses in the order of the pages: name, label, columns that add up.
+/// Losses in the order of the pages: name, label, columns to add.
 const LOSSES: [(&str, &str, [&str; 2]); 4] = [
     (
         "bands",
@@ -206,7 +205,7 @@ const LOSSES: [(&str, &str, [&str; 2]); 4] = [
     ),
 ];
 
-/// Each loss as a bar that begins where the one before ends.
+/// Draws each loss as a bar that begins where the previous one ends.
 fn bars(s: &mut Sketch, of: &Answer, all_nm: f64) {
     let (left, wide) = (118.0, 190.0);
     let mut x = left;
@@ -233,7 +232,7 @@ fn bars(s: &mut Sketch, of: &Answer, all_nm: f64) {
     s.line(&[(left, 66.0), (left, 211.0)], colour::QUIET, 0.8, "");
 }
 
-/// The point from its output to its input, each loss as long as it is large.
+/// Draws the path from output to input torque, with a bar for each loss.
 fn chain(of: &Answer) -> Result<String, String> {
     let mut s = Sketch::new(400.0, 306.0);
     let [ratio, rpm, bar, output_nm] = numbers(POINT)?;

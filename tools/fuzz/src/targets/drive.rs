@@ -1,4 +1,4 @@
-//! Whole short runs of valid cars.
+//! Short runs of valid cars.
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use cvtcycle::output::{Component, EnergyTerms, Row};
 use super::range::range;
 use super::{Bytes, within_memory};
 
-/// Cars, and the words that make other parts of them: fuel model, clamping, pump, thrust ratio, cooler, fluids.
+/// Cars with options for other components: fuel model, clamping, pump, thrust ratio, cooler, fluids.
 const CARS: [(&str, &[&str]); 10] = [
     ("rover_216_cvt", &[]),
     (
@@ -71,10 +71,10 @@ const CARS: [(&str, &[&str]); 10] = [
     ("mondeo_20_5mt", &[]),
 ];
 
-/// Most numbers of a car that are moved.
+/// Maximum number of changed numbers of a car.
 const MOST: usize = 40;
 
-/// Legs of a cycle.
+/// Number of legs of a cycle.
 const LEGS: usize = 8;
 
 struct Car {
@@ -104,13 +104,13 @@ fn car((name, words): (&str, &[&str])) -> Car {
     }
 }
 
-/// True if the car and the cycle of an input are printed: `CVTCYCLE_FUZZ_PRINT=1`.
+/// True if car and cycle of an input are printed: `CVTCYCLE_FUZZ_PRINT=1`.
 fn tells() -> bool {
     static TELLS: OnceLock<bool> = OnceLock::new();
     *TELLS.get_or_init(|| std::env::var_os("CVTCYCLE_FUZZ_PRINT").is_some())
 }
 
-/// The car with its numbers moved; the first half of the changes, or of that half, where all of them make no possible car.
+/// Applies the changes of the input to the car. If the result is invalid, tries the first half of them, then its first half.
 fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
     let mut changes = Vec::new();
     for _ in 0..usize::from(bytes.byte()) % (MOST + 1) {
@@ -180,7 +180,7 @@ fn cycle(bytes: &mut Bytes) -> Option<Cycle> {
     read_csv("fuzz.csv", text.as_bytes()).ok()
 }
 
-/// Looks at every row.
+/// Checks every row.
 struct Look;
 
 impl Recorder for Look {
@@ -209,7 +209,7 @@ impl Recorder for Look {
             assert!(x >= 0.0 && x.is_finite(), "{x} in {row:?}");
         }
         for k in [row.coolant_k, row.engine_oil_k, row.sump_k] {
-            // How hot is the car's own affair: an engine may make any heat.
+            // There is no upper limit: an engine may produce any heat.
             assert!(k >= 200.0 && k.is_finite(), "{k} K in {row:?}");
         }
     }
@@ -255,7 +255,7 @@ pub fn drive_car(data: &[u8]) {
                 State::at(start_k),
                 &mut Look,
             );
-            // The way of the command, with its start and its sums.
+            // Runs like the command, with its start and its sums.
             if matches!(conditions.start, Start::Warm) {
                 let outcome = drive(&setup, &cycle, &conditions);
                 let fuel_kg: f64 = outcome

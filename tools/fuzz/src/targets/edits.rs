@@ -1,8 +1,8 @@
-//! A shipped text with some edits, so that what lies behind the parser is reached as well.
+//! Edits of a shipped text, to reach code behind the parser.
 
 use super::Bytes;
 
-/// Values that a number, a text or a list of a file may be mistaken for.
+/// Replacements for a number, a text or a list of a file.
 const VALUES: [&str; 40] = [
     "0",
     "-0.0",
@@ -46,10 +46,10 @@ const VALUES: [&str; 40] = [
     "{ value = 1, status = \"fitted\", source = \"x\" }",
 ];
 
-/// Most edits of a text.
+/// Maximum number of edits of a text.
 const MOST: usize = 24;
 
-/// The rest of the bytes as they are, or a shipped text with edits.
+/// Returns the remaining bytes unchanged, or a shipped text with edits.
 pub fn text(data: &[u8], shipped: &[&str]) -> Vec<u8> {
     let mut bytes = Bytes(data);
     let which = usize::from(bytes.byte()) % (shipped.len() + 1);
@@ -110,7 +110,7 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
             lines[at].insert_str(place, &String::from_utf8_lossy(&junk));
         }
         _ => {
-            // Deep or long, from a few bytes.
+            // Deep nesting or long text from a few bytes.
             let unit = bytes.of(&[
                 "[", "{a=", "a.", "(", "1,", "\"", "[[a]]\n", "-", "a=1\n", "{",
             ]);
@@ -120,7 +120,7 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
     }
 }
 
-/// The nearest end of a character at or before a byte.
+/// Nearest character boundary at or before a byte.
 fn floor(line: &str, at: usize) -> usize {
     (0..=at.min(line.len()))
         .rev()

@@ -1,4 +1,4 @@
-//! Bands, deflection of the pulleys, and the sum.
+//! Steps for bands, deflection of the pulleys, and the sum.
 
 use super::super::reference::{At, RPM};
 use super::{Forces, Point, Step};
@@ -141,7 +141,7 @@ impl Point<'_> {
         steps
     }
 
-    /// What the losses are in W and of the input, and what the clamping carries.
+    /// Losses in W and relative to the input, and the torque capacity of the clamping.
     fn worth(&self, all: f64, input: f64) -> [Step; 3] {
         let rs = self.at.geometry.secondary_radius_m;
         let least = self.clamps()[0].min(self.clamps()[1]);
@@ -175,7 +175,7 @@ impl Point<'_> {
         ]
     }
 
-    /// Torque capacity as the program has it, Nm.
+    /// Torque capacity computed by the program, Nm.
     fn capacity_nm(&self) -> f64 {
         let at = At {
             ratio: self.ratio,

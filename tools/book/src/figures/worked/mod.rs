@@ -1,5 +1,5 @@
-//! One operating point worked through the pages of the belt: each equation with its numbers, worked out here by the page's own
-//! equations, next to what the program gives.
+//! Worked example of the belt's pages at one operating point: each equation with its numbers, evaluated here by the page's
+//! equations, next to the program's result.
 
 mod losses;
 mod slip;
@@ -10,37 +10,36 @@ use cvtcycle::model::fluid::Friction;
 use cvtcycle::model::transmission::cvt::variator::{Belt, BeltAtRatio};
 use std::fmt::Write as _;
 
-/// A line of a worked example.
+/// Line of a worked example.
 #[derive(Clone)]
 struct Step {
     /// Symbol, in LaTeX.
     symbol: &'static str,
-    /// Label of the equation, or where the number is from.
+    /// Label of the equation, or source of the number.
     by: &'static str,
     /// The equation with its numbers, in LaTeX.
     worked: String,
-    /// Result of the equation as the page has it.
+    /// Result of the equation on the page.
     value: f64,
-    /// The same from the program, where it prints it.
+    /// Result of the program, if it prints one.
     program: Option<f64>,
-    /// Factor to the unit that is shown, and the unit.
+    /// Factor to the displayed unit, and the unit.
     shown: (f64, &'static str),
 }
 
-/// A result of the pages' equations, and the same of the program.
+/// Result of the page's equations, and of the program.
 pub struct Checked {
     /// Page and symbol.
     pub name: String,
-    /// By the equations of the page.
+    /// Result of the equations of the page.
     pub worked: f64,
-    /// By the program.
+    /// Result of the program.
     pub program: f64,
 }
 
-/// Every result that the program has as well.
-///
+/// All results that the program prints too.
 /// # Errors
-/// A sentence, if the belt does not answer.
+/// A sentence, if the belt has no result.
 pub fn checked() -> Result<Vec<Checked>, String> {
     let pages = pages(&Reference::load()?)?;
     let of_page = |(page, steps): (&'static str, Vec<Step>)| {
@@ -71,10 +70,9 @@ fn pages(r: &Reference) -> Result<Vec<(&'static str, Vec<Step>)>, String> {
     ])
 }
 
-/// The include files: a table a page, and the table of the exercise.
-///
+/// Include files: one table per page, and the table of the exercise.
 /// # Errors
-/// A sentence, if the belt does not answer.
+/// A sentence, if the belt has no result.
 pub fn files(r: &Reference) -> Result<Vec<(String, String)>, String> {
     let mut files = Vec::new();
     for (page, steps) in pages(r)? {
@@ -89,7 +87,7 @@ fn table(steps: &[Step]) -> String {
         | symbol | result | with the numbers | by |\n|---|---:|---|---|\n"
         .to_owned();
     for step in steps {
-        // Writing into a String cannot fail.
+        // Writing to a String is infallible.
         let _ = writeln!(
             text,
             "| ${}$ | {} | ${}$ | {} |",
@@ -102,7 +100,7 @@ fn table(steps: &[Step]) -> String {
     text
 }
 
-/// A label as a link to its page.
+/// Links a label to its page.
 fn linked(by: &str) -> String {
     let page = match by.get(..2) {
         Some("GE") => "geometry",
@@ -116,14 +114,14 @@ fn linked(by: &str) -> String {
     format!("[{by}]({page}.md#{by})")
 }
 
-/// Four significant digits.
+/// Formats four significant digits.
 fn digits(x: f64) -> String {
     let whole = x.abs().max(1e-9).log10().floor() as i32 + 1;
     let places = usize::try_from(4 - whole).unwrap_or(0);
     format!("{x:.places$}").replace('-', "\u{2212}")
 }
 
-/// The point with what its pages start from.
+/// Operating point with the initial values of its pages.
 struct Point<'r> {
     r: &'r Reference,
     belt: &'r Belt,
@@ -136,7 +134,7 @@ struct Point<'r> {
     rad_s: f64,
 }
 
-/// Forces that later pages need, by the equations of the earlier ones.
+/// Forces from the equations of earlier pages, used by later ones.
 struct Forces {
     /// Mean tension without compression, N: A of TE-7.
     bare_n: f64,
@@ -167,7 +165,7 @@ impl<'r> Point<'r> {
         })
     }
 
-    /// Forces of clamping from the wraps, N: primary, secondary.
+    /// Clamping forces from the wraps, N: primary, secondary.
     fn clamps(&self) -> [f64; 2] {
         let of = |name: &str| self.answer.of(name);
         let secondary = of("secondary_clamp_n");
@@ -188,7 +186,7 @@ impl<'r> Point<'r> {
         ]
     }
 
-    /// The smaller wrap, rad.
+    /// Smaller wrap angle, rad.
     fn small_rad(&self) -> f64 {
         let g = &self.at.geometry;
         g.primary_wrap_rad.min(g.secondary_wrap_rad)
@@ -278,7 +276,7 @@ impl<'r> Point<'r> {
         steps
     }
 
-    /// Lean of the struts and wraps, from both radii and the centre distance, mm.
+    /// Inclination of the struts and wraps, from both radii and the centre distance, mm.
     fn wraps(&self, alpha: f64, wraps: [f64; 2], [rp, rs, x]: [f64; 3]) -> [Step; 3] {
         [
             self.step(
@@ -313,7 +311,7 @@ impl<'r> Point<'r> {
         steps
     }
 
-    /// From the pressure to the mean tension without compression.
+    /// Steps from the pressure to the mean tension without compression.
     fn clamping(&self, f: &Forces) -> [Step; 4] {
         let (g, belt) = (&self.at.geometry, self.belt);
         let ([fp, fs], tan) = (self.clamps(), belt.tan_wedge);
@@ -358,7 +356,7 @@ impl<'r> Point<'r> {
         ]
     }
 
-    /// Compression and tension step.
+    /// Steps for compression and tension step.
     fn compression(&self, f: &Forces) -> [Step; 4] {
         let g = &self.at.geometry;
         let (mu, small) = (self.friction.band, self.small_rad());
@@ -404,12 +402,12 @@ impl<'r> Point<'r> {
 }
 
 impl Step {
-    /// Held against a column of `cvtcycle belt`, times a factor.
+    /// Compares with a column of `cvtcycle belt`, times a factor.
     fn of(self, column: &str, point: &Point, factor: f64) -> Self {
         self.is(factor * point.answer.of(column))
     }
 
-    /// Held against a number of the program.
+    /// Compares with a number of the program.
     fn is(self, program: f64) -> Self {
         Step {
             program: Some(program),
@@ -436,7 +434,7 @@ impl Step {
     }
 }
 
-/// The exercise: a table that a reader can make, and its answers.
+/// Exercise: a table that a reader can make, and its solution.
 fn exercise(r: &Reference) -> Result<String, String> {
     let rows = [
         POINT,
