@@ -13,10 +13,10 @@ use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::statistics::Confidence;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
-use super::{Names, count, cycles, names_of, number, one_of, ranges::values};
+use super::{Names, choice_names, count, cycles, number, one_of, ranges::values};
 
 /// Maximum number of ambient temperatures of one command: every whole degree of the allowed range.
-const MOST_AMBIENTS: usize = 101;
+const MAX_AMBIENTS: usize = 101;
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -63,7 +63,7 @@ impl VehicleArgs {
 #[derive(Args, Clone, Debug)]
 pub struct FormulationArgs {
     /// Belt model: smooth (for driving), appendix_c or chapter_8 (as printed in the thesis)
-    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(|| names_of(&Formulation::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(|| choice_names(&Formulation::NAMES)), hide_possible_values = true)]
     pub formulation: String,
 }
 
@@ -152,8 +152,8 @@ impl AmbientsArgs {
     pub fn get(&self, problems: &mut Problems) -> Option<Vec<f64>> {
         let given = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
         let degc = problems.take(given)?;
-        if degc.len() > MOST_AMBIENTS {
-            let allowed = format!("at most {MOST_AMBIENTS} temperatures");
+        if degc.len() > MAX_AMBIENTS {
+            let allowed = format!("at most {MAX_AMBIENTS} temperatures");
             let many = degc.len();
             let message = format!("{many} ambient temperatures are too many for one command");
             let hint = "take a larger step; `cvtcycle study` varies any value";
@@ -284,7 +284,7 @@ impl ComparisonArgs {
 }
 
 /// Maximum number of threads.
-pub const MOST_THREADS: u64 = 1024;
+pub const MAX_THREADS: u64 = 1024;
 
 /// Number of threads.
 #[derive(Args, Clone, Debug)]
@@ -298,7 +298,7 @@ impl ThreadArgs {
     /// Parses the number of threads. Without the option it is None, after a problem 1.
     pub fn given(&self, problems: &mut Problems) -> Option<u64> {
         let text = self.threads.as_ref()?;
-        let given = count("--threads", text, 1..=MOST_THREADS);
+        let given = count("--threads", text, 1..=MAX_THREADS);
         Some(problems.take(given).unwrap_or(1))
     }
 }

@@ -86,7 +86,7 @@ impl InputKind {
         // `like` accepts the same prefix.
         let word = word.strip_prefix("class:").unwrap_or(word);
         if !prefer_file || !exists {
-            if let Some(kind) = InputKind::of_embedded(word) {
+            if let Some(kind) = InputKind::from_name(word) {
                 return Ok((kind, word.to_owned()));
             }
             if !is_path(word) && !exists {
@@ -102,12 +102,12 @@ impl InputKind {
             Some("csv" | "tsv" | "txt" | "vdri") => {
                 bytes("FILE", word, bounded::TABLE).map(|_| InputKind::Cycle)
             }
-            _ => InputKind::of_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),
+            _ => InputKind::from_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),
         };
         kind.map(|kind| (kind, path))
     }
 
-    fn of_embedded(word: &str) -> Option<Self> {
+    fn from_name(word: &str) -> Option<Self> {
         let named = KINDS.iter().find(|(_, _, names)| names().contains(&word));
         let is_cycle = cycle::name_of(word).is_some()
             || (word.starts_with("constant_") && !cycle::is_csv(word));
@@ -116,7 +116,7 @@ impl InputKind {
     }
 
     /// Finds the kind by the first words of the lines, so that it works with any other error in the text.
-    fn of_text(word: &str, text: &str) -> Result<Self, Problems> {
+    fn from_text(word: &str, text: &str) -> Result<Self, Problems> {
         // A plan names a vehicle too, so its headers are searched in the whole text before those of a vehicle.
         let is_one = |headers: &[&str]| {
             let mut lines = text.lines().map(str::trim_start);

@@ -44,7 +44,7 @@ impl TypedValueParser for Names {
 }
 
 /// Names of the choices of an option.
-pub fn names_of<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
+pub fn choice_names<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
     list.iter().map(|(name, _)| *name).collect()
 }
 
@@ -157,7 +157,7 @@ pub fn one_of<T: Copy>(
     if let Some((_, found)) = known.iter().find(|(name, _)| *name == value) {
         return Ok(*found);
     }
-    let names = names_of(known);
+    let names = choice_names(known);
     let allowed = format!("one of {}", names.join(", "));
     let message = format!("{} is not known", quoted(value));
     let hint = did_you_mean(value, &names);
@@ -170,7 +170,7 @@ pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Problems
 }
 
 /// Converts a name or path of the command line for use in a plan. Relative paths start at the current folder there, and at the plan's own folder in a plan.
-pub fn word_of_plan(word: &str) -> String {
+pub fn word_for_plan(word: &str) -> String {
     match is_path(word) {
         true => absolute(word).map_or_else(|_| word.to_owned(), |path| path.display().to_string()),
         false => word.to_owned(),

@@ -7,7 +7,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::OutputDir;
 
-use super::problems::{bad_value, in_options, problem};
+use super::problems::{bad_value, cite_options, problem};
 
 /// Output directory or file.
 #[derive(Args, Clone, Debug)]
@@ -43,7 +43,7 @@ impl OutArgs {
             problems.add(bad_value("--out", &value, &allowed, message, &hint));
             return None;
         }
-        problems.take(OutputFile::create(path, self.force).map_err(in_options))
+        problems.take(OutputFile::create(path, self.force).map_err(cite_options))
     }
 
     /// Output path, if the option is given.

@@ -24,13 +24,13 @@ pub fn did_you_mean(value: &str, known: &[&str]) -> String {
 pub fn overrides(option: &str, texts: &[String], problems: &mut Problems) -> Vec<Override> {
     let parse = |text: &String| {
         let found = text.parse::<Override>();
-        problems.take(found.map_err(|problem| assigned(option, text, problem)))
+        problems.take(found.map_err(|problem| cite_override(option, text, problem)))
     };
     texts.iter().filter_map(parse).collect()
 }
 
 /// A problem of an override under the option that gives it.
-pub fn assigned(option: &str, text: &str, problem: Problem) -> Problem {
+pub fn cite_override(option: &str, text: &str, problem: Problem) -> Problem {
     problem.in_file(format!("{option} {text}"))
 }
 
@@ -38,16 +38,16 @@ pub fn assigned(option: &str, text: &str, problem: Problem) -> Problem {
 pub fn cite(option: &str, found: impl Into<Problems>) -> Problems {
     found.into().map(|problem| match problem.place.input {
         // Columns have an option of their own.
-        Input::Argument(Argument::Columns) => in_options(problem),
+        Input::Argument(Argument::Columns) => cite_options(problem),
         Input::Argument(_) => problem.in_file(option).key(option),
         _ => problem,
     })
 }
 
 /// Cites the option or argument of the command line that a problem is about, and those that its hint mentions.
-pub fn in_options(mut problem: Problem) -> Problem {
+pub fn cite_options(mut problem: Problem) -> Problem {
     if !problem.settings.is_empty() {
-        let options: Vec<&str> = problem.settings.iter().map(|s| flag_of(*s)).collect();
+        let options: Vec<&str> = problem.settings.iter().map(|s| setting_flag(*s)).collect();
         problem.hint += &format!(" ({})", options.join(", "));
         // Added once, even if the problem passes here again.
         problem.settings = &[];
@@ -56,7 +56,7 @@ pub fn in_options(mut problem: Problem) -> Problem {
         Input::File(_) => {}
         Input::Override(text) => problem.place = Place::file(format!("--set {text}")),
         Input::Argument(argument) => {
-            let option = option_of(*argument);
+            let option = argument_option(*argument);
             problem = problem.in_file(option);
             if problem.key.is_empty() {
                 option.clone_into(&mut problem.key);
@@ -67,7 +67,7 @@ pub fn in_options(mut problem: Problem) -> Problem {
 }
 
 /// The option of the command line for a setting of the library.
-fn flag_of(setting: Setting) -> &'static str {
+fn setting_flag(setting: Setting) -> &'static str {
     match setting {
         Setting::Replace => "--force",
         Setting::Resume => "--resume",
@@ -78,7 +78,7 @@ fn flag_of(setting: Setting) -> &'static str {
 }
 
 /// The option or argument of the command line for an argument of the library.
-fn option_of(argument: Argument) -> &'static str {
+fn argument_option(argument: Argument) -> &'static str {
     match argument {
         Argument::Vehicle => "--vehicle",
         Argument::Lubricant => "--lubricant",
@@ -93,7 +93,7 @@ fn option_of(argument: Argument) -> &'static str {
 }
 
 /// A problem with the vehicle cites the argument `CAR` of a command that names it without an option.
-pub fn of_car(problem: Problem) -> Problem {
+pub fn cite_car(problem: Problem) -> Problem {
     match problem.place.is_argument(Argument::Vehicle) {
         true => problem.in_file("CAR").key("CAR"),
         false => problem,

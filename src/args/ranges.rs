@@ -44,11 +44,11 @@ pub fn values_or_words(
     for part in text.split(',') {
         found.extend(problems.take(list.part(part.trim())).unwrap_or_default());
     }
-    problems.finish().map(|()| once(found))
+    problems.finish().map(|()| without_repeats(found))
 }
 
 /// Removes repeated values and keeps the order.
-fn once(values: Vec<f64>) -> Vec<f64> {
+fn without_repeats(values: Vec<f64>) -> Vec<f64> {
     let mut seen = std::collections::BTreeSet::new();
     // Adding zero turns -0.0 into 0.0.
     let values = values.into_iter().map(|x| x + 0.0);

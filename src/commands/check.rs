@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
-use crate::args::problems::{bad_value, cite, in_options};
+use crate::args::problems::{bad_value, cite, cite_options};
 use crate::args::{ColumnsArgs, JsonArgs, Names, bytes, cycles};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 use physics::PhysicsPlan;
@@ -139,7 +139,7 @@ fn check(file: &str, columns: &Columns) -> Checked {
                 let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
                 Ok(read_as.into_iter().collect())
             }
-            Err(found) => Err(of_map(&word).map_or(found, Into::into)),
+            Err(found) => Err(map_problem(&word).map_or(found, Into::into)),
         },
         // Classes and rigs are embedded and have no files.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
@@ -152,21 +152,21 @@ fn check(file: &str, columns: &Columns) -> Checked {
         InputKind::Lubricant => setup::load_lubricant(&word).map(drop).map(none),
         InputKind::Vehicle => check_vehicle(file, &word),
     }
-    .map_err(|found| cite("FILE", found).map(in_options))?;
+    .map_err(|found| cite("FILE", found).map(cite_options))?;
     Ok((kind, notes))
 }
 
 /// Columns found in measured maps of a vehicle and nowhere else.
-const OF_MAPS: [&str; 2] = ["torque_loss_nm", "bsfc_g_kwh"];
+const MAP_COLUMNS: [&str; 2] = ["torque_loss_nm", "bsfc_g_kwh"];
 
 /// Problem of a table that is a map of a vehicle instead of a cycle.
-fn of_map(word: &str) -> Option<Problem> {
+fn map_problem(word: &str) -> Option<Problem> {
     let bytes = bytes("FILE", word, bounded::TABLE).ok()?;
     let text = String::from_utf8_lossy(&bytes);
     let head = text
         .lines()
         .find(|line| !line.trim_start().starts_with('#'))?;
-    let is_map = OF_MAPS.iter().any(|column| head.contains(column));
+    let is_map = MAP_COLUMNS.iter().any(|column| head.contains(column));
     let hint = "check the vehicle file that names it: its maps are read with it";
     is_map.then(|| {
         bad_value(

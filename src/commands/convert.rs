@@ -10,8 +10,8 @@ use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::output::file::OutputFile;
 
 use super::Execute;
-use crate::args::problems::{bad_value, cite, in_options, problem};
-use crate::args::{ColumnsArgs, Names, cycles, names_of, one_of};
+use crate::args::problems::{bad_value, cite, cite_options, problem};
+use crate::args::{ColumnsArgs, Names, choice_names, cycles, one_of};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
 /// Arguments of `convert`.
@@ -31,7 +31,7 @@ pub struct ConvertArgs {
     #[arg(value_name = "NAME|FILE", value_parser = Names(cycles), hide_possible_values = true)]
     file: String,
     /// Form: csv (of this program), vdri (VECTO), fastsim or epa
-    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| names_of(&Format::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| choice_names(&Format::NAMES)), hide_possible_values = true)]
     to: String,
     /// With the gears that this manual car drives, in place of the cycle's columns
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
@@ -82,7 +82,7 @@ impl Execute for ConvertArgs {
             .as_deref()
             .map(|path| OutputFile::create(path, self.force));
         let file = problems
-            .take(file.transpose().map_err(in_options))
+            .take(file.transpose().map_err(cite_options))
             .flatten();
         let (mut cycle, format) = (found?, format?);
         let mut said: Vec<String> = Vec::new();
@@ -119,8 +119,8 @@ impl Execute for ConvertArgs {
             });
         };
         let written = file.write_all(plan.written.text.as_bytes());
-        written.map_err(|error| in_options(file.cannot_write(&error)))?;
-        let path = file.commit().map_err(in_options)?;
+        written.map_err(|error| cite_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(cite_options)?;
         Ok(CommandOutput {
             stdout: format!("{}\n", path.display()),
             stderr,

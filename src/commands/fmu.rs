@@ -13,8 +13,8 @@ use cvtcycle_cosim::description::Fmi;
 use cvtcycle_cosim::package::{Package, Platform};
 
 use super::Execute;
-use crate::args::problems::{bad_value, in_options, of_car, overrides, problem};
-use crate::args::{Names, OutArgs, names_of, one_of};
+use crate::args::problems::{bad_value, cite_car, cite_options, overrides, problem};
+use crate::args::{Names, OutArgs, choice_names, one_of};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
 /// Arguments of `fmu`.
@@ -35,10 +35,10 @@ pub struct FmuArgs {
     #[arg(value_name = "NAME|FILE.toml", value_parser = Names(|| FileKind::Vehicle.names()), hide_possible_values = true)]
     car: String,
     /// What it simulates: `car`, the whole car that follows a speed; `losses`, the transmission at an operating point
-    #[arg(long, value_name = "KIND", default_value = "car", value_parser = Names(|| names_of(&Kind::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "KIND", default_value = "car", value_parser = Names(|| choice_names(&Kind::NAMES)), hide_possible_values = true)]
     kind: String,
     /// Version of the standard: 2 (FMI 2.0) or 3 (FMI 3.0)
-    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = Names(|| names_of(&Fmi::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = Names(|| choice_names(&Fmi::NAMES)), hide_possible_values = true)]
     fmi: String,
     /// Transmission oil [default: from the vehicle file]
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| FileKind::Lubricant.names()), hide_possible_values = true)]
@@ -79,7 +79,7 @@ impl Execute for FmuArgs {
             ..Options::default()
         };
         let car = CarriedCar::load(&self.car, &options);
-        let car = problems.take(car.map_err(|found| found.map(of_car)));
+        let car = problems.take(car.map_err(|found| found.map(cite_car)));
         let libraries = problems.take(self.libraries());
         let usual = car.as_ref().zip(kind);
         let usual = usual.map(|((_, setup), kind)| format!("{}_{}.fmu", setup.name, kind.name()));
@@ -122,8 +122,8 @@ impl Execute for FmuArgs {
         let mut bytes = io::Cursor::new(Vec::new());
         let written = package.write(&mut bytes);
         let written = written.and_then(|()| io::Write::write_all(&mut file, bytes.get_ref()));
-        written.map_err(|error| in_options(file.cannot_write(&error)))?;
-        let path = file.commit().map_err(in_options)?;
+        written.map_err(|error| cite_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(cite_options)?;
         Ok(CommandOutput::text(format!(
             "{}  {}, FMI {}.0, {platforms}\n",
             path.display(),

@@ -12,14 +12,14 @@ use super::Execute;
 use super::study::execution::StudyRunArgs;
 use super::study::levers::LeverResults;
 use crate::args::input_kind::InputKind;
-use crate::args::problems::{bad_value, cite, did_you_mean, in_options};
+use crate::args::problems::{bad_value, cite, cite_options, did_you_mean};
 use crate::args::{AmbientsArgs, CycleArgs, DriveArgs, Names, count, number};
 use crate::print::{CommandResult, Terminal};
 
 /// Allowed `--nvh-rpm`, rpm: engine speed below which load causes noise and vibration.
-const HEARD: Bound = Bound::closed(500.0, 4000.0);
+const NVH_SPEED_RPM: Bound = Bound::closed(500.0, 4000.0);
 /// Maximum number of vehicle variants of a study, all of which are in memory.
-const MOST_COLUMNS: usize = 500;
+const MAX_VARIANTS: usize = 500;
 
 /// Arguments of `levers`.
 #[derive(Args, Clone, Debug)]
@@ -100,7 +100,7 @@ impl Execute for LeversArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
         self.run.begin(problems);
         let study = self.study(problems);
-        self.run.look(problems);
+        self.run.check_directory(problems);
         study
     }
 
@@ -118,7 +118,12 @@ impl LeversArgs {
         let (start, dt_s) = self.drive.get(problems);
         let draws = self.draws(problems);
         let combine = self.combinations(problems);
-        let heard_rpm = problems.take(number("--nvh-rpm", &self.nvh_rpm, HEARD, "heard_rpm"));
+        let heard_rpm = problems.take(number(
+            "--nvh-rpm",
+            &self.nvh_rpm,
+            NVH_SPEED_RPM,
+            "heard_rpm",
+        ));
         cycle?;
         let request = LeverRequest {
             levers: levers?,
@@ -133,9 +138,9 @@ impl LeversArgs {
             heard_rpm: heard_rpm?,
         };
         let columns = request.vehicles.len() * request.ambients_degc.len() * request.levers.len();
-        if columns > MOST_COLUMNS {
+        if columns > MAX_VARIANTS {
             let message = format!("{columns} levers of all vehicles at all temperatures");
-            let (allowed, hint) = (format!("up to {MOST_COLUMNS}"), "take fewer temperatures");
+            let (allowed, hint) = (format!("up to {MAX_VARIANTS}"), "take fewer temperatures");
             problems.add(bad_value(
                 "--ambient",
                 &self.ambients.ambient,
@@ -148,17 +153,17 @@ impl LeversArgs {
         if !problems.is_empty() {
             return None;
         }
-        let of_option = |problem: Problem| match problem.key.as_str() {
+        let cite_option = |problem: Problem| match problem.key.as_str() {
             COMBINE => problem.in_file("--combine").key("--combine"),
-            _ => in_options(problem),
+            _ => cite_options(problem),
         };
-        let study = prepare(&request).map_err(|found| found.map(of_option));
-        self.run.confirmed(problems.take(study)?, problems)
+        let study = prepare(&request).map_err(|found| found.map(cite_option));
+        self.run.check_run_count(problems.take(study)?, problems)
     }
 }
 
 /// Reads a lever file; the problem of a vehicle file in its place has a hint.
-fn of_levers(word: &str) -> Result<LeverFile, Problems> {
+fn read_levers(word: &str) -> Result<LeverFile, Problems> {
     let is_vehicle = || matches!(InputKind::detect(word, true), Ok((InputKind::Vehicle, _)));
     if is_path(word) && is_vehicle() {
         let hint = format!("name it with --vehicle {word}");
@@ -185,7 +190,7 @@ impl LeversArgs {
         };
         let mut all: Vec<Lever> = Vec::new();
         for word in &words {
-            let file = problems.take(of_levers(word));
+            let file = problems.take(read_levers(word));
             for lever in file?.levers {
                 let same = |other: &&Lever| {
                     let apart = other.of_cvt.zip(lever.of_cvt).is_some_and(|(a, b)| a != b);

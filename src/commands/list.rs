@@ -264,12 +264,15 @@ type ColumnNames = (String, Vec<&'static str>, Vec<&'static str>);
 
 fn list_columns() -> Listing {
     let foreign = cycle::FOREIGN;
-    let of = |list: &[(&'static str, &'static str)], wanted: &str| -> Vec<&'static str> {
+    let names_for = |list: &[(&'static str, &'static str)], wanted: &str| -> Vec<&'static str> {
         let own = list.iter().filter(|(_, name)| *name == wanted);
         own.map(|(written, _)| *written).collect()
     };
     let names = |name: String| -> ColumnNames {
-        let (headings, words) = (of(foreign.headings, &name), of(foreign.words, stem(&name)));
+        let (headings, words) = (
+            names_for(foreign.headings, &name),
+            names_for(foreign.words, stem(&name)),
+        );
         (name, headings, words)
     };
     let list: Vec<ColumnNames> = cycle::columns().into_iter().map(names).collect();

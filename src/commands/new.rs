@@ -13,7 +13,7 @@ use cvtcycle::config::{Problem, Problems, decode};
 use cvtcycle::output::file::OutputFile;
 
 use super::Execute;
-use crate::args::problems::{bad_value, in_options};
+use crate::args::problems::{bad_value, cite_options};
 use crate::args::{Names, OutArgs, bytes};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
@@ -146,8 +146,8 @@ impl Execute for NewArgs {
             mut file,
         } = plan;
         let written = file.write_all(car.text.as_bytes());
-        written.map_err(|error| in_options(file.cannot_write(&error)))?;
-        let path = file.commit().map_err(in_options)?;
+        written.map_err(|error| cite_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(cite_options)?;
         let path = path.display();
         let is_fluid = |key: &str| key.starts_with(OIL) || key.starts_with(ENGINE_OIL);
         let count = |status: &str| {

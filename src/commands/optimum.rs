@@ -26,10 +26,10 @@ use crate::args::{
     cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
-use limits::{LEAST_RPM, Numbers, infeasible};
+use limits::{MIN_RPM, Numbers, infeasible};
 
 /// Minimum engine speeds for which the bound is printed, rpm.
-const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
+const MIN_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
 
 /// Arguments of `optimum`.
 #[derive(Args, Clone, Debug)]
@@ -162,11 +162,11 @@ impl Execute for OptimumArgs {
         let hint = "a manual box has gears; `study` varies its shift speeds";
         self.car.need_cvt(setup.as_ref(), hint, problems);
         let (start, dt_s) = self.driving.drive.get(problems);
-        let least = number("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
+        let least = number("--least-rpm", &self.least_rpm, MIN_RPM, "least_rpm");
         let least = problems.take(least);
         let numbers = self.numbers((dt_s, least), problems);
         if let Some(setup) = &setup {
-            self.check_least(setup, least, problems);
+            self.check_min_speed(setup, least, problems);
         }
         if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
             self.check_cycle(cycle, dt_s, problems);
@@ -212,7 +212,7 @@ impl Execute for OptimumArgs {
             line: !self.no_line,
             elsewhere: &plan.elsewhere,
             launch_at_idle: !self.own_clamp,
-            least_speeds_rpm: &LEAST_SPEEDS_RPM,
+            least_speeds_rpm: &MIN_SPEEDS_RPM,
         };
         let dir = self.results.out.out.as_deref();
         let from = ReadFrom {

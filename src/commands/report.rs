@@ -10,7 +10,7 @@ use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{Names, ResultArgs, names_of, one_of};
+use crate::args::{Names, ResultArgs, choice_names, one_of};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 
@@ -48,7 +48,7 @@ pub struct ReportArgs {
     #[arg(long, value_name = "FILE.toml")]
     cover: Option<String>,
     /// Format of the report: html or md [default: from the file extension of --out, else html]
-    #[arg(long, value_name = "FORM", value_parser = Names(|| names_of(&Form::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", value_parser = Names(|| choice_names(&Form::NAMES)), hide_possible_values = true)]
     format: Option<String>,
     #[command(flatten)]
     results: ResultArgs,

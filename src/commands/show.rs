@@ -209,7 +209,7 @@ fn split(key: &str) -> (&str, &str) {
 }
 
 fn tables(keys: &[KeyInfo], paint: Paint) -> String {
-    let width = |of: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(of).max().unwrap_or(0);
+    let width = |length: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(length).max().unwrap_or(0);
     let inherits = keys.iter().any(is_inherited);
     let widths = [
         width(&|info| split(&info.key).1.len()),

@@ -8,7 +8,7 @@ use std::thread;
 use cvtcycle::config::Problem;
 
 use crate::args::count;
-use crate::args::groups::MOST_THREADS;
+use crate::args::groups::MAX_THREADS;
 use crate::args::problems::problem;
 use crate::print::warn;
 
@@ -70,7 +70,7 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
 
 /// Computes two values in parallel, one of them on a plain thread: a run ends before starting the pool of [`begin`] would
 /// pay off. Sequential with one thread, or if no thread can be started.
-pub fn at_once<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
+pub fn in_parallel<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
     if wanted(None).is_ok_and(|threads| threads < 2) {
         return (other(), own());
     }
@@ -88,10 +88,10 @@ pub fn at_once<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B
 fn wanted(given: Option<u64>) -> Result<u64, Problem> {
     match (given, std::env::var(VARIABLE)) {
         (Some(threads), _) => Ok(threads),
-        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MOST_THREADS),
+        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MAX_THREADS),
         (None, _) => {
             let cores = thread::available_parallelism();
-            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MOST_THREADS)))
+            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MAX_THREADS)))
         }
     }
 }

@@ -14,7 +14,7 @@ use cvtcycle::study::check::{
 
 use super::{Execute, threads};
 use crate::args::problems::{bad_value, did_you_mean, overrides, problem};
-use crate::args::{Names, ResultArgs, ThreadArgs, VehicleArgs, bytes, names_of, one_of};
+use crate::args::{Names, ResultArgs, ThreadArgs, VehicleArgs, bytes, choice_names, one_of};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
@@ -68,7 +68,7 @@ pub struct ValidateArgs {
     #[command(flatten)]
     car: VehicleArgs,
     /// Format of the output: table, csv, html, or md (a fragment for the book)
-    #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(|| names_of(&FORMS)), hide_possible_values = true, conflicts_with = "json")]
+    #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(|| choice_names(&FORMS)), hide_possible_values = true, conflicts_with = "json")]
     format: String,
     #[command(flatten)]
     results: ResultArgs,
@@ -144,11 +144,11 @@ impl Execute for ValidateArgs {
     }
 
     fn run(&self, plan: ValidatePlan, terminal: Terminal) -> CommandResult {
-        let report = judge(&plan.files, &plan.candidate, |row| self.is_wanted(row))?;
+        let report = judge(&plan.files, &plan.candidate, |row| self.is_selected(row))?;
         let mut object = json(&report);
         let power = match self.power {
             false => None,
-            true => match self.power_of(&plan.files, &report) {
+            true => match self.power_report(&plan.files, &report) {
                 None => return Ok(stopped()),
                 found => found,
             },
@@ -214,7 +214,7 @@ impl ValidateArgs {
     }
 
     /// Effect of changes of the cars on the verdicts. None after an interruption.
-    fn power_of(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
+    fn power_report(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
         let changes = Perturbations::of(files, &report.candidate);
         let progress =
             Progress::counted("changes", changes.count() as u64, self.results.output.quiet);
@@ -241,7 +241,7 @@ impl ValidateArgs {
         texts.into_iter().collect()
     }
 
-    fn is_wanted(&self, row: &ValidationRow) -> bool {
+    fn is_selected(&self, row: &ValidationRow) -> bool {
         let is = |wanted: Option<&String>, own: &str| {
             wanted.is_none_or(|wanted| wanted.eq_ignore_ascii_case(own))
         };

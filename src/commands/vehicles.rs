@@ -10,8 +10,8 @@ use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::{Driven, Settings, StartWord};
 
-use super::threads::at_once;
-use crate::args::problems::{assigned, overrides};
+use super::threads::in_parallel;
+use crate::args::problems::{cite_override, overrides};
 use crate::args::{ColumnsArgs, ComparisonArgs, FormulationArgs, VehicleArgs};
 
 /// A vehicle of a run.
@@ -50,7 +50,7 @@ impl ComparedArgs {
         let (mut of_form, mut of_vehicles) = (Problems::new(), Problems::new());
         let formulation = formulation.get(&mut of_form);
         let comparison = (&self.comparison, baselines);
-        let (cycle, vehicles) = at_once(
+        let (cycle, vehicles) = in_parallel(
             || cycle::open(word, &columns),
             || load(&self.car, comparison, formulation, &mut of_vehicles),
         );
@@ -58,7 +58,7 @@ impl ComparedArgs {
         problems.extend(of_form);
         problems.extend(of_vehicles);
         Loaded {
-            cycle: own_cycle(word, cycle, &vehicles),
+            cycle: subject_cycle(word, cycle, &vehicles),
             vehicles,
             formulation,
         }
@@ -110,12 +110,12 @@ impl ComparedVehicles {
     }
 
     /// Settings for the summary.
-    pub fn settings(&self, of: &ComparedArgs, strict: bool) -> Settings {
+    pub fn settings(&self, args: &ComparedArgs, strict: bool) -> Settings {
         Settings {
             dt_s: self.dt_s,
             formulation: self.formulation.name().to_owned(),
-            set: of.car.set.clone(),
-            set_all: of.comparison.set_all.clone(),
+            set: args.car.set.clone(),
+            set_all: args.comparison.set_all.clone(),
             strict,
         }
     }
@@ -130,7 +130,7 @@ impl ComparedVehicles {
             return vec![drive(subject)];
         }
         let others = || baselines.iter().map(drive).collect::<Vec<_>>();
-        let (others, own) = at_once(others, || drive(subject));
+        let (others, own) = in_parallel(others, || drive(subject));
         std::iter::once(own).chain(others).collect()
     }
 }
@@ -181,19 +181,19 @@ pub fn load(
     problems: &mut Problems,
 ) -> Vec<RunVehicle> {
     let own = overrides("--set", &car.set, problems);
-    let of_all = overrides("--set-all", &comparison.set_all, problems);
+    let set_all = overrides("--set-all", &comparison.set_all, problems);
     let baseline = Options {
         engine_oil: comparison.engine_oil.clone(),
-        set: of_all.clone(),
+        set: set_all.clone(),
         formulation,
         ..Options::default()
     };
     let subject = Options {
         lubricant: car.lubricant.clone(),
-        set: of_all.iter().cloned().chain(own).collect(),
+        set: set_all.iter().cloned().chain(own).collect(),
         ..baseline.clone()
     };
-    let setup = problems.take(load_one(&car.vehicle, &subject, &of_all));
+    let setup = problems.take(load_one(&car.vehicle, &subject, &set_all));
     if setup.is_none() {
         check_fluids(car, comparison, problems);
     }
@@ -213,21 +213,21 @@ pub fn load(
     let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
     // Derives a twin from the subject with its overrides.
     let twin = subject.of_twin(named_by);
-    let of_baseline = |name: &String| {
+    let load_baseline = |name: &String| {
         let options = match setup::is_twin(name) {
             true => &twin,
             false => &baseline,
         };
-        let setup = load_one(name, options, &of_all).map_err(|found| cite_vehicle(option, found));
+        let setup = load_one(name, options, &set_all).map_err(|found| cite_vehicle(option, found));
         (setup, options.clone())
     };
     let setups = match names.as_slice() {
         [first, others @ ..] if !others.is_empty() => {
-            let others = || others.iter().map(of_baseline).collect::<Vec<_>>();
-            let (others, first) = at_once(others, || of_baseline(first));
+            let others = || others.iter().map(load_baseline).collect::<Vec<_>>();
+            let (others, first) = in_parallel(others, || load_baseline(first));
             std::iter::once(first).chain(others).collect()
         }
-        names => names.iter().map(of_baseline).collect::<Vec<_>>(),
+        names => names.iter().map(load_baseline).collect::<Vec<_>>(),
     };
     for (name, (setup, options)) in names.iter().zip(setups) {
         loaded.push((name, problems.take(setup), options));
@@ -246,7 +246,7 @@ pub fn load(
 }
 
 /// Cycle for the subject: its class selects the WLTC.
-fn own_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
+fn subject_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
     let cycle = cycle?;
     Some(match vehicles.first() {
         Some(subject) => cycle::for_car(word, cycle, &subject.setup),
@@ -281,12 +281,12 @@ fn cite_vehicle(option: &str, found: Problems) -> Problems {
 }
 
 /// Loads a vehicle. Problems of an override for all vehicles name the vehicle and the option.
-fn load_one(word: &str, options: &Options, of_all: &[Override]) -> Result<Setup, Problems> {
+fn load_one(word: &str, options: &Options, set_all: &[Override]) -> Result<Setup, Problems> {
     let named = |problem: Problem| {
-        let by = of_all.iter().find(|by| by.input() == problem.place.input);
+        let by = set_all.iter().find(|by| by.input() == problem.place.input);
         let Some(by) = by else { return problem };
         let problem = problem.with_context(&format!("{word}: "));
-        assigned("--set-all", &by.to_string(), problem)
+        cite_override("--set-all", &by.to_string(), problem)
     };
     setup::load(word, options).map_err(|problems| problems.map(named))
 }

@@ -13,7 +13,7 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::table::wrapped;
 use serde::Serialize;
 
-use crate::args::problems::{in_options, problem};
+use crate::args::problems::{cite_options, problem};
 use crate::args::{OutputArgs, TableOutputArgs};
 pub use colour::{Paint, Terminal};
 pub use screen::Form;
@@ -234,7 +234,7 @@ pub fn stream(
 /// Prints the output of a command or its problems, and returns the exit code.
 pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {
-        problems: render(&problems.map(in_options), terminal.stderr.is_on()),
+        problems: render(&problems.map(cite_options), terminal.stderr.is_on()),
         ending: Ending::BadInput,
         ..CommandOutput::default()
     });

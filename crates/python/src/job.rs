@@ -17,7 +17,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::errors::bad;
 
 /// Maximum number of threads.
-const MOST_THREADS: usize = 1024;
+const MAX_THREADS: usize = 1024;
 /// Interval at which signals are checked.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -95,9 +95,9 @@ type Pools = Vec<(usize, Arc<ThreadPool>)>;
 
 fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let cores = || thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.unwrap_or_else(|| cores().min(MOST_THREADS));
-    if !(1..=MOST_THREADS).contains(&threads) {
-        let allowed = format!("1 to {MOST_THREADS}");
+    let threads = threads.unwrap_or_else(|| cores().min(MAX_THREADS));
+    if !(1..=MAX_THREADS).contains(&threads) {
+        let allowed = format!("1 to {MAX_THREADS}");
         let message = format!("{threads} threads are out of range");
         return Err(bad("threads", &threads.to_string(), &allowed, &message));
     }

@@ -27,7 +27,7 @@ pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint
     };
     for conditions in &summary.conditions {
         for run in &conditions.runs {
-            text += &of_run(conditions, run, by_phase, paint);
+            text += &run_tables(conditions, run, by_phase, paint);
         }
     }
     let count = summary.conditions.first().map_or(0, |c| c.runs.len());
@@ -43,7 +43,7 @@ pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint
     text + &sections(by_ambient.collect::<Vec<_>>(), paint)
 }
 
-fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> String {
+fn run_tables(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> String {
     let Some(price) = &run.price else {
         return String::new();
     };

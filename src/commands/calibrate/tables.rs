@@ -55,16 +55,16 @@ fn head(o: &Outcome, paint: Paint) -> String {
 }
 
 /// Root mean square of the known numbers, and their count.
-fn rms_of(list: impl Iterator<Item = Option<f64>>) -> (Option<f64>, usize) {
+fn rms_and_count(list: impl Iterator<Item = Option<f64>>) -> (Option<f64>, usize) {
     let known: Vec<f64> = list.flatten().collect();
     (rms(known.iter().copied()), known.len())
 }
 
 fn quality(o: &Outcome) -> String {
     let all = o.residuals.len();
-    let (before, _) = rms_of(o.residuals.iter().map(|r| r.before_sd));
-    let (after, _) = rms_of(o.residuals.iter().map(|r| Some(r.after_sd)));
-    let (left_out, predicted) = rms_of(o.residuals.iter().map(|r| r.left_out_sd));
+    let (before, _) = rms_and_count(o.residuals.iter().map(|r| r.before_sd));
+    let (after, _) = rms_and_count(o.residuals.iter().map(|r| Some(r.after_sd)));
+    let (left_out, predicted) = rms_and_count(o.residuals.iter().map(|r| r.left_out_sd));
     let how = match predicted {
         0 => "no fold was left out".to_owned(),
         n if n < all => format!("of {n} observations; the others could not be predicted"),
@@ -183,11 +183,11 @@ fn parameters(o: &Outcome) -> String {
 
 fn groups(o: &Outcome) -> String {
     let names = distinct(o.residuals.iter().map(|r| r.group.as_str()));
-    let of = |get: fn(&Residual) -> Option<f64>| {
-        move |name: &&str| rms_of(o.residuals.iter().filter(|r| r.group == *name).map(get))
+    let group_rms = |get: fn(&Residual) -> Option<f64>| {
+        move |name: &&str| rms_and_count(o.residuals.iter().filter(|r| r.group == *name).map(get))
     };
-    let (before, after) = (of(|r| r.before_sd), of(|r| Some(r.after_sd)));
-    let left_out = of(|r| r.left_out_sd);
+    let (before, after) = (group_rms(|r| r.before_sd), group_rms(|r| Some(r.after_sd)));
+    let left_out = group_rms(|r| r.left_out_sd);
     TextColumns::new()
         .left("group", |name: &&str| cut(name, MAX_NAME_LEN))
         .right("n", |name| after(name).1.to_string())

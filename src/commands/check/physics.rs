@@ -70,11 +70,11 @@ pub fn run(plan: &PhysicsPlan, form: JsonArgs, terminal: Terminal) -> CommandRes
         let (cycle, ambient_degc) = (&plan.cycle_name, plan.ambient_degc);
         json_text(&json!({ "cycle": cycle, "ambient_degc": ambient_degc, "vehicles": vehicles }))?
     } else {
-        let of =
+        let heading =
             |word: &String| format!("{word} on {}, {} degC", plan.cycle_name, plan.ambient_degc);
         let tables = found
             .iter()
-            .map(|(word, findings)| (of(word), table(findings)));
+            .map(|(word, findings)| (heading(word), table(findings)));
         sections(tables, terminal.stdout)
     };
     Ok(CommandOutput {

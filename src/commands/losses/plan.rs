@@ -16,7 +16,7 @@ use crate::args::problems::{bad_value, problem};
 use crate::args::ranges::{values, values_or_words};
 
 /// Name of the option of an axis.
-fn option_of(axis: Axis) -> &'static str {
+fn axis_option(axis: Axis) -> &'static str {
     match axis {
         Axis::Ratio => "--ratio or --gear",
         Axis::Sump => "--temp",
@@ -108,7 +108,7 @@ fn ratios(
 /// Fills the axes common to all transmissions.
 fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
     let mut fill = |axis: Axis, text: Option<&str>| {
-        let (option, (range, suffix)) = (option_of(axis), axis.range());
+        let (option, (range, suffix)) = (axis_option(axis), axis.range());
         let found = text.and_then(|text| problems.take(values(option, text, range, suffix)));
         grid.values[axis as usize] = found.unwrap_or_default();
     };
@@ -213,7 +213,7 @@ fn check_form(
         if count > 1 {
             let message = format!("{count} values, but `{}` has one", args.map_form);
             let hint = "give one value; another map has the next";
-            problems.add(problem(option_of(*axis), &message, hint));
+            problems.add(problem(axis_option(*axis), &message, hint));
         }
     }
 }
@@ -260,7 +260,7 @@ fn check_map(
         let count = grid.of(axis).len();
         if count > 1 {
             let message = format!("{count} values, but a map of `{word}` has no such axis");
-            problems.add(problem(option_of(axis), &message, hint));
+            problems.add(problem(axis_option(axis), &message, hint));
         }
     };
     let pressures = "give the pressures instead: --pressure 10..40:5";
@@ -279,7 +279,7 @@ fn check_map(
 }
 
 fn too_many(grid: &LossGrid) -> Problem {
-    let count = |axis: Axis| format!("{} {}", option_of(axis), grid.of(axis).len());
+    let count = |axis: Axis| format!("{} {}", axis_option(axis), grid.of(axis).len());
     let counts: Vec<String> = grid.varied().into_iter().map(count).collect();
     let counts = counts.join(", ");
     let hint = format!("use larger steps or several runs; values given: {counts}");

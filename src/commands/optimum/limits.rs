@@ -12,7 +12,7 @@ use cvtcycle::study::optimum::{Infeasible, LimitName, Unheld};
 use serde::Serialize;
 
 /// Allowed minimum engine speed, rpm.
-pub(super) const LEAST_RPM: Bound = Bound::closed(300.0, 8000.0);
+pub(super) const MIN_RPM: Bound = Bound::closed(300.0, 8000.0);
 /// Allowed torque reserve, per cent of full load.
 const RESERVE: Bound = Bound::closed(0.0, 90.0);
 /// Allowed minimum safety factor.
@@ -65,7 +65,7 @@ impl OptimumArgs {
         })
     }
 
-    pub(super) fn check_least(
+    pub(super) fn check_min_speed(
         &self,
         setup: &Setup,
         least_rpm: Option<f64>,
@@ -89,17 +89,17 @@ impl OptimumArgs {
 }
 
 /// Reports each infeasible limit with its place and its feasible value.
-pub(super) fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
+pub(super) fn infeasible(why: &Infeasible, args: &OptimumArgs) -> Problems {
     if why.unheld.is_empty() {
         let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
         let hint = "another cycle, or a car that can follow it";
-        return bad_value("--cycle", &of.cycle.word, "", &message, hint).into();
+        return bad_value("--cycle", &args.cycle.word, "", &message, hint).into();
     }
     let problem = |limit: &Unheld| {
         let (option, value) = match limit.name {
-            LimitName::LeastSpeed => ("--least-rpm", &of.least_rpm),
-            LimitName::Reserve => ("--reserve", &of.reserve),
-            LimitName::ShiftRate => ("--vehicle", &of.car.vehicle),
+            LimitName::LeastSpeed => ("--least-rpm", &args.least_rpm),
+            LimitName::Reserve => ("--reserve", &args.reserve),
+            LimitName::ShiftRate => ("--vehicle", &args.car.vehicle),
         };
         let allowed = match (limit.name, limit.most) {
             (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),

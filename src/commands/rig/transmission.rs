@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 
 use crate::args::problems::bad_value;
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{FormulationArgs, Names, ResultArgs, VehicleArgs, names_of, one_of};
+use crate::args::{FormulationArgs, Names, ResultArgs, VehicleArgs, choice_names, one_of};
 use crate::commands::Execute;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -46,7 +46,7 @@ the keys of the rig."
 )]
 pub struct RigTransmissionArgs {
     /// Test: all, steady, loaded, strip_down, transient or second_box
-    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(|| [vec!["all"], names_of(&RigTest::NAMES)].concat()), hide_possible_values = true)]
+    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(|| [vec!["all"], choice_names(&RigTest::NAMES)].concat()), hide_possible_values = true)]
     test: String,
     #[command(flatten)]
     car: VehicleArgs,

@@ -159,6 +159,6 @@ fn flags(test: &[Curve]) -> String {
         .iter()
         .map(|(flag, name)| (name, count(*flag)));
     let named = named.filter(|(_, n)| *n > 0);
-    let of = |(name, n)| format!("{name} {n} of {}", rows().count());
-    named.map(of).collect::<Vec<_>>().join(", ")
+    let flag_text = |(name, n)| format!("{name} {n} of {}", rows().count());
+    named.map(flag_text).collect::<Vec<_>>().join(", ")
 }

@@ -274,11 +274,15 @@ fn notes(summary: &Summary) -> String {
             text += &format!("{name}: smallest clamp safety factor {safety}\n");
         }
     }
-    if summary.comparison.iter().any(|of| of.interval.is_none()) {
+    if summary
+        .comparison
+        .iter()
+        .any(|difference| difference.interval.is_none())
+    {
         text += "a difference without an interval gets one from --draws 256\n";
     }
-    let worst = |of: fn(&RunSummary) -> Option<f64>| {
-        let all: Option<Vec<f64>> = summary.runs.iter().map(of).collect();
+    let worst = |value: fn(&RunSummary) -> Option<f64>| {
+        let all: Option<Vec<f64>> = summary.runs.iter().map(value).collect();
         tiny(all.and_then(|all| all.into_iter().reduce(|a, b| if b > a { b } else { a })))
     };
     let step = worst(|run| run.ledger_error);
@@ -291,12 +295,12 @@ fn notes(summary: &Summary) -> String {
 
 /// One line for each failed check.
 pub fn failures(summary: &Summary) -> Vec<String> {
-    let of = |run: &RunSummary| {
+    let failed_checks = |run: &RunSummary| {
         let line = |failure| {
             let text = run.failure_text(failure);
             format!("check failed: {} {text}", run.vehicle)
         };
         run.failures.iter().map(line).collect::<Vec<_>>()
     };
-    summary.runs.iter().flat_map(of).collect()
+    summary.runs.iter().flat_map(failed_checks).collect()
 }

@@ -68,9 +68,9 @@ impl Execute for StudyAmbientArgs {
         self.run.begin(&mut own);
         let plan = self.matrix(&mut own);
         let study = plan.and_then(|plan| self.run.prepare(plan, &mut own));
-        self.run.look(&mut own);
+        self.run.check_directory(&mut own);
         own.into_iter()
-            .for_each(|problem| problems.add(of_option(problem)));
+            .for_each(|problem| problems.add(cite_option(problem)));
         study
     }
 
@@ -80,7 +80,7 @@ impl Execute for StudyAmbientArgs {
 }
 
 /// Cites the option that set a key of the plan.
-fn of_option(problem: Problem) -> Problem {
+fn cite_option(problem: Problem) -> Problem {
     let option = problem.place.file_name().unwrap_or_default().to_owned();
     let is_option = ["--ambient", "--start"].contains(&option.as_str())
         || OPTIONS.iter().any(|(_, name)| *name == option);

@@ -34,10 +34,12 @@ pub(super) fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) ->
 
 fn effects(output: &OutputAnswer, outline: &StudyManifest, confidence: Confidence) -> String {
     let known = output.information.as_ref();
-    let known = known.map_or_else(String::new, |of| information(of, confidence, &output.unit));
+    let known = known.map_or_else(String::new, |indices| {
+        information(indices, confidence, &output.unit)
+    });
     match (output.sobol.last(), &output.tornado) {
         (Some(indices), _) => sobol(outline, indices, confidence) + &known,
-        (None, Some(of)) => tornado(of),
+        (None, Some(found)) => tornado(found),
         // The matrix contains the means of its rows and columns.
         (None, None) if output.matrix.is_some() => grid(output),
         (None, None) => known + &rank(output) + &levels(output),
@@ -73,12 +75,12 @@ fn grid(output: &OutputAnswer) -> String {
         let cells = row.iter().enumerate().map(cell);
         table.row([name.clone()].into_iter().chain(cells));
     }
-    let of = match matrix.least_of {
+    let scope = match matrix.least_of {
         LeastOf::All => "",
         LeastOf::Row => " of its row",
         LeastOf::Column => " of its column",
     };
-    format!("{}  * least{of}\n", table.text())
+    format!("{}  * least{scope}\n", table.text())
 }
 
 /// Every level of each factor, ordered by the width of the bar.
@@ -100,11 +102,11 @@ fn tornado(tornado: &Tornado) -> String {
 }
 
 /// Spread that remains after learning a factor, for the factors above chance, and the number of others.
-fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
+fn information(found: &Information, confidence: Confidence, unit: &str) -> String {
     let mut table = TextTable::new("lrrl").indented();
     let left = format!("sd left, {unit}");
     table.row(["if this were known", "% of variance", &left, "next test"]);
-    let causes: Vec<_> = of.causes().take(MAX_CAUSES).collect();
+    let causes: Vec<_> = found.causes().take(MAX_CAUSES).collect();
     for factor in &causes {
         let (share, left) = (
             fixed(100.0 * factor.share.value, 0),
@@ -112,12 +114,12 @@ fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
         );
         table.row([factor.name.clone(), share, left, factor.test.clone()]);
     }
-    let rest = of.factors.len() - causes.len();
-    let (percent, level) = (fixed(100.0 * of.noise, 1), confidence.percent());
+    let rest = found.factors.len() - causes.len();
+    let (percent, level) = (fixed(100.0 * found.noise, 1), confidence.percent());
     let noise = format!(
         "by groups of draws the largest of as many idle factors stays below {percent} % of the variance in {level} of 100 cases"
     );
-    let [sd, head] = [fixed(of.sd, 3), wrapped(&noise, "  ")];
+    let [sd, head] = [fixed(found.sd, 3), wrapped(&noise, "  ")];
     let more = match (causes.len(), rest) {
         (_, 0) => String::new(),
         (0, n) => format!("  none of {n} factors is above chance\n"),
@@ -168,9 +170,9 @@ fn levels(output: &OutputAnswer) -> String {
 fn sobol(outline: &StudyManifest, indices: &SobolIndices, confidence: Confidence) -> String {
     let head = format!("{} % interval", confidence.percent());
     let factors = outline.plan.factors.iter().zip(&indices.factors);
-    let known = factors.filter(|(_, of)| of.total.value.is_finite());
+    let known = factors.filter(|(_, indices)| indices.total.value.is_finite());
     let mut ranked: Vec<(String, &FactorIndices)> = known
-        .map(|(factor, of)| (factor.name.clone(), of))
+        .map(|(factor, indices)| (factor.name.clone(), indices))
         .collect();
     ranked.sort_by(|a, b| b.1.total.value.abs().total_cmp(&a.1.total.value.abs()));
     if ranked.is_empty() {

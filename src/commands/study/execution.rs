@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use super::super::threads;
 use super::share::{self, ShareArgs};
 use super::tables;
-use crate::args::problems::{bad_value, in_options, problem};
+use crate::args::problems::{bad_value, cite_options, problem};
 use crate::args::{ConfidenceArgs, OutArgs, OutputArgs, ThreadArgs};
 use crate::print::colour::Paint;
 use crate::print::progress::{Progress, handle_interrupts};
@@ -76,21 +76,21 @@ impl StudyRunArgs {
     }
 
     /// Checks the directory even after other problems, so that all are reported at once.
-    pub fn look(&self, problems: &mut Problems) {
+    pub fn check_directory(&self, problems: &mut Problems) {
         let begins = !self.resume && !self.share.dry_run && !problems.is_empty();
         if let Some(path) = self.out.out.as_deref().filter(|_| begins) {
             let found = StudyDir::check_free(path, self.out.force);
-            problems.take(found.map_err(in_options));
+            problems.take(found.map_err(cite_options));
         }
     }
 
     /// Reads the vehicles of a plan, and checks the number of runs.
     pub fn prepare(&self, plan: Plan, problems: &mut Problems) -> Option<Study> {
-        self.confirmed(problems.take(Study::prepare(plan))?, problems)
+        self.check_run_count(problems.take(Study::prepare(plan))?, problems)
     }
 
     /// Checks the number of runs of a study.
-    pub fn confirmed(&self, study: Study, problems: &mut Problems) -> Option<Study> {
+    pub fn check_run_count(&self, study: Study, problems: &mut Problems) -> Option<Study> {
         self.share.parts(&study, problems);
         let (runs, max) = (study.runs(), study.plan.most_runs);
         if runs > max && !self.yes && !self.share.dry_run {
@@ -107,15 +107,15 @@ impl StudyRunArgs {
     }
 
     /// Runs a study, writes its files and returns the text to print.
-    pub fn run<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
+    pub fn run<S: StudyOutput>(&self, study: &Study, terminal: Terminal) -> CommandResult {
         let results = self.results::<S>(study, terminal);
         results.map_err(|problems| match self.out.out {
             Some(_) => problems,
-            None => problems.map(of_nothing_kept),
+            None => problems.map(without_resume_hint),
         })
     }
 
-    fn results<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
+    fn results<S: StudyOutput>(&self, study: &Study, terminal: Terminal) -> CommandResult {
         if self.share.dry_run {
             return share::estimate(study, &self.output);
         }
@@ -135,7 +135,7 @@ impl StudyRunArgs {
         }
         // Already checked when the study began.
         let confidence = self.confidence.get(&mut Problems::default());
-        let found = S::of(StudyManifest::of(study), dir.study()?, confidence)?;
+        let found = S::evaluate(StudyManifest::of(study), dir.study()?, confidence)?;
         let list = match &self.out.out {
             Some(_) => tables::written(dir.path(), &dir.finish(&found.files()?)?),
             None => String::new(),
@@ -190,9 +190,9 @@ impl StudyRunArgs {
 }
 
 /// Results of a study, evaluated from its finished parts.
-pub trait Says: Sized {
+pub trait StudyOutput: Sized {
     /// Evaluates the finished parts.
-    fn of(
+    fn evaluate(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
@@ -208,8 +208,8 @@ pub trait Says: Sized {
     fn tables(&self, paint: Paint) -> String;
 }
 
-impl Says for StudyResults {
-    fn of(
+impl StudyOutput for StudyResults {
+    fn evaluate(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
@@ -233,7 +233,7 @@ impl Says for StudyResults {
 }
 
 /// Replaces the hint for a temporary directory, which can be neither resumed nor replaced.
-fn of_nothing_kept(problem: Problem) -> Problem {
+fn without_resume_hint(problem: Problem) -> Problem {
     if problem.settings.is_empty() {
         return problem;
     }

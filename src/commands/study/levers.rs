@@ -8,7 +8,7 @@ use cvtcycle::study::levers::{LeverAnswer, csv, lever_answer};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::{StudyManifest, StudyTable, store};
 
-use super::execution::Says;
+use super::execution::StudyOutput;
 use super::tables::failures;
 use crate::print::colour::Paint;
 use crate::print::{Results, WrittenFiles, json_text};
@@ -19,8 +19,8 @@ pub struct LeverResults {
     parts: (usize, usize),
 }
 
-impl Says for LeverResults {
-    fn of(
+impl StudyOutput for LeverResults {
+    fn evaluate(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,

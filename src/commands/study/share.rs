@@ -111,8 +111,8 @@ pub fn estimate(study: &Study, output: &OutputArgs) -> CommandResult {
         table.row(["runs", &runs.to_string(), ""]);
         table.row(["parts", &parts.to_string(), ""]);
         table.row(["size", &fixed(pilot.bytes as f64 / 1e6, 2), "MB, estimated"]);
-        let of = format!("s of one thread, from {} points", pilot.pilot_points);
-        table.row(["time", &fixed(pilot.cpu_s, 1), &of]);
+        let basis = format!("s of one thread, from {} points", pilot.pilot_points);
+        table.row(["time", &fixed(pilot.cpu_s, 1), &basis]);
         table.row([
             "time of a part",
             &fixed(pilot.cpu_s_per_part, 2),

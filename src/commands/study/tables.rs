@@ -155,7 +155,8 @@ fn outputs(answer: &Answer) -> String {
     if answer.outputs.iter().any(|o| o.range.is_some()) {
         return ranges(answer, first);
     }
-    let of = |o: &OutputAnswer, number: &dyn Fn(&Summary) -> f64| o.summary.as_ref().map(number);
+    let statistic =
+        |o: &OutputAnswer, number: &dyn Fn(&Summary) -> f64| o.summary.as_ref().map(number);
     let [low, high] = answer.confidence.ends();
     let [low_head, high_head] = [low, high].map(|p| format!("{} %", of_hundred(p)));
     TextColumns::new()
@@ -163,10 +164,10 @@ fn outputs(answer: &Answer) -> String {
         .left("unit", |o| first(o, &o.unit))
         .left("car", |o| o.car.clone())
         .right("n", |o| o.counts()[0].to_string())
-        .number("mean", 3, |o| of(o, &|s| s.mean))
-        .number("sd", 3, |o| of(o, &|s| s.sd))
-        .number(low_head, 3, |o| of(o, &|s| s.quantile(low)))
-        .number(high_head, 3, |o| of(o, &|s| s.quantile(high)))
+        .number("mean", 3, |o| statistic(o, &|s| s.mean))
+        .number("sd", 3, |o| statistic(o, &|s| s.sd))
+        .number(low_head, 3, |o| statistic(o, &|s| s.quantile(low)))
+        .number(high_head, 3, |o| statistic(o, &|s| s.quantile(high)))
         .table(&answer.outputs)
         .indented()
         .text()

@@ -129,12 +129,12 @@ fn list(lines: impl IntoIterator<Item = (&'static str, String)>) -> String {
 }
 
 fn counts(report: &Report, group: Group) -> String {
-    let of = |verdict: Verdict| {
+    let count_of = |verdict: Verdict| {
         let rows = report.of_group(group).filter(|j| j.verdict == verdict);
         (verdict.word(), rows.count().to_string())
     };
     let total = ("total", report.of_group(group).count().to_string());
-    list(Verdict::ALL.into_iter().map(of).chain([total]))
+    list(Verdict::ALL.into_iter().map(count_of).chain([total]))
 }
 
 fn held_out(report: &Report, group: Group) -> String {

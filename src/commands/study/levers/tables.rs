@@ -119,13 +119,16 @@ fn saves(answer: &LeverAnswer, row: &LeverRow) -> String {
 fn needs(block: &LeverBlock) -> String {
     let single = block.rows.iter().filter(|row| !row.is_combination());
     let line = |row: &LeverRow| {
-        let of = &row.of;
-        let needs = match of.needs.as_str() {
+        let lever = &row.of;
+        let needs = match lever.needs.as_str() {
             "" => String::new(),
             needs => format!("; {needs}"),
         };
-        let status = &of.status;
-        wrapped(&format!("{}: {}{needs} [{status}]", of.name, of.title), "")
+        let status = &lever.status;
+        wrapped(
+            &format!("{}: {}{needs} [{status}]", lever.name, lever.title),
+            "",
+        )
     };
     single.map(line).collect()
 }
