@@ -167,7 +167,7 @@ fn library(path: &Path) -> Result<(Platform, Vec<u8>), Problem> {
         let hint = "build it: cargo build --release -p cvtcycle-fmu";
         bad_value("--library", &value, "a readable file", &message, hint)
     })?;
-    let platform = Platform::of(&bytes).ok_or_else(|| {
+    let platform = Platform::detect(&bytes).ok_or_else(|| {
         let allowed = "a shared library for Linux (ELF) or Windows (PE) on x86-64";
         let message = "the file is no such library";
         bad_value("--library", &value, allowed, message, "")

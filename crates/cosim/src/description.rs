@@ -194,7 +194,7 @@ fn structure(fmi: Fmi, variables: &[Variable], text: &mut String) {
 }
 
 /// Requirements for the master, one sentence each.
-fn use_of(kind: Kind) -> &'static [&'static str] {
+fn master_requirements(kind: Kind) -> &'static [&'static str] {
     match kind {
         Kind::Car => &[
             "Before each step set the speed that the car has at its end; the speed is linear within a step.",
@@ -225,7 +225,7 @@ pub fn documentation(about: &About, variables: &[Variable]) -> String {
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title></head><body>\n<h1>{title}</h1>\n<p>Written by {PROGRAM}.</p>\n<ul>\n"
     );
-    for sentence in use_of(about.kind) {
+    for sentence in master_requirements(about.kind) {
         push!(text, "<li>{}</li>\n", xml(sentence));
     }
     text += "</ul>\n<table>\n<tr><th>variable</th><th></th><th>unit</th><th>start</th><th>meaning</th></tr>\n";

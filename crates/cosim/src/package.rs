@@ -28,7 +28,7 @@ impl Platform {
 
     /// Detects the platform of a library by magic number and processor: ELF (62 is x86-64) or PE (0x8664).
     #[must_use]
-    pub fn of(bytes: &[u8]) -> Option<Platform> {
+    pub fn detect(bytes: &[u8]) -> Option<Platform> {
         let word = |at: usize| Some([*bytes.get(at)?, *bytes.get(at + 1)?]);
         if bytes.starts_with(b"\x7fELF\x02\x01") {
             return (word(18)? == [62, 0]).then_some(Platform::Linux);

@@ -35,7 +35,7 @@ fn started(setup: Setup) -> Unit {
 }
 
 /// Drives a range of rows.
-fn go(unit: &mut Unit, cycle: &Cycle, rows: std::ops::Range<usize>) {
+fn drive_rows(unit: &mut Unit, cycle: &Cycle, rows: std::ops::Range<usize>) {
     for interval in &cycle.manual.intervals[rows] {
         unit.set(car::SPEED as u32, interval.end_speed_m_s).unwrap();
         let dt_s = interval.end_s - interval.start_s;
@@ -55,7 +55,7 @@ fn all(unit: &mut Unit) -> Vec<u64> {
 
 /// Truth: [`drive`], with each kind of box and coupling.
 #[test]
-fn the_fuel_is_that_of_a_drive() {
+fn the_fuel_equals_that_of_a_drive() {
     let cycle = cycle();
     for word in ["rover_216_cvt", "civic_20_cvt", "rover_216_5mt"] {
         let setup = setup(word);
@@ -67,7 +67,7 @@ fn the_fuel_is_that_of_a_drive() {
         };
         let want = drive(&setup, &cycle, &conditions).totals.total();
         let mut unit = started(setup);
-        go(&mut unit, &cycle, 0..cycle.manual.intervals.len());
+        drive_rows(&mut unit, &cycle, 0..cycle.manual.intervals.len());
         let fuel_kg = value(&mut unit, "m_fuel_ENG_PNT_out_kg");
         assert!(
             (fuel_kg / want.fuel_kg - 1.0).abs() < 1e-12,
@@ -85,18 +85,18 @@ fn a_state_goes_on_with_the_same_bits() {
     let (middle, end) = (500, cycle.manual.intervals.len());
     for word in ["rover_216_cvt", "rover_216_5mt"] {
         let mut unit = started(setup(word));
-        go(&mut unit, &cycle, 0..middle);
+        drive_rows(&mut unit, &cycle, 0..middle);
         let saved = unit.save();
-        let bytes = unit.bytes_of(&saved);
-        go(&mut unit, &cycle, middle..end);
+        let bytes = unit.to_bytes(&saved);
+        drive_rows(&mut unit, &cycle, middle..end);
         let want = all(&mut unit);
         unit.restore(&saved).unwrap();
-        go(&mut unit, &cycle, middle..end);
+        drive_rows(&mut unit, &cycle, middle..end);
         assert_eq!(all(&mut unit), want);
         let mut other = Unit::new(Kind::Car, setup(word));
         other.restore_bytes(&bytes).unwrap();
-        assert_eq!(other.bytes_of(&other.save()), bytes);
-        go(&mut other, &cycle, middle..end);
+        assert_eq!(other.to_bytes(&other.save()), bytes);
+        drive_rows(&mut other, &cycle, middle..end);
         assert_eq!(all(&mut other), want);
     }
 }
@@ -135,7 +135,7 @@ fn a_driven_box_balances_and_goes_on_with_the_same_bits() {
             let scale = engine_w.abs() + wheel_w.abs() + heat_w;
             assert!(rest_w.abs() < 1e-9 * scale, "{word} {k}: {rest_w}");
             if k == 99 {
-                bytes = unit.bytes_of(&unit.save());
+                bytes = unit.to_bytes(&unit.save());
             }
         }
         let want = all(&mut unit);
@@ -158,12 +158,12 @@ fn a_driven_box_balances_and_goes_on_with_the_same_bits() {
 
 /// Damaged bytes give an error and leave the unit unchanged, or give another reachable state.
 #[test]
-fn damaged_states_do_no_harm() {
+fn damaged_states_are_refused_or_reachable() {
     let cycle = cycle();
     let mut unit = started(setup("rover_216_cvt"));
-    go(&mut unit, &cycle, 0..30);
+    drive_rows(&mut unit, &cycle, 0..30);
     let before = all(&mut unit);
-    let bytes = unit.bytes_of(&unit.save());
+    let bytes = unit.to_bytes(&unit.save());
     for length in (0..bytes.len()).step_by(7) {
         assert!(unit.restore_bytes(&bytes[..length]).is_err());
         assert_eq!(all(&mut unit), before);
@@ -282,7 +282,7 @@ fn a_car_carries_its_files() {
         assert_eq!(again.name, own.name);
         let [one, two] = [own, again].map(|setup| {
             let mut unit = started(setup);
-            go(&mut unit, &cycle, 0..200);
+            drive_rows(&mut unit, &cycle, 0..200);
             all(&mut unit)
         });
         assert_eq!(one, two, "{word}");

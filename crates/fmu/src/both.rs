@@ -51,7 +51,7 @@ macro_rules! both {
         #[unsafe(no_mangle)]
         extern "C" fn $size(instance: *mut c_void, state: *mut c_void, size: *mut usize) -> c_int {
             call(instance, |slave| {
-                put(size, slave.bytes_of(state)?.len());
+                write_output(size, slave.to_bytes(state)?.len());
                 Ok(())
             })
         }
@@ -117,7 +117,7 @@ macro_rules! without {
         // Further C arguments may be ignored with this calling convention.
         #[unsafe(no_mangle)]
         extern "C" fn $name(instance: *mut c_void, references: *const u32, count: usize) -> c_int {
-            call(instance, |_| match given(references, count)? {
+            call(instance, |_| match input_array(references, count)? {
                 [] => Ok(()),
                 _ => Err(Refusal::new(WrongType, concat!(stringify!($name), ": ", $what))),
             })

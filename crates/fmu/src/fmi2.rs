@@ -10,7 +10,9 @@ use cvtcycle_cosim::ProblemKind::{Syntax, UnknownName, WrongType};
 use cvtcycle_cosim::Refusal;
 
 use crate::both::{both, refused, values, without};
-use crate::slave::{ERROR, Log2, Logger, Wanted, call, free, given, instantiate, put};
+use crate::slave::{
+    ERROR, Instantiation, Log2, Logger, call, free, input_array, instantiate, write_output,
+};
 
 /// `fmi2CallbackFunctions`, of which only the logger is used.
 #[repr(C)]
@@ -98,7 +100,7 @@ extern "C" fn fmi2Instantiate(
     let logger = callbacks.map_or(Logger::Fmi2(None, std::ptr::null_mut()), |own| {
         Logger::Fmi2(own.logger, own.environment)
     });
-    let wanted = Wanted {
+    let arguments = Instantiation {
         name,
         token,
         resources,
@@ -108,7 +110,7 @@ extern "C" fn fmi2Instantiate(
         logger.log(c"", ERROR, "this FMU is for co-simulation only");
         return std::ptr::null_mut();
     }
-    instantiate(&wanted, folder)
+    instantiate(&arguments, folder)
 }
 
 #[unsafe(no_mangle)]

@@ -76,11 +76,11 @@ pub struct Slave {
     name: CString,
     logger: Logger,
     /// True after a panic, which may have left the unit inconsistent.
-    broken: bool,
+    poisoned: bool,
 }
 
 /// Arguments of an instantiation.
-pub struct Wanted {
+pub struct Instantiation {
     pub name: *const c_char,
     pub token: *const c_char,
     pub resources: *const c_char,
@@ -88,7 +88,7 @@ pub struct Wanted {
 }
 
 /// Message of a panic.
-fn words(panic: &(dyn Any + Send)) -> String {
+fn panic_message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
     format!("defect in cvtcycle: {}", text.unwrap_or_default())
@@ -105,16 +105,19 @@ pub fn text(text: *const c_char) -> Option<String> {
 }
 
 /// Creates an instance; `folder` converts the path of the resources. Null, with a log message, on failure.
-pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>) -> *mut c_void {
-    let name = CString::new(text(wanted.name).unwrap_or_default()).unwrap_or_default();
+pub fn instantiate(
+    arguments: &Instantiation,
+    folder: fn(&str) -> Result<String, Refusal>,
+) -> *mut c_void {
+    let name = CString::new(text(arguments.name).unwrap_or_default()).unwrap_or_default();
     let made = catch_unwind(|| {
         let absent = |what: &str| Refusal::new(Missing, format!("the {what} is missing"));
-        let token = text(wanted.token).ok_or_else(|| absent("token (FMI 2: GUID)"))?;
-        let resources = text(wanted.resources).ok_or_else(|| absent("path of the resources"))?;
+        let token = text(arguments.token).ok_or_else(|| absent("token (FMI 2: GUID)"))?;
+        let resources = text(arguments.resources).ok_or_else(|| absent("path of the resources"))?;
         Unit::open(Path::new(&folder(&resources)?), &token)
     });
     let refused = |status: c_int, message: &str| {
-        wanted.logger.log(&name, status, message);
+        arguments.logger.log(&name, status, message);
         ptr::null_mut()
     };
     match made {
@@ -123,13 +126,13 @@ pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>)
                 unit,
                 start_s: 0.0,
                 name,
-                logger: wanted.logger,
-                broken: false,
+                logger: arguments.logger,
+                poisoned: false,
             };
             Box::into_raw(Box::new(slave)).cast()
         }
         Ok(Err(refusal)) => refused(ERROR, &refusal.message),
-        Err(panic) => refused(FATAL, &words(&*panic)),
+        Err(panic) => refused(FATAL, &panic_message(&*panic)),
     }
 }
 
@@ -139,7 +142,7 @@ pub fn call(instance: *mut c_void, f: impl FnOnce(&mut Slave) -> Result<(), Refu
     let Some(slave) = (unsafe { instance.cast::<Slave>().as_mut() }) else {
         return ERROR;
     };
-    if slave.broken {
+    if slave.poisoned {
         return FATAL;
     }
     let (status, message) = match catch_unwind(AssertUnwindSafe(|| f(slave))) {
@@ -147,8 +150,8 @@ pub fn call(instance: *mut c_void, f: impl FnOnce(&mut Slave) -> Result<(), Refu
         Ok(Err(refusal)) if refusal.warns => (WARNING, refusal.message),
         Ok(Err(refusal)) => (ERROR, refusal.message),
         Err(panic) => {
-            slave.broken = true;
-            (FATAL, words(&*panic))
+            slave.poisoned = true;
+            (FATAL, panic_message(&*panic))
         }
     };
     slave.logger.log(&slave.name, status, &message);
@@ -166,7 +169,7 @@ pub fn free(instance: *mut c_void) {
 }
 
 /// Views an input array of the master.
-pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
+pub fn input_array<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
     if count == 0 {
         return Ok(&[]);
     }
@@ -178,19 +181,19 @@ pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
 }
 
 /// Views an output array of the master.
-pub fn wanted<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
+pub fn output_array<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
     if count == 0 {
         return Ok(&mut []);
     }
     match first.is_null() {
         true => Err(Refusal::new(Missing, "an array is missing")),
-        // SAFETY: as in `given`, and the master lends them to this call alone.
+        // SAFETY: as in `input_array`, and the master lends them to this call alone.
         false => Ok(unsafe { slice::from_raw_parts_mut(first, count) }),
     }
 }
 
 /// Writes one value through an optional output pointer.
-pub fn put<T>(place: *mut T, value: T) {
+pub fn write_output<T>(place: *mut T, value: T) {
     if !place.is_null() {
         // SAFETY: not null, and the master lends it for the call.
         unsafe { place.write(value) };
@@ -206,10 +209,10 @@ impl Slave {
         whole: bool,
         of: fn(f64) -> T,
     ) -> Result<(), Refusal> {
-        self.fits(count, value_count)?;
-        let places = wanted(values, count)?;
-        for (reference, place) in given(references, count)?.iter().zip(places) {
-            self.is_of_type(*reference, whole)?;
+        self.check_count(count, value_count)?;
+        let places = output_array(values, count)?;
+        for (reference, place) in input_array(references, count)?.iter().zip(places) {
+            self.check_type(*reference, whole)?;
             *place = of(self.unit.get(*reference)?);
         }
         Ok(())
@@ -223,16 +226,16 @@ impl Slave {
         whole: bool,
         of: fn(T) -> f64,
     ) -> Result<(), Refusal> {
-        self.fits(count, value_count)?;
-        let values = given(values, count)?;
-        for (reference, value) in given(references, count)?.iter().zip(values) {
-            self.is_of_type(*reference, whole)?;
+        self.check_count(count, value_count)?;
+        let values = input_array(values, count)?;
+        for (reference, value) in input_array(references, count)?.iter().zip(values) {
+            self.check_type(*reference, whole)?;
             self.unit.set(*reference, of(*value))?;
         }
         Ok(())
     }
 
-    fn fits(&self, references: usize, values: usize) -> Result<(), Refusal> {
+    fn check_count(&self, references: usize, values: usize) -> Result<(), Refusal> {
         match references == values {
             true => Ok(()),
             false => {
@@ -242,7 +245,7 @@ impl Slave {
         }
     }
 
-    fn is_of_type(&self, reference: u32, whole: bool) -> Result<(), Refusal> {
+    fn check_type(&self, reference: u32, whole: bool) -> Result<(), Refusal> {
         if self.unit.is_whole(reference)? == whole {
             return Ok(());
         }
@@ -253,7 +256,7 @@ impl Slave {
 
     /// Saves the state at a place, reusing a state already there.
     pub fn save(&mut self, place: *mut *mut c_void) -> Result<(), Refusal> {
-        let [state] = wanted(place, 1)? else {
+        let [state] = output_array(place, 1)? else {
             return Ok(());
         };
         // SAFETY: null, or a state of this function that is not freed.
@@ -276,7 +279,7 @@ impl Slave {
         if place.is_null() {
             return Ok(());
         }
-        let [state] = wanted(place, 1)? else {
+        let [state] = output_array(place, 1)? else {
             return Ok(());
         };
         if !state.is_null() {
@@ -288,8 +291,8 @@ impl Slave {
     }
 
     /// Serialises a saved state.
-    pub fn bytes_of(&self, state: *mut c_void) -> Result<Vec<u8>, Refusal> {
-        Ok(self.unit.bytes_of(self.saved(state)?))
+    pub fn to_bytes(&self, state: *mut c_void) -> Result<Vec<u8>, Refusal> {
+        Ok(self.unit.to_bytes(self.saved(state)?))
     }
 
     /// Serialises a saved state into an array of the master.
@@ -298,8 +301,8 @@ impl Slave {
         state: *mut c_void,
         (first, size): (*mut u8, usize),
     ) -> Result<(), Refusal> {
-        let bytes = self.bytes_of(state)?;
-        let Some(place) = wanted(first, size)?.get_mut(..bytes.len()) else {
+        let bytes = self.to_bytes(state)?;
+        let Some(place) = output_array(first, size)?.get_mut(..bytes.len()) else {
             let needed = bytes.len();
             let message = format!("the state has {needed} bytes, the array {size}");
             return Err(Refusal::new(TooLarge, message));
@@ -315,7 +318,7 @@ impl Slave {
         place: *mut *mut c_void,
     ) -> Result<(), Refusal> {
         let before = self.unit.save();
-        self.unit.restore_bytes(given(first, size)?)?;
+        self.unit.restore_bytes(input_array(first, size)?)?;
         let made = self.save(place);
         self.unit.restore(&before)?;
         made

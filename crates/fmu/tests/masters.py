@@ -103,7 +103,7 @@ class Slave:
     def to_bytes(self, state):
         return self.fmu.serializeFMUstate(state) if self.is_2 else self.fmu.serializeFMUState(state)
 
-    def of_bytes(self, data):
+    def from_bytes(self, data):
         return self.fmu.deSerializeFMUstate(data) if self.is_2 else self.fmu.deserializeFMUState(data)
 
     def free_state(self, state):
@@ -169,7 +169,7 @@ def check_car(description, folder, car, cycle):
 
     # Back to the middle and on again with the same bits, from the state and from its bytes in a new instance.
     for other, back in ((one, state), (start_car(description, folder), None)):
-        other.restore(back or other.of_bytes(data))
+        other.restore(back or other.from_bytes(data))
         for (time_s, _), (next_s, speed) in list(zip(rows, rows[1:]))[401:]:
             other.set(**{SPEED: speed})
             other.step(time_s, next_s - time_s)
@@ -223,7 +223,7 @@ def check_losses(description, folder, car):
     state = slave.save()
     slave.set(trq_FW_PNT_in_Nm=-20.0, w_FW_PNT_in_radps=300.0)
     assert slave.get("P_loss_AT_PNT_W") > 0.0
-    slave.restore(slave.of_bytes(slave.to_bytes(state)))
+    slave.restore(slave.from_bytes(slave.to_bytes(state)))
     assert slave.get("P_loss_AT_PNT_W") == 0.0
 
 
@@ -256,7 +256,7 @@ def check_cvt(description, folder):
     end = slave.outputs()
     assert np.isfinite(end).all(), end
     other = Slave(description, folder).start()
-    other.restore(other.of_bytes(data))
+    other.restore(other.from_bytes(data))
     launch(other, 500, 200, *at)
     assert other.outputs() == end
     return f"pulls away to {speed:.1f} m/s in 14 s"
@@ -286,7 +286,7 @@ def check_nonsense(description, folder, kind):
     data = slave.to_bytes(slave.save())
     for wrong in (data[:-1], data[:9], b"", b"x" * len(data), data[:-8] + b"\xff" * 8, data + data):
         if len(wrong) > 0:
-            slave.refused("", lambda wrong=wrong: slave.of_bytes(wrong))
+            slave.refused("", lambda wrong=wrong: slave.from_bytes(wrong))
     slave.refused("missing", lambda: slave.restore(c_void_p()))
     assert slave.outputs() == before
     slave.step(0.0, 1.0)

@@ -81,9 +81,9 @@ impl Car {
     pub fn template(&self) -> Result<(VehicleTemplate, Setup), Problems> {
         match &self.source {
             None => VehicleTemplate::load(&self.word, &self.options),
-            Some(source) if source.is_twin => {
-                Err(self.no_file("the twin of a text is no template").into())
-            }
+            Some(source) if source.is_twin => Err(self
+                .needs_file_problem("the twin of a text is no template")
+                .into()),
             Some(source) => {
                 VehicleTemplate::read(&self.word, &source.text, source.files(), &self.options)
             }
@@ -91,7 +91,7 @@ impl Car {
     }
 
     /// Problem of an operation that needs a car with a file.
-    pub fn no_file(&self, message: &str) -> Problem {
+    pub fn needs_file_problem(&self, message: &str) -> Problem {
         let hint = "write the text into a file, and name that";
         Problem::invalid(message)
             .in_file(self.word.as_str())
@@ -134,7 +134,7 @@ impl Car {
     #[staticmethod]
     #[pyo3(signature = (name, text, folder, set, lubricant=None, engine_oil=None, formulation="smooth"))]
     #[expect(clippy::too_many_arguments, reason = "they are named in Python")]
-    fn of_text(
+    fn from_text(
         py: Python<'_>,
         name: String,
         text: String,
@@ -156,7 +156,7 @@ impl Car {
 
     /// Converts a JSON object to TOML.
     #[staticmethod]
-    fn toml_of(json: &str) -> PyResult<String> {
+    fn json_to_toml(json: &str) -> PyResult<String> {
         let no_table = |message: String| {
             bad(
                 "data",

@@ -27,7 +27,7 @@ fn columns(text: Option<&str>) -> PyResult<Columns> {
 
 impl Cycle {
     /// Cycle for a car: its class selects the WLTC.
-    pub fn of(&self, car: &Car) -> Arc<CoreCycle> {
+    pub fn for_car(&self, car: &Car) -> Arc<CoreCycle> {
         match &self.word {
             Some(word) if self.cycle.is_wltc => {
                 let own = cycle::for_car(word, (*self.cycle).clone(), &car.setup);
@@ -56,7 +56,12 @@ impl Cycle {
     /// Reads the bytes of a table. Problems cite it as `name`.
     #[staticmethod]
     #[pyo3(signature = (name, text, columns=None))]
-    fn of_bytes(py: Python<'_>, name: &str, text: &[u8], columns: Option<&str>) -> PyResult<Self> {
+    fn from_bytes(
+        py: Python<'_>,
+        name: &str,
+        text: &[u8],
+        columns: Option<&str>,
+    ) -> PyResult<Self> {
         let columns = self::columns(columns)?;
         let found = py
             .detach(|| cycle::read_columns(name, text, &columns))

@@ -12,7 +12,7 @@ use crate::car::Car;
 use crate::cycle::Cycle;
 use crate::errors::{bad, refused};
 use crate::job::{Interrupted, job};
-use crate::run::Asked;
+use crate::run::RunArguments;
 use crate::table::{Cells, Table, TableColumn};
 
 /// Car, cycle, and the keys that are arguments.
@@ -50,11 +50,11 @@ impl Family {
         start: &Bound<'_, PyAny>,
         dt_s: f64,
     ) -> PyResult<Self> {
-        let asked = Asked::new(ambient_degc, start, dt_s, false)?;
-        let cycle = cycle.of(car);
+        let arguments = RunArguments::new(ambient_degc, start, dt_s, false)?;
+        let cycle = cycle.for_car(car);
         let made = py.detach(|| {
             let template = car.template()?;
-            CoreFamily::new(template, (*cycle).clone(), asked.conditions, &keys)
+            CoreFamily::new(template, (*cycle).clone(), arguments.conditions, &keys)
         });
         made.map(|family| Family(Arc::new(family))).map_err(refused)
     }
@@ -103,7 +103,7 @@ impl Family {
                 .flatten_iter()
                 .collect()
         };
-        let points = job(py, threads, Interrupted::Ends, drive)?;
+        let points = job(py, threads, Interrupted::Stops, drive)?;
         let heads = self.0.outputs();
         let columns = wanted.iter().enumerate().map(|(k, place)| {
             let cells = points.iter().map(|point| point.numbers[k]).collect();

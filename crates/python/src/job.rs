@@ -19,7 +19,7 @@ use crate::errors::bad;
 /// Maximum number of threads.
 const MAX_THREADS: usize = 1024;
 /// Interval at which signals are checked.
-const LOOK: Duration = Duration::from_millis(50);
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// Flag that stops the work.
 #[derive(Clone, Debug, Default)]
@@ -37,9 +37,9 @@ impl Progress for Stop {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interrupted {
     /// The work polls [`Stop`]; the call returns after it has stopped.
-    Ends,
+    Stops,
     /// The work cannot be stopped: the call returns at once, and the result is dropped later.
-    IsLeft,
+    Detaches,
 }
 
 /// Runs work on a separate thread, with a pool of `threads` for its parallel parts (one per core by default), and checks Python's
@@ -66,7 +66,7 @@ pub fn job<T: Send + 'static>(
     let mut worker = Some(worker);
     py.detach(move || {
         loop {
-            match receive.recv_timeout(LOOK) {
+            match receive.recv_timeout(SIGNAL_INTERVAL) {
                 Ok(done) => return Ok(done),
                 Err(RecvTimeoutError::Disconnected) => {
                     if let Some(Err(panic)) = worker.take().map(JoinHandle::join) {
@@ -78,7 +78,7 @@ pub fn job<T: Send + 'static>(
             }
             if let Err(signal) = Python::attach(|py| py.check_signals()) {
                 stop.0.store(true, Ordering::Relaxed);
-                if how == Interrupted::Ends {
+                if how == Interrupted::Stops {
                     drop(receive.recv());
                 }
                 return Err(signal);

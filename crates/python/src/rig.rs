@@ -37,7 +37,7 @@ fn column_of(axis: Axis, is_cvt: bool) -> &'static str {
 type Points = [Vec<f64>; Axis::COUNT];
 
 /// Builds points from columns of doubles, all of one length, or of length 1 for a value shared by all points.
-fn points_of(transmission: &Transmission, given: &[(String, Vec<u8>)]) -> PyResult<Points> {
+fn build_points(transmission: &Transmission, given: &[(String, Vec<u8>)]) -> PyResult<Points> {
     let is_cvt = transmission.is_cvt();
     let has = |axis: &Axis| {
         let of_all = [
@@ -110,7 +110,7 @@ pub fn losses(
     threads: Option<usize>,
 ) -> PyResult<Table> {
     let transmission = car.setup.transmission();
-    let axes = points_of(transmission, &given)?;
+    let axes = build_points(transmission, &given)?;
     let bench = Bench::as_printed(&car.setup);
     let solve = move |stop: &Stop| -> Vec<LossRow> {
         let row = |k: usize| {
@@ -120,20 +120,20 @@ pub fn losses(
         let count = axes[0].len();
         (0..count).into_par_iter().filter_map(row).collect()
     };
-    let rows = job(py, threads, Interrupted::Ends, solve)?;
-    let column = |column: &_| TableColumn::of(column, &rows, &[]);
+    let rows = job(py, threads, Interrupted::Stops, solve)?;
+    let column = |column: &_| TableColumn::from_rows(column, &rows, &[]);
     let columns = columns(transmission);
     Ok(Table::new(columns.iter().map(column).collect()))
 }
 
 /// Collects solved points.
 #[derive(Default)]
-struct Kept {
+struct SolvedPoints {
     with_case: bool,
     points: Vec<Point>,
 }
 
-impl Take for Kept {
+impl Take for SolvedPoints {
     fn begin(&mut self, with_case: bool) -> Result<(), Problems> {
         self.with_case = with_case;
         Ok(())
@@ -165,7 +165,7 @@ pub fn belt(
         ));
     };
     let solve = move |_: &Stop| {
-        let mut kept = Kept::default();
+        let mut kept = SolvedPoints::default();
         let job = Job {
             model: Some(model),
             formulation,
@@ -173,8 +173,8 @@ pub fn belt(
         };
         points::read(&name, text.as_slice(), job).map(|_| kept)
     };
-    let kept = job(py, Some(1), Interrupted::IsLeft, solve)?.map_err(refused)?;
+    let kept = job(py, Some(1), Interrupted::Detaches, solve)?.map_err(refused)?;
     let columns = output_columns(kept.with_case);
-    let column = |column: &_| TableColumn::of(column, &kept.points, &[]);
+    let column = |column: &_| TableColumn::from_rows(column, &kept.points, &[]);
     Ok(Table::new(columns.iter().map(column).collect()))
 }

@@ -25,9 +25,9 @@ pub struct Study(Arc<CoreStudy>);
 
 /// Collects parts in memory.
 #[derive(Default)]
-struct Shelf(Mutex<BTreeMap<u64, Rows>>);
+struct MemorySink(Mutex<BTreeMap<u64, Rows>>);
 
-impl PartWriter for Shelf {
+impl PartWriter for MemorySink {
     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         parts.insert(part, runs.clone());
@@ -37,7 +37,7 @@ impl PartWriter for Shelf {
 
 impl Study {
     /// Checks a range of parts and returns it.
-    fn parts_of(&self, (from, to): (u64, u64)) -> PyResult<BTreeSet<u64>> {
+    fn part_range(&self, (from, to): (u64, u64)) -> PyResult<BTreeSet<u64>> {
         let all = self.0.parts();
         if from <= to && to <= all {
             return Ok((from..to).collect());
@@ -72,7 +72,7 @@ impl Study {
             plan.design = plan.design.changed(samples, seed)?;
             CoreStudy::prepare(plan)
         };
-        let study = job(py, None, Interrupted::IsLeft, prepare)?.map_err(refused)?;
+        let study = job(py, None, Interrupted::Detaches, prepare)?.map_err(refused)?;
         Ok(Study(Arc::new(study)))
     }
 
@@ -103,20 +103,20 @@ impl Study {
 
     /// Drives the points of some parts and returns their runs.
     fn run(&self, py: Python<'_>, parts: (u64, u64), threads: Option<usize>) -> PyResult<Table> {
-        let (study, wanted) = (Arc::clone(&self.0), self.parts_of(parts)?);
+        let (study, wanted) = (Arc::clone(&self.0), self.part_range(parts)?);
         let drive = move |stop: &Stop| -> Result<Rows, Problem> {
             let done = (0..study.parts())
                 .filter(|part| !wanted.contains(part))
                 .collect();
-            let shelf = Shelf::default();
+            let shelf = MemorySink::default();
             study.execute(&done, &shelf, stop)?;
             let parts = shelf.0.into_inner().unwrap_or_else(PoisonError::into_inner);
             let mut all = Rows::with_capacity(&study.columns, 0);
             parts.into_values().for_each(|rows| all.append(rows));
             Ok(all)
         };
-        let rows = job(py, threads, Interrupted::Ends, drive)?.map_err(refused)?;
-        Ok(Table::new(TableColumn::of_study(&self.0.columns, rows)))
+        let rows = job(py, threads, Interrupted::Stops, drive)?.map_err(refused)?;
+        Ok(Table::new(TableColumn::from_study(&self.0.columns, rows)))
     }
 
     /// Drives the points of missing parts, writes these parts into a folder, and returns the number of parts there.
@@ -127,7 +127,7 @@ impl Study {
         folder: PathBuf,
         threads: Option<usize>,
     ) -> PyResult<u64> {
-        let (study, wanted) = (Arc::clone(&self.0), self.parts_of(parts)?);
+        let (study, wanted) = (Arc::clone(&self.0), self.part_range(parts)?);
         let write = move |stop: &Stop| -> Result<u64, Problem> {
             let (manifest, plan) = (study.manifest(false), study.plan.text.as_bytes());
             let dir = match folder.join("study.json").exists() {
@@ -141,7 +141,7 @@ impl Study {
             study.execute(&done, &DirWriter::new(&study, &dir), stop)?;
             Ok(study.parts() - dir.missing().len() as u64)
         };
-        job(py, threads, Interrupted::Ends, write)?.map_err(refused)
+        job(py, threads, Interrupted::Stops, write)?.map_err(refused)
     }
 }
 
@@ -176,7 +176,7 @@ impl StoredStudy {
             dir.finish(&study_files(&found)?)?;
             Ok(())
         };
-        job(py, None, Interrupted::Ends, merge)?.map_err(refused)?;
+        job(py, None, Interrupted::Stops, merge)?.map_err(refused)?;
         Ok(StoredStudy(folder))
     }
 
@@ -193,7 +193,7 @@ impl StoredStudy {
             let found = StudyResults::open(&folder, confidence)?;
             json_text(&found.answer)
         };
-        job(py, None, Interrupted::IsLeft, answer)?.map_err(refused)
+        job(py, None, Interrupted::Detaches, answer)?.map_err(refused)
     }
 
     /// Runs of the parts present; some columns, or all.
@@ -212,7 +212,7 @@ impl StoredStudy {
             let wanted: Vec<_> = wanted.cloned().collect();
             Ok((store.read(RUNS, &names)?, wanted))
         };
-        let (rows, heads) = job(py, Some(1), Interrupted::IsLeft, read)?.map_err(refused)?;
-        Ok(Table::new(TableColumn::of_study(&heads, rows)))
+        let (rows, heads) = job(py, Some(1), Interrupted::Detaches, read)?.map_err(refused)?;
+        Ok(Table::new(TableColumn::from_study(&heads, rows)))
     }
 }

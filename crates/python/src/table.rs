@@ -86,7 +86,7 @@ impl TableColumn {
     }
 
     /// Evaluates a column over rows. Non-finite numbers become NaN, which marks missing values.
-    pub fn of<R>(column: &Column<R>, rows: &[R], phases: &[String]) -> Self {
+    pub fn from_rows<R>(column: &Column<R>, rows: &[R], phases: &[String]) -> Self {
         let cells = match column.kind {
             Kind::Number => {
                 let mut numbers = Vec::with_capacity(rows.len());
@@ -112,7 +112,7 @@ impl TableColumn {
     }
 
     /// Converts the columns of a study.
-    pub fn of_study(heads: &[Head], rows: Rows) -> Vec<Self> {
+    pub fn from_study(heads: &[Head], rows: Rows) -> Vec<Self> {
         let column = |(head, values): (&Head, Values)| {
             let cells = match values {
                 Values::Number(cells) => Cells::numbers(cells),

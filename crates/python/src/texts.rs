@@ -2,7 +2,7 @@
 
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{
-    Argument, Override, Problem, Problems, bounded, cycle, decode, schema as of,
+    Argument, Override, Problem, Problems, bounded, cycle, decode, schema as json_schema,
 };
 use cvtcycle::model::files;
 use cvtcycle::output::BUILD;
@@ -68,7 +68,7 @@ pub fn schema(kind: &str) -> PyResult<String> {
         ("levers", LEVER_FILE),
     ];
     match kinds.iter().find(|(name, _)| *name == kind) {
-        Some((name, keys)) => text(&of::of(name, keys)).map_err(refused),
+        Some((name, keys)) => text(&json_schema::of(name, keys)).map_err(refused),
         None => {
             let allowed = kinds.map(|(name, _)| name).join(", ");
             Err(bad("kind", kind, &allowed, "there is no such kind"))
@@ -112,7 +112,7 @@ pub fn validate(
         };
         text(&json(&check::judge(&files, &candidate, is_wanted)?))
     };
-    job(py, None, Interrupted::IsLeft, compare)?.map_err(refused)
+    job(py, None, Interrupted::Detaches, compare)?.map_err(refused)
 }
 
 /// Fits parameters to measurements.
@@ -141,5 +141,5 @@ pub fn calibrate(
         plan.leave_out &= folds;
         text(&fit::calibrate(&plan, stop)?)
     };
-    job(py, threads, Interrupted::Ends, search)?.map_err(refused)
+    job(py, threads, Interrupted::Stops, search)?.map_err(refused)
 }

@@ -8,7 +8,7 @@ use cvtcycle_model::drive::{Drive, Row, State};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 
-use super::{Refusal, Unit, show};
+use super::{Refusal, Unit, set_outputs};
 use crate::variables::{CarResult, Get, car};
 
 /// Maximum step of the model, s, as in a run. Longer communication steps are divided.
@@ -19,7 +19,7 @@ pub(crate) const INPUTS: usize = 5;
 
 /// Inputs of one step. The following state depends on nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct StepInputs {
     pub from_s: f64,
     pub dt_s: f64,
     /// Car: speed, grade, ambient, gear. CVT: torque, speed, ratio, oil, engine.
@@ -37,11 +37,11 @@ pub(crate) struct Driven {
     /// Initial values: speed, ambient and temperature of a car, m/s and K; speed, oil and engine of a CVT, rad/s and K.
     pub start: [f64; 3],
     /// All steps since the start, copied on write because saved states share them.
-    pub steps: Arc<Vec<Asked>>,
+    pub steps: Arc<Vec<StepInputs>>,
 }
 
 /// Error for a step before initialization.
-pub(super) fn not_begun() -> Refusal {
+pub(super) fn not_started() -> Refusal {
     Refusal::new(Conflict, "a step before the end of initialization")
 }
 
@@ -49,14 +49,14 @@ impl Unit {
     /// Starts a drive with speed, ambient and temperature of all parts, m/s and K.
     pub(crate) fn begin(&mut self, start: [f64; 3]) -> Result<(), Refusal> {
         let [speed_m_s, ambient_k, start_k] = start;
-        let lowest_k = car::AMBIENT_K.0;
+        let lowest_k = car::AMBIENT_RANGE_K.0;
         if start_k < lowest_k {
             let name = "T_start_VEH_PNT_K";
             let message = format!(
                 "{name} = {start_k} is out of range: {lowest_k} to {} K, or 0",
-                car::START_K.1
+                car::START_RANGE_K.1
             );
-            return Err(Refusal::new(OutOfRange, message).of(name));
+            return Err(Refusal::new(OutOfRange, message).about(name));
         }
         self.car = self.setup.car(ambient_k);
         let state = State::at(start_k);
@@ -77,22 +77,22 @@ impl Unit {
             start,
             steps: Arc::default(),
         });
-        self.show_row(&row);
+        self.set_row_outputs(&row);
         Ok(())
     }
 
     /// Computes a step.
-    pub(crate) fn drive(&mut self, asked: &Asked) -> Result<(), Refusal> {
+    pub(crate) fn drive(&mut self, step: &StepInputs) -> Result<(), Refusal> {
         let Some(driven) = &mut self.saved.drive else {
-            return Err(not_begun());
+            return Err(not_started());
         };
-        let [speed_m_s, grade, ambient_k, gear, _] = asked.inputs;
+        let [speed_m_s, grade, ambient_k, gear, _] = step.inputs;
         if (ambient_k - self.car.ambient_k).abs() > 0.0 {
             self.car = self.setup.car(ambient_k);
         }
         let interval = Interval {
-            start_s: asked.from_s,
-            end_s: asked.from_s + asked.dt_s,
+            start_s: step.from_s,
+            end_s: step.from_s + step.dt_s,
             start_speed_m_s: driven.speed,
             end_speed_m_s: speed_m_s,
             phase: 0,
@@ -120,14 +120,14 @@ impl Unit {
         driven.fuel_kg = fuel_by_step;
         driven.distance_m += distance_m;
         driven.speed = speed_m_s;
-        Arc::make_mut(&mut driven.steps).push(*asked);
-        row.fuel_kg_s = fuel_kg / asked.dt_s;
+        Arc::make_mut(&mut driven.steps).push(*step);
+        row.fuel_kg_s = fuel_kg / step.dt_s;
         row.flags = flags;
-        self.show_row(&row);
+        self.set_row_outputs(&row);
         Ok(())
     }
 
-    fn show_row(&mut self, row: &Row) {
+    fn set_row_outputs(&mut self, row: &Row) {
         let Some(driven) = &self.saved.drive else {
             return;
         };
@@ -137,12 +137,12 @@ impl Unit {
             distance_m: driven.distance_m,
             car: &self.car,
         };
-        show(
+        set_outputs(
             &self.variables,
             &mut self.saved.values,
             &row.loss_w,
             |get| match get {
-                Get::Car(of) => Some(of(&result)),
+                Get::Car(output) => Some(output(&result)),
                 _ => None,
             },
         );

@@ -19,20 +19,20 @@ use cvtcycle_model::transmission::component::ByComponent;
 use crate::UNIT_FILE;
 use crate::variables::{self, Causality, Get, Kind, Variable, car, forward};
 use driving::Driven;
-pub(crate) use driving::{Asked, INPUTS};
+pub(crate) use driving::{INPUTS, StepInputs};
 
 /// Minimum and maximum communication step, s. The minimum equals that of a run.
 pub const STEP_S: (f64, f64) = (0.01, 3600.0);
 /// Maximum absolute time, s. Beyond it a short step would lose digits.
-pub(crate) const FAR_S: f64 = 1e9;
+pub(crate) const MAX_TIME_S: f64 = 1e9;
 /// Relative tolerance between the start of a step and the end of the previous one.
-const NEAR: f64 = 1e-6;
+const STEP_TOLERANCE: f64 = 1e-6;
 
 /// Checks start and length of a step, s.
-pub(crate) fn is_step(from_s: f64, dt_s: f64) -> bool {
+pub(crate) fn is_valid_step(from_s: f64, dt_s: f64) -> bool {
     let (least, most) = STEP_S;
     // Subtracting two times leaves their rounding error.
-    from_s.abs() <= FAR_S && least * (1.0 - NEAR) <= dt_s && dt_s <= most
+    from_s.abs() <= MAX_TIME_S && least * (1.0 - STEP_TOLERANCE) <= dt_s && dt_s <= most
 }
 
 /// Refused call; the unit keeps its previous state.
@@ -61,7 +61,7 @@ impl Refusal {
 
     /// Adds the variable.
     #[must_use]
-    pub fn of(mut self, variable: &str) -> Self {
+    pub fn about(mut self, variable: &str) -> Self {
         variable.clone_into(&mut self.variable);
         self
     }
@@ -206,17 +206,17 @@ impl Unit {
             Causality::Parameter => {
                 let message =
                     format!("{name} is a parameter: set it before the end of initialization");
-                return Err(Refusal::new(Conflict, message).of(name));
+                return Err(Refusal::new(Conflict, message).about(name));
             }
             Causality::Independent | Causality::Output => {
                 let message = format!("{name} is computed: it cannot be set");
-                return Err(Refusal::new(Conflict, message).of(name));
+                return Err(Refusal::new(Conflict, message).about(name));
             }
         }
         let fits = *low <= value && value <= *high && (!whole || value.fract().abs() <= 0.0);
         if !fits {
             let message = format!("{name} = {value} is out of range: {low} to {high} {unit}");
-            return Err(Refusal::new(OutOfRange, message).of(name));
+            return Err(Refusal::new(OutOfRange, message).about(name));
         }
         self.saved.values[reference as usize] = value;
         self.saved.stale = true;
@@ -238,11 +238,11 @@ impl Unit {
     /// # Errors
     /// Non-finite time, start temperature between 0 and 233.15 K, operating point without a solution.
     pub fn start(&mut self, time_s: f64) -> Result<(), Refusal> {
-        let is_near = time_s.abs() <= FAR_S;
+        let is_near = time_s.abs() <= MAX_TIME_S;
         if !is_near {
             let message = format!(
-                "the start time {time_s} s is out of range: {} to {FAR_S} s",
-                -FAR_S
+                "the start time {time_s} s is out of range: {} to {MAX_TIME_S} s",
+                -MAX_TIME_S
             );
             return Err(Refusal::new(OutOfRange, message));
         }
@@ -268,13 +268,13 @@ impl Unit {
     /// point without a solution.
     pub fn step(&mut self, from_s: f64, dt_s: f64) -> Result<(), Refusal> {
         let (least, most) = STEP_S;
-        if !is_step(self.saved.time_s, dt_s) {
+        if !is_valid_step(self.saved.time_s, dt_s) {
             let message =
                 format!("a communication step of {dt_s} s is out of range: {least} to {most} s");
             return Err(Refusal::new(OutOfRange, message));
         }
         let at_s = self.saved.time_s;
-        let follows = (from_s - at_s).abs() <= NEAR * dt_s;
+        let follows = (from_s - at_s).abs() <= STEP_TOLERANCE * dt_s;
         if !follows {
             let message = format!("the step begins at {from_s} s, the last one ended at {at_s} s");
             return Err(Refusal::new(Conflict, message));
@@ -286,10 +286,10 @@ impl Unit {
             }),
             Kind::Car | Kind::Cvt => {
                 let inputs = match self.kind {
-                    Kind::Cvt => self.asked_forward(),
-                    _ => self.asked_car(),
+                    Kind::Cvt => self.forward_inputs(),
+                    _ => self.car_inputs(),
                 };
-                self.go(&Asked {
+                self.advance(&StepInputs {
                     from_s,
                     dt_s,
                     inputs,
@@ -302,15 +302,15 @@ impl Unit {
     }
 
     /// Advances a unit that has steps.
-    pub(crate) fn go(&mut self, asked: &Asked) -> Result<(), Refusal> {
+    pub(crate) fn advance(&mut self, step: &StepInputs) -> Result<(), Refusal> {
         match self.kind {
-            Kind::Cvt => self.drive_forward(asked),
-            _ => self.drive(asked),
+            Kind::Cvt => self.drive_forward(step),
+            _ => self.drive(step),
         }
     }
 
     /// Inputs of a car for the next step.
-    fn asked_car(&self) -> [f64; INPUTS] {
+    fn car_inputs(&self) -> [f64; INPUTS] {
         let value = |place: usize| self.saved.values[place];
         let has_gears = self
             .variables
@@ -364,7 +364,7 @@ impl Unit {
 }
 
 /// Sets outputs. An undefined one (the ratio with the engine off) keeps its last value.
-fn show(
+fn set_outputs(
     variables: &[Variable],
     values: &mut [f64],
     loss_w: &ByComponent<f64>,

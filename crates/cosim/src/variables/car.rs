@@ -17,15 +17,15 @@ pub const START: usize = 4;
 pub const GEAR: usize = 5;
 
 /// Maximum grade, as in tables of cycles.
-const STEEPEST: f64 = 0.35;
+const MAX_GRADE: f64 = 0.35;
 /// Ambient temperatures of a run, K.
-pub(crate) const AMBIENT_K: (f64, f64) = (233.15, 333.15);
+pub(crate) const AMBIENT_RANGE_K: (f64, f64) = (233.15, 333.15);
 /// Default ambient, K, as in a run.
 pub(crate) const START_AMBIENT_K: f64 = 298.15;
 /// Maximum speed, m/s: that of a cycle, 300 km/h.
-const FASTEST_M_S: f64 = 300.0 / 3.6;
+const MAX_SPEED_M_S: f64 = 300.0 / 3.6;
 /// Range of the initial temperature of all parts, K; 0 stands for the ambient.
-pub(crate) const START_K: (f64, f64) = (0.0, 403.15);
+pub(crate) const START_RANGE_K: (f64, f64) = (0.0, 403.15);
 
 /// Adds the rows for a transmission.
 pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
@@ -35,25 +35,25 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
             "v_VEH_PNT_in_mps",
             "m/s",
             0.0,
-            (0.0, FASTEST_M_S),
+            (0.0, MAX_SPEED_M_S),
             "vehicle speed at the end of the coming step; linear from that of the step before. A master that sets the speed at the beginning of the step drives the same trace one step later",
         ),
         input(
             "grade_VEH_PNT_in",
             "1",
             0.0,
-            (-STEEPEST, STEEPEST),
+            (-MAX_GRADE, MAX_GRADE),
             "slope of the road in the coming step, rise over run",
         ),
         input(
             "T_AMB_PNT_in_K",
             "K",
             START_AMBIENT_K,
-            AMBIENT_K,
+            AMBIENT_RANGE_K,
             "ambient temperature",
         ),
         Variable {
-            range: START_K,
+            range: START_RANGE_K,
             ..row(
                 "T_start_VEH_PNT_K",
                 Parameter,

@@ -58,7 +58,7 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
             "T_cool_ENG_PNT_in_K",
             "K",
             WARM_K,
-            (car::AMBIENT_K.0, car::START_K.1),
+            (car::AMBIENT_RANGE_K.0, car::START_RANGE_K.1),
             "coolant and oil of the engine: its idle speed, its drag and its full load",
         ),
     ]);

@@ -106,7 +106,7 @@ pub struct CvtResult<'a> {
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
     /// Stored value.
-    Kept,
+    Stored,
     /// Computed from a step of the car.
     Car(fn(&CarResult) -> f64),
     /// Computed from an operating point.
@@ -163,7 +163,7 @@ fn row(name: &str, causality: Causality, unit: &'static str, description: &str) 
         start: 0.0,
         range: ANY,
         description: description.to_owned(),
-        get: Get::Kept,
+        get: Get::Stored,
     }
 }
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from . import _native
 from ._errors import bad
-from ._table import columns_of, table_text, texts
+from ._table import frame_columns, table_text, texts
 
 Set = Mapping[str, Any] | Iterable[str] | None
 """Changes of values: a mapping from key to value, or texts ``KEY=VALUE``."""
@@ -90,18 +90,18 @@ class Car:
         self._car = _native.Car(*self._made[1:])
 
     @classmethod
-    def _of(cls, made: tuple[Any, ...]) -> Car:
+    def _build(cls, made: tuple[Any, ...]) -> Car:
         car = cls.__new__(cls)
         kind, *rest = made
         car._made = made
         if kind == "twin":
-            car._car = cls._of(rest[0])._car.twin()
+            car._car = cls._build(rest[0])._car.twin()
         else:
-            car._car = (_native.Car if kind == "word" else _native.Car.of_text)(*rest)
+            car._car = (_native.Car if kind == "word" else _native.Car.from_text)(*rest)
         return car
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Car._of, (self._made,)
+        return Car._build, (self._made,)
 
     @classmethod
     def from_toml(
@@ -119,18 +119,18 @@ class Car:
         if not isinstance(text, str):
             raise bad("text", f"{type(text).__name__} is no text")
         folder = path_word("folder", folder)
-        return cls._of(("text", name, text, folder, assignments(set), lubricant, engine_oil, formulation))
+        return cls._build(("text", name, text, folder, assignments(set), lubricant, engine_oil, formulation))
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], **options: Any) -> Car:
         """Reads the tables of a vehicle file as dicts; options as in :meth:`from_toml`."""
         if not isinstance(data, Mapping):
             raise bad("data", f"{type(data).__name__} is no dict")
-        return cls.from_toml(_native.Car.toml_of(json.dumps(_plain("", data))), **{"name": "dict.toml", **options})
+        return cls.from_toml(_native.Car.json_to_toml(json.dumps(_plain("", data))), **{"name": "dict.toml", **options})
 
     def twin(self) -> Car:
         """Same car with a manual box."""
-        return Car._of(("twin", self._made))
+        return Car._build(("twin", self._made))
 
     @property
     def name(self) -> str:
@@ -181,15 +181,15 @@ class Cycle:
         self._cycle = _native.Cycle(*self._made[1:])
 
     @classmethod
-    def _of(cls, made: tuple[Any, ...]) -> Cycle:
+    def _build(cls, made: tuple[Any, ...]) -> Cycle:
         cycle = cls.__new__(cls)
         kind, *rest = made
         cycle._made = made
-        cycle._cycle = (_native.Cycle if kind == "word" else _native.Cycle.of_bytes)(*rest)
+        cycle._cycle = (_native.Cycle if kind == "word" else _native.Cycle.from_bytes)(*rest)
         return cycle
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Cycle._of, (self._made,)
+        return Cycle._build, (self._made,)
 
     @classmethod
     def read(cls, file: Any, *, columns: str | None = None) -> Cycle:
@@ -198,13 +198,13 @@ class Cycle:
         ``columns`` names those that are meant, such as ``time=Time_ADC:s,speed=VehSpd:mph``.
         """
         if not hasattr(file, "read"):
-            return cls._of(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns))
+            return cls._build(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns))
         try:
             data = file.read()
         except (OSError, ValueError) as error:
             raise bad("file", f"cannot read it: {error}") from error
         name = str(getattr(file, "name", "file"))
-        return cls._of(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns))
+        return cls._build(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns))
 
     @classmethod
     def from_arrays(
@@ -232,7 +232,7 @@ class Cycle:
     @classmethod
     def from_frame(cls, frame: Any, *, name: str = "frame", columns: str | None = None) -> Cycle:
         """Builds a cycle from a frame or mapping with the columns of a cycle file, such as ``time_s`` and ``speed_kmh``."""
-        return cls._of(("text", name, table_text(columns_of("frame", frame)), columns))
+        return cls._build(("text", name, table_text(frame_columns("frame", frame)), columns))
 
     @property
     def name(self) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 from ._car import Car, Cycle
 from ._errors import bad
-from ._run import car_of, cycle_of
+from ._run import as_car, as_cycle
 from ._table import Table, doubles, texts
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Family:
         dt_s: float = 1.0,
         threads: int | None = None,
     ) -> None:
-        own, driven, names = car_of("car", car), cycle_of(cycle), texts("keys", keys)
+        own, driven, names = as_car("car", car), as_cycle(cycle), texts("keys", keys)
         self._made = (own, driven, names, ambient_degc, start, dt_s)
         self._family = _native.Family(own._car, driven._cycle, names, ambient_degc, start, dt_s)
         self.threads = threads

@@ -131,12 +131,12 @@ def _shown(number: float | None, decimals: int) -> str:
     return "-" if number is None else f"{number:.{decimals}f}"
 
 
-def car_of(key: str, car: Car | str | os.PathLike[str]) -> Car:
+def as_car(key: str, car: Car | str | os.PathLike[str]) -> Car:
     """Returns a car, reading it from a name or path if needed."""
     return car if isinstance(car, Car) else Car(path_word(key, car))
 
 
-def cycle_of(cycle: Cycle | str | os.PathLike[str]) -> Cycle:
+def as_cycle(cycle: Cycle | str | os.PathLike[str]) -> Cycle:
     """Returns a cycle, reading it from a name or path if needed."""
     return cycle if isinstance(cycle, Cycle) else Cycle(path_word("cycle", cycle))
 
@@ -158,11 +158,11 @@ def run(
     the longest time step. ``baselines`` are cars, names or paths, and ``twin`` for the same car with a manual box. Without ``trace`` no
     steps are kept, which is faster. With ``price`` each car is driven again without each of its losses, for the fuel that it costs.
     """
-    subject = car_of("car", car)
+    subject = as_car("car", car)
     if isinstance(baselines, (str, os.PathLike, Car)):
         baselines = [baselines]
-    others = [subject.twin() if own == "twin" else car_of("baselines", own) for own in baselines]
-    cycle = cycle_of(cycle)
+    others = [subject.twin() if own == "twin" else as_car("baselines", own) for own in baselines]
+    cycle = as_cycle(cycle)
     made = _native.run(
         [own._car for own in (subject, *others)], cycle._cycle, ambient_degc, start, dt_s, bool(trace), bool(price)
     )

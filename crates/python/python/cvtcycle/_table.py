@@ -140,7 +140,7 @@ def _listed(key: str, values: Any) -> list[Any]:
         raise bad(key, f"{type(values).__name__} is no sequence of numbers") from error
 
 
-def columns_of(key: str, frame: Any) -> dict[str, list[Any]]:
+def frame_columns(key: str, frame: Any) -> dict[str, list[Any]]:
     """Converts the columns of a mapping or frame (polars, pandas, pyarrow, Table) to lists."""
     if isinstance(frame, Table):
         return frame.to_dict()

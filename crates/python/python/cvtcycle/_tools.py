@@ -10,8 +10,8 @@ from typing import Any
 from . import _native
 from ._car import Car, Set, assignments, path_word
 from ._errors import bad
-from ._run import car_of
-from ._table import Table, columns_of, doubles, table_text, texts
+from ._run import as_car
+from ._table import Table, frame_columns, doubles, table_text, texts
 
 
 def names(kind: str) -> list[str]:
@@ -52,7 +52,7 @@ def losses(
     ``throttle``: the clamping law sees it over full load. Without ``belt_spray_degc`` the belt is in steady state over the sump,
     without ``secondary_pressure_bar`` the pressure is that of the clamping law at ``throttle`` (0 if it is not given).
     """
-    subject = car_of("car", car)
+    subject = as_car("car", car)
     ratio = "belt_ratio" if subject.is_cvt else "gear"
     given = {
         "belt_ratio": belt_ratio,
@@ -86,8 +86,8 @@ def belt(
 
     It needs ``ratio``, ``input_speed_rpm``, ``secondary_pressure_bar`` and ``output_torque_nm`` (at the secondary pulley).
     """
-    text = table_text(columns_of("points", points))
-    return Table(_native.belt(car_of("car", car)._car, name, text, formulation, band_speed))
+    text = table_text(frame_columns("points", points))
+    return Table(_native.belt(as_car("car", car)._car, name, text, formulation, band_speed))
 
 
 def validate(
