@@ -47,7 +47,7 @@ fn half(text: &str) -> f64 {
 }
 
 /// Asserts that a number of a title equals one of the data, to half a unit in its last digit.
-pub fn is(said: &str, wanted: f64, title: &str) {
+pub fn assert_number(said: &str, wanted: f64, title: &str) {
     assert!(
         (number(said) - wanted).abs() <= half(said),
         "{said}, not {wanted}: {title}"
@@ -55,7 +55,7 @@ pub fn is(said: &str, wanted: f64, title: &str) {
 }
 
 /// As [`is`], with a cell of a table, which is rounded too.
-pub fn is_cell(said: &str, cell: &str, title: &str) {
+pub fn assert_cell(said: &str, cell: &str, title: &str) {
     assert!(
         (number(said) - number(cell)).abs() <= half(said) + half(&plain(cell)),
         "{said}, not {cell}: {title}"

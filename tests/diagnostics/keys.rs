@@ -273,14 +273,14 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
 }
 
 /// Keys that require a measured map, which no shipped car has.
-const OF_MAPS: [&str; 3] = [
+const MAP_KEYS: [&str; 3] = [
     "transmission.cvt.loss_factor.box_map",
     "transmission.cvt.loss_factor.belt_map",
     "transmission.manual.loss_factor.box_map",
 ];
 
 /// Keys whose mistakes cause several problems, with the reason.
-const SEVERAL: [(&str, &str); 2] = [
+const MULTIPLE_PROBLEMS: [(&str, &str); 2] = [
     (
         "transmission",
         "whether there is a belt is then not known: the thermal keys of one are missing",
@@ -295,7 +295,7 @@ struct Tried<'p> {
     path: &'p str,
     counts: BTreeMap<&'static str, usize>,
     wrong: Vec<String>,
-    /// Keys of [`SEVERAL`] encountered.
+    /// Keys of [`MULTIPLE_PROBLEMS`] encountered.
     several: BTreeSet<String>,
 }
 
@@ -312,7 +312,7 @@ impl Tried<'_> {
         *self.counts.entry(sort).or_default() += 1;
         let text = plain.text(&info.key, lines);
         let problems = plain.problems(&text.text, self.path);
-        if problems.len() > 1 && SEVERAL.iter().any(|(key, _)| *key == info.key) {
+        if problems.len() > 1 && MULTIPLE_PROBLEMS.iter().any(|(key, _)| *key == info.key) {
             self.several.insert(info.key.clone());
             return;
         }
@@ -546,7 +546,7 @@ pub fn check() {
     assert!(never.is_empty(), "no good file: {never:?}");
     let unseen: Vec<String> = catalogue::known_names()
         .iter()
-        .filter(|key| !seen.contains(*key) && !OF_MAPS.contains(&key.as_str()))
+        .filter(|key| !seen.contains(*key) && !MAP_KEYS.contains(&key.as_str()))
         .cloned()
         .collect();
     let wrong = tried.wrong.join("\n");
@@ -558,7 +558,7 @@ pub fn check() {
     );
     assert_eq!(
         tried.several.len(),
-        SEVERAL.len(),
+        MULTIPLE_PROBLEMS.len(),
         "an exception is no longer needed: {:?}",
         tried.several
     );

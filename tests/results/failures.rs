@@ -69,7 +69,7 @@ fn a_sane_run_fails_nothing() {
 }
 
 #[test]
-fn rows_that_cannot_be_are_failures_with_the_worst_or_the_first_of_them() {
+fn impossible_rows_are_failures_with_the_worst_or_the_first_row() {
     let rpm = |rpm: f64| rpm * std::f64::consts::PI / 30.0;
     let fast = |time_s, speed| Row {
         engine_speed_rad_s: rpm(speed),
@@ -126,7 +126,7 @@ fn rows_that_cannot_be_are_failures_with_the_worst_or_the_first_of_them() {
 }
 
 #[test]
-fn a_number_that_is_none_is_a_failure_of_its_own() {
+fn nan_is_a_failure_of_its_own() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let normal = row(7.0, Flags::default());
         for found in [

@@ -54,7 +54,7 @@ fn driven(name: &str, cycle: &Cycle) -> (Vec<Row>, bool, Vec<Component>) {
 }
 
 #[test]
-fn what_is_written_is_read_bit_by_bit() {
+fn a_trace_reads_back_bit_by_bit() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("trace.parquet");
     for name in CARS {
@@ -243,7 +243,7 @@ fn every_column_that_a_trace_must_have_is_missed() {
 }
 
 #[test]
-fn columns_of_a_newer_version_are_passed_over() {
+fn columns_of_a_newer_version_are_ignored() {
     let good = lines();
     let more: Vec<String> = good
         .iter()
@@ -256,7 +256,7 @@ fn columns_of_a_newer_version_are_passed_over() {
 }
 
 #[test]
-fn what_is_no_trace_is_refused_in_one_line() {
+fn a_file_without_a_trace_is_refused_in_one_line() {
     for (bytes, word) in [
         (&b""[..], "empty"),
         (b"PK\x03\x04\0\0", "not text"),

@@ -283,7 +283,7 @@ fn one_at_a_time_writes_into_a_directory() {
 
 /// The next run removes partial files of a killed process, but not those of a running one, and not links.
 #[test]
-fn what_was_left_half_written_goes_with_the_next_run() {
+fn the_next_run_removes_half_written_files() {
     let home = tempfile::tempdir().unwrap();
     let old = home.path().join(".cvtcycle-old.tmp");
     fs::write(&old, "half").unwrap();

@@ -203,7 +203,7 @@ fn tables_of_modelica() {
 
 /// Conflicting options are reported with advice.
 #[test]
-fn bad_input() {
+fn conflicting_options_are_reported() {
     for (words, says) in [
         (vec!["--map-form", "vtlm"], "add --as-map box"),
         (

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Output;
 
 use crate::common::{RPM, ZERO, car};
-use crate::titles::{is, title_of_file, written};
+use crate::titles::{assert_number, title_of_file, written};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
 use cvtcycle::model::bench::{Bench, BenchPoint};
@@ -121,7 +121,7 @@ fn csv_json_and_library_agree() {
 
 /// The tables have the library's numbers, and no colours in a pipe.
 #[test]
-fn tables() {
+fn tables_have_the_numbers_of_the_library() {
     let one = good(&["--ratio", "0.5", "--temp", "95"]);
     for word in [
         "Pump",
@@ -160,7 +160,7 @@ fn tables() {
 
 /// Bad options are reported all at once, each with option, value and range.
 #[test]
-fn refusals() {
+fn bad_options_are_reported_at_once() {
     let all = refused(&[
         "--speed",
         "0,nan",
@@ -340,7 +340,7 @@ fn titles_are_those_of_the_table(folder: &Path, picture: &str, columns: &[impl A
     let high = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let title = title_of_file(folder, picture);
     for (said, wanted) in written(&title).iter().zip([low, high]) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
     let svg = std::fs::read_to_string(folder.join(picture)).unwrap();
     let svg = roxmltree::Document::parse(&svg).unwrap();

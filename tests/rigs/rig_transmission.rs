@@ -68,7 +68,7 @@ fn the_command_prints_every_test() {
 }
 
 #[test]
-fn json_is_one_object_with_the_points_asked_for() {
+fn json_is_one_object_with_the_requested_points() {
     let (code, out, err) = run(&[
         "--json",
         "--ratio",

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::process::Output;
 
-use crate::titles::{is, title_of_file, written};
+use crate::titles::{assert_number, title_of_file, written};
 use serde_json::Value;
 
 fn run(words: &[&str]) -> Output {
@@ -46,7 +46,7 @@ fn val_counting_resolution() {
 
 /// CSV and JSON have equal points; files, pictures with breakpoints, and the table.
 #[test]
-fn outputs() {
+fn csv_json_and_files_have_equal_points() {
     let words = [
         "--ratio",
         "low",
@@ -118,7 +118,7 @@ fn titles_are_those_of_the_files(out: &Path) {
     let ends = [low[0], low[low.len() - 1]];
     let wanted = ends.map(|row| [x(row, "breakpoint_nm"), x(row, "secondary_pressure_bar")]);
     for (said, wanted) in written(&title).iter().zip(wanted.concat()) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
     let title = title_of_file(out, "slip_speed.svg");
     let at_30 = low
@@ -132,7 +132,7 @@ fn titles_are_those_of_the_files(out: &Path) {
         "three_percent_primary_slip_m_s",
         "three_percent_secondary_slip_m_s",
     ]) {
-        is(said, x(at_30, name), &title);
+        assert_number(said, x(at_30, name), &title);
     }
     let middle = low[low.len() / 2];
     let points = rows(&out.join("points.csv"));
@@ -152,12 +152,12 @@ fn titles_are_those_of_the_files(out: &Path) {
         .iter()
         .zip([x(last, "output_torque_nm"), change])
     {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
 }
 
 #[test]
-fn refusals() {
+fn bad_options_are_reported_at_once() {
     let refused = |words: &[&str]| {
         let output = run(words);
         assert_eq!(output.status.code(), Some(2), "{words:?}");

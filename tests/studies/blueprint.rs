@@ -240,7 +240,7 @@ fn numbers_that_the_file_leaves_out() {
 
 /// A table for an option may be missing, or replaced by a word; a number of the option then creates the table.
 #[test]
-fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
+fn numbers_of_options_given_as_a_word_or_missing() {
     let folder = tempfile::tempdir().unwrap();
     let launch = ["engage_rpm", "gain_nm_per_rpm2", "creep_nm", "release_rpm"];
     let word = edited(&folder, |line| match line {

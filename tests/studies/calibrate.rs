@@ -150,7 +150,7 @@ fn truth_without_noise_is_found_from_every_start() {
 
 /// A warm-up trace and two totals of the same run.
 #[test]
-fn a_warm_up_trace_tells_its_heat_capacity() {
+fn a_warm_up_trace_identifies_the_heat_capacity() {
     let folder = tempfile::tempdir().expect("a folder");
     let rows: String = (1..=39).map(|k| format!("{},0\n", 30 * k)).collect();
     std::fs::write(

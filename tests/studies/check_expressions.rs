@@ -19,21 +19,21 @@ fn fixed() -> SmallTables {
     SmallTables::new(x, [2.0, 4.0, 8.0, 3.0, 5.0, 99.0], 1_000_000)
 }
 
-fn of(text: &str) -> Result<Computed, String> {
+fn evaluate(text: &str) -> Result<Computed, String> {
     let names = fixed();
     let expr = parse(text, &names).map_err(|faults| format!("{faults:?}"))?;
     compute(&expr, &names)
 }
 
 fn number(text: &str) -> f64 {
-    match of(text) {
+    match evaluate(text) {
         Ok(Computed::Number(x)) => x,
         other => panic!("{text}: {other:?}"),
     }
 }
 
 fn truth(text: &str) -> bool {
-    match of(text) {
+    match evaluate(text) {
         Ok(Computed::Truth(holds, _)) => holds,
         other => panic!("{text}: {other:?}"),
     }
@@ -100,13 +100,13 @@ fn truths_ranges_and_loops() {
         truth("each(t in 0, 1: min(low: y where g == t) >= 2)")
             && !truth("each(t in 0, 1: min(low: y where g == t) > 2)")
     );
-    assert_eq!(of("range(low: y)"), Ok(Computed::Range(2.0, 8.0)));
+    assert_eq!(evaluate("range(low: y)"), Ok(Computed::Range(2.0, 8.0)));
     assert_eq!(
-        of("span(t in 0, 1: min(low: y where g == t))"),
+        evaluate("span(t in 0, 1: min(low: y where g == t))"),
         Ok(Computed::Range(2.0, 3.0))
     );
     assert_eq!(
-        of("max(low: y) > 7"),
+        evaluate("max(low: y) > 7"),
         Ok(Computed::Truth(true, "8 > 7".to_owned()))
     );
 }
@@ -126,7 +126,7 @@ fn rows_at_gross_slip_are_left_out_and_counted_once() {
 }
 
 #[test]
-fn what_cannot_be_computed_says_why() {
+fn an_expression_without_a_value_gives_the_reason() {
     for (text, why) in [
         ("one(low: y)", "5 rows where one was expected"),
         ("max(low: y where x > 5)", "no row is left"),
@@ -140,7 +140,7 @@ fn what_cannot_be_computed_says_why() {
         ("slope(low: y over x where x == 4)", "two different places"),
         ("ln(-1) > 0", "does not exist"),
     ] {
-        let said = of(text).expect_err(text);
+        let said = evaluate(text).expect_err(text);
         assert!(said.contains(why), "{text}: {said}");
     }
 }
@@ -243,13 +243,13 @@ fn nested_loops_and_reductions_end_with_the_evaluations() {
         format!("min(low: {})", nested("each", 30, "y > 0")),
     ] {
         assert_eq!(
-            of(&text),
+            evaluate(&text),
             Err("no evaluations are left".to_owned()),
             "{text}"
         );
     }
     // Three levels are cheap, but not all of their numbers are listed.
-    match of(&nested("each", 3, "a0 + a1 + a2 < 100")) {
+    match evaluate(&nested("each", 3, "a0 + a1 + a2 < 100")) {
         Ok(Computed::Truth(true, behind)) => assert!(
             behind.starts_with("0: 0: 0: 0 < 100; 1: 1 < 100")
                 && behind.ends_with("...")

@@ -17,7 +17,7 @@ use cvtcycle::study::store::{Rows, Values};
 use cvtcycle::study::{NoProgress, Study, StudyManifest, StudyTable, TableSource};
 
 use crate::common::{at, cycle};
-use crate::parts::Shelf;
+use crate::parts::MemorySink;
 
 const CVT: &str = "rover_216_cvt";
 const FUEL: &str = "headline_fuel_l_per_100km";
@@ -45,15 +45,15 @@ impl TableSource for Table {
 }
 
 /// Finished study with table and answer.
-struct Done {
+struct FinishedStudy {
     study: Study,
     table: Table,
     answer: LeverAnswer,
 }
 
-impl Done {
+impl FinishedStudy {
     /// Column of the table, by car and point.
-    fn of(&self, name: &str) -> Vec<Vec<f64>> {
+    fn column(&self, name: &str) -> Vec<Vec<f64>> {
         let manifest = StudyManifest::of(&self.study);
         let frame = StudyTable::new(&manifest, &self.table).unwrap();
         frame.by_car(&[name]).unwrap().remove(0)
@@ -71,10 +71,10 @@ impl Done {
     }
 }
 
-fn run(request: &LeverRequest, threads: usize) -> Done {
+fn run(request: &LeverRequest, threads: usize) -> FinishedStudy {
     let study = prepare(request).unwrap_or_else(|problems| panic!("{problems:?}"));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    let shelf = Shelf::default();
+    let shelf = MemorySink::default();
     let execute = || study.execute(&BTreeSet::new(), &shelf, &NoProgress);
     pool.build().unwrap().install(execute).unwrap();
     let table = Table {
@@ -87,7 +87,7 @@ fn run(request: &LeverRequest, threads: usize) -> Done {
         Confidence::default(),
     )
     .unwrap();
-    Done {
+    FinishedStudy {
         study,
         table,
         answer,
@@ -223,7 +223,7 @@ fn a_draw_is_the_car_with_its_values() {
     let text = lever("pump", &["transmission.cvt.pump.kind=variable"])
         + &lever("line", &["transmission.cvt.ratio.gentle_rpm=1500"]);
     let done = run(&request(&text, 6), 2);
-    let fuel = done.of(FUEL);
+    let fuel = done.column(FUEL);
     for (end, words) in [
         ("/reference", vec![]),
         ("/pump", vec!["transmission.cvt.pump.kind=variable"]),
@@ -233,7 +233,7 @@ fn a_draw_is_the_car_with_its_values() {
         let point = 4;
         let mut set: Vec<Override> = words.iter().map(|text| text.parse().unwrap()).collect();
         for factor in &done.study.plan.factors {
-            let value = done.of(&factor.key)[car][point];
+            let value = done.column(&factor.key)[car][point];
             // Words apply to the baselines only.
             let is_number = factor.values.are_numbers();
             if is_number && value.is_finite() {
@@ -279,10 +279,10 @@ fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
     let done = run(&request(&text, 4), 1);
     let (reference, second) = (done.car("/reference"), done.car("/reference_2"));
     let own = done.car("/line");
-    let drawn = done.of(line);
+    let drawn = done.column(line);
     assert!(drawn[reference].iter().all(|x| x.is_finite()));
     assert!(drawn[own].iter().chain(&drawn[second]).all(|x| x.is_nan()));
-    let drawn = done.of(pump);
+    let drawn = done.column(pump);
     assert!(drawn[own].iter().eq(&drawn[reference]) && drawn[second].iter().eq(&drawn[own]));
     let of = |end: &str| drawn[done.car(end)].iter();
     let draws = of("/reference").zip(of("/smaller").zip(of("/less")));
@@ -391,7 +391,7 @@ fn built_in_levers_change_something() {
 
 /// A file applies to any car: levers of a built-in file that the car cannot have are left out and named.
 #[test]
-fn another_car_has_the_levers_that_it_can() {
+fn another_car_gets_the_applicable_levers() {
     let (name, text) = Kind::Levers.embedded()[0];
     let request = LeverRequest {
         levers: LeverFile::read(name, text).unwrap().levers,
@@ -416,7 +416,7 @@ fn another_car_has_the_levers_that_it_can() {
 }
 
 #[test]
-fn what_is_no_lever_is_refused() {
+fn bad_lever_files_are_refused() {
     let message = |text: &str| problems(text, |_| {})[0].message.clone();
     let none = message(&lever("a", &["road_load.mass_kg=1130"]));
     assert_eq!(
@@ -501,7 +501,7 @@ fn missing_keys_and_bounds_of_a_plan() {
     let offset = "transmission.cvt.belt.band_offset_mm";
     assert!(study(text("", offset, 0.5, 20.0)).is_err());
     let clipped = study(text("bounds = \"clip\"", offset, 0.5, 20.0)).unwrap();
-    let shelf = Shelf::default();
+    let shelf = MemorySink::default();
     clipped
         .execute(&BTreeSet::new(), &shelf, &NoProgress)
         .unwrap();

@@ -258,7 +258,7 @@ fn the_line_is_near_the_bound() {
 }
 
 #[test]
-fn a_limit_that_cannot_be_held_is_named_with_what_can() {
+fn an_infeasible_limit_is_named_with_its_feasible_value() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15_eudc").unwrap(), 1.0);
     let mut of = task(&own, &steps, 80.0);
@@ -278,7 +278,7 @@ fn a_limit_that_cannot_be_held_is_named_with_what_can() {
 
 /// Two infeasible limits are both named, each with its own place and its feasible value.
 #[test]
-fn each_limit_that_cannot_be_held_has_its_place() {
+fn each_infeasible_limit_has_its_place() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 0.25);
     let mut of = task(&own, &steps, 80.0);

@@ -9,7 +9,7 @@ use cvtcycle::study::{End, NoProgress, Study};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
 
-use crate::parts::Shelf;
+use crate::parts::MemorySink;
 
 /// Keys of the CVT with values that are valid in any combination.
 const KEYS: [(&str, &str, [f64; 2]); 9] = [
@@ -121,7 +121,7 @@ fn rows(factors: &[Factor]) -> BTreeMap<String, u64> {
     let fail = |problems: Problems| -> String { panic!("{}", render(&problems, false)) };
     let plan = Plan::read("p.toml", &plan(factors)).map_err(fail).unwrap();
     let study = Study::prepare(plan).map_err(fail).unwrap();
-    let shelf = Shelf::default();
+    let shelf = MemorySink::default();
     assert_eq!(
         study
             .execute(&BTreeSet::new(), &shelf, &NoProgress)

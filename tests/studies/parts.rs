@@ -10,9 +10,9 @@ use cvtcycle::study::store::{PartTable, Rows, StudyDir};
 
 /// Collects the table of runs of each part.
 #[derive(Default)]
-pub struct Shelf(pub Mutex<BTreeMap<u64, Rows>>);
+pub struct MemorySink(pub Mutex<BTreeMap<u64, Rows>>);
 
-impl PartWriter for Shelf {
+impl PartWriter for MemorySink {
     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         self.0.lock().unwrap().insert(part, runs.clone());
         Ok(())

@@ -356,7 +356,7 @@ fn sobol_seeds_and_high_dimensions() {
 
 /// Recorded on the first run: a study resumed by a later version must get the same points.
 #[test]
-fn points_stay_what_they_are() {
+fn points_are_stable_between_versions() {
     let f = factors(&[0, 0, 0]);
     let found: Vec<u64> = drawn(1000, 42)
         .map(|design| share(design, &f, 617, 1).to_bits())

@@ -35,9 +35,9 @@ fn execute(
 
 /// Collects every part.
 #[derive(Default)]
-struct Shelf(Mutex<BTreeMap<u64, (Rows, Option<Rows>)>>);
+struct MemorySink(Mutex<BTreeMap<u64, (Rows, Option<Rows>)>>);
 
-impl PartWriter for Shelf {
+impl PartWriter for MemorySink {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         let before = self
             .0
@@ -65,7 +65,7 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
     ] {
         let study = study(keep);
         let parts = |threads| {
-            let shelf = Shelf::default();
+            let shelf = MemorySink::default();
             assert_eq!(
                 execute(&study, threads, &shelf, &NoProgress).unwrap(),
                 End::Complete
@@ -92,9 +92,9 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
 }
 
 /// Refuses one part.
-struct Full(u64);
+struct FailingSink(u64);
 
-impl PartWriter for Full {
+impl PartWriter for FailingSink {
     fn write(&self, part: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         let problem = || Problem::invalid("no room");
         if part == self.0 {
@@ -112,7 +112,7 @@ fn a_sink_that_fails_ends_the_study_with_its_problem() {
     for part in [0, 11, 23] {
         for threads in [1, 4] {
             assert_eq!(
-                execute(&study, threads, &Full(part), &NoProgress)
+                execute(&study, threads, &FailingSink(part), &NoProgress)
                     .unwrap_err()
                     .message,
                 "no room"
@@ -123,13 +123,13 @@ fn a_sink_that_fails_ends_the_study_with_its_problem() {
 
 /// The writer waits until a driving thread has written a part.
 #[derive(Default)]
-struct Slow {
+struct SlowSink {
     parts: AtomicU64,
     by_drivers: Mutex<u32>,
     changed: Condvar,
 }
 
-impl PartWriter for Slow {
+impl PartWriter for SlowSink {
     fn write(&self, _: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         self.parts.fetch_add(1, Ordering::Relaxed);
         let mut by_drivers = self.by_drivers.lock().unwrap();
@@ -148,8 +148,8 @@ impl PartWriter for Slow {
 
 /// Property: if writing takes longer than driving, the driving threads write too.
 #[test]
-fn who_drives_writes_when_the_writer_is_behind() {
-    let slow = Slow::default();
+fn driving_threads_write_when_the_writer_is_behind() {
+    let slow = SlowSink::default();
     assert_eq!(
         execute(&study("\"summary\""), 1, &slow, &NoProgress).unwrap(),
         End::Complete
@@ -158,9 +158,9 @@ fn who_drives_writes_when_the_writer_is_behind() {
 }
 
 /// Stops after some runs.
-struct Enough(Mutex<u64>);
+struct StopAfter(Mutex<u64>);
 
-impl Progress for Enough {
+impl Progress for StopAfter {
     fn advance(&self, runs: u64) {
         *self.0.lock().unwrap() += runs;
     }
@@ -175,9 +175,9 @@ impl Progress for Enough {
 fn a_stopped_study_leaves_whole_parts() {
     let study = study("\"summary\"");
     for threads in [1, 3] {
-        let shelf = Shelf::default();
+        let shelf = MemorySink::default();
         assert_eq!(
-            execute(&study, threads, &shelf, &Enough(Mutex::new(0))).unwrap(),
+            execute(&study, threads, &shelf, &StopAfter(Mutex::new(0))).unwrap(),
             End::Stopped
         );
         let parts = shelf.0.into_inner().unwrap();

@@ -194,7 +194,7 @@ fn the_traces_of_a_point_are_counted_before_anything_runs() {
 }
 
 #[test]
-fn what_is_no_toml_or_has_no_study() {
+fn plans_without_toml_or_study_table_are_refused() {
     assert_eq!(bad("[study\n")[0].place.line, 1);
     let problems = bad("");
     assert!(
@@ -521,7 +521,7 @@ fn in_the_cars(plan: &Plan) {
 }
 
 #[test]
-fn plans_that_the_program_carries() {
+fn shipped_plans_are_valid() {
     for (name, text) in embedded_plans() {
         let plan =
             Plan::open(name).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
@@ -547,7 +547,7 @@ fn plans_that_the_program_carries() {
 }
 
 #[test]
-fn words_that_name_no_plan() {
+fn unknown_plans_are_reported() {
     let problems = Plan::open("pump_and_ofset").unwrap_err();
     assert!(
         problems[0].place.is_argument(Argument::Plan)

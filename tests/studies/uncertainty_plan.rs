@@ -412,7 +412,7 @@ fn the_page_lists_the_factors_of_the_plan() {
 
 /// A value left out despite an effect names the factor that carries it, or a reason.
 #[test]
-fn what_is_left_out_has_its_reason() {
+fn omitted_values_have_a_reason() {
     let factors: BTreeSet<String> = factors().into_iter().map(|f| f.key).collect();
     for row in rows("Left out") {
         let largest = |cell: &str| {

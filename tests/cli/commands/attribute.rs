@@ -83,7 +83,7 @@ fn tables_and_files_of_an_attribution() {
 }
 
 #[test]
-fn a_run_says_what_its_losses_cost() {
+fn a_run_prints_the_price_of_its_losses() {
     let text = stdout(&run(&["run", "--ambient", "-10"]));
     for part in [
         "The transmission losses cost",
@@ -98,7 +98,7 @@ fn a_run_says_what_its_losses_cost() {
 }
 
 #[test]
-fn a_factor_of_a_file_is_no_secret() {
+fn a_loss_factor_in_a_file_is_reported() {
     let dir = tempfile::tempdir().unwrap();
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("vehicles/rover_216_cvt.toml");
     let text =

@@ -71,7 +71,7 @@ fn a_logger_s_table_is_driven_by_its_named_columns() {
 }
 
 #[test]
-fn convert_says_what_it_read_and_what_it_leaves_out() {
+fn convert_lists_the_columns_it_read_and_dropped() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(
         dir.path().join("lap.vdri"),
@@ -140,7 +140,7 @@ fn convert_says_what_it_read_and_what_it_leaves_out() {
 }
 
 #[test]
-fn the_wltc_and_its_gears_are_the_car_s() {
+fn the_wltc_and_its_gears_depend_on_the_car() {
     let words = [
         "run",
         "--cycle",

@@ -55,7 +55,7 @@ fn an_fmu_has_all_that_it_needs() {
 
 /// All problems are reported at once, each with its option, and no file is left.
 #[test]
-fn what_it_refuses() {
+fn fmu_reports_all_problems_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path();
     fs::write(dir.join("own.so"), library()).unwrap();

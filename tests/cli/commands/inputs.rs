@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn lists_name_what_can_be_driven() {
+fn list_prints_cycles_and_plans() {
     let cycles = json(&["list", "cycles", "--json"]);
     let nedc = cycles["cycles"]
         .as_array()
@@ -309,7 +309,7 @@ fn check_knows_the_plan_of_a_study() {
 }
 
 #[test]
-fn check_tells_what_cannot_be_read_before_what_is_not_known() {
+fn check_reports_syntax_errors_before_unknown_kinds() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(
         dir.path().join("deep.toml"),

@@ -2,7 +2,7 @@
 
 use super::*;
 
-const FEW: &str = "levers --only variable_pump,offset_2mm --cycle ece15 --samples 8";
+const SHORT_STUDY: &str = "levers --only variable_pump,offset_2mm --cycle ece15 --samples 8";
 
 /// Files of a folder by name.
 fn files(dir: &Path) -> Vec<(String, Vec<u8>)> {
@@ -22,7 +22,7 @@ fn files(dir: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn tables_and_files_of_levers() {
     let dir = tempfile::tempdir().unwrap();
-    let line = format!("{FEW} --ambient -10,25 --out found");
+    let line = format!("{SHORT_STUDY} --ambient -10,25 --out found");
     let output = run_in(dir.path(), &words(&line));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
@@ -64,14 +64,14 @@ fn tables_and_files_of_levers() {
 
 /// Truth: the numbers of `levers.json`. Reports of levers, and of a run with levers, print the savings.
 #[test]
-fn a_report_of_levers_says_what_they_save() {
+fn a_report_of_levers_prints_their_savings() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let done = |line: &str| {
         let output = run_in(dir, &words(line));
         assert_eq!(output.status.code(), Some(0), "{line}: {}", stderr(&output));
     };
-    done(&format!("{FEW} --ambient -10,25 --out found"));
+    done(&format!("{SHORT_STUDY} --ambient -10,25 --out found"));
     done("run --cycle ece15 --baseline none --price never --out car");
     done("report found --format md --out levers.md");
     done("report car --with found --format md --out car.md");
@@ -125,7 +125,7 @@ fn a_report_of_levers_says_what_they_save() {
 fn interrupted_levers_resume_to_the_same_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let at = |rest: &str| {
-        words(&format!("{FEW} {rest}"))
+        words(&format!("{SHORT_STUDY} {rest}"))
             .iter()
             .map(ToString::to_string)
             .collect::<Vec<_>>()
@@ -156,7 +156,7 @@ fn interrupted_levers_resume_to_the_same_bytes() {
     assert_eq!(files(&whole.join("parts")), files(&half.join("parts")));
     let other = run_in(
         dir.path(),
-        &words(&format!("{FEW} --seed 2 --out half --resume")),
+        &words(&format!("{SHORT_STUDY} --seed 2 --out half --resume")),
     );
     assert_eq!(other.status.code(), Some(2));
     assert!(
@@ -259,7 +259,7 @@ fn a_plan_serves_another_car() {
 /// A pressure cap of 3 bar cannot clamp the belt. Failing draws are a result and not a failed command. Without draws, or for a car that fails by itself, the
 /// exit code is 1.
 #[test]
-fn a_lever_that_fails_is_no_lever_that_saves() {
+fn a_failing_lever_saves_nothing() {
     let dir = tempfile::tempdir().unwrap();
     let file = "[[lever]]\nname = \"soft\"\nset = [\"transmission.cvt.pressure.cap_bar=6\"]\n";
     fs::write(dir.path().join("own.toml"), file).unwrap();

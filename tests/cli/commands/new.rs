@@ -18,7 +18,7 @@ const NUMBERS: [(&str, &str); 9] = [
     ("ratio-low", "2.6"),
 ];
 /// Minimum input for a car.
-const LEAST: [&str; 6] = [
+const MINIMUM: [&str; 6] = [
     "new",
     "a",
     "--displacement",
@@ -140,7 +140,7 @@ fn a_coast_down_in_neutral_has_the_box_in_it() {
 
 /// A wrong answer is explained and the question repeated, also if it contradicts an earlier answer.
 #[test]
-fn a_wrong_answer_is_asked_for_again() {
+fn a_wrong_answer_repeats_the_question() {
     let dir = tempfile::tempdir().unwrap();
     let wrong = ANSWERS
         .replacen("\n\n", "compactt\n\n\n", 1)
@@ -245,7 +245,7 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
 
 /// US coefficients without their unit: 33.21 - 0.0887 80 + 0.02124 80^2 = 162 N at 80 km/h.
 #[test]
-fn a_doubt_of_new_is_one_of_check_and_of_run() {
+fn a_warning_of_new_is_one_of_check_and_run() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let words = "new mycar --displacement 1.8l --power 132hp@6000 --f0 33.21 --f1 -0.0887 --f2 0.02124 --mass 3125";
@@ -295,7 +295,7 @@ fn a_doubt_of_new_is_one_of_check_and_of_run() {
 
 /// The map of a pump starts at 8 bar, and gentle driving needs 2 to 8: a headline from the trace names the places outside the map.
 #[test]
-fn a_map_that_is_left_for_long_is_a_headline() {
+fn a_drive_outside_a_map_is_a_headline() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let mut map = "input_speed_rpm,secondary_pressure_bar,torque_loss_nm\n".to_owned();
@@ -363,20 +363,20 @@ fn a_map_that_is_left_for_long_is_a_headline() {
 
 /// The default box is named in a note, unless a box is given.
 #[test]
-fn the_usual_box_is_named() {
+fn the_default_box_is_named() {
     let dir = tempfile::tempdir().unwrap();
-    let usual = stdout(&run_in(dir.path(), &LEAST));
+    let usual = stdout(&run_in(dir.path(), &MINIMUM));
     let line = "box: box_cvt_clutch, with a wet launch clutch; most CVTs from 2010 on have a torque converter: --box box_cvt_converter\n";
     assert!(usual.contains(line), "{usual}");
-    let named = [&LEAST[..], &["--box", "box_cvt_clutch", "--force"]].concat();
+    let named = [&MINIMUM[..], &["--box", "box_cvt_clutch", "--force"]].concat();
     assert!(!stdout(&run_in(dir.path(), &named)).contains("box:"));
 }
 
 /// A file name in place of another argument gets a hint with the right option.
 #[test]
-fn a_file_in_the_wrong_place_is_known() {
+fn a_misplaced_file_gets_a_hint() {
     let dir = tempfile::tempdir().unwrap();
-    assert_eq!(run_in(dir.path(), &LEAST).status.code(), Some(0));
+    assert_eq!(run_in(dir.path(), &MINIMUM).status.code(), Some(0));
     let map = "# a map\ninput_speed_rpm,torque_loss_nm\n600,1\n3000,2\n";
     fs::write(dir.path().join("pump.csv"), map).unwrap();
     for (words, part) in [

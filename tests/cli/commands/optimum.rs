@@ -8,7 +8,7 @@ const QUICK: [&str; 8] = [
 
 /// Truth: `run` with the written vehicle file burns the printed fuel, and no drive is below the bound.
 #[test]
-fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
+fn the_line_is_a_vehicle_file_with_the_printed_fuel() {
     let dir = tempfile::tempdir().unwrap();
     let words = [&QUICK[..], &["80", "--out", "best", "--prove", "10-15"]].concat();
     let output = run_in(dir.path(), &words);
@@ -106,7 +106,7 @@ fn driven(dir: &Path, vehicle: &str, start: &str) -> f64 {
 /// Truth: `run` with nothing but the written file, which contains the changes of `--set` and inherits from a file by a relative path that may be
 /// moved; from the warm start of `run`.
 #[test]
-fn the_written_car_is_the_one_that_was_claimed() {
+fn the_written_car_burns_the_printed_fuel() {
     let dir = tempfile::tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);
     fs::create_dir_all(at("all/cars")).unwrap();
@@ -212,7 +212,7 @@ fn all_problems_of_the_limits_at_once() {
 }
 
 #[test]
-fn a_limit_that_cannot_be_held_is_named_with_its_place() {
+fn an_infeasible_limit_is_named_with_its_place() {
     let words = [
         &QUICK[..],
         &["80", "--reserve", "85", "--own-clamp", "--no-line"],

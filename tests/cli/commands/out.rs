@@ -8,7 +8,7 @@ use super::{one_line, run_in, stderr};
 type Case<'a> = (&'a [&'a str], &'a str);
 
 /// Commands that write a directory.
-const OF_DIRECTORY: [Case; 11] = [
+const DIRECTORY_COMMANDS: [Case; 11] = [
     (&["run", "--ambient", "900"], "--ambient"),
     (&["losses", "--as-map", "box", "--temp", "900"], "--temp"),
     (&["losses", "--as-map", "boxes"], "--as-map"),
@@ -23,7 +23,7 @@ const OF_DIRECTORY: [Case; 11] = [
 ];
 
 /// Commands that write a file, with a refused name.
-const OF_FILE: [(Case, &str); 7] = [
+const FILE_COMMANDS: [(Case, &str); 7] = [
     (
         (&["fmu", "rover_216_cvt", "--kind", "cars"], "--kind"),
         "x.zip",
@@ -43,7 +43,7 @@ const OF_FILE: [(Case, &str); 7] = [
 ];
 
 /// Commands that write a file of any name.
-const OF_ANY_NAME: [Case; 2] = [
+const ANY_FILE_COMMANDS: [Case; 2] = [
     (&["convert", "cycle", "none.csv"], "none.csv"),
     (&["belt", "--points", "none.csv"], "none.csv"),
 ];
@@ -72,7 +72,7 @@ fn refused(words: &[&str], out: &str, parts: &[&str]) {
 
 #[test]
 fn a_bad_directory_is_reported_with_other_mistakes() {
-    for (words, other) in OF_DIRECTORY {
+    for (words, other) in DIRECTORY_COMMANDS {
         refused(words, "file.txt", &[other, "exists and is not a directory"]);
         refused(
             words,
@@ -84,7 +84,7 @@ fn a_bad_directory_is_reported_with_other_mistakes() {
 
 #[test]
 fn a_wrong_ending_is_reported_with_other_mistakes() {
-    for ((words, other), name) in OF_FILE {
+    for ((words, other), name) in FILE_COMMANDS {
         refused(words, name, &[other, "--out", name, "ending"]);
         let says = if words[0] == "study" {
             "ending"
@@ -93,7 +93,7 @@ fn a_wrong_ending_is_reported_with_other_mistakes() {
         };
         refused(words, "full", &[other, "--out", says]);
     }
-    for (words, other) in OF_ANY_NAME {
+    for (words, other) in ANY_FILE_COMMANDS {
         refused(words, "full", &[other, "--out", "is a directory"]);
         refused(words, "file.txt", &[other, "--out", "file.txt exists"]);
     }
@@ -101,7 +101,7 @@ fn a_wrong_ending_is_reported_with_other_mistakes() {
 
 /// An unknown form requires no extension, so the name of the file is not reported. Levers in a form without them are reported too.
 #[test]
-fn a_form_that_is_none_has_no_ending() {
+fn an_unknown_form_requires_no_extension() {
     let folder = tempfile::tempdir().unwrap();
     let words = [
         "report", "none", "--format", "pdf", "--live", "--out", "x.md",

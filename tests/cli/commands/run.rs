@@ -370,7 +370,7 @@ fn a_missed_trace_is_exit_code_1() {
 
 /// A note names an oil that replaces the vehicle's own and takes over its friction. An oil with its own friction, and the vehicle's oil, give no note.
 #[test]
-fn a_comparison_of_oils_says_what_it_moves() {
+fn a_comparison_of_oils_notes_the_friction_it_changes() {
     let dir = tempfile::tempdir().unwrap();
     let sheet = "kv40_mm2_s = 35\nkv100_mm2_s = 7.2\ndensity15_kg_m3 = 865\n";
     fs::write(dir.path().join("sheet.toml"), sheet).unwrap();
@@ -409,7 +409,7 @@ fn a_comparison_of_oils_says_what_it_moves() {
 
 /// Impossible cars and cycles end with code 1, place and time, even without `--strict`.
 #[test]
-fn what_no_car_can_do_is_exit_code_1() {
+fn an_impossible_drive_exits_with_code_1() {
     let dir = tempfile::tempdir().unwrap();
     for (name, text) in [
         (

@@ -116,7 +116,7 @@ fn a_reader_that_goes_away_is_no_error() {
 }
 
 #[test]
-fn colours_are_for_terminals_and_for_those_who_ask() {
+fn colours_are_on_for_terminals_or_by_option() {
     let coloured = |words: &[&str], no_color: bool| {
         let mut command = program();
         if no_color {

@@ -25,7 +25,7 @@ fn plain(html: &str) -> String {
 
 /// The page begins with the sentence of the run, and embeds the files of its car: a measured map, by the path in the vehicle file.
 #[test]
-fn a_page_of_an_own_car_has_its_files_and_begins_with_the_run() {
+fn a_page_of_a_users_car_has_its_files_and_begins_with_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/own_tables");
     for file in ["box.toml", "box_loss.csv"] {

@@ -10,7 +10,12 @@ use cvtcycle::study::words::drawn::prepare;
 use cvtcycle::study::words::intervals::{CASES, draw, line};
 
 /// Words of a run of a case, without prices.
-fn of_case<'a>(cars: &[&'a str], cycle: &'a str, ambient: &'a str, start: &'a str) -> Vec<&'a str> {
+fn case_words<'a>(
+    cars: &[&'a str],
+    cycle: &'a str,
+    ambient: &'a str,
+    start: &'a str,
+) -> Vec<&'a str> {
     let mut words = vec![
         "run",
         "--vehicle",
@@ -54,7 +59,7 @@ fn every_row_that_differs_is_in_the_text_of_its_run() {
             .into_iter()
             .flatten()
             .collect();
-        let words = of_case(&cars, &about.cycle, &ambient, &about.start);
+        let words = case_words(&cars, &about.cycle, &ambient, &about.start);
         let found = json(&[&words[..], &["--json"]].concat());
         let none = Vec::new();
         let said = found["contradicted"].as_array().unwrap_or(&none);
@@ -84,7 +89,7 @@ fn every_row_that_differs_is_in_the_text_of_its_run() {
 /// A changed car has no published numbers to contradict, nor does a file with the same values under another name.
 #[test]
 fn a_changed_car_contradicts_nothing() {
-    let words = of_case(
+    let words = case_words(
         &["rover_216_cvt", "mondeo_20_5mt"],
         "ece15_eudc",
         "25",
@@ -110,7 +115,7 @@ fn a_changed_car_contradicts_nothing() {
     );
     // Valid up to 5 K away, and not at 6 K.
     let at = |degc| {
-        of_case(
+        case_words(
             &["rover_216_cvt", "mondeo_20_5mt"],
             "ece15_eudc",
             degc,
@@ -131,7 +136,7 @@ fn intervals_are_those_of_the_draws() {
         let cells: Vec<&str> = line.split(',').collect();
         let (cycle, ambient, start) = case;
         let ambient = ambient.to_string();
-        let words = of_case(&["rover_216_cvt", "rover_216_5mt"], cycle, &ambient, start);
+        let words = case_words(&["rover_216_cvt", "rover_216_5mt"], cycle, &ambient, start);
         let found = json(&[&words[..], &["--json"]].concat());
         let of = &found["comparison"][0]["interval"];
         assert_eq!(of["draws"].to_string(), cells[7], "{case:?}: {found}");
@@ -147,7 +152,7 @@ fn intervals_are_those_of_the_draws() {
             "{case:?}: {own} of {low} to {high}"
         );
     }
-    let words = of_case(
+    let words = case_words(
         &["rover_216_cvt", "rover_216_5mt"],
         "ece15_eudc",
         "-10",
@@ -168,7 +173,7 @@ fn intervals_are_those_of_the_draws() {
 /// rounding.
 #[test]
 fn draws_of_a_run_give_the_known_interval() {
-    let words = of_case(
+    let words = case_words(
         &["rover_216_cvt", "rover_216_5mt"],
         "ece15_eudc",
         "-10",
@@ -223,7 +228,7 @@ fn two_cvts_have_the_same_draw() {
 /// Property: values set by the user for all cars of a factor are certain, also if set as a list. Values set for the subject only
 /// leave the others uncertain.
 #[test]
-fn what_is_set_is_certain() {
+fn values_set_by_the_user_are_certain() {
     let factors = |set: &[&str], set_all: &[&str]| -> Vec<String> {
         let mut base = Plan::open("uncertainty_rover").unwrap().base;
         base.set = Override::parse_all(set).unwrap();

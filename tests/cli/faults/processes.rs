@@ -14,7 +14,7 @@ use std::time::Duration;
 use super::{bin, ends, folder, program, tree, words};
 
 /// Number of interleavings of `cargo test`.
-const FEW: u64 = 24;
+const DEFAULT_INTERLEAVINGS: u64 = 24;
 
 const PLANS: [(&str, &str); 2] = [
     ("p.toml", "1000, 1050, 1100"),
@@ -208,7 +208,8 @@ impl Golden {
 }
 
 /// System calls after which a process may be killed: those that change a folder or make changes durable.
-const CALLS: &str = "rename,renameat,renameat2,unlink,unlinkat,link,linkat,mkdir,fsync,ftruncate";
+const KILLED_CALLS: &str =
+    "rename,renameat,renameat2,unlink,unlinkat,link,linkat,mkdir,fsync,ftruncate";
 
 struct Process {
     name: String,
@@ -237,10 +238,10 @@ fn begin(dir: &Path, number: usize, traced: bool, random: &mut Random) -> Proces
                     "-o",
                     "/dev/null",
                     "-e",
-                    &format!("trace={CALLS}"),
+                    &format!("trace={KILLED_CALLS}"),
                     "-e",
                 ])
-                .arg(format!("inject={CALLS}:signal=KILL:when={when}"))
+                .arg(format!("inject={KILLED_CALLS}:signal=KILL:when={when}"))
                 .arg(bin());
             command
         }
@@ -387,7 +388,7 @@ fn processes_on_one_folder_leave_whole_results() {
         number_of("CVTCYCLE_SEED").unwrap_or(23),
         number_of("CVTCYCLE_FIRST").unwrap_or(0),
     );
-    let count = number_of("CVTCYCLE_INTERLEAVINGS").unwrap_or(FEW);
+    let count = number_of("CVTCYCLE_INTERLEAVINGS").unwrap_or(DEFAULT_INTERLEAVINGS);
     let mut failed = Vec::new();
     for number in first..first + count {
         let mut random = Random(seed ^ number.wrapping_mul(0x2545_f491_4f6c_dd1d));

@@ -102,7 +102,7 @@ fn set(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
 /// Kills commands at many moments, in a new folder and over an earlier set. The folder then has the files of an undisturbed command, or the
 /// earlier ones, or a journal of a pending commit. The same command with --force works at once, and leaves no hidden file.
 #[test]
-fn what_is_ended_leaves_all_files_or_none() {
+fn a_killed_command_leaves_all_files_or_none() {
     let dir = made();
     let out = dir.path().join("cut");
     for (line, other) in SETS {
@@ -186,7 +186,7 @@ fn what_is_ended_leaves_all_files_or_none() {
 
 /// Two commands start in one new folder at once: one writes all its files, the other is refused.
 #[test]
-fn of_two_commands_in_one_folder_one_is_refused() {
+fn a_second_command_in_the_same_folder_is_refused() {
     let dir = made();
     for (line, other) in SETS {
         let out = dir.path().join("cut");

@@ -57,7 +57,7 @@ fn a_full_standard_output_is_reported() {
 
 /// `| head -1`, and a reader that is gone before any output: no error, no message.
 #[test]
-fn a_reader_that_has_seen_enough_is_no_error() {
+fn a_reader_that_closes_early_is_no_error() {
     let dir = made();
     for line in PRINTERS {
         for reads in [true, false] {

@@ -230,7 +230,7 @@ fn a_setup_is_read_under_the_same_bound() {
 }
 
 /// Modules that open files directly, with the reason.
-const OWN: [(&str, &str); 7] = [
+const DIRECT_READERS: [(&str, &str); 7] = [
     ("config::csv::stream", "the first bytes of a stream"),
     ("config::files::bounded", "has the limits"),
     ("cvtcycle::commands::belt", "reads line by line"),
@@ -271,7 +271,7 @@ fn every_file_is_read_through_its_limit() {
     };
     let found = sources().into_iter().filter(opens);
     let found: Vec<String> = found.map(|source| source.module).collect();
-    let own = OWN.map(|(module, _)| module);
+    let own = DIRECT_READERS.map(|(module, _)| module);
     assert_eq!(
         found, own,
         "read files through config::bounded, or give the reason here"

@@ -1,7 +1,7 @@
 //! Pictures of a matrix of ambient temperatures: valid, with correct titles.
 
 use super::svg_checks::check;
-use crate::titles::{is, title, written};
+use crate::titles::{assert_number, title, written};
 use cvtcycle::report::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
 use cvtcycle::study::answer::ambient::{FuelPart, Matrix, WarmUp};
 
@@ -29,10 +29,10 @@ fn fuel_at_the_ends_is_that_of_the_first_start() {
     check(&picture);
     let title = title(&picture.svg);
     let said = written(title.split(" L/100 km at ").next().unwrap());
-    is(&said[0], 8.456, &title);
+    assert_number(&said[0], 8.456, &title);
     let said = written(title.split(" L/100 km at ").nth(1).unwrap());
     for (said, wanted) in said.iter().zip([-10.0, 6.789, 40.0]) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
 }
 
@@ -46,7 +46,7 @@ fn the_excess_is_from_its_least_to_its_largest_and_only_more_where_it_always_is(
     ] {
         let title = of(excess);
         for (said, wanted) in written(&title).iter().zip(wanted) {
-            is(said, wanted, &title);
+            assert_number(said, wanted, &title);
         }
         assert_eq!(
             title.contains("more than other at every temperature"),
@@ -77,6 +77,6 @@ fn the_sump_ends_where_the_first_car_ends() {
     check(&picture);
     let title = title(&picture.svg);
     for (said, wanted) in written(&title).iter().zip([31.4, -10.0, 71.6, 40.0]) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
 }

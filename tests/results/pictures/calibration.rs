@@ -1,7 +1,7 @@
 //! Pictures of calibrations.
 
 use super::svg_checks::{check, numbers};
-use crate::titles::{is, number, title, written};
+use crate::titles::{assert_number, number, title, written};
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::calibration::{
     calibration_pictures, correlation_plot, parameters_plot, residuals_plot, scatter_plot,
@@ -159,7 +159,7 @@ fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
 }
 
 #[test]
-fn marks_stand_where_the_numbers_are() {
+fn marks_are_placed_at_their_numbers() {
     // A fitted residual of zero is in the middle of the grey band, which is symmetric.
     let mut outcome = named("one");
     (
@@ -297,25 +297,25 @@ fn titles_have_the_numbers_of_the_outcome() {
         if let (Some(before), Some(after)) =
             (squares(|r| r.before_sd), squares(|r| Some(r.after_sd)))
         {
-            is(&said[0], before, &text);
-            is(said.last().unwrap(), after, &text);
+            assert_number(&said[0], before, &text);
+            assert_number(said.last().unwrap(), after, &text);
         }
         let (text, said) = of(&residuals_plot(&outcome));
         let within = |of: fn(&Residual) -> Option<f64>| {
             let all = outcome.residuals.iter().filter_map(of);
             all.filter(|x| x.abs() <= 2.0).count() as f64
         };
-        is(&said[0], within(|r| Some(r.after_sd)), &text);
-        is(&said[1], outcome.residuals.len() as f64, &text);
+        assert_number(&said[0], within(|r| Some(r.after_sd)), &text);
+        assert_number(&said[1], outcome.residuals.len() as f64, &text);
         if said.len() > 2 {
-            is(&said[2], within(|r| r.left_out_sd), &text);
+            assert_number(&said[2], within(|r| r.left_out_sd), &text);
             let known = outcome.residuals.iter().filter(|r| r.left_out_sd.is_some());
-            is(&said[3], known.count() as f64, &text);
+            assert_number(&said[3], known.count() as f64, &text);
         }
         let (text, _) = of(&parameters_plot(&outcome));
         let least = outcome.parameters.iter().filter_map(|p| p.prior_share);
         let least = least.fold(f64::INFINITY, f64::min);
-        is(
+        assert_number(
             &written(text.split(": ").last().unwrap())[0],
             100.0 * least,
             &text,
@@ -328,7 +328,7 @@ fn titles_have_the_numbers_of_the_outcome() {
             .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         {
             for (said, wanted) in said.iter().zip([r, j as f64 + 1.0, i as f64 + 1.0]) {
-                is(said, wanted, &text);
+                assert_number(said, wanted, &text);
             }
         }
     }

@@ -97,7 +97,7 @@ fn the_waterfall_ends_at_the_fuel_of_the_subject() {
 }
 
 #[test]
-fn drives_again_and_again_are_summed_and_named() {
+fn repeated_drives_are_summed_and_named() {
     let drive = |oil_degc, pump, belt| Repeat {
         oil_degc,
         losses_kj: vec![(LossGroup::Pump, pump), (LossGroup::Belt, belt)],

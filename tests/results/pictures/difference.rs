@@ -76,7 +76,7 @@ fn less_goes_left_of_zero_and_more_goes_right() {
 }
 
 #[test]
-fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
+fn missing_terms_are_named_and_an_empty_picture_is_valid() {
     let mut of = two();
     of.fuel_kj[1] += 50.0;
     assert!(difference_bars(&of).svg.contains("Not accounted for"));

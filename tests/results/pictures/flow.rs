@@ -63,7 +63,7 @@ fn widths(svg: &str) -> Vec<(usize, f64, f64)> {
 }
 
 #[test]
-fn what_enters_leaves_and_widths_are_in_proportion() {
+fn energy_is_balanced_and_widths_are_proportional() {
     for picture in [energy_flow(&car()), transmission_flow(&car())] {
         check(&picture);
         let (entered, left) = (sum(&picture, "enters"), sum(&picture, "leaves"));
@@ -131,7 +131,7 @@ fn small_parts_are_one_flow() {
 }
 
 #[test]
-fn odd_energies_are_still_pictures() {
+fn unusual_energies_give_valid_pictures() {
     let nothing = CarEnergy::default();
     let driven = CarEnergy {
         wheels_kj_km: -900.0,

@@ -60,7 +60,7 @@ pub fn check(picture: &Picture) {
             );
         }
         if node.has_tag_name("text") {
-            let found = of(&node);
+            let found = text_box(&node);
             // A frame without numbers on its axis has empty labels.
             boxes.extend((!found.text.is_empty()).then_some(found));
         }
@@ -93,7 +93,7 @@ pub fn check(picture: &Picture) {
 }
 
 /// Approximate box of a text, pixels.
-fn of(node: &roxmltree::Node) -> Box {
+fn text_box(node: &roxmltree::Node) -> Box {
     let number = |name: &str| {
         node.attribute(name)
             .and_then(|x| x.parse::<f64>().ok())

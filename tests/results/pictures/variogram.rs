@@ -81,7 +81,7 @@ fn the_axis_takes_in_whole_lines_and_says_which_are_outside() {
 }
 
 #[test]
-fn nothing_is_still_a_picture() {
+fn an_empty_picture_is_valid() {
     check(&variogram(&Variogram::default()));
     let broken = [f64::NAN, f64::INFINITY, 3.0];
     let lines = vec![GuideLine {

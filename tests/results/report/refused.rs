@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn what_is_missing_is_said_and_the_rest_is_there() {
+fn a_report_names_missing_results_and_shows_the_rest() {
     let place = Place::new();
     run(&place, "cold", &[]);
     fs::remove_file(place.path().join("cold/trace_rover_216_cvt.csv")).unwrap();
@@ -32,7 +32,7 @@ fn what_is_missing_is_said_and_the_rest_is_there() {
 }
 
 #[test]
-fn what_is_no_run_is_refused_with_a_hint_and_leaves_nothing() {
+fn a_directory_without_a_run_is_refused_with_a_hint() {
     let place = Place::new();
     run(&place, "cold", &[]);
     fs::create_dir(place.path().join("empty")).unwrap();

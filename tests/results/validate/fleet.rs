@@ -165,7 +165,7 @@ fn the_verdict_of_a_fleet() {
         ("9.12", "z = 2", "agrees"),
     ] {
         let more = format!("mean = 5\nsd = 2\nn = 16\n{z}\ncompute = \"{x}\"");
-        let output = Own::new(&fleet_row(&more)).run(&["--json"]);
+        let output = UserRows::new(&fleet_row(&more)).run(&["--json"]);
         let all: Value = serde_json::from_slice(&output.stdout)
             .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
         assert_eq!(all["rows"][0]["verdict"], verdict, "{x} {z}");
@@ -182,14 +182,14 @@ fn the_verdict_of_a_fleet() {
             "gives yes or no",
         ),
     ] {
-        let output = Own::new(&fleet_row(more)).run(&[]);
+        let output = UserRows::new(&fleet_row(more)).run(&[]);
         let said = text(&output.stderr);
         assert!(
             output.status.code() == Some(2) && said.contains(message),
             "{said}"
         );
     }
-    let output = Own::new(&row("a", "mean = 5\nsd = 2\nn = 3\ncompute = \"3\"")).run(&[]);
+    let output = UserRows::new(&row("a", "mean = 5\nsd = 2\nn = 3\ncompute = \"3\"")).run(&[]);
     assert!(text(&output.stderr).contains("belong to a fleet"));
 }
 
@@ -197,7 +197,7 @@ fn the_verdict_of_a_fleet() {
 #[test]
 fn one_row_that_cannot_be_computed_is_its_own_verdict() {
     let missing = "compute = \"key(transmission.manual.neutral_share) > 0\"";
-    let own = Own::new(&(row("a", missing) + &row("b", "compute = \"2 > 1\"")));
+    let own = UserRows::new(&(row("a", missing) + &row("b", "compute = \"2 > 1\"")));
     let output = own.run(&["--json"]);
     let all: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
@@ -228,7 +228,7 @@ fn identities_count_apart() {
     let rows = row("a", "compute = \"2 > 1\"\nverdict = \"identity\"")
         + &row("b", "compute = \"2 < 1\"\nverdict = \"identity\"")
         + &row("c", "compute = \"2 > 1\"");
-    let output = Own::new(&rows).run(&["--json"]);
+    let output = UserRows::new(&rows).run(&["--json"]);
     let all: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
     assert_eq!(output.status.code(), Some(1));

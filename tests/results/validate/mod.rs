@@ -32,15 +32,15 @@ fn json(args: &[&str]) -> (Option<i32>, Value) {
 }
 
 /// Rows of a user's file, as in `validate --only-rows --json`.
-struct Own {
+struct UserRows {
     dir: tempfile::TempDir,
 }
 
-impl Own {
+impl UserRows {
     fn new(toml: &str) -> Self {
         let dir = tempfile::tempdir().unwrap();
         std::fs::write(dir.path().join("own.toml"), toml).unwrap();
-        Own { dir }
+        UserRows { dir }
     }
 
     fn path(&self) -> String {
@@ -200,7 +200,7 @@ fn another_parameter_moves_rows_and_fails() {
 #[test]
 fn the_verdict_follows_from_the_rule() {
     let verdicts = |more: &str, verdict: &str| {
-        let own = Own::new(&format!(
+        let own = UserRows::new(&format!(
             "[tolerances.t]\nwidth = 0.5\nfrom = \"test\"\n{}",
             row("a", more)
         ));
@@ -244,7 +244,7 @@ fn the_verdict_follows_from_the_rule() {
 
 #[test]
 fn a_recorded_verdict_that_no_longer_holds_is_exit_1() {
-    let own = Own::new(&row(
+    let own = UserRows::new(&row(
         "a",
         "value = 3\ntolerance = \"exact\"\ncompute = \"3.1\"\nverdict = \"agrees\"",
     ));
@@ -312,7 +312,7 @@ fn csv_json_and_html_have_the_same_rows() {
 #[test]
 fn html_and_markdown_escape_what_users_write() {
     let wild = "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nremark = \"<script>alert('x')</script> & | *so*\"\ncondition = \"a < b | c\"";
-    let own = Own::new(&row("a", wild).replace("\"own\"", "\"<b>own</b>\""));
+    let own = UserRows::new(&row("a", wild).replace("\"own\"", "\"<b>own</b>\""));
     let html = text(&own.run(&["--format", "html"]).stdout);
     assert!(
         !html.contains("<script") && !html.contains("<b>own"),
@@ -436,7 +436,7 @@ fn the_book_shows_the_rows_of_every_mechanism() {
 
 /// One problem instead of one for every key that a manual box lacks. Users' own rows may be about it.
 #[test]
-fn the_programs_rows_need_a_cvt() {
+fn built_in_rows_need_a_cvt() {
     let output = cvtcycle(&["validate", "--vehicle", "rover_216_5mt"]);
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -446,7 +446,7 @@ fn the_programs_rows_need_a_cvt() {
             && message.contains("1 problem in --vehicle"),
         "{message}"
     );
-    let own = Own::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
+    let own = UserRows::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
     assert_eq!(
         own.run(&["--vehicle", "rover_216_5mt"]).status.code(),
         Some(0)
@@ -467,7 +467,7 @@ fn the_page_shows_the_tolerance() {
         "kind = \"N\"\nlow = 2\nhigh = 4\ntolerance = \"b\"\ncompute = \"3\"",
     );
     let page = text(
-        &Own::new(&format!("{head}{one}{two}"))
+        &UserRows::new(&format!("{head}{one}{two}"))
             .run(&["--format", "html"])
             .stdout,
     );

@@ -52,7 +52,7 @@ fn users_rows_reach_every_source() {
         .iter()
         .map(|(id, compute)| row(id, &format!("{wide}\"{compute}\"")))
         .collect();
-    let own = Own::new(&(SOURCES.to_owned() + &rows));
+    let own = UserRows::new(&(SOURCES.to_owned() + &rows));
     let output = own.run(&["--json"]);
     let all: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
@@ -89,7 +89,7 @@ fn users_rows_reach_every_source() {
         "own",
         &format!("{wide}\"key(mine: transmission.cvt.belt.band_offset_mm)\""),
     );
-    let mine = Own::new(&format!(
+    let mine = UserRows::new(&format!(
         "{SOURCES}\n[sources.mine]\nsource = \"vehicle\"\nvehicle = \"car.toml\"\n{of_car}"
     ));
     std::fs::write(mine.dir.path().join("car.toml"), car).unwrap();
@@ -146,7 +146,7 @@ like = "no_such_form"
             "value = 3\ntolerance = \"totals\"\nunit = \"bar\"\ncompute = \"3\"",
         ),
     ];
-    let own = Own::new(&(bad.to_owned() + &rows.concat()));
+    let own = UserRows::new(&(bad.to_owned() + &rows.concat()));
     let output = own.run(&[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
@@ -179,7 +179,7 @@ like = "no_such_form"
 }
 
 #[test]
-fn what_cannot_be_computed_is_a_verdict_of_its_row() {
+fn a_row_without_a_value_has_its_own_verdict() {
     let wide = "low = 0\ntolerance = \"wide\"\ncompute = ";
     for (compute, why) in [
         ("one(box: total_nm)", "6 rows where one was expected"),
@@ -193,7 +193,7 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
         ),
     ] {
         let rows = row("a", &format!("{wide}\"{compute}\"")) + &row("b", &format!("{wide}\"3\""));
-        let own = Own::new(&(SOURCES.to_owned() + &rows));
+        let own = UserRows::new(&(SOURCES.to_owned() + &rows));
         let output = own.run(&["--json"]);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{compute}: {said}");
@@ -213,14 +213,14 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
     // A `cause` without a value leaves the verdict unchanged.
     let cause = "verdict = \"differs\"\nreason = \"so.\"\ncause = { what = \"none\", compute = \"one(box: total_nm)\" }";
     let three = "value = 4\ntolerance = \"exact\"\ncompute = \"3\"\n";
-    let own = Own::new(&(SOURCES.to_owned() + &row("a", &format!("{three}{cause}"))));
+    let own = UserRows::new(&(SOURCES.to_owned() + &row("a", &format!("{three}{cause}"))));
     let output = own.run(&["--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let all: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(all["rows"][0]["verdict"], "differs");
     assert!(all["rows"][0]["cause_failure"].is_string());
     assert!(text(&own.run(&[]).stdout).contains("none cannot be computed: 6 rows"));
-    let own = Own::new(&format!(
+    let own = UserRows::new(&format!(
         "{SOURCES}\n[sources.worse]\nlike = \"box\"\nset = [\"transmission.cvt.belt.band_ofset_mm=3\"]\n"
     ));
     let output = own.run(&[]);
@@ -238,7 +238,7 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
 fn points_outside_validity_are_reported() {
     let source =
         "[sources.b]\nsource = \"bench\"\nratio = [2.4, 2.9]\nspeed_rpm = 2000\ntemp_degc = 80\n";
-    let own = Own::new(
+    let own = UserRows::new(
         &(source.to_owned()
             + &row(
                 "a",

@@ -326,7 +326,7 @@ fn smooth_is_defined_at_ratio_1_and_at_rest_and_the_printed_forms_are_not() {
 
 /// The fluid's own friction has no column in the table, so its problem is reported for the row.
 #[test]
-fn friction_that_no_column_gives_is_complained_of_at_its_row() {
+fn bad_friction_of_the_fluid_is_reported_at_its_row() {
     let sets = [
         "--set",
         "lubricant.friction.band=0.4",

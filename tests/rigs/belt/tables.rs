@@ -77,7 +77,7 @@ fn json_is_one_object_with_counts_and_rows() {
 }
 
 #[test]
-fn computed_columns_of_the_input_are_passed_over_with_a_note() {
+fn computed_columns_of_the_input_are_ignored_with_a_note() {
     let input = format!("{NAMES},belt_loss_nm,flags\n0.5,2000,12,10,999,x\n");
     let output = belt(input.as_bytes(), &[]);
     assert!(

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
+fn impossible_cars_give_the_messages_of_the_ordinary_load() {
     let (cvt, manual) = (
         blueprint(CARS[0], &Options::default()).0,
         blueprint(CARS[1], &Options::default()).0,
@@ -73,7 +73,7 @@ fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
 
 /// Unknown keys get the messages of `--set`; keys without a single number have a message of their own.
 #[test]
-fn keys_without_a_slot() {
+fn keys_that_cannot_be_set() {
     let unknown = [
         (
             CARS[0],

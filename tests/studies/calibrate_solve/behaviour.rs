@@ -104,7 +104,7 @@ fn starts_that_fail_say_why_and_the_others_go_on() {
 }
 
 #[test]
-fn answers_that_are_no_numbers_and_parameters_that_are_none() {
+fn bad_residuals_and_bad_parameters_are_reported() {
     let short = Model(3, |_: &[f64]| Ok(vec![1.0; 2]));
     let infinite = Model(2, |_: &[f64]| Ok(vec![1.0, f64::INFINITY]));
     let good = [parameter("a", 1.0, [0.0, 2.0])];
@@ -218,7 +218,7 @@ fn a_stop_after_a_failed_start_is_a_stop() {
 }
 
 #[test]
-fn who_stops_keeps_the_best_so_far_and_limits_hold() {
+fn a_stopped_fit_keeps_its_best_point_and_its_limits() {
     let parameters = [
         parameter("a", 9.0, [0.0, 10.0]),
         parameter("b", 0.1, [0.0, 1.9]),

@@ -447,7 +447,7 @@ fn val_words_of_a_grid_are_compared_by_group() {
 
 /// `--samples` and `--seed` change the draws of plans that draw, and are refused for others.
 #[test]
-fn another_draw_than_the_plans() {
+fn samples_and_seed_change_the_draws() {
     let dir = folder(&plan("[study.design.saltelli]\nsamples = 32\nseed = 3\n"));
     let (printed, own) = studied(dir.path(), &["--samples", "4", "--seed", "9"]);
     assert!(

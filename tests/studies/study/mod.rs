@@ -186,7 +186,7 @@ values = [2.2, 2.417]
 
 /// An impossible run is a failed one, and excluded from means.
 #[test]
-fn runs_that_cannot_be_are_left_out() {
+fn impossible_runs_are_left_out() {
     let plan = |gains: &str| {
         format!(
             "[study]\ntitle = \"t\"\nvehicle = \"rover_216_cvt\"\nbaselines = []\ncycle = \"ece15\"\n[study.design.grid]\n\

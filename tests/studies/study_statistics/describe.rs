@@ -60,7 +60,7 @@ fn val_summary_as_in_numpy_and_scipy() {
 }
 
 #[test]
-fn what_is_missing_is_counted_and_changes_nothing_else() {
+fn missing_values_are_counted_and_change_nothing_else() {
     let full = column();
     let mut gaps = full.clone();
     gaps.splice(10..10, [f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);

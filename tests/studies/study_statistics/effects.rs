@@ -67,7 +67,7 @@ fn val_ranks_as_in_scipy() {
 }
 
 #[test]
-fn ranks_see_the_order_alone() {
+fn ranks_depend_on_the_order_only() {
     let x: Vec<f64> = (0..50).map(f64::from).collect();
     let y: Vec<f64> = x.iter().map(|x| (0.3 * x).exp()).collect();
     let flat = vec![1.0; 50];

@@ -94,7 +94,7 @@ fn levels_are_groups() {
 }
 
 #[test]
-fn what_says_nothing_has_no_share() {
+fn uninformative_factors_have_no_share() {
     let (columns, mut output) = drawn(&additive(), 40, 1, 3);
     let whole = shares(&columns, &output, USUAL);
     // The order of the factors and the unit of the output have no effect.

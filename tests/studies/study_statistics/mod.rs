@@ -100,7 +100,7 @@ impl Outputs {
     }
 
     /// Evaluates points of 2 d numbers: those of A, then those of B.
-    pub fn of(known: &Known, points: impl Iterator<Item = Vec<f64>>) -> Self {
+    pub fn evaluate(known: &Known, points: impl Iterator<Item = Vec<f64>>) -> Self {
         let d = known.first.len();
         let mut columns = vec![Vec::new(); d + 2];
         for point in points {
@@ -119,7 +119,7 @@ impl Outputs {
     /// Evaluates an Owen-scrambled Sobol sequence.
     pub fn sobol(known: &Known, n: u32, seed: u32) -> Self {
         let d = known.first.len() as u32;
-        Self::of(
+        Self::evaluate(
             known,
             (0..n).map(|i| {
                 (0..2 * d)
@@ -133,7 +133,7 @@ impl Outputs {
     pub fn random(known: &Known, n: usize, seed: u64) -> Self {
         let mut random = Pcg64::seed_from_u64(seed);
         let d = known.first.len();
-        Self::of(
+        Self::evaluate(
             known,
             (0..n).map(|_| (0..2 * d).map(|_| random.random::<f64>()).collect()),
         )

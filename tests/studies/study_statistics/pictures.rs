@@ -204,7 +204,7 @@ fn every_mark_has_its_row_and_every_row_all_its_cells() {
 }
 
 #[test]
-fn what_is_cut_is_still_in_the_file() {
+fn truncated_texts_are_complete_in_the_file() {
     for (name, picture) in every_plot()
         .into_iter()
         .filter(|(name, _)| name.contains(" 30 "))

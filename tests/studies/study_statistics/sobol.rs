@@ -156,7 +156,7 @@ fn val_indices_of_a_table_as_in_salib() {
 }
 
 #[test]
-fn indices_do_not_know_the_unit_or_the_zero_of_an_output() {
+fn indices_do_not_depend_on_unit_or_zero_of_an_output() {
     let (outputs, _) = golden();
     let other = Outputs(
         outputs

@@ -2,7 +2,7 @@
 
 use super::drawn::{every_plot, sample};
 use super::{Outputs, additive};
-use crate::titles::{is, is_cell, number, title, written};
+use crate::titles::{assert_cell, assert_number, number, title, written};
 use cvtcycle::report::charts::study::{
     DistributionSeries, KnownValue, Shown, distribution_plot, sobol_plot,
 };
@@ -78,8 +78,8 @@ fn sobol_titles_have_the_indices_of_the_table_and_name_a_factor_only_where_it_is
             .1
             .split_once("the next has ")
             .unwrap();
-        is_cell(&written(own)[0], &rows[0][4], &title);
-        is_cell(&written(next)[0], &rows[1][4], &title);
+        assert_cell(&written(own)[0], &rows[0][4], &title);
+        assert_cell(&written(next)[0], &rows[1][4], &title);
         decided += 1;
     }
     assert!(decided > 0 && open > 0, "{decided} {open}");
@@ -90,7 +90,7 @@ fn rank_titles_have_the_largest_correlation_of_the_table() {
     for (title, picture) in named("ranks ") {
         let rows = ordered(&picture.table, 1);
         let said = title.split("rank correlation ").nth(1).unwrap();
-        is_cell(&written(said)[0], &rows[0][1], &title);
+        assert_cell(&written(said)[0], &rows[0][1], &title);
     }
 }
 
@@ -103,8 +103,8 @@ fn tornado_titles_have_the_ends_of_the_widest_bar() {
         let ends = [&row[2], &row[4]];
         let first = usize::from(number(ends[1]) < number(ends[0]));
         let said = written(title.split(" most: ").nth(1).unwrap());
-        is_cell(&said[0], ends[first], &title);
-        is_cell(&said[1], ends[1 - first], &title);
+        assert_cell(&said[0], ends[first], &title);
+        assert_cell(&said[1], ends[1 - first], &title);
     }
 }
 
@@ -158,7 +158,7 @@ fn distribution_titles_have_the_counts_and_ends_of_the_values() {
     let text = draw("a - b", &values, true);
     let said = written(&text);
     assert_eq!(said[..2], [above.to_string(), "1000".to_owned()], "{text}");
-    is(&said[2], 0.1 * above as f64, &text);
+    assert_number(&said[2], 0.1 * above as f64, &text);
     let text = draw("a", &values, false);
     let mut sorted = values;
     sorted.sort_by(f64::total_cmp);
@@ -186,11 +186,11 @@ fn convergence_titles_have_the_last_step_of_the_table() {
         };
         let largest = ordered(&table, 5)[0];
         let (start, end) = title.split_once(" the total index of ").unwrap();
-        is_cell(&written(start)[0], last, &title);
+        assert_cell(&written(start)[0], last, &title);
         assert!(begins(end, &largest[1]), "{title}");
         let said = written(end.split(" is ").last().unwrap());
         for (said, cell) in said.iter().zip(&largest[5..8]) {
-            is_cell(said, cell, &title);
+            assert_cell(said, cell, &title);
         }
     }
 }

@@ -215,7 +215,7 @@ fn a_workbook_has_numbers_as_numbers_and_words_as_words() {
 }
 
 #[test]
-fn what_excel_cannot_hold_is_refused_before_anything_is_written() {
+fn xlsx_export_refuses_tables_beyond_its_limits_before_writing() {
     let dir = TempDir::new().unwrap();
     let path = dir.path().join("study");
     let columns = [head("run", "", Kind::Count)];

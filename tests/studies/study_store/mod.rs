@@ -140,11 +140,11 @@ fn files(path: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// Disk with room for a number of bytes.
-struct Small {
+struct SmallDisk {
     room: usize,
 }
 
-impl Write for Small {
+impl Write for SmallDisk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.room == 0 && !bytes.is_empty() {
             return Err(ErrorKind::StorageFull.into());

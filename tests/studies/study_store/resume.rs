@@ -15,7 +15,7 @@ use super::{PLAN, files, manifest, results, whole, write_part};
 const PARTS: usize = 3;
 
 /// Damage done to a file.
-type Spoil = fn(&Path);
+type Damage = fn(&Path);
 
 /// Files of a study in order of creation.
 fn order() -> Vec<String> {
@@ -105,7 +105,7 @@ fn parts_in_any_order_and_from_several_threads_are_the_same() {
 
 #[test]
 fn a_part_that_is_not_whole_is_computed_again() {
-    let spoil: [(&str, Spoil); 5] = [
+    let spoil: [(&str, Damage); 5] = [
         ("part_00001.sha256", |path| fs::write(path, "").unwrap()),
         ("runs_00001.parquet", |path| fs::remove_file(path).unwrap()),
         ("trace_00001.csv", |path| fs::write(path, "run\n").unwrap()),
@@ -138,7 +138,7 @@ fn a_part_that_is_not_whole_is_computed_again() {
 
 #[test]
 fn a_part_that_went_while_the_study_ran_is_in_no_results() {
-    let spoil: [(&str, Spoil); 2] = [
+    let spoil: [(&str, Damage); 2] = [
         ("part_00001.sha256", |path| fs::remove_file(path).unwrap()),
         ("runs_00001.parquet", |path| fs::write(path, "x").unwrap()),
     ];
@@ -170,7 +170,7 @@ fn a_part_that_went_while_the_study_ran_is_in_no_results() {
 }
 
 #[test]
-fn what_is_read_belongs_to_the_manifest_that_was_read_before() {
+fn a_study_replaced_while_it_is_read_is_detected() {
     let dir = TempDir::new().unwrap();
     whole(dir.path(), PARTS);
     let study = Study::open(dir.path()).unwrap();

@@ -10,7 +10,7 @@ use cvtcycle::study::store::{
 };
 use proptest::prelude::*;
 
-use super::{Small, head, heads, rows};
+use super::{SmallDisk, head, heads, rows};
 
 #[allow(dead_code, reason = "shared with other tests")]
 use crate::fixtures;
@@ -260,8 +260,8 @@ fn a_full_disk_is_an_error_wherever_it_is_full() {
     // Exceeds the buffers of the writers.
     let long = super::rows(2000);
     let full = [
-        write_csv(Small { room: 9000 }, &columns, &long),
-        write_parquet(Small { room: 9000 }, &columns, &long, &[]),
+        write_csv(SmallDisk { room: 9000 }, &columns, &long),
+        write_parquet(SmallDisk { room: 9000 }, &columns, &long, &[]),
     ];
     assert!(
         full.into_iter()
@@ -271,9 +271,14 @@ fn a_full_disk_is_an_error_wherever_it_is_full() {
         let written = [
             (
                 parquet,
-                write_parquet(Small { room }, &columns, &rows, &[("cvtcycle.seed", "7")]),
+                write_parquet(
+                    SmallDisk { room },
+                    &columns,
+                    &rows,
+                    &[("cvtcycle.seed", "7")],
+                ),
             ),
-            (csv.len(), write_csv(Small { room }, &columns, &rows)),
+            (csv.len(), write_csv(SmallDisk { room }, &columns, &rows)),
         ];
         for (needed, result) in written {
             let full = result.err().map(|error| error.kind());
