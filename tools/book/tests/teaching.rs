@@ -41,15 +41,15 @@ static DRAWINGS: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
 fn val_the_worked_point_is_the_programs() {
     let all = checked().unwrap();
     assert!(all.len() > 20, "{}", all.len());
-    for of in all {
-        let off = (of.worked - of.program).abs();
+    for result in all {
+        let off = (result.worked - result.program).abs();
         // The program adds a nanometre to the idle arc to avoid a division by zero: 1.4e-8 of the slip.
         assert!(
-            off <= 1e-7 * of.program.abs(),
+            off <= 1e-7 * result.program.abs(),
             "{}: {} by the page, {} by the program",
-            of.name,
-            of.worked,
-            of.program
+            result.name,
+            result.worked,
+            result.program
         );
     }
 }

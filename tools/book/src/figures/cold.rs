@@ -178,15 +178,19 @@ fn lines(
     let shipped = Bench::new(&*car(name, &[])?);
     let unbound = Bench::new(&*car(name, unbound)?);
     let mut sums = [0.0; AT.len() + 1];
-    for of in lines {
+    for line in lines {
         let loss = |bench: &Bench, degc: f64| {
-            let answer = bench.solve(&point(ratio, degc, of.soaked));
-            of.parts
+            let answer = bench.solve(&point(ratio, degc, line.soaked));
+            line.parts
                 .iter()
                 .map(|part| answer.part_nm(*part))
                 .sum::<f64>()
         };
-        let _ = write!(text, "| {} | {} | {} |", of.name, of.carries, of.bounds);
+        let _ = write!(
+            text,
+            "| {} | {} | {} |",
+            line.name, line.carries, line.bounds
+        );
         let last = loss(&unbound, AT[AT.len() - 1]);
         for (sum, nm) in sums.iter_mut().zip(
             AT.map(|degc| loss(&shipped, degc))
@@ -194,9 +198,9 @@ fn lines(
                 .chain([last]),
         ) {
             let _ = write!(text, " {nm:.2} |");
-            *sum += if of.soaked { 0.0 } else { nm };
+            *sum += if line.soaked { 0.0 } else { nm };
         }
-        let _ = writeln!(text, " {} |", of.measured);
+        let _ = writeln!(text, " {} |", line.measured);
     }
     let total = if name.ends_with("cvt") {
         "CVT, all of these"

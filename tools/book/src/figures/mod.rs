@@ -183,12 +183,12 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
         index: names.iter().position(|other| other == name).unwrap_or(0),
         dotted: false,
     };
-    let panel = |of: LinePanel| lines::LinePanel {
-        heading: of.heading,
-        x_title: of.x,
-        y_title: of.y,
-        with_y: of.with_y,
-        series: of
+    let panel = |panel: LinePanel| lines::LinePanel {
+        heading: panel.heading,
+        x_title: panel.x,
+        y_title: panel.y,
+        with_y: panel.with_y,
+        series: panel
             .lines
             .into_iter()
             .map(|line| (look(&line.name), line.points))

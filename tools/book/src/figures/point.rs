@@ -17,7 +17,7 @@ impl Answer {
     /// Number in a column of `cvtcycle belt`.
     /// # Panics
     /// For an unknown column; the figures contain the names, and a test of the book uses all of them.
-    pub fn of(&self, column: &str) -> f64 {
+    pub fn column(&self, column: &str) -> f64 {
         let found = OUTPUTS.iter().find(|of| of.name == column);
         let column = found.unwrap_or_else(|| panic!("`cvtcycle belt` has no column {column}"));
         column.number_of(&(String::new(), self.0))

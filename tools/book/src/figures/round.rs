@@ -34,10 +34,11 @@ struct Way {
 }
 
 impl Way {
-    fn new(of: &Answer) -> Self {
-        let strut = of.of("strut_length_m");
+    fn new(answer: &Answer) -> Self {
+        let strut = answer.column("strut_length_m");
         let arc = |pulley: &str| {
-            of.of(&format!("{pulley}_radius_m")) * of.of(&format!("{pulley}_wrap_rad"))
+            answer.column(&format!("{pulley}_radius_m"))
+                * answer.column(&format!("{pulley}_wrap_rad"))
         };
         let parts = [arc("primary"), strut, arc("secondary"), strut];
         let per_m = WAY.1 / parts.iter().sum::<f64>();
@@ -73,12 +74,12 @@ fn ground(s: &mut Sketch, way: &Way, active: f64, forward: bool) -> f64 {
 }
 
 /// Draws the forces of a point round both pulleys.
-fn round(of: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
+fn round(answer: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
     let [.., torque_nm] = numbers(row)?;
-    let way = Way::new(of);
+    let way = Way::new(answer);
     let [x0, x1, x2, x3, x4] = way.ends;
-    let compression = of.of("segment_compression_n");
-    let active = way.per_m * pitch_m * of.of("active_segments");
+    let compression = answer.column("segment_compression_n");
+    let active = way.per_m * pitch_m * answer.column("active_segments");
     let forward = compression > 0.0;
     let mut s = Sketch::new(400.0, 372.0);
     let name = if forward { "conventional" } else { "inverted" };
@@ -116,18 +117,18 @@ fn round(of: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
     };
     let value = format!("{most:.0} N");
     s.text((place, full - 6.0), Middle, 12.5, colour::FORCE, &value);
-    tension(&mut s, of, &way);
+    tension(&mut s, answer, &way);
     axes(&mut s, &way);
     let desc = "Compression between segments and tension of the bands along the belt, over the arc of the primary, a strut, the arc of the secondary and the other strut.";
     Ok(s.finish(&format!("Forces round both pulleys, {name} loading"), desc))
 }
 
 /// Tension of the bands: large before the primary and small behind it for a positive step.
-fn tension(s: &mut Sketch, of: &Answer, way: &Way) {
+fn tension(s: &mut Sketch, answer: &Answer, way: &Way) {
     let [x0, x1, x2, x3, x4] = way.ends;
     let (mean, step) = (
-        0.5 * (of.of("band_tension_1_n") + of.of("band_tension_2_n")),
-        of.of("band_tension_step_n"),
+        0.5 * (answer.column("band_tension_1_n") + answer.column("band_tension_2_n")),
+        answer.column("band_tension_step_n"),
     );
     let ends = [mean + 0.5 * step, mean - 0.5 * step];
     let most = ends[0].max(ends[1]);
@@ -206,12 +207,12 @@ const LOSSES: [(&str, &str, [&str; 2]); 4] = [
 ];
 
 /// Draws each loss as a bar that begins where the previous one ends.
-fn bars(s: &mut Sketch, of: &Answer, all_nm: f64) {
+fn bars(s: &mut Sketch, answer: &Answer, all_nm: f64) {
     let (left, wide) = (118.0, 190.0);
     let mut x = left;
     for (k, (name, label, columns)) in LOSSES.into_iter().enumerate() {
         let y = 84.0 + 34.0 * k as f64;
-        let loss: f64 = columns.iter().map(|column| of.of(column)).sum();
+        let loss: f64 = columns.iter().map(|column| answer.column(column)).sum();
         let to = x + wide * loss / all_nm;
         s.text((8.0, y), Start, 13.0, colour::INK, name);
         s.text((8.0, y + 13.0), Start, 11.5, colour::QUIET, label);
@@ -233,20 +234,20 @@ fn bars(s: &mut Sketch, of: &Answer, all_nm: f64) {
 }
 
 /// Draws the path from output to input torque, with a bar for each loss.
-fn chain(of: &Answer) -> Result<String, String> {
+fn chain(answer: &Answer) -> Result<String, String> {
     let mut s = Sketch::new(400.0, 306.0);
     let [ratio, rpm, bar, output_nm] = numbers(POINT)?;
     let head = format!("I = {ratio}, {rpm} rpm, {bar} bar, {output_nm} Nm at the secondary");
     s.text((8.0, 18.0), Start, 13.0, colour::QUIET, &head);
     let rad_s = rpm * RPM;
-    let slip = 0.01 * of.of("slip_percent");
+    let slip = 0.01 * answer.column("slip_percent");
     let arrives_nm = output_nm / ratio * (1.0 - slip);
-    let all_nm = of.of("belt_loss_nm");
+    let all_nm = answer.column("belt_loss_nm");
     let words = format!("leaves the secondary: {:.0} W", arrives_nm * rad_s);
     s.text((8.0, 48.0), Start, 13.0, colour::GREEN, &words);
     let nm = format!("{arrives_nm:.2} Nm");
     s.text((392.0, 48.0), End, 13.0, colour::GREEN, &nm);
-    bars(&mut s, of, all_nm);
+    bars(&mut s, answer, all_nm);
     let all = format!("all of the belt: {:.0} W", all_nm * rad_s);
     s.text((8.0, 228.0), Start, 13.0, colour::FORCE, &all);
     s.text(

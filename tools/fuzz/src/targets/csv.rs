@@ -82,9 +82,9 @@ fn drivable(data: &[u8], columns: &Columns) {
 
 /// Single file in memory, returned for any map that a vehicle names.
 #[derive(Debug)]
-struct Only(Arc<[u8]>);
+struct SingleFile(Arc<[u8]>);
 
-impl Files for Only {
+impl Files for SingleFile {
     fn read(&self, _: &str) -> Result<Vec<u8>, ReadError> {
         Ok(self.0.to_vec())
     }
@@ -118,16 +118,16 @@ pub fn map(data: &[u8]) {
         checked(setup::read(
             "fuzz.toml",
             cars[car],
-            Box::new(Only(Arc::clone(&bytes))),
+            Box::new(SingleFile(Arc::clone(&bytes))),
             &options,
         ))
     });
 }
 
 /// Checks every row of a table of belt points.
-struct Look(bool);
+struct CheckPoints(bool);
 
-impl Take for Look {
+impl Take for CheckPoints {
     fn begin(&mut self, _: bool) -> Result<(), Problems> {
         self.0 = true;
         Ok(())
@@ -177,7 +177,7 @@ pub fn table_of_points(text: &[u8], formulation: Formulation) {
     thread_local!(static MODEL: Model = belt_model());
     let mut model = Some(MODEL.with(Model::clone));
     within_memory(text.len(), || {
-        let mut look = Look(false);
+        let mut look = CheckPoints(false);
         let job = Job {
             model: model.take(),
             formulation,

@@ -47,7 +47,7 @@ const VALUES: [&str; 40] = [
 ];
 
 /// Maximum number of edits of a text.
-const MOST: usize = 24;
+const MAX_EDITS: usize = 24;
 
 /// Returns the remaining bytes unchanged, or a shipped text with edits.
 pub fn text(data: &[u8], shipped: &[&str]) -> Vec<u8> {
@@ -57,7 +57,7 @@ pub fn text(data: &[u8], shipped: &[&str]) -> Vec<u8> {
         return bytes.rest().to_vec();
     }
     let mut lines: Vec<String> = shipped[which - 1].lines().map(str::to_owned).collect();
-    for _ in 0..MOST {
+    for _ in 0..MAX_EDITS {
         if bytes.is_empty() || lines.is_empty() {
             break;
         }
@@ -72,7 +72,7 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
     let other = |bytes: &mut Bytes, lines: &[String]| usize::from(bytes.short()) % lines.len();
     match way % 10 {
         0 | 1 => {
-            let value = bytes.of(&VALUES);
+            let value = bytes.pick(&VALUES);
             set_value(&mut lines[at], value);
         }
         2 => {
@@ -111,7 +111,7 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
         }
         _ => {
             // Deep nesting or long text from a few bytes.
-            let unit = bytes.of(&[
+            let unit = bytes.pick(&[
                 "[", "{a=", "a.", "(", "1,", "\"", "[[a]]\n", "-", "a=1\n", "{",
             ]);
             let count = usize::from(bytes.short()) % 3000;

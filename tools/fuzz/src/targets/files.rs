@@ -16,7 +16,7 @@ use super::{Bytes, within_memory};
 /// Metadata key of the column heads.
 const COLUMNS: &str = "cvtcycle.columns";
 /// Maximum number of edits of a table.
-const MOST: usize = 16;
+const MAX_EDITS: usize = 16;
 /// Length of the end of a Parquet file: the length of the footer, and the magic word.
 const END: usize = 8;
 
@@ -57,7 +57,7 @@ fn edited(mut bytes: Bytes) -> Vec<u8> {
     let mut end = body.split_off(body.len() - END);
     let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]) as usize;
     let mut footer = body.split_off(body.len() - length);
-    for _ in 0..MOST {
+    for _ in 0..MAX_EDITS {
         if bytes.is_empty() {
             break;
         }

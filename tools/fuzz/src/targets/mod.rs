@@ -15,7 +15,7 @@
 //! | `belt` | a belt and its operating point: any finite numbers, or a table row with numbers in their ranges |
 //! | `drive` | a valid car and a short cycle: numbers of a shipped car changed within the ranges of their keys |
 //!
-//! All targets: no panic, and at most [`most_bytes`] of memory for the size of the input.
+//! All targets: no panic, and at most [`max_bytes`] of memory for the size of the input.
 
 mod belt;
 mod csv;
@@ -64,7 +64,7 @@ pub const TARGETS: [(&str, Target); 24] = [
 /// Memory limit for reading an input, bytes: a constant for the program's own files, which may be read
 /// too, and a multiple of the input for its values with their places.
 #[must_use]
-pub fn most_bytes(input_len: usize) -> u64 {
+pub fn max_bytes(input_len: usize) -> u64 {
     (16 << 20) + 1200 * input_len as u64
 }
 
@@ -83,7 +83,7 @@ fn within_memory<T>(input_len: usize, mut read: impl FnMut() -> T) -> T {
     let mut answer = None;
     let counted = allocation_counter::measure(|| answer = Some(read()));
     assert!(
-        counted.bytes_max <= most_bytes(input_len),
+        counted.bytes_max <= max_bytes(input_len),
         "{} bytes held for an input of {input_len}",
         counted.bytes_max
     );
@@ -130,7 +130,7 @@ impl<'d> Bytes<'d> {
     }
 
     /// Element of a list.
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
+    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
         list[usize::from(self.short()) % list.len()]
     }
 

@@ -58,15 +58,15 @@ pub fn checked() -> Result<Vec<Checked>, String> {
 
 /// Worked pages: name, steps.
 fn pages(r: &Reference) -> Result<Vec<(&'static str, Vec<Step>)>, String> {
-    let of = Point::new(r)?;
-    let forces = of.forces();
+    let point = Point::new(r)?;
+    let forces = point.forces();
     Ok(vec![
-        ("geometry", of.geometry()),
-        ("tension", of.tension(&forces)),
-        ("slip", of.slip(&forces)),
-        ("bands", of.bands(&forces)),
-        ("deflection", of.deflection()),
-        ("belt", of.sum(&forces)),
+        ("geometry", point.geometry()),
+        ("tension", point.tension(&forces)),
+        ("slip", point.slip(&forces)),
+        ("bands", point.bands(&forces)),
+        ("deflection", point.deflection()),
+        ("belt", point.sum(&forces)),
     ])
 }
 
@@ -167,9 +167,9 @@ impl<'r> Point<'r> {
 
     /// Clamping forces from the wraps, N: primary, secondary.
     fn clamps(&self) -> [f64; 2] {
-        let of = |name: &str| self.answer.of(name);
-        let secondary = of("secondary_clamp_n");
-        let wraps = [of("primary_wrap_rad"), of("secondary_wrap_rad")];
+        let value = |name: &str| self.answer.column(name);
+        let secondary = value("secondary_clamp_n");
+        let wraps = [value("primary_wrap_rad"), value("secondary_wrap_rad")];
         [secondary * wraps[0] / wraps[1], secondary]
     }
 
@@ -240,7 +240,7 @@ impl<'r> Point<'r> {
         let root = format!("f({rs:.2}\\ \\text{{mm}}) = 0, \\quad X = {x:.1}, \\ L = {l:.1}");
         let mut steps = vec![
             self.step("R_s", "GE-4", root, rs)
-                .of("secondary_radius_m", self, 1e3)
+                .compare("secondary_radius_m", self, 1e3)
                 .mm(),
             self.step(
                 "R_p",
@@ -248,7 +248,7 @@ impl<'r> Point<'r> {
                 format!("{rs:.2} / {}", self.ratio),
                 rs / self.ratio,
             )
-            .of("primary_radius_m", self, 1e3)
+            .compare("primary_radius_m", self, 1e3)
             .mm(),
         ];
         steps.extend(self.wraps(alpha, wraps, [rp, rs, x]));
@@ -259,7 +259,7 @@ impl<'r> Point<'r> {
                 format!("\\sqrt{{{x:.1}^2 - {:.2}^2}}", rs - rp),
                 strut,
             )
-            .of("strut_length_m", self, 1e3)
+            .compare("strut_length_m", self, 1e3)
             .mm(),
             self.step(
                 "L",
@@ -270,7 +270,7 @@ impl<'r> Point<'r> {
                 ),
                 sum,
             )
-            .is(l)
+            .compare_value(l)
             .mm(),
         ]);
         steps
@@ -292,7 +292,7 @@ impl<'r> Point<'r> {
                 format!("\\pi - 2 \\cdot {alpha:.4}"),
                 wraps[0],
             )
-            .of("primary_wrap_rad", self, 1.0)
+            .compare("primary_wrap_rad", self, 1.0)
             .unit("rad"),
             self.step(
                 "\\beta_s",
@@ -300,7 +300,7 @@ impl<'r> Point<'r> {
                 format!("\\pi + 2 \\cdot {alpha:.4}"),
                 wraps[1],
             )
-            .of("secondary_wrap_rad", self, 1.0)
+            .compare("secondary_wrap_rad", self, 1.0)
             .unit("rad"),
         ]
     }
@@ -325,7 +325,7 @@ impl<'r> Point<'r> {
                 "p_s A_s + F_\\text{spring} + \\ldots".to_owned(),
                 fs,
             )
-            .of("secondary_clamp_n", self, 1.0)
+            .compare("secondary_clamp_n", self, 1.0)
             .unit("N"),
             self.step(
                 "F_p",
@@ -333,7 +333,7 @@ impl<'r> Point<'r> {
                 format!("{fs:.0} \\cdot {bp:.3} / {bs:.3}"),
                 fp,
             )
-            .of("primary_clamp_n", self, 1.0)
+            .compare("primary_clamp_n", self, 1.0)
             .unit("N"),
             self.step(
                 "v",
@@ -341,7 +341,7 @@ impl<'r> Point<'r> {
                 format!("{:.2} \\cdot {:.5}", self.rad_s, g.primary_radius_m),
                 f.speed_m_s,
             )
-            .of("belt_speed_m_s", self, 1.0)
+            .compare("belt_speed_m_s", self, 1.0)
             .unit("m/s"),
             self.step(
                 "A",
@@ -379,7 +379,7 @@ impl<'r> Point<'r> {
                 format!("{z:.1} / (1 + {c:.4})"),
                 f.compression_n,
             )
-            .of("segment_compression_n", self, 1.0)
+            .compare("segment_compression_n", self, 1.0)
             .unit("N"),
             self.step(
                 "T_m",
@@ -387,7 +387,10 @@ impl<'r> Point<'r> {
                 format!("{:.1} + {:.1} / 2", f.bare_n, f.compression_n),
                 f.mean_n,
             )
-            .is(0.5 * (self.answer.of("band_tension_1_n") + self.answer.of("band_tension_2_n")))
+            .compare_value(
+                0.5 * (self.answer.column("band_tension_1_n")
+                    + self.answer.column("band_tension_2_n")),
+            )
             .unit("N"),
             self.step(
                 "\\Delta T",
@@ -395,7 +398,7 @@ impl<'r> Point<'r> {
                 format!("{mu} \\cdot {small:.3} \\cdot {:.1}", f.mean_n),
                 f.step_n,
             )
-            .of("band_tension_step_n", self, 1.0)
+            .compare("band_tension_step_n", self, 1.0)
             .unit("N"),
         ]
     }
@@ -403,12 +406,12 @@ impl<'r> Point<'r> {
 
 impl Step {
     /// Compares with a column of `cvtcycle belt`, times a factor.
-    fn of(self, column: &str, point: &Point, factor: f64) -> Self {
-        self.is(factor * point.answer.of(column))
+    fn compare(self, column: &str, point: &Point, factor: f64) -> Self {
+        self.compare_value(factor * point.answer.column(column))
     }
 
     /// Compares with a number of the program.
-    fn is(self, program: f64) -> Self {
+    fn compare_value(self, program: f64) -> Self {
         Step {
             program: Some(program),
             ..self
@@ -461,7 +464,7 @@ fn exercise(r: &Reference) -> Result<String, String> {
     for (row, answer) in rows.iter().zip(answers(r, &rows)?) {
         let cells: Vec<String> = columns
             .iter()
-            .map(|(column, _)| digits(answer.of(column)))
+            .map(|(column, _)| digits(answer.column(column)))
             .collect();
         let _ = writeln!(
             text,

@@ -102,7 +102,7 @@ impl Point<'_> {
         let mut steps = self.on_a_segment(f, np, dp).to_vec();
         steps.extend([
             self.step("k", "SL-4", count, k)
-                .of("active_segments", self, 1.0)
+                .compare("active_segments", self, 1.0)
                 .unit("segments"),
             self.step("e_\\text{band}", "SL-1", band, um(stretch))
                 .unit("µm"),
@@ -137,18 +137,20 @@ impl Point<'_> {
     }
 
     /// Steps for the slip of the conventional branch.
-    fn conventional(&self, c: &Contact, of: &Branch, cx: f64) -> [Step; 3] {
+    fn conventional(&self, c: &Contact, branch: &Branch, cx: f64) -> [Step; 3] {
         let (n, [dp, ds], [gp, gs]) = (c.count[1], c.shoulder, c.grip);
-        let idle = format!("{} \\cdot {dp:.2} / {gp:.2}", percent(of.gap));
-        let load = format!("{} + {}", percent(of.gap), percent(of.idle));
+        let idle = format!("{} \\cdot {dp:.2} / {gp:.2}", percent(branch.gap));
+        let load = format!("{} + {}", percent(branch.gap), percent(branch.idle));
         let other = format!(
             "{} \\cdot \\frac{{{cx:.1} + {n:.1} \\cdot {ds:.2}}}{{{n:.1} \\cdot {gs:.2}}}",
-            percent(of.load)
+            percent(branch.load)
         );
         [
-            self.step("s_\\text{idle}", "SL-6", idle, of.idle).percent(),
-            self.step("s_\\text{load}", "SL-6", load, of.load).percent(),
-            self.step("s_\\text{other}", "SL-6", other, of.other)
+            self.step("s_\\text{idle}", "SL-6", idle, branch.idle)
+                .percent(),
+            self.step("s_\\text{load}", "SL-6", load, branch.load)
+                .percent(),
+            self.step("s_\\text{other}", "SL-6", other, branch.other)
                 .percent(),
         ]
     }
@@ -170,7 +172,7 @@ impl Point<'_> {
             )
         };
         let slip = primary + secondary;
-        let speed = |column: &str| self.answer.of(column) / f.speed_m_s;
+        let speed = |column: &str| self.answer.column(column) / f.speed_m_s;
         let lost = format!("{slip:.6} \\cdot {} / {}", self.output_nm, self.ratio);
         let lost_nm = slip * self.output_nm / self.ratio;
         let weight = format!("(1 + \\tanh({cx:.1}/{width:.0}))/2");
@@ -180,17 +182,19 @@ impl Point<'_> {
         vec![
             self.step("w", "SL-8", weight, w).unit(""),
             self.step("s_p", "SL-8", of_primary, primary)
-                .is(speed("primary_slip_m_s"))
+                .compare_value(speed("primary_slip_m_s"))
                 .percent(),
             self.step("s_s", "SL-8", of_secondary, secondary)
-                .is(speed("secondary_slip_m_s"))
+                .compare_value(speed("secondary_slip_m_s"))
                 .percent(),
             self.step("s", "VA-1", sum, slip)
-                .of("slip_percent", self, 0.01)
+                .compare("slip_percent", self, 0.01)
                 .percent(),
             self.step("T_\\text{slip}", "SL-11", lost, lost_nm)
-                .is(self.answer.of("slip_loss_primary_nm")
-                    + self.answer.of("slip_loss_secondary_nm"))
+                .compare_value(
+                    self.answer.column("slip_loss_primary_nm")
+                        + self.answer.column("slip_loss_secondary_nm"),
+                )
                 .unit("Nm"),
         ]
     }
