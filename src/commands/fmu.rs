@@ -34,7 +34,7 @@ pub struct FmuArgs {
     /// Vehicle
     #[arg(value_name = "NAME|FILE.toml", value_parser = Names(|| FileKind::Vehicle.names()), hide_possible_values = true)]
     car: String,
-    /// What it simulates: `car`, the whole car that follows a speed; `losses`, the transmission at an operating point
+    /// Kind of unit: `car`, the whole car that follows a speed; `losses`, the transmission at an operating point
     #[arg(long, value_name = "KIND", default_value = "car", value_parser = Names(|| choice_names(&Kind::NAMES)), hide_possible_values = true)]
     kind: String,
     /// Version of the standard: 2 (FMI 2.0) or 3 (FMI 3.0)

@@ -69,7 +69,7 @@ fn ignored() -> Vec<PathBuf> {
 }
 
 #[test]
-fn links_lead_to_files_in_git() {
+fn links_point_to_files_in_git() {
     let (mut wrong, mut links) = (String::new(), 0);
     let ignored = ignored();
     for document in documents() {

@@ -52,7 +52,7 @@ fn no_code_looks_into_the_text_of_a_problem() {
 }
 
 #[test]
-fn looking_into_a_text_is_seen() {
+fn inspections_of_a_text_are_detected() {
     let bad = "if problem\n    .message\n    .contains(\"stopped\") {}";
     assert_eq!(looks_into(bad), [".message.contains("]);
     assert!(looks_into("// problem.message.contains(x)\nself.allowed.contains(1.0)").is_empty());

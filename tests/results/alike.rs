@@ -81,7 +81,7 @@ fn each_value_that_differs_is_named() {
 }
 
 #[test]
-fn the_transmission_makes_no_difference_and_a_tyre_of_nearly_the_same_size_none() {
+fn transmission_and_similar_tyres_do_not_count_as_differences() {
     let subject = car("rover_216_cvt", &[]);
     let set = |text: &str| vec![text.to_owned()];
     for same in [

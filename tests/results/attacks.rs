@@ -188,7 +188,7 @@ fn random_gears_and_notes_are_driven_or_refused() {
 
 /// 1 000 000 steps. For 100 000 000 the page has the printed output.
 #[test]
-fn a_million_steps_close_their_books() {
+fn the_energy_balance_of_a_million_steps_is_closed() {
     let points: Vec<String> = (0..10)
         .map(|k| format!("{},{}", k * 1000, 50 * (k % 2)))
         .collect();

@@ -64,7 +64,7 @@ fn texts(run: &RunSummary) -> Vec<String> {
 }
 
 #[test]
-fn a_sane_run_fails_nothing() {
+fn a_valid_run_fails_no_check() {
     assert!(changed(true, |_| {}).failures.is_empty());
 }
 
@@ -195,7 +195,7 @@ fn a_flag_is_a_failure_of_a_strict_run() {
 
 /// A plain sum of n terms has a relative error up to n epsilon: 2.2e-8 for 1e8 rows.
 #[test]
-fn the_ledger_of_a_run_may_be_open_by_the_rounding_of_its_sums() {
+fn the_energy_balance_may_be_open_by_rounding() {
     let open = |share: f64, rows: u64| {
         let found = changed(false, |outcome| {
             let totals = &mut outcome.totals;

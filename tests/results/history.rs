@@ -197,7 +197,7 @@ fn everything_that_is_wrong_is_reported_at_once_with_its_place() {
 }
 
 #[test]
-fn the_list_of_problems_ends_somewhere() {
+fn the_list_of_problems_is_bounded() {
     let mut bad = lines();
     for line in 2..=31 {
         for column in ["speed_kmh", "throttle", "fuel_g_s"] {

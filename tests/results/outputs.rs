@@ -392,7 +392,7 @@ fn names_are_unique_and_end_in_their_unit() {
 }
 
 #[test]
-fn numbers_for_people() {
+fn numbers_are_formatted_for_display() {
     assert_eq!(fixed(-0.04, 1), "0.0");
     assert_eq!(fixed(-10.04, 1), "-10.0");
     assert_eq!(fixed(f64::NAN, 1), "-");

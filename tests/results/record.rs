@@ -18,7 +18,7 @@ fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
 }
 
 #[test]
-fn a_shipped_car_differs_from_itself_in_nothing() {
+fn a_shipped_car_does_not_differ_from_itself() {
     for (name, text) in embedded_vehicles() {
         let record = record_of(name, &[], None);
         assert_eq!(
@@ -31,7 +31,7 @@ fn a_shipped_car_differs_from_itself_in_nothing() {
 }
 
 #[test]
-fn what_was_set_comes_first_and_another_oil_in_full() {
+fn changed_values_come_first_and_another_oil_in_full() {
     let key = "transmission.cvt.belt.band_offset_mm";
     let record = record_of(
         "rover_216_cvt",

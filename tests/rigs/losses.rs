@@ -43,7 +43,7 @@ fn close(a: f64, b: f64, relative: f64, what: &str) {
 
 /// Order of the grid: ratio in the outermost loop, speed in the innermost; each combination once.
 #[test]
-fn grid_order() {
+fn the_grid_has_ratio_outermost_and_speed_innermost() {
     let mut grid = LossGrid::default();
     for (axis, values) in [
         (Axis::Ratio, vec![2.0, 1.0]),
@@ -443,7 +443,7 @@ fn every_axis_can_be_drawn() {
 /// Printed forms: rows of the golden tables on the bench. At 2000 rpm, 30 bar, low, the two printed forms differ by the items that physics.md lists, and the
 /// pure form has whole active segments.
 #[test]
-fn printed_forms() {
+fn printed_forms_agree_with_the_golden_tables() {
     let at = |formulation: Formulation| {
         let options = Options {
             formulation,

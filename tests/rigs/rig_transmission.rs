@@ -206,7 +206,7 @@ fn a_belt_that_does_not_fit_is_refused() {
 /// A point outside the models' validity is computed and flagged, in the tables and in the files.
 /// Thesis 5.3.1 prints the range of 25 to 95 degC, so colder points are not compared with it.
 #[test]
-fn val_printed_totals_are_held_against_their_own_temperatures() {
+fn val_printed_totals_are_compared_at_their_own_temperatures() {
     let here = |temps: &str| {
         let (code, table, _) = run(&["--test", "steady", "--ratio", "low", "--temp", temps]);
         assert_eq!(code, 0);
@@ -396,7 +396,7 @@ fn titles_are_those_of_the_tables(out: &Path) {
 
 /// A custom ratio and a single speed still give pictures.
 #[test]
-fn odd_plans_give_pictures() {
+fn unusual_plans_give_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("one");
     let (code, _, err) = run(&[

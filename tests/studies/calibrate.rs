@@ -220,7 +220,7 @@ source = "cold"
 
 /// Sampling four times as densely in time does not add four times the information (CM-2).
 #[test]
-fn a_denser_trace_says_no_more() {
+fn a_denser_trace_adds_no_information() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "[calibration]\n[sources.cold]\nsource = \"run\"\n[[parameter]]\nkey = \"thermal.transmission.metal_kj_k\"\nlow = 8\nhigh = 60\n\
                 [[data]]\nfrom = \"made up\"\ntrace = \"data.csv\"\nsource = \"cold\"\nsd = 0.3\n";

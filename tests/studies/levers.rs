@@ -268,7 +268,7 @@ fn a_draw_is_the_car_with_its_values() {
 /// Property: an absolute lever removes its factor, in the reference too, and changes no other factor. A relative one modifies
 /// the drawn value.
 #[test]
-fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
+fn a_lever_replaces_its_factor_or_scales_the_draw() {
     let (line, pump) = (
         "transmission.cvt.ratio.gentle_rpm",
         "transmission.cvt.pump.displacement_cc_rev",

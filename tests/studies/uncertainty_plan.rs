@@ -366,7 +366,7 @@ fn corners_of_the_ranges_go_together() {
 
 /// Every assumed or fitted number of the two cars and their fluids is a factor, or has a row with its effect.
 #[test]
-fn no_doubtful_value_is_forgotten() {
+fn every_uncertain_value_is_a_factor_or_listed() {
     let left = rows("Left out");
     let factors = factors();
     for car in [CVT, MANUAL] {
@@ -497,7 +497,7 @@ impl Screen {
 }
 
 #[test]
-fn the_numbers_of_the_page_are_todays() {
+fn the_numbers_of_the_page_are_current() {
     let cycle = cycle("ece15_eudc");
     let screen = Screen {
         shipped: [CVT, MANUAL].map(|car| litres(car, &[], &cycle).0),

@@ -80,7 +80,7 @@ fn the_fuel_equals_that_of_a_drive() {
 
 /// A restored state continues with the same bits, also in another instance.
 #[test]
-fn a_state_goes_on_with_the_same_bits() {
+fn a_restored_state_continues_bit_by_bit() {
     let cycle = cycle();
     let (middle, end) = (500, cycle.manual.intervals.len());
     for word in ["rover_216_cvt", "rover_216_5mt"] {
@@ -120,7 +120,7 @@ fn push(unit: &mut Unit, k: u32) {
 
 /// Power in is power out, losses and rotating energy in every step. A restored state continues with the same bits.
 #[test]
-fn a_driven_box_balances_and_goes_on_with_the_same_bits() {
+fn a_driven_box_is_balanced_and_a_restored_state_continues_bit_by_bit() {
     for word in ["rover_216_cvt", "civic_20_cvt"] {
         let mut unit = Unit::new(Kind::Cvt, setup(word));
         unit.start(0.0).unwrap();

@@ -217,7 +217,7 @@ fn check_reports_every_file() {
 }
 
 #[test]
-fn check_holds_a_car_against_physics() {
+fn check_physics_drives_a_car_and_reports_each_law() {
     let words = ["check", "--physics", "--cycle", "ece15", "--ambient", "-10"];
     let cars = ["rover_216_cvt", "rover_216_5mt"];
     let good = run(&[&words[..], &cars[..]].concat());

@@ -98,7 +98,7 @@ fn the_plan_of_three_fluids_is_one_matrix() {
     let by_hand = 100.0 * (fuel(&["--lubricant", "dexron_iii"]) / fuel(&[]) - 1.0);
     let cell = matrix["cells"][1][2].as_f64().unwrap();
     assert!((cell - by_hand).abs() < 1e-9, "{cell} {by_hand}");
-    // Its own oil in place of itself.
+    // The car's own oil as the replacement.
     assert!(
         matrix["cells"]
             .as_array()

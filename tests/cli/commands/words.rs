@@ -128,7 +128,7 @@ fn a_changed_car_contradicts_nothing() {
 
 /// Truth: the same draws repeated. Every case of the file is found by a run.
 #[test]
-fn intervals_are_those_of_the_draws() {
+fn intervals_equal_those_of_the_draws() {
     let case = CASES[1];
     assert_eq!(draw(case).unwrap(), format!("{}\n", line(case).unwrap()));
     for case in CASES {

@@ -43,7 +43,7 @@ const PARALLEL: [&str; 6] = [
 
 /// If no thread can be started, as in a container with a process limit, the main thread computes the same bytes, with a warning.
 #[test]
-fn where_no_thread_can_be_started_one_computes() {
+fn without_further_threads_the_main_one_computes() {
     let dir = made();
     let fit = "[calibration]\nvehicle = \"rover_216_cvt\"\n[sources.g]\nsource = \"bench\"\nratio = 1\nspeed_rpm = [1000, 3000]\n\
         temp_degc = 80\n[[parameter]]\nkey = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\nhigh = 20\n[[data]]\n\

@@ -37,7 +37,7 @@ fn fuel_at_the_ends_is_that_of_the_first_start() {
 }
 
 #[test]
-fn the_excess_is_from_its_least_to_its_largest_and_only_more_where_it_always_is() {
+fn the_excess_ranges_from_minimum_to_maximum_and_is_called_more_only_if_always_positive() {
     let of = |excess| title(&ambient_penalty(&matrix(excess), "cars").unwrap().svg);
     for (excess, wanted, more) in [
         ([6.31, 7.04, 7.82], [6.31, 7.82], true),

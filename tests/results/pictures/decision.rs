@@ -18,7 +18,7 @@ fn title(svg: &str) -> String {
 }
 
 #[test]
-fn the_strip_says_whether_the_sign_is_sure() {
+fn the_strip_states_if_the_sign_is_certain() {
     let row = |drawn: Option<[f64; 3]>| Against {
         baseline: "five <gears>".to_owned(),
         title: "a car with <gears> (not like for like)".to_owned(),

@@ -119,7 +119,7 @@ fn long_tables_are_thinned_and_say_so() {
 }
 
 #[test]
-fn lines_that_turn_back_keep_their_way_and_gaps_stay_gaps() {
+fn lines_that_turn_back_keep_their_order_and_gaps_stay_gaps() {
     let back = line_chart(&chart(vec![lone(&[(0.0, 0.0), (10.0, 1.0), (5.0, 2.0)])]));
     assert_eq!(
         back.svg.matches("stroke-width=\"8.8\"").count(),

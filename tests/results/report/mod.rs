@@ -187,7 +187,7 @@ fn the_page_says_what_the_summary_says() {
 
 /// Cars with equal short names keep the names of their files, since equal table heads are ambiguous.
 #[test]
-fn cars_have_their_short_names_where_these_are_their_own() {
+fn cars_have_short_names_if_these_are_unique() {
     let place = reported();
     let page = place.text("cold/report.html");
     assert!(

@@ -195,7 +195,7 @@ fn the_verdict_of_a_fleet() {
 
 /// A row without a value for this vehicle gets a verdict of its own; the others keep theirs.
 #[test]
-fn one_row_that_cannot_be_computed_is_its_own_verdict() {
+fn one_row_without_a_value_leaves_the_others_unchanged() {
     let missing = "compute = \"key(transmission.manual.neutral_share) > 0\"";
     let own = UserRows::new(&(row("a", missing) + &row("b", "compute = \"2 > 1\"")));
     let output = own.run(&["--json"]);

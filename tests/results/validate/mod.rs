@@ -127,7 +127,7 @@ fn the_shipped_rows_keep_their_recorded_verdicts() {
 /// Truth: the definition of the tolerance `indicative`. A size that the thesis quotes of another car, box or fluid has this tolerance, whatever its verdict. A bound or an identity
 /// may have a narrower one, and two rows compare the project's own cars.
 #[test]
-fn quoted_sizes_are_held_as_quoted_sizes() {
+fn quoted_sizes_have_the_indicative_tolerance() {
     let (_, all) = json(&["validate", "--json", "--all"]);
     let mut seen = 0;
     for row in all["rows"].as_array().unwrap() {

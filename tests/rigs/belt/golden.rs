@@ -51,7 +51,7 @@ fn val_golden_edge_points() {
 }
 
 #[test]
-fn golden_rows_where_no_arc_is_active_are_not_numbers() {
+fn golden_rows_without_active_arc_are_nan() {
     let got = made(EDGES, &[]);
     let rows: Vec<usize> = (0..got.len())
         .filter(|row| got.cell(*row, "status") == "no_active_arc")

@@ -34,7 +34,7 @@ fn a_row_gives_the_same_at_any_place() {
 
 /// A row that overrides everything does not affect the next one.
 #[test]
-fn a_row_leaves_nothing_behind() {
+fn a_row_does_not_affect_the_next_one() {
     let names = format!(
         "{NAMES},formulation,pulley_half_angle_deg,wedge_half_angle_deg,band_offset_mm,band_friction,segment_friction,band_count,\
         primary_on_stop,belt_temp_degc"
@@ -92,7 +92,7 @@ fn the_output_is_an_input_with_the_same_output() {
 }
 
 #[test]
-fn overriding_columns_go_before_the_vehicle_row_by_row() {
+fn columns_override_the_vehicle_row_by_row() {
     let plain = |name: &str| one("0.5,4000,11,10", &[], &[]).number(0, name);
     let with = |column: &str, value: &str, name: &str| {
         one("0.5,4000,11,10", &[(column, value)], &[]).number(0, name)

@@ -4,7 +4,7 @@ use super::*;
 
 /// A bench with a belt map has one column for it, and no status of the unused belt model.
 #[test]
-fn a_map_has_its_column() {
+fn a_belt_map_has_one_column() {
     let csv = b"ratio,oil_temp_degc,torque_loss_nm\n0.4,0,6\n0.4,90,6\n2.5,0,6\n2.5,90,6\n";
     let setup = with_map("rover_216_cvt", csv, "transmission.cvt.maps.belt");
     let mut grid = LossGrid::default();
@@ -70,7 +70,7 @@ fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
 
 /// Round trip: a map written from a component and read in its place has the same losses at every point of the grid.
 #[test]
-fn maps_written_and_read_again() {
+fn maps_round_trip() {
     for (name, part) in MapPart::NAMES {
         let vehicle = if part.of_cvt() {
             "rover_216_cvt"

@@ -159,7 +159,7 @@ fn weak_and_dead_parameters_are_not_identified() {
 }
 
 #[test]
-fn a_prior_gives_errors_but_the_data_still_say_nothing() {
+fn a_prior_gives_errors_without_information_from_data() {
     let mut two = several(&["pump", "pressure"]);
     let product = |v: &[f64], x: f64| v[0] * v[1] * x;
     let alone = uncertainty(&fitted(&noisy(product, &[2.0, 1.0]), &two), &two);
@@ -186,7 +186,7 @@ fn a_prior_gives_errors_but_the_data_still_say_nothing() {
 }
 
 #[test]
-fn noise_is_not_taken_for_knowledge_where_data_are_very_precise() {
+fn noise_is_not_mistaken_for_information_with_precise_data() {
     let two = several(&["pump", "pressure"]);
     let found = fitted(&noisy_at(1e-6, |v, x| v[0] * v[1] * x, &[2.0, 1.0]), &two);
     let worth = uncertainty(&found, &two);

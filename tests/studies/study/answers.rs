@@ -335,7 +335,7 @@ fn one_at_a_time_prints_every_level_and_no_mean() {
 /// Truth: Student's t of 31 degrees of freedom at 0.9 (1.3095, printed in tables) against 0.975 (2.0395): equal numbers with other intervals and
 /// texts.
 #[test]
-fn another_confidence_moves_the_ends_alone() {
+fn another_confidence_changes_the_intervals_only() {
     let dir = folder(&plan(
         "[study.design.latin_hypercube]\nsamples = 32\nseed = 3\n",
     ));

@@ -172,7 +172,7 @@ fn a_full_disk_loses_nothing() {
 
 /// Another plan, seed or car is not the study in the directory.
 #[test]
-fn resume_wants_the_same_study() {
+fn resume_requires_the_same_study() {
     let small = PLAN.replace("samples = 5000", "samples = 40");
     let dir = folder(&small);
     ends(

@@ -216,7 +216,7 @@ fn impossible_runs_are_left_out() {
 
 /// A run of a study equals `run` under the same conditions bit by bit.
 #[test]
-fn rows_are_the_numbers_of_run() {
+fn rows_equal_the_numbers_of_run() {
     let plan = r#"
 [study]
 title = "one"

@@ -54,7 +54,7 @@ fn finish(path: &Path) -> Vec<usize> {
 
 /// Files are created one after the other, each complete: a killed process leaves the first few, and a partial one.
 #[test]
-fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
+fn a_study_killed_anywhere_is_finished_to_the_same_bytes() {
     let reference = TempDir::new().unwrap();
     whole(reference.path(), PARTS);
     let all = files(reference.path());
@@ -137,7 +137,7 @@ fn a_part_that_is_not_whole_is_computed_again() {
 }
 
 #[test]
-fn a_part_that_went_while_the_study_ran_is_in_no_results() {
+fn a_part_deleted_while_the_study_ran_is_not_in_the_results() {
     let spoil: [(&str, Damage); 2] = [
         ("part_00001.sha256", |path| fs::remove_file(path).unwrap()),
         ("runs_00001.parquet", |path| fs::write(path, "x").unwrap()),

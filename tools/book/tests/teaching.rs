@@ -120,7 +120,7 @@ fn drawings_by_hand_are_sound_and_have_symbols_for_symbols() {
 
 /// A list of symbols comes before the first equation of its page.
 #[test]
-fn symbols_are_said_before_they_are_used() {
+fn symbols_are_listed_before_they_are_used() {
     let mut with_list = 0;
     for (name, text) in texts("src", ".md") {
         let Some(list) = text.find("\n## Symbols") else {
