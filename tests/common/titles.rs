@@ -54,7 +54,7 @@ pub fn assert_number(said: &str, wanted: f64, title: &str) {
     );
 }
 
-/// As [`is`], with a cell of a table, which is rounded too.
+/// As [`assert_number`], with a cell of a table, which is rounded too.
 pub fn assert_cell(said: &str, cell: &str, title: &str) {
     assert!(
         (number(said) - number(cell)).abs() <= half(said) + half(&plain(cell)),
