@@ -15,7 +15,7 @@ pub fn bad_value(option: &str, value: &str, allowed: &str, message: &str, hint: 
     problem(option, message, hint).value(value).allowed(allowed)
 }
 
-/// Asks about known names similar to the given one; empty without any.
+/// Hint that names known names similar to the given one; empty without any.
 pub fn did_you_mean(value: &str, known: &[&str]) -> String {
     cvtcycle::config::did_you_mean(value, known.iter().copied()).unwrap_or_default()
 }

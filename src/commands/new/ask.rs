@@ -8,7 +8,7 @@ use cvtcycle::config::{Problem, Problems};
 
 use crate::args::problems::{did_you_mean, problem};
 
-/// Asks for class and box, then for each missing number. An empty line accepts the default in brackets; the end of the
+/// Prompts for class and box, then for each missing number. An empty line accepts the default in brackets; the end of the
 /// input leaves the remaining numbers unset.
 /// # Errors
 /// Unknown class or car, failing input or output.
@@ -67,7 +67,7 @@ pub fn ask(
     Ok(())
 }
 
-/// Asks one question. None for an empty line, or at the end of the input.
+/// Prompts once. None for an empty line, or at the end of the input.
 fn answer(
     prompt: &str,
     may_be_empty: bool,

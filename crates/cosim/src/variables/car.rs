@@ -24,7 +24,7 @@ pub(crate) const AMBIENT_RANGE_K: (f64, f64) = (233.15, 333.15);
 pub(crate) const START_AMBIENT_K: f64 = 298.15;
 /// Maximum speed, m/s: that of a cycle, 300 km/h.
 const MAX_SPEED_M_S: f64 = 300.0 / 3.6;
-/// Range of the initial temperature of all parts, K; 0 stands for the ambient.
+/// Range of the initial temperature of all parts, K; 0 means the ambient.
 pub(crate) const START_RANGE_K: (f64, f64) = (0.0, 403.15);
 
 /// Adds the rows for a transmission.
