@@ -19,17 +19,17 @@ impl SmallTables {
     /// Creates tables with two groups of rows, `g` 0 and 1.
     pub fn new(x: [f64; 6], y: [f64; 6], evaluations: u64) -> Self {
         let g = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let of = |columns: Vec<Vec<f64>>, weight: &[f64], gross: &[bool]| {
+        let make_table = |columns: Vec<Vec<f64>>, weight: &[f64], gross: &[bool]| {
             let count = columns.len();
             let make = Box::new(move |place: usize| columns[place].clone());
             Table::new(count, make, weight.to_vec(), [gross.to_vec(), Vec::new()])
         };
-        let low = of(
+        let low = make_table(
             [x, g, y].map(Vec::from).into(),
             &[1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
             &[false, false, false, false, false, true],
         );
-        let trip = of(vec![vec![6.5]], &[1.0], &[]);
+        let trip = make_table(vec![vec![6.5]], &[1.0], &[]);
         SmallTables {
             keys: vec!["belt.offset_mm".to_owned()],
             low: Rc::new(low),

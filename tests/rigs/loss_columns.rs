@@ -162,7 +162,7 @@ fn val_columns_of_the_bench() {
         asked[axis as usize] = value;
     }
     let row = LossRow::new(&bench, asked);
-    let of = |name: &str| match columns(&bench.car().transmission)
+    let column_value = |name: &str| match columns(&bench.car().transmission)
         .iter()
         .find(|c| c.name == name)
         .unwrap()
@@ -171,13 +171,19 @@ fn val_columns_of_the_bench() {
         Cell::Number(x) => x,
         _ => panic!("{name}"),
     };
-    same(of("secondary_pressure_bar"), row.answer.secondary_pa / 1e5);
     same(
-        of("slip_percent"),
+        column_value("secondary_pressure_bar"),
+        row.answer.secondary_pa / 1e5,
+    );
+    same(
+        column_value("slip_percent"),
         100.0 * row.answer.belt.unwrap().losses.slip_total,
     );
-    same(of("output_speed_rpm"), row.answer.output_rad_s / RPM);
-    same(of("belt_spray_degc"), row.answer.belt_k - 273.15);
+    same(
+        column_value("output_speed_rpm"),
+        row.answer.output_rad_s / RPM,
+    );
+    same(column_value("belt_spray_degc"), row.answer.belt_k - 273.15);
 }
 
 /// Asserts equality up to a relative difference `share`.

@@ -55,13 +55,13 @@ fn the_grid_has_ratio_outermost_and_speed_innermost() {
     }
     assert_eq!((grid.len(), grid.size() as usize), (12, 12));
     assert_eq!(grid.varied(), [Axis::Ratio, Axis::Torque, Axis::Speed]);
-    let of = |k: usize| {
+    let indices = |k: usize| {
         [Axis::Ratio, Axis::Torque, Axis::Speed].map(|axis| grid.at(k)[axis as usize] as i32)
     };
-    assert_eq!(of(0), [2, 0, 3]);
-    assert_eq!(of(1), [2, 0, 1]);
-    assert_eq!(of(3), [2, 10, 3]);
-    assert_eq!(of(11), [1, 10, 2]);
+    assert_eq!(indices(0), [2, 0, 3]);
+    assert_eq!(indices(1), [2, 0, 1]);
+    assert_eq!(indices(3), [2, 10, 3]);
+    assert_eq!(indices(11), [1, 10, 2]);
     assert!(grid.at(0)[Axis::Pressure as usize].is_nan());
 }
 

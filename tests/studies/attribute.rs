@@ -46,7 +46,7 @@ fn priced(
     factor: f64,
     depth: Depth,
 ) -> PriceSummary {
-    let of = Attribution {
+    let attribution = Attribution {
         setup,
         cycle,
         conditions,
@@ -54,7 +54,7 @@ fn priced(
         factor,
         depth,
     };
-    attribute(&of, &driven(setup, cycle, conditions))
+    attribute(&attribution, &driven(setup, cycle, conditions))
 }
 
 const ALONE: Depth = Depth {
@@ -146,9 +146,9 @@ fn shares_of_groups_add_up() {
             .sum();
         assert!((sum - price.together.l_per_100km.unwrap()).abs() < 1e-12);
         for (k, (phase, all)) in price.together.phases.iter().enumerate() {
-            let of =
+            let attribution =
                 |share: &cvtcycle::output::summary::Saving| share.phases.iter().nth(k).unwrap().1;
-            let sum: f64 = price.groups.values().filter_map(of).sum();
+            let sum: f64 = price.groups.values().filter_map(attribution).sum();
             assert!((sum - all.unwrap()).abs() < 1e-12, "{phase}");
         }
         assert!(price.pairs.is_empty() && price.losses.values().all(|loss| loss.alone.is_none()));

@@ -46,10 +46,11 @@ impl Unit {
         ];
         let mut bytes = MAGIC.to_vec();
         bytes.extend(counts.iter().flat_map(|count| count.to_le_bytes()));
-        let of_step = |step: &StepInputs| [step.from_s, step.dt_s].into_iter().chain(step.inputs);
+        let step_numbers =
+            |step: &StepInputs| [step.from_s, step.dt_s].into_iter().chain(step.inputs);
         let numbers = saved.values.iter().copied().chain([saved.time_s]);
         let numbers = numbers.chain(start.into_iter().flatten());
-        let numbers = numbers.chain(steps.iter().flat_map(of_step));
+        let numbers = numbers.chain(steps.iter().flat_map(step_numbers));
         bytes.extend(numbers.flat_map(f64::to_le_bytes));
         bytes
     }
@@ -134,7 +135,7 @@ impl Unit {
             .filter(|own| own.causality == Causality::Input)
             .map_or((-1.0, -1.0), |own| own.range);
         let is_gear = |gear: f64| gears.0 <= gear && gear <= gears.1 && gear.fract().abs() <= 0.0;
-        let of_step = |step: &StepInputs| match (self.kind(), step.inputs) {
+        let is_in_range = |step: &StepInputs| match (self.kind(), step.inputs) {
             (Kind::Cvt, inputs) => inputs
                 .iter()
                 .zip(forward::TORQUE..)
@@ -152,7 +153,7 @@ impl Unit {
             .all(|(place, value)| range(*place, value))
             && steps
                 .iter()
-                .all(|step| is_valid_step(step.from_s, step.dt_s) && of_step(step));
+                .all(|step| is_valid_step(step.from_s, step.dt_s) && is_in_range(step));
         if !fits {
             return Err(damaged_state());
         }

@@ -57,7 +57,7 @@ fn equal_runs_have_one_word_and_other_runs_another() {
 fn a_value_of_the_car_makes_another_word() {
     let dir = tempfile::tempdir().unwrap();
     let shipped = include_str!("../../../vehicles/rover_216_5mt.toml");
-    let of = |own: &str| {
+    let word_with = |own: &str| {
         let text = shipped.replace(
             "neutral_share = { value = 0.5",
             &format!("neutral_share = {{ {own}"),
@@ -70,7 +70,7 @@ fn a_value_of_the_car_makes_another_word() {
         assert!(output.status.success(), "{}", stderr(&output));
         word(&serde_json::from_slice(&output.stdout).unwrap())
     };
-    let share = of("value = 0.5");
-    assert_eq!(share, of("value = 0.50"));
-    assert_ne!(share, of("value = 0.6"));
+    let share = word_with("value = 0.5");
+    assert_eq!(share, word_with("value = 0.50"));
+    assert_ne!(share, word_with("value = 0.6"));
 }

@@ -308,8 +308,8 @@ fn overrides_and_fluids_reach_the_cars_they_are_meant_for() {
             ]
             .concat(),
         );
-        let of = |k: usize| all["runs"][k]["fuel_kg"].clone();
-        (of(0), of(1))
+        let fuel_of_car = |k: usize| all["runs"][k]["fuel_kg"].clone();
+        (fuel_of_car(0), fuel_of_car(1))
     };
     let plain = fuel(&[]);
     let subject = |changed: (Value, Value)| changed.0 != plain.0 && changed.1 == plain.1;

@@ -38,13 +38,13 @@ fn fuel_at_the_ends_is_that_of_the_first_start() {
 
 #[test]
 fn the_excess_ranges_from_minimum_to_maximum_and_is_called_more_only_if_always_positive() {
-    let of = |excess| title(&ambient_penalty(&matrix(excess), "cars").unwrap().svg);
+    let title_for = |excess| title(&ambient_penalty(&matrix(excess), "cars").unwrap().svg);
     for (excess, wanted, more) in [
         ([6.31, 7.04, 7.82], [6.31, 7.82], true),
         ([1.2, -0.4, 3.1], [-0.4, 3.1], false),
         ([-1.2, -0.4, -3.1], [-3.1, -0.4], false),
     ] {
-        let title = of(excess);
+        let title = title_for(excess);
         for (said, wanted) in written(&title).iter().zip(wanted) {
             assert_number(said, wanted, &title);
         }

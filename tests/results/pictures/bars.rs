@@ -80,12 +80,12 @@ fn stacked_parts_join_and_the_label_is_their_sum() {
         ("ece15".to_owned(), vec![parts(4.0), parts(1.0)]),
         ("e<u>dc".to_owned(), vec![parts(2.0), vec![]]),
     ];
-    let of = PhaseLosses {
+    let phase_losses = PhaseLosses {
         subject: "s".to_owned(),
         cars: vec!["a".to_owned(), "very long name of a car & more".repeat(4)],
         groups,
     };
-    let picture = loss_by_phase(&of);
+    let picture = loss_by_phase(&phase_losses);
     check(&picture);
     assert!(picture.svg.contains(">262.0</text>") && picture.svg.contains(">0.0</text>"));
     let all: f64 = picture.table.rows.iter().map(|row| numbers(&row[3])).sum();

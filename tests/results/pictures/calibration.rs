@@ -283,15 +283,15 @@ fn titles_have_the_numbers_of_the_outcome() {
         if matches!(name, "nothing" | "odd") {
             continue;
         }
-        let of = |picture: &Picture| {
+        let title_and_numbers = |picture: &Picture| {
             (
                 sentence(picture, &outcome),
                 written(&sentence(picture, &outcome)),
             )
         };
-        let (text, said) = of(&scatter_plot(&outcome));
-        let squares = |of: fn(&Residual) -> Option<f64>| {
-            let all: Option<Vec<f64>> = outcome.residuals.iter().map(of).collect();
+        let (text, said) = title_and_numbers(&scatter_plot(&outcome));
+        let squares = |title_and_numbers: fn(&Residual) -> Option<f64>| {
+            let all: Option<Vec<f64>> = outcome.residuals.iter().map(title_and_numbers).collect();
             all.map(|all| (all.iter().map(|x| x * x).sum::<f64>() / all.len() as f64).sqrt())
         };
         if let (Some(before), Some(after)) =
@@ -300,9 +300,9 @@ fn titles_have_the_numbers_of_the_outcome() {
             assert_number(&said[0], before, &text);
             assert_number(said.last().unwrap(), after, &text);
         }
-        let (text, said) = of(&residuals_plot(&outcome));
-        let within = |of: fn(&Residual) -> Option<f64>| {
-            let all = outcome.residuals.iter().filter_map(of);
+        let (text, said) = title_and_numbers(&residuals_plot(&outcome));
+        let within = |title_and_numbers: fn(&Residual) -> Option<f64>| {
+            let all = outcome.residuals.iter().filter_map(title_and_numbers);
             all.filter(|x| x.abs() <= 2.0).count() as f64
         };
         assert_number(&said[0], within(|r| Some(r.after_sd)), &text);
@@ -312,7 +312,7 @@ fn titles_have_the_numbers_of_the_outcome() {
             let known = outcome.residuals.iter().filter(|r| r.left_out_sd.is_some());
             assert_number(&said[3], known.count() as f64, &text);
         }
-        let (text, _) = of(&parameters_plot(&outcome));
+        let (text, _) = title_and_numbers(&parameters_plot(&outcome));
         let least = outcome.parameters.iter().filter_map(|p| p.prior_share);
         let least = least.fold(f64::INFINITY, f64::min);
         assert_number(
@@ -320,7 +320,7 @@ fn titles_have_the_numbers_of_the_outcome() {
             100.0 * least,
             &text,
         );
-        let (text, said) = of(&correlation_plot(&outcome));
+        let (text, said) = title_and_numbers(&correlation_plot(&outcome));
         let known = |(i, j): (usize, usize)| Some((outcome.correlation[i][j]?, i, j));
         let pairs = (0..outcome.parameters.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         if let Some((r, i, j)) = pairs

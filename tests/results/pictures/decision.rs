@@ -66,12 +66,12 @@ fn the_waterfall_ends_at_the_fuel_of_the_subject() {
     let terms = terms
         .map(|(name, kj)| (name.to_owned(), Term::Other, kj))
         .to_vec();
-    let of = PerKm {
+    let per_km = PerKm {
         names: ["own".to_owned(), "other".to_owned()],
         fuel: [2489.3, 2342.0],
         terms,
     };
-    let picture = waterfall(&of, "somewhere");
+    let picture = waterfall(&per_km, "somewhere");
     check(&picture);
     let after: Vec<f64> = picture
         .table

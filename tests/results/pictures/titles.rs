@@ -212,7 +212,7 @@ fn the_largest_losses_of_a_title_have_their_share() {
 
 #[test]
 fn differences_of_a_title_are_those_of_the_table() {
-    let of = Difference {
+    let difference = Difference {
         names: ["a".to_owned(), "b".to_owned()],
         fuel_kj_per_l: [31_000.0; 2],
         distance_km: [11.0; 2],
@@ -223,7 +223,7 @@ fn differences_of_a_title_are_those_of_the_table() {
             DifferenceTerm::of(Component::Seal, [90.0, 90.1]),
         ],
     };
-    let picture = difference_bars(&of);
+    let picture = difference_bars(&difference);
     check(&picture);
     let said = title(&picture);
     assert!(
@@ -245,7 +245,7 @@ fn fuel_that_one_run_has_burnt_more_grows_to_that_of_the_title() {
             .map(|t| (f64::from(t), 1.0, g_s))
             .collect::<Vec<_>>()
     };
-    let of = TraceDifference {
+    let difference = TraceDifference {
         names: ["a".to_owned(), "b".to_owned()],
         speed_kmh: vec![(1.0, 0.0), (100.0, 50.0)],
         fuel_g_s: [flow(0.5), flow(0.45)],
@@ -258,7 +258,7 @@ fn fuel_that_one_run_has_burnt_more_grows_to_that_of_the_title() {
             ],
         }],
     };
-    let picture = trace_difference(&of);
+    let picture = trace_difference(&difference);
     check(&picture);
     let said = numbers_in(title(&picture).split(": ").next().unwrap());
     let last = picture.table.rows.last().unwrap();

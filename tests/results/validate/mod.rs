@@ -151,7 +151,7 @@ fn the_readme_counts_the_verdicts_of_today() {
     let (_, all) = json(&["validate", "--json"]);
     let rows = all["rows"].as_array().unwrap();
     let rows: Vec<&Value> = rows.iter().filter(|row| row["group"] == "thesis").collect();
-    let of = |verdict: &str| {
+    let count_of = |verdict: &str| {
         let count = rows.iter().filter(|row| row["verdict"] == verdict).count();
         let word = verdict.replace(' ', "_");
         assert_eq!(all["groups"]["thesis"]["counts"][&word], count, "{word}");
@@ -163,14 +163,14 @@ fn the_readme_counts_the_verdicts_of_today() {
         format!(
             "{} in all: {} agree, {} are fits",
             rows.len(),
-            of("agrees"),
-            of("fit")
+            count_of("agrees"),
+            count_of("fit")
         ),
         format!(
             "{} cannot fail, {} differ, each with reason and computed cause, {} cannot be compared",
-            of("identity"),
-            of("differs"),
-            of("not comparable")
+            count_of("identity"),
+            count_of("differs"),
+            count_of("not comparable")
         ),
     ] {
         assert!(readme.contains(&words), "README.md should say: {words}");

@@ -321,8 +321,12 @@ fn groups_left_out_are_predicted_as_by_a_fit_by_hand() {
     for fold in folds {
         let (kept, left): (Vec<usize>, Vec<usize>) =
             (0..X.len()).partition(|&i| groups[i] != fold.group);
-        let of = |all: &[f64], which: &[usize]| which.iter().map(|&i| all[i]).collect::<Vec<_>>();
-        let by_hand = fitted(&curve(of(&X, &kept), of(&y, &kept), 0.02, f), &parameters);
+        let selected =
+            |all: &[f64], which: &[usize]| which.iter().map(|&i| all[i]).collect::<Vec<_>>();
+        let by_hand = fitted(
+            &curve(selected(&X, &kept), selected(&y, &kept), 0.02, f),
+            &parameters,
+        );
         assert!(
             by_hand
                 .values

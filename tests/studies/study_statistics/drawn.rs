@@ -58,7 +58,7 @@ fn weight(i: usize) -> f64 {
 
 /// Outputs of a Saltelli design of an artificial function, with an interaction of the first two factors.
 fn design(factors: usize, samples: usize, scale: f64) -> Vec<Vec<f64>> {
-    let of = |x: &[f64]| {
+    let evaluate_at = |x: &[f64]| {
         let sum: f64 = x
             .iter()
             .enumerate()
@@ -72,12 +72,12 @@ fn design(factors: usize, samples: usize, scale: f64) -> Vec<Vec<f64>> {
             draws(9 + s as u64, factors),
             draws(1_000_000 + s as u64, factors),
         );
-        columns[0].push(of(&a));
-        columns[1].push(of(&b));
+        columns[0].push(evaluate_at(&a));
+        columns[1].push(evaluate_at(&b));
         for i in 0..factors {
             let mut mixed = a.clone();
             mixed[i] = b[i];
-            columns[i + 2].push(of(&mixed));
+            columns[i + 2].push(evaluate_at(&mixed));
         }
     }
     columns

@@ -13,7 +13,7 @@ fn drawn(known: &Known, n: usize, idle: usize, seed: u64) -> (Vec<Column>, Vec<f
     let mut output = Vec::with_capacity(n);
     for _ in 0..n {
         let x: Vec<f64> = (0..d + idle).map(|_| random.random::<f64>()).collect();
-        output.push((known.of)(&x[..d]));
+        output.push((known.evaluate_at)(&x[..d]));
         columns
             .iter_mut()
             .zip(x)
@@ -55,7 +55,7 @@ fn val_shares_of_known_functions() {
 fn val_chance_names_no_cause() {
     let idle = Known {
         name: "idle",
-        of: Box::new(|x| x[0]),
+        evaluate_at: Box::new(|x| x[0]),
         first: vec![1.0],
         total: vec![1.0],
     };

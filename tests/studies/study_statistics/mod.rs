@@ -31,7 +31,7 @@ pub type Function = Box<dyn Fn(&[f64]) -> f64>;
 /// Function with its indices.
 pub struct Known {
     pub name: &'static str,
-    pub of: Function,
+    pub evaluate_at: Function,
     pub first: Vec<f64>,
     pub total: Vec<f64>,
 }
@@ -43,13 +43,13 @@ pub fn ishigami() -> Known {
     let v2 = a * a / 8.0;
     let v13 = b * b * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
     let v = v1 + v2 + v13;
-    let of = move |x: &[f64]| {
+    let evaluate_at = move |x: &[f64]| {
         let z: Vec<f64> = x.iter().map(|u| PI * (2.0 * u - 1.0)).collect();
         z[0].sin() + a * z[1].sin().powi(2) + b * z[2].powi(4) * z[0].sin()
     };
     Known {
         name: "Ishigami",
-        of: Box::new(of),
+        evaluate_at: Box::new(evaluate_at),
         first: vec![v1 / v, v2 / v, 0.0],
         total: vec![(v1 + v13) / v, v2 / v, v13 / v],
     }
@@ -63,7 +63,7 @@ pub fn sobol_g() -> Known {
     let v = all - 1.0;
     Known {
         name: "g",
-        of: Box::new(move |x: &[f64]| {
+        evaluate_at: Box::new(move |x: &[f64]| {
             x.iter()
                 .zip(a)
                 .map(|(x, a)| ((4.0 * x - 2.0).abs() + a) / (1.0 + a))
@@ -78,10 +78,10 @@ pub fn sobol_g() -> Known {
 pub fn additive() -> Known {
     let c = [3.0, 2.0, 1.0, 0.0];
     let share: Vec<f64> = c.iter().map(|c| c * c / 14.0).collect();
-    let of = move |x: &[f64]| 100.0 + x.iter().zip(c).map(|(x, c)| x * c).sum::<f64>();
+    let evaluate_at = move |x: &[f64]| 100.0 + x.iter().zip(c).map(|(x, c)| x * c).sum::<f64>();
     Known {
         name: "additive",
-        of: Box::new(of),
+        evaluate_at: Box::new(evaluate_at),
         first: share.clone(),
         total: share,
     }
@@ -105,12 +105,12 @@ impl Outputs {
         let mut columns = vec![Vec::new(); d + 2];
         for point in points {
             let (a, b) = point.split_at(d);
-            columns[0].push((known.of)(a));
-            columns[1].push((known.of)(b));
+            columns[0].push((known.evaluate_at)(a));
+            columns[1].push((known.evaluate_at)(b));
             for i in 0..d {
                 let mut mixed = a.to_vec();
                 mixed[i] = b[i];
-                columns[i + 2].push((known.of)(&mixed));
+                columns[i + 2].push((known.evaluate_at)(&mixed));
             }
         }
         Outputs(columns)

@@ -333,14 +333,14 @@ fn formulations(r: &Reference) -> String {
     let all = Formulation::NAMES.map(|(name, f)| (name, r.belt(f)));
     let smooth = r.belt(Formulation::Smooth);
     let lines = |at: At, to: f64, less: bool| -> Vec<Line> {
-        let of = |(name, belt): &(&'static str, Belt)| {
+        let curve = |(name, belt): &(&'static str, Belt)| {
             sweep(name, 0.0, to, 160, |output_nm| {
                 let at = At { output_nm, ..at };
                 let loss_nm = |belt: &Belt| r.boundary(belt, at).losses.sum_nm();
                 loss_nm(belt) - if less { loss_nm(&smooth) } else { 0.0 }
             })
         };
-        all.iter().map(of).collect()
+        all.iter().map(curve).collect()
     };
     let high = At {
         rpm: 4000.0,

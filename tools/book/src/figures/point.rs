@@ -18,7 +18,7 @@ impl Answer {
     /// # Panics
     /// For an unknown column; the figures contain the names, and a test of the book uses all of them.
     pub fn column(&self, column: &str) -> f64 {
-        let found = OUTPUTS.iter().find(|of| of.name == column);
+        let found = OUTPUTS.iter().find(|output| output.name == column);
         let column = found.unwrap_or_else(|| panic!("`cvtcycle belt` has no column {column}"));
         column.number_of(&(String::new(), self.0))
     }

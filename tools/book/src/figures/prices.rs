@@ -38,7 +38,7 @@ fn priced(ambient_degc: f64) -> Result<RunSummary, String> {
         pairs: Pairs::Large,
         shapley: false,
     };
-    let of = Attribution {
+    let attribution = Attribution {
         setup,
         cycle,
         conditions,
@@ -46,7 +46,7 @@ fn priced(ambient_degc: f64) -> Result<RunSummary, String> {
         factor: 0.0,
         depth,
     };
-    run.price = Some(attribute(&of, &run));
+    run.price = Some(attribute(&attribution, &run));
     Ok(run)
 }
 
