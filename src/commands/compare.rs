@@ -14,10 +14,10 @@ use crate::args::problems::bad_value;
 use crate::print::colour::Paint;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text, sections};
 
-/// Most runs of a comparison.
-const MOST: usize = 20;
-/// Runs next to each other in a table.
-const ABREAST: usize = 5;
+/// Maximum number of runs of a comparison.
+const MAX_RUNS: usize = 20;
+/// Maximum number of runs abreast in a table.
+const MAX_RUNS_ABREAST: usize = 5;
 
 /// Arguments of `compare`.
 #[derive(Args, Clone, Debug)]
@@ -51,10 +51,10 @@ impl Execute for CompareArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Comparison> {
         problems.take(threads::begin(None));
         let count = self.dirs.len();
-        if !(2..=MOST).contains(&count) {
+        if !(2..=MAX_RUNS).contains(&count) {
             let message = format!("{count} directories cannot be compared");
             let hint = "name the directories of the runs, the one to compare with first";
-            let allowed = format!("2 to {MOST} directories");
+            let allowed = format!("2 to {MAX_RUNS} directories");
             problems.add(bad_value(
                 "DIR",
                 &count.to_string(),
@@ -91,7 +91,7 @@ impl Execute for CompareArgs {
 
 fn text(found: &Comparison, paint: Paint) -> String {
     let (reference, others) = found.runs.split_at(1);
-    let tables = others.chunks(ABREAST).map(|chunk| {
+    let tables = others.chunks(MAX_RUNS_ABREAST).map(|chunk| {
         let runs: Vec<&Side> = reference.iter().chain(chunk).collect();
         (format!("Against {}", found.reference), table(found, &runs))
     });

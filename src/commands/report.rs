@@ -10,7 +10,7 @@ use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{Names, ResultArgs, names_of, one_of};
+use crate::args::{Names, ResultArgs, choice_names, one_of};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 
@@ -48,14 +48,14 @@ pub struct ReportArgs {
     #[arg(long, value_name = "FILE.toml")]
     cover: Option<String>,
     /// Format of the report: html or md [default: from the file extension of --out, else html]
-    #[arg(long, value_name = "FORM", value_parser = Names(|| names_of(&Form::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", value_parser = Names(|| choice_names(&Form::NAMES)), hide_possible_values = true)]
     format: Option<String>,
     #[command(flatten)]
     results: ResultArgs,
 }
 
 impl ReportArgs {
-    /// Whether the report can have a section that is driven again.
+    /// Checks the options of the interactive section, and returns whether it is wanted.
     fn check_live(&self, form: Form, problems: &mut Problems) -> bool {
         let refused = match (&self.dirs[..], form) {
             (_, Form::Markdown) => Some(("levers are in a page alone", "choose --format html")),
@@ -88,7 +88,7 @@ impl Execute for ReportArgs {
         let document = problems.take(report(&self.dirs, &self.with, self.cover.as_deref()));
         let file = match out {
             Some(file) => file.to_path_buf(),
-            // Without a readable directory, a problem of the file in it would repeat the problem of the directory.
+            // An unreadable directory would be reported a second time through the file in it.
             None if document.is_none() => return None,
             None => self
                 .dirs

@@ -119,7 +119,7 @@ enum SchemaKind {
 }
 
 impl SchemaKind {
-    /// Its word, and the keys of its files.
+    /// Name of the kind, and the keys of its files.
     const fn keys(self) -> (&'static str, Table) {
         match self {
             SchemaKind::Vehicle => ("vehicle", files::VEHICLE),

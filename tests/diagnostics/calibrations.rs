@@ -1,4 +1,4 @@
-//! Bad plans of calibrations, their bad data files, and sound plans whose fit does not end well.
+//! Bad plans of calibrations, bad data files, and valid plans whose fit fails.
 
 use cvtcycle::calibrate;
 use cvtcycle::config::Problems;
@@ -6,7 +6,7 @@ use cvtcycle::config::setup::{self, Options};
 
 use super::kinds::{made_file, rendered};
 
-/// A data file, named by a sound plan in the same folder.
+/// Reads a data file, named by a valid plan in the same folder.
 pub fn data(kind: &str, case: &str) -> Option<Problems> {
     let (folder, name) = case.rsplit_once('/').unwrap();
     let way = kind.trim_start_matches("calibration_");
@@ -22,7 +22,7 @@ pub fn data(kind: &str, case: &str) -> Option<Problems> {
     calibrate::plan::read(&format!("{folder}/plan.toml"), &plan).err()
 }
 
-/// What a sound plan ends with whose fit is not: exit code 1, and yet all files are there, with the best point so far.
+/// Runs a valid plan with a failing fit: exit code 1, and all files are written with the best point so far.
 pub fn ran(case: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let command = ["calibrate", "--quiet", "--threads", "1", case, "--out"];
@@ -73,7 +73,7 @@ pub fn ran(case: &str) -> String {
     shown
 }
 
-/// Files that are no text, or too large to be kept: name and what is shown.
+/// Files that are not text, or too large to be kept: name and message.
 pub fn made(kind: &str) -> Vec<(String, String)> {
     if kind == "calibration" {
         return plans();

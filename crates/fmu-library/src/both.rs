@@ -1,6 +1,6 @@
-//! Functions of one shape in both versions of the standard, and those that an FMU does not have.
+//! Functions with the same signature in both versions of the standard, and unsupported functions.
 
-/// Functions that have the same arguments in both versions.
+/// Defines functions with the same arguments in both versions.
 macro_rules! both {
     (
         free: $free:ident, end_initialization: $end:ident, terminate: $terminate:ident, reset: $reset:ident,
@@ -51,7 +51,7 @@ macro_rules! both {
         #[unsafe(no_mangle)]
         extern "C" fn $size(instance: *mut c_void, state: *mut c_void, size: *mut usize) -> c_int {
             call(instance, |slave| {
-                put(size, slave.bytes_of(state)?.len());
+                write_output(size, slave.to_bytes(state)?.len());
                 Ok(())
             })
         }
@@ -78,7 +78,7 @@ macro_rules! both {
     };
 }
 
-/// Values of a type; `$values` is the number of values where it is an argument of its own, else that of the references.
+/// Defines getters and setters of a type; `$values` is the number of values if it is a separate argument, else that of the references.
 macro_rules! values {
     ($get:ident $set:ident: $type:ty, whole $whole:literal, $to:expr, $from:expr; $count:ident $(, $values:ident)?) => {
         #[unsafe(no_mangle)]
@@ -111,13 +111,13 @@ macro_rules! values {
     };
 }
 
-/// Functions of what no variable has, or no unit can do: refused as soon as anything is wanted.
+/// Defines functions for types without variables or for unsupported features: an error if any value is requested.
 macro_rules! without {
     ($what:literal: $($name:ident)*) => {$(
-        // More arguments follow in C, which a function of this convention may leave alone.
+        // Further C arguments may be ignored with this calling convention.
         #[unsafe(no_mangle)]
         extern "C" fn $name(instance: *mut c_void, references: *const u32, count: usize) -> c_int {
-            call(instance, |_| match given(references, count)? {
+            call(instance, |_| match input_array(references, count)? {
                 [] => Ok(()),
                 _ => Err(Refusal::new(WrongType, concat!(stringify!($name), ": ", $what))),
             })
@@ -125,10 +125,10 @@ macro_rules! without {
     )*};
 }
 
-/// Functions that this FMU does not have.
+/// Defines functions that this FMU does not support.
 macro_rules! refused {
     ($($name:ident)*) => {$(
-        // More arguments follow in C, which a function of this convention may leave alone.
+        // Further C arguments may be ignored with this calling convention.
         #[unsafe(no_mangle)]
         extern "C" fn $name(instance: *mut c_void) -> c_int {
             let message = concat!(stringify!($name), ": this FMU cannot do this");

@@ -10,9 +10,11 @@ use cvtcycle_fmu::ProblemKind::{Syntax, UnknownName, WrongType};
 use cvtcycle_fmu::Refusal;
 
 use crate::both::{both, refused, values, without};
-use crate::slave::{ERROR, Log2, Logger, Wanted, call, free, given, instantiate, put};
+use crate::slave::{
+    ERROR, Instantiation, Log2, Logger, call, free, input_array, instantiate, write_output,
+};
 
-/// `fmi2CallbackFunctions`: of these only the logger is used.
+/// `fmi2CallbackFunctions`, of which only the logger is used.
 #[repr(C)]
 struct Callbacks {
     logger: Option<Log2>,
@@ -25,13 +27,13 @@ struct Callbacks {
 /// `fmi2CoSimulation`.
 const CO_SIMULATION: c_int = 1;
 
-/// The folder of a URI `file:///PATH`, percent-encoded.
+/// Decodes the folder of a URI `file:///PATH`.
 fn folder(uri: &str) -> Result<String, Refusal> {
     let rest = uri
         .strip_prefix("file://localhost/")
         .map(|path| format!("/{path}"));
     let rest = rest.or_else(|| uri.strip_prefix("file://").map(str::to_owned));
-    // Some masters write one slash only.
+    // Some masters write a single slash.
     let rest = rest.or_else(|| uri.strip_prefix("file:").map(str::to_owned));
     let Some(path) = rest else {
         let message = format!("the location of the resources `{uri}` is no file:// URI");
@@ -54,7 +56,7 @@ fn folder(uri: &str) -> Result<String, Refusal> {
         }
     }
     let path = String::from_utf8_lossy(&bytes).into_owned();
-    // Of file:///C:/folder the path is C:/folder.
+    // file:///C:/folder has the path C:/folder.
     let is_drive = path.as_bytes().get(2) == Some(&b':');
     Ok(match path.strip_prefix('/').filter(|_| is_drive) {
         Some(path) => path.to_owned(),
@@ -79,7 +81,7 @@ extern "C" fn fmi2SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> c_int {
-    // There is no debug logging: refusals are logged whatever is asked for.
+    // There is no debug logging; errors are always logged.
     call(instance, |_| Ok(()))
 }
 
@@ -98,7 +100,7 @@ extern "C" fn fmi2Instantiate(
     let logger = callbacks.map_or(Logger::Fmi2(None, std::ptr::null_mut()), |own| {
         Logger::Fmi2(own.logger, own.environment)
     });
-    let wanted = Wanted {
+    let arguments = Instantiation {
         name,
         token,
         resources,
@@ -108,7 +110,7 @@ extern "C" fn fmi2Instantiate(
         logger.log(c"", ERROR, "this FMU is for co-simulation only");
         return std::ptr::null_mut();
     }
-    instantiate(&wanted, folder)
+    instantiate(&arguments, folder)
 }
 
 #[unsafe(no_mangle)]

@@ -10,7 +10,9 @@ use cvtcycle_fmu::ProblemKind::{UnknownName, WrongType};
 use cvtcycle_fmu::Refusal;
 
 use crate::both::{both, refused, values, without};
-use crate::slave::{Log3, Logger, Wanted, call, free, given, instantiate, put};
+use crate::slave::{
+    Instantiation, Log3, Logger, call, free, input_array, instantiate, write_output,
+};
 
 fn folder(path: &str) -> Result<String, Refusal> {
     Ok(path.to_owned())
@@ -28,7 +30,7 @@ extern "C" fn fmi3SetDebugLogging(
     _count: usize,
     _categories: *const *const c_char,
 ) -> c_int {
-    // There is no debug logging: refusals are logged whatever is asked for.
+    // There is no debug logging; errors are always logged.
     call(instance, |_| Ok(()))
 }
 
@@ -47,13 +49,13 @@ extern "C" fn fmi3InstantiateCoSimulation(
     logger: Option<Log3>,
     _intermediate_update: *const c_void,
 ) -> *mut c_void {
-    let wanted = Wanted {
+    let arguments = Instantiation {
         name,
         token,
         resources,
         logger: Logger::Fmi3(logger, environment),
     };
-    instantiate(&wanted, folder)
+    instantiate(&arguments, folder)
 }
 
 #[unsafe(no_mangle)]
@@ -82,12 +84,12 @@ extern "C" fn fmi3DoStep(
     early_return: *mut bool,
     last_s: *mut f64,
 ) -> c_int {
-    put(event, false);
-    put(terminate, false);
-    put(early_return, false);
+    write_output(event, false);
+    write_output(terminate, false);
+    write_output(early_return, false);
     call(instance, |slave| {
         let stepped = slave.unit.step(from_s, step_s);
-        put(last_s, slave.unit.time_s());
+        write_output(last_s, slave.unit.time_s());
         stepped
     })
 }
@@ -119,7 +121,7 @@ refused!(
     fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates fmi3ActivateModelPartition
 );
 
-/// Kinds of FMU that this is not: no instance.
+/// Defines instantiation of unsupported kinds of FMU: always null.
 macro_rules! no_instance {
     ($($name:ident)*) => {$(
         #[unsafe(no_mangle)]

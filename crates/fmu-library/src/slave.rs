@@ -1,4 +1,4 @@
-//! An instance as C sees it: a pointer, statuses, and the logger of the master.
+//! Instances behind C pointers, statuses, and the master's logger.
 #![expect(
     unsafe_code,
     reason = "pointers of C are read and written, and the master's logger is called"
@@ -14,7 +14,7 @@ use cvtcycle_fmu::ProblemKind::{Conflict, Missing, TooLarge, WrongType};
 use cvtcycle_fmu::unit::Saved;
 use cvtcycle_fmu::{Refusal, Unit};
 
-/// Statuses: those of `fmi2Status` and `fmi3Status` have the same numbers.
+/// Statuses, equal in `fmi2Status` and `fmi3Status`.
 pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;
 pub const ERROR: c_int = 3;
@@ -27,7 +27,7 @@ pub type Log2 =
 /// `fmi3LogMessageCallback`.
 pub type Log3 = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
 
-/// The logger of a master, with what it wants to be given.
+/// Logger of the master, with its context.
 #[derive(Clone, Copy)]
 pub enum Logger {
     Fmi2(Option<Log2>, *mut c_void),
@@ -35,7 +35,7 @@ pub enum Logger {
 }
 
 impl Logger {
-    /// Gives the master a message with a status.
+    /// Sends a message with a status to the master.
     pub fn log(self, name: &CStr, status: c_int, message: &str) {
         let text = |message: &str| CString::new(message.replace('\0', " ")).unwrap_or_default();
         let category = match status {
@@ -45,7 +45,7 @@ impl Logger {
         };
         match self {
             Logger::Fmi2(Some(log), environment) => {
-                // The message is a format of printf.
+                // The logger expects a printf format.
                 let message = text(&message.replace('%', "%%"));
                 // SAFETY: the logger and its environment are those of fmi2Instantiate, valid as long as the instance; texts end with 0.
                 unsafe {
@@ -68,33 +68,33 @@ impl Logger {
     }
 }
 
-/// An instance.
+/// Instance of a unit.
 pub struct Slave {
     pub unit: Unit,
-    /// Start of the simulation, s, of FMI 2 and 3 given before initialization.
+    /// Start time of the simulation, s. FMI 2 and 3 give it before initialization.
     pub start_s: f64,
     name: CString,
     logger: Logger,
-    /// Whether a panic may have left it in pieces.
-    broken: bool,
+    /// True after a panic, which may have left the unit inconsistent.
+    poisoned: bool,
 }
 
-/// What a master gives to make an instance.
-pub struct Wanted {
+/// Arguments of an instantiation.
+pub struct Instantiation {
     pub name: *const c_char,
     pub token: *const c_char,
     pub resources: *const c_char,
     pub logger: Logger,
 }
 
-/// Words of a panic.
-fn words(panic: &(dyn Any + Send)) -> String {
+/// Message of a panic.
+fn panic_message(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(ToString::to_string);
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
     format!("defect in cvtcycle: {}", text.unwrap_or_default())
 }
 
-/// A text of C; none for a null pointer.
+/// Converts a C string; None for a null pointer.
 pub fn text(text: *const c_char) -> Option<String> {
     if text.is_null() {
         return None;
@@ -104,17 +104,20 @@ pub fn text(text: *const c_char) -> Option<String> {
     Some(text.to_string_lossy().into_owned())
 }
 
-/// A new instance from the folder that `folder` makes of the resources; null, with a message, where there is none.
-pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>) -> *mut c_void {
-    let name = CString::new(text(wanted.name).unwrap_or_default()).unwrap_or_default();
+/// Creates an instance; `folder` converts the path of the resources. Null, with a log message, on failure.
+pub fn instantiate(
+    arguments: &Instantiation,
+    folder: fn(&str) -> Result<String, Refusal>,
+) -> *mut c_void {
+    let name = CString::new(text(arguments.name).unwrap_or_default()).unwrap_or_default();
     let made = catch_unwind(|| {
         let absent = |what: &str| Refusal::new(Missing, format!("the {what} is missing"));
-        let token = text(wanted.token).ok_or_else(|| absent("token (FMI 2: GUID)"))?;
-        let resources = text(wanted.resources).ok_or_else(|| absent("path of the resources"))?;
+        let token = text(arguments.token).ok_or_else(|| absent("token (FMI 2: GUID)"))?;
+        let resources = text(arguments.resources).ok_or_else(|| absent("path of the resources"))?;
         Unit::open(Path::new(&folder(&resources)?), &token)
     });
     let refused = |status: c_int, message: &str| {
-        wanted.logger.log(&name, status, message);
+        arguments.logger.log(&name, status, message);
         ptr::null_mut()
     };
     match made {
@@ -123,23 +126,23 @@ pub fn instantiate(wanted: &Wanted, folder: fn(&str) -> Result<String, Refusal>)
                 unit,
                 start_s: 0.0,
                 name,
-                logger: wanted.logger,
-                broken: false,
+                logger: arguments.logger,
+                poisoned: false,
             };
             Box::into_raw(Box::new(slave)).cast()
         }
         Ok(Err(refusal)) => refused(ERROR, &refusal.message),
-        Err(panic) => refused(FATAL, &words(&*panic)),
+        Err(panic) => refused(FATAL, &panic_message(&*panic)),
     }
 }
 
-/// Calls a function of an instance; its status.
+/// Calls a function of an instance and returns its status.
 pub fn call(instance: *mut c_void, f: impl FnOnce(&mut Slave) -> Result<(), Refusal>) -> c_int {
     // SAFETY: null, or a pointer of `instantiate` that is not freed; the standard has one call at a time for each instance.
     let Some(slave) = (unsafe { instance.cast::<Slave>().as_mut() }) else {
         return ERROR;
     };
-    if slave.broken {
+    if slave.poisoned {
         return FATAL;
     }
     let (status, message) = match catch_unwind(AssertUnwindSafe(|| f(slave))) {
@@ -147,8 +150,8 @@ pub fn call(instance: *mut c_void, f: impl FnOnce(&mut Slave) -> Result<(), Refu
         Ok(Err(refusal)) if refusal.warns => (WARNING, refusal.message),
         Ok(Err(refusal)) => (ERROR, refusal.message),
         Err(panic) => {
-            slave.broken = true;
-            (FATAL, words(&*panic))
+            slave.poisoned = true;
+            (FATAL, panic_message(&*panic))
         }
     };
     slave.logger.log(&slave.name, status, &message);
@@ -160,13 +163,13 @@ pub fn free(instance: *mut c_void) {
     if !instance.is_null() {
         // SAFETY: a pointer of `instantiate`, which the master gives back once.
         let slave = unsafe { Box::from_raw(instance.cast::<Slave>()) };
-        // A panic while dropping must not pass either.
+        // A panic in a destructor must not cross the C boundary either.
         drop(catch_unwind(AssertUnwindSafe(|| drop(slave))));
     }
 }
 
-/// Numbers that the master gives.
-pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
+/// Views an input array of the master.
+pub fn input_array<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
     if count == 0 {
         return Ok(&[]);
     }
@@ -177,20 +180,20 @@ pub fn given<'a, T>(first: *const T, count: usize) -> Result<&'a [T], Refusal> {
     }
 }
 
-/// Where the master wants numbers.
-pub fn wanted<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
+/// Views an output array of the master.
+pub fn output_array<'a, T>(first: *mut T, count: usize) -> Result<&'a mut [T], Refusal> {
     if count == 0 {
         return Ok(&mut []);
     }
     match first.is_null() {
         true => Err(Refusal::new(Missing, "an array is missing")),
-        // SAFETY: as in `given`, and the master lends them to this call alone.
+        // SAFETY: as in `input_array`, and the master lends them to this call alone.
         false => Ok(unsafe { slice::from_raw_parts_mut(first, count) }),
     }
 }
 
-/// Writes one value where the master wants it, if it does.
-pub fn put<T>(place: *mut T, value: T) {
+/// Writes one value through an optional output pointer.
+pub fn write_output<T>(place: *mut T, value: T) {
     if !place.is_null() {
         // SAFETY: not null, and the master lends it for the call.
         unsafe { place.write(value) };
@@ -198,7 +201,7 @@ pub fn put<T>(place: *mut T, value: T) {
 }
 
 impl Slave {
-    /// Values of variables of a type: `whole` numbers or not.
+    /// Reads variables of a type, integers if `whole`.
     pub fn get<T>(
         &mut self,
         (references, count): (*const u32, usize),
@@ -206,16 +209,16 @@ impl Slave {
         whole: bool,
         of: fn(f64) -> T,
     ) -> Result<(), Refusal> {
-        self.fits(count, value_count)?;
-        let places = wanted(values, count)?;
-        for (reference, place) in given(references, count)?.iter().zip(places) {
-            self.is_of_type(*reference, whole)?;
+        self.check_count(count, value_count)?;
+        let places = output_array(values, count)?;
+        for (reference, place) in input_array(references, count)?.iter().zip(places) {
+            self.check_type(*reference, whole)?;
             *place = of(self.unit.get(*reference)?);
         }
         Ok(())
     }
 
-    /// Sets variables of a type; where one is refused, none of those after it is set.
+    /// Sets variables of a type. Stops at the first refused one.
     pub fn set<T: Copy>(
         &mut self,
         (references, count): (*const u32, usize),
@@ -223,16 +226,16 @@ impl Slave {
         whole: bool,
         of: fn(T) -> f64,
     ) -> Result<(), Refusal> {
-        self.fits(count, value_count)?;
-        let values = given(values, count)?;
-        for (reference, value) in given(references, count)?.iter().zip(values) {
-            self.is_of_type(*reference, whole)?;
+        self.check_count(count, value_count)?;
+        let values = input_array(values, count)?;
+        for (reference, value) in input_array(references, count)?.iter().zip(values) {
+            self.check_type(*reference, whole)?;
             self.unit.set(*reference, of(*value))?;
         }
         Ok(())
     }
 
-    fn fits(&self, references: usize, values: usize) -> Result<(), Refusal> {
+    fn check_count(&self, references: usize, values: usize) -> Result<(), Refusal> {
         match references == values {
             true => Ok(()),
             false => {
@@ -242,7 +245,7 @@ impl Slave {
         }
     }
 
-    fn is_of_type(&self, reference: u32, whole: bool) -> Result<(), Refusal> {
+    fn check_type(&self, reference: u32, whole: bool) -> Result<(), Refusal> {
         if self.unit.is_whole(reference)? == whole {
             return Ok(());
         }
@@ -251,9 +254,9 @@ impl Slave {
         Err(Refusal::new(WrongType, message))
     }
 
-    /// Saves the state at a place, where there may be one already.
+    /// Saves the state at a place, reusing a state already there.
     pub fn save(&mut self, place: *mut *mut c_void) -> Result<(), Refusal> {
-        let [state] = wanted(place, 1)? else {
+        let [state] = output_array(place, 1)? else {
             return Ok(());
         };
         // SAFETY: null, or a state of this function that is not freed.
@@ -264,7 +267,7 @@ impl Slave {
         Ok(())
     }
 
-    /// A saved state.
+    /// Checks and returns a saved state.
     pub fn saved<'a>(&self, state: *mut c_void) -> Result<&'a Saved, Refusal> {
         // SAFETY: null, or a state of `save` that is not freed.
         let saved = unsafe { state.cast::<Saved>().as_ref() };
@@ -276,7 +279,7 @@ impl Slave {
         if place.is_null() {
             return Ok(());
         }
-        let [state] = wanted(place, 1)? else {
+        let [state] = output_array(place, 1)? else {
             return Ok(());
         };
         if !state.is_null() {
@@ -287,19 +290,19 @@ impl Slave {
         Ok(())
     }
 
-    /// A saved state as bytes.
-    pub fn bytes_of(&self, state: *mut c_void) -> Result<Vec<u8>, Refusal> {
-        Ok(self.unit.bytes_of(self.saved(state)?))
+    /// Serialises a saved state.
+    pub fn to_bytes(&self, state: *mut c_void) -> Result<Vec<u8>, Refusal> {
+        Ok(self.unit.to_bytes(self.saved(state)?))
     }
 
-    /// Writes a saved state as bytes.
+    /// Serialises a saved state into an array of the master.
     pub fn write_bytes(
         &self,
         state: *mut c_void,
         (first, size): (*mut u8, usize),
     ) -> Result<(), Refusal> {
-        let bytes = self.bytes_of(state)?;
-        let Some(place) = wanted(first, size)?.get_mut(..bytes.len()) else {
+        let bytes = self.to_bytes(state)?;
+        let Some(place) = output_array(first, size)?.get_mut(..bytes.len()) else {
             let needed = bytes.len();
             let message = format!("the state has {needed} bytes, the array {size}");
             return Err(Refusal::new(TooLarge, message));
@@ -308,14 +311,14 @@ impl Slave {
         Ok(())
     }
 
-    /// The state of bytes at a place; the unit stays as it is.
+    /// Deserialises a state to a place, without changing the unit.
     pub fn read_bytes(
         &mut self,
         (first, size): (*const u8, usize),
         place: *mut *mut c_void,
     ) -> Result<(), Refusal> {
         let before = self.unit.save();
-        self.unit.restore_bytes(given(first, size)?)?;
+        self.unit.restore_bytes(input_array(first, size)?)?;
         let made = self.save(place);
         self.unit.restore(&before)?;
         made

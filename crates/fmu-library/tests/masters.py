@@ -103,14 +103,14 @@ class Slave:
     def to_bytes(self, state):
         return self.fmu.serializeFMUstate(state) if self.is_2 else self.fmu.serializeFMUState(state)
 
-    def of_bytes(self, data):
+    def from_bytes(self, data):
         return self.fmu.deSerializeFMUstate(data) if self.is_2 else self.fmu.deserializeFMUState(data)
 
     def free_state(self, state):
         (self.fmu.fmi2FreeFMUstate if self.is_2 else self.fmu.fmi3FreeFMUState)(self.fmu.component, byref(state))
 
     def refused(self, what, call):
-        """The call has the status error, and the logger a message with `what`."""
+        """Checks that the call has status error, and the logger a message with `what`."""
         self.messages.clear()
         try:
             call()
@@ -154,7 +154,7 @@ def check_car(description, folder, car, cycle):
     end = whole.outputs()
     assert np.isfinite(end).all(), end
 
-    # Two instances in turn, one of them a step behind and with another ambient: neither sees the other.
+    # Two alternating instances, one of them a step behind and with another ambient, do not affect each other.
     one, two = start_car(description, folder), Slave(description, folder).start(T_AMB_PNT_in_K=308.15)
     for k, ((time_s, _), (next_s, speed)) in enumerate(zip(rows, rows[1:])):
         one.set(**{SPEED: speed})
@@ -167,16 +167,16 @@ def check_car(description, folder, car, cycle):
     assert one.outputs() == end
     assert two.get(FUEL) < 0.9 * got
 
-    # Back to the middle and on again, from the state and from its bytes in a new instance: the same bits.
+    # Back to the middle and on again with the same bits, from the state and from its bytes in a new instance.
     for other, back in ((one, state), (start_car(description, folder), None)):
-        other.restore(back or other.of_bytes(data))
+        other.restore(back or other.from_bytes(data))
         for (time_s, _), (next_s, speed) in list(zip(rows, rows[1:]))[401:]:
             other.set(**{SPEED: speed})
             other.step(time_s, next_s - time_s)
         assert other.outputs() == end
     one.free_state(state)
 
-    # Longer communication steps are divided; a start that is warm burns less.
+    # Longer communication steps are divided. A warm start burns less.
     assert drive(start_car(description, folder), rows[::20]).get(FUEL) > 0.5 * want
     warm = Slave(description, folder).start(T_AMB_PNT_in_K=AMBIENT_DEGC + 273.15, T_start_VEH_PNT_K=353.15)
     assert drive(warm, rows).get(FUEL) < want
@@ -184,7 +184,7 @@ def check_car(description, folder, car, cycle):
 
 
 def check_master(file, rows, got):
-    """FMPy's own loop sets the speed of the beginning of a step: the same trace, one step later."""
+    """FMPy's own loop sets the speed at the beginning of a step, so its trace lags by one step."""
     late = np.array([(t, v) for (t, _), (_, v) in zip(rows, rows[1:])] , dtype=[("time", float), (SPEED, float)])
     result = simulate_fmu(
         file,
@@ -219,16 +219,16 @@ def check_losses(description, folder, car):
     assert abs(heat - slave.get("P_loss_AT_PNT_W")) < 1e-9 * heat
     slave.set(w_FW_PNT_in_radps=0.0)
     assert slave.get("P_loss_AT_PNT_W") == 0.0
-    # A state of one step, with other inputs in between.
+    # A state restores a step, whatever the inputs in between.
     state = slave.save()
     slave.set(trq_FW_PNT_in_Nm=-20.0, w_FW_PNT_in_radps=300.0)
     assert slave.get("P_loss_AT_PNT_W") > 0.0
-    slave.restore(slave.of_bytes(slave.to_bytes(state)))
+    slave.restore(slave.from_bytes(slave.to_bytes(state)))
     assert slave.get("P_loss_AT_PNT_W") == 0.0
 
 
 def launch(slave, steps, first=0, wheel=0.0, torque=0.0):
-    """A car of 1100 kg on wheels of 0.28 m pulls away by 70 Nm in low, and shifts up: where it is after that."""
+    """Pulls away with 70 Nm in low and shifts up, in a car of 1100 kg on wheels of 0.28 m. Returns wheel speed and torque."""
     inertia, step_s = 1100 * 0.28**2, 0.02
     for k in range(first, first + steps):
         wheel = max(0.0, wheel + step_s * (torque - 60.0) / inertia)
@@ -246,7 +246,7 @@ def launch(slave, steps, first=0, wheel=0.0, torque=0.0):
 
 
 def check_cvt(description, folder):
-    """A launch balances and ends where it should; from the bytes of a state in the middle it ends there again, in another instance."""
+    """A launch balances power and reaches its speed; another instance started from the bytes of a state in the middle ends equally."""
     slave = Slave(description, folder).start()
     at = launch(slave, 200)
     data = slave.to_bytes(slave.save())
@@ -256,7 +256,7 @@ def check_cvt(description, folder):
     end = slave.outputs()
     assert np.isfinite(end).all(), end
     other = Slave(description, folder).start()
-    other.restore(other.of_bytes(data))
+    other.restore(other.from_bytes(data))
     launch(other, 500, 200, *at)
     assert other.outputs() == end
     return f"pulls away to {speed:.1f} m/s in 14 s"
@@ -286,11 +286,11 @@ def check_nonsense(description, folder, kind):
     data = slave.to_bytes(slave.save())
     for wrong in (data[:-1], data[:9], b"", b"x" * len(data), data[:-8] + b"\xff" * 8, data + data):
         if len(wrong) > 0:
-            slave.refused("", lambda wrong=wrong: slave.of_bytes(wrong))
+            slave.refused("", lambda wrong=wrong: slave.from_bytes(wrong))
     slave.refused("missing", lambda: slave.restore(c_void_p()))
     assert slave.outputs() == before
     slave.step(0.0, 1.0)
-    # No instance, and no crash: a description of another FMU, resources that are gone.
+    # Refused without a crash: the description of another FMU, missing resources.
     for changed in ({"guid": "{0}"}, {"unzipDirectory": missing(folder)}):
         try:
             Slave(description, folder, **changed)
@@ -301,7 +301,7 @@ def check_nonsense(description, folder, kind):
 
 
 def missing(folder):
-    """A copy without the vehicle's file."""
+    """Copies the resources without the vehicle file."""
     copy = f"{folder}_missing"
     shutil.rmtree(copy, ignore_errors=True)
     shutil.copytree(folder, copy)
@@ -324,7 +324,7 @@ def main(fmus):
         car = f"{own}/car.toml" if name == "car" else name
         description = read_model_description(str(file))
         folder = extract(str(file), str(fmus / file.stem))
-        # Without prescribed gears, which an FMU does not know: a manual box shifts by its shift speeds.
+        # Without prescribed gears, which FMUs do not have: a manual box shifts by its shift speeds.
         cycle = cycles / "ece15_eudc_auto.csv" if name != "rover_216_5mt" else plain
         words = ""
         if kind == "car":

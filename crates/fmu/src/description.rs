@@ -1,4 +1,4 @@
-//! modelDescription.xml and the page of documentation, both from the table of variables.
+//! modelDescription.xml and the documentation page, generated from the table of variables.
 
 use std::fmt::Write;
 
@@ -17,11 +17,11 @@ pub enum Fmi {
 }
 
 impl Fmi {
-    /// Names, as the command line has them.
+    /// Names on the command line.
     pub const NAMES: [(&'static str, Fmi); 2] = [("2", Fmi::Two), ("3", Fmi::Three)];
 }
 
-/// What a description says besides the variables.
+/// Contents of a description besides the variables.
 #[derive(Clone, Copy, Debug)]
 pub struct About<'a> {
     /// Kind of unit.
@@ -30,22 +30,22 @@ pub struct About<'a> {
     pub title: &'a str,
     /// Name of the shared library, without its ending.
     pub identifier: &'a str,
-    /// Token that description and resources share.
+    /// Token shared by description and resources, which detects mixed-up files.
     pub token: &'a str,
 }
 
-/// Version of the program, which is that of the model.
+/// Version of the program and of the model.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Writing into a text cannot fail.
+/// Appends formatted text. Writing to a string is infallible.
 macro_rules! push {
     ($text:expr, $($what:tt)*) => { let _ = write!($text, $($what)*); };
 }
 
-/// Categories of the messages to the logger.
+/// Categories of log messages.
 const LOG_CATEGORIES: [&str; 3] = ["logStatusWarning", "logStatusError", "logStatusFatal"];
 
-/// modelDescription.xml.
+/// Writes modelDescription.xml.
 #[must_use]
 pub fn model_description(fmi: Fmi, about: &About, variables: &[Variable]) -> String {
     let (identifier, token) = (xml(about.identifier), xml(about.token));
@@ -100,7 +100,7 @@ fn units(variables: &[Variable], text: &mut String) {
     *text += "  </UnitDefinitions>\n";
 }
 
-/// Causality, and the variability of whole and real numbers.
+/// Causality, and the variability of integers and reals.
 fn role(variable: &Variable) -> (&'static str, &'static str) {
     let of_number = if variable.whole {
         "discrete"
@@ -119,7 +119,7 @@ fn is_set(variable: &Variable) -> bool {
     matches!(variable.causality, Causality::Input | Causality::Parameter)
 }
 
-/// Start and range of what is set; the unit.
+/// Unit, and start and range of settable variables.
 fn values(variable: &Variable, text: &mut String) {
     if is_set(variable) {
         let (start, (low, high)) = (variable.start, variable.range);
@@ -172,7 +172,7 @@ fn structure(fmi: Fmi, variables: &[Variable], text: &mut String) {
     };
     match fmi {
         Fmi::Two => {
-            // Places are counted from 1.
+            // The standard counts from 1.
             for part in ["Outputs", "InitialUnknowns"] {
                 push!(text, "    <{part}>");
                 outputs().for_each(|(place, _)| {
@@ -193,8 +193,8 @@ fn structure(fmi: Fmi, variables: &[Variable], text: &mut String) {
     }
 }
 
-/// What a master must do, one sentence each.
-fn use_of(kind: Kind) -> &'static [&'static str] {
+/// Requirements for the master, one sentence each.
+fn master_requirements(kind: Kind) -> &'static [&'static str] {
     match kind {
         Kind::Car => &[
             "Before each step set the speed that the car has at its end; the speed is linear within a step.",
@@ -218,14 +218,14 @@ fn use_of(kind: Kind) -> &'static [&'static str] {
     }
 }
 
-/// The page of documentation in the FMU.
+/// Writes the documentation page of the FMU.
 #[must_use]
 pub fn documentation(about: &About, variables: &[Variable]) -> String {
     let title = xml(&format!("{}: {}", about.title, about.kind.words()));
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title></head><body>\n<h1>{title}</h1>\n<p>Written by {PROGRAM}.</p>\n<ul>\n"
     );
-    for sentence in use_of(about.kind) {
+    for sentence in master_requirements(about.kind) {
         push!(text, "<li>{}</li>\n", xml(sentence));
     }
     text += "</ul>\n<table>\n<tr><th>variable</th><th></th><th>unit</th><th>start</th><th>meaning</th></tr>\n";

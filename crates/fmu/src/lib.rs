@@ -1,10 +1,10 @@
-//! Cars as units of a co-simulation: what an FMU is, without the C functions by which it is called.
+//! Cars as units of a co-simulation: the contents of an FMU without its C interface.
 //!
 //! | module | contents |
 //! |---|---|
-//! | `variables` | the variables of each kind of unit: one table, from which values, modelDescription.xml and the docs come |
-//! | `unit` | a unit that is instantiated: inputs in, steps, outputs, saved states |
-//! | `state` | a saved state as bytes: the steps since the start, driven again when it is read |
+//! | `variables` | variables of each kind of unit in one table, from which values, modelDescription.xml and the docs are generated |
+//! | `unit` | an instantiated unit: inputs, steps, outputs, saved states |
+//! | `state` | saved states as bytes: the steps since the start, repeated on reading |
 //! | `description`, `package` | modelDescription.xml and the FMU file (feature `package`) |
 
 #[cfg(feature = "package")]
@@ -19,5 +19,5 @@ pub use cvtcycle_config::ProblemKind;
 pub use unit::{Refusal, Unit};
 pub use variables::{Causality, Kind, Variable};
 
-/// Name of the file, among the resources of an FMU, that says of which kind it is and which description belongs to it.
+/// Resource file of an FMU with the kind of unit and the token of its description.
 pub const UNIT_FILE: &str = "unit.txt";

@@ -13,7 +13,7 @@ use crate::UNIT_FILE;
 use crate::description::{About, Fmi, documentation, model_description};
 use crate::variables::{Kind, variables};
 
-/// Where a shared library runs.
+/// Platform of a shared library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Platform {
     /// Linux on x86-64.
@@ -26,9 +26,9 @@ impl Platform {
     /// All platforms.
     pub const ALL: [Platform; 2] = [Platform::Linux, Platform::Windows];
 
-    /// The platform of a library's bytes, by their magic and processor: ELF (62 is x86-64) or PE (0x8664).
+    /// Detects the platform of a library by magic number and processor: ELF (62 is x86-64) or PE (0x8664).
     #[must_use]
-    pub fn of(bytes: &[u8]) -> Option<Platform> {
+    pub fn detect(bytes: &[u8]) -> Option<Platform> {
         let word = |at: usize| Some([*bytes.get(at)?, *bytes.get(at + 1)?]);
         if bytes.starts_with(b"\x7fELF\x02\x01") {
             return (word(18)? == [62, 0]).then_some(Platform::Linux);
@@ -42,7 +42,7 @@ impl Platform {
         (is_pe && word(header + 4)? == [0x64, 0x86]).then_some(Platform::Windows)
     }
 
-    /// Its name in words.
+    /// Name for users.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -51,7 +51,7 @@ impl Platform {
         }
     }
 
-    /// Name of the library as Cargo builds it.
+    /// File name as built by Cargo.
     #[must_use]
     pub fn library(self) -> &'static str {
         match self {
@@ -60,7 +60,7 @@ impl Platform {
         }
     }
 
-    /// Folder and ending in an FMU.
+    /// Folder and extension in an FMU.
     fn place(self, fmi: Fmi) -> (&'static str, &'static str) {
         match (self, fmi) {
             (Platform::Linux, Fmi::Two) => ("linux64", "so"),
@@ -71,7 +71,7 @@ impl Platform {
     }
 }
 
-/// What an FMU is made of.
+/// Contents of an FMU.
 #[derive(Debug)]
 pub struct Package<'a> {
     /// Kind of unit.
@@ -80,13 +80,13 @@ pub struct Package<'a> {
     pub fmi: Fmi,
     /// The car.
     pub setup: &'a Setup,
-    /// Its files.
+    /// Files of the car.
     pub car: CarriedCar,
     /// Shared libraries.
     pub libraries: Vec<(Platform, Vec<u8>)>,
 }
 
-/// A name in C of the car and the kind.
+/// C identifier made of car and kind.
 fn identifier(setup: &Setup, kind: Kind) -> String {
     let fits = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let name: String = setup.name.chars().map(fits).collect();
@@ -95,10 +95,9 @@ fn identifier(setup: &Setup, kind: Kind) -> String {
 }
 
 impl Package<'_> {
-    /// Writes the FMU; the same input gives the same bytes.
-    ///
+    /// Writes the FMU. Equal input gives equal bytes.
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     pub fn write(self, out: impl Write + Seek) -> io::Result<()> {
         let variables = variables(self.kind, self.setup.transmission());
         let identifier = identifier(self.setup, self.kind);

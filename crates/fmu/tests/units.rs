@@ -1,4 +1,4 @@
-//! Units without C: the drive that they are, their states, and what they refuse. tools/fmu tests the same from outside.
+//! Units without their C interface: equality with a drive, saved states, refused calls. tools/fmu tests them through C.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::path::Path;
@@ -16,7 +16,7 @@ fn setup(word: &str) -> Setup {
     load(word, &Options::default()).unwrap()
 }
 
-/// ECE15+EUDC for automatics, without the gears that a unit does not know.
+/// ECE15+EUDC for automatics, without the gears, which a unit does not have.
 fn cycle() -> Cycle {
     let cycle = embedded("ece15_eudc").unwrap();
     let trace = Trace::without_gears(cycle.trace_for(true).intervals.to_vec());
@@ -34,8 +34,8 @@ fn started(setup: Setup) -> Unit {
     unit
 }
 
-/// Drives the rows of a range.
-fn go(unit: &mut Unit, cycle: &Cycle, rows: std::ops::Range<usize>) {
+/// Drives a range of rows.
+fn drive_rows(unit: &mut Unit, cycle: &Cycle, rows: std::ops::Range<usize>) {
     for interval in &cycle.manual.intervals[rows] {
         unit.set(car::SPEED as u32, interval.end_speed_m_s).unwrap();
         let dt_s = interval.end_s - interval.start_s;
@@ -53,9 +53,9 @@ fn all(unit: &mut Unit) -> Vec<u64> {
     (0..count).map(|k| unit.get(k).unwrap().to_bits()).collect()
 }
 
-/// A whole car burns what [`drive`] says, with each kind of box and coupling.
+/// Truth: [`drive`], with each kind of box and coupling.
 #[test]
-fn the_fuel_is_that_of_a_drive() {
+fn the_fuel_equals_that_of_a_drive() {
     let cycle = cycle();
     for word in ["rover_216_cvt", "civic_20_cvt", "rover_216_5mt"] {
         let setup = setup(word);
@@ -67,7 +67,7 @@ fn the_fuel_is_that_of_a_drive() {
         };
         let want = drive(&setup, &cycle, &conditions).totals.total();
         let mut unit = started(setup);
-        go(&mut unit, &cycle, 0..cycle.manual.intervals.len());
+        drive_rows(&mut unit, &cycle, 0..cycle.manual.intervals.len());
         let fuel_kg = value(&mut unit, "m_fuel_ENG_PNT_out_kg");
         assert!(
             (fuel_kg / want.fuel_kg - 1.0).abs() < 1e-12,
@@ -78,30 +78,30 @@ fn the_fuel_is_that_of_a_drive() {
     }
 }
 
-/// A state and its bytes go on with the same bits, in another instance as well.
+/// A restored state continues with the same bits, also in another instance.
 #[test]
-fn a_state_goes_on_with_the_same_bits() {
+fn a_restored_state_continues_bit_by_bit() {
     let cycle = cycle();
     let (middle, end) = (500, cycle.manual.intervals.len());
     for word in ["rover_216_cvt", "rover_216_5mt"] {
         let mut unit = started(setup(word));
-        go(&mut unit, &cycle, 0..middle);
+        drive_rows(&mut unit, &cycle, 0..middle);
         let saved = unit.save();
-        let bytes = unit.bytes_of(&saved);
-        go(&mut unit, &cycle, middle..end);
+        let bytes = unit.to_bytes(&saved);
+        drive_rows(&mut unit, &cycle, middle..end);
         let want = all(&mut unit);
         unit.restore(&saved).unwrap();
-        go(&mut unit, &cycle, middle..end);
+        drive_rows(&mut unit, &cycle, middle..end);
         assert_eq!(all(&mut unit), want);
         let mut other = Unit::new(Kind::Car, setup(word));
         other.restore_bytes(&bytes).unwrap();
-        assert_eq!(other.bytes_of(&other.save()), bytes);
-        go(&mut other, &cycle, middle..end);
+        assert_eq!(other.to_bytes(&other.save()), bytes);
+        drive_rows(&mut other, &cycle, middle..end);
         assert_eq!(all(&mut other), want);
     }
 }
 
-/// Sets what a driven box is given for a step, and goes.
+/// Sets the inputs of a driven box for a step, and computes it.
 fn push(unit: &mut Unit, k: u32) {
     let t = f64::from(k);
     let launch = (t / 40.0).min(1.0);
@@ -118,9 +118,9 @@ fn push(unit: &mut Unit, k: u32) {
     unit.step(0.5 * t, 0.5).unwrap();
 }
 
-/// A driven box: power in is power out, losses and rotating energy in every step; a state and its bytes go on with the same bits.
+/// Power in is power out, losses and rotating energy in every step. A restored state continues with the same bits.
 #[test]
-fn a_driven_box_balances_and_goes_on_with_the_same_bits() {
+fn a_driven_box_is_balanced_and_a_restored_state_continues_bit_by_bit() {
     for word in ["rover_216_cvt", "civic_20_cvt"] {
         let mut unit = Unit::new(Kind::Cvt, setup(word));
         unit.start(0.0).unwrap();
@@ -135,7 +135,7 @@ fn a_driven_box_balances_and_goes_on_with_the_same_bits() {
             let scale = engine_w.abs() + wheel_w.abs() + heat_w;
             assert!(rest_w.abs() < 1e-9 * scale, "{word} {k}: {rest_w}");
             if k == 99 {
-                bytes = unit.bytes_of(&unit.save());
+                bytes = unit.to_bytes(&unit.save());
             }
         }
         let want = all(&mut unit);
@@ -156,14 +156,14 @@ fn a_driven_box_balances_and_goes_on_with_the_same_bits() {
     }
 }
 
-/// Damaged bytes are refused and leave the unit as it was, or are another state that can be reached.
+/// Damaged bytes give an error and leave the unit unchanged, or give another reachable state.
 #[test]
-fn damaged_states_do_no_harm() {
+fn damaged_states_are_refused_or_reachable() {
     let cycle = cycle();
     let mut unit = started(setup("rover_216_cvt"));
-    go(&mut unit, &cycle, 0..30);
+    drive_rows(&mut unit, &cycle, 0..30);
     let before = all(&mut unit);
-    let bytes = unit.bytes_of(&unit.save());
+    let bytes = unit.to_bytes(&unit.save());
     for length in (0..bytes.len()).step_by(7) {
         assert!(unit.restore_bytes(&bytes[..length]).is_err());
         assert_eq!(all(&mut unit), before);
@@ -182,7 +182,7 @@ fn damaged_states_do_no_harm() {
     assert!(refused > bytes.len() / 20, "{refused} of {}", bytes.len());
 }
 
-/// Each input and parameter is taken at both ends of its range and refused beyond them; nothing else can be set.
+/// Each input and parameter accepts both ends of its range and refuses values beyond. No other variable can be set.
 #[test]
 fn values_out_of_range_are_refused() {
     for (kind, word) in [
@@ -232,7 +232,7 @@ fn values_out_of_range_are_refused() {
     }
 }
 
-/// Power in is power out and losses; heat is what is lost; a shaft at rest loses nothing.
+/// Power in is power out and losses; heat equals the losses; a shaft at rest has none.
 #[test]
 fn an_operating_point_balances() {
     for word in ["rover_216_cvt", "civic_20_cvt", "rover_216_5mt"] {
@@ -257,7 +257,7 @@ fn an_operating_point_balances() {
     }
 }
 
-/// A car read from the files that it carries is the same car; they are gone from where they were.
+/// A car read from its packed files is the same car. The originals are deleted first.
 #[test]
 fn a_car_carries_its_files() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
@@ -282,7 +282,7 @@ fn a_car_carries_its_files() {
         assert_eq!(again.name, own.name);
         let [one, two] = [own, again].map(|setup| {
             let mut unit = started(setup);
-            go(&mut unit, &cycle, 0..200);
+            drive_rows(&mut unit, &cycle, 0..200);
             all(&mut unit)
         });
         assert_eq!(one, two, "{word}");

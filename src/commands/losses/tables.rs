@@ -7,10 +7,10 @@ use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
 
 use crate::print::colour::Paint;
 
-/// Largest number of rows of a table; CSV and JSON have all.
+/// Maximum number of rows of a table; CSV and JSON have all.
 const MAX_ROWS: usize = 100;
 
-/// One point in detail, or one row for each point.
+/// Details of a single point, or one row for each point.
 pub fn table(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>, paint: Paint) -> String {
     let heading = paint.heading(&losses.setup.name);
     let body = match losses.grid.len() {
@@ -94,7 +94,7 @@ fn several(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>) -> Strin
         .right("eff %", |row| percent(row.efficiency(), 1.0, 1))
         .left("flags", flags);
     let shown: Vec<LossRow> = rows.by_ref().take(MAX_ROWS).collect();
-    // The rest is solved as well, because its flags are counted.
+    // Solves the remaining rows too, so that their flags are counted.
     let more = rows.count();
     let fixed = Axis::ALL.into_iter().filter(|axis| !varied.contains(axis));
     let fixed: Vec<Axis> = fixed.collect();

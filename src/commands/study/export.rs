@@ -54,7 +54,7 @@ impl Execute for StudyExportArgs {
         let path = self.out.path(problems)?;
         let format = problems.take(Format::of(path));
         let study = problems.take(Study::open(&self.dir));
-        // Of a name with a wrong ending nothing else is said.
+        // Without a valid format, other problems of the file name are not reported.
         let format = format?;
         let out = problems.take(OutputFile::create(path, self.out.force));
         Some((format, study?, out?))

@@ -30,7 +30,11 @@ fn rig(sets: &[&str]) -> Conditions {
 
 fn stripped(vehicle: &[&str], of_rig: &[&str]) -> Vec<StripDown> {
     let c = rig(of_rig);
-    strip_down(&Bench::new(&car(CAR, vehicle)), &c, &Plan::from_conditions(&c))
+    strip_down(
+        &Bench::new(&car(CAR, vehicle)),
+        &c,
+        &Plan::from_conditions(&c),
+    )
 }
 
 fn place(s: &StripDown) -> String {

@@ -24,8 +24,8 @@ fn two() -> Difference {
 
 #[test]
 fn terms_add_up_to_the_difference_of_fuel() {
-    let of = two();
-    let picture = difference_bars(&of);
+    let difference = two();
+    let picture = difference_bars(&difference);
     check(&picture);
     let (fuel, terms) = picture.table.rows.split_last().expect("rows");
     for column in 1..7 {
@@ -37,8 +37,8 @@ fn terms_add_up_to_the_difference_of_fuel() {
         );
     }
     let (a, b) = (
-        of.fuel_kj[0] / 32_000.0 / 11.0 * 100.0,
-        of.fuel_kj[1] / 31_500.0 / 10.9 * 100.0,
+        difference.fuel_kj[0] / 32_000.0 / 11.0 * 100.0,
+        difference.fuel_kj[1] / 31_500.0 / 10.9 * 100.0,
     );
     assert!((numbers(&fuel[6]) - (b - a)).abs() < 1e-4);
 }
@@ -76,10 +76,14 @@ fn less_goes_left_of_zero_and_more_goes_right() {
 }
 
 #[test]
-fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
-    let mut of = two();
-    of.fuel_kj[1] += 50.0;
-    assert!(difference_bars(&of).svg.contains("Not accounted for"));
+fn missing_terms_are_named_and_an_empty_picture_is_valid() {
+    let mut difference = two();
+    difference.fuel_kj[1] += 50.0;
+    assert!(
+        difference_bars(&difference)
+            .svg
+            .contains("Not accounted for")
+    );
     assert!(!difference_bars(&two()).svg.contains("Not accounted for"));
     check(&difference_bars(&Difference::default()));
     let same = Difference {

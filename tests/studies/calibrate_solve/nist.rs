@@ -28,7 +28,7 @@ fn holds(truth: &Certified, f: fn(&[f64], f64) -> f64) {
         assert_eq!(found.end, FitEnd::Converged);
         for (k, (value, deviation)) in truth.values.iter().zip(truth.deviations).enumerate() {
             let error = worth.standard_error[k].expect("identified");
-            // Derivatives are differences, so a minimum is met to a small part of what it is known by.
+            // Derivatives are finite differences, so the minimum is found to a small part of its standard deviation.
             assert!(
                 (found.values[k] - value).abs() <= 1e-4 * deviation,
                 "b{} from {starts:?}: {} {value}",

@@ -7,7 +7,7 @@ use cvtcycle::config::ProblemKind;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::store::{Exported, Format, export};
 use cvtcycle::study::store::{Kind, Rows, Values};
-use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
+use cvtcycle::study::store::{ParquetFile, Study, StudyDir, sha256};
 use tempfile::TempDir;
 
 use crate::parts::write_runs;

@@ -1,4 +1,4 @@
-//! A CVT that is driven by a torque, step by step.
+//! Steps of a CVT driven by a torque.
 
 use std::sync::Arc;
 
@@ -7,12 +7,12 @@ use cvtcycle_model::drive::{Forward, Given, State};
 use cvtcycle_model::thermal::BELT;
 use cvtcycle_model::transmission::Transmission;
 
-use super::driving::{Driven, MODEL_STEP_S, not_begun};
-use super::{Asked, Refusal, Unit, show};
+use super::driving::{Driven, MODEL_STEP_S, not_started};
+use super::{Refusal, StepInputs, Unit, set_outputs};
 use crate::variables::{CvtResult, Get, forward};
 
 impl Unit {
-    /// Begins with the speed of the wheels, the oil in the sump and the engine, rad/s and K.
+    /// Starts from wheel speed, rad/s, and temperatures of sump and engine, K.
     pub(crate) fn begin_forward(&mut self, start: [f64; 3]) {
         let [wheel_rad_s, oil_k, _] = start;
         self.saved.drive = Some(Driven {
@@ -25,14 +25,14 @@ impl Unit {
         });
     }
 
-    /// Drives a step.
-    pub(crate) fn drive_forward(&mut self, asked: &Asked) -> Result<(), Refusal> {
-        let driven = self.saved.drive.as_mut().ok_or_else(not_begun)?;
-        let [engine_nm, wheel_rad_s, ratio, sump_k, engine_k] = asked.inputs;
+    /// Computes a step.
+    pub(crate) fn drive_forward(&mut self, step: &StepInputs) -> Result<(), Refusal> {
+        let driven = self.saved.drive.as_mut().ok_or_else(not_started)?;
+        let [engine_nm, wheel_rad_s, ratio, sump_k, engine_k] = step.inputs;
         let manual = || Refusal::new(WrongTransmission, "a manual box is not driven by a torque");
         let mut drive = Forward::new(&self.car, driven.state).ok_or_else(manual)?;
-        // A longer step is divided; torque and heat are then those of its last part.
-        let parts = (asked.dt_s / MODEL_STEP_S).ceil().max(1.0);
+        // Divides a longer step. Torque and heat are those of its last part.
+        let parts = (step.dt_s / MODEL_STEP_S).ceil().max(1.0);
         let (from, rise) = (driven.speed, (wheel_rad_s - driven.speed) / parts);
         let mut part = |k: f64| {
             drive.step(&Given {
@@ -41,7 +41,7 @@ impl Unit {
                 ratio,
                 sump_k,
                 engine_k: [engine_k; 2],
-                dt_s: asked.dt_s / parts,
+                dt_s: step.dt_s / parts,
             })
         };
         let mut turned = part(0.0);
@@ -50,7 +50,7 @@ impl Unit {
         }
         driven.state = drive.state();
         driven.speed = wheel_rad_s;
-        Arc::make_mut(&mut driven.steps).push(*asked);
+        Arc::make_mut(&mut driven.steps).push(*step);
         let belt_k = driven.state.heat.node_k[BELT];
         let Transmission::Cvt(cvt) = &self.car.transmission else {
             return Err(manual());
@@ -60,21 +60,21 @@ impl Unit {
             belt_k,
             cvt,
         };
-        let of = |get: &Get| match get {
-            Get::Cvt(of) => Some(of(&result)),
+        let value = |get: &Get| match get {
+            Get::Cvt(output) => Some(output(&result)),
             _ => None,
         };
-        show(
+        set_outputs(
             &self.variables,
             &mut self.saved.values,
             &turned.output.loss_w,
-            of,
+            value,
         );
         Ok(())
     }
 
-    /// What is asked for in a step.
-    pub(super) fn asked_forward(&self) -> [f64; 5] {
+    /// Inputs for the next step.
+    pub(super) fn forward_inputs(&self) -> [f64; 5] {
         [
             forward::TORQUE,
             forward::SPEED,

@@ -1,4 +1,4 @@
-//! A whole car, step by step.
+//! Steps of a whole car.
 
 use std::sync::Arc;
 
@@ -8,55 +8,55 @@ use cvtcycle_model::drive::{Drive, Row, State};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 
-use super::{Refusal, Unit, show};
+use super::{Refusal, Unit, set_outputs};
 use crate::variables::{CarResult, Get, car};
 
-/// Longest step of the model, s, as in a run; a longer communication step is divided.
+/// Maximum step of the model, s, as in a run. Longer communication steps are divided.
 pub(super) const MODEL_STEP_S: f64 = 1.0;
 
-/// Inputs of a step, of any kind of unit.
+/// Number of inputs of a step, the same for all kinds of unit.
 pub(crate) const INPUTS: usize = 5;
 
-/// One step that was asked for: all that the state after it follows from.
+/// Inputs of one step. The following state depends on nothing else.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Asked {
+pub(crate) struct StepInputs {
     pub from_s: f64,
     pub dt_s: f64,
-    /// Of a car: speed, grade, ambient, gear. Of a CVT: torque, speed, ratio, oil, engine.
+    /// Car: speed, grade, ambient, gear. CVT: torque, speed, ratio, oil, engine.
     pub inputs: [f64; INPUTS],
 }
 
-/// A drive so far.
+/// Drive up to the current time.
 #[derive(Clone, Debug)]
 pub(crate) struct Driven {
     pub(super) state: State,
     pub(super) fuel_kg: f64,
     pub(super) distance_m: f64,
-    /// Speed at its end: of a car m/s, of the wheels of a CVT rad/s.
+    /// Final speed: of the car in m/s, of the wheels of a CVT in rad/s.
     pub(super) speed: f64,
-    /// What it began with: speed, ambient and temperature of a car, m/s and K; speed, oil and engine of a CVT, rad/s and K.
+    /// Initial values: speed, ambient and temperature of a car, m/s and K; speed, oil and engine of a CVT, rad/s and K.
     pub start: [f64; 3],
-    /// All steps since the start; shared with saved states until one of them goes on.
-    pub steps: Arc<Vec<Asked>>,
+    /// All steps since the start, copied on write because saved states share them.
+    pub steps: Arc<Vec<StepInputs>>,
 }
 
-/// A step before its time.
-pub(super) fn not_begun() -> Refusal {
+/// Error for a step before initialization.
+pub(super) fn not_started() -> Refusal {
     Refusal::new(Conflict, "a step before the end of initialization")
 }
 
 impl Unit {
-    /// Begins a drive with speed, ambient and temperature of all parts.
+    /// Starts a drive with speed, ambient and temperature of all parts, m/s and K.
     pub(crate) fn begin(&mut self, start: [f64; 3]) -> Result<(), Refusal> {
         let [speed_m_s, ambient_k, start_k] = start;
-        let lowest_k = car::AMBIENT_K.0;
+        let lowest_k = car::AMBIENT_RANGE_K.0;
         if start_k < lowest_k {
             let name = "T_start_VEH_PNT_K";
             let message = format!(
                 "{name} = {start_k} is out of range: {lowest_k} to {} K, or 0",
-                car::START_K.1
+                car::START_RANGE_K.1
             );
-            return Err(Refusal::new(OutOfRange, message).of(name));
+            return Err(Refusal::new(OutOfRange, message).about(name));
         }
         self.car = self.setup.car(ambient_k);
         let state = State::at(start_k);
@@ -77,22 +77,22 @@ impl Unit {
             start,
             steps: Arc::default(),
         });
-        self.show_row(&row);
+        self.set_row_outputs(&row);
         Ok(())
     }
 
-    /// Drives a step.
-    pub(crate) fn drive(&mut self, asked: &Asked) -> Result<(), Refusal> {
+    /// Computes a step.
+    pub(crate) fn drive(&mut self, step: &StepInputs) -> Result<(), Refusal> {
         let Some(driven) = &mut self.saved.drive else {
-            return Err(not_begun());
+            return Err(not_started());
         };
-        let [speed_m_s, grade, ambient_k, gear, _] = asked.inputs;
+        let [speed_m_s, grade, ambient_k, gear, _] = step.inputs;
         if (ambient_k - self.car.ambient_k).abs() > 0.0 {
             self.car = self.setup.car(ambient_k);
         }
         let interval = Interval {
-            start_s: asked.from_s,
-            end_s: asked.from_s + asked.dt_s,
+            start_s: step.from_s,
+            end_s: step.from_s + step.dt_s,
             start_speed_m_s: driven.speed,
             end_speed_m_s: speed_m_s,
             phase: 0,
@@ -120,14 +120,14 @@ impl Unit {
         driven.fuel_kg = fuel_by_step;
         driven.distance_m += distance_m;
         driven.speed = speed_m_s;
-        Arc::make_mut(&mut driven.steps).push(*asked);
-        row.fuel_kg_s = fuel_kg / asked.dt_s;
+        Arc::make_mut(&mut driven.steps).push(*step);
+        row.fuel_kg_s = fuel_kg / step.dt_s;
         row.flags = flags;
-        self.show_row(&row);
+        self.set_row_outputs(&row);
         Ok(())
     }
 
-    fn show_row(&mut self, row: &Row) {
+    fn set_row_outputs(&mut self, row: &Row) {
         let Some(driven) = &self.saved.drive else {
             return;
         };
@@ -137,12 +137,12 @@ impl Unit {
             distance_m: driven.distance_m,
             car: &self.car,
         };
-        show(
+        set_outputs(
             &self.variables,
             &mut self.saved.values,
             &row.loss_w,
             |get| match get {
-                Get::Car(of) => Some(of(&result)),
+                Get::Car(output) => Some(output(&result)),
                 _ => None,
             },
         );

@@ -1,4 +1,4 @@
-//! A unit that is instantiated: inputs in, steps, outputs out, states saved and taken back.
+//! An instantiated unit: inputs, steps, outputs, saved states.
 
 mod driven_box;
 mod driving;
@@ -19,37 +19,37 @@ use cvtcycle_model::transmission::component::ByComponent;
 use crate::UNIT_FILE;
 use crate::variables::{self, Causality, Get, Kind, Variable, car, forward};
 use driving::Driven;
-pub(crate) use driving::{Asked, INPUTS};
+pub(crate) use driving::{INPUTS, StepInputs};
 
-/// Shortest and longest communication step, s; the shortest is that of a run.
+/// Minimum and maximum communication step, s. The minimum equals that of a run.
 pub const STEP_S: (f64, f64) = (0.01, 3600.0);
-/// Farthest time from 0, s: beyond it a short step would lose its digits.
-pub(crate) const FAR_S: f64 = 1e9;
-/// Part of a step by which its beginning may differ from the end of the one before.
-const NEAR: f64 = 1e-6;
+/// Maximum absolute time, s. Beyond it a short step would lose digits.
+pub(crate) const MAX_TIME_S: f64 = 1e9;
+/// Relative tolerance between the start of a step and the end of the previous one.
+const STEP_TOLERANCE: f64 = 1e-6;
 
-/// Whether a step may begin at a time and be of a length, s.
-pub(crate) fn is_step(from_s: f64, dt_s: f64) -> bool {
+/// Checks start and length of a step, s.
+pub(crate) fn is_valid_step(from_s: f64, dt_s: f64) -> bool {
     let (least, most) = STEP_S;
-    // The difference of two times has their rounding.
-    from_s.abs() <= FAR_S && least * (1.0 - NEAR) <= dt_s && dt_s <= most
+    // Subtracting two times leaves their rounding error.
+    from_s.abs() <= MAX_TIME_S && least * (1.0 - STEP_TOLERANCE) <= dt_s && dt_s <= most
 }
 
-/// A call that is refused; the unit is as it was before it.
+/// Refused call; the unit keeps its previous state.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// Whether the results of the call count all the same.
+    /// True for a warning: the results of the call are valid.
     pub warns: bool,
-    /// Of what kind the problem is.
+    /// Kind of problem.
     pub kind: ProblemKind,
-    /// Variable that it is about; may be empty.
+    /// Variable concerned; may be empty.
     pub variable: String,
-    /// What is wrong, the value, what is allowed.
+    /// Message with value and allowed range.
     pub message: String,
 }
 
 impl Refusal {
-    /// Of a call that has done nothing.
+    /// Creates an error of a call without effect.
     pub fn new(kind: ProblemKind, message: impl Into<String>) -> Self {
         Refusal {
             warns: false,
@@ -59,9 +59,9 @@ impl Refusal {
         }
     }
 
-    /// The same about a variable.
+    /// Adds the variable.
     #[must_use]
-    pub fn of(mut self, variable: &str) -> Self {
+    pub fn about(mut self, variable: &str) -> Self {
         variable.clone_into(&mut self.variable);
         self
     }
@@ -73,37 +73,37 @@ impl From<Problems> for Refusal {
         let kind = problems.iter().next().map(|problem| problem.kind);
         for problem in problems.iter() {
             let place = problem.place.file_name().unwrap_or_default();
-            // Writing into a text cannot fail.
+            // Writing to a string is infallible.
             let _ = write!(message, "{place}: {}; {} ", problem.message, problem.hint);
         }
         Refusal::new(kind.unwrap_or_default(), one_line(message.trim_end()))
     }
 }
 
-/// What a unit has besides its car: copied by a saved state.
+/// State of a unit apart from its car, copied when saved.
 #[derive(Clone, Debug)]
 pub struct Saved {
     pub(crate) values: Vec<f64>,
     pub(crate) time_s: f64,
     pub(crate) drive: Option<Driven>,
-    /// Whether the inputs have changed since the outputs were computed; of operating points.
+    /// True if inputs of an operating point changed since the outputs were computed.
     stale: bool,
 }
 
-/// A unit.
+/// Instantiated unit.
 #[derive(Debug)]
 pub struct Unit {
     kind: Kind,
     setup: Setup,
     bench: Option<Bench>,
-    /// The car at the ambient of the last step.
+    /// Car at the ambient temperature of the last step.
     car: Car,
     variables: Vec<Variable>,
     saved: Saved,
 }
 
 impl Unit {
-    /// The unit of a car.
+    /// Creates the unit of a car.
     #[must_use]
     pub fn new(kind: Kind, setup: Setup) -> Self {
         let variables = variables::variables(kind, setup.transmission());
@@ -123,10 +123,9 @@ impl Unit {
         }
     }
 
-    /// The unit whose resources are in a folder, where it is the one that a description names by its token.
-    ///
+    /// Opens the unit whose resources are in a folder, and checks the token of its description.
     /// # Errors
-    /// A file that is missing or damaged, a description of another unit, all problems of the car.
+    /// Missing or damaged files, a description of another unit, all problems of the car.
     pub fn open(resources: &Path, token: &str) -> Result<Self, Refusal> {
         let path = resources.join(UNIT_FILE);
         let bytes = bounded::read_file(&path, bounded::CHECKSUMS).map_err(|error| {
@@ -156,7 +155,7 @@ impl Unit {
         Ok(Unit::new(kind, setup))
     }
 
-    /// Its variables; the value reference of each is its place.
+    /// Variables; the value reference is the index.
     #[must_use]
     pub fn variables(&self) -> &[Variable] {
         &self.variables
@@ -169,9 +168,8 @@ impl Unit {
     }
 
     /// Value of a variable.
-    ///
     /// # Errors
-    /// There is no such variable; an operating point without a solution.
+    /// Unknown variable; operating point without a solution.
     pub fn get(&mut self, reference: u32) -> Result<f64, Refusal> {
         self.variable(reference)?;
         if self.kind == Kind::Losses && self.saved.stale {
@@ -183,18 +181,16 @@ impl Unit {
         }
     }
 
-    /// Whether a variable is a whole number.
-    ///
+    /// True for an integer variable.
     /// # Errors
-    /// There is no such variable.
+    /// Unknown variable.
     pub fn is_whole(&self, reference: u32) -> Result<bool, Refusal> {
         Ok(self.variable(reference)?.whole)
     }
 
     /// Sets an input, or a parameter before the start.
-    ///
     /// # Errors
-    /// There is no such variable, it is not to be set, or the value is out of its range.
+    /// Unknown variable, a variable that cannot be set, or a value out of range.
     pub fn set(&mut self, reference: u32, value: f64) -> Result<(), Refusal> {
         let Variable {
             name,
@@ -210,17 +206,17 @@ impl Unit {
             Causality::Parameter => {
                 let message =
                     format!("{name} is a parameter: set it before the end of initialization");
-                return Err(Refusal::new(Conflict, message).of(name));
+                return Err(Refusal::new(Conflict, message).about(name));
             }
             Causality::Independent | Causality::Output => {
                 let message = format!("{name} is computed: it cannot be set");
-                return Err(Refusal::new(Conflict, message).of(name));
+                return Err(Refusal::new(Conflict, message).about(name));
             }
         }
         let fits = *low <= value && value <= *high && (!whole || value.fract().abs() <= 0.0);
         if !fits {
             let message = format!("{name} = {value} is out of range: {low} to {high} {unit}");
-            return Err(Refusal::new(OutOfRange, message).of(name));
+            return Err(Refusal::new(OutOfRange, message).about(name));
         }
         self.saved.values[reference as usize] = value;
         self.saved.stale = true;
@@ -239,15 +235,14 @@ impl Unit {
     }
 
     /// Ends initialization at a time, s.
-    ///
     /// # Errors
-    /// A time that is no number, a start temperature between 0 and 233.15 K, an operating point without a solution.
+    /// Non-finite time, start temperature between 0 and 233.15 K, operating point without a solution.
     pub fn start(&mut self, time_s: f64) -> Result<(), Refusal> {
-        let is_near = time_s.abs() <= FAR_S;
+        let is_near = time_s.abs() <= MAX_TIME_S;
         if !is_near {
             let message = format!(
-                "the start time {time_s} s is out of range: {} to {FAR_S} s",
-                -FAR_S
+                "the start time {time_s} s is out of range: {} to {MAX_TIME_S} s",
+                -MAX_TIME_S
             );
             return Err(Refusal::new(OutOfRange, message));
         }
@@ -267,20 +262,19 @@ impl Unit {
         self.begin([values[car::SPEED], ambient_k, start_k])
     }
 
-    /// Goes on by a communication step from a time, s.
-    ///
+    /// Advances by a communication step from a time, s.
     /// # Errors
-    /// A step that is too short or too long, or does not begin where the last one ended; nothing has been done. As a warning: an operating
+    /// A step that is too short or too long, or does not begin where the last one ended; it has no effect. A warning for an operating
     /// point without a solution.
     pub fn step(&mut self, from_s: f64, dt_s: f64) -> Result<(), Refusal> {
         let (least, most) = STEP_S;
-        if !is_step(self.saved.time_s, dt_s) {
+        if !is_valid_step(self.saved.time_s, dt_s) {
             let message =
                 format!("a communication step of {dt_s} s is out of range: {least} to {most} s");
             return Err(Refusal::new(OutOfRange, message));
         }
         let at_s = self.saved.time_s;
-        let follows = (from_s - at_s).abs() <= NEAR * dt_s;
+        let follows = (from_s - at_s).abs() <= STEP_TOLERANCE * dt_s;
         if !follows {
             let message = format!("the step begins at {from_s} s, the last one ended at {at_s} s");
             return Err(Refusal::new(Conflict, message));
@@ -292,10 +286,10 @@ impl Unit {
             }),
             Kind::Car | Kind::Cvt => {
                 let inputs = match self.kind {
-                    Kind::Cvt => self.asked_forward(),
-                    _ => self.asked_car(),
+                    Kind::Cvt => self.forward_inputs(),
+                    _ => self.car_inputs(),
                 };
-                self.go(&Asked {
+                self.advance(&StepInputs {
                     from_s,
                     dt_s,
                     inputs,
@@ -307,16 +301,16 @@ impl Unit {
         solved
     }
 
-    /// Drives a step of a unit that has some.
-    pub(crate) fn go(&mut self, asked: &Asked) -> Result<(), Refusal> {
+    /// Advances a unit that has steps.
+    pub(crate) fn advance(&mut self, step: &StepInputs) -> Result<(), Refusal> {
         match self.kind {
-            Kind::Cvt => self.drive_forward(asked),
-            _ => self.drive(asked),
+            Kind::Cvt => self.drive_forward(step),
+            _ => self.drive(step),
         }
     }
 
-    /// What is asked of a car in a step.
-    fn asked_car(&self) -> [f64; INPUTS] {
+    /// Inputs of a car for the next step.
+    fn car_inputs(&self) -> [f64; INPUTS] {
         let value = |place: usize| self.saved.values[place];
         let has_gears = self
             .variables
@@ -332,16 +326,15 @@ impl Unit {
         ]
     }
 
-    /// The state.
+    /// Copies the state.
     #[must_use]
     pub fn save(&self) -> Saved {
         self.saved.clone()
     }
 
-    /// Takes a state back.
-    ///
+    /// Restores a state.
     /// # Errors
-    /// It is of another unit.
+    /// A state of another unit.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Refusal> {
         if saved.values.len() != self.variables.len() {
             return Err(Refusal::new(Conflict, "the state is of another unit"));
@@ -350,7 +343,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Back to before initialization.
+    /// Returns to the state before initialization.
     pub fn reset(&mut self) {
         let values = self.variables.iter().map(|variable| variable.start);
         self.saved = Saved {
@@ -370,8 +363,8 @@ impl Unit {
     }
 }
 
-/// Puts outputs in place; one that has no value now (a ratio with the engine off) keeps its last one.
-fn show(
+/// Sets outputs. An undefined one (the ratio with the engine off) keeps its last value.
+fn set_outputs(
     variables: &[Variable],
     values: &mut [f64],
     loss_w: &ByComponent<f64>,

@@ -1,15 +1,15 @@
-//! The transmission at an operating point.
+//! Operating points of a transmission.
 
 use cvtcycle_config::ProblemKind::Failed;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::transmission::component::ByComponent;
 
-use super::{Refusal, Unit, show};
+use super::{Refusal, Unit, set_outputs};
 use crate::variables::{Get, LossResult, point};
 
 impl Unit {
-    /// Solves the operating point of the inputs.
+    /// Solves the operating point of the current inputs.
     pub(super) fn solve(&mut self) -> Result<(), Refusal> {
         let Some(bench) = &self.bench else {
             return Ok(());
@@ -34,17 +34,17 @@ impl Unit {
                 let answer = bench.solve(&point);
                 LossResult { point, answer }
             }
-            false => at_rest(bench, &asked, wanted_nm),
+            false => shaft_at_rest(bench, &asked, wanted_nm),
         };
         self.saved.stale = false;
         let solved = result.answer.total_nm().is_finite();
         let loss_w = result.answer.loss_nm.map(|nm| nm * asked.input_rad_s);
-        show(
+        set_outputs(
             &self.variables,
             &mut self.saved.values,
             &loss_w,
             |get| match get {
-                Get::Losses(of) => Some(of(&result)),
+                Get::Losses(output) => Some(output(&result)),
                 _ => None,
             },
         );
@@ -61,8 +61,8 @@ impl Unit {
     }
 }
 
-/// A box whose input shaft does not turn: it loses no power, and passes the torque on.
-fn at_rest(bench: &Bench, asked: &BenchPoint, wanted_nm: f64) -> LossResult {
+/// Result for an input shaft at rest: no power loss, torque passed on.
+fn shaft_at_rest(bench: &Bench, asked: &BenchPoint, wanted_nm: f64) -> LossResult {
     let turning = BenchPoint {
         input_rad_s: 1.0,
         ..*asked

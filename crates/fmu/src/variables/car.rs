@@ -13,19 +13,19 @@ pub const GRADE: usize = 2;
 pub const AMBIENT: usize = 3;
 /// Temperature at the start, K.
 pub const START: usize = 4;
-/// Gear, of a manual box.
+/// Gear of a manual box.
 pub const GEAR: usize = 5;
 
-/// Steepest road of a cycle, as its table may have it.
-const STEEPEST: f64 = 0.35;
+/// Maximum grade, as in tables of cycles.
+const MAX_GRADE: f64 = 0.35;
 /// Ambient temperatures of a run, K.
-pub(crate) const AMBIENT_K: (f64, f64) = (233.15, 333.15);
-/// Ambient where none is set, K: that of a run.
+pub(crate) const AMBIENT_RANGE_K: (f64, f64) = (233.15, 333.15);
+/// Default ambient, K, as in a run.
 pub(crate) const START_AMBIENT_K: f64 = 298.15;
-/// 300 km/h, the highest speed of a cycle, m/s.
-const FASTEST_M_S: f64 = 300.0 / 3.6;
-/// Highest temperature of all parts at the start, K; 0 for the ambient.
-pub(crate) const START_K: (f64, f64) = (0.0, 403.15);
+/// Maximum speed, m/s: that of a cycle, 300 km/h.
+const MAX_SPEED_M_S: f64 = 300.0 / 3.6;
+/// Range of the initial temperature of all parts, K; 0 means the ambient.
+pub(crate) const START_RANGE_K: (f64, f64) = (0.0, 403.15);
 
 /// Adds the rows for a transmission.
 pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
@@ -35,25 +35,25 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
             "v_VEH_PNT_in_mps",
             "m/s",
             0.0,
-            (0.0, FASTEST_M_S),
+            (0.0, MAX_SPEED_M_S),
             "vehicle speed at the end of the coming step; linear from that of the step before. A master that sets the speed at the beginning of the step drives the same trace one step later",
         ),
         input(
             "grade_VEH_PNT_in",
             "1",
             0.0,
-            (-STEEPEST, STEEPEST),
+            (-MAX_GRADE, MAX_GRADE),
             "slope of the road in the coming step, rise over run",
         ),
         input(
             "T_AMB_PNT_in_K",
             "K",
             START_AMBIENT_K,
-            AMBIENT_K,
+            AMBIENT_RANGE_K,
             "ambient temperature",
         ),
         Variable {
-            range: START_K,
+            range: START_RANGE_K,
             ..row(
                 "T_start_VEH_PNT_K",
                 Parameter,
@@ -87,7 +87,7 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
 
 type CarOutput<'f> = dyn FnMut(&str, &'static str, fn(&CarResult) -> f64, &str) + 'f;
 
-/// Means over the last step; temperatures are those at its end. A unit of `""` marks a whole number.
+/// Means over the last step, and temperatures at its end. The unit `""` marks an integer.
 fn outputs(is_cvt: bool, output: &mut CarOutput) {
     motion(output);
     ratio(is_cvt, output);

@@ -1,4 +1,4 @@
-//! The variables of a CVT that is driven by a torque.
+//! Variables of a CVT driven by a torque.
 
 use cvtcycle_model::lubricant::VALID_K;
 use cvtcycle_model::transmission::Transmission;
@@ -10,17 +10,17 @@ use super::{Causality, CvtResult, Get, Variable, car, flag_words, input, mechani
 pub const TORQUE: usize = 1;
 /// Speed of the wheels, rad/s.
 pub const SPEED: usize = 2;
-/// Belt ratio that is asked for.
+/// Requested belt ratio.
 pub const RATIO: usize = 3;
 /// Oil in the sump, K.
 pub const OIL: usize = 4;
 /// Coolant and engine oil, K.
 pub const COOLANT: usize = 5;
 
-/// Warm engine, K.
+/// Temperature of a warm engine, K.
 const WARM_K: f64 = 363.15;
 
-/// Adds the rows for a transmission; a manual box has no such unit.
+/// Adds the rows for a transmission. A manual box has no such unit.
 pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
     let Transmission::Cvt(cvt) = transmission else {
         return;
@@ -58,7 +58,7 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
             "T_cool_ENG_PNT_in_K",
             "K",
             WARM_K,
-            (car::AMBIENT_K.0, car::START_K.1),
+            (car::AMBIENT_RANGE_K.0, car::START_RANGE_K.1),
             "coolant and oil of the engine: its idle speed, its drag and its full load",
         ),
     ]);
@@ -115,7 +115,7 @@ fn power(output: &mut CvtOutput) {
     );
 }
 
-/// A unit of `""` marks a whole number.
+/// The unit `""` marks an integer.
 fn inside(output: &mut CvtOutput) {
     output(
         "ratio_AT",

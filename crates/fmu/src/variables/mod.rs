@@ -1,4 +1,4 @@
-//! The variables of a unit, each a row: name, causality, unit, start, range, meaning, and where its value comes from.
+//! Variables of a unit. A row has name, causality, unit, start, range, meaning, and the source of its value.
 //!
 //! Names follow the pattern of Japan's METI guideline for plant models, as TRAMI's transmission models use it: quantity, part (`ENG` engine,
 //! `FW` flywheel, `DS` drive shaft, `AT` transmission, `HYD` hydraulics, `GB` gearbox, `VEH` vehicle), `PNT` for a plant, direction, unit.
@@ -14,38 +14,38 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::{ByComponent, Component};
 use cvtcycle_model::transmission::cvt::Cvt;
 
-/// What a unit simulates.
+/// Kind of unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A whole car that follows a speed, from the wheels back to the fuel.
+    /// Whole car that follows a speed, from the wheels back to the fuel.
     Car,
-    /// The losses of its transmission at an operating point, with the launch device locked.
+    /// Losses of a transmission at an operating point, with the launch device locked.
     Losses,
-    /// Its CVT with launch device and ratio rate, driven by a torque.
+    /// CVT with launch device and ratio rate, driven by a torque.
     Cvt,
 }
 
 impl Kind {
-    /// Names, as the command line has them.
+    /// Names on the command line.
     pub const NAMES: [(&'static str, Kind); 3] = [
         ("car", Kind::Car),
         ("losses", Kind::Losses),
         ("cvt", Kind::Cvt),
     ];
 
-    /// Whether a car with this transmission has such a unit.
+    /// True if a car with this transmission can be such a unit.
     #[must_use]
     pub fn fits(self, transmission: &Transmission) -> bool {
         self != Kind::Cvt || transmission.is_cvt()
     }
 
-    /// Its name.
+    /// Name on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize].0
     }
 
-    /// What it is, one phrase.
+    /// Description in a phrase.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -69,7 +69,7 @@ pub enum Causality {
     Output,
 }
 
-/// What the outputs of a car come from.
+/// Source of the outputs of a car.
 #[derive(Clone, Copy, Debug)]
 pub struct CarResult<'a> {
     /// The last step.
@@ -82,42 +82,42 @@ pub struct CarResult<'a> {
     pub car: &'a Car,
 }
 
-/// What the outputs of an operating point come from.
+/// Source of the outputs of an operating point.
 #[derive(Clone, Copy, Debug)]
 pub struct LossResult {
-    /// What was asked for.
+    /// Requested point.
     pub point: BenchPoint,
-    /// The bench's answer.
+    /// Losses and speeds computed there.
     pub answer: BenchAnswer,
 }
 
-/// What the outputs of a CVT that is driven by a torque come from.
+/// Source of the outputs of a CVT driven by a torque.
 #[derive(Clone, Copy, Debug)]
 pub struct CvtResult<'a> {
     /// The last step.
     pub turned: &'a Turned,
-    /// Temperature of the belt at its end, K.
+    /// Belt temperature at the end of the step, K.
     pub belt_k: f64,
     /// The box.
     pub cvt: &'a Cvt,
 }
 
-/// Where the value of a variable comes from.
+/// Source of a variable's value.
 #[derive(Clone, Copy, Debug)]
 pub enum Get {
-    /// It is kept as it was set.
-    Kept,
-    /// From a step of the car.
+    /// Stored value.
+    Stored,
+    /// Computed from a step of the car.
     Car(fn(&CarResult) -> f64),
-    /// From an operating point.
+    /// Computed from an operating point.
     Losses(fn(&LossResult) -> f64),
-    /// From a step of the CVT that is driven by a torque.
+    /// Computed from a step of the CVT driven by a torque.
     Cvt(fn(&CvtResult) -> f64),
-    /// Loss power of a component, W.
+    /// Power loss of a component, W.
     Loss(Component),
 }
 
-/// One variable; its value reference is its place in the table.
+/// Variable; its value reference is its index in the table.
 #[derive(Clone, Debug)]
 pub struct Variable {
     /// Name.
@@ -126,15 +126,15 @@ pub struct Variable {
     pub causality: Causality,
     /// Unit as in [`UNITS`]; `1` for none.
     pub unit: &'static str,
-    /// Whether it is a whole number.
+    /// True for an integer.
     pub whole: bool,
-    /// Value at the start, of inputs and parameters.
+    /// Start value of an input or parameter.
     pub start: f64,
-    /// Least and most that an input or parameter may be.
+    /// Minimum and maximum of an input or parameter.
     pub range: (f64, f64),
     /// Meaning.
     pub description: String,
-    /// Where its value comes from.
+    /// Source of the value.
     pub get: Get,
 }
 
@@ -152,7 +152,7 @@ pub const UNITS: [(&str, [i8; 5]); 10] = [
     ("kg/s", [1, 0, -1, 0, 0]),
 ];
 
-/// Any number.
+/// Unbounded range.
 const ANY: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
 fn row(name: &str, causality: Causality, unit: &'static str, description: &str) -> Variable {
     Variable {
@@ -163,7 +163,7 @@ fn row(name: &str, causality: Causality, unit: &'static str, description: &str) 
         start: 0.0,
         range: ANY,
         description: description.to_owned(),
-        get: Get::Kept,
+        get: Get::Stored,
     }
 }
 
@@ -181,7 +181,7 @@ fn input(
     }
 }
 
-/// The variables of a kind of unit for a transmission.
+/// Variables of a kind of unit for a transmission.
 #[must_use]
 pub fn variables(kind: Kind, transmission: &Transmission) -> Vec<Variable> {
     let mut all = vec![row("time", Causality::Independent, "s", "simulation time")];
@@ -206,7 +206,7 @@ pub fn variables(kind: Kind, transmission: &Transmission) -> Vec<Variable> {
     all
 }
 
-/// What the bits of the flags are.
+/// Meaning of the bits of the flags.
 fn flag_words() -> String {
     let names = Flags::NAMES.iter();
     let bits = names.map(|(flag, name)| format!("{} {name}", flag.0.trailing_zeros()));
@@ -215,7 +215,7 @@ fn flag_words() -> String {
     format!("states and departures from validity, bits from the lowest: {bits}")
 }
 
-/// All losses but that of the pump.
+/// Sum of all losses except the pump's.
 fn mechanical(loss: &ByComponent<f64>) -> f64 {
     loss.iter().sum::<f64>() - loss[Component::Pump]
 }

@@ -1,4 +1,4 @@
-//! The variables of an operating point.
+//! Variables of an operating point.
 
 use cvtcycle_model::lubricant::VALID_K;
 use cvtcycle_model::rig::solvable_ratios;
@@ -15,7 +15,7 @@ pub const TORQUE: usize = 2;
 pub const OIL: usize = 3;
 /// Belt ratio or gear.
 pub const RATIO: usize = 4;
-/// Secondary pressure, Pa, of a CVT.
+/// Secondary pressure of a CVT, Pa.
 pub const PRESSURE: usize = 5;
 
 /// Adds the rows for a transmission.
@@ -84,7 +84,7 @@ pub(super) fn rows(transmission: &Transmission, all: &mut Vec<Variable>) {
 
 type LossOutput<'f> = dyn FnMut(&str, &'static str, fn(&LossResult) -> f64, &str) + 'f;
 
-/// Of the operating point that the inputs name. A unit of `""` marks a whole number.
+/// Results at the operating point of the inputs. The unit `""` marks an integer.
 fn outputs(is_cvt: bool, output: &mut LossOutput) {
     output(
         "trq_DS_PNT_out_Nm",

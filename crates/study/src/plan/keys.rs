@@ -14,7 +14,8 @@ pub(super) const MAX_IN_RANGE: i64 = 10_000;
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
 
 /// A plan: its head and its factors.
-pub const PLAN: Table = Table::from_tables(&[StudyKeys::TABLE, FactorKeys::TABLE.repeated(Repeat::List)]);
+pub const PLAN: Table =
+    Table::from_tables(&[StudyKeys::TABLE, FactorKeys::TABLE.repeated(Repeat::List)]);
 
 keys! {
     /// Keys of `[study]`.

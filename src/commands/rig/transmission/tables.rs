@@ -14,16 +14,16 @@ use super::RigPlan;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// Speed at which the split is shown, rpm: that of the transients of thesis 5.3.2.
+/// Speed of the table of components, rpm: that of the transients of thesis 5.3.2.
 const SPLIT_RPM: f64 = 2500.0;
-/// Ratio, speeds in rpm, and totals in Nm that thesis 5.3.1 prints.
+/// Totals printed in thesis 5.3.1: ratio, two speeds in rpm, their torques in Nm.
 const PRINTED: [(&str, f64, f64, f64, f64); 2] = [
     ("low", 1000.0, 4000.0, 8.5, 13.0),
     ("high", 2000.0, 4000.0, 9.0, 13.0),
 ];
-/// Bulk oil of these totals, degC, with the rounding errors of its conversion.
+/// Bulk oil temperatures of these totals, degC, widened by the rounding of the conversion.
 const PRINTED_DEGC: std::ops::RangeInclusive<f64> = 25.0 - 1e-6..=95.0 + 1e-6;
-/// Ratio, bulk oil in degC and torque loss in Nm of the warm-up that thesis 5.3.2 prints; the first one at the start.
+/// Warm-up printed in thesis 5.3.2: ratio, bulk oil in degC, torque loss in Nm; without temperature at the start.
 const PRINTED_TRANSIENT: [(&str, Option<f64>, f64); 5] = [
     ("low", None, 12.5),
     ("low", Some(80.0), 11.0),
@@ -31,10 +31,10 @@ const PRINTED_TRANSIENT: [(&str, Option<f64>, f64); 5] = [
     ("high", None, 11.0),
     ("high", Some(100.0), 9.25),
 ];
-/// Bulk oil temperatures of the table of transients, degC.
+/// Bulk oil temperatures in the table of transients, degC.
 const SHOWN_DEGC: [f64; 6] = [25.0, 40.0, 60.0, 80.0, 95.0, 100.0];
 
-/// All results for people.
+/// Prints all results.
 pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
     let (setup, c, belt) = (&plan.setup, &plan.conditions, &plan.formulation);
     let (name, title) = (paint.heading(&setup.name), &setup.title);
@@ -76,7 +76,7 @@ pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
     text
 }
 
-/// The tested speed next to [`SPLIT_RPM`].
+/// Tested speed nearest to [`SPLIT_RPM`].
 fn shown_rpm<'a>(sets: impl Iterator<Item = &'a BenchPoint>) -> f64 {
     let distance = |rpm: &f64| (rpm - SPLIT_RPM).abs();
     let nearest = sets
@@ -139,7 +139,7 @@ fn loaded(plan: &RigPlan, points: &[SteadyPoint], at_rpm: f64) -> String {
     if points.is_empty() {
         return String::new();
     }
-    // Of many torques the ends; the figure shows all.
+    // With many torques the table has the first and the last; the figure has all.
     let shown = match plan.points.torques_nm.as_slice() {
         [first, .., last] if plan.points.torques_nm.len() > 8 => vec![*first, *last],
         all => all.to_vec(),

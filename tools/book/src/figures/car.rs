@@ -11,7 +11,7 @@ use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::model::road::{Ambient, Surface};
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     Ok(vec![
         ("engine_fuel", engine(r)),
