@@ -1,4 +1,4 @@
-//! Prices of losses as tables: of each loss, of pairs, of groups.
+//! Tables of the prices of losses: single losses, pairs and groups.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -10,7 +10,7 @@ use crate::table::{Column, write_csv};
 /// A car at an ambient temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct PricedCar<'a> {
-    /// Its numbers, with prices.
+    /// Summary with prices.
     pub run: &'a RunSummary,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
@@ -19,7 +19,7 @@ pub struct PricedCar<'a> {
 /// A price in the whole cycle, or in a group of its phases.
 struct PriceRow<'a> {
     at: PricedCar<'a>,
-    /// Index of the group of phases; none for the whole cycle.
+    /// Index of the group of phases; `None` for the whole cycle.
     phase: Option<usize>,
     name: &'a str,
     loss: Option<&'a LossPrice>,
@@ -27,7 +27,7 @@ struct PriceRow<'a> {
 }
 
 impl PriceRow<'_> {
-    /// Fuel of a saving in the part of the cycle that the row is about.
+    /// Fuel of a saving in the part of the cycle that the row covers, L/100 km.
     fn litres(&self, saving: Option<&Saving>) -> f64 {
         let litres = saving.and_then(|saving| match self.phase {
             None => saving.l_per_100km,
@@ -44,7 +44,7 @@ impl PriceRow<'_> {
         100.0 * self.litres(Some(self.saved)) / fuel.unwrap_or(f64::NAN)
     }
 
-    /// A number of the loss over the whole cycle.
+    /// Evaluates a number of the loss; NaN in rows of a group of phases.
     fn of_cycle(&self, number: fn(&LossPrice) -> Option<f64>) -> f64 {
         let loss = self.loss.filter(|_| self.phase.is_none());
         loss.and_then(number).unwrap_or(f64::NAN)

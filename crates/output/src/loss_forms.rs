@@ -1,4 +1,4 @@
-//! Maps of a whole box by its input torque in the forms of other programs.
+//! Loss maps of a whole box by input torque, in the formats of other programs.
 //!
 //! | form | what it is | source |
 //! |---|---|---|
@@ -16,7 +16,7 @@ use crate::losses::{Axis, LossGrid, bench_point};
 /// Form of a map of a whole box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapForm {
-    /// As a vehicle file can name it.
+    /// Format of the maps named in a vehicle file.
     Csv,
     /// Transmission loss map of VECTO.
     Vtlm,
@@ -35,7 +35,7 @@ impl MapForm {
         ("modelica", MapForm::Modelica),
     ];
 
-    /// Ending of its files.
+    /// File extension.
     #[must_use]
     pub fn ending(self) -> &'static str {
         match self {
@@ -45,7 +45,7 @@ impl MapForm {
         }
     }
 
-    /// Axes of which it has one value only.
+    /// Axes limited to a single value in this format.
     #[must_use]
     pub fn single(self) -> &'static [Axis] {
         match self {
@@ -56,9 +56,9 @@ impl MapForm {
     }
 }
 
-/// Lowest speed of 40 CFR 1037.565(d)(1), rpm, and what intermediate speeds are rounded to.
+/// Lowest speed and rounding step of intermediate speeds by 40 CFR 1037.565(d)(1), rpm.
 const GEM_SPEED_RPM: (f64, f64) = (600.0, 50.0);
-/// Oil of 40 CFR 1037.565(b)(7), degC: middle of the ranges for automatic transmissions and for others.
+/// Oil temperatures of 40 CFR 1037.565(b)(7), degC: middle of the ranges for automatic transmissions and for others.
 const GEM_OIL_DEGC: [f64; 2] = [90.0, 80.0];
 
 /// Speeds (rpm), input torques (Nm) and oil (degC) of 40 CFR 1037.565(d): 600 rpm, the engine's highest speed and three between them to the nearest
@@ -87,7 +87,7 @@ pub fn gem_grid(bench: &Bench) -> [(Axis, Vec<f64>); 3] {
     ]
 }
 
-/// Torque loss at a point of the grid whose torque is that at the input shaft, Nm, and that torque.
+/// Axis values and torque loss, Nm, at a point of a grid over torque at the input shaft.
 fn loss_nm(bench: &Bench, grid: &LossGrid, index: usize) -> ([f64; Axis::COUNT], f64) {
     let asked = grid.at(index);
     let point = bench_point(&asked);
@@ -95,7 +95,7 @@ fn loss_nm(bench: &Bench, grid: &LossGrid, index: usize) -> ([f64; Axis::COUNT],
     (asked, bench.solve(&at_input).total_nm())
 }
 
-/// Writes the map of a whole box over a grid, whose torques are those at the input shaft, in a form that is not [`MapForm::Csv`].
+/// Writes the map of a whole box over a grid of input torques, in a format other than [`MapForm::Csv`].
 ///
 /// # Errors
 /// Those of `out`.
@@ -135,7 +135,7 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
     (0..grid.len()).try_for_each(|index| {
         let asked = grid.at(index);
         let point = bench_point(&asked);
-        // Without load the output shaft turns freely, and the input torque is the loss (1037.565(e)(4), (f)(1)).
+        // An unloaded output shaft turns freely, and the input torque is the loss (1037.565(e)(4), (f)(1)).
         let unloaded = point.output_nm.abs() <= 0.0;
         let point = match unloaded {
             true => point,
@@ -153,7 +153,7 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
 }
 
 fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
-    // Ascending in viscosity: descending in temperature.
+    // Viscosity ascends as temperature descends.
     let mut oil: Vec<f64> = grid.of(Axis::Sump).to_vec();
     oil.sort_by(|a, b| b.total_cmp(a));
     oil.dedup();

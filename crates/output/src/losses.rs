@@ -1,6 +1,6 @@
 //! Component losses at one operating point or over a grid of points, as rows with named columns.
 //!
-//! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
+//! Values of a grid stay in the units of their columns, so that the user's numbers are written back unchanged.
 
 mod grid;
 
@@ -27,15 +27,15 @@ const SCHEMA: u32 = 1;
 /// One solved point.
 #[derive(Clone, Copy, Debug)]
 pub struct LossRow {
-    /// What was asked for, by [`Axis`] in the units of the columns; NaN where not given.
+    /// Requested values, by [`Axis`] in the units of the columns; NaN where not given.
     pub asked: [f64; Axis::COUNT],
-    /// The same in SI units.
+    /// Operating point in SI units.
     pub point: BenchPoint,
-    /// The bench's answer.
+    /// Answer of the rig.
     pub answer: BenchAnswer,
 }
 
-/// The point that values in the units of the columns mean.
+/// Converts requested values from the units of the columns to SI.
 pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
     let value = |axis: Axis| asked[axis as usize];
     let given =
@@ -53,7 +53,7 @@ pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
 }
 
 impl LossGrid {
-    /// Solves all points one after the other.
+    /// Solves the points one after the other.
     pub fn rows<'a>(&'a self, bench: &'a Bench) -> impl Iterator<Item = LossRow> + 'a {
         (0..self.len()).map(|index| LossRow::new(bench, self.at(index)))
     }
@@ -83,7 +83,7 @@ impl LossRow {
         self.point.output_nm * self.answer.output_rad_s
     }
 
-    /// Power out over power in, whichever way it flows; NaN where both shafts drive.
+    /// Power out over power in, in either direction of power flow; NaN where both shafts drive.
     pub fn efficiency(&self) -> f64 {
         let (input, output) = (self.input_w(), self.output_w());
         if input > 0.0 && output >= 0.0 {
@@ -111,7 +111,7 @@ impl LossRow {
         })
     }
 
-    /// How the belt's solution ended, as in the `belt` command; empty without a belt model.
+    /// Status of the belt's solution, as in the `belt` command; empty without a belt model.
     pub fn belt_status(&self) -> &'static str {
         match self.answer.belt {
             None => "",
@@ -127,14 +127,14 @@ impl LossRow {
     }
 }
 
-/// Components that a bench knows: all but the launch clutch, which is locked.
+/// Components that the rig covers: all but the launch clutch, which is locked.
 fn bench_components(transmission: &Transmission) -> Vec<Component> {
     let mut components = transmission.components();
     components.retain(|c| *c != Component::LaunchClutch);
     components
 }
 
-/// Columns for a transmission, in the order in which they are written.
+/// Columns for a transmission, in output order.
 pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     let components = bench_components(transmission);
     let mut list = columns! { LossRow;
@@ -171,14 +171,14 @@ pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     list
 }
 
-/// The losses of a transmission over a grid of points, and what they were computed from.
+/// Losses of a transmission over a grid of points, with their inputs.
 #[derive(Debug)]
 pub struct LossTable {
     /// Checked vehicle.
     pub setup: Setup,
-    /// Its bench.
+    /// Rig with the vehicle's transmission.
     pub bench: Bench,
-    /// The points.
+    /// Operating points.
     pub grid: LossGrid,
     /// Name of the belt model.
     pub formulation: String,
@@ -192,12 +192,12 @@ impl LossTable {
         self.setup.transmission().is_cvt()
     }
 
-    /// Solves all points one after the other.
+    /// Solves the points one after the other.
     pub fn rows(&self) -> impl Iterator<Item = LossRow> + '_ {
         self.grid.rows(&self.bench)
     }
 
-    /// Components that have a loss on the bench.
+    /// Components that have a loss on the rig.
     pub fn components(&self) -> Vec<Component> {
         bench_components(self.setup.transmission())
     }
@@ -219,7 +219,7 @@ impl LossTable {
         list
     }
 
-    /// The values of some axes at a point, in words.
+    /// Formats the values of some axes at a point in words.
     pub fn held(&self, asked: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
         let cvt = self.is_cvt();
         let given =
@@ -233,7 +233,7 @@ impl LossTable {
         columns(self.setup.transmission())
     }
 
-    /// Everything of the JSON object but its points, which go on as the map of a component where one is named.
+    /// Builds the JSON object without its points; `map` names the component if they continue as its map.
     pub fn json_head(&self, map: Option<&str>) -> Value {
         let rest = json!({
             "settings": {
@@ -246,7 +246,7 @@ impl LossTable {
             "columns": json_columns(&self.columns()),
             "count": self.grid.len(),
         });
-        // What the points follow from: they are computed while they are written.
+        // The run is named by its inputs: the points are computed while they are written.
         let of = (&rest, car_sha256(&self.setup), &self.grid.values, map);
         Manifest::new(SCHEMA).of_run(&of).with(&rest)
     }

@@ -1,4 +1,4 @@
-//! Measured maps that a drive left: outside its grid a map holds the value of its edge, which is no measurement.
+//! Measured maps that a drive left: outside its grid a map is clamped to its edge, which is not a measurement.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::math::GRID_AXES;
 use cvtcycle_model::transmission::component::{Component, Part};
 
-/// Share of the time with the engine on from which a map that was left is a headline.
+/// Share of the engine-on time from which leaving a map is a headline.
 const LARGE: f64 = 0.1;
 
 /// A map that was left for a large part of a drive.
@@ -21,17 +21,17 @@ const LARGE: f64 = 0.1;
 pub struct MapLeft {
     /// As the vehicle's file names it.
     pub file: String,
-    /// Of the time with the engine on.
+    /// Share of the engine-on time, per cent.
     pub percent: f64,
-    /// Column by whose values it was left for the longest time.
+    /// Column whose range was left for the longest time.
     pub column: String,
-    /// Which end of them: `below` or `above`.
+    /// Side of the range: `below` or `above`.
     pub side: String,
-    /// That end, in the unit of the column.
+    /// End of the range, in the unit of the column.
     pub end: Option<f64>,
 }
 
-/// Looks for the maps that each car of a run left.
+/// Finds the maps that each car of a run left.
 pub fn find_maps_left(
     summary: &mut Summary,
     cycle: &Cycle,
@@ -43,8 +43,8 @@ pub fn find_maps_left(
     }
 }
 
-/// The maps that a car left for a large part of its drive. Only where the flags of the drive say that something was left for so long are its
-/// rows looked at; without rows it is driven again.
+/// Finds the maps that a car left for a large part of its drive. Rows are searched only if the flags of the drive show a departure that long; a
+/// drive without rows is repeated.
 fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<MapLeft> {
     let totals = &driven.outcome.totals;
     let running_s = totals.total().duration_s - totals.seconds(Flags::ENGINE_OFF);
@@ -98,7 +98,7 @@ fn file(driven: &Driven, component: Component) -> String {
     found.map_or(key.clone(), |info| info.value.clone())
 }
 
-/// Time outside a map, s: at all, and below and above each of its axes.
+/// Time outside a map, s: in total, and below and above each of its axes.
 #[derive(Clone, Default)]
 struct Left {
     any_s: f64,
@@ -131,7 +131,7 @@ impl Left {
     }
 }
 
-/// Where a row reads the map of a component, in the order of its axes; none where the row does not know it.
+/// Coordinates at which a row reads the map of a component; `None` where the row does not record them.
 fn at(row: &Row, component: Component) -> [Option<f64>; GRID_AXES] {
     let is_box = component.part() == Part::BoxMap;
     let of_engine = is_box || [Component::Pump, Component::InputShaft].contains(&component);
