@@ -10,9 +10,9 @@ use crate::number::{capital_first, grouped};
 use cvtcycle_output::Component;
 use cvtcycle_output::losses::{Axis as GridAxis, LossRow, LossTable};
 
-/// Smallest number of values on an axis of a map: values between two points are unknown.
+/// Minimum number of values on an axis of a map: values between two points are unknown.
 const MIN_ON_MAP: usize = 3;
-/// Largest number of panels of a figure.
+/// Maximum number of panels of a figure.
 const MAX_PANELS: usize = 12;
 /// Axes by priority.
 const ORDER: [GridAxis; 8] = [
@@ -26,7 +26,7 @@ const ORDER: [GridAxis; 8] = [
     GridAxis::Ratio,
 ];
 
-/// Figures with their file names; none for a single point.
+/// Draws figures with their file names; empty for a single point.
 pub fn loss_figures(plan: &LossTable) -> Vec<(String, String)> {
     let varied = plan.grid.varied();
     let count = |axis: &GridAxis| plan.grid.of(*axis).len();
@@ -45,14 +45,14 @@ pub fn loss_figures(plan: &LossTable) -> Vec<(String, String)> {
         ([], false) => stacked(drawn.max_by_key(count).unwrap_or(GridAxis::Ratio)),
         ([x], _) => stacked(*x),
         ([x, rest @ ..], _) => {
-            // The axis with most values, so that few panels are needed; of equals the first.
+            // The axis with the largest number of values, for few panels; the first of equals.
             let y = rest.iter().rev().max_by_key(|axis| count(axis));
             maps(plan, &Layout::new(plan, &rows, *x, y.copied()))
         }
     }
 }
 
-/// One value of each axis that is not drawn along, and the rows of its panel.
+/// One value of each axis that is not drawn, and the rows of its panel.
 struct Panel<'a> {
     title: String,
     /// Rows by x, then by y.
@@ -88,7 +88,7 @@ impl<'a> Layout<'a> {
         let count = groups.len();
         let panel = |mut list: Vec<&'a LossRow>| {
             let title = plan.held(&list[0].asked, &others);
-            // Stable: first by y, then by x.
+            // Stable sort: by x after y.
             for axis in y.into_iter().chain([x]) {
                 list.sort_by(|a, b| at(a, axis).total_cmp(&at(b, axis)));
             }
@@ -201,7 +201,7 @@ fn stack(plan: &LossTable, layout: &Layout) -> String {
         stack_layers(&mut panel, layers, |k| Fill::component(parts[k]));
         panel
     };
-    // Listed from the top, as they lie in the stack.
+    // Listed from the top, as in the stack.
     let entries = parts.iter().rev();
     let entries = entries.map(|part| Entry::fill(Fill::component(*part), part.title()));
     let titles: Vec<&str> = parts.iter().map(|part| part.title()).collect();

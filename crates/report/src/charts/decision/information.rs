@@ -1,4 +1,4 @@
-//! What knowing one value would leave of the spread: the next test.
+//! Spread that remains when one value is known: the basis of the next test.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -9,12 +9,12 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::grouped;
 use cvtcycle_study::answer::Information;
 
-/// Right edge of the plot, height of a row, pixels; factors at most.
+/// Right edge of the plot, height of a row, pixels; maximum number of factors.
 const RIGHT: f64 = WIDTH - 40.0;
 const ROW: f64 = 24.0;
 const MOST: usize = 5;
 
-/// Bars of the standard deviation as it is and with each of the foremost factors known, with intervals. `subject` is the output and the study.
+/// Bars of the standard deviation as it is and with each of the first factors known, with intervals. `subject` names the output and the study.
 pub fn information(of: &Information, unit: &'static str, subject: &str) -> Picture {
     let shown = of.factors.iter().take(MOST);
     let names = shown.clone().map(|factor| format!("{} known", factor.name));

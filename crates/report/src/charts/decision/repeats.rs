@@ -1,4 +1,4 @@
-//! The same part of a cycle driven again and again while the oil warms: what the cold costs, and in which part, with nothing else changed.
+//! One part of a cycle driven repeatedly while the oil warms: cost of the cold by group of losses, everything else equal.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -30,7 +30,7 @@ impl Repeat {
     }
 }
 
-/// A line for each group of losses over the drives, named at its end; `subject` is the car and what it drives.
+/// Draws a line for each group of losses over the drives, named at its end; `subject` is the car with the repeated part.
 pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
     let last = drives.len().saturating_sub(1);
     let places = drives

@@ -1,4 +1,4 @@
-//! From the fuel of a baseline to that of the subject, term by term, per distance.
+//! Waterfall from the fuel of a baseline to that of the subject, term by term, per distance.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -13,7 +13,7 @@ use crate::number::{grouped, signed};
 const RIGHT: f64 = WIDTH - 18.0;
 const ROW: f64 = 25.0;
 const TEXT: f64 = 11.5;
-/// Terms that move the fuel by less than this share of the difference of all are put together.
+/// Share of the total difference below which terms are combined.
 const SMALL: f64 = 0.02;
 
 /// Energies of two cars over their distance, kJ/km.
@@ -23,11 +23,11 @@ pub struct PerKm {
     pub names: [String; 2],
     /// Fuel of subject and baseline.
     pub fuel: [f64; 2],
-    /// What it went to: name, kind, subject's minus baseline's.
+    /// Uses of the fuel: name, kind, subject's minus baseline's.
     pub terms: Vec<(String, Term, f64)>,
 }
 
-/// Bars from the fuel of the baseline to that of the subject, the largest first; small ones together.
+/// Draws bars from the fuel of the baseline to that of the subject, the largest first, small ones combined.
 pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
     let difference = of.fuel[0] - of.fuel[1];
     let terms = folded(of, difference);
@@ -102,7 +102,7 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
         .picture(table)
 }
 
-/// The terms from the largest change on; those that are small next to the difference as one, the last.
+/// Terms in descending change; those that are small relative to the difference are combined into the last one.
 fn folded(of: &PerKm, difference: f64) -> Vec<(String, Term, f64)> {
     let limit = SMALL * difference.abs();
     let (mut large, small): (Vec<_>, Vec<_>) = of

@@ -16,7 +16,7 @@ const RIGHT: f64 = WIDTH - 18.0;
 /// Height of a row, pixels.
 const PITCH: f64 = 21.0;
 
-/// An axis over values for bars from `left` on, with room for the longest of the labels at the outer ends of all bars, within reason.
+/// An axis over values for bars that begin at `left`, with room for the longest outer label, up to a limit.
 pub(super) fn axis_with_room(
     title: &str,
     left: f64,
@@ -29,7 +29,7 @@ pub(super) fn axis_with_room(
     for value in values.filter(|x| x.is_finite()) {
         (low, high) = (low.min(value), high.max(value));
     }
-    // A value next to zero needs room for its label like any other.
+    // A value next to zero needs room for its label as well.
     let sides = if low < 0.0 { 2.0 } else { 1.0 };
     let span = (high - low) / (1.0 - sides * label / (RIGHT - left));
     let room = span * label / (RIGHT - left);
@@ -68,14 +68,14 @@ pub(super) fn name(panel: &mut Panel, row: usize, text: &str, bold: bool) {
     panel.row_name(row, Label::new(at(0.0, 0.0), text).size(TEXT).bold(bold));
 }
 
-/// Adds a bar between two values; none if they are the same.
+/// Adds a bar between two values, unless they are equal.
 pub(super) fn bar(panel: &mut Panel, row: usize, (from, to): Point, style: Style) {
     if from < to || to < from {
         panel.bar(row, (from, to), (-7.0, 7.0), style);
     }
 }
 
-/// Writes a text at the outer end of a bar: right of a value, or left of a negative one.
+/// Writes a label at the outer end of a bar: right of a value, or left of a negative one.
 pub(super) fn at_end(panel: &mut Panel, row: usize, value: f64, bold: bool, text: String) {
     let side = if value < 0.0 { -6.0 } else { 6.0 };
     let place = at(value, row_middle(row)).shift(side, 4.0);
@@ -95,7 +95,7 @@ pub struct CarLosses {
 }
 
 impl CarLosses {
-    /// All of them, kJ.
+    /// Total loss, kJ.
     pub fn total_kj(&self) -> f64 {
         self.losses_kj.iter().map(|(_, kj)| finite(*kj)).sum()
     }
@@ -130,7 +130,7 @@ pub fn loss_by_component(cars: &[CarLosses], conditions: &str) -> Picture {
     stacked(chart, (left, TOP), (24.0, 16.0), cars.len().max(1), panel).picture(table)
 }
 
-/// The three largest losses of the first car, and their share.
+/// Title: the three largest losses of the first car, and their share.
 fn largest(cars: &[CarLosses]) -> String {
     let plain = || "Transmission losses by component".to_owned();
     let Some(car) = cars.first().filter(|car| car.total_kj() > 0.0) else {
@@ -198,8 +198,8 @@ pub struct PhaseLosses {
 /// Left edge of the legend, pixels.
 const LEGEND: f64 = 40.0;
 
-/// Loss per distance of each phase group, stacked by group of components in the order of the power flow. A group without any finite loss, such as a
-/// soak, in which no distance is driven, is left out.
+/// Loss per distance of each phase group, stacked by group of components in the order of the power flow. Groups without a finite loss, such as a
+/// soak without distance, are omitted.
 pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
     let some = |cars: &[CarParts]| cars.iter().flatten().any(|(_, x)| x.is_finite());
     let (groups, left_out): (Vec<_>, Vec<_>) = of.groups.iter().partition(|(_, cars)| some(cars));
@@ -230,7 +230,7 @@ pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
         .picture(table)
 }
 
-/// What the first car loses in each phase.
+/// Title: losses of the first car in each phase.
 fn phase_title(of: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String {
     let sum = |parts: &CarParts| {
         parts

@@ -1,4 +1,4 @@
-//! What changed between two runs, term by term: the terms add up to the difference of fuel.
+//! Differences between two runs, term by term: the terms add up to the difference of fuel.
 
 use super::bars::{at_end, axis_with_room, bar, bars_panel, name};
 use super::{MARGIN, TEXT, TOP, Term, energy, finite};
@@ -7,7 +7,7 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital, grouped, signed};
 use cvtcycle_output::Component;
 
-/// Terms that change by less than this share of all changes are put together.
+/// Share of all changes below which terms are combined.
 const SMALL: f64 = 0.01;
 
 /// Two runs A and B, term by term.
@@ -21,7 +21,7 @@ pub struct Difference {
     pub distance_km: [f64; 2],
     /// Fuel energy of A and of B, kJ.
     pub fuel_kj: [f64; 2],
-    /// Where it went, each once.
+    /// Uses of the energy, each once.
     pub terms: Vec<DifferenceTerm>,
 }
 
@@ -30,7 +30,7 @@ pub struct Difference {
 pub struct DifferenceTerm {
     /// Name.
     pub name: String,
-    /// What it is, for its fill.
+    /// Kind of term, for its fill.
     pub term: Term,
     /// Energy in runs A and B, kJ; zero if a run has no such term.
     pub kj: [f64; 2],
@@ -61,7 +61,7 @@ impl Difference {
         [a, b, b - a]
     }
 
-    /// The terms that change by a hundredth of all changes at least, and the others, if there are several.
+    /// Splits the terms into those with at least a hundredth of all changes, and the others if there are several.
     fn by_size(&self) -> (Vec<DifferenceTerm>, Vec<DifferenceTerm>) {
         let all: f64 = self.terms.iter().map(|term| term.change().abs()).sum();
         let large = |term: &DifferenceTerm| term.change().abs() >= SMALL * all;
@@ -72,7 +72,7 @@ impl Difference {
         }
     }
 
-    /// The terms that are drawn: the small ones together.
+    /// Terms to draw, small ones combined.
     fn folded(&self) -> Vec<DifferenceTerm> {
         let (mut kept, small) = self.by_size();
         if !small.is_empty() {
@@ -97,7 +97,7 @@ impl Difference {
             .collect()
     }
 
-    /// The terms, with one for what they leave of the fuel if that is more than rounding, and at the end the fuel.
+    /// Terms, with one for the unaccounted rest of the fuel if it exceeds rounding, and the fuel at the end.
     fn complete_terms(&self) -> Vec<DifferenceTerm> {
         let mut terms = self.folded();
         let sum = |k: usize| {
@@ -137,7 +137,7 @@ pub fn difference_bars(of: &Difference) -> Picture {
     table.note = explain(of);
     for (row, term) in terms.iter().enumerate() {
         let (sum, change) = (row == last, term.change());
-        // The table has each of the small terms, the figure their sum.
+        // The table lists each small term, the figure their sum.
         let at_row = match term.term {
             Term::Other if !small.is_empty() && row == place_of_others => {
                 table.rows.extend(small.iter().map(|term| of.cells(term)));
@@ -168,7 +168,7 @@ pub fn difference_bars(of: &Difference) -> Picture {
         .picture(table)
 }
 
-/// What B burns more or less, and where most of that is.
+/// Title: fuel that B burns more or less, and the largest part of it.
 fn title_of(of: &Difference) -> String {
     let fuel = finite(of.fuel_kj[1]) - finite(of.fuel_kj[0]);
     if fuel.abs() < 1e-9 {

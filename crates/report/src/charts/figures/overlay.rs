@@ -10,7 +10,7 @@ use crate::number::{sign, with_unit};
 /// Traces of two runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overlay {
-    /// What it shows.
+    /// Title.
     pub title: String,
     /// Cycle and conditions.
     pub subject: String,
@@ -35,7 +35,7 @@ const RUNS: [Stroke; 2] = [stroke(INK, 1.3, &[]), stroke("#d55e00", 1.6, &[6.0, 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
 const TALL: f64 = 150.0;
 const GAP: f64 = 16.0;
-/// Most rows of the table.
+/// Maximum number of rows of the table.
 const ROWS: usize = 600;
 
 impl OverlayPanel {
@@ -43,12 +43,12 @@ impl OverlayPanel {
         self.runs.iter().flatten()
     }
 
-    /// The unit as it is written; none for a plain number.
+    /// Unit as written; empty for a plain number.
     pub(super) fn sign(&self) -> &'static str {
         sign(if self.unit == "-" { "" } else { self.unit })
     }
 
-    /// A step with about four digits over the range of the panel.
+    /// Step that gives about four digits over the range of the panel.
     pub(super) fn digits(&self) -> f64 {
         let (low, high) = range(self.points().map(|p| p.1)).unwrap_or((0.0, 1.0));
         let size = high.abs().max(low.abs()).clamp(1e-6, 1e9);
@@ -60,7 +60,7 @@ impl OverlayPanel {
 pub fn overlay(of: &Overlay) -> Picture {
     let times = of.panels.iter().flat_map(OverlayPanel::points);
     let (start, end) = range(times.map(|point| point.0)).unwrap_or((0.0, 1.0));
-    // A first step of a second ends at one: the axis begins where the run did.
+    // A step of a second ends at one: the axis begins at the start of the run.
     let from_zero = start > 0.0 && start < 0.02 * end;
     let time = Axis::exact("Time [s]", if from_zero { 0.0 } else { start }, end, 10);
     let nothing = [OverlayPanel::default()];
@@ -125,7 +125,7 @@ fn table(of: &Overlay) -> PictureTable {
     table
 }
 
-/// Value of a trace at a time; none outside it or in a gap.
+/// Value of a trace at a time; NaN outside it or in a gap.
 pub(super) fn at(points: &[(f64, f64)], time: f64) -> f64 {
     let next = points.partition_point(|point| point.0 < time);
     let before = next.checked_sub(1).and_then(|i| points.get(i));

@@ -1,4 +1,4 @@
-//! Where the engine runs against road speed: time in cells, over the lines between which the transmission can or wants to run.
+//! Engine speed against road speed: time in cells, over the lines of the transmission's limits and targets.
 
 use super::{TOP, of_drive};
 use crate::charts::engine::{
@@ -18,11 +18,11 @@ pub struct Variogram<'a> {
     pub conditions: String,
     /// Vehicle speed of each step, km/h.
     pub speed_kmh: &'a [f64],
-    /// Engine speed of each step, rpm; zero or not finite where the engine is off, and then left out.
+    /// Engine speed of each step, rpm; steps are omitted if it is zero or not finite, with the engine off.
     pub engine_rpm: &'a [f64],
     /// Length of each step, s.
     pub seconds: &'a [f64],
-    /// Lines, up to seven that stay apart: lowest and highest ratio and the controller's targets, or the gears of a manual box.
+    /// Up to seven distinguishable lines: lowest and highest ratio and the controller's targets, or the gears of a manual box.
     pub lines: Vec<GuideLine>,
 }
 
@@ -33,21 +33,21 @@ pub struct GuideLine {
     pub name: String,
     /// Vehicle speed, km/h, and engine speed, rpm, by rising vehicle speed.
     pub points: Vec<(f64, f64)>,
-    /// Whether the vertical axis takes the line in as far as the car drove; otherwise it may run out of the picture.
+    /// True if the vertical axis includes the line over the driven range; otherwise it may leave the picture.
     pub whole: bool,
 }
 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
-/// Room right of the panel for names of lines that go on there, at most, and above it for names of those that leave there, pixels.
+/// Maximum room right of the panel for names of lines that leave there, and above it, pixels.
 const NAMES: f64 = 190.0;
 const ABOVE: f64 = 16.0;
-/// Size of a name, and least distance of two names next to each other, pixels.
+/// Size of a name, and minimum distance of two names next to each other, pixels.
 const NAME: f64 = 11.0;
 const APART: f64 = 8.0;
 const TALL: f64 = 400.0;
-/// Most cells along each axis.
+/// Maximum number of cells along each axis.
 const CELLS: (usize, usize) = (80, 40);
-/// Width of the light seam along a line, which parts it from dark cells, pixels.
+/// Width of the light seam that separates a line from dark cells, pixels.
 const SEAM: f64 = 1.6;
 
 impl Variogram<'_> {
@@ -63,7 +63,7 @@ impl Variogram<'_> {
 pub fn variogram(of: &Variogram) -> Picture {
     let (x, y) = axes(of);
     let cells = Density::size_for(&x, &y, CELLS);
-    // Held speeds lie on round numbers, which are the middles of cells.
+    // Constant speeds lie on round numbers; these become the middles of cells.
     let half = 0.5 * cells.1;
     let steps = of.steps().map(|(v, n, dt)| (v, n + half, dt));
     let density = Density::new(cells, steps).lowered(half);
@@ -95,7 +95,7 @@ pub fn variogram(of: &Variogram) -> Picture {
         let ends = ends(of.x).into_iter().chain(ends(of.y));
         table.push(ends.chain([cell(of.seconds, 0.01)]))
     });
-    // All seams below all lines; the first of the list ends up on top.
+    // All seams lie below all lines; the first of the list is on top.
     for (_, points, line) in &seen {
         let seam = Style::line(stroke("#ffffff", line.width + 2.0 * SEAM, &[]));
         let seam = seam.stroke_opacity(0.75).class("seam");
@@ -106,7 +106,7 @@ pub fn variogram(of: &Variogram) -> Picture {
     }
     name_above(&mut panel, above);
     label_ends_on_cells(&mut panel, at_right);
-    // A legend for names that were cut.
+    // A legend repeats names that were cut.
     let is_cut = |of: &&SeenLine| text_width(of.0, NAME) > NAMES - 10.0;
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
@@ -123,7 +123,7 @@ pub fn variogram(of: &Variogram) -> Picture {
         .picture(table)
 }
 
-/// Writes names of lines above the places where they leave the panel, each as far as there is room before the next one.
+/// Writes names of lines above the places where they leave the panel, each cut to the room before the next one.
 fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
     ends.sort_by(|a, b| a.at.0.total_cmp(&b.at.0));
     let lefts: Vec<f64> = ends.iter().map(|end| panel.px(end.at.0) - 4.0).collect();
@@ -150,7 +150,7 @@ fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
     }
 }
 
-/// The row of cells with most of the time.
+/// Title: the row of cells with the largest share of time.
 fn title(of: &Variogram, density: &Density) -> String {
     let mut rows: Vec<((f64, f64), f64)> = Vec::new();
     for cell in density.cells() {
@@ -175,7 +175,7 @@ fn title(of: &Variogram, density: &Density) -> String {
     }
 }
 
-/// Axes over the steps in which the engine ran, and over those lines that are to be seen as a whole as far as the car drove.
+/// Axes over the steps with the engine running, and over the lines to be included as far as the car drove.
 fn axes(of: &Variogram) -> (Axis, Axis) {
     let finite = |p: &(f64, f64, f64)| p.0.is_finite() && p.1.is_finite() && p.2 > 0.0;
     let steps = of.steps().filter(finite).map(|p| (p.0, p.1));
@@ -194,10 +194,10 @@ fn axes(of: &Variogram) -> (Axis, Axis) {
     (x, y)
 }
 
-/// A line with its name, the points that can be seen, and its look.
+/// A line with its name, visible points and look.
 type SeenLine<'a> = (&'a str, Vec<Point>, Stroke);
 
-/// Lines of which a part lies within the axes, and a remark on the others.
+/// Lines that are partly within the axes, and a remark on the others.
 fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String) {
     let (mut seen, mut others) = (Vec::new(), Vec::new());
     for (line, stroke) in of.lines.iter().zip(STROKES.into_iter().cycle()) {
@@ -219,7 +219,7 @@ fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String
     )
 }
 
-/// The parts of a line within the axes, with gaps between them.
+/// Parts of a line within the axes, with gaps between them.
 fn within(axes: (&Axis, &Axis), points: &[Point]) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for pair in points.windows(2) {
@@ -236,13 +236,13 @@ fn within(axes: (&Axis, &Axis), points: &[Point]) -> Vec<Point> {
     out
 }
 
-/// The part of a piece of line that lies within the axes.
+/// Clips a segment to the axes.
 fn clipped((x, y): (&Axis, &Axis), a: Point, b: Point) -> Option<(Point, Point)> {
     if ![a.0, a.1, b.0, b.1].iter().all(|value| value.is_finite()) {
         return None;
     }
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    // Liang and Barsky: each side of the panel shortens the piece.
+    // Liang and Barsky: each side of the panel shortens the segment.
     for (start, change, low, high) in [
         (a.0, b.0 - a.0, x.low, x.high),
         (a.1, b.1 - a.1, y.low, y.high),

@@ -1,5 +1,5 @@
-//! Pictures of the transmission rig's tests, after the figures of thesis chapter 5; titles are sentences with the numbers of the picture,
-//! and what the thesis prints is drawn next to it.
+//! Pictures of the transmission rig's tests, after the figures of thesis chapter 5, with the numbers of the thesis next to the computed ones;
+//! titles are sentences with numbers of the picture.
 
 mod says;
 
@@ -29,7 +29,7 @@ type Lines = Vec<(Look, Points)>;
 pub struct Subject<'a> {
     /// Name of the vehicle.
     pub vehicle: &'a str,
-    /// What the rig is set to.
+    /// Settings of the rig.
     pub conditions: &'a Conditions,
 }
 
@@ -60,7 +60,7 @@ impl Subject<'_> {
         }
     }
 
-    /// What the thesis prints of a quantity at a ratio.
+    /// Numbers of the thesis for a quantity at a ratio.
     fn printed(&self, ratio: f64, of: RigNumber) -> Vec<PrintedMark> {
         rig(self.vehicle, &self.conditions.ratio_name(ratio), of)
     }
@@ -97,7 +97,7 @@ impl<T> Sheet<'_, T> {
         names(self.temperatures().iter().map(|t| format!("{t} \u{b0}C")))
     }
 
-    /// A value against speed, over the rows of one ratio and temperature, and of those that `keep` chooses.
+    /// A value against speed, over the rows of one ratio and temperature that `keep` selects.
     fn line(
         &self,
         (ratio, degc): (f64, f64),
@@ -124,7 +124,7 @@ impl<T> Sheet<'_, T> {
         temperatures.map(panel).collect()
     }
 
-    /// The first and the last temperature, between which the others lie.
+    /// First and last temperature, which enclose the others.
     fn ends(&self) -> Vec<f64> {
         let all = self.temperatures();
         let last = all.last().copied().filter(|_| all.len() > 1);
@@ -222,7 +222,7 @@ pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     sheet.ratios().into_iter().flat_map(of_ratio).collect()
 }
 
-/// What a load adds to the torque loss, against speed: a line for each torque, a panel for each temperature.
+/// Torque loss added by a load, against speed: a line for each torque, a panel for each temperature.
 pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     let sheet = Sheet {
         rows,
@@ -271,7 +271,7 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 
 /// Torque loss against bulk oil temperature, warming and cooling (Figs 5-5 and 5-6).
 pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
-    // The looks of the second and the third line.
+    // Looks of the second and the third line.
     let branches = [
         (Look::solid(1), Branch::Warming),
         (Look::solid(2), Branch::Cooling),
@@ -455,7 +455,7 @@ fn contributions(
     chart
 }
 
-/// Each component from the strip-down, and dotted its own loss in the complete box.
+/// Each component from the strip-down, with its own loss in the complete box as a dotted line.
 fn components(
     sheet: &Sheet<StripDown>,
     ratio: f64,

@@ -1,4 +1,4 @@
-//! The quantities of a run over time.
+//! Quantities of a run over time.
 
 use super::PlotRun;
 use super::timeline::{Series, Strip, side_by_side, timeline};
@@ -9,10 +9,10 @@ use cvtcycle_output::History;
 
 /// Secondary and primary pressure.
 const PRESSURES: [Stroke; 2] = [stroke(INK, 1.6, &[]), stroke("#d55e00", 1.3, &[4.0, 2.0])];
-/// Height of the panel of temperatures of a car by itself, and of one of several, pixels.
+/// Height of the temperature panel of a lone car, and of one of several, pixels.
 const TALL: [f64; 2] = [400.0, 190.0];
 
-/// The largest finite value of a column.
+/// Maximum finite value of a column.
 fn most(history: &History, column: &str) -> Option<f64> {
     Some(range(history.column(column).iter().copied())?.1)
 }
@@ -56,7 +56,7 @@ pub fn pressure(run: &PlotRun) -> Picture {
         ),
         _ => "Pulley pressures, slip and clamp safety".to_owned(),
     };
-    // Of a belt without torque the safety has no bound: its inverse is what the clamping is used for.
+    // The safety of a belt without torque is unbounded; its inverse is the used share of the clamping.
     let used = Series {
         shown: Some(("%", |safety| 100.0 / safety)),
         ..Series::new("clamp_safety", "Clamping used", PLAIN)

@@ -14,14 +14,14 @@ use cvtcycle_study::statistics::{Confidence, Estimate, RankSensitivity, SobolInd
 /// A factor with its two measures.
 type FactorBars<'a> = (&'a str, [Estimate; 2]);
 
-/// The texts of a picture.
+/// Texts of a picture.
 struct Texts<'a> {
     title: String,
     axis: &'a str,
     kinds: [&'a str; 2],
-    /// The same for columns.
+    /// Short names, for columns.
     short: [&'a str; 2],
-    /// Which of the two measures sorts, and how many rows are drawn.
+    /// Index of the measure that sorts, and maximum number of rows.
     key: usize,
     most: usize,
     notes: Vec<String>,
@@ -57,10 +57,10 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
     draw(rows.collect(), shown, texts)
 }
 
-/// Factors of Sobol indices that are drawn: what lies behind them is noise.
+/// Maximum number of drawn factors of Sobol indices; further ones are noise.
 const MOST_SOBOL: usize = 6;
 
-/// The factor that decides, where its interval lies above that of the next one.
+/// Title: the dominant factor, if its interval lies above that of the next one.
 fn sobol_title(names: &[String], of: &SobolIndices, shown: &Shown) -> String {
     let mut totals: Vec<(&String, &Estimate)> = names
         .iter()
@@ -83,7 +83,7 @@ fn sobol_title(names: &[String], of: &SobolIndices, shown: &Shown) -> String {
     }
 }
 
-/// The factor that goes most with the output.
+/// Title: the factor with the strongest rank correlation.
 fn rank_title(names: &[String], of: &RankSensitivity, shown: &Shown) -> String {
     let mut all: Vec<(&String, f64)> = names
         .iter()

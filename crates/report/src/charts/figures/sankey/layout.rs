@@ -1,18 +1,18 @@
-//! Places of the flows.
+//! Layout of the flows.
 
 use super::super::TOP;
 use super::{BAND, Branch, SHARE, Sankey, Stage};
 use crate::charts::engine::WIDTH;
 
-/// Least distance between the middles of two ends, pixels.
+/// Minimum distance between the middles of two ends, pixels.
 const PITCH: f64 = 19.0;
 
-/// The same at the left, where a label has three lines.
+/// Minimum distance at the left, where a label has three lines.
 const LEFT_PITCH: f64 = 60.0;
 
 const GAP: f64 = 3.0;
 
-/// A flow with its place: upper edge at either end.
+/// A flow with its position: upper edge at either end.
 pub(super) struct Ribbon<'a> {
     pub of: &'a Branch,
     pub stage: usize,
@@ -36,20 +36,20 @@ pub(super) struct Trunk {
     pub kj_km: f64,
 }
 
-/// All flows in their places.
+/// All flows with their positions.
 pub(super) struct Flows<'a> {
     pub of: &'a Sankey<'a>,
     pub trunk: Vec<Trunk>,
     pub leaving: Vec<Ribbon<'a>>,
     pub entering: Vec<Ribbon<'a>>,
     pub bottom: f64,
-    /// Where ribbons end at the right, and right edges of the columns of energies and of shares.
+    /// Right ends of the ribbons, and right edges of the columns of energies and of shares.
     pub end: f64,
     pub energy: f64,
     pub shares: Vec<f64>,
 }
 
-/// Room between the names of the stages and the trunk, for the labels of what flows in above that of the source, pixels.
+/// Room between the names of the stages and the trunk for the labels of inflows above the source, pixels.
 fn room_above(of: &Sankey, per_kj_km: f64) -> f64 {
     let room = |b: &Branch| (-b.kj_km * per_kj_km + GAP).max(LEFT_PITCH);
     let room: f64 = of.branches().filter(|b| b.kj_km < 0.0).map(room).sum();
@@ -109,7 +109,7 @@ pub(super) fn lay_out<'a>(of: &'a Sankey<'a>) -> Flows<'a> {
     }
 }
 
-/// Moves the ends of ribbons so far apart that each has room for its label; returns the lowest edge.
+/// Moves the ends of ribbons apart to make room for their labels; returns the lowest edge.
 fn part(leaving: &mut [Ribbon]) -> f64 {
     let mut free: Option<(f64, f64)> = None;
     for ribbon in leaving {

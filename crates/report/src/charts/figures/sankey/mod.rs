@@ -1,7 +1,7 @@
-//! Where energy goes: a trunk from a source through stages, each of which branches off its flows. Widths are in proportion to energy.
+//! Sankey diagram: a trunk from a source through stages, each of which branches off its flows. Widths are proportional to energy.
 //!
-//! Branches leave the trunk downwards and end in one column at the right, the last stage on top: so none crosses another, and the ends
-//! are far enough apart for one line of text each. What is negative flows in: it begins at the left above the source.
+//! Branches leave the trunk downwards and end in one column at the right, the last stage on top, so that none cross, and the ends leave room for
+//! one line of text each. Negative energies flow in, and begin at the left above the source.
 
 mod layout;
 
@@ -19,12 +19,12 @@ use crate::charts::picture::{Picture, PictureTable};
 pub(super) struct Sankey<'a> {
     pub title: String,
     pub subject: &'a str,
-    /// The largest source of the figures on this scale, kJ/km; the own one if it is smaller.
+    /// Largest source of the figures on this scale, kJ/km; ignored if the own one is larger.
     pub largest_kj_km: f64,
-    /// What the trunk begins with.
+    /// Source of the trunk.
     pub source: Whole,
     pub stages: Vec<Stage>,
-    /// What shares of energies refer to; one or two.
+    /// References of the shares; one or two.
     pub shares_of: Vec<Whole>,
 }
 
@@ -41,11 +41,11 @@ impl Whole {
     }
 }
 
-/// A place along the trunk; one without a name is not marked.
+/// A position along the trunk; marked if it has a name.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stage {
     pub name: &'static str,
-    /// What leaves here.
+    /// Flows that leave here.
     pub branches: Vec<Branch>,
 }
 
@@ -68,9 +68,9 @@ pub(super) fn branch(name: &str, term: Term, kj_km: f64) -> Branch {
     Branch { name, kj_km, term }
 }
 
-/// Height of all that flows in, pixels.
+/// Height of all inflows, pixels.
 const TALL: f64 = 300.0;
-/// Where what flows in begins: its label lies left of it, pixels.
+/// Left end of inflows, with their labels left of it, pixels.
 const LEFT: f64 = 118.0;
 /// Height of the names of stages above the trunk, pixels.
 const BAND: f64 = 62.0;
@@ -109,7 +109,7 @@ pub(super) fn sankey(of: Sankey) -> Picture {
         .picture(table)
 }
 
-/// The same flow with a source that is not negative, finite numbers, and nothing left over at the end of the trunk.
+/// Copy with a source that is not negative, finite numbers, and a trunk without remainder.
 fn balanced(mut of: Sankey) -> Sankey {
     if of.stages.is_empty() {
         of.stages.push(Stage::default());
@@ -139,7 +139,7 @@ impl Sankey<'_> {
         self.stages.iter().flat_map(|stage| &stage.branches)
     }
 
-    /// Pixels per kJ/km; zero where nothing flows.
+    /// Pixels per kJ/km; zero without any flow.
     fn scale(&self) -> f64 {
         let inflow = self.source.kj_km + self.branches().map(|b| (-b.kj_km).max(0.0)).sum::<f64>();
         let scale = TALL / inflow.max(finite(self.largest_kj_km));
@@ -163,7 +163,7 @@ impl Sankey<'_> {
 }
 
 impl Flows<'_> {
-    /// Place of a stage along the trunk, pixels.
+    /// Position of a stage along the trunk, pixels.
     fn stage_x(&self, stage: usize) -> f64 {
         let first = LEFT + 0.09 * (self.end - LEFT);
         let last = self.end - 0.2 * (self.end - LEFT);
@@ -220,7 +220,7 @@ impl Flows<'_> {
         }
     }
 
-    /// Energy and share of the first whole.
+    /// Energy, and share of the first reference.
     fn size(&self, kj_km: f64) -> impl Iterator<Item = String> {
         let whole = self.of.shares_of.first();
         let share = whole
@@ -229,7 +229,7 @@ impl Flows<'_> {
         [per_km(kj_km)].into_iter().chain(share)
     }
 
-    /// Name, energy and share left of where a flow begins.
+    /// Writes name, energy and share left of the beginning of a flow.
     fn source_label(&self, panel: &mut Panel, name: &str, kj_km: f64, middle: f64) {
         let room = LEFT - 8.0 - MARGIN;
         // Bold letters are wider than plain ones.
@@ -245,7 +245,7 @@ impl Flows<'_> {
         }
     }
 
-    /// Names of the stages above the trunk, with the energy that arrives at each.
+    /// Writes the names of the stages above the trunk, with the energy that arrives at each.
     fn stage_names(&self, panel: &mut Panel) {
         let stages = || self.of.stages.iter().enumerate();
         for (s, stage) in stages().filter(|(_, stage)| !stage.name.is_empty()) {
@@ -267,7 +267,7 @@ impl Flows<'_> {
         }
     }
 
-    /// What the shares refer to, above their columns.
+    /// Writes the references of the shares above their columns.
     fn headings(&self, panel: &mut Panel) {
         let Some(first) = self.leaving.first() else {
             return;
@@ -283,7 +283,7 @@ impl Flows<'_> {
     }
 }
 
-/// One flow: its height is the same all along.
+/// Draws a flow of constant height.
 fn draw_ribbon(panel: &mut Panel, from: Point, to: Point, of: &Ribbon, row: usize) {
     if of.wide > 0.0 {
         let style = Style::edged(of.of.term.fill(), 0.25).class("ribbon");
