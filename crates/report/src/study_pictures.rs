@@ -1,4 +1,4 @@
-//! The answer of a study as pictures.
+//! Pictures of the answer of a study.
 
 use crate::charts::Picture;
 use crate::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
@@ -18,12 +18,12 @@ use cvtcycle_study::levers::LeverAnswer;
 use cvtcycle_study::statistics::{Confidence, Groups};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 
-/// Every picture that the answer has something for, each under a name that can be a file's: of a matrix of ambient temperatures fuel,
-/// excess and, where traces were kept, warm-up; else of the outputs that the plan names, or of fuel and excess. `known` are numbers of the
-/// excess over baselines by their names.
+/// Draws every picture that the answer has data for, with names that are valid file names: for a matrix of ambient temperatures fuel, excess
+/// and, where traces were kept, warm-up; else for the outputs named in the plan, or for fuel and excess. `known` are numbers of the excess over
+/// baselines by their names.
 ///
 /// # Errors
-/// A part of the study that cannot be read.
+/// A part of the study cannot be read.
 pub fn study_pictures(
     answer: &Answer,
     frame: &StudyTable,
@@ -36,10 +36,10 @@ pub fn study_pictures(
     }
 }
 
-/// Numbers and figures of a study, by the names of their files.
+/// Numbers and figures of a study, by file name.
 ///
 /// # Errors
-/// A part of the study that cannot be read.
+/// A part of the study cannot be read.
 pub fn study_files(found: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let statistics = json_text(&found.answer)?.into_bytes();
     let mut files = vec![("statistics.json".to_owned(), statistics)];
@@ -52,7 +52,7 @@ pub fn study_files(found: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Probl
     Ok(files)
 }
 
-/// What the levers save, for each car at each ambient temperature, under names that can be a file's.
+/// Pictures of the levers' savings, for each car at each ambient temperature, with names that are valid file names.
 pub fn lever_pictures(answer: &LeverAnswer) -> impl Iterator<Item = (String, Picture)> {
     answer.blocks.iter().map(|block| {
         let name = format!("levers_{}_{}", block.vehicle, block.ambient_degc);
@@ -87,7 +87,7 @@ fn of_outputs(
         .collect();
     for (k, output) in pictured.iter().enumerate() {
         let same = |other: &&&OutputAnswer| other.output == output.output;
-        // Of pairs the difference is what counts: fuel side by side would hide that both vary together.
+        // For pairs the difference matters: two fuel distributions would hide that both vary together.
         let is_paired = output.output == FUEL && pictured.iter().any(|of| of.output == EXCESS);
         let is_first = !pictured[..k].iter().any(|other| same(&other));
         if outline.plan.design.is_sampled() && is_first && !is_paired {
@@ -106,7 +106,7 @@ fn is_pictured(output: &str, outline: &StudyManifest) -> bool {
     !outline.plan.analyse.is_empty() || [FUEL, EXCESS].contains(&output)
 }
 
-/// Name of an output as people say it.
+/// Name of an output for people.
 fn named(output: &OutputAnswer, outline: &StudyManifest) -> String {
     let subject = outline.cars.first().map_or("", String::as_str);
     let stem = output.output.trim_end_matches("_percent");
@@ -165,7 +165,7 @@ fn distribution(
     distribution_plot(&shown, &series, excess)
 }
 
-/// The phase of an excess, if it is of one.
+/// Phase of an excess over a phase, as a suffix.
 fn tail(output: &str) -> String {
     let phase = output
         .strip_prefix("subject_excess_")
@@ -214,7 +214,7 @@ fn of_output(
     list
 }
 
-/// A factor's levels: at their numbers, or side by side where they are words.
+/// Levels of a factor: at their numbers, or evenly spaced for words.
 fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a StudyManifest) -> EffectFactor<'a> {
     let mut factors = outline.plan.factors.iter();
     let factor = factors.find(|factor| factor.name == name);

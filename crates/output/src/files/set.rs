@@ -353,7 +353,7 @@ mod tests {
         }
     }
 
-    /// Of two processes that write into one directory the second is refused, and changes nothing.
+    /// A second process that writes into a directory is refused, and changes nothing.
     #[test]
     fn one_at_a_time() {
         let dir = folder(&Tree::new());

@@ -1,4 +1,4 @@
-//! Figures of two runs: the difference by component and the traces.
+//! Figures of two runs: difference by component, and traces.
 
 use super::Pair;
 use crate::charts::figures::{
@@ -72,7 +72,7 @@ const OVERLAID: [(&str, &str, &str); 6] = [
     ("slip_percent", "Belt slip", "%"),
 ];
 
-/// Panels of one picture.
+/// Number of panels of a picture.
 const PANELS: usize = 3;
 
 pub(super) fn traces(subject: &Pair, names: &[String; 2]) -> Section {

@@ -1,4 +1,4 @@
-//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), a table of any number.
+//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), and a table of any number.
 
 mod figures;
 mod many;
@@ -72,7 +72,7 @@ pub(crate) fn document(a: &RunResults, b: &RunResults) -> Result<Document, Probl
     })
 }
 
-/// What the two are called: the names of their directories, with letters where these are the same.
+/// Names of the runs: those of their directories, with letters appended if equal.
 fn both_names(a: &RunResults, b: &RunResults) -> [String; 2] {
     let name = |found: &RunResults| match found.path.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -95,7 +95,7 @@ fn subtitle(a: &RunResults, b: &RunResults) -> String {
     }
 }
 
-/// Subjects with each other, baselines by their names.
+/// Pairs the subjects, and baselines by name.
 fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
     let (Some((subject_a, rest_a)), Some((subject_b, rest_b))) = (a.split_first(), b.split_first())
     else {
@@ -115,7 +115,7 @@ fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
 
 fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
     let mut section = Section::new("answer", "Answer");
-    // The fuel for a kJ of loss is known of one car under one set of conditions only.
+    // The fuel for a kJ of loss is known for one car under one set of conditions only.
     let same_conditions = (a.summary.ambient_degc - b.summary.ambient_degc).abs() < 1e-9
         && a.summary.start == b.summary.start;
     let alike = same_conditions
@@ -149,7 +149,7 @@ fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -
     section
 }
 
-/// The value that differs, where it is the only one, as the beginning of a sentence.
+/// Beginning of a sentence with the differing value, if there is only one.
 fn only_change(subjects: &Pair) -> String {
     let records = subjects.a.record.zip(subjects.b.record);
     let changes = records.map_or_else(Vec::new, |(a, b)| changes(a, b));
@@ -168,7 +168,7 @@ fn only_change(subjects: &Pair) -> String {
     }
 }
 
-/// The fuel of both subjects, and the difference.
+/// Fuel of both subjects, and the difference.
 fn lead(subjects: &Pair, [name_a, name_b]: &[String; 2]) -> String {
     let fuel = |car: &Car| car.run.headline_fuel().unwrap_or(f64::NAN);
     let (fuel_a, fuel_b) = (fuel(&subjects.a), fuel(&subjects.b));
@@ -188,7 +188,7 @@ fn less_or_more(change: f64) -> &'static str {
     if change < 0.0 { "less" } else { "more" }
 }
 
-/// The components that moved most.
+/// Components with the largest changes.
 fn largest(a: &Car, b: &Car, alike: bool) -> String {
     let kj = |car: &Car, c: Component| car.run.loss_kj.get(c.name()).unwrap_or(0.0);
     let moved = |c: Component| (c, kj(b, c) - kj(a, c));

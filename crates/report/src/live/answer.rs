@@ -1,4 +1,4 @@
-//! A state of the levers to its answer: all cars driven, the sentences of a run, figures of the subject against another car.
+//! Answers a state of the levers: drives all cars, and formats the sentences of a run and figures of the subject against another car.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,19 +27,19 @@ use crate::number::Quantity;
 use crate::render;
 use crate::run::{Car, brief, conditions_line, per_km, strip};
 
-/// Cars with their outcomes that are kept: those of the last states.
+/// Maximum number of cached cars with their outcomes, from the last states.
 const KEPT: usize = 24;
-/// Columns of the trace that the figures need.
+/// Trace columns used by the figures.
 const COLUMNS: [&str; 3] = ["time_s", "dt_s", "transmission_sump_degc"];
 
-/// A page with what it has computed so far.
+/// A page with its cached results.
 pub struct LivePage {
     scene: Scene,
     controls: Vec<Control>,
-    /// By word, options and conditions.
+    /// Cached cars by word, options and conditions.
     driven: BTreeMap<String, Arc<DrivenCar>>,
     cycle: Option<(String, Cycle)>,
-    /// The draws of a state, begun.
+    /// Draws in progress, with their state.
     draws: Option<(State, Draws)>,
 }
 
@@ -48,12 +48,12 @@ struct DrivenCar {
     outcome: Outcome,
 }
 
-/// A car that is driven: its word, what it is read with, and the word by which a command names it.
+/// A car to drive: its word, its options, and the word by which a command names it.
 struct Wanted {
     word: String,
     options: Options,
     named: String,
-    /// Whether it is the subject as its file has it.
+    /// True for the subject as in its file.
     of_file: bool,
 }
 
@@ -73,10 +73,10 @@ impl LivePage {
         })
     }
 
-    /// As [`LivePage::new`] in a page, whose files are those of the scene.
+    /// As [`LivePage::new`] within a page, which reads files from the scene.
     ///
     /// # Errors
-    /// As there; a damaged page.
+    /// As of [`LivePage::new`]; a damaged page.
     pub fn open(scene: Scene) -> Result<Self, Problems> {
         carried::carry(scene.files()?);
         LivePage::new(scene)
@@ -87,7 +87,7 @@ impl LivePage {
         &self.controls
     }
 
-    /// The answer to a state, with the intervals of its differences where they are known.
+    /// Answers a state, with the intervals of its differences if known.
     pub fn answer(&mut self, state: &State, drawn: Option<Vec<DrawnDifference>>) -> Answer {
         self.driven_answer(state, drawn)
             .unwrap_or_else(|problems| Answer {
@@ -97,7 +97,7 @@ impl LivePage {
             })
     }
 
-    /// As [`LivePage::answer`], for a state that has to be good, with all of its draws.
+    /// As [`LivePage::answer`], for a valid state, with all of its draws.
     ///
     /// # Errors
     /// Problems of the cars and of the cycle.
@@ -117,7 +117,7 @@ impl LivePage {
         Ok((self.driven_answer(state, Some(drawn.clone()))?, Some(drawn)))
     }
 
-    /// Drives the next part of a state's draws; the differences after the last one.
+    /// Drives the next part of a state's draws; returns the differences after the last one.
     ///
     /// # Errors
     /// Problems of the cars.
@@ -157,7 +157,7 @@ impl LivePage {
         prepare(base, DRAWS, setup.transmission().is_cvt())
     }
 
-    /// Overrides of the levers that are moved, in the order of the page.
+    /// Overrides of the moved levers, in the order of the page.
     fn moved(&self, state: &State) -> Result<Vec<Override>, Problem> {
         let mut all = Vec::new();
         for control in &self.controls {
@@ -179,7 +179,7 @@ impl LivePage {
         Ok(all)
     }
 
-    /// The subject, the car of its file where that is another one, and the baselines.
+    /// Cars of a state: the subject, the car of its file if different, and the baselines.
     fn wanted(&self, state: &State, moved: &[Override]) -> Result<Vec<Wanted>, Problem> {
         let scene = &self.scene;
         let options = scene.subject(state, moved)?;
@@ -198,7 +198,7 @@ impl LivePage {
         let is_moved = !(moved.is_empty() && own.is_empty() && state.lubricant.is_none());
         let baseline = |word: &String| Wanted {
             word: word.clone(),
-            // A twin is made of the subject as it is driven.
+            // A twin is derived from the subject as driven.
             options: match is_twin(word) {
                 true => options.of_twin(NamedBy::File),
                 false => plain.clone(),
@@ -219,7 +219,7 @@ impl LivePage {
             .collect())
     }
 
-    /// A car of a state, driven or kept.
+    /// Returns a car of a state from the cache, or drives it.
     fn car(
         &mut self,
         car: &Wanted,
@@ -251,7 +251,7 @@ impl LivePage {
         Ok(made)
     }
 
-    /// The cycle of a state.
+    /// Loads the cycle of a state.
     fn cycle(&mut self, word: &str) -> Result<Cycle, Problems> {
         if let Some((known, cycle)) = &self.cycle
             && known == word
@@ -320,7 +320,7 @@ impl LivePage {
         })
     }
 
-    /// Sentences and figures.
+    /// Builds the sentences and figures.
     fn section(
         &self,
         state: &State,
@@ -365,7 +365,7 @@ impl LivePage {
     }
 }
 
-/// Names of the cars, unique, as those of a run.
+/// Unique names of the cars, as in a run.
 fn names(wanted: &[Wanted]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for car in wanted {
@@ -386,7 +386,7 @@ fn history(car: &Driven, cycle: &Cycle) -> History {
     History::of(&car.outcome.rows, &known(COLUMNS.into_iter()), phases)
 }
 
-/// Way of the fuel, losses and sump of the subject, against another car where there is one.
+/// Adds the fuel waterfall, losses and sump temperature of the subject, against another car if there is one.
 fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     if let [subject, other] = pair {
         let of = per_km(subject, other);
@@ -440,10 +440,10 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     );
 }
 
-/// Moments of the sump's temperature that are drawn at most: the eye sees no more of a curve so smooth, and each costs time at every move of a lever.
+/// Maximum number of drawn moments of the sump's temperature: enough for so smooth a curve, since each costs time at every move of a lever.
 const MOMENTS: usize = 120;
 
-/// Every so many points, and the last one.
+/// Thins points by a constant factor, keeping the last one.
 fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let every = points.len().div_ceil(MOMENTS).max(1);
     let last = points.len().saturating_sub(1);
@@ -452,7 +452,7 @@ fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     kept.map(|(_, point)| point).collect()
 }
 
-/// What is wrong with a car that cannot be built.
+/// Section with the problems of a car that cannot be built.
 fn refused(problems: &Problems) -> Section {
     let mut section = Section::new("live", "");
     for problem in problems {

@@ -1,4 +1,4 @@
-//! The levers of a car: sliders of single values and choices among shipped changes, as far as the car has them.
+//! Levers of a car: sliders of single values and choices among shipped changes, as far as the car has them.
 
 use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
 use cvtcycle_config::setup::{Kind as FileKind, Options, Setup, load};
@@ -10,18 +10,18 @@ use cvtcycle_study::words::drawn::PLAN;
 
 use crate::live_section::{Change, Control, Kind, Slider};
 
-/// Levers of a page.
+/// Maximum number of levers of a page.
 const MOST: usize = 6;
-/// Positions of a slider, at least.
+/// Minimum number of positions of a slider.
 const POSITIONS: f64 = 100.0;
-/// How far a slider goes beyond what is known, in widths of that range; without a width, as a share of the value.
+/// Extension of a slider beyond the known range, in widths of that range; without a width, as a share of the value.
 const BEYOND: f64 = 0.5;
 
-/// What can be moved, in the order of its worth: the first six that a car has are shown.
+/// Candidates in order of importance: the first ones that a car has, up to [`MAX_CONTROLS`], are shown.
 enum Candidate {
     /// A number: name, title, key.
     Number(&'static str, &'static str, &'static str),
-    /// The shipped changes of a group: name and title. A change of a key that has a slider, or over the value of the file, is left out.
+    /// Shipped changes of a group: name and title. Omits changes of a key that has a slider, or of the file's own value.
     Group(&'static str, &'static str),
 }
 use Candidate::{Group, Number};
@@ -71,7 +71,7 @@ const CANDIDATES: [Candidate; 14] = [
     Number("radius", "Radius of the wheels", "road_load.wheel_radius_m"),
 ];
 
-/// The levers of a car.
+/// Selects the levers of a car.
 ///
 /// # Errors
 /// Problems of the car.
@@ -152,7 +152,7 @@ fn positions([low, high]: [f64; 2], bound: Bound) -> Option<([f64; 2], f64)> {
     let (low, high) = (low.max(bound.low()), high.min(bound.high()));
     let exponent = ((high - low) / POSITIONS).log10().floor();
     let step = 10_f64.powi(exponent as i32);
-    // A power of ten below one has no exact value, its inverse has.
+    // Negative powers of ten are inexact, their inverses exact.
     let at = |count: f64| match exponent < 0.0 {
         true => count / 10_f64.powi(-exponent as i32),
         false => count * step,
@@ -167,7 +167,7 @@ fn positions([low, high]: [f64; 2], bound: Bound) -> Option<([f64; 2], f64)> {
     (ends[0] < ends[1] && ends.iter().all(|x| x.is_finite())).then_some((ends, step))
 }
 
-/// Whether a lever gives values alone, and none that a slider gives.
+/// True if a lever sets only values, and none that a slider sets.
 fn is_choice(lever: &Lever, sliders: &[&str]) -> bool {
     let is_own = |by: &Override| by.acts() == Acts::Value && !sliders.contains(&by.key());
     !lever.set.is_empty()
@@ -176,7 +176,7 @@ fn is_choice(lever: &Lever, sliders: &[&str]) -> bool {
         && lever.engine_oil.is_none()
 }
 
-/// Whether the car can have a lever, and differs by it.
+/// True if the car accepts a lever, and changes by it.
 fn can_have(word: &str, options: &Options, base: &Setup, lever: &Lever) -> bool {
     let mut options = options.clone();
     options.set.extend(lever.set.iter().cloned());

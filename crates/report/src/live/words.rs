@@ -1,4 +1,4 @@
-//! What a page says besides its figures: what the levers leave.
+//! Sentences of a page on limits left by the levers.
 
 use cvtcycle_output::Flags;
 use cvtcycle_output::summary::RunSummary;
@@ -6,7 +6,7 @@ use cvtcycle_output::summary::RunSummary;
 use crate::live_section::{Control, Kind, State};
 use crate::number::{Quantity, capital_first, words};
 
-/// Flags that say that a number is not that of a car that works.
+/// Flags of a car that does not work.
 const BAD: [Flags; 6] = [
     Flags::MISSED_TRACE,
     Flags::GROSS_SLIP,
@@ -45,7 +45,7 @@ pub(super) fn flags(run: &RunSummary, of_file: Option<&RunSummary>) -> Vec<Strin
     failed.chain(bad).collect()
 }
 
-/// Levers beyond what is known, a sentence each.
+/// Levers outside their known range, a sentence each.
 pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
     let of = |control: &Control| {
         let Kind::Slider(slider) = &control.kind else {
@@ -64,7 +64,7 @@ pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
     controls.iter().filter_map(of).collect()
 }
 
-/// What the chosen changes take, a sentence each.
+/// Requirements of the chosen changes, a sentence each.
 pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
     let of = |control: &Control| {
         let Kind::Choice(changes) = &control.kind else {

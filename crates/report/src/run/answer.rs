@@ -1,4 +1,4 @@
-//! Page 1: question, answer with its interval and what contradicts it, price of the losses, options, risk, next test, decision.
+//! Page 1: question, answer with its interval and contradicting numbers, price of the losses, options, risk, next test, decision.
 
 use super::super::document::{Block, Section};
 use super::super::number::{Quantity, capital_first, grouped, words};
@@ -13,12 +13,12 @@ use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
 use cvtcycle_study::words::decimals;
 use cvtcycle_study::words::run::contradictions;
 
-/// Levers on page 1, and among the decisions, at most.
+/// Maximum number of levers on page 1, and among the decisions.
 const OPTIONS: (usize, usize) = (6, 2);
-/// Change of the least clamp safety that is worth saying.
+/// Minimum change of the minimum clamp safety that is mentioned.
 const SAFETY: f64 = 0.05;
 
-/// The levers of the car and the ambient temperature of a run.
+/// Levers for the car and the ambient temperature of a run.
 pub(super) type Options = Option<(LeverAnswer, LeverBlock)>;
 
 pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Section {
@@ -44,7 +44,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     }
     strip(&mut section, summary, cycle);
     for line in contradictions(&summary.labelled()) {
-        // "Soak" is a word of test cells.
+        // "Soak" is a term of test cells, unfamiliar to other readers.
         section.alert(line.replace("soak, ", "cold start, "));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
@@ -77,7 +77,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     section
 }
 
-/// The title of a cycle up to its details: "NEDC" of "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)".
+/// Shortens the title of a cycle: "NEDC" of "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)".
 pub(crate) fn brief(title: &str) -> &str {
     title.split([':', '(', ',']).next().map_or(title, str::trim)
 }
@@ -98,7 +98,7 @@ fn interval(comparison: &Comparison) -> Option<[f64; 2]> {
     Some([drawn.percent[0], drawn.percent[2]])
 }
 
-/// Fuel of the subject, and its difference to the first baseline with what is known of it.
+/// Fuel of the subject, and its difference to the first baseline with the known uncertainty.
 fn lead(summary: &Summary, cycle: &str) -> String {
     let Some(subject) = summary.runs.first() else {
         return String::new();
@@ -131,7 +131,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     format!("{text}: {difference}{kind}. {known}.")
 }
 
-/// " (not like for like)", where that is so.
+/// " (not like for like)", where that applies.
 fn likeness(comparison: &Comparison) -> &'static str {
     match comparison.differences.is_empty() {
         true => "",
@@ -139,7 +139,7 @@ fn likeness(comparison: &Comparison) -> &'static str {
     }
 }
 
-/// The lever that saves most, in a sentence.
+/// Sentence on the lever with the largest saving.
 fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     let row = single(block).next()?;
     let (name, saved) = (&row.of.title, -row.fuel_percent.value);
@@ -160,13 +160,13 @@ fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     })
 }
 
-/// Levers that work and save, the one that saves most first.
+/// Working levers that save fuel, in descending saving.
 fn single(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
     let single = block.rows.iter().filter(|row| !row.is_combination());
     single.filter(|row| saves(row))
 }
 
-/// How sure the difference to each baseline is, as a figure; none without a baseline.
+/// Adds a figure of the confidence in the difference to each baseline, if there is one.
 pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     let Some((subject, baselines)) = summary.runs.split_first() else {
         return;
@@ -191,7 +191,7 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     section.figure("answer", caption, picture);
 }
 
-/// The published range of the difference to a baseline over the whole cycle, where it contradicts that of the run.
+/// Published range of the difference to a baseline over the whole cycle, if it contradicts that of the run.
 pub(super) fn published(summary: &Summary, baseline: &str) -> Option<[f64; 2]> {
     let mut contradicted = summary.contradicted.iter();
     let own = |of: &&Contradiction| of.phase.is_none() && of.baseline.as_deref() == Some(baseline);
@@ -229,14 +229,14 @@ fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
     list
 }
 
-/// The changes that are asked for: the foremost by themselves, and the combinations.
+/// Proposed changes: the first single levers, and the combinations.
 fn asked(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
     let together = block.rows.iter();
     let together = together.filter(|row| row.is_combination() && saves(row));
     single(block).take(OPTIONS.1).chain(together)
 }
 
-/// What a change takes: safety against belt slip, and what has to be built or proven.
+/// Risk of a change: safety against belt slip, and parts to be built or proven.
 fn risk(row: &LeverRow, now: Option<f64>) -> Option<String> {
     let worst = row.worst("min_clamp_safety");
     let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
@@ -257,7 +257,7 @@ fn no_test() -> String {
     "Not known: a study of the case that samples its uncertain values says which of them is worth a test (`cvtcycle study uncertainty_rover`).".to_owned()
 }
 
-/// The value that is worth a test: the difference that knowing it would make, and the test in a few words.
+/// Next test: the reduction of the spread by knowing a value, and the test in a few words.
 fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> {
     if study_answers::other_case(own, summary).is_some() {
         return None;

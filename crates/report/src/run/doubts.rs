@@ -1,4 +1,4 @@
-//! Results behind page 1: fuel by phase, where the energy went, what the studies say, what to doubt.
+//! Results behind page 1: fuel by phase, uses of the fuel, results of the studies, doubts.
 
 use super::super::document::{Block, ReportTable, Section};
 use super::super::number::{Quantity, capital_first, grouped, list_of, percent, phase, words};
@@ -18,7 +18,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     }
     section.text(ends(cars));
     for own in &found.studies {
-        // A study of another case says nothing about this run; its section says what it is.
+        // A study of another case does not apply to this run; its section describes it.
         if let Some(why) = study_answers::other_case(own, summary) {
             let title = &own.answer.title;
             section.alert(format!(
@@ -26,7 +26,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
             ));
             continue;
         }
-        // What the levers save is on page 1 and in their own section.
+        // Savings of the levers are on page 1 and in their own section.
         if own.outline.levers.is_some() {
             continue;
         }
@@ -94,7 +94,7 @@ fn fuel(summary: &Summary) -> ReportTable {
     table
 }
 
-/// A number of a run by its index.
+/// Number of a run by its index.
 type ByRun<'a> = dyn Fn(usize, &RunSummary) -> Option<f64> + 'a;
 
 fn where_it_went(cars: &[Car]) -> String {
@@ -136,10 +136,10 @@ fn ends(cars: &[Car]) -> String {
     format!("At the end, after {seconds}: {}.", ends.join("; "))
 }
 
-/// Temperature below which the thesis measured trends only, degC.
+/// Minimum temperature of the thesis's measurements beyond trends, degC.
 const MEASURED_FROM_DEGC: f64 = 25.0;
 
-/// Share of the time in which the transmission oil of each car is below the measured temperatures, in a sentence, if there is any.
+/// Sentence on the share of time in which the transmission oil of each car is below the measured temperatures, if there is any.
 pub(super) fn cold(cars: &[Car]) -> Option<String> {
     let share = |car: &Car| {
         let history = car.history?;

@@ -7,7 +7,7 @@ use crate::charts::Picture;
 use crate::charts::decision::PerKm;
 use crate::charts::figures::{CarEnergy, TERMS, Term, energy_flow, transmission_flow};
 
-/// A car's ledger as the figures want it, kJ/km.
+/// Ledger of a car for the figures, kJ/km.
 fn car_energy(car: &Car, conditions: &str) -> CarEnergy {
     let per_km = |kj: f64| kj / car.run.distance_km;
     let term = |name: &str| per_km(car.run.term_kj(name).unwrap_or(f64::NAN));
@@ -28,7 +28,7 @@ fn car_energy(car: &Car, conditions: &str) -> CarEnergy {
     }
 }
 
-/// The ledgers of all cars, to be drawn on one scale.
+/// Ledgers of all cars, with a common scale.
 fn energies(cars: &[Car], conditions: &str) -> Vec<CarEnergy> {
     let of = |car| car_energy(car, conditions);
     let mut all: Vec<CarEnergy> = cars.iter().map(of).collect();
@@ -54,7 +54,7 @@ pub(crate) fn per_km(subject: &Car, baseline: &Car) -> PerKm {
     }
 }
 
-/// What the fuel of the subject has more than that of a baseline over a kilometre, term by term.
+/// Sentence on the excess fuel of the subject over a baseline per kilometre, term by term.
 pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
     let of = per_km(subject, baseline);
     let difference = of.fuel[0] - of.fuel[1];

@@ -1,4 +1,4 @@
-//! The sections that are mostly figures: energy, losses, warm-up, driveline, engine.
+//! Sections that are mainly figures: energy, losses, warm-up, driveline, engine.
 
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, capital, phase as phase_name};
@@ -84,7 +84,7 @@ fn conditions(found: &RunResults) -> String {
     format!("{}, {}", brief(&cycle), conditions_line(&found.summary))
 }
 
-/// What the losses cost and where they come from; by phase and over time in the full report.
+/// Price and origin of the losses; by phase and over time in the full report.
 fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     let mut section = Section::new("losses", "Losses: what they cost, and where they are");
     let conditions = conditions(found);
@@ -134,7 +134,7 @@ fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     section
 }
 
-/// The name of a figure: that of the first car is the plain one.
+/// File name of a figure: the first car has no suffix.
 fn file(name: &str, all: &[Car], car: &Car) -> String {
     match all
         .first()
@@ -145,7 +145,7 @@ fn file(name: &str, all: &[Car], car: &Car) -> String {
     }
 }
 
-/// From the fuel of the first baseline to that of the subject, and from that of the subject to each baseline.
+/// Waterfalls from the fuel of the first baseline to that of the subject, and from that of the subject to each baseline.
 fn waterfalls(all: &[Car], conditions: &str) -> Vec<(String, String, String, Picture)> {
     let Some((subject, baselines)) = all.split_first() else {
         return Vec::new();
@@ -164,7 +164,7 @@ fn waterfalls(all: &[Car], conditions: &str) -> Vec<(String, String, String, Pic
     first.into_iter().chain(others).map(view).collect()
 }
 
-/// A part of the cycle that a car drives again and again with the same speeds: its name, and what each drive loses.
+/// Part of the cycle that a car drives repeatedly with the same speeds: its name, and the losses of each drive.
 fn natural_experiment<'a>(car: &Car<'a>) -> Option<(&'a str, Vec<Repeat>, String)> {
     let history = car.history?;
     let rows = |phase: usize| (0..history.len()).filter(move |i| history.phase(*i) == phase);
@@ -238,7 +238,7 @@ fn group_losses(history: &History, group: &str) -> Vec<(Component, f64)> {
     history.components().iter().map(sum).collect()
 }
 
-/// The loss power of a component over time, W.
+/// Loss power of a component over time, W.
 fn loss_w<'a>(history: &'a History, component: &Component) -> &'a [f64] {
     loss_column(*component).map_or(&[], |column| history.column(&column.name))
 }

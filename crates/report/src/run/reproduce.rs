@@ -1,4 +1,4 @@
-//! What is needed to get the same numbers again.
+//! Information needed to reproduce the numbers.
 
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, tiny, words};
@@ -35,7 +35,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     section
 }
 
-/// A number of a run with its name.
+/// Name and number of a run.
 type Line = (&'static str, fn(&RunSummary) -> String);
 
 const SOLUTION: [Line; 4] = [

@@ -8,12 +8,12 @@ use super::super::results::RunResults;
 use super::Car;
 use cvtcycle_output::record::{CarRecord, Effect, Sensitivity, ValueRecord};
 
-/// Assumptions and fits of the subject in the body.
+/// Number of assumptions and fits of the subject in the body.
 const SHOWN: usize = 10;
-/// Effects below this, per cent of fuel, are written as 0.
+/// Effect below which 0 is written, per cent of fuel.
 const SMALL_PERCENT: f64 = 0.005;
 
-/// True for a value from judgement or a fit, or of a class or another car, not from a source of this one.
+/// True for a value from judgement, a fit, a class or another car, without a source for this one.
 fn is_doubtful(value: &ValueRecord) -> bool {
     ["assumed", "fitted", "default"].contains(&value.status.as_str()) || is_inherited(value)
 }
@@ -23,7 +23,7 @@ fn is_inherited(value: &ValueRecord) -> bool {
     ["class", "like"].contains(&value.status.as_str())
 }
 
-/// "assumed, fitted or X", with what is inherited where there is such a value.
+/// "assumed, fitted or X", with the inherited values if there are any.
 fn doubtful_words(car: &CarRecord, last: &str) -> String {
     let inherited = match car.values.iter().any(is_inherited) {
         true => ", inherited",
@@ -32,7 +32,7 @@ fn doubtful_words(car: &CarRecord, last: &str) -> String {
     format!("assumed, fitted{inherited} or {last}")
 }
 
-/// True if there is a value: neither a choice of a model nor an optional key without a value.
+/// True for a given value: neither a choice of a model nor an optional key without a value.
 fn is_given(value: &ValueRecord) -> bool {
     value.status != "choice" && !value.value.is_empty()
 }
@@ -89,10 +89,10 @@ fn count(cars: &[Car]) -> String {
     known.map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// A value with its effect on fuel.
+/// Value with its effect on fuel.
 type Ranked<'a> = (&'a ValueRecord, Option<&'a Effect>);
 
-/// Some values of a car with their effects, the strongest first.
+/// Selects values of a car with their effects, the strongest first.
 fn ranked<'a>(
     car: &'a CarRecord,
     sensitivity: Option<&'a Sensitivity>,
@@ -105,14 +105,14 @@ fn ranked<'a>(
     };
     let values = car.values.iter().filter(|value| wanted(value));
     let mut list: Vec<Ranked> = values.map(|value| (value, effect(value))).collect();
-    // No number last.
+    // Values without an effect come last.
     let size = |of: &Ranked| of.1.map_or(-1.0, Effect::size_percent).max(-1.0);
-    // Stable: values without an effect keep the order of the file.
+    // Stable sort: values without an effect keep the order of the file.
     list.sort_by(|a, b| size(b).total_cmp(&size(a)));
     list
 }
 
-/// Values of a car: the strongest doubtful ones in the body if there is one, all others in what the full report has.
+/// Adds the values of a car: the strongest doubtful ones to the body if there are any, all others to the full report.
 fn of_car(
     body: Option<&mut Section>,
     more: &mut Section,
@@ -178,7 +178,7 @@ fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> R
     table
 }
 
-/// Long texts and lists cut to what fits a cell.
+/// Cuts long texts and lists to fit a cell.
 fn short(text: &str) -> String {
     const MOST: usize = 90;
     if text.chars().count() <= MOST {
@@ -188,7 +188,7 @@ fn short(text: &str) -> String {
     }
 }
 
-/// The number of doubtful values, and the one with the largest effect.
+/// Sentence on the number of doubtful values, and the one with the largest effect.
 pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
     let (record, subject) = (found.record.as_ref()?, cars.first()?.record?);
     let count = |wanted: fn(&ValueRecord) -> bool| {
@@ -209,7 +209,7 @@ pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
         sensitivity,
     ) && effect.size_percent().is_finite()
     {
-        // A temperature is moved by kelvins, not by a share of its degrees.
+        // A temperature is changed by kelvins, not by a share of its degrees.
         let step = match value.unit.as_str() {
             "degC" => "5\u{a0}K".to_owned(),
             _ => percent_text(sensitivity.step_percent),

@@ -25,7 +25,7 @@ pub struct Overlay {
 pub struct OverlayPanel {
     /// Name of the quantity.
     pub title: String,
-    /// Its unit; empty or `-` for a plain number.
+    /// Unit; empty or `-` for a plain number.
     pub unit: &'static str,
     /// Time, s, and value in runs A and B; a gap where a value is not finite.
     pub runs: [Vec<(f64, f64)>; 2],

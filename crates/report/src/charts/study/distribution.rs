@@ -23,7 +23,7 @@ pub struct DistributionSeries<'a, P: ?Sized = [f64]> {
 /// Numbers of the same quantity from other sources than the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KnownValue {
-    /// With the nominal values, those of the files.
+    /// Result with the nominal values, those of the files.
     pub nominal: Option<f64>,
     /// A published range.
     pub published: Option<[f64; 2]>,
