@@ -179,7 +179,7 @@ fn step_of_a_cycle(bencher: Bencher, name: &str) {
         .bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut NullRecorder));
 }
 
-fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
+fn drive_cycle(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
     let setup = setup(name);
     let cycle = cycle(cycle_name);
     let conditions = Conditions {
@@ -198,12 +198,12 @@ fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
 
 #[divan::bench(args = CARS)]
 fn cycle_without_history(bencher: Bencher, name: &str) {
-    whole(bencher, name, "ece15_eudc", false);
+    drive_cycle(bencher, name, "ece15_eudc", false);
 }
 
 #[divan::bench(args = CARS)]
 fn cycle_with_history(bencher: Bencher, name: &str) {
-    whole(bencher, name, "ece15_eudc", true);
+    drive_cycle(bencher, name, "ece15_eudc", true);
 }
 
 /// The CVT with each launch device, and with a converter that never locks.
@@ -323,7 +323,7 @@ fn least_fuel(bencher: Bencher, free: bool) {
 
 #[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]
 fn other_cycle_without_history(bencher: Bencher, name: &str) {
-    whole(bencher, "rover_216_cvt", name, false);
+    drive_cycle(bencher, "rover_216_cvt", name, false);
 }
 
 #[divan::bench(args = CARS)]
@@ -370,9 +370,9 @@ fn blueprint_build(bencher: Bencher, name: &str) {
 }
 
 /// Sink that drops the parts of a study.
-struct Nowhere;
+struct NullSink;
 
-impl PartWriter for Nowhere {
+impl PartWriter for NullSink {
     fn write(&self, _: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         black_box((runs.len(), trace.map(Rows::len)));
         Ok(())
@@ -406,7 +406,7 @@ fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
     bencher.counter(ItemsCount::new(512_usize)).bench_local(|| {
         pool.install(|| {
             study
-                .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
+                .execute(&BTreeSet::new(), &NullSink, &NoProgress)
                 .map_err(|p| p.message)
         })
     });
@@ -436,7 +436,7 @@ fn levers(bencher: Bencher) {
             let study =
                 prepare(&request).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
             study
-                .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
+                .execute(&BTreeSet::new(), &NullSink, &NoProgress)
                 .map_err(|p| p.message)
         })
     });

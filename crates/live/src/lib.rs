@@ -26,7 +26,7 @@ thread_local! {
 
 /// Requested state, and the differences drawn for it.
 #[derive(Deserialize)]
-struct Asked {
+struct DrawnState {
     state: State,
     #[serde(default)]
     drawn: Option<Vec<DrawnDifference>>,
@@ -71,7 +71,7 @@ pub extern "C" fn live_open() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn live_answer() -> usize {
     call(|live| {
-        let asked: Asked = parsed(&live.input)?;
+        let asked: DrawnState = parsed(&live.input)?;
         let page = live.page.as_mut().ok_or_else(not_open)?;
         Ok(page.answer(&asked.state, asked.drawn))
     })
@@ -81,7 +81,7 @@ pub extern "C" fn live_answer() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn live_draw() -> usize {
     call(|live| {
-        let asked: Asked = parsed(&live.input)?;
+        let asked: DrawnState = parsed(&live.input)?;
         let page = live.page.as_mut().ok_or_else(not_open)?;
         let found = page.draw(&asked.state);
         let problem = found.as_ref().err().map(sentence);

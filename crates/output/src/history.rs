@@ -27,7 +27,7 @@ pub struct History {
 impl History {
     /// Converts the rows of a run to columns. `phases` are the names that [`Row::phase`] indexes; only those that occur are kept, in their
     /// order.
-    pub fn of(rows: &[Row], columns: &[&'static TraceColumn], phases: &[String]) -> Self {
+    pub fn from_rows(rows: &[Row], columns: &[&'static TraceColumn], phases: &[String]) -> Self {
         let numbers = |column: &&'static TraceColumn| {
             let mut numbers = Vec::with_capacity(rows.len());
             column.numbers(rows, &mut numbers);

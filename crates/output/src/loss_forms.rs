@@ -89,10 +89,10 @@ pub fn gem_grid(bench: &Bench) -> [(Axis, Vec<f64>); 3] {
 
 /// Axis values and torque loss, Nm, at a point of a grid over torque at the input shaft.
 fn loss_nm(bench: &Bench, grid: &LossGrid, index: usize) -> ([f64; Axis::COUNT], f64) {
-    let asked = grid.at(index);
-    let point = bench_point(&asked);
+    let requested = grid.at(index);
+    let point = bench_point(&requested);
     let at_input = bench.at_input_torque(&point, point.output_nm);
-    (asked, bench.solve(&at_input).total_nm())
+    (requested, bench.solve(&at_input).total_nm())
 }
 
 /// Writes the map of a whole box over a grid of input torques, in a format other than [`MapForm::Csv`].
@@ -116,8 +116,11 @@ pub fn write_form(
 fn vtlm(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
     writeln!(out, "Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm]")?;
     (0..grid.len()).try_for_each(|index| {
-        let (asked, loss) = loss_nm(bench, grid, index);
-        let (speed, torque) = (asked[Axis::Speed as usize], asked[Axis::Torque as usize]);
+        let (requested, loss) = loss_nm(bench, grid, index);
+        let (speed, torque) = (
+            requested[Axis::Speed as usize],
+            requested[Axis::Torque as usize],
+        );
         writeln!(out, "{speed:.2},{torque:.2},{loss:.4}")
     })
 }
@@ -133,8 +136,8 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
         "{ratio},Input speed [r/min],Input torque [N.m],Power loss [kW]"
     )?;
     (0..grid.len()).try_for_each(|index| {
-        let asked = grid.at(index);
-        let point = bench_point(&asked);
+        let requested = grid.at(index);
+        let point = bench_point(&requested);
         // An unloaded output shaft turns freely, and the input torque is the loss (1037.565(e)(4), (f)(1)).
         let unloaded = point.output_nm.abs() <= 0.0;
         let point = match unloaded {
@@ -143,7 +146,10 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
         };
         let answer = bench.solve(&point);
         let loss_kw = answer.total_nm() * point.input_rad_s / 1e3;
-        let (ratio, speed) = (asked[Axis::Ratio as usize], asked[Axis::Speed as usize]);
+        let (ratio, speed) = (
+            requested[Axis::Ratio as usize],
+            requested[Axis::Speed as usize],
+        );
         writeln!(
             out,
             "{ratio:.3},{speed:.1},{:.2},{loss_kw:.4}",
@@ -154,14 +160,14 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
 
 fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
     // Viscosity ascends as temperature descends.
-    let mut oil: Vec<f64> = grid.of(Axis::Sump).to_vec();
+    let mut oil: Vec<f64> = grid.axis_values(Axis::Sump).to_vec();
     oil.sort_by(|a, b| b.total_cmp(a));
     oil.dedup();
-    let mut speeds: Vec<f64> = grid.of(Axis::Speed).to_vec();
+    let mut speeds: Vec<f64> = grid.axis_values(Axis::Speed).to_vec();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     let point = |ratio: f64, torque: f64, oil: f64, speed: f64| -> BenchPoint {
-        let mut asked = [f64::NAN; Axis::COUNT];
+        let mut requested = [f64::NAN; Axis::COUNT];
         for (axis, value) in [
             (Axis::Ratio, ratio),
             (Axis::Torque, torque),
@@ -169,9 +175,9 @@ fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<(
             (Axis::Speed, speed),
             (Axis::Throttle, 0.0),
         ] {
-            asked[axis as usize] = value;
+            requested[axis as usize] = value;
         }
-        bench_point(&asked)
+        bench_point(&requested)
     };
     writeln!(out, "#1")?;
     let name = &bench.car().oil.name;
@@ -179,9 +185,9 @@ fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<(
         out,
         "# torque loss at the input shaft, Nm, over input speed, rad/s (rows), and kinematic viscosity of the oil in the sump, m2/s (columns); computed with {name}"
     )?;
-    let ratios = (1..).zip(grid.of(Axis::Ratio));
+    let ratios = (1..).zip(grid.axis_values(Axis::Ratio));
     for (i, ratio) in ratios {
-        for (k, torque) in (1..).zip(grid.of(Axis::Torque)) {
+        for (k, torque) in (1..).zip(grid.axis_values(Axis::Torque)) {
             writeln!(out, "# ratio or gear {ratio}, input torque {torque} Nm")?;
             let (rows, columns) = (speeds.len() + 1, oil.len() + 1);
             write!(out, "double loss_{i}_{k}({rows},{columns})\n0")?;
@@ -191,8 +197,8 @@ fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<(
             }
             for speed in &speeds {
                 let row = |degc: &f64| {
-                    let asked = point(*ratio, *torque, *degc, *speed);
-                    let at_input = bench.at_input_torque(&asked, *torque);
+                    let requested = point(*ratio, *torque, *degc, *speed);
+                    let at_input = bench.at_input_torque(&requested, *torque);
                     bench.solve(&at_input).total_nm()
                 };
                 write!(

@@ -42,7 +42,7 @@ impl MapPart {
     ];
 
     /// True for a part that only a CVT has.
-    pub fn of_cvt(self) -> bool {
+    pub fn is_cvt_only(self) -> bool {
         self != MapPart::Box
     }
 
@@ -93,7 +93,7 @@ type MapPoint = ([f64; Axis::COUNT], f64);
 /// Columns of the map over a grid: axes, then the loss.
 fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPoint>> {
     let ratio = if is_cvt { "ratio" } else { "gear" };
-    let pressure = !grid.of(Axis::Pressure).is_empty() && part.of_cvt();
+    let pressure = !grid.axis_values(Axis::Pressure).is_empty() && part.is_cvt_only();
     let axes = [
         (Some(ratio), Axis::Ratio),
         (Some("input_speed_rpm"), Axis::Speed),
@@ -102,7 +102,7 @@ fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPo
         (Some("oil_temp_degc"), Axis::Sump),
     ];
     let axes = axes.into_iter().filter_map(|(name, axis)| {
-        let get = move |(asked, _): &MapPoint| asked[axis as usize];
+        let get = move |(requested, _): &MapPoint| requested[axis as usize];
         Some(Column::number(name?, "", "", get))
     });
     let loss = Column::number("torque_loss_nm", "", "", |(_, loss)| *loss);
@@ -120,8 +120,8 @@ pub fn write_map(
     grid: &LossGrid,
 ) -> io::Result<()> {
     let rows = (0..grid.len()).map(|index| {
-        let asked = grid.at(index);
-        (asked, part.loss_nm(bench, &bench_point(&asked)))
+        let requested = grid.at(index);
+        (requested, part.loss_nm(bench, &bench_point(&requested)))
     });
     let is_cvt = bench.car().transmission.is_cvt();
     write_csv(out, &map_columns(part, is_cvt, grid), rows, &[])

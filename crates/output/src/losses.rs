@@ -28,7 +28,7 @@ const SCHEMA: u32 = 1;
 #[derive(Clone, Copy, Debug)]
 pub struct LossRow {
     /// Requested values, by [`Axis`] in the units of the columns; NaN where not given.
-    pub asked: [f64; Axis::COUNT],
+    pub requested: [f64; Axis::COUNT],
     /// Operating point in SI units.
     pub point: BenchPoint,
     /// Answer of the rig.
@@ -36,8 +36,8 @@ pub struct LossRow {
 }
 
 /// Converts requested values from the units of the columns to SI.
-pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
-    let value = |axis: Axis| asked[axis as usize];
+pub fn bench_point(requested: &[f64; Axis::COUNT]) -> BenchPoint {
+    let value = |axis: Axis| requested[axis as usize];
     let given =
         |axis: Axis, suffix: &str| Some(to_si(suffix, value(axis))).filter(|x| x.is_finite());
     BenchPoint {
@@ -61,13 +61,13 @@ impl LossGrid {
 
 impl LossRow {
     /// Solves a point.
-    pub fn new(bench: &Bench, asked: [f64; Axis::COUNT]) -> Self {
-        let point = match asked[Axis::InputTorque as usize] {
-            wanted_nm if wanted_nm.is_nan() => bench_point(&asked),
-            wanted_nm => bench.at_input_torque(&bench_point(&asked), wanted_nm),
+    pub fn new(bench: &Bench, requested: [f64; Axis::COUNT]) -> Self {
+        let point = match requested[Axis::InputTorque as usize] {
+            wanted_nm if wanted_nm.is_nan() => bench_point(&requested),
+            wanted_nm => bench.at_input_torque(&bench_point(&requested), wanted_nm),
         };
         LossRow {
-            asked,
+            requested,
             point,
             answer: bench.solve(&point),
         }
@@ -121,9 +121,13 @@ impl LossRow {
         }
     }
 
-    fn asked_or(&self, axis: Axis, answered: f64) -> f64 {
-        let asked = self.asked[axis as usize];
-        if asked.is_nan() { answered } else { asked }
+    fn requested_or(&self, axis: Axis, answered: f64) -> f64 {
+        let requested = self.requested[axis as usize];
+        if requested.is_nan() {
+            answered
+        } else {
+            requested
+        }
     }
 }
 
@@ -138,14 +142,14 @@ fn bench_components(transmission: &Transmission) -> Vec<Component> {
 pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     let components = bench_components(transmission);
     let mut list = columns! { LossRow;
-        number "input_speed_rpm", "rpm", "speed of the input shaft", r => r.asked[Axis::Speed as usize];
-        number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.asked[Axis::Ratio as usize], Scope::Cvt;
-        count "gear", "", "gear", r => r.asked[Axis::Ratio as usize] as u64, Scope::Manual;
+        number "input_speed_rpm", "rpm", "speed of the input shaft", r => r.requested[Axis::Speed as usize];
+        number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.requested[Axis::Ratio as usize], Scope::Cvt;
+        count "gear", "", "gear", r => r.requested[Axis::Ratio as usize] as u64, Scope::Manual;
         number "output_torque_nm", "Nm", "torque taken from the output shaft, after the final drive", r => r.point.output_nm;
-        number "transmission_sump_degc", "degC", "transmission oil in the sump", r => r.asked[Axis::Sump as usize];
-        number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them", r => r.asked_or(Axis::Belt, degc(r.answer.belt_k)), Scope::Cvt;
+        number "transmission_sump_degc", "degC", "transmission oil in the sump", r => r.requested[Axis::Sump as usize];
+        number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them", r => r.requested_or(Axis::Belt, degc(r.answer.belt_k)), Scope::Cvt;
         number "throttle", "-", "throttle that the clamp law sees", r => r.point.throttle, Scope::Cvt;
-        number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => r.asked_or(Axis::Pressure, bar(r.answer.secondary_pa)), Scope::Cvt;
+        number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => r.requested_or(Axis::Pressure, bar(r.answer.secondary_pa)), Scope::Cvt;
         number "slip_percent", "%", "belt slip", r => 100.0 * r.slip(), Scope::Cvt;
         number "active_segments", "-", "segments that carry; whole numbers in the printed forms, 0 where there are none", r => r.answer.belt.map_or(f64::NAN, |belt| belt.slip.active_segments), Scope::Cvt;
         text "belt_status", "", "ok, gross_slip, or no_active_arc: no number of segments carries the load (printed forms only)", r => r.belt_status(), Scope::Cvt;
@@ -220,12 +224,13 @@ impl LossTable {
     }
 
     /// Formats the values of some axes at a point in words.
-    pub fn held(&self, asked: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
+    pub fn values_in_words(&self, requested: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
         let cvt = self.is_cvt();
-        let given =
-            |axis: &&Axis| !asked[**axis as usize].is_nan() && (cvt || **axis != Axis::Throttle);
+        let given = |axis: &&Axis| {
+            !requested[**axis as usize].is_nan() && (cvt || **axis != Axis::Throttle)
+        };
         let axes = axes.iter().filter(given);
-        let words = axes.map(|axis| axis.words(cvt, asked[*axis as usize]));
+        let words = axes.map(|axis| axis.words(cvt, requested[*axis as usize]));
         words.collect::<Vec<_>>().join(", ")
     }
 
@@ -247,8 +252,8 @@ impl LossTable {
             "count": self.grid.len(),
         });
         // The run is named by its inputs: the points are computed while they are written.
-        let of = (&rest, car_sha256(&self.setup), &self.grid.values, map);
-        Manifest::new(SCHEMA).of_run(&of).with(&rest)
+        let inputs = (&rest, car_sha256(&self.setup), &self.grid.values, map);
+        Manifest::new(SCHEMA).for_run(&inputs).with(&rest)
     }
 
     /// Writes rows as CSV.

@@ -175,7 +175,7 @@ mod tests {
 
     /// Truth: the standard library's digits. Covers bit patterns of all kinds, then numbers of tables: few decimals, any size.
     #[test]
-    fn the_digits_are_those_of_the_standard_library() {
+    fn digits_equal_those_of_the_standard_library() {
         let ends = [
             0.0,
             -0.0,

@@ -45,8 +45,8 @@ impl Manifest {
 
     /// Names the run by a hash of `inputs`, which must hold everything besides the manifest that identifies it.
     #[must_use]
-    pub fn of_run(self, of: &impl Serialize) -> Self {
-        let run = run_word(&(&self, of));
+    pub fn for_run(self, inputs: &impl Serialize) -> Self {
+        let run = run_word(&(&self, inputs));
         Manifest { run, ..self }
     }
 
@@ -71,8 +71,8 @@ impl Manifest {
 const RUN_DIGITS: usize = 16;
 
 /// Name of a run in all its files: a hash of its inputs or results.
-pub fn run_word(of: &impl Serialize) -> String {
-    let text = serde_json::to_vec(of).unwrap_or_default();
+pub fn run_word(inputs: &impl Serialize) -> String {
+    let text = serde_json::to_vec(inputs).unwrap_or_default();
     let mut word = hex(&sha256(&text));
     word.truncate(RUN_DIGITS);
     word

@@ -45,7 +45,7 @@ pub struct Range {
 
 impl Range {
     /// Range of the finite values; inverted with infinite ends if there are none.
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+    pub fn over(values: impl Iterator<Item = f64>) -> Self {
         let finite = values.filter(|x| x.is_finite());
         let empty = Range {
             low: f64::INFINITY,
@@ -81,7 +81,7 @@ pub fn ranges(points: &[SteadyPoint], ratio: f64) -> (Range, Range) {
     let on = || points.iter().filter(|p| is_near(p.set.ratio, ratio));
     let losses = on().map(|p| p.answer.total_nm());
     let pressures = on().map(|p| bar(p.answer.secondary_pa));
-    (Range::of(losses), Range::of(pressures))
+    (Range::over(losses), Range::over(pressures))
 }
 
 /// A test of the rig.

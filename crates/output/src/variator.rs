@@ -145,7 +145,7 @@ impl VariatorCurves {
             "columns": json_columns(&columns),
             "count": self.points().count(),
         });
-        let head = Manifest::new(SCHEMA).of_run(&(&rest, points.finish()));
+        let head = Manifest::new(SCHEMA).for_run(&(&rest, points.finish()));
         write_json(out, &head.with(&rest), &columns, self.points())
     }
 }

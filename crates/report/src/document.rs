@@ -159,11 +159,16 @@ impl Section {
     }
 
     /// Adds a figure with its file name and caption.
-    pub fn figure(&mut self, name: impl Into<String>, caption: impl Into<String>, of: Picture) {
+    pub fn figure(
+        &mut self,
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        picture: Picture,
+    ) {
         self.blocks.push(Block::Figure(Figure {
             name: name.into(),
             caption: caption.into(),
-            picture: of,
+            picture,
             view: None,
         }));
     }
@@ -209,7 +214,7 @@ const WIDE: usize = 3;
 
 impl ReportTable {
     /// A table of a column of names and columns of numbers with their units.
-    pub fn of_numbers(
+    pub fn numeric(
         caption: &str,
         first: &str,
         columns: impl IntoIterator<Item = (impl Into<String>, impl Into<String>)>,
@@ -219,13 +224,13 @@ impl ReportTable {
             unit: unit.into(),
             number: true,
         });
-        let mut table = Self::of_words(caption, &[first]);
+        let mut table = Self::textual(caption, &[first]);
         table.columns.extend(rest);
         table
     }
 
     /// A table of words.
-    pub fn of_words(caption: &str, columns: &[&str]) -> Self {
+    pub fn textual(caption: &str, columns: &[&str]) -> Self {
         let column = |name: &&str| ReportColumn {
             name: (*name).to_owned(),
             ..ReportColumn::default()
@@ -291,18 +296,21 @@ impl Figure {
     /// Numbers of the picture as a table, for the figure with that number.
     pub fn numbers(&self, number: &str) -> ReportTable {
         let table = &self.picture.table;
-        let caption = format!("Numbers of figure {number}");
-        let mut of = ReportTable::of_words(&caption, &[]);
+        let caption = format!("Numbers listed figure {number}");
+        let mut listed = ReportTable::textual(&caption, &[]);
         for (k, (name, unit)) in table.columns.iter().enumerate() {
-            of.columns.push(ReportColumn {
+            listed.columns.push(ReportColumn {
                 name: name.clone(),
                 unit: (*unit).to_owned(),
                 number: table.numbers(k).is_some(),
             });
         }
-        table.rows.iter().for_each(|cells| of.row(cells.clone()));
-        of.note.clone_from(&table.note);
-        of
+        table
+            .rows
+            .iter()
+            .for_each(|cells| listed.row(cells.clone()));
+        listed.note.clone_from(&table.note);
+        listed
     }
 }
 

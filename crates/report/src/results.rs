@@ -77,7 +77,7 @@ impl StudyResults {
     /// The directory holds no study, or a manifest or a part cannot be read.
     pub fn open(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
         let (outline, store) = Self::stored(path)?;
-        Self::of(outline, store, confidence)
+        Self::from_store(outline, store, confidence)
     }
 
     /// As [`StudyResults::open`], with the cars named as in tables and figures of a report.
@@ -121,7 +121,7 @@ impl StudyResults {
     ///
     /// # Errors
     /// A part cannot be read.
-    pub fn of(
+    pub fn from_store(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,

@@ -58,7 +58,7 @@ pub fn write(
     let histories = driven.par_iter().map(|car| {
         let transmission = car.setup.transmission();
         let columns = columns_for(transmission.is_cvt(), &transmission.components());
-        let history = History::of(&car.outcome.rows, &columns, phases);
+        let history = History::from_rows(&car.outcome.rows, &columns, phases);
         (columns, history, fuel_map(car.setup))
     });
     let histories: Vec<_> = histories.collect();

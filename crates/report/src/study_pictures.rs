@@ -31,8 +31,8 @@ pub fn study_pictures(
     known: &[(String, KnownValue)],
 ) -> Result<Vec<(String, Picture)>, Problem> {
     match &answer.matrix {
-        Some(matrix) => Ok(of_matrix(matrix, warm_ups, &frame.outline.title)),
-        None => of_outputs(answer, frame, known),
+        Some(matrix) => Ok(matrix_pictures(matrix, warm_ups, &frame.outline.title)),
+        None => output_pictures(answer, frame, known),
     }
 }
 
@@ -60,7 +60,7 @@ pub fn lever_pictures(answer: &LeverAnswer) -> impl Iterator<Item = (String, Pic
     })
 }
 
-fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
+fn matrix_pictures(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
     let mut list = vec![("ambient_fuel".to_owned(), ambient_fuel(matrix, title))];
     let penalty = ambient_penalty(matrix, title);
     list.extend(penalty.map(|picture| ("ambient_penalty".to_owned(), picture)));
@@ -74,7 +74,7 @@ fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, 
     list
 }
 
-fn of_outputs(
+fn output_pictures(
     answer: &Answer,
     frame: &StudyTable,
     known: &[(String, KnownValue)],
@@ -96,7 +96,7 @@ fn of_outputs(
             list.push((format!("distribution_{}", output.output), picture));
         }
         let name = |kind: &str| format!("{kind}_{}_{}", output.output, output.car);
-        let own = of_output(output, outline, answer.confidence).into_iter();
+        let own = pictures_of_output(output, outline, answer.confidence).into_iter();
         list.extend(own.map(|(kind, picture)| (name(kind), picture)));
     }
     Ok(list)
@@ -175,7 +175,7 @@ fn tail(output: &str) -> String {
     })
 }
 
-fn of_output(
+fn pictures_of_output(
     output: &OutputAnswer,
     outline: &StudyManifest,
     confidence: Confidence,

@@ -127,7 +127,7 @@ pub fn differing(value: &Value) -> String {
 /// Table of rows; `last` is the heading of the last column and, in lower case, its key.
 fn table(caption: &str, rows: &[&Value], last: &str) -> ReportTable {
     let columns = ["Row", "What", "Printed", "Computed", "Unit", last];
-    let mut table = ReportTable::of_words(caption, &columns);
+    let mut table = ReportTable::textual(caption, &columns);
     for row in rows {
         let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
         let what = match text("condition").as_str() {

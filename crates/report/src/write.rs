@@ -34,7 +34,7 @@ impl Form {
     }
 
     /// Detects the form of a file by its extension.
-    pub fn of(file: &Path) -> Option<Form> {
+    pub fn from_path(file: &Path) -> Option<Form> {
         let mut forms = [Form::Html, Form::Markdown].into_iter();
         forms.find(|form| form.endings().contains(&ending(file).as_str()))
     }

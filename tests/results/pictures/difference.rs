@@ -12,8 +12,8 @@ fn two() -> Difference {
         terms: vec![
             DifferenceTerm::term("Heat to the engine", Term::EngineHeat, [15_000.0, 14_900.0]),
             DifferenceTerm::term("Rotating parts", Term::Kinetic, [-0.8, 0.0]),
-            DifferenceTerm::of(Component::BeltBand, [390.0, 520.5]),
-            DifferenceTerm::of(Component::BeltWedge, [110.0, 110.0]),
+            DifferenceTerm::component(Component::BeltBand, [390.0, 520.5]),
+            DifferenceTerm::component(Component::BeltWedge, [110.0, 110.0]),
             DifferenceTerm::term("Rolling and air", Term::Wheels, [2300.0, 2310.0]),
         ],
         ..Difference::default()
@@ -83,7 +83,7 @@ fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
     assert!(!difference_bars(&two()).svg.contains("Not accounted for"));
     check(&difference_bars(&Difference::default()));
     let same = Difference {
-        terms: vec![DifferenceTerm::of(Component::Seal, [5.0, 5.0])],
+        terms: vec![DifferenceTerm::component(Component::Seal, [5.0, 5.0])],
         fuel_kj: [5.0, 5.0],
         ..two()
     };
@@ -99,7 +99,7 @@ fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
     };
     check(&difference_bars(&broken));
     let falls = Difference {
-        terms: vec![DifferenceTerm::of(Component::Seal, [9.0, 5.0])],
+        terms: vec![DifferenceTerm::component(Component::Seal, [9.0, 5.0])],
         fuel_kj: [9.0, 5.0],
         ..two()
     };

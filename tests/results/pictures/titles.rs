@@ -218,9 +218,9 @@ fn differences_of_a_title_are_those_of_the_table() {
         distance_km: [11.0; 2],
         fuel_kj: [27_000.0, 26_900.0],
         terms: vec![
-            DifferenceTerm::of(Component::BeltBand, [500.0, 420.0]),
-            DifferenceTerm::of(Component::Pump, [900.0, 899.9]),
-            DifferenceTerm::of(Component::Seal, [90.0, 90.1]),
+            DifferenceTerm::component(Component::BeltBand, [500.0, 420.0]),
+            DifferenceTerm::component(Component::Pump, [900.0, 899.9]),
+            DifferenceTerm::component(Component::Seal, [90.0, 90.1]),
         ],
     };
     let picture = difference_bars(&of);

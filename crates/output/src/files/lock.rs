@@ -24,7 +24,7 @@ const PATIENT: usize = 500;
 pub struct DirLock {
     path: PathBuf,
     created: Vec<PathBuf>,
-    held: Option<File>,
+    locked_file: Option<File>,
     /// True if a file in the directory is locked instead of the directory itself.
     by_file: bool,
 }
@@ -32,7 +32,10 @@ pub struct DirLock {
 /// Result of an attempt to lock.
 enum Attempt {
     /// Locked, or there are no locks.
-    Locked { held: Option<File>, by_file: bool },
+    Locked {
+        locked_file: Option<File>,
+        by_file: bool,
+    },
     /// Another process holds the lock.
     Busy,
     /// The locked path was removed or replaced meanwhile.
@@ -76,15 +79,18 @@ impl DirLock {
             let mut lock = DirLock {
                 path: path.to_path_buf(),
                 created: Vec::new(),
-                held: None,
+                locked_file: None,
                 by_file: false,
             };
             if makes {
                 make(path, &mut lock.created).map_err(|error| cannot("create", &error))?;
             }
             match attempt(path) {
-                Ok(Attempt::Locked { held, by_file }) => {
-                    (lock.held, lock.by_file) = (held, by_file);
+                Ok(Attempt::Locked {
+                    locked_file,
+                    by_file,
+                }) => {
+                    (lock.locked_file, lock.by_file) = (locked_file, by_file);
                     return Ok(lock);
                 }
                 // The process that holds the lock, or recreated the directory, uses it now.
@@ -149,7 +155,7 @@ impl Drop for DirLock {
             drop(fs::remove_dir(dir));
         }
         // Unlocking last keeps other processes out until here.
-        drop(self.held.take());
+        drop(self.locked_file.take());
     }
 }
 
@@ -203,7 +209,7 @@ fn attempt(path: &Path) -> io::Result<Attempt> {
     options.read(true).write(true).create(true).truncate(false);
     match attempt_on(options.open(&name)?, &name, true) {
         Err(error) if error.kind() == ErrorKind::Unsupported => Ok(Attempt::Locked {
-            held: None,
+            locked_file: None,
             by_file: true,
         }),
         attempt => attempt,
@@ -213,7 +219,7 @@ fn attempt(path: &Path) -> io::Result<Attempt> {
 fn attempt_on(opened: File, path: &Path, by_file: bool) -> io::Result<Attempt> {
     match opened.try_lock() {
         Ok(()) if is_at(&opened, path) => Ok(Attempt::Locked {
-            held: Some(opened),
+            locked_file: Some(opened),
             by_file,
         }),
         Ok(()) => Ok(Attempt::Gone),

@@ -291,7 +291,7 @@ mod tests {
 
     /// A commit killed at any step leaves the earlier files until the journal has its name, and after settling the new ones from then on.
     #[test]
-    fn wherever_the_process_ends_the_files_are_all_old_or_all_new() {
+    fn kill_at_any_step_leaves_all_old_or_all_new_files() {
         for (before, new, gone) in CASES {
             let before = tree_of(before);
             let after = after(&before, new, gone);
@@ -320,7 +320,7 @@ mod tests {
 
     /// A failed step undoes all steps before it; if the undo is interrupted as well, the set is completed.
     #[test]
-    fn wherever_a_step_fails_the_earlier_files_are_back() {
+    fn failed_step_restores_the_earlier_files() {
         for (before, new, gone) in CASES {
             let before = tree_of(before);
             let after = after(&before, new, gone);
@@ -355,7 +355,7 @@ mod tests {
 
     /// A second process that writes into a directory is refused, and changes nothing.
     #[test]
-    fn one_at_a_time() {
+    fn second_writer_is_refused() {
         let dir = folder(&Tree::new());
         let first = begun(dir.path(), &RUN, &[]);
         let problem = DirLock::take(dir.path()).expect_err("it is locked");
@@ -368,7 +368,7 @@ mod tests {
 
     /// A foreign journal cannot reach outside: names stay in the directory, and only temporary files are moved.
     #[test]
-    fn a_journal_that_leads_elsewhere_is_damaged() {
+    fn journal_with_outside_paths_is_damaged() {
         let temporary = ".cvtcycle-0.tmp";
         let journal = |from: &str, to: &str, gone: &str, schema: u32| {
             let (files, remove) = ([[from, to]], [gone]);

@@ -129,14 +129,14 @@ pub struct LossGrid {
 
 impl LossGrid {
     /// Values of one axis.
-    pub fn of(&self, axis: Axis) -> &[f64] {
+    pub fn axis_values(&self, axis: Axis) -> &[f64] {
         &self.values[axis as usize]
     }
 
     /// Axes with more than one value, outermost first.
     pub fn varied(&self) -> Vec<Axis> {
         let mut axes = Axis::ALL.to_vec();
-        axes.retain(|axis| self.of(*axis).len() > 1);
+        axes.retain(|axis| self.axis_values(*axis).len() > 1);
         axes
     }
 

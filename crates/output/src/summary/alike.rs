@@ -54,7 +54,7 @@ const NAMED: [Named; 7] = [
     }),
 ];
 /// Maximum number of named differences, so that the words fit on a line.
-const MOST_NAMED: usize = 3;
+const MAX_NAMED: usize = 3;
 
 /// Lists differences other than the transmission and its oil.
 #[must_use]
@@ -113,7 +113,7 @@ pub fn words(subject: &Setup, baseline: &Setup, differences: &[Difference]) -> S
         let is_zero = text.chars().all(|c| !c.is_ascii_digit() || c == '0');
         (!is_zero).then(|| format!("{name} {text} {unit}"))
     });
-    let named: Vec<String> = named.take(MOST_NAMED).collect();
+    let named: Vec<String> = named.take(MAX_NAMED).collect();
     let rest = differences.len().saturating_sub(named.len());
     let rest = match (rest, named.len()) {
         (0, _) => String::new(),

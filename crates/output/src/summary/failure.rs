@@ -55,7 +55,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    fn of_flag(flag: Flags, totals: &Totals) -> Self {
+    fn from_flag(flag: Flags, totals: &Totals) -> Self {
         Failure {
             check: flag.names().collect(),
             seconds: finite(totals.seconds(flag)),
@@ -108,7 +108,7 @@ pub struct Deficit {
 
 impl Deficit {
     /// Finds the worst row of a run that missed its trace.
-    pub(super) fn of(cycle: &Cycle, driven: &Driven) -> Option<Self> {
+    pub(super) fn worst(cycle: &Cycle, driven: &Driven) -> Option<Self> {
         let totals = &driven.outcome.totals;
         let at_s = finite(totals.worst_deficit_at_s)?;
         Some(Deficit {
@@ -143,14 +143,14 @@ pub(super) fn failures(
     ledger: LedgerErrors,
 ) -> Vec<Failure> {
     let (totals, engine) = (&driven.outcome.totals, driven.setup.engine());
-    let flag = |flag: Flags| (totals.seconds(flag) > 0.0).then(|| Failure::of_flag(flag, totals));
+    let flag = |flag: Flags| (totals.seconds(flag) > 0.0).then(|| Failure::from_flag(flag, totals));
     let at = |failure: Failure, at_s: f64| Failure {
         at_s: finite(at_s),
         phase: phase_at(cycle, driven, at_s),
         ..failure
     };
 
-    let missed = flag(Flags::MISSED_TRACE).map(|failure| match Deficit::of(cycle, driven) {
+    let missed = flag(Flags::MISSED_TRACE).map(|failure| match Deficit::worst(cycle, driven) {
         Some(worst) => at(failure, worst.at_s).value(worst.power_w / 1e3, None::<f64>, "kW"),
         None => failure,
     });

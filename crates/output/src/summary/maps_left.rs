@@ -54,7 +54,7 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
         return Vec::new();
     }
     let maps: Vec<(Component, &LossMap)> = transmission.maps().collect();
-    let mut times = vec![Left::default(); maps.len()];
+    let mut times = vec![TimeOutside::default(); maps.len()];
     let mut see = |rows: &[Row]| {
         for ((component, map), left) in maps.iter().zip(&mut times) {
             left.add(rows, *component, map);
@@ -64,8 +64,8 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
         [] => drop(drive_into(driven.setup, cycle, conditions, Some(&mut see))),
         rows => see(rows),
     }
-    let of_map = |((component, map), left): (&(Component, &LossMap), &Left)| {
-        let (axis, side, _) = left.most()?;
+    let of_map = |((component, map), left): (&(Component, &LossMap), &TimeOutside)| {
+        let (axis, side, _) = left.longest_departure()?;
         let values = map.grid().axes()[axis].as_slice();
         let is_box = component.part() == Part::BoxMap;
         let column = match (axis, is_box) {
@@ -100,12 +100,12 @@ fn file(driven: &Driven, component: Component) -> String {
 
 /// Time outside a map, s: in total, and below and above each of its axes.
 #[derive(Clone, Default)]
-struct Left {
+struct TimeOutside {
     any_s: f64,
     sides_s: [[f64; 2]; GRID_AXES],
 }
 
-impl Left {
+impl TimeOutside {
     fn add(&mut self, rows: &[Row], component: Component, map: &LossMap) {
         for row in rows.iter().filter(|row| !row.flags.any(Flags::ENGINE_OFF)) {
             let mut is_left = false;
@@ -124,7 +124,7 @@ impl Left {
     }
 
     /// Axis, side and time of the longest departure.
-    fn most(&self) -> Option<(usize, usize, f64)> {
+    fn longest_departure(&self) -> Option<(usize, usize, f64)> {
         let all = self.sides_s.iter().enumerate();
         let all = all.flat_map(|(axis, sides)| [(axis, 0, sides[0]), (axis, 1, sides[1])]);
         all.max_by(|a, b| a.2.total_cmp(&b.2))

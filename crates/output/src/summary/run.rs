@@ -226,7 +226,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let (engine, cvt) = (setup.engine(), setup.transmission().is_cvt());
     let (oil, engine_oil) = setup.oils();
     let all = totals.total();
-    let fuel = PhaseFuel::of(&all, engine);
+    let fuel = PhaseFuel::new(&all, engine);
     let weighted = weighted_fuel(cycle, driven, engine);
     let headline = weighted.or(fuel.l_per_100km).filter(|l| *l > 0.0);
     let mpg = |factor: f64| headline.map(|l| factor / l);
@@ -276,7 +276,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         trace_missed_s: seconds(Flags::MISSED_TRACE),
         outside_validity_s: seconds(Flags::OUTSIDE_VALIDITY),
         flags_s: flags.map(|((_, name), s)| (*name, finite(s))).collect(),
-        worst_deficit: Deficit::of(cycle, driven),
+        worst_deficit: Deficit::worst(cycle, driven),
         solve: Solve {
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),

@@ -161,13 +161,13 @@ impl TextTable {
             .into_iter()
             .chain(columns.start.max(1)..columns.end)
             .collect();
-        let of = |cells: &Vec<String>| {
+        let measure = |cells: &Vec<String>| {
             let cells = taken.iter().filter_map(|k| cells.get(*k).cloned());
             cells.collect()
         };
         TextTable {
             right: taken.iter().map(|k| self.right[*k]).collect(),
-            rows: self.rows.iter().map(of).collect(),
+            rows: self.rows.iter().map(measure).collect(),
             indent: self.indent,
             min_widths: Vec::new(),
         }
@@ -246,18 +246,18 @@ impl TextTable {
         head.max(rest).max(1)
     }
 
-    fn widest(&self, column: usize, of: impl Fn(&str) -> usize) -> usize {
-        self.widest_of(self.rows.iter(), column, of)
+    fn widest(&self, column: usize, measure: impl Fn(&str) -> usize) -> usize {
+        self.widest_of(self.rows.iter(), column, measure)
     }
 
     fn widest_of<'t>(
         &self,
         rows: impl Iterator<Item = &'t Vec<String>>,
         column: usize,
-        of: impl Fn(&str) -> usize,
+        measure: impl Fn(&str) -> usize,
     ) -> usize {
         let cells = rows.filter_map(|row| row.get(column));
-        cells.map(|text| of(text)).max().unwrap_or(0)
+        cells.map(|text| measure(text)).max().unwrap_or(0)
     }
 }
 
@@ -357,7 +357,7 @@ mod tests {
     /// Property: at any width the words are those of the widest table, in order by column, and lines keep within the width if the longest words
     /// do.
     #[test]
-    fn no_width_cuts_a_word() {
+    fn wrapping_never_cuts_a_word() {
         let table = rows();
         let words = |text: &str| {
             let mut words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
@@ -375,7 +375,7 @@ mod tests {
 
     /// Property: on a narrow line a text that does not fit lies below its row, complete, and no line is too wide.
     #[test]
-    fn a_text_without_room_goes_below_its_row() {
+    fn long_text_moves_below_its_row() {
         let mut table = TextTable::new("llll");
         table.row(["row", "verdict", "computed", "what"]);
         let what = "inertia classes of the two cars lie within what the dynamometer can set";
@@ -390,7 +390,7 @@ mod tests {
 
     /// Property: a table of numbers that does not fit continues below itself, each part with the first column, within the width.
     #[test]
-    fn numbers_go_on_below() {
+    fn wide_table_of_numbers_continues_below() {
         let mut table = TextTable::new("lrrrrr");
         table.row(["bar", "break", "capacity", "primary", "secondary", "linear"]);
         table.row(["15", "41.2", "143.8", "0.122", "0.069", "0.949"]);
@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn long_names_part_at_their_joints() {
+    fn long_names_split_at_their_joints() {
         let text = "as in calibrations/rover_216_transmission.toml (fit)";
         assert_eq!(
             folded(text, 22),
@@ -415,7 +415,7 @@ mod tests {
 
     /// Numbers keep their units on the same line, headings above them may not.
     #[test]
-    fn a_number_keeps_its_unit() {
+    fn number_keeps_its_unit() {
         let text = rows().text_in(46);
         assert!(text.contains("8.57 cm³/rev"), "{text}");
         assert!(!text.contains("over rover_216_5mt"), "{text}");

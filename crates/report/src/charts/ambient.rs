@@ -56,12 +56,12 @@ fn by_part(
     matrix: &Matrix,
     y_title: &'static str,
     first_look: usize,
-    of: fn(&FuelPart) -> &[Vec<Vec<f64>>],
+    select: fn(&FuelPart) -> &[Vec<Vec<f64>>],
 ) -> LineChart {
     let panel = |part: &FuelPart| LinePanel {
         heading: heading(&part.name),
         y_title,
-        series: series(matrix, of(part), first_look),
+        series: series(matrix, select(part), first_look),
         ..LinePanel::default()
     };
     LineChart {
@@ -182,8 +182,10 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
     let names = names.map(|(index, ambient)| (Look::solid(index), degc(*ambient)));
     let word = matrix.starts.get(start).map_or("", String::as_str);
     let end = |ambient: f64| {
-        let mut of = own(0).filter(|run| matrix.ambient_degc.get(run.ambient) == Some(&ambient));
-        of.next()?
+        let mut runs_there =
+            own(0).filter(|run| matrix.ambient_degc.get(run.ambient) == Some(&ambient));
+        runs_there
+            .next()?
             .sump_degc
             .iter()
             .copied()

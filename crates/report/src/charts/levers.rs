@@ -25,11 +25,11 @@ pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
     strip(answer, block, &block.rows.iter().collect::<Vec<_>>())
 }
 
-/// As [`lever_strip`], for at most `max` levers with the largest savings, and the combinations.
-pub fn foremost_levers(answer: &LeverAnswer, block: &LeverBlock, most: usize) -> Picture {
+/// As [`lever_strip`], for at most `max_shown` levers with the largest savings, and the combinations.
+pub fn foremost_levers(answer: &LeverAnswer, block: &LeverBlock, max_shown: usize) -> Picture {
     let (together, single): (Vec<_>, Vec<_>) =
         block.rows.iter().partition(|row| row.is_combination());
-    let single = single.into_iter().filter(|row| saves(row)).take(most);
+    let single = single.into_iter().filter(|row| saves(row)).take(max_shown);
     strip(answer, block, &single.chain(together).collect::<Vec<_>>())
 }
 

@@ -29,8 +29,8 @@ const LOW: [f64; 2] = [1000.0, 4000.0];
 const HIGH: [f64; 2] = [2000.0, 4000.0];
 const HIGH_PARTS: [f64; 2] = [1750.0, 4000.0];
 
-fn span(ratio: &str, of: RigNumber) -> Option<Span> {
-    let span: Span = match (ratio, of) {
+fn span(ratio: &str, quantity: RigNumber) -> Option<Span> {
+    let span: Span = match (ratio, quantity) {
         ("low", RigNumber::Total) => (&["5.04a", "5.04b"], LOW),
         ("high", RigNumber::Total) => (&["5.05a", "5.05b"], HIGH),
         ("low", RigNumber::Sum) => (&["5.18g", "5.18h"], LOW),
@@ -57,11 +57,11 @@ const WARMING: [(&str, &str, Option<f64>); 5] = [
 ];
 
 /// Numbers of the thesis for a quantity of the rig, if the car is its car.
-pub(crate) fn rig(vehicle: &str, ratio: &str, of: RigNumber) -> Vec<PrintedMark> {
+pub(crate) fn rig(vehicle: &str, ratio: &str, quantity: RigNumber) -> Vec<PrintedMark> {
     if vehicle != THESIS_CAR {
         return Vec::new();
     }
-    if let RigNumber::Warming { start_degc } = of {
+    if let RigNumber::Warming { start_degc } = quantity {
         let own = WARMING.iter().filter(|row| row.0 == ratio);
         let mark = |(_, id, degc): &(&str, &str, Option<f64>)| {
             let x = degc.unwrap_or(start_degc);
@@ -73,7 +73,7 @@ pub(crate) fn rig(vehicle: &str, ratio: &str, of: RigNumber) -> Vec<PrintedMark>
         return own.filter_map(mark).collect();
     }
     let mark = |(ids, x)| Some(PrintedMark { x, y: number(ids)? });
-    span(ratio, of).and_then(mark).into_iter().collect()
+    span(ratio, quantity).and_then(mark).into_iter().collect()
 }
 
 /// The cycle of the tests in the thesis, its end, the end of its first quarter and of the four quarters, s.
@@ -91,15 +91,15 @@ pub struct PublishedDrive {
 /// Numbers of the thesis for a drive of its car: temperatures after the soak at -10 degC, pressures at 25 degC.
 pub fn published_drive(vehicle: &str, summary: &Summary) -> PublishedDrive {
     let (cycle, end, quarter, urban) = CYCLE;
-    let mut of = PublishedDrive::default();
+    let mut quantity = PublishedDrive::default();
     if vehicle != THESIS_CAR || summary.cycle != cycle {
-        return of;
+        return quantity;
     }
     let is_at = |degc: f64| (summary.ambient_degc - degc).abs() < 1e-6;
     let is_soaked = matches!(&summary.start, StartWord::Word(word) if word == "soak");
     if is_at(-10.0) && is_soaked {
         let marks = ["3.17a", "3.17b"].map(|id| Some(([end, end], number(&[id])?)));
-        of.end_degc = marks.into_iter().flatten().collect();
+        quantity.end_degc = marks.into_iter().flatten().collect();
     }
     if is_at(25.0) {
         let marks: [(&[&str], [f64; 2]); 3] = [
@@ -108,18 +108,18 @@ pub fn published_drive(vehicle: &str, summary: &Summary) -> PublishedDrive {
             (&["3.11a", "3.11b"], [urban, end]),
         ];
         let mark = |(ids, x): (&[&str], [f64; 2])| Some((x, number(ids)?));
-        of.pressure_bar = marks.into_iter().filter_map(mark).collect();
+        quantity.pressure_bar = marks.into_iter().filter_map(mark).collect();
     }
-    of
+    quantity
 }
 
 /// Printed number of a row, or the range from that of the first to that of the last; `None` where a row has no finite number.
 pub(crate) fn number(ids: &[&str]) -> Option<[f64; 2]> {
     let rows = with_ids(ids);
-    let of = |row: &ValidationRow| match row.printed {
+    let quantity = |row: &ValidationRow| match row.printed {
         Some(Printed::Range(low, high)) if low.is_finite() && high.is_finite() => Some((low, high)),
         _ => None,
     };
     let (first, last) = (rows.first()?, rows.last()?);
-    Some([of(first)?.0, of(last)?.1])
+    Some([quantity(first)?.0, quantity(last)?.1])
 }

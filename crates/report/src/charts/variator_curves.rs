@@ -39,10 +39,13 @@ const SLIP_SPEED: [(&str, Get); 2] = [
 ];
 
 /// Figures with their file names.
-pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
-    let tests = plan.curves.chunk_by(Curve::is_same_test).take(MAX_TESTS);
+pub fn variator_figures(rig_curves: &VariatorCurves) -> Vec<(&'static str, String)> {
+    let tests = rig_curves
+        .curves
+        .chunk_by(Curve::is_same_test)
+        .take(MAX_TESTS);
     let tests: Vec<&[Curve]> = tests.collect();
-    let is_printed = plan.vehicle == THESIS_CAR;
+    let is_printed = rig_curves.vehicle == THESIS_CAR;
     let slip = |test: &&[Curve]| {
         let mut curves = by_pressure(test, "Slip [%]", SLIP);
         if is_printed {
@@ -68,12 +71,12 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
     vec![
         (
             "radii.svg",
-            figure(plan, radius_title(&tests), radii.collect(), 2),
+            figure(rig_curves, radius_title(&tests), radii.collect(), 2),
         ),
         (
             "slip.svg",
             figure(
-                plan,
+                rig_curves,
                 slip_title(&tests),
                 tests.iter().map(slip).collect(),
                 1,
@@ -81,7 +84,7 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
         ),
         (
             "slip_speed.svg",
-            figure(plan, speed_title(&tests), speeds, 2),
+            figure(rig_curves, speed_title(&tests), speeds, 2),
         ),
     ]
 }
@@ -306,8 +309,13 @@ fn radii(pulley: &str, curve: &Curve, k: usize) -> Curves {
 }
 
 /// Panels in rows, with the names of the lines at their ends.
-fn figure(plan: &VariatorCurves, title: String, panels: Vec<Curves>, columns: usize) -> String {
-    let (vehicle, model) = (&plan.vehicle, &plan.formulation);
+fn figure(
+    rig_curves: &VariatorCurves,
+    title: String,
+    panels: Vec<Curves>,
+    columns: usize,
+) -> String {
+    let (vehicle, model) = (&rig_curves.vehicle, &rig_curves.formulation);
     let percent = 100.0 * MAX_SLIP;
     let subject = format!("{vehicle}, {model}; drawn up to {percent} % slip");
     let size = if columns > 1 { PAIRED } else { LONE };

@@ -21,7 +21,7 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     let component = |c: Component| {
         let kj = cars.map(|car| car.run.loss_kj.get(c.name()));
         let some = kj.iter().any(Option::is_some);
-        some.then(|| DifferenceTerm::of(c, kj.map(|kj| kj.unwrap_or(0.0))))
+        some.then(|| DifferenceTerm::component(c, kj.map(|kj| kj.unwrap_or(0.0))))
     };
     let ledger = |(name, words, term): (&str, &str, Term)| {
         let kj = cars.map(|car| car.run.term_kj(name).unwrap_or(0.0));
@@ -50,7 +50,7 @@ fn ends(subject: &Pair, names: &[String; 2]) -> ReportTable {
     let q = Quantity::Degc;
     let columns = [names[0].as_str(), &names[1], "difference"].map(|name| (name, q.unit()));
     let mut table =
-        ReportTable::of_numbers("Temperatures of the subjects at the end", "Node", columns);
+        ReportTable::numeric("Temperatures of the subjects at the end", "Node", columns);
     let (a, b) = (&subject.a.run.end_degc, &subject.b.run.end_degc);
     for (node, x) in a.iter() {
         let y = b.get(node);

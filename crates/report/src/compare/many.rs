@@ -14,7 +14,7 @@ use cvtcycle_output::summary::{RunSummary, StartWord};
 use cvtcycle_output::{Component, summary::SCHEMA};
 
 /// Losses are omitted if their difference is below this share of the largest one.
-const LEAST_SHARE: f64 = 0.01;
+const MIN_SHARE: f64 = 0.01;
 /// Maximum number of named differences between runs.
 const FEW: usize = 8;
 
@@ -75,7 +75,7 @@ pub struct Different {
 }
 
 impl Different {
-    fn of(key: &str, unit: &str, values: Vec<String>) -> Option<Self> {
+    fn unless_equal(key: &str, unit: &str, values: Vec<String>) -> Option<Self> {
         let same = values.windows(2).all(|pair| pair[0] == pair[1]);
         (!same).then(|| Different {
             key: key.to_owned(),
@@ -134,7 +134,7 @@ pub fn compare(dirs: &[PathBuf], reference: usize, loosely: bool) -> Result<Comp
     if let Some(first) = conditions.first().filter(|_| !loosely) {
         return Err(apart(first, &named).into());
     }
-    Ok(of_runs(&named, conditions))
+    Ok(compare_runs(&named, conditions))
 }
 
 /// Names of the directories, numbered where they are equal.
@@ -154,9 +154,9 @@ pub fn names(dirs: &[PathBuf]) -> Vec<String> {
 
 /// Conditions that differ between the runs.
 fn conditions(named: &[(String, RunResults)]) -> Vec<Different> {
-    let each = |key: &str, unit: &str, of: &dyn Fn(&RunResults) -> String| {
-        let values = named.iter().map(|(_, run)| of(run));
-        Different::of(key, unit, values.collect())
+    let each = |key: &str, unit: &str, value_of: &dyn Fn(&RunResults) -> String| {
+        let values = named.iter().map(|(_, run)| value_of(run));
+        Different::unless_equal(key, unit, values.collect())
     };
     let start = |run: &RunResults| match &run.summary.start {
         StartWord::Word(word) => word.clone(),
@@ -202,7 +202,7 @@ fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
     problem(&named[other].1.path, &message, hint).settings(&[Setting::Loosely])
 }
 
-fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Comparison {
+fn compare_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Comparison {
     let base = &named[0].1.summary.runs[0];
     let runs: Vec<Side> = named
         .iter()
@@ -216,7 +216,7 @@ fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Compar
         ends.1 - ends.0
     };
     let largest = Component::ALL.iter().map(spread).fold(0.0, f64::max);
-    let counts = |c: &Component| largest > 0.0 && spread(c) >= LEAST_SHARE * largest;
+    let counts = |c: &Component| largest > 0.0 && spread(c) >= MIN_SHARE * largest;
     let components = Component::ALL.into_iter().filter(counts);
     Comparison {
         manifest: Manifest::new(SCHEMA),
@@ -278,7 +278,7 @@ fn values(named: &[(String, RunResults)]) -> Option<Vec<Different>> {
     let different = by_key.into_iter();
     Some(
         different
-            .filter_map(|(key, (unit, values))| Different::of(key, unit, values))
+            .filter_map(|(key, (unit, values))| Different::unless_equal(key, unit, values))
             .collect(),
     )
 }

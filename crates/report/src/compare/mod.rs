@@ -154,14 +154,14 @@ fn only_change(subjects: &Pair) -> String {
     let records = subjects.a.record.zip(subjects.b.record);
     let changes = records.map_or_else(Vec::new, |(a, b)| changes(a, b));
     match &changes[..] {
-        [of] if !of.here.is_empty() && !of.shipped.is_empty() => {
-            let unit = match sign(&of.unit) {
+        [change] if !change.here.is_empty() && !change.shipped.is_empty() => {
+            let unit = match sign(&change.unit) {
                 "-" | "" => String::new(),
                 unit => format!("\u{a0}{unit}"),
             };
             format!(
                 "With {} {}{unit} instead of {}{unit}: ",
-                of.key, of.here, of.shipped
+                change.key, change.here, change.shipped
             )
         }
         _ => String::new(),
@@ -224,7 +224,7 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
         ("difference", unit),
         ("difference", "%"),
     ];
-    let mut table = ReportTable::of_numbers("Fuel", "Car, phase", columns);
+    let mut table = ReportTable::numeric("Fuel", "Car, phase", columns);
     for Pair { a, b } in pairs {
         let car = if a.run.vehicle == b.run.vehicle {
             a.run.label().to_owned()
@@ -266,11 +266,13 @@ const CONDITIONS: [Condition; 10] = [
         cycle_title(&run.summary, run.record.as_ref())
     }),
     ("Conditions", |run| conditions_line(&run.summary)),
-    ("Subject", |run| of_subject(run, |car| &car.title)),
+    ("Subject", |run| subject_field(run, |car| &car.title)),
     ("Transmission oil", |run| {
-        of_subject(run, |car| &car.lubricant)
+        subject_field(run, |car| &car.lubricant)
     }),
-    ("Engine oil", |run| of_subject(run, |car| &car.engine_oil)),
+    ("Engine oil", |run| {
+        subject_field(run, |car| &car.engine_oil)
+    }),
     ("Longest step", |run| {
         format!("{} s", run.summary.settings.dt_s)
     }),
@@ -284,16 +286,16 @@ const CONDITIONS: [Condition; 10] = [
     ("Program", |run| run.summary.manifest.program.clone()),
 ];
 
-fn of_subject(run: &RunResults, of: fn(&RunSummary) -> &String) -> String {
+fn subject_field(run: &RunResults, field: fn(&RunSummary) -> &String) -> String {
     let subject = run.summary.runs.first();
-    subject.map_or(String::new(), |car| of(car).clone())
+    subject.map_or(String::new(), |car| field(car).clone())
 }
 
 fn conditions(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
     let mut section = Section::new("conditions", "Conditions, and what differs");
-    let mut table = ReportTable::of_words("Conditions", &["", &names[0], &names[1]]);
-    for (name, of) in CONDITIONS {
-        let (a, b) = (of(a), of(b));
+    let mut table = ReportTable::textual("Conditions", &["", &names[0], &names[1]]);
+    for (name, field) in CONDITIONS {
+        let (a, b) = (field(a), field(b));
         if !(a.is_empty() && b.is_empty()) {
             table.row([name.to_owned(), a, b]);
         }

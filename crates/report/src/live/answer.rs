@@ -16,7 +16,7 @@ use cvtcycle_study::plan::Base;
 use cvtcycle_study::words::drawn::{Draws, prepare};
 use cvtcycle_study::words::run::{maps_left, sentences};
 
-use super::controls::of_car;
+use super::controls::car_controls;
 use super::scene::{DRAWS, Scene};
 use super::{command, words};
 use crate::charts::decision::waterfall;
@@ -49,7 +49,7 @@ struct DrivenCar {
 }
 
 /// A car to drive: its word, its options, and the word by which a command names it.
-struct Wanted {
+struct CarRequest {
     word: String,
     options: Options,
     named: String,
@@ -65,7 +65,7 @@ impl LivePage {
     pub fn new(scene: Scene) -> Result<Self, Problems> {
         let options = scene.subject(&State::default(), &[])?;
         Ok(LivePage {
-            controls: of_car(&scene.vehicle, &options)?,
+            controls: car_controls(&scene.vehicle, &options)?,
             scene,
             driven: BTreeMap::new(),
             cycle: None,
@@ -180,7 +180,7 @@ impl LivePage {
     }
 
     /// Cars of a state: the subject, the car of its file if different, and the baselines.
-    fn wanted(&self, state: &State, moved: &[Override]) -> Result<Vec<Wanted>, Problem> {
+    fn wanted(&self, state: &State, moved: &[Override]) -> Result<Vec<CarRequest>, Problem> {
         let scene = &self.scene;
         let options = scene.subject(state, moved)?;
         let [set_all, own] = scene.overrides()?;
@@ -189,14 +189,14 @@ impl LivePage {
             set: set_all,
             ..options.clone()
         };
-        let of_file = |options| Wanted {
+        let of_file = |options| CarRequest {
             word: scene.vehicle.clone(),
             options,
             named: scene.vehicle.clone(),
             of_file: true,
         };
         let is_moved = !(moved.is_empty() && own.is_empty() && state.lubricant.is_none());
-        let baseline = |word: &String| Wanted {
+        let baseline = |word: &String| CarRequest {
             word: word.clone(),
             // A twin is derived from the subject as driven.
             options: match is_twin(word) {
@@ -206,7 +206,7 @@ impl LivePage {
             named: if is_twin(word) { TWIN } else { word }.to_owned(),
             of_file: false,
         };
-        let first = Wanted {
+        let first = CarRequest {
             of_file: false,
             ..of_file(options.clone())
         };
@@ -222,7 +222,7 @@ impl LivePage {
     /// Returns a car of a state from the cache, or drives it.
     fn car(
         &mut self,
-        car: &Wanted,
+        car: &CarRequest,
         loaded: Option<Setup>,
         cycle: &Cycle,
         conditions: &Conditions,
@@ -327,7 +327,7 @@ impl LivePage {
         found: &Summary,
         histories: &[History],
         cycle: &Cycle,
-        wanted: &[Wanted],
+        wanted: &[CarRequest],
     ) -> Section {
         let mut section = Section::new("live", "");
         let labelled = found.labelled();
@@ -366,7 +366,7 @@ impl LivePage {
 }
 
 /// Unique names of the cars, as in a run.
-fn names(wanted: &[Wanted]) -> Vec<String> {
+fn names(wanted: &[CarRequest]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for car in wanted {
         let name = name_of(&car.word);
@@ -383,7 +383,7 @@ fn history(car: &Driven, cycle: &Cycle) -> History {
         true => std::slice::from_ref(&cycle.name),
         false => &cycle.phases,
     };
-    History::of(&car.outcome.rows, &known(COLUMNS.into_iter()), phases)
+    History::from_rows(&car.outcome.rows, &known(COLUMNS.into_iter()), phases)
 }
 
 /// Adds the fuel waterfall, losses and sump temperature of the subject, against another car if there is one.

@@ -11,7 +11,7 @@ use cvtcycle_study::words::drawn::PLAN;
 use crate::live_section::{Change, Control, Kind, Slider};
 
 /// Maximum number of levers of a page.
-const MOST: usize = 6;
+const MAX_CONTROLS: usize = 6;
 /// Minimum number of positions of a slider.
 const POSITIONS: f64 = 100.0;
 /// Extension of a slider beyond the known range, in widths of that range; without a width, as a share of the value.
@@ -75,20 +75,20 @@ const CANDIDATES: [Candidate; 14] = [
 ///
 /// # Errors
 /// Problems of the car.
-pub(super) fn of_car(word: &str, options: &Options) -> Result<Vec<Control>, Problems> {
+pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>, Problems> {
     let (template, setup) = VehicleTemplate::load(word, options)?;
     let (plan, _) = relative(Plan::open(PLAN)?)?;
     let mut shipped = Vec::new();
     for name in FileKind::Levers.names() {
         shipped.extend(LeverFile::open(name)?.levers);
     }
-    let keys = CANDIDATES.iter().filter_map(|of| match of {
+    let keys = CANDIDATES.iter().filter_map(|candidate| match candidate {
         Number(.., key) => Some(*key),
         Group(..) => None,
     });
     let keys: Vec<&str> = keys.collect();
-    let control = |of: &Candidate| {
-        let (name, title, kind) = match of {
+    let control = |candidate: &Candidate| {
+        let (name, title, kind) = match candidate {
             Number(name, title, key) => {
                 let slot = template.slot(key).ok();
                 let slot = slot.filter(|slot| slot.is_active() && slot.base().is_finite())?;
@@ -108,7 +108,11 @@ pub(super) fn of_car(word: &str, options: &Options) -> Result<Vec<Control>, Prob
         };
         Some(Control { name, title, kind })
     };
-    Ok(CANDIDATES.iter().filter_map(control).take(MOST).collect())
+    Ok(CANDIDATES
+        .iter()
+        .filter_map(control)
+        .take(MAX_CONTROLS)
+        .collect())
 }
 
 fn slider(
@@ -124,8 +128,8 @@ fn slider(
     let of_levers = of_levers.filter_map(|by| by.number_over(Some(base)));
     let of_plan = factors.iter().filter(|factor| factor.key == key);
     let of_plan = of_plan.flat_map(|factor| match &factor.values {
-        FactorValues::Distribution(of) => {
-            let (low, high) = of.support();
+        FactorValues::Distribution(candidate) => {
+            let (low, high) = candidate.support();
             [low, high].map(|x| factor.acts.resolved(base, x))
         }
         FactorValues::List(_) => [base, base],

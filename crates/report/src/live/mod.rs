@@ -22,5 +22,5 @@ mod words;
 
 pub use crate::live_section::{Answer, Change, Control, Kind, LiveSection, Slider, State};
 pub use answer::LivePage;
-pub use of_run::of_dir;
+pub use of_run::section_of_dir;
 pub use scene::{DRAWS, Scene};

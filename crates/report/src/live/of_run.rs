@@ -17,7 +17,7 @@ use crate::results::{ResultDir, find};
 ///
 /// # Errors
 /// The directory holds no run with its inputs; a car or the cycle has changed since the run.
-pub fn of_dir(dir: &Path, first_figure: usize) -> Result<LiveSection, Problems> {
+pub fn section_of_dir(dir: &Path, first_figure: usize) -> Result<LiveSection, Problems> {
     let hint = "`cvtcycle whatif CAR` makes such a page of any car";
     let ResultDir::Run(found) = find(dir, &[])? else {
         return Err(problem(dir, "only the report of a run can be driven again", hint).into());

@@ -110,8 +110,8 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     };
     let text = format!("The {} uses {fuel}{weighted} on {cycle}", subject.label());
     let first = summary.comparison.first().zip(summary.runs.get(1));
-    let Some((percent, comparison, baseline)) =
-        first.and_then(|(of, baseline)| Some((of.fuel_percent?, of, baseline)))
+    let Some((percent, comparison, baseline)) = first
+        .and_then(|(comparison, baseline)| Some((comparison.fuel_percent?, comparison, baseline)))
     else {
         return text + ".";
     };
@@ -119,11 +119,11 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let difference = against(percent, interval(comparison), &other);
     let kind = likeness(comparison);
     let known = match &comparison.interval {
-        Some(of) => {
-            let ends = level([of.percent[0], of.percent[2]]);
+        Some(interval) => {
+            let ends = level([interval.percent[0], interval.percent[2]]);
             format!(
                 "With all uncertain values varied, 90 % of {} runs give {ends}",
-                of.draws
+                interval.draws
             )
         }
         None => "How sure that is, is not known".to_owned(),
@@ -178,7 +178,10 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
         baseline: baseline.label().to_owned(),
         title: format!("{}{}", baseline.title, likeness(comparison)),
         files: comparison.fuel_percent,
-        drawn: comparison.interval.as_ref().map(|of| of.percent),
+        drawn: comparison
+            .interval
+            .as_ref()
+            .map(|interval| interval.percent),
         published: published(summary, &baseline.vehicle),
     };
     let rows: Vec<Against> = baselines.iter().zip(&summary.comparison).map(row).collect();
@@ -194,7 +197,8 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
 /// Published range of the difference to a baseline over the whole cycle, if it contradicts that of the run.
 pub(super) fn published(summary: &Summary, baseline: &str) -> Option<[f64; 2]> {
     let mut contradicted = summary.contradicted.iter();
-    let own = |of: &&Contradiction| of.phase.is_none() && of.baseline.as_deref() == Some(baseline);
+    let own =
+        |row: &&Contradiction| row.phase.is_none() && row.baseline.as_deref() == Some(baseline);
     contradicted.find(own)?.between
 }
 
@@ -240,7 +244,7 @@ fn asked(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
 fn risk(row: &LeverRow, now: Option<f64>) -> Option<String> {
     let worst = row.worst("min_clamp_safety");
     let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
-        let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
+        let [now, worst] = [now, Some(worst)].map(|safety| Quantity::Ratio.text(safety));
         format!("the least clamping safety falls from {now} to {worst} in the worst run")
     });
     let needs = match row.is_combination() {
@@ -262,9 +266,9 @@ fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> 
     if study_answers::other_case(own, summary).is_some() {
         return None;
     }
-    let (of, best) = study::cause(own)?;
-    let digits = decimals([0.0, of.sd]) + 1;
-    let [sd, left] = [of.sd, best.sd_left.value].map(|x| grouped(x, digits));
+    let (information, best) = study::cause(own)?;
+    let digits = decimals([0.0, information.sd]) + 1;
+    let [sd, left] = [information.sd, best.sd_left.value].map(|x| grouped(x, digits));
     let name = &best.name;
     let test = match best.test.as_str() {
         "" => format!("measure {name}"),

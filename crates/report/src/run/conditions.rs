@@ -60,7 +60,7 @@ fn table(cars: &[Car]) -> ReportTable {
         "Engine oil",
         "Distance",
     ];
-    let mut table = ReportTable::of_words("Cars and fluids", &columns);
+    let mut table = ReportTable::textual("Cars and fluids", &columns);
     for car in cars {
         let run = car.run;
         let schedule = run.gear_schedule.as_deref();
@@ -128,7 +128,7 @@ fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
 
 /// Table of differing values in two columns.
 pub(crate) fn change_table(caption: &str, changes: &[Change], names: [&str; 2]) -> ReportTable {
-    let mut table = ReportTable::of_words(caption, &["Key", "Unit", names[0], names[1]]);
+    let mut table = ReportTable::textual(caption, &["Key", "Unit", names[0], names[1]]);
     let cell = |text: &str| if text.is_empty() { NONE } else { text }.to_owned();
     for change in changes {
         let (key, unit) = (change.key.clone(), sign(&change.unit).to_owned());

@@ -47,11 +47,11 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
 fn fuel(summary: &Summary) -> ReportTable {
     let runs = &summary.runs;
     let columns = runs.iter().map(|run| (run.label().to_owned(), ""));
-    let mut table = ReportTable::of_numbers("Fuel and distance", "", columns);
-    let mut add = |what: &str, quantity: Quantity, strong: bool, of: &ByRun| {
+    let mut table = ReportTable::numeric("Fuel and distance", "", columns);
+    let mut add = |what: &str, quantity: Quantity, strong: bool, value_of: &ByRun| {
         let name = format!("{what} [{}]", quantity.unit());
         let values = runs.iter().enumerate();
-        table.named(name, values.map(|(k, run)| quantity.bare(of(k, run))));
+        table.named(name, values.map(|(k, run)| quantity.bare(value_of(k, run))));
         table.emphasise(strong);
     };
     let groups = runs.first().map_or(&[][..], |run| &run.phases);
@@ -68,8 +68,8 @@ fn fuel(summary: &Summary) -> ReportTable {
         run.fuel_l_per_100km
     });
     if weighted {
-        let of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
-        add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, of);
+        let value_of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
+        add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, value_of);
     }
     if runs.len() > 1 {
         let against = |k: usize| summary.comparison.get(k.checked_sub(1)?)?.fuel_percent;
@@ -85,8 +85,8 @@ fn fuel(summary: &Summary) -> ReportTable {
     } else {
         "Carbon dioxide"
     };
-    let of: &ByRun = &|_, run| run.weighted_co2_g_per_km.or(run.co2_g_per_km);
-    add(co2, Quantity::Co2, false, of);
+    let value_of: &ByRun = &|_, run| run.weighted_co2_g_per_km.or(run.co2_g_per_km);
+    add(co2, Quantity::Co2, false, value_of);
     add("Driven distance", Quantity::Distance, false, &|_, run| {
         Some(run.distance_km)
     });
@@ -148,11 +148,11 @@ pub(super) fn cold(cars: &[Car]) -> Option<String> {
         let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
         let cold: f64 = cold.map(|(_, dt)| dt).sum();
         let share = grouped(100.0 * cold / car.run.duration_s, 0);
-        let of = match cars.len() {
+        let value_of = match cars.len() {
             1 => String::new(),
             _ => format!(" ({})", car.run.label()),
         };
-        (cold > 0.0).then(|| format!("{share} %{of}"))
+        (cold > 0.0).then(|| format!("{share} %{value_of}"))
     };
     let shares: Vec<String> = cars.iter().filter_map(share).collect();
     let from = super::degc(MEASURED_FROM_DEGC);
@@ -176,9 +176,12 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     let labelled = found.summary.labelled();
     let unlike = labelled.comparison.iter();
     let unlike = unlike.filter(|comparison| !comparison.differences.is_empty());
-    list.extend(
-        unlike.map(|of| format!("The comparison with {} is {}.", of.baseline, of.likeness)),
-    );
+    list.extend(unlike.map(|comparison| {
+        format!(
+            "The comparison with {} is {}.",
+            comparison.baseline, comparison.likeness
+        )
+    }));
     list.extend(cold(cars));
     list.extend(super::values::doubt(found, cars));
     let has_interval = |study: &&StudyResults| {

@@ -272,7 +272,7 @@ fn warm_up(all: &[Car], runs: &[PlotRun]) -> Section {
     let columns = all
         .iter()
         .map(|car| (car.run.label().to_owned(), Quantity::Degc.unit()));
-    let mut table = ReportTable::of_numbers("Temperatures at the end", "Node", columns);
+    let mut table = ReportTable::numeric("Temperatures at the end", "Node", columns);
     let nodes = all.iter().flat_map(|car| car.run.end_degc.iter());
     for node in distinct(nodes.map(|(name, _)| name)) {
         let ends = all.iter().map(|car| car.run.end_degc.get(node));

@@ -58,7 +58,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
     for (k, car) in cars.iter().enumerate() {
         let Some(of) = car.record else { continue };
         let body = if k == 0 { Some(&mut section) } else { None };
-        of_car(
+        add_car_values(
             body,
             &mut more,
             (of, car.run.label()),
@@ -113,7 +113,7 @@ fn ranked<'a>(
 }
 
 /// Adds the values of a car: the strongest doubtful ones to the body if there are any, all others to the full report.
-fn of_car(
+fn add_car_values(
     body: Option<&mut Section>,
     more: &mut Section,
     (car, name): (&CarRecord, &str),
@@ -152,7 +152,7 @@ fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> R
     if sensitivity.is_some() {
         columns.extend(heads.iter().map(String::as_str));
     }
-    let mut table = ReportTable::of_words(caption, &columns);
+    let mut table = ReportTable::textual(caption, &columns);
     for column in table.columns.iter_mut().skip(4) {
         column.number = true;
     }
@@ -180,11 +180,11 @@ fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> R
 
 /// Cuts long texts and lists to fit a cell.
 fn short(text: &str) -> String {
-    const MOST: usize = 90;
-    if text.chars().count() <= MOST {
+    const MAX_CHARS: usize = 90;
+    if text.chars().count() <= MAX_CHARS {
         text.to_owned()
     } else {
-        text.chars().take(MOST).collect::<String>() + "\u{2026}"
+        text.chars().take(MAX_CHARS).collect::<String>() + "\u{2026}"
     }
 }
 

@@ -64,7 +64,7 @@ pub(super) fn conditions(study: &StudyResults) -> Section {
         "Transmission oil",
         "Engine oil",
     ];
-    let mut table = ReportTable::of_words("Cars", &columns);
+    let mut table = ReportTable::textual("Cars", &columns);
     for (name, car) in cars(study) {
         let keys = ["role", "title", "lubricant", "engine_oil"];
         table.row(std::iter::once(name).chain(keys.map(|key| text_of(&car[key]))));

@@ -62,9 +62,12 @@ fn answer_of(study: &StudyResults) -> Result<LeverAnswer, Problem> {
 }
 
 /// Distinct properties of the blocks, in their order.
-fn named<'b, T: PartialEq>(blocks: &'b [LeverBlock], of: impl Fn(&'b LeverBlock) -> T) -> Vec<T> {
+fn named<'b, T: PartialEq>(
+    blocks: &'b [LeverBlock],
+    property: impl Fn(&'b LeverBlock) -> T,
+) -> Vec<T> {
     let mut list = Vec::new();
-    for value in blocks.iter().map(of) {
+    for value in blocks.iter().map(property) {
         if !list.contains(&value) {
             list.push(value);
         }
@@ -136,7 +139,7 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
     ];
     let columns = columns.map(|(name, unit)| (name.to_owned(), unit));
     let caption = format!("Levers, {}", case(block));
-    let mut table = ReportTable::of_numbers(&caption, "Lever", columns);
+    let mut table = ReportTable::numeric(&caption, "Lever", columns);
     let single = block.rows.iter().filter(|row| !row.is_combination());
     let together = block.rows.iter().filter(|row| row.is_combination());
     let shown = single.take(most.unwrap_or(usize::MAX)).chain(together);
@@ -188,15 +191,15 @@ fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
 /// Table of the change and the requirement of each lever, and the source of its size.
 fn what_they_take(block: &LeverBlock) -> ReportTable {
     let heads = ["Lever", "Changes", "Needs", "Status", "Where from"];
-    let mut table = ReportTable::of_words("What the levers change and take", &heads);
+    let mut table = ReportTable::textual("What the levers change and take", &heads);
     for row in block.rows.iter().filter(|row| !row.is_combination()) {
-        let of = &row.of;
+        let lever = &row.of;
         let words = [
-            &of.title,
-            &of.set.join(", "),
-            &of.needs,
-            &of.status,
-            &of.source,
+            &lever.title,
+            &lever.set.join(", "),
+            &lever.needs,
+            &lever.status,
+            &lever.source,
         ];
         table.row(words.map(String::clone));
     }

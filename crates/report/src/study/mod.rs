@@ -208,7 +208,7 @@ fn by_case(
     columns: impl Iterator<Item = (String, &'static str)>,
     cells: impl Fn(usize, usize) -> Vec<String>,
 ) -> ReportTable {
-    let mut table = ReportTable::of_numbers(caption, "Start, ambient", columns);
+    let mut table = ReportTable::numeric(caption, "Start, ambient", columns);
     for (s, start) in matrix.starts.iter().enumerate() {
         for (a, ambient) in matrix.ambient_degc.iter().enumerate() {
             table.named(format!("{start}, {}", degc(*ambient)), cells(s, a));
@@ -227,7 +227,7 @@ fn outputs(study: &StudyResults) -> ReportTable {
         false => ["runs", "least", "at", "most", "at that"],
     };
     let columns = names.iter().map(|name| (name.to_string(), ""));
-    let mut table = ReportTable::of_numbers("Outputs", "Output", columns);
+    let mut table = ReportTable::numeric("Outputs", "Output", columns);
     for at in [3, 5].into_iter().filter(|_| !sampled) {
         table.columns[at].number = false;
     }
@@ -295,7 +295,7 @@ fn factors(study: &StudyResults) -> ReportTable {
     let list = study.manifest["factors"].as_array();
     let list = list.map_or(&[][..], Vec::as_slice);
     let caption = format!("Factors of the study ({})", list.len());
-    let mut table = ReportTable::of_words(&caption, &FACTOR.map(|(_, head)| head));
+    let mut table = ReportTable::textual(&caption, &FACTOR.map(|(_, head)| head));
     let text = |value: &Value| match value {
         Value::String(text) => text.clone(),
         Value::Array(list) => {

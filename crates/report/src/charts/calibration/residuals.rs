@@ -54,7 +54,7 @@ struct Pitch {
 }
 
 impl Pitch {
-    fn of(lines: &[Line]) -> Self {
+    fn new(lines: &[Line]) -> Self {
         let count =
             |wanted: fn(&Line) -> bool| lines.iter().filter(|line| wanted(line)).count() as f64;
         let headings = count(|line| matches!(line, Line::Group(_)));
@@ -199,7 +199,7 @@ fn axis(lines: &[Line]) -> Axis {
 
 /// The panel of all lines; its vertical axis counts pixels from the top.
 fn panel(lines: &[Line], x: Axis) -> Panel {
-    let pitches = Pitch::of(lines);
+    let pitches = Pitch::new(lines);
     let heights: f64 = lines.iter().map(|line| pitches.height(line)).sum();
     let tall = heights.max(60.0) + 6.0;
     let rect = Rect::new(MARGIN + NAMES, TOP, RIGHT - MARGIN - NAMES, tall);

@@ -60,9 +60,9 @@ pub(super) fn repeats(totals: &[f64], parts: &[(String, [f64; 2])]) -> String {
     };
     let word = if last < first { "cuts" } else { "raises" };
     let [first, last] = [first, last].map(|kj| grouped(*kj, 0));
-    let drop = |of: &&(String, [f64; 2])| of.1[0] - of.1[1];
+    let drop = |part: &&(String, [f64; 2])| part.1[0] - part.1[1];
     let most = parts.iter().max_by(|a, b| drop(a).total_cmp(&drop(b)));
-    let most = most.filter(|of| drop(of) > 0.0);
+    let most = most.filter(|part| drop(part) > 0.0);
     let most = most.map_or_else(String::new, |(name, ends)| {
         let [a, b] = ends.map(|kj| grouped(kj, 0));
         format!(", {name} most ({a} to {b})")

@@ -28,14 +28,14 @@ pub struct PerKm {
 }
 
 /// Draws bars from the fuel of the baseline to that of the subject, the largest first, small ones combined.
-pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
-    let difference = of.fuel[0] - of.fuel[1];
-    let terms = folded(of, difference);
-    let [subject, baseline] = [&of.names[0], &of.names[1]];
+pub fn waterfall(data: &PerKm, conditions: &str) -> Picture {
+    let difference = data.fuel[0] - data.fuel[1];
+    let terms = folded(data, difference);
+    let [subject, baseline] = [&data.names[0], &data.names[1]];
     let ends = [format!("fuel of {baseline}"), format!("fuel of {subject}")];
     let names = terms.iter().map(|(name, ..)| name.as_str());
     let left = rows_left(ends.iter().map(String::as_str).chain(names), TEXT);
-    let mut level = of.fuel[1];
+    let mut level = data.fuel[1];
     let mut steps = vec![level];
     for (.., kj) in &terms {
         level += kj;
@@ -55,7 +55,10 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
         ("fuel after it", "kJ/km"),
     ]);
     let last = terms.len() + 1;
-    for (row, (name, fuel)) in [(0, (&ends[0], of.fuel[1])), (last, (&ends[1], of.fuel[0]))] {
+    for (row, (name, fuel)) in [
+        (0, (&ends[0], data.fuel[1])),
+        (last, (&ends[1], data.fuel[0])),
+    ] {
         panel.row_name(row, Label::new(at(0.0, 0.0), name).size(TEXT).bold(true));
         let place = at(fuel, row_middle(row));
         panel.symbol(Symbol::DIAMOND, place, 5.5, Symbol::filled(INK).row(row));
@@ -65,7 +68,7 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
         );
         panel.label(text.size(TEXT).bold(true));
     }
-    table.push([ends[0].clone(), String::new(), cell(of.fuel[1], 0.1)]);
+    table.push([ends[0].clone(), String::new(), cell(data.fuel[1], 0.1)]);
     for (k, (name, term, kj)) in terms.iter().enumerate() {
         let (row, from, to) = (k + 1, steps[k], steps[k + 1]);
         panel.row_name(row, Label::new(at(0.0, 0.0), name).size(TEXT));
@@ -88,9 +91,9 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
     table.push([
         ends[1].clone(),
         cell(difference, 0.1),
-        cell(of.fuel[0], 0.1),
+        cell(data.fuel[0], 0.1),
     ]);
-    let mut named: Vec<(String, f64)> = of
+    let mut named: Vec<(String, f64)> = data
         .terms
         .iter()
         .map(|(name, _, kj)| (name.clone(), *kj))
@@ -103,9 +106,9 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
 }
 
 /// Terms in descending change; those that are small relative to the difference are combined into the last one.
-fn folded(of: &PerKm, difference: f64) -> Vec<(String, Term, f64)> {
+fn folded(data: &PerKm, difference: f64) -> Vec<(String, Term, f64)> {
     let limit = SMALL * difference.abs();
-    let (mut large, small): (Vec<_>, Vec<_>) = of
+    let (mut large, small): (Vec<_>, Vec<_>) = data
         .terms
         .iter()
         .cloned()

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn every_range_gives_an_axis() {
+    fn any_range_makes_an_axis() {
         for (low, high) in [
             (0.0, 0.0),
             (5.0, 5.0),

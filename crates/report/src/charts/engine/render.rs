@@ -12,7 +12,7 @@ use cvtcycle_output::table::distinct;
 
 /// Size of the title, its minimum for a long title, and size of the line below it, pixels.
 const TITLE: f64 = 15.0;
-const LEAST_TITLE: f64 = 12.5;
+const MIN_TITLE: f64 = 12.5;
 const SUBJECT: f64 = 12.0;
 
 impl Chart {
@@ -57,7 +57,7 @@ impl Chart {
         };
         // A long sentence is shrunk a little before it is cut.
         let fits = room / text_width(&self.title, 1.0).max(1.0);
-        let size = fits.clamp(LEAST_TITLE, TITLE);
+        let size = fits.clamp(MIN_TITLE, TITLE);
         draw_text(svg, text(24.0, &self.title, size).bold(true));
         draw_text(svg, text(42.0, &self.subject, SUBJECT).quiet());
     }

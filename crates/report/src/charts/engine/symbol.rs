@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_two_of_the_first_49_symbols_are_alike() {
+    fn first_49_symbols_are_distinct() {
         let all: Vec<_> = (0..49).map(Symbol::nth).collect();
         for (k, one) in all.iter().enumerate() {
             assert!(!all[..k].contains(one), "{k}: {one:?}");

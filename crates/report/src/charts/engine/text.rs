@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cut_texts_keep_the_ends_that_matter() {
+    fn cut_keeps_the_requested_ends() {
         let cut = |text: &str, width| Cut::Middle.apply(text, 11.0, width);
         assert_eq!(cut("friction", 500.0), "friction");
         let long = "lubricant.traction.friction_coefficient_at_40_degc";

@@ -111,7 +111,7 @@ pub fn loss_by_component(cars: &[CarLosses], conditions: &str) -> Picture {
     ]);
     let all = || {
         cars.iter()
-            .flat_map(|car| car.losses_kj.iter().map(move |of| (car, of)))
+            .flat_map(|car| car.losses_kj.iter().map(move |data| (car, data)))
     };
     let names: Vec<String> = all().map(|(_, (c, _))| capital(c.name())).collect();
     let left = rows_left(names.iter().map(String::as_str), TEXT);
@@ -200,9 +200,9 @@ const LEGEND: f64 = 40.0;
 
 /// Loss per distance of each phase group, stacked by group of components in the order of the power flow. Groups without a finite loss, such as a
 /// soak without distance, are omitted.
-pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
+pub fn loss_by_phase(data: &PhaseLosses) -> Picture {
     let some = |cars: &[CarParts]| cars.iter().flatten().any(|(_, x)| x.is_finite());
-    let (groups, left_out): (Vec<_>, Vec<_>) = of.groups.iter().partition(|(_, cars)| some(cars));
+    let (groups, left_out): (Vec<_>, Vec<_>) = data.groups.iter().partition(|(_, cars)| some(cars));
     let columns = [("phase", ""), ("car", ""), ("parts", ""), ("loss", "kJ/km")];
     let mut table = PictureTable::new(&columns);
     if !left_out.is_empty() {
@@ -210,28 +210,30 @@ pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
         let names = names.join(", ");
         table.note = format!("Left out, for there is no loss per distance: {names}.");
     }
-    let left = rows_left(of.cars.iter().map(String::as_str), TEXT);
+    let left = rows_left(data.cars.iter().map(String::as_str), TEXT);
     let all = || groups.iter().flat_map(|(_, cars)| cars);
     let sum = |parts: &CarParts| parts.iter().map(|(_, loss)| finite(*loss).max(0.0)).sum();
     let labels = all().map(|parts| grouped(sum(parts), 1));
     let title = "Loss of the transmission [kJ/km]";
     let x = axis_with_room(title, left, all().map(sum), labels);
     let panel = |k: usize, corner: Point| match groups.get(k) {
-        Some((group, cars)) => phase_bars(group, of.cars.iter().zip(cars), corner, &x, &mut table),
-        None => bars_panel(corner, of.cars.len(), x.clone()).no_data(true),
+        Some((group, cars)) => {
+            phase_bars(group, data.cars.iter().zip(cars), corner, &x, &mut table)
+        }
+        None => bars_panel(corner, data.cars.len(), x.clone()).no_data(true),
     };
     let used = distinct(all().flatten().map(|(component, _)| component.group()));
     let entries = used
         .into_iter()
         .map(|group| Entry::fill(Fill::plain(group_line(group)), capital(group.name())));
-    let chart = Chart::new(phase_title(of, &groups), &of.subject, MARGIN);
+    let chart = Chart::new(phase_title(data, &groups), &data.subject, MARGIN);
     stacked(chart, (left, TOP), (23.0, 12.0), groups.len().max(1), panel)
         .legend((LEGEND, WIDTH - LEGEND - 20.0), entries)
         .picture(table)
 }
 
 /// Title: losses of the first car in each phase.
-fn phase_title(of: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String {
+fn phase_title(data: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String {
     let sum = |parts: &CarParts| {
         parts
             .iter()
@@ -245,7 +247,7 @@ fn phase_title(of: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String 
         ))
     };
     let parts: Vec<String> = groups.iter().filter_map(part).collect();
-    match (of.cars.first(), parts.is_empty()) {
+    match (data.cars.first(), parts.is_empty()) {
         (Some(car), false) => format!("{car} loses {}", list_of(&parts)),
         _ => "Transmission losses by phase, per distance".to_owned(),
     }

@@ -38,7 +38,7 @@ pub struct DifferenceTerm {
 
 impl DifferenceTerm {
     /// A component of the transmission.
-    pub fn of(component: Component, kj: [f64; 2]) -> Self {
+    pub fn component(component: Component, kj: [f64; 2]) -> Self {
         Self::term(&capital(component.name()), Term::Component(component), kj)
     }
 
@@ -56,8 +56,8 @@ impl DifferenceTerm {
 impl Difference {
     /// Fuel with the energy of a term in A and in B, and the difference, L/100 km.
     fn litres(&self, kj: [f64; 2]) -> [f64; 3] {
-        let of = |k: usize| 100.0 * finite(kj[k]) / (self.fuel_kj_per_l[k] * self.distance_km[k]);
-        let (a, b) = (of(0), of(1));
+        let data = |k: usize| 100.0 * finite(kj[k]) / (self.fuel_kj_per_l[k] * self.distance_km[k]);
+        let (a, b) = (data(0), data(1));
         [a, b, b - a]
     }
 
@@ -119,12 +119,12 @@ impl Difference {
 }
 
 /// Difference B - A of every term, in kJ and as fuel of that energy in L/100 km, with the difference of fuel at the end.
-pub fn difference_bars(of: &Difference) -> Picture {
-    let terms = of.complete_terms();
+pub fn difference_bars(data: &Difference) -> Picture {
+    let terms = data.complete_terms();
     let last = terms.len() - 1;
-    let (kept, small) = of.by_size();
+    let (kept, small) = data.by_size();
     let place_of_others = kept.len();
-    let words = |term: &DifferenceTerm| label(term.change(), of.litres(term.kj)[2]);
+    let words = |term: &DifferenceTerm| label(term.change(), data.litres(term.kj)[2]);
     let left = rows_left(terms.iter().map(|term| term.name.as_str()), TEXT);
     let changes = terms.iter().map(DifferenceTerm::change);
     let title = "B \u{2212} A over the cycle [kJ]";
@@ -134,16 +134,16 @@ pub fn difference_bars(of: &Difference) -> Picture {
     let units = ["kJ", "L/100 km"];
     let columns = units.map(|unit| ["A", "B", "B \u{2212} A"].map(|name| (name, unit)));
     let mut table = PictureTable::new(&[&[("term", "")], &columns.concat()[..]].concat());
-    table.note = explain(of);
+    table.note = explain(data);
     for (row, term) in terms.iter().enumerate() {
         let (sum, change) = (row == last, term.change());
         // The table lists each small term, the figure their sum.
         let at_row = match term.term {
             Term::Other if !small.is_empty() && row == place_of_others => {
-                table.rows.extend(small.iter().map(|term| of.cells(term)));
+                table.rows.extend(small.iter().map(|term| data.cells(term)));
                 None
             }
-            _ => Some(table.push(of.cells(term))),
+            _ => Some(table.push(data.cells(term))),
         };
         if sum {
             let [start, end] = [f64::NEG_INFINITY, f64::INFINITY].map(|x| at(x, row as f64));
@@ -161,20 +161,20 @@ pub fn difference_bars(of: &Difference) -> Picture {
         bar(&mut panel, row, (0.0, change), style);
         at_end(&mut panel, row, change, sum, words(term));
     }
-    let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);
-    Chart::new(title_of(of), subject, MARGIN)
+    let subject = format!("A: {}; B: {}", data.names[0], data.names[1]);
+    Chart::new(title_of(data), subject, MARGIN)
         .panels([panel])
-        .notes((MARGIN, WIDTH - 40.0), vec![explain(of)])
+        .notes((MARGIN, WIDTH - 40.0), vec![explain(data)])
         .picture(table)
 }
 
 /// Title: fuel that B burns more or less, and the largest part of it.
-fn title_of(of: &Difference) -> String {
-    let fuel = finite(of.fuel_kj[1]) - finite(of.fuel_kj[0]);
+fn title_of(data: &Difference) -> String {
+    let fuel = finite(data.fuel_kj[1]) - finite(data.fuel_kj[0]);
     if fuel.abs() < 1e-9 {
         return "B burns as much as A".to_owned();
     }
-    let most = of
+    let most = data
         .terms
         .iter()
         .max_by(|a, b| a.change().abs().total_cmp(&b.change().abs()));
@@ -199,8 +199,8 @@ fn label(kj: f64, litres: f64) -> String {
     }
 }
 
-fn explain(of: &Difference) -> String {
-    let [a, b] = of.distance_km;
+fn explain(data: &Difference) -> String {
+    let [a, b] = data.distance_km;
     let far = if (a - b).abs() > 1e-6 * a.abs().max(b.abs()) {
         format!(
             " The runs differ in distance, {} and {} km: kJ are those driven, L/100 km take the distance in.",
@@ -220,8 +220,8 @@ mod tests {
     use super::Difference;
 
     #[test]
-    fn fuel_of_the_terms_adds_up_to_that_of_the_run() {
-        let of = Difference {
+    fn fuel_of_terms_sums_to_fuel_of_run() {
+        let data = Difference {
             fuel_kj_per_l: [32_000.0, 31_500.0],
             distance_km: [11.0, 10.9],
             ..Difference::default()
@@ -232,8 +232,8 @@ mod tests {
             [390.0, 520.5],
             [2300.0, 2310.0],
         ];
-        let sum: f64 = terms.iter().map(|kj| of.litres(*kj)[2]).sum();
+        let sum: f64 = terms.iter().map(|kj| data.litres(*kj)[2]).sum();
         let all = [0, 1].map(|k| terms.iter().map(|kj| kj[k]).sum());
-        assert!((sum - of.litres(all)[2]).abs() < 1e-12);
+        assert!((sum - data.litres(all)[2]).abs() < 1e-12);
     }
 }

@@ -1,7 +1,7 @@
 //! Energy flow of one car: from fuel to wheel, and its transmission enlarged.
 
 use super::sankey::{Branch, Sankey, Stage, Whole, branch, sankey};
-use super::{Term, finite, of_drive};
+use super::{Term, drive_subtitle, finite};
 use crate::charts::picture::Picture;
 use crate::number::{capital, capital_first, grouped};
 use cvtcycle_output::Component;
@@ -81,7 +81,7 @@ impl CarEnergy {
     fn subtitle(&self) -> String {
         format!(
             "Energy in kJ/km; {}",
-            of_drive(&self.subject, &self.conditions)
+            drive_subtitle(&self.subject, &self.conditions)
         )
     }
 
@@ -127,12 +127,14 @@ pub fn transmission_flow(car: &CarEnergy) -> Picture {
         let branch = branch(&capital(c.name()), Term::Component(*c), *kj_km);
         Stage::new("", vec![branch])
     };
-    let is_thin = |of: &&(Component, f64)| of.1.abs() < THIN * source;
+    let is_thin = |loss: &&(Component, f64)| loss.1.abs() < THIN * source;
     let thin: Vec<&(Component, f64)> = car.losses_kj_km.iter().filter(is_thin).collect();
     // Combining a single small part would only lose its name.
     let folded = thin.len() > 1;
     let shown = car.losses_kj_km.iter();
-    let shown = shown.filter(|of| !folded || !is_thin(of)).map(component);
+    let shown = shown
+        .filter(|loss| !folded || !is_thin(loss))
+        .map(component);
     let names: Vec<&str> = thin.iter().map(|(c, _)| c.title()).collect();
     let rest = folded.then(|| {
         let sum = thin.iter().map(|(_, kj_km)| finite(*kj_km)).sum();

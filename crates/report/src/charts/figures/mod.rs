@@ -54,7 +54,7 @@ fn percent(part: f64, whole: f64) -> String {
 }
 
 /// Car and conditions of a drive, for the line below a title: "CVT; NEDC, ambient -10 degC".
-fn of_drive(subject: &str, conditions: &str) -> String {
+fn drive_subtitle(subject: &str, conditions: &str) -> String {
     let words = [subject, conditions].into_iter();
     let known: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     known.join("; ")
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_have_the_digits_of_their_size() {
+    fn labels_have_digits_by_magnitude() {
         let kj = [
             27199.14,
             562.15,

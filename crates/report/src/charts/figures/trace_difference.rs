@@ -55,8 +55,8 @@ fn less(a: &[Point], b: &[Point]) -> Vec<Point> {
 }
 
 /// Draws the excess fuel of B up to each moment above the differences of the other quantities, with the vehicle speed for context.
-pub fn trace_difference(of: &TraceDifference) -> Picture {
-    let [a, b] = of.fuel_g_s.each_ref().map(|flow| summed(flow));
+pub fn trace_difference(data: &TraceDifference) -> Picture {
+    let [a, b] = data.fuel_g_s.each_ref().map(|flow| summed(flow));
     let fuel = Line {
         name: "Fuel of B less that of A, so far".to_owned(),
         unit: "g",
@@ -70,7 +70,7 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         step: 0.1 * panel.digits(),
     };
     let lines: Vec<Line> = std::iter::once(fuel)
-        .chain(of.panels.iter().map(other))
+        .chain(data.panels.iter().map(other))
         .collect();
     let end = range(a.iter().map(|p| p.0)).map_or(1.0, |(_, end)| end);
     let time = Axis::exact("Time [s]", 0.0, end, 10);
@@ -99,20 +99,20 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
     }
     let y = Axis::round(
         "Speed [km/h]",
-        of.speed_kmh.iter().map(|p| p.1).chain([0.0]),
+        data.speed_kmh.iter().map(|p| p.1).chain([0.0]),
         3,
     );
     let rect = Rect::new(PLOT_LEFT, top, WIDE, TALL.2);
     let mut panel = Panel::new(rect, time, y)
         .over_table()
         .heading("Vehicle speed");
-    panel.series(of.speed_kmh.clone(), CONTEXT);
+    panel.series(data.speed_kmh.clone(), CONTEXT);
     panels.push(panel);
-    let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);
+    let subject = format!("A: {}; B: {}", data.names[0], data.names[1]);
     Chart::new(title(&lines[0].points), subject, PLOT_LEFT)
         .lead("What B has more or less than A at each moment")
         .panels(panels)
-        .picture(table(&lines, &of.speed_kmh))
+        .picture(table(&lines, &data.speed_kmh))
 }
 
 /// Draws positive and negative areas in the two signed colours.

@@ -1,6 +1,6 @@
 //! Engine speed against road speed: time in cells, over the lines of the transmission's limits and targets.
 
-use super::{TOP, of_drive};
+use super::{TOP, drive_subtitle};
 use crate::charts::engine::{
     Axis, Block, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
     Stroke, Style, WIDTH, at, cell, label_ends_on_cells, stroke, text_width,
@@ -60,14 +60,14 @@ impl Variogram<'_> {
 }
 
 /// Engine speed against vehicle speed: time spent in each cell, with lines over it.
-pub fn variogram(of: &Variogram) -> Picture {
-    let (x, y) = axes(of);
+pub fn variogram(data: &Variogram) -> Picture {
+    let (x, y) = axes(data);
     let cells = Density::size_for(&x, &y, CELLS);
     // Constant speeds lie on round numbers; these become the middles of cells.
     let half = 0.5 * cells.1;
-    let steps = of.steps().map(|(v, n, dt)| (v, n + half, dt));
+    let steps = data.steps().map(|(v, n, dt)| (v, n + half, dt));
     let density = Density::new(cells, steps).lowered(half);
-    let (seen, outside) = seen(of, &x, &y);
+    let (seen, outside) = seen(data, &x, &y);
     let columns = ["speed from", "to", "engine speed from", "to", "time"];
     let units = ["km/h", "km/h", "rpm", "rpm", "s"];
     let columns: Vec<_> = columns.into_iter().zip(units).collect();
@@ -89,11 +89,11 @@ pub fn variogram(of: &Variogram) -> Picture {
     let wide = WIDE - room.fold(0.0, f64::max);
     let rect = Rect::new(PLOT_LEFT, TOP + ABOVE, wide, TALL);
     let mut panel = Panel::new(rect, x, y).no_data(density.total_s() <= 0.0);
-    panel.items = density.items(|of| {
+    panel.items = density.items(|data| {
         let step = |(low, high): (f64, f64)| if high - low < 1.0 { 0.01 } else { 1.0 };
         let ends = |x: (f64, f64)| [x.0, x.1].map(|end| cell(end, step(x)));
-        let ends = ends(of.x).into_iter().chain(ends(of.y));
-        table.push(ends.chain([cell(of.seconds, 0.01)]))
+        let ends = ends(data.x).into_iter().chain(ends(data.y));
+        table.push(ends.chain([cell(data.seconds, 0.01)]))
     });
     // All seams lie below all lines; the first of the list is on top.
     for (_, points, line) in &seen {
@@ -107,12 +107,12 @@ pub fn variogram(of: &Variogram) -> Picture {
     name_above(&mut panel, above);
     label_ends_on_cells(&mut panel, at_right);
     // A legend repeats names that were cut.
-    let is_cut = |of: &&SeenLine| text_width(of.0, NAME) > NAMES - 10.0;
+    let is_cut = |data: &&SeenLine| text_width(data.0, NAME) > NAMES - 10.0;
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
-    let drive = of_drive(&of.subject, &of.conditions);
+    let drive = drive_subtitle(&data.subject, &data.conditions);
     let subtitle = format!("Time in each cell in s; {drive}");
-    Chart::new(title(of, &density), &subtitle, PLOT_LEFT)
+    Chart::new(title(data, &density), &subtitle, PLOT_LEFT)
         .lead("Cells are coloured by the time spent in them")
         .panels([panel])
         .legend((PLOT_LEFT, WIDE), entries)
@@ -151,7 +151,7 @@ fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
 }
 
 /// Title: the row of cells with the largest share of time.
-fn title(of: &Variogram, density: &Density) -> String {
+fn title(data: &Variogram, density: &Density) -> String {
     let mut rows: Vec<((f64, f64), f64)> = Vec::new();
     for cell in density.cells() {
         match rows
@@ -166,7 +166,7 @@ fn title(of: &Variogram, density: &Density) -> String {
     match most.filter(|_| density.total_s() > 0.0) {
         Some(((from, to), seconds)) => format!(
             "The engine of {} runs at {} to {} rpm for {} % of its time",
-            of.subject,
+            data.subject,
             grouped(from, 0),
             grouped(to, 0),
             grouped(100.0 * seconds / density.total_s(), 0)
@@ -176,13 +176,13 @@ fn title(of: &Variogram, density: &Density) -> String {
 }
 
 /// Axes over the steps with the engine running, and over the lines to be included as far as the car drove.
-fn axes(of: &Variogram) -> (Axis, Axis) {
+fn axes(data: &Variogram) -> (Axis, Axis) {
     let finite = |p: &(f64, f64, f64)| p.0.is_finite() && p.1.is_finite() && p.2 > 0.0;
-    let steps = of.steps().filter(finite).map(|p| (p.0, p.1));
+    let steps = data.steps().filter(finite).map(|p| (p.0, p.1));
     let (mut speeds, mut revs): (Vec<f64>, Vec<f64>) = steps.unzip();
     let alone = speeds.is_empty();
     let points = || {
-        let lines = of.lines.iter().filter(|line| line.whole || alone);
+        let lines = data.lines.iter().filter(|line| line.whole || alone);
         lines.flat_map(|line| &line.points).copied()
     };
     if alone {
@@ -198,9 +198,9 @@ fn axes(of: &Variogram) -> (Axis, Axis) {
 type SeenLine<'a> = (&'a str, Vec<Point>, Stroke);
 
 /// Lines that are partly within the axes, and a remark on the others.
-fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String) {
+fn seen<'a>(data: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String) {
     let (mut seen, mut others) = (Vec::new(), Vec::new());
-    for (line, stroke) in of.lines.iter().zip(STROKES.into_iter().cycle()) {
+    for (line, stroke) in data.lines.iter().zip(STROKES.into_iter().cycle()) {
         let points = within((x, y), &line.points);
         if points.is_empty() {
             others.push(line.name.as_str());
@@ -264,7 +264,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_cut_at_the_frame() {
+    fn line_is_clipped_to_the_frame() {
         let axes = (
             &Axis::exact("", 0.0, 10.0, 5),
             &Axis::exact("", 0.0, 10.0, 5),

@@ -186,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cone_gives_one_ring_at_its_radius() {
+    fn cone_has_one_ring_contour() {
         let axis: Vec<f64> = (0..41).map(|i| -2.0 + 0.1 * f64::from(i)).collect();
         let values: Vec<Vec<f64>> = axis
             .iter()
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_gives_one_open_line_and_gaps_where_values_miss() {
+    fn slope_has_one_open_contour_with_gaps_at_nan() {
         let axis: Vec<f64> = (0..11).map(f64::from).collect();
         let mut values: Vec<Vec<f64>> = axis.iter().map(|_| axis.clone()).collect();
         let grid = Grid {
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_saddle_is_cut_without_crossing() {
+    fn saddle_contours_do_not_cross() {
         let values = vec![vec![0.0, 1.0], vec![1.0, 0.0]];
         let grid = Grid {
             x: &[0.0, 1.0],

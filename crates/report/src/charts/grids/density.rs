@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_time_is_in_the_cells_and_borders_belong_to_one_cell() {
+    fn cells_hold_all_time_and_own_their_borders() {
         let points = [
             (0.0, 0.0, 1.0),
             (9.99, 4.9, 0.5),
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn more_time_is_darker_and_marks_lie_on_the_key() {
+    fn longer_time_is_darker_and_marks_lie_on_key() {
         let light = |colour: &str| {
             let part =
                 |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0));
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_at_all_still_has_a_key() {
+    fn empty_density_has_a_key() {
         let key = Density::new((1.0, 1.0), std::iter::empty()).key("Time spent in a cell [s]");
         assert!(
             key.labels

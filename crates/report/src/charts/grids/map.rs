@@ -78,13 +78,13 @@ impl Scale {
 }
 
 /// Draws the picture. The panel stays white where values are not finite.
-pub(crate) fn map_figure(of: &MapFigure) -> String {
-    let several = of.panels.len() > 1;
-    let (columns, size, pitch) = panels_left_of(STRIP, of.panels.len());
-    let titled = several || of.panels.iter().any(|(title, _)| !title.is_empty());
+pub(crate) fn map_figure(figure: &MapFigure) -> String {
+    let several = figure.panels.len() > 1;
+    let (columns, size, pitch) = panels_left_of(STRIP, figure.panels.len());
+    let titled = several || figure.panels.iter().any(|(title, _)| !title.is_empty());
     let top = TOP + if titled { ABOVE } else { 0.0 };
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
-    let found = range(of.panels.iter().flat_map(|p| &p.1).flatten().copied());
+    let found = range(figure.panels.iter().flat_map(|p| &p.1).flatten().copied());
     let (low, high) = found.unwrap_or((0.0, 1.0));
     let scale = Scale::new(low, high);
     let axis = |(title, values): (&str, &[f64]), ticks| {
@@ -92,23 +92,23 @@ pub(crate) fn map_figure(of: &MapFigure) -> String {
     };
     let ticks = if several { (4, 5) } else { (8, 8) };
     let panel = |(k, (title, values)): (usize, &(String, Vec<Vec<f64>>))| {
-        let (x, y) = (axis(of.x, ticks.0), axis(of.y, ticks.1));
+        let (x, y) = (axis(figure.x, ticks.0), axis(figure.y, ticks.1));
         let mut panel = Panel::new(place(k), x, y)
             .heading(title)
             .no_data(found.is_none());
-        panel.items = bands(&panel, of, values, &scale);
-        add_lines(&mut panel, of, values, &scale);
+        panel.items = bands(&panel, figure, values, &scale);
+        add_lines(&mut panel, figure, values, &scale);
         panel
     };
     let edge = place(columns - 1).right;
     let tall = if several { BAR } else { size.1 - 18.0 };
     let bar = Rect::new(edge + 20.0, top + 18.0, 20.0, tall);
     let span = number(low, (high - low) / 100.0) + " to " + &number(high, (high - low) / 100.0);
-    Chart::new(of.title, of.subject, PLOT_LEFT)
-        .lead(format!("{} from {span}", of.value))
+    Chart::new(figure.title, figure.subject, PLOT_LEFT)
+        .lead(format!("{} from {span}", figure.value))
         .width(edge + STRIP)
-        .panels(of.panels.iter().enumerate().map(panel))
-        .panels([colour_bar(&scale, of.value, bar)])
+        .panels(figure.panels.iter().enumerate().map(panel))
+        .panels([colour_bar(&scale, figure.value, bar)])
         .picture(PictureTable::default())
         .svg
 }
@@ -128,18 +128,18 @@ pub(crate) fn panels_left_of(strip: f64, panels: usize) -> (usize, Point, Point)
 }
 
 /// Interpolates bilinearly between the grid's points; NaN next to a missing one.
-fn interpolated(of: &MapFigure, values: &[Vec<f64>], x: f64, y: f64) -> f64 {
+fn interpolated(figure: &MapFigure, values: &[Vec<f64>], x: f64, y: f64) -> f64 {
     let cell = |axis: &[f64], v: f64| {
         let i = axis.partition_point(|a| *a <= v).clamp(1, axis.len() - 1) - 1;
         (i, ((v - axis[i]) / (axis[i + 1] - axis[i])).clamp(0.0, 1.0))
     };
-    let ((i, s), (j, t)) = (cell(of.x.1, x), cell(of.y.1, y));
+    let ((i, s), (j, t)) = (cell(figure.x.1, x), cell(figure.y.1, y));
     let side = |column: &[f64]| column[j] * (1.0 - t) + column[j + 1] * t;
     side(&values[i]) * (1.0 - s) + side(&values[i + 1]) * s
 }
 
 /// Stripes in the colours of the bands, each as long as its band.
-fn bands(panel: &Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> Vec<Item> {
+fn bands(panel: &Panel, figure: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> Vec<Item> {
     let rect = panel.rect;
     let value = |axis: &Axis, share: f64| axis.low + share * (axis.high - axis.low);
     let count = (rect.width() / LOOK).round() as usize;
@@ -150,7 +150,8 @@ fn bands(panel: &Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> V
         let top = rect.top + j as f64 * STRIPE;
         let low = (top + STRIPE).min(rect.bottom);
         let middle = y_at(0.5 * (top + low));
-        let band_at = |i: usize| scale.band(interpolated(of, values, x_at(i as f64 + 0.5), middle));
+        let band_at =
+            |i: usize| scale.band(interpolated(figure, values, x_at(i as f64 + 0.5), middle));
         let mut from = 0;
         while from < count {
             let band = band_at(from);
@@ -173,12 +174,12 @@ fn bands(panel: &Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> V
 }
 
 /// Adds contours between the bands; finer ones in a panel whose values span few bands.
-fn add_lines(panel: &mut Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) {
+fn add_lines(panel: &mut Panel, figure: &MapFigure, values: &[Vec<f64>], scale: &Scale) {
     let Some((low, high)) = range(values.iter().flatten().copied()) else {
         return;
     };
     let step = step(low, high, 6.0).min(scale.step);
-    let (x, y) = (of.x.1, of.y.1);
+    let (x, y) = (figure.x.1, figure.y.1);
     let grid = Grid { x, y, values };
     let mut labels = LineLabels::new(panel.rect, 10.0, Vec::new());
     for k in (low / step).ceil() as i64..=(high / step).floor() as i64 {

@@ -28,7 +28,7 @@ const TICKS: [(usize, usize); 2] = [(9, 8), (6, 7)];
 
 /// Size of names at the ends of lines, pixels; beyond this number of lines a legend has the names.
 const NAME: f64 = 11.0;
-const MOST_DIRECT: usize = 8;
+const MAX_DIRECT: usize = 8;
 
 /// A series' points in the units of its axes.
 pub type Points = Vec<(f64, f64)>;
@@ -95,36 +95,36 @@ pub struct LineChart {
 }
 
 /// Draws a chart of lines.
-pub fn line_chart(of: &LineChart) -> Picture {
-    let (table, columns) = table::table(of);
-    let direct = of.is_direct();
-    let mut rects = layout(of);
+pub fn line_chart(data: &LineChart) -> Picture {
+    let (table, columns) = table::table(data);
+    let direct = data.is_direct();
+    let mut rects = layout(data);
     if let Some(rect) = rects.first_mut().filter(|_| direct) {
-        let widths = of.names.iter().map(|(_, name)| text_width(name, NAME));
+        let widths = data.names.iter().map(|(_, name)| text_width(name, NAME));
         rect.right -= widths.fold(0.0, f64::max) + 12.0;
     }
-    let panels = of.panels.iter().zip(&rects).zip(columns);
-    let panels = panels.map(|((panel, rect), columns)| draw(of, panel, *rect, columns));
-    let stacked = of.panels.iter().any(|panel| panel.stacked);
+    let panels = data.panels.iter().zip(&rects).zip(columns);
+    let panels = panels.map(|((panel, rect), columns)| draw(data, panel, *rect, columns));
+    let stacked = data.panels.iter().any(|panel| panel.stacked);
     let entry = |(look, name): &(Look, String)| match stacked {
-        true => Entry::fill(of.fill(look.index), name),
-        false => Entry::line(of.stroke(*look), name),
+        true => Entry::fill(data.fill(look.index), name),
+        false => Entry::line(data.stroke(*look), name),
     };
-    let named = of.names.iter().filter(|_| !direct);
+    let named = data.names.iter().filter(|_| !direct);
     let mut entries: Vec<Entry> = named.map(entry).collect();
     if stacked {
         entries.reverse(); // listed as they lie
     }
     entries.extend(printed_entries(
-        of.panels.iter().flat_map(|panel| &panel.printed),
+        data.panels.iter().flat_map(|panel| &panel.printed),
     ));
-    let chart = Chart::new(&of.title, &of.subject, PLOT_LEFT)
-        .lead(&of.description)
+    let chart = Chart::new(&data.title, &data.subject, PLOT_LEFT)
+        .lead(&data.description)
         .panels(panels);
     let heading = if direct {
         String::new()
     } else {
-        of.legend.clone()
+        data.legend.clone()
     };
     let side = Side {
         heading,
@@ -135,16 +135,16 @@ pub fn line_chart(of: &LineChart) -> Picture {
         Ok(side) => chart.side(side),
         Err((heading, entries)) => chart.foot(Block::legend((PLOT_LEFT, WIDE), &heading, entries)),
     };
-    let chart = match of.notes.is_empty() {
+    let chart = match data.notes.is_empty() {
         true => chart,
-        false => chart.notes((PLOT_LEFT, WIDE), of.notes.clone()),
+        false => chart.notes((PLOT_LEFT, WIDE), data.notes.clone()),
     };
     chart.picture(table)
 }
 
 /// Rectangles of the panels.
-fn layout(of: &LineChart) -> Vec<Rect> {
-    let several = of.panels.len() > 1;
+fn layout(data: &LineChart) -> Vec<Rect> {
+    let several = data.panels.len() > 1;
     let columns = 1 + usize::from(several);
     let wide = if several {
         (WIDE - LEFT - GAP.0) / 2.0
@@ -152,11 +152,11 @@ fn layout(of: &LineChart) -> Vec<Rect> {
         WIDE
     };
     let tall = TALL[usize::from(several)];
-    let headed = of.panels.iter().any(|panel| !panel.heading.is_empty());
+    let headed = data.panels.iter().any(|panel| !panel.heading.is_empty());
     let heading = if headed { HEADING } else { 0.0 };
     let pitch = (wide + LEFT + GAP.0, tall + heading + BELOW + GAP.1);
     let place = grid((PLOT_LEFT, TOP + heading), (wide, tall), pitch, columns);
-    (0..of.panels.len()).map(place).collect()
+    (0..data.panels.len()).map(place).collect()
 }
 
 /// Legend in the place that an odd number of panels leaves free, or its heading and entries if it does not fit.
@@ -176,7 +176,7 @@ fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, (String, Vec<Entry
 impl LineChart {
     /// True if lines are named at their ends: in a lone panel with several lines, up to a limit.
     fn is_direct(&self) -> bool {
-        let lone = self.panels.len() == 1 && (2..=MOST_DIRECT).contains(&self.names.len());
+        let lone = self.panels.len() == 1 && (2..=MAX_DIRECT).contains(&self.names.len());
         lone && self
             .panels
             .iter()
@@ -237,31 +237,31 @@ impl Look {
     }
 }
 
-fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> Panel {
-    let ticks = TICKS[usize::from(of.panels.len() > 1)];
+fn draw(data: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> Panel {
+    let ticks = TICKS[usize::from(data.panels.len() > 1)];
     let own = std::slice::from_ref(panel);
-    let x_of = if of.own_x { own } else { &of.panels };
+    let x_of = if data.own_x { own } else { &data.panels };
     let alike = |other: &&LinePanel| other.y_title == panel.y_title;
-    let y_of: Vec<LinePanel> = match of.same_y {
-        true => of.panels.iter().filter(alike).cloned().collect(),
+    let y_of: Vec<LinePanel> = match data.same_y {
+        true => data.panels.iter().filter(alike).cloned().collect(),
         false => own.to_vec(),
     };
-    let x = x_axis(of.x_title(panel), x_of, of.marked, ticks.0);
-    let y = y_axis(panel.y_title, &y_of, of.tight, ticks.1);
+    let x = x_axis(data.x_title(panel), x_of, data.marked, ticks.0);
+    let y = y_axis(panel.y_title, &y_of, data.tight, ticks.1);
     let mut drawn = Panel::new(rect, x, y).heading(&panel.heading);
-    (drawn.over_table, drawn.columns) = (of.one_x(), columns);
+    (drawn.over_table, drawn.columns) = (data.one_x(), columns);
     let y = &drawn.y;
     if y.low < 0.0 && y.high > 0.0 && panel.with_y.iter().any(|y| y.abs() <= 0.0) {
         drawn.level(0.0, CONTEXT);
     }
     if panel.stacked {
-        stack_layers(&mut drawn, panel.series.clone(), |k| of.fill(k));
+        stack_layers(&mut drawn, panel.series.clone(), |k| data.fill(k));
     } else {
         // The first of the list is on top.
         for (look, points) in panel.series.iter().rev() {
-            let stroke = of.stroke(*look);
+            let stroke = data.stroke(*look);
             drawn.series(points.clone(), stroke);
-            for (x, y) in points.iter().filter(|_| of.marked) {
+            for (x, y) in points.iter().filter(|_| data.marked) {
                 let style = Style::colour(stroke.colour).class("mark");
                 drawn.symbol(Symbol::CIRCLE, at(*x, *y), 2.6, style);
             }
@@ -270,8 +270,8 @@ fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> P
     for mark in &panel.printed {
         mark.draw(&mut drawn, panel.stacked);
     }
-    if of.is_direct() {
-        let ends = panel.series.iter().filter_map(|series| of.end(series));
+    if data.is_direct() {
+        let ends = panel.series.iter().filter_map(|series| data.end(series));
         label_ends(&mut drawn, ends.collect());
     }
     let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();

@@ -61,8 +61,8 @@ impl Subject<'_> {
     }
 
     /// Numbers of the thesis for a quantity at a ratio.
-    fn printed(&self, ratio: f64, of: RigNumber) -> Vec<PrintedMark> {
-        rig(self.vehicle, &self.conditions.ratio_name(ratio), of)
+    fn printed(&self, ratio: f64, quantity: RigNumber) -> Vec<PrintedMark> {
+        rig(self.vehicle, &self.conditions.ratio_name(ratio), quantity)
     }
 }
 
@@ -74,9 +74,9 @@ struct Sheet<'a, T> {
 
 impl<T> Sheet<'_, T> {
     /// Distinct values in the order of the rows.
-    fn distinct(&self, of: impl Fn(&BenchPoint) -> f64) -> Vec<f64> {
+    fn distinct(&self, quantity: impl Fn(&BenchPoint) -> f64) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::new();
-        for x in self.rows.iter().map(|row| of((self.set)(row))) {
+        for x in self.rows.iter().map(|row| quantity((self.set)(row))) {
             if !values.iter().any(|y| same(x, *y)) {
                 values.push(x);
             }
@@ -355,7 +355,7 @@ pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
     let corrected = ", corrected for pressure";
     let of_ratio = |ratio: f64| {
         let place = subject.place(ratio);
-        let printed = |of: RigNumber| subject.printed(ratio, of);
+        let printed = |quantity: RigNumber| subject.printed(ratio, quantity);
         let stages = stages(&sheet, ratio, &place);
         let contributions = contributions(&sheet, ratio, &place, &printed(RigNumber::Sum));
         let components = components(&sheet, ratio, &place, &printed);
@@ -388,7 +388,10 @@ const PIECES: [(Piece, &str, Component); 5] = [
 /// Torque loss and pressure of each stage: a line for each, between the coldest and the warmest oil.
 fn stages(sheet: &Sheet<StripDown>, ratio: f64, place: &str) -> LineChart {
     let line = |degc: f64, y: &dyn Fn(&StripDown, Stage) -> f64, keep: &dyn Fn(Stage) -> bool| {
-        let stages = STAGES.into_iter().enumerate().filter(|(_, of)| keep(of.0));
+        let stages = STAGES
+            .into_iter()
+            .enumerate()
+            .filter(|(_, named)| keep(named.0));
         let line = |(k, (stage, _)): (usize, (Stage, &str))| {
             (
                 Look::solid(k),
@@ -462,11 +465,11 @@ fn components(
     place: &str,
     printed: &dyn Fn(RigNumber) -> Vec<PrintedMark>,
 ) -> LineChart {
-    fn dotted<T>((mut look, of): (Look, T)) -> (Look, T) {
+    fn dotted<T>((mut look, rest): (Look, T)) -> (Look, T) {
         look.dotted = true;
-        (look, of)
+        (look, rest)
     }
-    let of = |(piece, words, _): (Piece, &str, Component)| {
+    let piece_panel = |(piece, words, _): (Piece, &str, Component)| {
         let mut series = sheet.by_temperature(ratio, |r| r.piece(piece).corrected_nm);
         let own = sheet.by_temperature(ratio, |r| r.piece(piece).true_nm);
         series.extend(own.into_iter().map(dotted));
@@ -478,7 +481,7 @@ fn components(
     let mut names = sheet.temperature_names();
     let own = names.clone().into_iter().map(dotted);
     names.extend(own.map(|(look, name)| (look, name + ", true")));
-    let panels = PIECES.into_iter().map(of).collect();
+    let panels = PIECES.into_iter().map(piece_panel).collect();
     let more = |r: &StripDown| {
         let piece = r.piece(Piece::FinalDrive);
         piece.corrected_nm - piece.true_nm

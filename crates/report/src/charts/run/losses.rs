@@ -107,7 +107,7 @@ impl<'a> Binned<'a> {
     }
 
     /// Group with the largest loss, and its energy.
-    fn most(&self) -> Option<(LossGroup, f64)> {
+    fn largest_group(&self) -> Option<(LossGroup, f64)> {
         let groups = self.groups.iter();
         let energies = groups.map(|(group, parts)| (*group, self.energy_j(parts)));
         energies.max_by(|a, b| a.1.total_cmp(&b.1))
@@ -203,7 +203,7 @@ fn title(cars: &[Binned]) -> String {
     let others: Vec<String> = others
         .map(|car| format!("{} {}", car.run.name, kilojoule(car.total_j())))
         .collect();
-    match (first.most(), others.is_empty()) {
+    match (first.largest_group(), others.is_empty()) {
         (Some((group, joule)), true) => {
             format!(
                 "{own}, most of it in {} ({})",

@@ -115,8 +115,11 @@ fn title(cars: &[(&PlotRun, Vec<Moment>)]) -> String {
         let mut stretches: Vec<(i64, f64)> = Vec::new();
         for moment in moments {
             let stretch = (moment.0 / STRETCH).floor() as i64;
-            match stretches.iter_mut().find(|of| of.0 == stretch) {
-                Some(of) => of.1 += moment.3,
+            match stretches
+                .iter_mut()
+                .find(|density_cell| density_cell.0 == stretch)
+            {
+                Some(density_cell) => density_cell.1 += moment.3,
                 None => stretches.push((stretch, moment.3)),
             }
         }
@@ -263,14 +266,26 @@ fn table(cars: &[(&PlotRun, Vec<Moment>)]) -> PictureTable {
     ))
 }
 
-fn cells(car: &str, of: &DensityCell, [fuel, seconds]: [f64; 2], total: f64) -> [String; 6] {
+fn cells(
+    car: &str,
+    density_cell: &DensityCell,
+    [fuel, seconds]: [f64; 2],
+    total: f64,
+) -> [String; 6] {
     let span = |(from, to): (f64, f64)| {
         let step = to - from;
         format!("{} to {}", number(from, step), number(to, step))
     };
     let [time, fuel_g] = [seconds, fuel].map(|x| cell(x, 0.01));
     let share = cell(100.0 * fuel / total, 0.01);
-    [span(of.x), span(of.y), time, fuel_g, share, car.to_owned()]
+    [
+        span(density_cell.x),
+        span(density_cell.y),
+        time,
+        fuel_g,
+        share,
+        car.to_owned(),
+    ]
 }
 
 /// Rectangles of the cells, pixels: labels avoid them if possible.

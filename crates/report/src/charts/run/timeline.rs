@@ -85,7 +85,7 @@ pub(super) struct Strip {
 
 impl Strip {
     /// A panel of one line that begins at zero.
-    pub fn of(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
+    pub fn single(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
         Strip {
             title,
             tall,

@@ -13,7 +13,7 @@ const PRESSURES: [Stroke; 2] = [stroke(INK, 1.6, &[]), stroke("#d55e00", 1.3, &[
 const TALL: [f64; 2] = [400.0, 190.0];
 
 /// Maximum finite value of a column.
-fn most(history: &History, column: &str) -> Option<f64> {
+fn column_max(history: &History, column: &str) -> Option<f64> {
     Some(range(history.column(column).iter().copied())?.1)
 }
 
@@ -30,8 +30,8 @@ pub fn driveline(run: &PlotRun) -> Picture {
         ("engine_speed_rpm", "Engine speed"),
         ("throttle", "Throttle"),
     ]
-    .map(|(column, title)| Strip::of(column, title, 140.0, PLAIN));
-    let title = match most(run.history, "engine_speed_rpm") {
+    .map(|(column, title)| Strip::single(column, title, 140.0, PLAIN));
+    let title = match column_max(run.history, "engine_speed_rpm") {
         Some(rpm) => format!("{} needs up to {} rpm", run.name, grouped(rpm, 0)),
         None => "Vehicle speed, ratio, engine speed and throttle".to_owned(),
     };
@@ -47,7 +47,7 @@ pub fn pressure(run: &PlotRun) -> Picture {
     let lines = pressures.into_iter().zip(PRESSURES);
     let lines = lines.map(|((column, title), stroke)| Series::new(column, title, stroke));
     let safety = range(run.history.column("clamp_safety").iter().copied());
-    let title = match (safety, most(run.history, "secondary_pressure_bar")) {
+    let title = match (safety, column_max(run.history, "secondary_pressure_bar")) {
         (Some((least, _)), Some(bar)) if least > 0.0 => format!(
             "The belt of {} carries {} % of what its clamping holds at most; up to {} bar clamp it",
             run.name,
@@ -66,18 +66,18 @@ pub fn pressure(run: &PlotRun) -> Picture {
             lines: lines.collect(),
             named: true,
             printed: run.published.pressure_bar.clone(),
-            ..Strip::of("", "Pressure", 220.0, PLAIN)
+            ..Strip::single("", "Pressure", 220.0, PLAIN)
         },
-        Strip::of("slip_percent", "Belt slip", 130.0, PLAIN),
+        Strip::single("slip_percent", "Belt slip", 130.0, PLAIN),
         Strip {
             lines: vec![used],
             with: &[0.0, 100.0],
             mark: Some((100.0, "All of the clamping used: the belt is at its limit")),
-            ..Strip::of("clamp_safety", "Clamping used", 130.0, PLAIN)
+            ..Strip::single("clamp_safety", "Clamping used", 130.0, PLAIN)
         },
         Strip {
             title: "Speed",
-            ..Strip::of("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
+            ..Strip::single("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
         },
     ];
     timeline(run, title, &strips)
@@ -133,6 +133,6 @@ fn nodes(run: &PlotRun, tall: f64) -> Strip {
         with: &[],
         named: true,
         printed: run.published.end_degc.clone(),
-        ..Strip::of("coolant_degc", "Temperature", tall, PLAIN)
+        ..Strip::single("coolant_degc", "Temperature", tall, PLAIN)
     }
 }

@@ -165,13 +165,13 @@ fn words(factor: &EffectFactor) -> bool {
 }
 
 /// Width available for the word of a level, pixels.
-fn slot(factor: &EffectFactor, wide: f64) -> f64 {
+fn level_width(factor: &EffectFactor, wide: f64) -> f64 {
     wide / factor.groups.groups.len().max(1) as f64
 }
 
 /// True if words must be turned: they do not fit next to each other, and cutting would lose too much.
 fn turned(factor: &EffectFactor, wide: f64) -> bool {
-    let room = slot(factor, wide) - 6.0;
+    let room = level_width(factor, wide) - 6.0;
     let mut labels = factor.groups.groups.iter().map(|g| &g.label);
     room < 60.0 && labels.any(|label| text_width(label, LEVEL) > room)
 }
@@ -271,7 +271,7 @@ fn level_names(panel: &mut Panel, factor: &EffectFactor) {
         let (label, room) = if turned(factor, wide) {
             (label(4.0, 8.0).turned().end(), TURNED - 30.0)
         } else {
-            (label(0.0, 16.0).middle(), slot(factor, wide) - 6.0)
+            (label(0.0, 16.0).middle(), level_width(factor, wide) - 6.0)
         };
         panel.label(label.cut(Cut::Middle, room));
     }

@@ -89,10 +89,10 @@ fn estimate_columns(name: &str, confidence: Confidence) -> [(String, &'static st
 }
 
 /// Cells of an estimate and the two ends of its interval; empty without one.
-fn estimate_cells(of: &Estimate) -> [String; 3] {
-    let ends = of.interval;
+fn estimate_cells(estimate: &Estimate) -> [String; 3] {
+    let ends = estimate.interval;
     let [from, to] = [0, 1].map(|k| ends.map(|ends| ends[k]));
-    [Some(of.value), from, to].map(|x| optional_cell(x, 1e-3))
+    [Some(estimate.value), from, to].map(|x| optional_cell(x, 1e-3))
 }
 
 /// Sorts by descending size, unknown sizes last.
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_the_digits_of_their_spread() {
+    fn digits_follow_the_spread() {
         assert_eq!(value(7.214_3, 0.9), "7.214");
         assert_eq!(value(-0.5, 0.0), "\u{2212}0.500");
         assert_eq!(value(1234.0, 800.0), "1234");
