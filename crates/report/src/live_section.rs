@@ -68,16 +68,16 @@ pub struct Control {
     /// Name for people.
     pub title: &'static str,
     /// Kind and range.
-    pub kind: Kind,
+    pub kind: ControlKind,
 }
 
 /// Kinds of lever.
 #[derive(Clone, Debug)]
-pub enum Kind {
+pub enum ControlKind {
     /// A number.
     Slider(Slider),
     /// One of some changes, or none.
-    Choice(Vec<Change>),
+    Choice(Vec<ControlChange>),
 }
 
 /// An adjustable number, in the unit of its key.
@@ -101,7 +101,7 @@ pub struct Slider {
 
 /// A change of a car.
 #[derive(Clone, Debug)]
-pub struct Change {
+pub struct ControlChange {
     /// Name.
     pub name: String,
     /// Name for people.

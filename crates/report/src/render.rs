@@ -6,7 +6,7 @@ use askama::Template;
 use askama::filters::Escaper;
 
 use super::document::{Block, Document, ReportTable, Section};
-use super::live_section::Kind;
+use super::live_section::ControlKind;
 use super::number::typeset;
 use cvtcycle_config::visible;
 use cvtcycle_output::{Component, PROGRAM};

@@ -2,9 +2,9 @@
 
 use cvtcycle::output::Component;
 use cvtcycle::report::charts::figures::{
-    CarEnergy, CarLosses, Difference, DifferenceTerm, OverlayPanel, PhaseLosses, TraceDifference,
-    difference_bars, energy_flow, loss_by_component, loss_by_phase, trace_difference,
-    transmission_flow,
+    CarEnergy, CarLosses, DifferenceTerm, EnergyDifference, OverlayPanel, PhaseLosses,
+    TraceDifference, difference_bars, energy_flow, loss_by_component, loss_by_phase,
+    trace_difference, transmission_flow,
 };
 use cvtcycle::report::charts::{
     Picture, fuel_bars, losses, operating_points, pressure, temperatures,
@@ -212,7 +212,7 @@ fn the_largest_losses_of_a_title_have_their_share() {
 
 #[test]
 fn differences_of_a_title_are_those_of_the_table() {
-    let of = Difference {
+    let of = EnergyDifference {
         names: ["a".to_owned(), "b".to_owned()],
         fuel_kj_per_l: [31_000.0; 2],
         distance_km: [11.0; 2],

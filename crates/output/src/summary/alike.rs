@@ -33,10 +33,10 @@ pub struct Difference {
 }
 
 /// Name, unit, decimals and value of a difference named first.
-type Named = (&'static str, &'static str, usize, fn(&Setup) -> f64);
+type NamedQuantity = (&'static str, &'static str, usize, fn(&Setup) -> f64);
 
 /// Quantities with the largest effect on fuel.
-const NAMED: [Named; 7] = [
+const NAMED: [NamedQuantity; 7] = [
     ("mass", "kg", 0, |car| car.road_load.base.mass_kg),
     ("rated power", "kW", 0, |car| car.engine().rated_w / 1e3),
     ("displacement", "cm3", 0, |car| {

@@ -2,7 +2,7 @@
 
 use super::Pair;
 use crate::charts::figures::{
-    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term, TraceDifference,
+    DifferenceTerm, EnergyDifference, Overlay, OverlayPanel, TERMS, Term, TraceDifference,
     difference_bars, overlay, trace_difference,
 };
 use crate::document::{ReportTable, Section};
@@ -32,7 +32,7 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     let components = Component::ALL.into_iter().filter_map(component);
     let terms = TERMS.into_iter().filter_map(ledger);
     let of = |of: fn(&Car) -> f64| cars.map(of);
-    let picture = difference_bars(&Difference {
+    let picture = difference_bars(&EnergyDifference {
         names: names.clone(),
         fuel_kj_per_l: of(|car| car.run.fuel_energy_kj / car.run.fuel_l),
         distance_km: of(|car| car.run.distance_km),

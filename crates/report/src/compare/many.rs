@@ -20,7 +20,7 @@ const FEW: usize = 8;
 
 /// Runs next to each other.
 #[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
+pub struct RunComparison {
     /// Version of the object, and program.
     #[serde(flatten)]
     pub manifest: Manifest,
@@ -29,9 +29,9 @@ pub struct Comparison {
     /// The runs, the reference first.
     pub runs: Vec<Side>,
     /// Conditions that differ between the runs.
-    pub conditions: Vec<Different>,
+    pub conditions: Vec<DifferingValue>,
     /// Values that differ between the cars; `None` where a run has no record of them.
-    pub values: Option<Vec<Different>>,
+    pub values: Option<Vec<DifferingValue>>,
     /// Losses with a relevant difference, in the order of the power flow.
     pub components: Vec<String>,
 }
@@ -65,7 +65,7 @@ pub struct Side {
 
 /// A value or condition that differs between runs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Different {
+pub struct DifferingValue {
     /// Dotted key, or a condition of the run.
     pub key: String,
     /// Unit, `-` for none.
@@ -74,10 +74,10 @@ pub struct Different {
     pub values: Vec<String>,
 }
 
-impl Different {
+impl DifferingValue {
     fn unless_equal(key: &str, unit: &str, values: Vec<String>) -> Option<Self> {
         let same = values.windows(2).all(|pair| pair[0] == pair[1]);
-        (!same).then(|| Different {
+        (!same).then(|| DifferingValue {
             key: key.to_owned(),
             unit: unit.to_owned(),
             values,
@@ -85,11 +85,11 @@ impl Different {
     }
 }
 
-impl Comparison {
+impl RunComparison {
     /// Cause of the differences, if it fits in a sentence.
     pub fn cause(&self) -> Option<String> {
         let found = self.values.as_deref()?;
-        let said = |different: &Different| {
+        let said = |different: &DifferingValue| {
             let unit = match different.unit.as_str() {
                 "-" | "" => String::new(),
                 unit => format!(" {unit}"),
@@ -112,7 +112,11 @@ impl Comparison {
 ///
 /// # Errors
 /// Directories without a run; runs under different conditions.
-pub fn compare(dirs: &[PathBuf], reference: usize, loosely: bool) -> Result<Comparison, Problems> {
+pub fn compare(
+    dirs: &[PathBuf],
+    reference: usize,
+    loosely: bool,
+) -> Result<RunComparison, Problems> {
     let (mut problems, mut found) = (Problems::new(), Vec::new());
     for dir in dirs {
         match find(dir, &[]) {
@@ -153,10 +157,10 @@ pub fn names(dirs: &[PathBuf]) -> Vec<String> {
 }
 
 /// Conditions that differ between the runs.
-fn conditions(named: &[(String, RunResults)]) -> Vec<Different> {
+fn conditions(named: &[(String, RunResults)]) -> Vec<DifferingValue> {
     let each = |key: &str, unit: &str, value_of: &dyn Fn(&RunResults) -> String| {
         let values = named.iter().map(|(_, run)| value_of(run));
-        Different::unless_equal(key, unit, values.collect())
+        DifferingValue::unless_equal(key, unit, values.collect())
     };
     let start = |run: &RunResults| match &run.summary.start {
         StartWord::Word(word) => word.clone(),
@@ -189,7 +193,7 @@ fn conditions(named: &[(String, RunResults)]) -> Vec<Different> {
 }
 
 /// Problem of runs under different conditions.
-fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
+fn apart(different: &DifferingValue, named: &[(String, RunResults)]) -> Problem {
     let other = different
         .values
         .iter()
@@ -202,7 +206,7 @@ fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
     problem(&named[other].1.path, &message, hint).settings(&[Setting::Loosely])
 }
 
-fn compare_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Comparison {
+fn compare_runs(named: &[(String, RunResults)], conditions: Vec<DifferingValue>) -> RunComparison {
     let base = &named[0].1.summary.runs[0];
     let runs: Vec<Side> = named
         .iter()
@@ -218,7 +222,7 @@ fn compare_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> C
     let largest = Component::ALL.iter().map(spread).fold(0.0, f64::max);
     let counts = |c: &Component| largest > 0.0 && spread(c) >= MIN_SHARE * largest;
     let components = Component::ALL.into_iter().filter(counts);
-    Comparison {
+    RunComparison {
         manifest: Manifest::new(SCHEMA),
         reference: runs[0].name.clone(),
         components: components.map(|c| c.name().to_owned()).collect(),
@@ -266,7 +270,7 @@ fn side(name: &str, run: &RunSummary, base: &RunSummary) -> Side {
 }
 
 /// Values of the subjects that differ, in the order of their keys; `None` where a run has no record.
-fn values(named: &[(String, RunResults)]) -> Option<Vec<Different>> {
+fn values(named: &[(String, RunResults)]) -> Option<Vec<DifferingValue>> {
     let mut by_key: BTreeMap<&str, (&str, Vec<String>)> = BTreeMap::new();
     for (place, (_, run)) in named.iter().enumerate() {
         let car = run.record.as_ref()?.cars.first()?;
@@ -278,7 +282,7 @@ fn values(named: &[(String, RunResults)]) -> Option<Vec<Different>> {
     let different = by_key.into_iter();
     Some(
         different
-            .filter_map(|(key, (unit, values))| Different::unless_equal(key, unit, values))
+            .filter_map(|(key, (unit, values))| DifferingValue::unless_equal(key, unit, values))
             .collect(),
     )
 }

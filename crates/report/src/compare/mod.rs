@@ -3,7 +3,7 @@
 mod figures;
 mod many;
 
-pub use many::{Comparison, Different, Side, compare, names};
+pub use many::{DifferingValue, RunComparison, Side, compare, names};
 
 use figures::{difference, traces};
 

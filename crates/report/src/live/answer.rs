@@ -22,7 +22,7 @@ use super::{command, words};
 use crate::charts::decision::waterfall;
 use crate::charts::figures::{CarLosses, Overlay, OverlayPanel, loss_by_component, overlay};
 use crate::document::{Block, Section};
-use crate::live_section::{Answer, Control, Kind, State};
+use crate::live_section::{Answer, Control, ControlKind, State};
 use crate::number::Quantity;
 use crate::render;
 use crate::run::{Car, brief, conditions_line, per_km, strip};
@@ -165,8 +165,8 @@ impl LivePage {
                 continue;
             };
             match &control.kind {
-                Kind::Slider(slider) => all.push(Override::new(slider.key, value)?),
-                Kind::Choice(changes) => {
+                ControlKind::Slider(slider) => all.push(Override::new(slider.key, value)?),
+                ControlKind::Choice(changes) => {
                     let change = changes.iter().find(|change| change.name == *value);
                     let unknown = || {
                         Problem::unknown_name(format!("there is no change `{value}`"))

@@ -8,7 +8,7 @@ use cvtcycle_study::levers::{Lever, LeverFile};
 use cvtcycle_study::plan::{Factor, FactorValues, Plan};
 use cvtcycle_study::words::drawn::PLAN;
 
-use crate::live_section::{Change, Control, Kind, Slider};
+use crate::live_section::{Control, ControlChange, ControlKind, Slider};
 
 /// Maximum number of levers of a page.
 const MAX_CONTROLS: usize = 6;
@@ -93,7 +93,7 @@ pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>
                 let slot = template.slot(key).ok();
                 let slot = slot.filter(|slot| slot.is_active() && slot.base().is_finite())?;
                 let slider = slider(key, &slot, &shipped, &plan.factors)?;
-                (format!("l.{name}"), *title, Kind::Slider(slider))
+                (format!("l.{name}"), *title, ControlKind::Slider(slider))
             }
             Group(name, title) => {
                 let own = shipped
@@ -101,9 +101,9 @@ pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>
                     .filter(|lever| lever.group.as_deref() == Some(name));
                 let own = own.filter(|lever| is_choice(lever, &keys));
                 let own = own.filter(|lever| can_have(word, options, &setup, lever));
-                let changes: Vec<Change> = own.map(change).collect();
+                let changes: Vec<ControlChange> = own.map(change).collect();
                 (!changes.is_empty())
-                    .then(|| (format!("g.{name}"), *title, Kind::Choice(changes)))?
+                    .then(|| (format!("g.{name}"), *title, ControlKind::Choice(changes)))?
             }
         };
         Some(Control { name, title, kind })
@@ -195,8 +195,8 @@ fn can_have(word: &str, options: &Options, base: &Setup, lever: &Lever) -> bool 
     load(word, &options).is_ok_and(differs)
 }
 
-fn change(lever: &Lever) -> Change {
-    Change {
+fn change(lever: &Lever) -> ControlChange {
+    ControlChange {
         name: lever.name.clone(),
         title: lever.title.clone(),
         needs: lever.needs.clone(),

@@ -20,7 +20,9 @@ mod page;
 mod scene;
 mod words;
 
-pub use crate::live_section::{Answer, Change, Control, Kind, LiveSection, Slider, State};
+pub use crate::live_section::{
+    Answer, Control, ControlChange, ControlKind, LiveSection, Slider, State,
+};
 pub use answer::LivePage;
 pub use of_run::section_of_dir;
 pub use scene::{DRAWS, Scene};

@@ -3,7 +3,7 @@
 use cvtcycle_output::Flags;
 use cvtcycle_output::summary::RunSummary;
 
-use crate::live_section::{Control, Kind, State};
+use crate::live_section::{Control, ControlKind, State};
 use crate::number::{Quantity, capital_first, words};
 
 /// Flags of a car that does not work.
@@ -48,7 +48,7 @@ pub(super) fn flags(run: &RunSummary, of_file: Option<&RunSummary>) -> Vec<Strin
 /// Levers outside their known range, a sentence each.
 pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
     let of = |control: &Control| {
-        let Kind::Slider(slider) = &control.kind else {
+        let ControlKind::Slider(slider) = &control.kind else {
             return None;
         };
         let value: f64 = state.levers.get(&control.name)?.parse().ok()?;
@@ -67,7 +67,7 @@ pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
 /// Requirements of the chosen changes, a sentence each.
 pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
     let of = |control: &Control| {
-        let Kind::Choice(changes) = &control.kind else {
+        let ControlKind::Choice(changes) = &control.kind else {
             return None;
         };
         let name = state.levers.get(&control.name)?;

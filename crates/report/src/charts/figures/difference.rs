@@ -12,7 +12,7 @@ const SMALL: f64 = 0.01;
 
 /// Two runs A and B, term by term.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Difference {
+pub struct EnergyDifference {
     /// Names of runs A and B.
     pub names: [String; 2],
     /// Energy of a litre of fuel in A and in B, kJ/L.
@@ -53,7 +53,7 @@ impl DifferenceTerm {
     }
 }
 
-impl Difference {
+impl EnergyDifference {
     /// Fuel with the energy of a term in A and in B, and the difference, L/100 km.
     fn litres(&self, kj: [f64; 2]) -> [f64; 3] {
         let data = |k: usize| 100.0 * finite(kj[k]) / (self.fuel_kj_per_l[k] * self.distance_km[k]);
@@ -119,7 +119,7 @@ impl Difference {
 }
 
 /// Difference B - A of every term, in kJ and as fuel of that energy in L/100 km, with the difference of fuel at the end.
-pub fn difference_bars(data: &Difference) -> Picture {
+pub fn difference_bars(data: &EnergyDifference) -> Picture {
     let terms = data.complete_terms();
     let last = terms.len() - 1;
     let (kept, small) = data.by_size();
@@ -169,7 +169,7 @@ pub fn difference_bars(data: &Difference) -> Picture {
 }
 
 /// Title: fuel that B burns more or less, and the largest part of it.
-fn title_of(data: &Difference) -> String {
+fn title_of(data: &EnergyDifference) -> String {
     let fuel = finite(data.fuel_kj[1]) - finite(data.fuel_kj[0]);
     if fuel.abs() < 1e-9 {
         return "B burns as much as A".to_owned();
@@ -199,7 +199,7 @@ fn label(kj: f64, litres: f64) -> String {
     }
 }
 
-fn explain(data: &Difference) -> String {
+fn explain(data: &EnergyDifference) -> String {
     let [a, b] = data.distance_km;
     let far = if (a - b).abs() > 1e-6 * a.abs().max(b.abs()) {
         format!(
@@ -217,14 +217,14 @@ fn explain(data: &Difference) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::Difference;
+    use super::EnergyDifference;
 
     #[test]
     fn fuel_of_terms_sums_to_fuel_of_run() {
-        let data = Difference {
+        let data = EnergyDifference {
             fuel_kj_per_l: [32_000.0, 31_500.0],
             distance_km: [11.0, 10.9],
-            ..Difference::default()
+            ..EnergyDifference::default()
         };
         let terms = [
             [15_000.0, 14_900.0],

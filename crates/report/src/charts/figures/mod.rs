@@ -11,7 +11,7 @@ mod trace_difference;
 mod variogram;
 
 pub use bars::{CarLosses, CarParts, PhaseLosses, loss_by_component, loss_by_phase};
-pub use difference::{Difference, DifferenceTerm, difference_bars};
+pub use difference::{DifferenceTerm, EnergyDifference, difference_bars};
 pub use flow::{CarEnergy, energy_flow, transmission_flow};
 pub use overlay::{Overlay, OverlayPanel, overlay};
 pub use trace_difference::{TraceDifference, trace_difference};

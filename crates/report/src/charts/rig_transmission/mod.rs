@@ -15,7 +15,7 @@ use cvtcycle_output::Component;
 use cvtcycle_output::rig::{given, oil_degc, rpm};
 
 /// File name and SVG text.
-pub type Picture = (String, String);
+pub type NamedSvg = (String, String);
 
 const SPEED: &str = "Input speed [rpm]";
 const LOSS: &str = "Torque loss [Nm]";
@@ -35,7 +35,7 @@ pub struct Subject<'a> {
 
 impl Subject<'_> {
     /// A chart of one ratio against speed, unless it has another axis, with its file name.
-    fn picture(&self, kind: &str, ratio: f64, more: &str, mut chart: LineChart) -> Picture {
+    fn picture(&self, kind: &str, ratio: f64, more: &str, mut chart: LineChart) -> NamedSvg {
         let name = self.conditions.ratio_name(ratio);
         let named = name != format!("{ratio}");
         let words = if named {
@@ -179,7 +179,7 @@ fn chart(
 }
 
 /// Torque loss and secondary pressure against speed, a line for each temperature (Figs 5-1 to 5-4).
-pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
+pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
@@ -223,7 +223,7 @@ pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss added by a load, against speed: a line for each torque, a panel for each temperature.
-pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
+pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
@@ -270,7 +270,7 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss against bulk oil temperature, warming and cooling (Figs 5-5 and 5-6).
-pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
+pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<NamedSvg> {
     // Looks of the second and the third line.
     let branches = [
         (Look::solid(1), Branch::Warming),
@@ -318,7 +318,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss of both boxes against speed, a panel for each temperature (Figs 5-7 to 5-14).
-pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
+pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.first.set,
@@ -347,7 +347,7 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
 }
 
 /// The strip-down: stages (Figs 5-17 to 5-27), contributions (5-33 to 5-40), components (5-41 to 5-45).
-pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
+pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
