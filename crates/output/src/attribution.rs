@@ -123,7 +123,7 @@ fn rows(at: PricedCar<'_>, phase: Option<usize>) -> Vec<PriceRow<'_>> {
 /// Writes the price of each loss, of all together and the interaction; for the whole cycle, then for each group of its phases.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_prices(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
     let priced = cars.iter().flat_map(|at| {
         // The only group of a cycle is its total.
@@ -138,7 +138,7 @@ pub fn write_prices(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
 /// Writes pairs of losses.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_pairs(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
     let pairs = cars.iter().flat_map(|at| {
         let pairs = at.run.price.iter().flat_map(|price| &price.pairs);
@@ -150,7 +150,7 @@ pub fn write_pairs(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
 /// Writes the shares of groups.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_shares(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
     let shares = cars.iter().flat_map(|at| {
         let groups = at.run.price.iter().flat_map(|price| &price.groups);

@@ -78,11 +78,11 @@ pub fn gem_grid(bench: &Bench) -> [(Axis, Vec<f64>); 3] {
         let share = f64::from(k) / 400.0;
         engine.full_load.at(engine.highest_rad_s * share)
     });
-    let most = torques.fold(0.0, f64::max);
+    let max_nm = torques.fold(0.0, f64::max);
     let oil = GEM_OIL_DEGC[usize::from(!bench.car().transmission.is_cvt())];
     [
         (Axis::Speed, (0..=4).map(speed).collect()),
-        (Axis::Torque, vec![0.0, most]),
+        (Axis::Torque, vec![0.0, max_nm]),
         (Axis::Sump, vec![oil]),
     ]
 }
@@ -98,7 +98,7 @@ fn loss_nm(bench: &Bench, grid: &LossGrid, index: usize) -> ([f64; Axis::COUNT],
 /// Writes the map of a whole box over a grid of input torques, in a format other than [`MapForm::Csv`].
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_form(
     out: &mut dyn Write,
     form: MapForm,

@@ -112,7 +112,7 @@ fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPo
 /// Writes the map of a component over a grid as CSV, one line a point.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_map(
     out: &mut dyn Write,
     bench: &Bench,

@@ -259,7 +259,7 @@ impl LossTable {
     /// Writes rows as CSV.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_csv(
         &self,
         out: &mut dyn Write,
@@ -271,7 +271,7 @@ impl LossTable {
     /// Writes the JSON object with rows as its points, one a line.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_json(
         &self,
         out: &mut dyn Write,

@@ -154,21 +154,21 @@ pub fn car_record(
     setup: &Setup,
 ) -> Result<CarRecord, Problems> {
     let (file, text, _) = text_of(word, Kind::Vehicle, options.named_by)?;
-    let of = |file: String, text: &str| FileRecord {
+    let file_record = |file: String, text: &str| FileRecord {
         file,
         sha256: hash(text.as_bytes()),
     };
     let fluid = |word: &str| {
         let (file, text, _) = text_of(word, Kind::Lubricant, options.named_by)?;
-        Ok::<_, Problems>(of(file, &text))
+        Ok::<_, Problems>(file_record(file, &text))
     };
     let [oil, engine_oil] = &setup.origin.fluids;
     let parents = setup.origin.parents.iter();
-    let inherited = parents.map(|(file, text)| of(file.clone(), text));
+    let inherited = parents.map(|(file, text)| file_record(file.clone(), text));
     let reference = reference(setup, word, options)?;
     Ok(CarRecord {
         name: name.to_owned(),
-        vehicle: of(file, &text),
+        vehicle: file_record(file, &text),
         inherited: inherited.collect(),
         lubricant: fluid(oil)?,
         engine_oil: fluid(engine_oil)?,

@@ -167,8 +167,8 @@ impl RigResults {
 
     /// Largest remainder of the strip-down after true loss and interaction, Nm.
     pub fn largest_remainder_nm(&self) -> f64 {
-        let of = |s: &StripDown| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs());
-        let pieces = self.strip_down.iter().flat_map(of);
+        let remainders = |s: &StripDown| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs());
+        let pieces = self.strip_down.iter().flat_map(remainders);
         pieces.fold(0.0, |a, b| if b > a { b } else { a })
     }
 
@@ -221,11 +221,11 @@ impl RigResults {
 
     /// All results as entries of a JSON object; transients every 5 K, while the CSV file has every second.
     pub fn json(&self, points: &Plan) -> Map<String, Value> {
-        let of = |ratio: &f64| {
+        let ranges_json = |ratio: &f64| {
             let (loss, pressure) = ranges(&self.steady, *ratio);
             json!({ "ratio": ratio, "torque_loss_nm": loss.json(), "secondary_pressure_bar": pressure.json() })
         };
-        let ranges: Vec<Value> = points.ratios.iter().map(of).collect();
+        let ranges: Vec<Value> = points.ratios.iter().map(ranges_json).collect();
         let sum: f64 = self.second_box.iter().map(TwoBoxes::difference_nm).sum();
         let mean = sum / self.second_box.len() as f64;
         let steady = json_rows(&steady_columns(), &self.steady);

@@ -172,11 +172,11 @@ pub fn summarise(
     }
     let baselines = runs.iter().zip(driven).skip(1);
     let comparison = baselines
-        .map(|(baseline, of)| {
+        .map(|(baseline, driven_baseline)| {
             let subject = driven[0].setup;
-            let differences = differences(subject, of.setup);
+            let differences = differences(subject, driven_baseline.setup);
             Comparison {
-                likeness: likeness(subject, of.setup, &differences),
+                likeness: likeness(subject, driven_baseline.setup, &differences),
                 differences,
                 ..compare(&runs[0], baseline)
             }
@@ -199,7 +199,7 @@ impl Summary {
     /// Copy with the cars under their names in tables and figures.
     #[must_use]
     pub fn labelled(&self) -> Self {
-        let mut of = self.clone();
+        let mut labelled = self.clone();
         let names: Vec<_> = self
             .runs
             .iter()
@@ -210,15 +210,19 @@ impl Summary {
                 *name = (*label).to_owned();
             }
         };
-        of.runs.iter_mut().for_each(|run| label(&mut run.vehicle));
-        of.comparison
+        labelled
+            .runs
             .iter_mut()
-            .for_each(|of| label(&mut of.baseline));
-        let contradicted = of.contradicted.iter_mut();
+            .for_each(|run| label(&mut run.vehicle));
+        labelled
+            .comparison
+            .iter_mut()
+            .for_each(|comparison| label(&mut comparison.baseline));
+        let contradicted = labelled.contradicted.iter_mut();
         contradicted
-            .filter_map(|of| of.baseline.as_mut())
+            .filter_map(|row| row.baseline.as_mut())
             .for_each(label);
-        of
+        labelled
     }
 }
 

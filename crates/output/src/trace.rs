@@ -117,7 +117,7 @@ pub fn loss_column(component: Component) -> Option<&'static TraceColumn> {
 /// ```
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_trace<W: Write>(
     out: W,
     columns: &[&TraceColumn],

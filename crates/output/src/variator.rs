@@ -112,7 +112,7 @@ impl VariatorCurves {
     /// Writes every point of every curve as CSV.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_points(&self, out: &mut dyn Write) -> io::Result<()> {
         write_csv(out, &point_columns(), self.points(), &[])
     }
@@ -120,7 +120,7 @@ impl VariatorCurves {
     /// Writes a line for each curve as CSV.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_curves(&self, out: &mut dyn Write) -> io::Result<()> {
         write_csv(out, &curve_columns(), self.numbers(), &[])
     }
@@ -128,7 +128,7 @@ impl VariatorCurves {
     /// Writes one JSON object, its points one a line.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
         let columns = point_columns();
         let mut points = Summing::new(io::sink());

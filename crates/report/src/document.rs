@@ -249,10 +249,10 @@ impl ReportTable {
 
     /// Name and unit of a column, for a cell of a card.
     pub fn head(&self, column: &usize) -> String {
-        let of = self.columns.get(*column);
-        of.map_or_else(String::new, |of| match of.unit.as_str() {
-            "" => of.name.clone(),
-            unit => format!("{} [{unit}]", of.name),
+        let column_head = self.columns.get(*column);
+        column_head.map_or_else(String::new, |column_head| match column_head.unit.as_str() {
+            "" => column_head.name.clone(),
+            unit => format!("{} [{unit}]", column_head.name),
         })
     }
 

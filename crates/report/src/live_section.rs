@@ -76,7 +76,7 @@ pub struct Control {
 pub enum ControlKind {
     /// A number.
     Slider(Slider),
-    /// One of some changes, or none.
+    /// A choice of at most one change.
     Choice(Vec<ControlChange>),
 }
 

@@ -188,7 +188,7 @@ fn label(manifest: &Value, vehicle: &str) -> String {
         Some((name, car["short"].as_str()?.to_owned()))
     };
     let cars: BTreeSet<(String, String)> = cars.filter_map(named).collect();
-    let alone = |short: &&String| cars.iter().filter(|of| of.1 == **short).count() == 1;
+    let alone = |short: &&String| cars.iter().filter(|other| other.1 == **short).count() == 1;
     let own = cars.iter().find(|(name, _)| name == vehicle);
     let short = own.map(|(_, short)| short).filter(alone);
     let short = short.filter(|short| !short.is_empty());

@@ -88,7 +88,8 @@ fn output_pictures(
     for (k, output) in pictured.iter().enumerate() {
         let same = |other: &&&OutputAnswer| other.output == output.output;
         // For pairs the difference matters: two fuel distributions would hide that both vary together.
-        let is_paired = output.output == FUEL && pictured.iter().any(|of| of.output == EXCESS);
+        let is_paired =
+            output.output == FUEL && pictured.iter().any(|other| other.output == EXCESS);
         let is_first = !pictured[..k].iter().any(|other| same(&other));
         if outline.plan.design.is_sampled() && is_first && !is_paired {
             let same: Vec<&&OutputAnswer> = pictured.iter().filter(same).collect();

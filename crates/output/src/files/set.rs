@@ -57,7 +57,7 @@ impl FileSet {
     /// Writes a file under a temporary name, syncs it to disk, and returns its checksum.
     ///
     /// # Errors
-    /// Those of the operating system.
+    /// Errors of the operating system.
     pub fn write(
         &mut self,
         name: &Path,

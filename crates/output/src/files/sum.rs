@@ -24,7 +24,7 @@ pub fn hex(sum: &Sum) -> String {
 /// Hashes the rest of a file.
 ///
 /// # Errors
-/// Those of the operating system.
+/// Errors of the operating system.
 pub fn sum_of(mut file: &File) -> io::Result<Sum> {
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];

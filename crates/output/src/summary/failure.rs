@@ -5,7 +5,7 @@
 //! | `missed_trace`, `not_converged`, `too_hot`, `wrong_gear` | a row with the flag |
 //! | `overspeed` | a row with the flag, more than 1 % above the end of the full-load line as well |
 //! | `ledger_error` | an energy balance of a row open by more than 1e-9, or that of the run by more than the rounding of its sums |
-//! | `not_finite` | a row in which torque, speed, fuel or a temperature is no number; its ledger is not looked at then |
+//! | `not_finite` | a row in which torque, speed, fuel or a temperature is not finite; its ledger is not checked |
 //! | flags of [`STRICT`] | under `--strict` a row with the flag |
 
 use serde::{Deserialize, Serialize};

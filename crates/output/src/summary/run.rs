@@ -201,8 +201,8 @@ impl RunSummary {
                 format!("turns the engine at {value}, above {limit} {unit}, for {seconds} s")
             }
             "too_hot" => {
-                let (of, value) = (failure.of.as_deref().unwrap_or("oil"), value(1));
-                format!("heats the {of} to {value}, above {limit} {unit}, for {seconds} s")
+                let (node, value) = (failure.of.as_deref().unwrap_or("oil"), value(1));
+                format!("heats the {node} to {value}, above {limit} {unit}, for {seconds} s")
             }
             "wrong_gear" => format!(
                 "is driven faster for {seconds} s in which the cycle prescribes no gear, first {row}"
@@ -301,8 +301,8 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
 }
 
 /// Name of a launch device other than a clutch.
-fn launch_device(of: &Transmission) -> Option<String> {
-    let coupling = of.coupling();
+fn launch_device(transmission: &Transmission) -> Option<String> {
+    let coupling = transmission.coupling();
     coupling.by_command().then(|| coupling.device().to_owned())
 }
 

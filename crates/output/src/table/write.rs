@@ -17,7 +17,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes the names of the columns.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn new<T: AsRef<[u8]>>(out: W, names: impl IntoIterator<Item = T>) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
         out.write_record(names).map_err(csv_error)?;
@@ -30,7 +30,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes a row; each cell appends its text.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn row<T>(
         &mut self,
         cells: impl IntoIterator<Item = T>,
@@ -47,7 +47,7 @@ impl<W: Write> CsvWriter<W> {
     /// Flushes the output.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn finish(mut self) -> io::Result<()> {
         self.out.flush()
     }
@@ -64,7 +64,7 @@ fn csv_error(error: csv::Error) -> io::Error {
 /// Writes names and rows as CSV. `phases` are the names of phases that cells refer to.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_csv<R, C: Borrow<Column<R>>, I: Borrow<R>>(
     out: impl Write,
     columns: &[C],
@@ -110,7 +110,7 @@ pub fn json_rows<R>(columns: &[Column<R>], rows: &[R]) -> Json {
 /// Writes an object: the entries of the object `head`, then `points`, a row a line.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_json<R, I: Borrow<R>>(
     out: &mut dyn Write,
     head: &Json,

@@ -77,11 +77,11 @@ fn title(run: &RunSummary, subject: &str) -> String {
     let costs = Component::ALL
         .into_iter()
         .filter_map(|c| Some((c, cost(&c)?)));
-    let most = costs.max_by(|a, b| a.1.total_cmp(&b.1));
-    let most = most.map_or_else(String::new, |(c, percent)| {
+    let dearest = costs.max_by(|a, b| a.1.total_cmp(&b.1));
+    let dearest = dearest.map_or_else(String::new, |(c, percent)| {
         let name = run.loss_words(c.name());
         format!(", the largest of them {name} ({percent:.1} %)")
     });
     let together = price.together.percent.unwrap_or(f64::NAN);
-    format!("Its losses cost {subject} {together:.1} % of its fuel{most}")
+    format!("Its losses cost {subject} {together:.1} % of its fuel{dearest}")
 }

@@ -31,12 +31,12 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     };
     let components = Component::ALL.into_iter().filter_map(component);
     let terms = TERMS.into_iter().filter_map(ledger);
-    let of = |of: fn(&Car) -> f64| cars.map(of);
+    let of_both = |of_both: fn(&Car) -> f64| cars.map(of_both);
     let picture = difference_bars(&EnergyDifference {
         names: names.clone(),
-        fuel_kj_per_l: of(|car| car.run.fuel_energy_kj / car.run.fuel_l),
-        distance_km: of(|car| car.run.distance_km),
-        fuel_kj: of(|car| car.run.fuel_energy_kj),
+        fuel_kj_per_l: of_both(|car| car.run.fuel_energy_kj / car.run.fuel_l),
+        distance_km: of_both(|car| car.run.distance_km),
+        fuel_kj: of_both(|car| car.run.fuel_energy_kj),
         terms: components.chain(terms).collect(),
     });
     let [a, b] = names;

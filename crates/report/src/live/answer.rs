@@ -122,7 +122,10 @@ impl LivePage {
     /// # Errors
     /// Problems of the cars.
     pub fn draw(&mut self, state: &State) -> Result<Option<Vec<DrawnDifference>>, Problems> {
-        let begun = self.draws.take().filter(|(of, _)| of == state);
+        let begun = self
+            .draws
+            .take()
+            .filter(|(begun_state, _)| begun_state == state);
         let mut draws = match begun {
             Some((_, draws)) => draws,
             None => Draws::new(self.study(state)?),
@@ -389,10 +392,10 @@ fn history(car: &Driven, cycle: &Cycle) -> History {
 /// Adds the fuel waterfall, losses and sump temperature of the subject, against another car if there is one.
 fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     if let [subject, other] = pair {
-        let of = per_km(subject, other);
-        let [own, from] = &of.names;
+        let energies = per_km(subject, other);
+        let [own, from] = &energies.names;
         let caption = format!("Energy over distance from the fuel of {from} to that of {own}.");
-        section.figure("live_waterfall", caption, waterfall(&of, conditions));
+        section.figure("live_waterfall", caption, waterfall(&energies, conditions));
     }
     let losses = pair.iter().map(|car| CarLosses {
         name: car.run.label().to_owned(),

@@ -47,7 +47,7 @@ pub(super) fn flags(run: &RunSummary, of_file: Option<&RunSummary>) -> Vec<Strin
 
 /// Levers outside their known range, a sentence each.
 pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
-    let of = |control: &Control| {
+    let sentence = |control: &Control| {
         let ControlKind::Slider(slider) = &control.kind else {
             return None;
         };
@@ -61,12 +61,12 @@ pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
             )
         })
     };
-    controls.iter().filter_map(of).collect()
+    controls.iter().filter_map(sentence).collect()
 }
 
-/// Requirements of the chosen changes, a sentence each.
+/// Requirements sentence the chosen changes, a sentence each.
 pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
-    let of = |control: &Control| {
+    let sentence = |control: &Control| {
         let ControlKind::Choice(changes) = &control.kind else {
             return None;
         };
@@ -75,5 +75,5 @@ pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
         let needs = change.needs.trim_end_matches('.');
         (!needs.is_empty()).then(|| format!("{} takes: {needs}.", capital_first(&change.title)))
     };
-    controls.iter().filter_map(of).collect()
+    controls.iter().filter_map(sentence).collect()
 }

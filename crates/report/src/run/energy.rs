@@ -32,8 +32,11 @@ fn car_energy(car: &Car, conditions: &str) -> CarEnergy {
 fn energies(cars: &[Car], conditions: &str) -> Vec<CarEnergy> {
     let energy = |car| car_energy(car, conditions);
     let mut all: Vec<CarEnergy> = cars.iter().map(energy).collect();
-    let most = |value_of: fn(&CarEnergy) -> f64| all.iter().map(value_of).fold(0.0, f64::max);
-    let largest_kj_km = [most(|car| car.fuel_kj_km), most(CarEnergy::flywheel_kj_km)];
+    let max_of = |value_of: fn(&CarEnergy) -> f64| all.iter().map(value_of).fold(0.0, f64::max);
+    let largest_kj_km = [
+        max_of(|car| car.fuel_kj_km),
+        max_of(CarEnergy::flywheel_kj_km),
+    ];
     for car in &mut all {
         car.largest_kj_km = largest_kj_km;
     }

@@ -153,12 +153,12 @@ fn waterfalls(all: &[Car], conditions: &str) -> Vec<(String, String, String, Pic
     let first = baselines.first().map(|baseline| (subject, baseline));
     let others = baselines.iter().map(|baseline| (baseline, subject));
     let view = |(own, other): (&Car, &Car)| {
-        let of = energy::per_km(own, other);
-        let [name, from] = &of.names;
+        let energies = energy::per_km(own, other);
+        let [name, from] = &energies.names;
         let caption = format!(
             "Energy over distance from the fuel of {from} to that of {name}; the terms add up."
         );
-        let picture = waterfall(&of, conditions);
+        let picture = waterfall(&energies, conditions);
         (name.clone(), file("waterfall", all, own), caption, picture)
     };
     first.into_iter().chain(others).map(view).collect()
@@ -189,9 +189,9 @@ fn natural_experiment<'a>(car: &Car<'a>) -> Option<(&'a str, Vec<Repeat>, String
         let own: Vec<usize> = rows(*phase).collect();
         let (begin, end) = (own.first()?, own.last()?);
         let loss = |group: &LossGroup| {
-            let of = components.iter().filter(|c| c.group() == *group);
+            let parts = components.iter().filter(|c| c.group() == *group);
             let at = |c, i: &usize| Some(loss_w(history, c).get(*i)? * history.dt_s().get(*i)?);
-            let joule = of.flat_map(|c| own.iter().filter_map(move |i| at(c, i)));
+            let joule = parts.flat_map(|c| own.iter().filter_map(move |i| at(c, i)));
             (*group, joule.filter(|x| x.is_finite()).sum::<f64>() / 1e3)
         };
         Some(Repeat {

@@ -56,12 +56,12 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
     }
     let mut more = Section::default();
     for (k, car) in cars.iter().enumerate() {
-        let Some(of) = car.record else { continue };
+        let Some(record) = car.record else { continue };
         let body = if k == 0 { Some(&mut section) } else { None };
         add_car_values(
             body,
             &mut more,
-            (of, car.run.label()),
+            (record, car.run.label()),
             record.sensitivity.as_ref(),
         );
     }
@@ -98,7 +98,7 @@ fn ranked<'a>(
     sensitivity: Option<&'a Sensitivity>,
     wanted: fn(&ValueRecord) -> bool,
 ) -> Vec<Ranked<'a>> {
-    let effects = sensitivity.map_or(&[][..], |of| &of.effects);
+    let effects = sensitivity.map_or(&[][..], |found| &found.effects);
     let effect = |value: &ValueRecord| {
         let own = |effect: &&Effect| effect.car == car.name && effect.key == value.key;
         effects.iter().find(own)
@@ -106,7 +106,7 @@ fn ranked<'a>(
     let values = car.values.iter().filter(|value| wanted(value));
     let mut list: Vec<Ranked> = values.map(|value| (value, effect(value))).collect();
     // Values without an effect come last.
-    let size = |of: &Ranked| of.1.map_or(-1.0, Effect::size_percent).max(-1.0);
+    let size = |ranked: &Ranked| ranked.1.map_or(-1.0, Effect::size_percent).max(-1.0);
     // Stable sort: values without an effect keep the order of the file.
     list.sort_by(|a, b| size(b).total_cmp(&size(a)));
     list

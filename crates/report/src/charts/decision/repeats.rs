@@ -15,7 +15,7 @@ const TALL: f64 = 300.0;
 /// Row of the first group in the table, after those of the oil.
 const FIRST_ROW: usize = 2;
 
-/// One of the drives.
+/// One repetition of the drive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repeat {
     /// Oil at its beginning and end, degC.

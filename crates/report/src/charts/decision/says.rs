@@ -61,13 +61,13 @@ pub(super) fn repeats(totals: &[f64], parts: &[(String, [f64; 2])]) -> String {
     let word = if last < first { "cuts" } else { "raises" };
     let [first, last] = [first, last].map(|kj| grouped(*kj, 0));
     let drop = |part: &&(String, [f64; 2])| part.1[0] - part.1[1];
-    let most = parts.iter().max_by(|a, b| drop(a).total_cmp(&drop(b)));
-    let most = most.filter(|part| drop(part) > 0.0);
-    let most = most.map_or_else(String::new, |(name, ends)| {
+    let largest = parts.iter().max_by(|a, b| drop(a).total_cmp(&drop(b)));
+    let largest = largest.filter(|part| drop(part) > 0.0);
+    let largest = largest.map_or_else(String::new, |(name, ends)| {
         let [a, b] = ends.map(|kj| grouped(kj, 0));
         format!(", {name} most ({a} to {b})")
     });
-    format!("Warmer oil {word} the loss of the same drive from {first} to {last} kJ{most}")
+    format!("Warmer oil {word} the loss of the same drive from {first} to {last} kJ{largest}")
 }
 
 /// Title of the spread that remains when a factor is known.

@@ -18,10 +18,10 @@ pub(crate) struct Axis {
 impl Axis {
     /// An axis over all finite `values`, its ends on round numbers, or half-way between two where data would run along the frame. Data may touch
     /// an end at zero.
-    pub fn round(title: &str, values: impl Iterator<Item = f64>, most_ticks: usize) -> Self {
+    pub fn round(title: &str, values: impl Iterator<Item = f64>, max_ticks: usize) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
         let (low, high) = widened(low, high);
-        let step = round_step((high - low) / most_ticks.max(2) as f64);
+        let step = round_step((high - low) / max_ticks.max(2) as f64);
         let first = (low / step + 1e-9).floor();
         let last = (high / step - 1e-9).ceil();
         let near = |end: f64, value: f64| value.abs() > 0.0 && (end - value).abs() < 0.1 * step;
@@ -31,11 +31,11 @@ impl Axis {
     }
 
     /// An axis whose ends are those of the data, with ticks on round numbers between them.
-    pub fn exact(title: &str, low: f64, high: f64, most_ticks: usize) -> Self {
+    pub fn exact(title: &str, low: f64, high: f64, max_ticks: usize) -> Self {
         let ordered = low.is_finite() && high.is_finite() && low < high;
         let (low, high) = if ordered { (low, high) } else { (0.0, 1.0) };
         let (low, high) = widened(low, high);
-        let step = round_step((high - low) / most_ticks.max(2) as f64);
+        let step = round_step((high - low) / max_ticks.max(2) as f64);
         Self::with_step(title, low, high, step)
     }
 

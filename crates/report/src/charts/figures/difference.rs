@@ -174,11 +174,11 @@ fn title_of(data: &EnergyDifference) -> String {
     if fuel.abs() < 1e-9 {
         return "B burns as much as A".to_owned();
     }
-    let most = data
+    let largest = data
         .terms
         .iter()
         .max_by(|a, b| a.change().abs().total_cmp(&b.change().abs()));
-    let most = most.map_or_else(String::new, |term| {
+    let largest = largest.map_or_else(String::new, |term| {
         let change = term.change();
         format!(
             ", most of it {} ({})",
@@ -187,7 +187,7 @@ fn title_of(data: &EnergyDifference) -> String {
         )
     });
     let more = if fuel < 0.0 { "less" } else { "more" };
-    format!("B burns {} {more} than A{most}", energy(fuel.abs()))
+    format!("B burns {} {more} than A{largest}", energy(fuel.abs()))
 }
 
 fn label(kj: f64, litres: f64) -> String {

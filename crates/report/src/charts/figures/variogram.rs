@@ -162,8 +162,8 @@ fn title(data: &Variogram, density: &Density) -> String {
             None => rows.push((cell.y, cell.seconds)),
         }
     }
-    let most = rows.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    match most.filter(|_| density.total_s() > 0.0) {
+    let longest = rows.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    match longest.filter(|_| density.total_s() > 0.0) {
         Some(((from, to), seconds)) => format!(
             "The engine of {} runs at {} to {} rpm for {} % of its time",
             data.subject,

@@ -62,9 +62,9 @@ impl Density {
 
     /// Minimum and maximum amount in a cell.
     pub(crate) fn ends(&self) -> (f64, f64) {
-        let most = self.seconds.values().copied().fold(0.0, f64::max);
-        let least = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
-        (least, most)
+        let max_s = self.seconds.values().copied().fold(0.0, f64::max);
+        let min_s = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
+        (min_s, max_s)
     }
 
     /// Sets a colour span common to several figures, which makes them comparable.

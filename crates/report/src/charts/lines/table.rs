@@ -66,8 +66,8 @@ fn rows(table: &mut PictureTable, place: usize, panels: &[(&LinePanel, usize)]) 
             }
         }
     }
-    let most = (MAX_CELLS / width.max(1)).clamp(1, MAX_ROWS);
-    let every = cells.len().div_ceil(most).max(1);
+    let max_rows = (MAX_CELLS / width.max(1)).clamp(1, MAX_ROWS);
+    let every = cells.len().div_ceil(max_rows).max(1);
     table.rows.extend(cells.into_iter().step_by(every));
     every
 }

@@ -68,13 +68,13 @@ pub(super) fn pressure(range: Option<(f64, f64)>, apart: f64, place: &str) -> St
     )
 }
 
-pub(super) fn load(added: Option<(f64, f64)>, most_nm: f64, place: &str) -> String {
+pub(super) fn load(added: Option<(f64, f64)>, max_nm: f64, place: &str) -> String {
     let Some((low, high)) = added else {
         return "One torque alone was tested".to_owned();
     };
     let [low, high] = [low, high].map(|x| signed(x, 2));
-    let most = cvtcycle_output::number::plain(most_nm);
-    format!("{most} Nm at the output change the loss by {low} to {high} Nm {place}")
+    let max = cvtcycle_output::number::plain(max_nm);
+    format!("{max} Nm at the output change the loss by {low} to {high} Nm {place}")
 }
 
 pub(super) fn transient(widest: Option<(f64, f64)>, place: &str) -> String {

@@ -16,7 +16,7 @@ const GAP: f64 = 20.0;
 /// Bands from the last number of samples over 2 to this power on lie in the plot in full.
 const SEEN: f64 = 2.5;
 
-/// One of the two indices of a factor at a number of samples.
+/// Selects one of the two indices of a factor at a number of samples.
 type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 
 /// Draws first-order indices over total ones against the number of samples, with their intervals as bands; of more than seven factors those with
