@@ -56,12 +56,14 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
     }
     let mut more = Section::default();
     for (k, car) in cars.iter().enumerate() {
-        let Some(record) = car.record else { continue };
+        let Some(car_record) = car.record else {
+            continue;
+        };
         let body = if k == 0 { Some(&mut section) } else { None };
         add_car_values(
             body,
             &mut more,
-            (record, car.run.label()),
+            (car_record, car.run.label()),
             record.sensitivity.as_ref(),
         );
     }
