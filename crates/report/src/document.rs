@@ -296,7 +296,7 @@ impl Figure {
     /// Numbers of the picture as a table, for the figure with that number.
     pub fn numbers(&self, number: &str) -> ReportTable {
         let table = &self.picture.table;
-        let caption = format!("Numbers listed figure {number}");
+        let caption = format!("Numbers of figure {number}");
         let mut listed = ReportTable::textual(&caption, &[]);
         for (k, (name, unit)) in table.columns.iter().enumerate() {
             listed.columns.push(ReportColumn {
