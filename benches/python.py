@@ -4,7 +4,7 @@
     python benches/python.py [--native target/release/examples/native_run]
     python benches/python.py --ratio        both programs in turn on UDDS, time a step; `benches/against_fastsim` installs all of it
 
-Each time is the median of many calls; of --ratio it is the least. `native_run` drives the same run without Python and prints its own median.
+Each time is the median of many calls; with --ratio it is the minimum. `native_run` drives the same run without Python and prints its own median.
 """
 
 import argparse

@@ -6,7 +6,7 @@ use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::report::compare::{Comparison, Side, compare, names};
+use cvtcycle::report::compare::{RunComparison, Side, compare, names};
 
 use super::{Execute, threads};
 use crate::args::OutputArgs;
@@ -46,9 +46,9 @@ pub struct CompareArgs {
 }
 
 impl Execute for CompareArgs {
-    type Plan = Comparison;
+    type Plan = RunComparison;
 
-    fn plan(&self, problems: &mut Problems) -> Option<Comparison> {
+    fn plan(&self, problems: &mut Problems) -> Option<RunComparison> {
         problems.take(threads::begin(None));
         let count = self.dirs.len();
         if !(2..=MAX_RUNS).contains(&count) {
@@ -78,7 +78,7 @@ impl Execute for CompareArgs {
         problems.take(compare(&self.dirs, reference, self.loosely))
     }
 
-    fn run(&self, found: Comparison, terminal: Terminal) -> CommandResult {
+    fn run(&self, found: RunComparison, terminal: Terminal) -> CommandResult {
         let json = json_text(&found)?;
         let failures = found.runs.iter().flat_map(|run| {
             let failed = run.failed_checks.iter();
@@ -89,7 +89,7 @@ impl Execute for CompareArgs {
     }
 }
 
-fn text(found: &Comparison, paint: Paint) -> String {
+fn text(found: &RunComparison, paint: Paint) -> String {
     let (reference, others) = found.runs.split_at(1);
     let tables = others.chunks(MAX_RUNS_ABREAST).map(|chunk| {
         let runs: Vec<&Side> = reference.iter().chain(chunk).collect();
@@ -105,7 +105,7 @@ fn text(found: &Comparison, paint: Paint) -> String {
     body.trim_start().to_owned() + "\n" + &notes
 }
 
-fn table(found: &Comparison, runs: &[&Side]) -> String {
+fn table(found: &RunComparison, runs: &[&Side]) -> String {
     let mut table = TextTable::new(&("ll".to_owned() + &"r".repeat(runs.len())));
     let mut add = |name: &str, unit: &str, cell: &dyn Fn(&Side) -> String| {
         let head = [name.to_owned(), unit.to_owned()].into_iter();

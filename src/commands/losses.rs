@@ -133,7 +133,7 @@ impl Execute for LossesArgs {
         let look = |row: &LossRow| {
             if row.answer.flags.contains(Flags::NOT_CONVERGED) {
                 let (count, first) = unsolved.get();
-                unsolved.set((count + 1, first.or(Some(row.asked))));
+                unsolved.set((count + 1, first.or(Some(row.requested))));
             }
         };
         let rows = || losses.rows().inspect(look);
@@ -146,7 +146,7 @@ impl Execute for LossesArgs {
         let (count, all) = (unsolved.get().0, losses.grid.len());
         let failure = |first: [f64; Axis::COUNT]| {
             let has = if count == 1 { "has" } else { "have" };
-            let first = losses.held(&first, &Axis::ALL);
+            let first = losses.values_in_words(&first, &Axis::ALL);
             format!("check failed: {count} of {all} points {has} no solution, first at {first}")
         };
         let failures = unsolved.get().1.map(failure).into_iter().collect();

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use cvtcycle::report::document::Document;
 use cvtcycle::report::report;
-use cvtcycle::report::whatif::{LiveSection, of_dir};
+use cvtcycle::report::whatif::{LiveSection, section_of_dir};
 use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};
@@ -82,7 +82,7 @@ impl Execute for ReportArgs {
             Some(word) => problems.take(one_of("--format", word, &Form::NAMES)),
             None => None,
         };
-        let form = form.or_else(|| out.and_then(Form::of));
+        let form = form.or_else(|| out.and_then(Form::from_path));
         let form = form.unwrap_or(Form::Html);
         let fits = !self.live || self.check_live(form, problems);
         let document = problems.take(report(&self.dirs, &self.with, self.cover.as_deref()));
@@ -99,7 +99,7 @@ impl Execute for ReportArgs {
         let mut document = document?.shown(self.full);
         if self.live && fits {
             let first_figure = document.figures().count() + 1;
-            let live: LiveSection = problems.take(of_dir(&self.dirs[0], first_figure))?;
+            let live: LiveSection = problems.take(section_of_dir(&self.dirs[0], first_figure))?;
             document.live = Some(live);
         }
         Some((document, target?))

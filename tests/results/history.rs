@@ -67,7 +67,7 @@ fn a_trace_reads_back_bit_by_bit() {
                 &cycle.phases
             };
             let columns = columns_for(cvt, &parts);
-            let history = History::of(&rows, &columns, phases);
+            let history = History::from_rows(&rows, &columns, phases);
             assert_eq!(
                 (history.len(), history.is_cvt(), history.components()),
                 (rows.len(), cvt, parts.clone())

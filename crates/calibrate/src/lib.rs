@@ -144,7 +144,7 @@ impl Found<'_> {
             ..Outcome::of_plan(self.model.plan())
         };
         outcome.warnings = warnings(&outcome);
-        outcome.manifest = outcome.manifest.clone().of_run(&outcome);
+        outcome.manifest = outcome.manifest.clone().for_run(&outcome);
         outcome
     }
 

@@ -221,7 +221,7 @@ impl RunData {
     fn history(&self, car: &DrivenCar) -> History {
         let transmission = car.setup.transmission();
         let columns = columns_for(transmission.is_cvt(), &transmission.components());
-        History::of(&car.outcome.rows, &columns, self.phases())
+        History::from_rows(&car.outcome.rows, &columns, self.phases())
     }
 
     /// Picture of one car, or of all.
@@ -384,7 +384,7 @@ impl Run {
     ) -> PyResult<Vec<PathBuf>> {
         let whole = Arc::clone(&self.0);
         let make = move |_: &_| -> Result<Vec<PathBuf>, Problems> {
-            let form = Form::of(&file).unwrap_or(Form::Html);
+            let form = Form::from_path(&file).unwrap_or(Form::Html);
             let target = Target::new(&file, form, force)?;
             let no_folder = |error: std::io::Error| {
                 Problem::invalid(format!("cannot make a temporary folder: {error}"))

@@ -64,7 +64,7 @@ pub fn json(report: &Report) -> Value {
         "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
         "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),
     });
-    Manifest::new(SCHEMA).of_run(&rest).with(&rest)
+    Manifest::new(SCHEMA).for_run(&rest).with(&rest)
 }
 
 /// A row as a JSON object; no number and an infinite one are null.

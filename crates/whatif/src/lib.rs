@@ -1,9 +1,9 @@
 //! The simulator in a page. `tools/live` builds it for wasm32-unknown-unknown and compresses it into `crates/report/assets`, where `report`
 //! finds it; `reports/live.js` calls it.
 //!
-//! Everything goes through two buffers of JSON: JavaScript gets room from [`live_reserve`], writes the input there, calls a function, which
-//! returns the length of its output, and reads that many bytes from [`live_output`]. Both buffers stay where they are until the next call.
-//! A name that JavaScript finds is the only thing here that Rust calls unsafe: another symbol of that name would take its place.
+//! Data passes through two buffers of JSON: JavaScript reserves room with [`live_reserve`], writes the input there, calls a function, which
+//! returns the length of its output, and reads that many bytes from [`live_output`]. Both buffers stay valid until the next call. The exported
+//! names are the only unsafe part: another symbol of the same name would replace them.
 
 use std::cell::RefCell;
 
@@ -24,24 +24,24 @@ thread_local! {
     static LIVE: RefCell<Live> = RefCell::default();
 }
 
-/// A state, and the differences that were drawn for it.
+/// Requested state, and the differences drawn for it.
 #[derive(Deserialize)]
-struct Asked {
+struct DrawnState {
     state: State,
     #[serde(default)]
     drawn: Option<Vec<DrawnDifference>>,
 }
 
-/// What a part of the draws gives.
+/// Result of a part of the draws.
 #[derive(Serialize)]
 struct Drawn {
-    /// After the last part.
+    /// Present after the last part.
     drawn: Option<Vec<DrawnDifference>>,
-    /// Why there are none.
+    /// Reason for missing draws.
     problem: Option<String>,
 }
 
-/// Room for the input of the next call, at least `length` bytes.
+/// Reserves at least `length` bytes for the input of the next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn live_reserve(length: usize) -> *mut u8 {
     LIVE.with_borrow_mut(|live| {
@@ -51,13 +51,13 @@ pub extern "C" fn live_reserve(length: usize) -> *mut u8 {
     })
 }
 
-/// The output of the last call.
+/// Pointer to the output of the last call.
 #[unsafe(no_mangle)]
 pub extern "C" fn live_output() -> *const u8 {
     LIVE.with_borrow(|live| live.output.as_ptr())
 }
 
-/// Reads the scene of the page. The output is null, or a sentence on what is wrong.
+/// Reads the scene of the page. The output is null, or a sentence that states the problem.
 #[unsafe(no_mangle)]
 pub extern "C" fn live_open() -> usize {
     call(|live| {
@@ -67,11 +67,11 @@ pub extern "C" fn live_open() -> usize {
     })
 }
 
-/// The answer to a state, with its intervals if they are given.
+/// Answers a state, with its intervals if they are given.
 #[unsafe(no_mangle)]
 pub extern "C" fn live_answer() -> usize {
     call(|live| {
-        let asked: Asked = parsed(&live.input)?;
+        let asked: DrawnState = parsed(&live.input)?;
         let page = live.page.as_mut().ok_or_else(not_open)?;
         Ok(page.answer(&asked.state, asked.drawn))
     })
@@ -81,7 +81,7 @@ pub extern "C" fn live_answer() -> usize {
 #[unsafe(no_mangle)]
 pub extern "C" fn live_draw() -> usize {
     call(|live| {
-        let asked: Asked = parsed(&live.input)?;
+        let asked: DrawnState = parsed(&live.input)?;
         let page = live.page.as_mut().ok_or_else(not_open)?;
         let found = page.draw(&asked.state);
         let problem = found.as_ref().err().map(sentence);
@@ -105,7 +105,7 @@ fn sentence(problems: &Problems) -> String {
     texts.collect::<Vec<_>>().join("; ")
 }
 
-/// Puts what a call makes into the output, or the sentence on what is wrong; the length.
+/// Writes a call's result, or a sentence that states the problem, into the output; returns its length.
 fn call<T: Serialize>(make: impl FnOnce(&mut Live) -> Result<T, Problems>) -> usize {
     LIVE.with_borrow_mut(|live| {
         let made = make(live);

@@ -209,7 +209,7 @@ fn check_form(
         problems.add(problem("--map-form", message, "add --as-map box"));
     }
     for axis in form.single() {
-        let count = grid.of(*axis).len();
+        let count = grid.axis_values(*axis).len();
         if count > 1 {
             let message = format!("{count} values, but `{}` has one", args.map_form);
             let hint = "give one value; another map has the next";
@@ -241,7 +241,7 @@ fn check_map(
     problems: &mut Problems,
 ) {
     let word = args.as_map.as_deref().unwrap_or_default();
-    if part.of_cvt() && !cvt {
+    if part.is_cvt_only() && !cvt {
         let hint = "a manual gearbox has one map: --as-map box";
         let message = format!("{} has no component `{word}`", args.car.vehicle);
         problems.add(problem("--as-map", &message, hint));
@@ -257,7 +257,7 @@ fn check_map(
         problems.add(problem("--input-torque", message, "use --torque"));
     }
     let mut single = |axis: Axis, hint: &str| {
-        let count = grid.of(axis).len();
+        let count = grid.axis_values(axis).len();
         if count > 1 {
             let message = format!("{count} values, but a map of `{word}` has no such axis");
             problems.add(problem(axis_option(axis), &message, hint));
@@ -279,7 +279,7 @@ fn check_map(
 }
 
 fn too_many(grid: &LossGrid) -> Problem {
-    let count = |axis: Axis| format!("{} {}", axis_option(axis), grid.of(axis).len());
+    let count = |axis: Axis| format!("{} {}", axis_option(axis), grid.axis_values(axis).len());
     let counts: Vec<String> = grid.varied().into_iter().map(count).collect();
     let counts = counts.join(", ");
     let hint = format!("use larger steps or several runs; values given: {counts}");

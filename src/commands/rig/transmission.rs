@@ -202,7 +202,7 @@ impl RigPlan {
             entries.extend(found.json(&self.points));
             entries.insert("failed_checks".to_owned(), json!(failures));
         }
-        Manifest::new(SCHEMA).of_run(&all).with(&all)
+        Manifest::new(SCHEMA).for_run(&all).with(&all)
     }
 
     fn pictures(&self, found: &RigResults) -> impl Iterator<Item = (String, String)> {

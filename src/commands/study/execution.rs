@@ -214,7 +214,7 @@ impl StudyOutput for StudyResults {
         store: store::Study,
         confidence: Confidence,
     ) -> Result<Self, Problem> {
-        StudyResults::of(outline, store, confidence)
+        StudyResults::from_store(outline, store, confidence)
     }
 
     fn results(&self) -> Result<Results, Problems> {

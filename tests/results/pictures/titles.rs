@@ -2,9 +2,9 @@
 
 use cvtcycle::output::Component;
 use cvtcycle::report::charts::figures::{
-    CarEnergy, CarLosses, Difference, DifferenceTerm, OverlayPanel, PhaseLosses, TraceDifference,
-    difference_bars, energy_flow, loss_by_component, loss_by_phase, trace_difference,
-    transmission_flow,
+    CarEnergy, CarLosses, DifferenceTerm, EnergyDifference, OverlayPanel, PhaseLosses,
+    TraceDifference, difference_bars, energy_flow, loss_by_component, loss_by_phase,
+    trace_difference, transmission_flow,
 };
 use cvtcycle::report::charts::{
     Picture, fuel_bars, losses, operating_points, pressure, temperatures,
@@ -212,15 +212,15 @@ fn the_largest_losses_of_a_title_have_their_share() {
 
 #[test]
 fn differences_of_a_title_are_those_of_the_table() {
-    let difference = Difference {
+    let difference = EnergyDifference {
         names: ["a".to_owned(), "b".to_owned()],
         fuel_kj_per_l: [31_000.0; 2],
         distance_km: [11.0; 2],
         fuel_kj: [27_000.0, 26_900.0],
         terms: vec![
-            DifferenceTerm::of(Component::BeltBand, [500.0, 420.0]),
-            DifferenceTerm::of(Component::Pump, [900.0, 899.9]),
-            DifferenceTerm::of(Component::Seal, [90.0, 90.1]),
+            DifferenceTerm::component(Component::BeltBand, [500.0, 420.0]),
+            DifferenceTerm::component(Component::Pump, [900.0, 899.9]),
+            DifferenceTerm::component(Component::Seal, [90.0, 90.1]),
         ],
     };
     let picture = difference_bars(&difference);

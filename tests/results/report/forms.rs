@@ -192,7 +192,7 @@ fn texts_have_one_style_of_units_and_signs() {
 fn keys_break_at_their_joints_and_hashes_are_folded() {
     let mut section = Section::new("one", "One");
     let hash = "0123456789abcdef".repeat(4);
-    let mut table = ReportTable::of_words("Files", &["Key", "SHA-256"]);
+    let mut table = ReportTable::textual("Files", &["Key", "SHA-256"]);
     table.row([
         "transmission.cvt.belt.band_offset_mm".to_owned(),
         hash.clone(),

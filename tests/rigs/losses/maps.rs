@@ -72,14 +72,14 @@ fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
 #[test]
 fn maps_round_trip() {
     for (name, part) in MapPart::NAMES {
-        let vehicle = if part.of_cvt() {
+        let vehicle = if part.is_cvt_only() {
             "rover_216_cvt"
         } else {
             "rover_216_5mt"
         };
         let bench = Bench::new(&car(vehicle, &[]));
         let mut grid = LossGrid::default();
-        let ratios = if part.of_cvt() {
+        let ratios = if part.is_cvt_only() {
             vec![0.5, 1.2, 2.3]
         } else {
             vec![1.0, 3.0, 5.0]
@@ -89,7 +89,7 @@ fn maps_round_trip() {
         } else {
             vec![0.0]
         };
-        let pressure = if part.of_cvt() {
+        let pressure = if part.is_cvt_only() {
             vec![15.0, 30.0]
         } else {
             Vec::new()
@@ -106,7 +106,7 @@ fn maps_round_trip() {
         grid.values[Axis::Throttle as usize] = vec![0.0];
         let mut csv = Vec::new();
         write_map(&mut csv, &bench, part, &grid).unwrap();
-        let table = if part.of_cvt() { "cvt" } else { "manual" };
+        let table = if part.is_cvt_only() { "cvt" } else { "manual" };
         let again = Bench::new(&with_map(
             vehicle,
             &csv,

@@ -1,4 +1,4 @@
-//! A state of the levers to its answer: all cars driven, the sentences of a run, figures of the subject against another car.
+//! Answers a state of the levers: drives all cars, and formats the sentences of a run and figures of the subject against another car.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,30 +16,30 @@ use cvtcycle_output::summary::{
 };
 use cvtcycle_study::plan::Base;
 
-use super::controls::of_car;
+use super::controls::car_controls;
 use super::scene::{DRAWS, Scene};
 use super::{command, words};
 use crate::charts::decision::waterfall;
 use crate::charts::figures::{CarLosses, Overlay, OverlayPanel, loss_by_component, overlay};
 use crate::document::{Block, Section};
-use crate::live_section::{Answer, Control, Kind, State};
+use crate::live_section::{Answer, Control, ControlKind, State};
 use crate::number::Quantity;
 use crate::render;
 use crate::run::{Car, brief, conditions_line, per_km, strip};
 
-/// Cars with their outcomes that are kept: those of the last states.
+/// Maximum number of cached cars with their outcomes, from the last states.
 const KEPT: usize = 24;
-/// Columns of the trace that the figures need.
+/// Trace columns used by the figures.
 const COLUMNS: [&str; 3] = ["time_s", "dt_s", "transmission_sump_degc"];
 
-/// A page with what it has computed so far.
+/// A page with its cached results.
 pub struct LivePage {
     scene: Scene,
     controls: Vec<Control>,
-    /// By word, options and conditions.
+    /// Cached cars by word, options and conditions.
     driven: BTreeMap<String, Arc<DrivenCar>>,
     cycle: Option<(String, Cycle)>,
-    /// The draws of a state, begun.
+    /// Draws in progress, with their state.
     draws: Option<(State, Draws)>,
 }
 
@@ -48,12 +48,12 @@ struct DrivenCar {
     outcome: Outcome,
 }
 
-/// A car that is driven: its word, what it is read with, and the word by which a command names it.
-struct Wanted {
+/// A car to drive: its word, its options, and the word by which a command names it.
+struct CarRequest {
     word: String,
     options: Options,
     named: String,
-    /// Whether it is the subject as its file has it.
+    /// True for the subject as in its file.
     of_file: bool,
 }
 
@@ -65,7 +65,7 @@ impl LivePage {
     pub fn new(scene: Scene) -> Result<Self, Problems> {
         let options = scene.subject(&State::default(), &[])?;
         Ok(LivePage {
-            controls: of_car(&scene.vehicle, &options)?,
+            controls: car_controls(&scene.vehicle, &options)?,
             scene,
             driven: BTreeMap::new(),
             cycle: None,
@@ -73,10 +73,10 @@ impl LivePage {
         })
     }
 
-    /// As [`LivePage::new`] in a page, whose files are those of the scene.
+    /// As [`LivePage::new`] within a page, which reads files from the scene.
     ///
     /// # Errors
-    /// As there; a damaged page.
+    /// As of [`LivePage::new`]; a damaged page.
     pub fn open(scene: Scene) -> Result<Self, Problems> {
         carried::carry(scene.files()?);
         LivePage::new(scene)
@@ -87,7 +87,7 @@ impl LivePage {
         &self.controls
     }
 
-    /// The answer to a state, with the intervals of its differences where they are known.
+    /// Answers a state, with the intervals of its differences if known.
     pub fn answer(&mut self, state: &State, drawn: Option<Vec<DrawnDifference>>) -> Answer {
         self.driven_answer(state, drawn)
             .unwrap_or_else(|problems| Answer {
@@ -97,7 +97,7 @@ impl LivePage {
             })
     }
 
-    /// As [`LivePage::answer`], for a state that has to be good, with all of its draws.
+    /// As [`LivePage::answer`], for a valid state, with all of its draws.
     ///
     /// # Errors
     /// Problems of the cars and of the cycle.
@@ -117,12 +117,15 @@ impl LivePage {
         Ok((self.driven_answer(state, Some(drawn.clone()))?, Some(drawn)))
     }
 
-    /// Drives the next part of a state's draws; the differences after the last one.
+    /// Drives the next part of a state's draws; returns the differences after the last one.
     ///
     /// # Errors
     /// Problems of the cars.
     pub fn draw(&mut self, state: &State) -> Result<Option<Vec<DrawnDifference>>, Problems> {
-        let begun = self.draws.take().filter(|(of, _)| of == state);
+        let begun = self
+            .draws
+            .take()
+            .filter(|(begun_state, _)| begun_state == state);
         let mut draws = match begun {
             Some((_, draws)) => draws,
             None => Draws::new(self.study(state)?),
@@ -157,7 +160,7 @@ impl LivePage {
         prepare(base, DRAWS, setup.transmission().is_cvt())
     }
 
-    /// Overrides of the levers that are moved, in the order of the page.
+    /// Overrides of the moved levers, in the order of the page.
     fn moved(&self, state: &State) -> Result<Vec<Override>, Problem> {
         let mut all = Vec::new();
         for control in &self.controls {
@@ -165,8 +168,8 @@ impl LivePage {
                 continue;
             };
             match &control.kind {
-                Kind::Slider(slider) => all.push(Override::new(slider.key, value)?),
-                Kind::Choice(changes) => {
+                ControlKind::Slider(slider) => all.push(Override::new(slider.key, value)?),
+                ControlKind::Choice(changes) => {
                     let change = changes.iter().find(|change| change.name == *value);
                     let unknown = || {
                         Problem::unknown_name(format!("there is no change `{value}`"))
@@ -179,8 +182,8 @@ impl LivePage {
         Ok(all)
     }
 
-    /// The subject, the car of its file where that is another one, and the baselines.
-    fn wanted(&self, state: &State, moved: &[Override]) -> Result<Vec<Wanted>, Problem> {
+    /// Cars of a state: the subject, the car of its file if different, and the baselines.
+    fn wanted(&self, state: &State, moved: &[Override]) -> Result<Vec<CarRequest>, Problem> {
         let scene = &self.scene;
         let options = scene.subject(state, moved)?;
         let [set_all, own] = scene.overrides()?;
@@ -189,16 +192,16 @@ impl LivePage {
             set: set_all,
             ..options.clone()
         };
-        let of_file = |options| Wanted {
+        let of_file = |options| CarRequest {
             word: scene.vehicle.clone(),
             options,
             named: scene.vehicle.clone(),
             of_file: true,
         };
         let is_moved = !(moved.is_empty() && own.is_empty() && state.lubricant.is_none());
-        let baseline = |word: &String| Wanted {
+        let baseline = |word: &String| CarRequest {
             word: word.clone(),
-            // A twin is made of the subject as it is driven.
+            // A twin is derived from the subject as driven.
             options: match is_twin(word) {
                 true => options.of_twin(NamedBy::File),
                 false => plain.clone(),
@@ -206,7 +209,7 @@ impl LivePage {
             named: if is_twin(word) { TWIN } else { word }.to_owned(),
             of_file: false,
         };
-        let first = Wanted {
+        let first = CarRequest {
             of_file: false,
             ..of_file(options.clone())
         };
@@ -219,10 +222,10 @@ impl LivePage {
             .collect())
     }
 
-    /// A car of a state, driven or kept.
+    /// Returns a car of a state from the cache, or drives it.
     fn car(
         &mut self,
-        car: &Wanted,
+        car: &CarRequest,
         loaded: Option<Setup>,
         cycle: &Cycle,
         conditions: &Conditions,
@@ -251,7 +254,7 @@ impl LivePage {
         Ok(made)
     }
 
-    /// The cycle of a state.
+    /// Loads the cycle of a state.
     fn cycle(&mut self, word: &str) -> Result<Cycle, Problems> {
         if let Some((known, cycle)) = &self.cycle
             && known == word
@@ -320,14 +323,14 @@ impl LivePage {
         })
     }
 
-    /// Sentences and figures.
+    /// Builds the sentences and figures.
     fn section(
         &self,
         state: &State,
         found: &Summary,
         histories: &[History],
         cycle: &Cycle,
-        wanted: &[Wanted],
+        wanted: &[CarRequest],
     ) -> Section {
         let mut section = Section::new("live", "");
         let labelled = found.labelled();
@@ -365,8 +368,8 @@ impl LivePage {
     }
 }
 
-/// Names of the cars, unique, as those of a run.
-fn names(wanted: &[Wanted]) -> Vec<String> {
+/// Unique names of the cars, as in a run.
+fn names(wanted: &[CarRequest]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for car in wanted {
         let name = name_of(&car.word);
@@ -383,16 +386,16 @@ fn history(car: &Driven, cycle: &Cycle) -> History {
         true => std::slice::from_ref(&cycle.name),
         false => &cycle.phases,
     };
-    History::of(&car.outcome.rows, &known(COLUMNS.into_iter()), phases)
+    History::from_rows(&car.outcome.rows, &known(COLUMNS.into_iter()), phases)
 }
 
-/// Way of the fuel, losses and sump of the subject, against another car where there is one.
+/// Adds the fuel waterfall, losses and sump temperature of the subject, against another car if there is one.
 fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     if let [subject, other] = pair {
-        let of = per_km(subject, other);
-        let [own, from] = &of.names;
+        let energies = per_km(subject, other);
+        let [own, from] = &energies.names;
         let caption = format!("Energy over distance from the fuel of {from} to that of {own}.");
-        section.figure("live_waterfall", caption, waterfall(&of, conditions));
+        section.figure("live_waterfall", caption, waterfall(&energies, conditions));
     }
     let losses = pair.iter().map(|car| CarLosses {
         name: car.run.label().to_owned(),
@@ -440,10 +443,10 @@ fn figures(section: &mut Section, pair: &[Car], conditions: &str) {
     );
 }
 
-/// Moments of the sump's temperature that are drawn at most: the eye sees no more of a curve so smooth, and each costs time at every move of a lever.
+/// Maximum number of drawn moments of the sump's temperature: enough for so smooth a curve, since each costs time at every move of a lever.
 const MOMENTS: usize = 120;
 
-/// Every so many points, and the last one.
+/// Thins points by a constant factor, keeping the last one.
 fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     let every = points.len().div_ceil(MOMENTS).max(1);
     let last = points.len().saturating_sub(1);
@@ -452,7 +455,7 @@ fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     kept.map(|(_, point)| point).collect()
 }
 
-/// What is wrong with a car that cannot be built.
+/// Section with the problems of a car that cannot be built.
 fn refused(problems: &Problems) -> Section {
     let mut section = Section::new("live", "");
     for problem in problems {

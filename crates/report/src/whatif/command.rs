@@ -1,9 +1,9 @@
-//! The command for a shell that prints the numbers of a state.
+//! Shell command that prints the numbers of a state.
 
 use super::scene::{DRAWS, Scene};
 use crate::live_section::State;
 
-/// The command that prints the numbers of a state: overrides in the order in which the page has them, then the cars.
+/// Builds the command that prints the numbers of a state: overrides in the order of the page, then the cars.
 pub(super) fn command(
     scene: &Scene,
     state: &State,
@@ -46,7 +46,7 @@ pub(super) fn command(
     quoted.collect::<Vec<_>>().join(" ")
 }
 
-/// A word for a shell.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_-+=./:,%".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! The levers of a car: sliders of single values and choices among shipped changes, as far as the car has them.
+//! Levers of a car: sliders of single values and choices among shipped changes, as far as the car has them.
 
 use cvtcycle_analysis::levers::{Lever, LeverFile};
 use cvtcycle_analysis::words::drawn::PLAN;
@@ -8,20 +8,20 @@ use cvtcycle_config::{Acts, Bound, Override, Problems};
 use cvtcycle_study::execute::relative;
 use cvtcycle_study::plan::{Factor, FactorValues, Plan};
 
-use crate::live_section::{Change, Control, Kind, Slider};
+use crate::live_section::{Control, ControlChange, ControlKind, Slider};
 
-/// Levers of a page.
-const MOST: usize = 6;
-/// Positions of a slider, at least.
+/// Maximum number of levers of a page.
+const MAX_CONTROLS: usize = 6;
+/// Minimum number of positions of a slider.
 const POSITIONS: f64 = 100.0;
-/// How far a slider goes beyond what is known, in widths of that range; without a width, as a share of the value.
+/// Extension of a slider beyond the known range, in widths of that range; without a width, as a share of the value.
 const BEYOND: f64 = 0.5;
 
-/// What can be moved, in the order of its worth: the first six that a car has are shown.
+/// Candidates in order of importance: the first ones that a car has, up to [`MAX_CONTROLS`], are shown.
 enum Candidate {
     /// A number: name, title, key.
     Number(&'static str, &'static str, &'static str),
-    /// The shipped changes of a group: name and title. A change of a key that has a slider, or over the value of the file, is left out.
+    /// Shipped changes of a group: name and title. Omits changes of a key that has a slider, or of the file's own value.
     Group(&'static str, &'static str),
 }
 use Candidate::{Group, Number};
@@ -71,29 +71,29 @@ const CANDIDATES: [Candidate; 14] = [
     Number("radius", "Radius of the wheels", "road_load.wheel_radius_m"),
 ];
 
-/// The levers of a car.
+/// Selects the levers of a car.
 ///
 /// # Errors
 /// Problems of the car.
-pub(super) fn of_car(word: &str, options: &Options) -> Result<Vec<Control>, Problems> {
+pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>, Problems> {
     let (template, setup) = VehicleTemplate::load(word, options)?;
     let (plan, _) = relative(Plan::open(PLAN)?)?;
     let mut shipped = Vec::new();
     for name in FileKind::Levers.names() {
         shipped.extend(LeverFile::open(name)?.levers);
     }
-    let keys = CANDIDATES.iter().filter_map(|of| match of {
+    let keys = CANDIDATES.iter().filter_map(|candidate| match candidate {
         Number(.., key) => Some(*key),
         Group(..) => None,
     });
     let keys: Vec<&str> = keys.collect();
-    let control = |of: &Candidate| {
-        let (name, title, kind) = match of {
+    let control = |candidate: &Candidate| {
+        let (name, title, kind) = match candidate {
             Number(name, title, key) => {
                 let slot = template.slot(key).ok();
                 let slot = slot.filter(|slot| slot.is_active() && slot.base().is_finite())?;
                 let slider = slider(key, &slot, &shipped, &plan.factors)?;
-                (format!("l.{name}"), *title, Kind::Slider(slider))
+                (format!("l.{name}"), *title, ControlKind::Slider(slider))
             }
             Group(name, title) => {
                 let own = shipped
@@ -101,14 +101,18 @@ pub(super) fn of_car(word: &str, options: &Options) -> Result<Vec<Control>, Prob
                     .filter(|lever| lever.group.as_deref() == Some(name));
                 let own = own.filter(|lever| is_choice(lever, &keys));
                 let own = own.filter(|lever| can_have(word, options, &setup, lever));
-                let changes: Vec<Change> = own.map(change).collect();
+                let changes: Vec<ControlChange> = own.map(change).collect();
                 (!changes.is_empty())
-                    .then(|| (format!("g.{name}"), *title, Kind::Choice(changes)))?
+                    .then(|| (format!("g.{name}"), *title, ControlKind::Choice(changes)))?
             }
         };
         Some(Control { name, title, kind })
     };
-    Ok(CANDIDATES.iter().filter_map(control).take(MOST).collect())
+    Ok(CANDIDATES
+        .iter()
+        .filter_map(control)
+        .take(MAX_CONTROLS)
+        .collect())
 }
 
 fn slider(
@@ -124,8 +128,8 @@ fn slider(
     let of_levers = of_levers.filter_map(|by| by.number_over(Some(base)));
     let of_plan = factors.iter().filter(|factor| factor.key == key);
     let of_plan = of_plan.flat_map(|factor| match &factor.values {
-        FactorValues::Distribution(of) => {
-            let (low, high) = of.support();
+        FactorValues::Distribution(candidate) => {
+            let (low, high) = candidate.support();
             [low, high].map(|x| factor.acts.resolved(base, x))
         }
         FactorValues::List(_) => [base, base],
@@ -152,7 +156,7 @@ fn positions([low, high]: [f64; 2], bound: Bound) -> Option<([f64; 2], f64)> {
     let (low, high) = (low.max(bound.low()), high.min(bound.high()));
     let exponent = ((high - low) / POSITIONS).log10().floor();
     let step = 10_f64.powi(exponent as i32);
-    // A power of ten below one has no exact value, its inverse has.
+    // Negative powers of ten are inexact, their inverses exact.
     let at = |count: f64| match exponent < 0.0 {
         true => count / 10_f64.powi(-exponent as i32),
         false => count * step,
@@ -167,7 +171,7 @@ fn positions([low, high]: [f64; 2], bound: Bound) -> Option<([f64; 2], f64)> {
     (ends[0] < ends[1] && ends.iter().all(|x| x.is_finite())).then_some((ends, step))
 }
 
-/// Whether a lever gives values alone, and none that a slider gives.
+/// True if a lever sets only values, and none that a slider sets.
 fn is_choice(lever: &Lever, sliders: &[&str]) -> bool {
     let is_own = |by: &Override| by.acts() == Acts::Value && !sliders.contains(&by.key());
     !lever.set.is_empty()
@@ -176,7 +180,7 @@ fn is_choice(lever: &Lever, sliders: &[&str]) -> bool {
         && lever.engine_oil.is_none()
 }
 
-/// Whether the car can have a lever, and differs by it.
+/// True if the car accepts a lever, and changes by it.
 fn can_have(word: &str, options: &Options, base: &Setup, lever: &Lever) -> bool {
     let mut options = options.clone();
     options.set.extend(lever.set.iter().cloned());
@@ -191,8 +195,8 @@ fn can_have(word: &str, options: &Options, base: &Setup, lever: &Lever) -> bool 
     load(word, &options).is_ok_and(differs)
 }
 
-fn change(lever: &Lever) -> Change {
-    Change {
+fn change(lever: &Lever) -> ControlChange {
+    ControlChange {
         name: lever.name.clone(),
         title: lever.title.clone(),
         needs: lever.needs.clone(),

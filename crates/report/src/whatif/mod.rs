@@ -1,16 +1,16 @@
-//! A page that can be driven again: the simulator in the page, levers of the car, and the answer to each of their states.
+//! Interactive page: the simulator in the page, levers of the car, and the answer to each of their states.
 //!
 //! | file | content |
 //! |---|---|
-//! | `scene` | what a page is about: cars, conditions, and the user's files that they are made of |
-//! | `controls` | the levers of a car, each with the range that something is known of |
+//! | `scene` | subject of a page: cars, conditions, and the user's files behind them |
+//! | `controls` | levers of a car, each with its known range |
 //! | `answer` | a state of the levers to sentences, figures and the command that gives the same numbers |
-//! | `of_run` | the scene of a run in a directory |
-//! | `page` | the section of a page: levers, first answer, scene, simulator |
-//! | `words` | the sentences |
-//! | `command` | the command for a shell that prints the same numbers |
+//! | `of_run` | scene of a run in a directory |
+//! | `page` | section of a page: levers, first answer, scene, simulator |
+//! | `words` | sentences |
+//! | `command` | shell command that prints the same numbers |
 //!
-//! The same functions make the picture of a page without scripts, on this machine, and each later one, in the page (`crates/whatif`).
+//! The same functions run natively for the page without scripts, and in the page for each later answer (`crates/whatif`).
 
 mod answer;
 mod command;
@@ -20,7 +20,9 @@ mod page;
 mod scene;
 mod words;
 
-pub use crate::live_section::{Answer, Change, Control, Kind, LiveSection, Slider, State};
+pub use crate::live_section::{
+    Answer, Control, ControlChange, ControlKind, LiveSection, Slider, State,
+};
 pub use answer::LivePage;
-pub use of_run::of_dir;
+pub use of_run::section_of_dir;
 pub use scene::{DRAWS, Scene};

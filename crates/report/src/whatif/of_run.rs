@@ -1,4 +1,4 @@
-//! The scene of a run that lies in a directory.
+//! Scene of a run in a directory.
 
 use std::path::Path;
 
@@ -13,11 +13,11 @@ use crate::live_section::{LiveSection, State};
 use crate::problems::problem;
 use crate::results::{ResultDir, find};
 
-/// The live section of the run in a directory, with the cars as they were driven there. Its first figure has the number.
+/// Builds the live section of the run in a directory, with the cars as driven there. `first_figure` is the number of its first figure.
 ///
 /// # Errors
-/// There is no run with its inputs; a car or the cycle is not found again as it was driven.
-pub fn of_dir(dir: &Path, first_figure: usize) -> Result<LiveSection, Problems> {
+/// The directory holds no run with its inputs; a car or the cycle has changed since the run.
+pub fn section_of_dir(dir: &Path, first_figure: usize) -> Result<LiveSection, Problems> {
     let hint = "`cvtcycle whatif CAR` makes such a page of any car";
     let ResultDir::Run(found) = find(dir, &[])? else {
         return Err(problem(dir, "only the report of a run can be driven again", hint).into());
@@ -86,7 +86,7 @@ fn scene(
     }
 }
 
-/// The word of a file in a record.
+/// Word that names a file of a record.
 fn word(file: &str) -> String {
     let embedded = file.strip_prefix("embedded:");
     let name = embedded.and_then(|name| name.strip_suffix(".toml"));

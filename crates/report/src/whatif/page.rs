@@ -1,4 +1,4 @@
-//! What a page with levers has besides its answer: controls, scene and the simulator.
+//! Page with levers, in addition to its answer: controls, scene and the simulator.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -10,15 +10,15 @@ use super::answer::LivePage;
 use super::scene::Scene;
 use crate::live_section::LiveSection;
 
-/// The simulator, compressed: `tools/live` makes it.
+/// Simulator, compressed; `tools/live` builds it.
 #[cfg(not(target_family = "wasm"))]
 const PROGRAM: &[u8] = include_bytes!("../../assets/live.wasm.gz");
-/// It does not carry itself.
+/// The simulator does not embed itself.
 #[cfg(target_family = "wasm")]
 const PROGRAM: &[u8] = &[];
 
 impl LiveSection {
-    /// The section of a scene, with its first answer and with the user's files that are read for it.
+    /// Builds the section of a scene, with its first answer and the user's files read for it.
     ///
     /// # Errors
     /// Problems of the cars and of the cycle.
@@ -30,7 +30,7 @@ impl LiveSection {
             ..scene.with_files(files)
         };
         let json = serde_json::to_string(&scene).unwrap_or_default();
-        // Within a script no tag may begin.
+        // No tag may begin within a script.
         section.scene = json.replace('<', "\\u003c");
         Ok(section)
     }
@@ -53,7 +53,7 @@ impl LiveSection {
         let cycles = own(cycle::names(), &state.cycle);
         let cycles = match cycles.contains(&state.cycle) {
             true => cycles,
-            // A constant speed, or another name of a cycle.
+            // A constant speed, or an alias of a cycle.
             false => [state.cycle.clone()].into_iter().chain(cycles).collect(),
         };
         let oils = own(
@@ -73,12 +73,12 @@ impl LiveSection {
         })
     }
 
-    /// The scene, for the page's script.
+    /// Scene, for the page's script.
     pub fn scene(&self) -> &str {
         &self.scene
     }
 
-    /// The simulator, for the page's script.
+    /// Simulator, for the page's script.
     pub fn program(&self) -> String {
         STANDARD.encode(PROGRAM)
     }

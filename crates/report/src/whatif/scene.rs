@@ -1,4 +1,4 @@
-//! What a page is about, and a state of its levers.
+//! Subject of a page, and a state of its levers.
 
 use std::collections::BTreeMap;
 
@@ -14,41 +14,41 @@ use serde::{Deserialize, Serialize};
 
 use crate::live_section::State;
 
-/// Draws of the uncertain values behind an interval.
+/// Number of draws of the uncertain values behind an interval.
 pub const DRAWS: u64 = 256;
 
-/// Cars and conditions of a page, as the command line has them, and the files that they are made of.
+/// Cars and conditions of a page, as on the command line, and the files that they are read from.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Scene {
     /// Name or path of the subject.
     pub vehicle: String,
     /// Names or paths of the baselines.
     pub baselines: Vec<String>,
-    /// Overrides of the subject, which no lever takes back.
+    /// Overrides of the subject, which no lever reverts.
     pub set: Vec<String>,
     /// Overrides of all cars.
     pub set_all: Vec<String>,
-    /// Engine oil of all cars; that of each file if none.
+    /// Engine oil of all cars; by default that of each file.
     pub engine_oil: Option<String>,
     /// `soak`, `warm`, or the temperature of all parts, degC.
     pub start: String,
-    /// Longest step, s.
+    /// Maximum step, s.
     pub dt_s: f64,
     /// Reading of the belt model.
     pub formulation: String,
-    /// How the page begins.
+    /// Initial state.
     pub state: State,
     /// Number of the first figure of the live section.
     pub first_figure: usize,
-    /// The differences of the first state over its draws.
+    /// Differences of the initial state over its draws.
     #[serde(default)]
     pub drawn: Option<Vec<DrawnDifference>>,
-    /// The user's files by their paths, as Base64.
+    /// User's files by path, in Base64.
     pub files: BTreeMap<String, String>,
 }
 
 impl Scene {
-    /// With the user's files that were read for it.
+    /// Adds the user's files that were read for it.
     #[must_use]
     pub fn with_files(mut self, files: carried::Files) -> Self {
         let encoded = files
@@ -58,7 +58,7 @@ impl Scene {
         self
     }
 
-    /// The user's files.
+    /// Decodes the user's files.
     ///
     /// # Errors
     /// The page is damaged.
@@ -74,7 +74,7 @@ impl Scene {
         self.files.iter().map(decode).collect()
     }
 
-    /// Overrides of all cars, and those of the subject besides.
+    /// Parses the overrides of all cars, and the additional ones of the subject.
     pub(super) fn overrides(&self) -> Result<[Vec<Override>; 2], Problem> {
         let parse = |list: &[String]| -> Result<Vec<Override>, Problem> {
             list.iter().map(|text| text.parse()).collect()
@@ -82,7 +82,7 @@ impl Scene {
         Ok([parse(&self.set_all)?, parse(&self.set)?])
     }
 
-    /// What the subject is read with at a state; `moved` are the overrides of the levers.
+    /// Options of the subject at a state; `moved` are the overrides of the levers.
     pub(super) fn subject(&self, state: &State, moved: &[Override]) -> Result<Options, Problem> {
         let [set_all, own] = self.overrides()?;
         let moved = moved.iter().cloned();
@@ -99,7 +99,7 @@ impl Scene {
         Formulation::named(&self.formulation).unwrap_or_default()
     }
 
-    /// The start, and its word.
+    /// Start of the drive, and its word.
     pub(super) fn start(&self) -> Result<(Start, StartWord), Problem> {
         let word = |start| Ok((start, StartWord::Word(self.start.clone())));
         match self.start.as_str() {

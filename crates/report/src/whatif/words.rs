@@ -1,12 +1,12 @@
-//! What a page says besides its figures: what the levers leave.
+//! Sentences of a page on limits left by the levers.
 
 use cvtcycle_output::Flags;
 use cvtcycle_output::summary::RunSummary;
 
-use crate::live_section::{Control, Kind, State};
+use crate::live_section::{Control, ControlKind, State};
 use crate::number::{Quantity, capital_first, words};
 
-/// Flags that say that a number is not that of a car that works.
+/// Flags of a car that does not work.
 const BAD: [Flags; 6] = [
     Flags::MISSED_TRACE,
     Flags::GROSS_SLIP,
@@ -45,10 +45,10 @@ pub(super) fn flags(run: &RunSummary, of_file: Option<&RunSummary>) -> Vec<Strin
     failed.chain(bad).collect()
 }
 
-/// Levers beyond what is known, a sentence each.
+/// Levers outside their known range, a sentence each.
 pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
-    let of = |control: &Control| {
-        let Kind::Slider(slider) = &control.kind else {
+    let sentence = |control: &Control| {
+        let ControlKind::Slider(slider) = &control.kind else {
             return None;
         };
         let value: f64 = state.levers.get(&control.name)?.parse().ok()?;
@@ -61,13 +61,13 @@ pub(super) fn beyond(controls: &[Control], state: &State) -> Vec<String> {
             )
         })
     };
-    controls.iter().filter_map(of).collect()
+    controls.iter().filter_map(sentence).collect()
 }
 
-/// What the chosen changes take, a sentence each.
+/// Requirements sentence the chosen changes, a sentence each.
 pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
-    let of = |control: &Control| {
-        let Kind::Choice(changes) = &control.kind else {
+    let sentence = |control: &Control| {
+        let ControlKind::Choice(changes) = &control.kind else {
             return None;
         };
         let name = state.levers.get(&control.name)?;
@@ -75,5 +75,5 @@ pub(super) fn needs(controls: &[Control], state: &State) -> Vec<String> {
         let needs = change.needs.trim_end_matches('.');
         (!needs.is_empty()).then(|| format!("{} takes: {needs}.", capital_first(&change.title)))
     };
-    controls.iter().filter_map(of).collect()
+    controls.iter().filter_map(sentence).collect()
 }

@@ -98,13 +98,13 @@ fn steady(plan: &RigPlan, points: &[SteadyPoint]) -> String {
         let tested = |p: &&SteadyPoint| {
             (*from..=*to).contains(&rpm(&p.set)) && PRINTED_DEGC.contains(&oil_degc(&p.set))
         };
-        Some(Range::of(on(*ratio).filter(tested).map(|p| p.answer.total_nm())).text(2))
+        Some(Range::over(on(*ratio).filter(tested).map(|p| p.answer.total_nm())).text(2))
     };
     TextColumns::new()
         .left("ratio", name)
         .right("I", |ratio| plain(*ratio))
         .right("rpm", |ratio| {
-            Range::of(on(*ratio).map(|p| rpm(&p.set))).text(0)
+            Range::over(on(*ratio).map(|p| rpm(&p.set))).text(0)
         })
         .right("loss Nm", |ratio| ranges(points, *ratio).0.text(2))
         .right("bar", |ratio| ranges(points, *ratio).1.text(1))
@@ -186,7 +186,7 @@ fn strip_down(c: &Conditions, found: &RigResults, at_rpm: f64) -> String {
         });
     let table = columns.lines(rows.iter().filter(|s| is_near(rpm(&s.set), at_rpm)));
     let bar = |stage: &Stage| {
-        let range = Range::of(rows.iter().map(|s| s.stage(*stage).secondary_pa / 1e5));
+        let range = Range::over(rows.iter().map(|s| s.stage(*stage).secondary_pa / 1e5));
         format!("{} {}", stage.name().replace('_', " "), range.text(1))
     };
     let bars: Vec<String> = Stage::ALL[..4].iter().map(bar).collect();
@@ -228,7 +228,7 @@ fn loop_notes(c: &Conditions, l: &Loop) -> String {
     let name = c.ratio_name(l.ratio);
     let minutes = |branch: Branch| {
         let on = l.moments.iter().filter(|m| m.branch == branch);
-        let times = Range::of(on.map(|m| m.time_s / 60.0));
+        let times = Range::over(on.map(|m| m.time_s / 60.0));
         fixed(times.high - times.low, 0)
     };
     let [warming, cooling] = [Branch::Warming, Branch::Cooling].map(minutes);
@@ -269,7 +269,7 @@ fn second_box(plan: &RigPlan, found: &RigResults) -> String {
                 .second_box
                 .iter()
                 .filter(|t| is_near(t.first.set.ratio, *ratio));
-            Range::of(on.map(get)).text(2)
+            Range::over(on.map(get)).text(2)
         }
     };
     TextColumns::new()
