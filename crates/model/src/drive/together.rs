@@ -181,6 +181,8 @@ impl<'a> Prepared<'a> {
 ///
 /// Each level and width is code of its own, and costs building time: only the levels are here that make a difference. With checks for debugging there
 /// is one, of four lanes; the bits are the same.
+#[physics]
+#[inline(never)]
 fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outcome>> {
     #[cfg(all(
         any(target_arch = "x86", target_arch = "x86_64"),

@@ -157,6 +157,7 @@ impl<R: Real> Powers<R> {
 }
 
 /// Prepares a step: shifts from the geometry and what the control kept `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
+#[physics]
 #[inline(never)]
 pub(super) fn prepare<'a, P: PrimeMover<R>, R: Real>(
     cvt: &'a Cvt<R>,

@@ -103,6 +103,7 @@ fn counts<R: Real>(number: R) -> R::PerLane<u16> {
 }
 
 /// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn. Fills an output at rest.
+#[physics]
 #[inline(never)]
 pub(super) fn standstill<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
@@ -200,6 +201,7 @@ pub(super) struct Outcome<R: Real> {
 }
 
 /// Fills an output at rest with that of a solved step.
+#[physics]
 #[inline(never)]
 pub(super) fn finish<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,

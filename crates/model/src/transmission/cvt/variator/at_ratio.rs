@@ -110,7 +110,6 @@ impl<R: Real> Fixed<R> {
 
 #[physics]
 impl<R: Real> Prepared<R> {
-    #[inline]
     fn new(
         belt: &Belt<R>,
         fixed: &Fixed<R>,
