@@ -16,7 +16,7 @@ mod sample;
 use clap::Parser;
 use config::Config;
 use hunt::{Fate, Hunt, Outcome, Quarry};
-use page::Judged;
+use page::{Judged, Made};
 use point::Point;
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -100,18 +100,19 @@ fn work(arguments: &Arguments) -> Result<bool, String> {
     let state = &state
         .canonicalize()
         .map_err(|e| format!("{}: {e}", state.display()))?;
+    let drawn = keys(&points).count();
     let points = hunt(arguments, &root, state, &config, &points)?;
     let mutants = judged(&root, state, &points)?;
     print!("{}", page::table(&mutants));
     let without = complain(&root, &mutants, &known)?;
     if let Some(path) = &arguments.page {
-        let text = page::page(
-            &root,
-            &command(arguments),
-            population,
-            &config.methods,
-            &mutants,
-        );
+        let made = Made {
+            command: &command(arguments),
+            counts: (population, drawn - mutants.len()),
+            seconds: config.most_seconds,
+            methods: &config.methods,
+        };
+        let text = page::page(&root, &made, &mutants);
         std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
     }
     Ok(without == 0)

@@ -87,15 +87,27 @@ fn commit(root: &Path) -> String {
     }
 }
 
+/// How a run was made.
+pub struct Made<'a> {
+    /// The command that repeats it.
+    pub command: &'a str,
+    /// Mutants that can be made, and those of the sample that do not compile.
+    pub counts: (usize, usize),
+    /// The time that a test may take, s.
+    pub seconds: f64,
+    /// Methods that are changed.
+    pub methods: &'a Methods,
+}
+
 /// The page.
 #[must_use]
-pub fn page(
-    root: &Path,
-    command: &str,
-    population: usize,
-    methods: &Methods,
-    mutants: &[Judged],
-) -> String {
+pub fn page(root: &Path, made: &Made, mutants: &[Judged]) -> String {
+    let Made {
+        command,
+        counts: (population, lost),
+        seconds,
+        methods,
+    } = made;
     let mut changes = String::new();
     for (name, with) in &methods.replace {
         let _ = write!(changes, "`{name}` to {}; ", with.join(", "));
@@ -111,8 +123,8 @@ pub fn page(
         `tools/mutation` changes the model in one place at a time and runs the tests of the model that reach the place. A change that no test notices survives; \
         each survivor gets a test, or a reason in `tools/mutation/survivors.toml`.\n\n\
         ```console\n$ {command}\n```\n\n\
-        Commit {}. {population} mutants can be made; {} were drawn from all files and tried, each in the same build (`CVTCYCLE_MUTANT` switches one on), \
-        with the tests that take at most as long as `tools/mutation/mutation.toml` says.\n\n\
+        Commit {}. {population} mutants can be made; {} were drawn from all files, {lost} of them do not compile, and the others were tried, each in the same build \
+        (`CVTCYCLE_MUTANT` switches one on), with the tests that take at most {seconds} s.\n\n\
         | what | becomes |\n|---|---|\n\
         | `+ - * / %`, `+= -= *= /=`, `== !=`, `&& \\|\\|`, `& \\|` of masks | its opposite |\n\
         | `< <= > >=` | the same with or without the bound, and its negation |\n\
@@ -124,7 +136,7 @@ pub fn page(
         | body of a function of f64, bool, Option or nothing | 0, 1, -1; true, false; None; nothing |\n\n\
         {}",
         commit(root),
-        mutants.len(),
+        mutants.len() + lost,
         names(&mut methods.swap.iter()),
         names(&mut methods.drop.iter()),
         table(mutants),
