@@ -1,4 +1,4 @@
-//! README and docs against the program and the files: links lead to files that git holds, and quoted results are those of the program.
+//! README and docs against the program and the files: links point to files in git, and quoted results equal the program's.
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use std::fs::read_to_string;
@@ -32,7 +32,7 @@ fn run(args: &[&str]) -> Value {
     serde_json::from_str(&text).unwrap()
 }
 
-/// Documents with links: those of the top level, of `docs` and of the tools.
+/// Documents with links: top level, `docs` and tools.
 fn documents() -> Vec<PathBuf> {
     let mut list = Vec::new();
     for folder in ["", "docs", "tools/fuzz", "cycles", "tests/golden"] {
@@ -46,7 +46,7 @@ fn documents() -> Vec<PathBuf> {
     list
 }
 
-/// A path without `.` and `..`.
+/// Removes `.` and `..` from a path.
 fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for part in path.components() {
@@ -59,7 +59,7 @@ fn normal(path: &Path) -> PathBuf {
     normal
 }
 
-/// `.gitignore` names paths from the root only, so that its meaning is plain here.
+/// Parses `.gitignore`, which has paths from the root only.
 fn ignored() -> Vec<PathBuf> {
     let text = read(".gitignore");
     let lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -69,7 +69,7 @@ fn ignored() -> Vec<PathBuf> {
 }
 
 #[test]
-fn links_lead_to_files_in_git() {
+fn links_point_to_files_in_git() {
     let (mut wrong, mut links) = (String::new(), 0);
     let ignored = ignored();
     for document in documents() {
@@ -206,7 +206,7 @@ fn val_the_calibration_example_is_what_the_program_prints() {
     assert!(example.lines().count() > 15);
 }
 
-/// Words of a command: blanks separate them, except between single quotes.
+/// Splits a command at blanks, except between single quotes.
 fn words(command: &str) -> Vec<String> {
     let (mut words, mut quoted) = (vec![String::new()], false);
     for letter in command.chars() {
@@ -219,7 +219,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// The blocks of docs/book/src/your_car.md in order, in an empty folder: a file begins with a line that has its name, a command must end with exit code 0.
+/// Runs the blocks of docs/book/src/your_car.md in order in an empty folder. A file begins with a line that names it; a command must end with exit code 0.
 #[test]
 fn the_commands_of_your_car_in_an_hour_run() {
     let page = read("docs/book/src/your_car.md");

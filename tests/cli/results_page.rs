@@ -1,11 +1,11 @@
-//! The tables of `docs/results.md`.
+//! Tables of `docs/results.md`.
 
 #[path = "../../examples/results/tables.rs"]
 mod tables;
 
-/// Truth: the program. Every table is made again, and every cell is as it is printed.
+/// Truth: the program. Every table is computed again, and every cell equals the printed one.
 #[test]
-fn the_page_of_results_is_of_the_program() {
+fn the_page_of_results_has_the_numbers_of_the_program() {
     let page = include_str!("../../docs/results.md");
     let made = tables::filled(page).unwrap();
     for (printed, made) in page.lines().zip(made.lines()) {

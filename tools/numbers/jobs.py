@@ -368,9 +368,6 @@ def studies():
         if plan in ("latin_hypercube", "one_at_a_time", "ambient"):
             commands.append(["study", "export", "out", "--table", "traces", "--out", "traces.csv", "--quiet"])
             items.append((f"{name}/traces", "traces.csv", "csv"))
-        if plan in ("pump_and_offset", "ambient", "one_at_a_time"):
-            commands.append(["study", "export", "out", "--out", "runs.xlsx", "--quiet"])
-            items.append((f"{name}/workbook", "runs.xlsx", "xlsx"))
         if plan in ("saltelli", "uncertainty_rover"):
             items.append((f"{name}/sobol_indices", "out/sobol_indices.csv", "csv"))
         if plan in ("pump_and_offset", "ambient"):

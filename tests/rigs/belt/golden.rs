@@ -1,9 +1,9 @@
-//! Against the tables of the independent program.
+//! Golden tables of an independent program.
 
 use super::table::{self, Table, away_from_changes, close};
 use super::{EDGES, NAMES, POINTS, made, one};
 
-/// Every column of the golden table, in both formulations; gross slip by segments and status only.
+/// Compares every column of the golden table in both formulations. At gross slip it compares segments and status only.
 fn compare(golden: &str, rows: usize) {
     let (want, got) = (Table::new(golden), made(golden, &[]));
     assert_eq!((want.len(), got.len()), (rows, rows));
@@ -51,7 +51,7 @@ fn val_golden_edge_points() {
 }
 
 #[test]
-fn golden_rows_where_no_arc_is_active_are_not_numbers() {
+fn golden_rows_without_active_arc_are_nan() {
     let got = made(EDGES, &[]);
     let rows: Vec<usize> = (0..got.len())
         .filter(|row| got.cell(*row, "status") == "no_active_arc")
@@ -73,7 +73,7 @@ fn golden_rows_where_no_arc_is_active_are_not_numbers() {
     }
 }
 
-/// Without columns and options, the printed forms start from the printed frictions and angle, whatever vehicle and fluid say.
+/// Without columns and options, the printed forms use the printed frictions and angle, independent of vehicle and fluid.
 #[test]
 fn val_printed_defaults_need_no_columns() {
     let want = Table::new(POINTS);
@@ -116,7 +116,7 @@ fn val_printed_defaults_need_no_columns() {
     }
 }
 
-/// How much the driving form differs from the printed one where neither changes regime: the numbers of the book's page.
+/// Difference between the driving form and the printed one without a change of regime, as on the book's page.
 #[test]
 fn smooth_stays_near_appendix_c_away_from_the_changes() {
     let golden = Table::new(POINTS);

@@ -11,8 +11,8 @@ use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Rea
 use cvtcycle_model::drive::{Car, Vehicle};
 use cvtcycle_model::engine::Engine;
 use cvtcycle_model::files::{HEAD, TwinKeys, VEHICLE_FILE};
-use cvtcycle_model::fluid::{Friction, Lubricant};
 use cvtcycle_model::keys::Values;
+use cvtcycle_model::lubricant::{Friction, Lubricant};
 use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::road::RoadLoadInput;
 use cvtcycle_model::thermal::Network;

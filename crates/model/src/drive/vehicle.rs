@@ -2,7 +2,7 @@
 
 use super::Car;
 use crate::engine::Engine;
-use crate::fluid::Lubricant;
+use crate::lubricant::Lubricant;
 use crate::road::RoadLoadInput;
 use crate::transmission::Transmission;
 use crate::transmission::loss_factor::LossFactors;

@@ -4,14 +4,14 @@ use super::{near, same};
 use crate::common::bench_step::{Bench as StepBench, Setting};
 use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::point::LIMIT_SLACK;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Formulation, belt_point};
 
-/// What a bench is set to where nothing is said: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
+/// Default settings of the rig: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
 #[test]
 fn defaults_of_the_bench() {
     let p = BenchPoint::default();
@@ -316,7 +316,7 @@ fn val_solvable_ratios_are_the_last_that_fit() {
             let pitch = belt.segment_thickness_m;
             p >= pitch && s >= pitch && (p + s + 2.0 * g.strut_m - length).abs() <= 1e-9 * length
         };
-        let (high, low) = cvtcycle_model::bench::solvable_ratios(&belt);
+        let (high, low) = cvtcycle_model::rig::solvable_ratios(&belt);
         assert!(
             (0.05..=1.0).contains(&high) && (1.0..=20.0).contains(&low),
             "{high} {low}"
@@ -406,7 +406,7 @@ fn val_the_bench_loses_what_a_step_of_driving_loses() {
         let answer = bench.solve(&BenchPoint {
             ratio,
             input_rad_s: drive.engine_rad_s,
-            // What really passed the output shaft: in overrun the brakes take a part.
+            // Torque that passed the output shaft: in overrun the brakes take a part.
             output_nm: drive.output_w / wheel_rad_s,
             pressure_pa: Some(drive.secondary_pa),
             sump_k: s.sump_degc + ZERO,

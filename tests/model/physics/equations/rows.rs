@@ -50,7 +50,7 @@ fn heat_w(car: &Car, row: &Row) -> [f64; NODES] {
     power
 }
 
-/// What is carried from row to row.
+/// State between rows.
 struct Carried {
     heat: Heat,
     kinetic_j: f64,

@@ -1,7 +1,7 @@
 //! The belt against an independent transcription of the printed program, its geometry, and its properties.
 
 use crate::belt_properties::thesis_belt;
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::transmission::cvt::variator::{Geometry, *};
 
 /// Outside truth: 200 ratios of an independent program, committed with the tests.
