@@ -222,7 +222,7 @@ fn without_lints(text: &str) -> String {
     keep.map(|line| format!("{line}\n")).collect()
 }
 
-/// Removes files of a former copy that the repository no longer has.
+/// Removes files and folders of a former copy that the repository no longer has.
 fn remove_others(to: &Path, folder: &Path, files: &[String]) -> Result<(), String> {
     for entry in fs::read_dir(folder)
         .map_err(|e| format!("{}: {e}", folder.display()))?
@@ -236,6 +236,7 @@ fn remove_others(to: &Path, folder: &Path, files: &[String]) -> Result<(), Strin
             .replace('\\', "/");
         if path.is_dir() {
             remove_others(to, &path, files)?;
+            let _ = fs::remove_dir(&path); // where it is empty: Cargo takes each folder of crates for a package
         } else if short != format!("{CRATE}/src/mutant.rs") && files.binary_search(&short).is_err()
         {
             fs::remove_file(&path).map_err(|e| format!("{}: {e}", path.display()))?;
