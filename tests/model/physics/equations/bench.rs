@@ -501,3 +501,31 @@ fn val_manual_box_by_hand() {
     assert!((at(300.0).input_nm - (300.0 / 5.25 + at(300.0).total_nm())).abs() < 1e-12);
     assert!((at(0.0).output_rad_s - 2500.0 * RPM / 5.25).abs() < 1e-9);
 }
+
+/// A point found by the torque at the input takes that torque, with the throttle that full load gives it, in both kinds of boxes.
+#[test]
+fn val_a_torque_at_the_input_is_met() {
+    for (name, ratio) in [("rover_216_cvt", 0.8), ("rover_216_5mt", 3.0)] {
+        let setup = car(name, &[]);
+        let full_load_nm = setup.car(293.15).engine.full_load.at(2500.0 * RPM);
+        let bench = Bench::new(&setup);
+        for wanted_nm in [-20.0, 0.0, 60.0] {
+            let asked = BenchPoint {
+                ratio,
+                throttle: 0.3,
+                ..BenchPoint::default()
+            };
+            let found = bench.at_input_torque(&asked, wanted_nm);
+            let got_nm = bench.solve(&found).input_nm;
+            assert!(
+                (got_nm - wanted_nm).abs() <= 1e-12 * (1.0 + wanted_nm.abs()),
+                "{name}: {got_nm} instead of {wanted_nm}"
+            );
+            let throttle = match setup.car(293.15).transmission {
+                Transmission::Cvt(_) => (wanted_nm / full_load_nm).max(0.0),
+                Transmission::Manual(_) => 0.3,
+            };
+            same(found.throttle, throttle);
+        }
+    }
+}
