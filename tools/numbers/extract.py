@@ -12,8 +12,8 @@ import tomllib
 
 # Not numbers of the program: prose, names of files, versions, hashes of texts.
 SKIPPED = set(
-    "schema program build run command version sha256 plan_sha256 resolved_sha256 file path files title question what condition"
-    " label reason cause remark note source doc meaning printed tolerance unit".split()
+    "schema program build run command version sha256 plan_sha256 resolved_sha256 file path files title question what"
+    " condition label reason cause remark note source doc meaning printed tolerance unit".split()
 )
 # Words that are results: they are compared as they are.
 RESULT_WORDS = set("exit flags status belt_status verdict recorded phase branch formulation end".split())

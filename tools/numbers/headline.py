@@ -95,7 +95,12 @@ PICKS += [
         "out_1",
         ["bounds[*].own_l_per_100km", "bounds[*].least_l_per_100km", "bounds[*].driven_l_per_100km"],
     ),
-    ("rig/transmission", ["rig", "transmission", *LAST], "out/summary.json", ["steady.ranges[*].*_*.from", "steady.ranges[*].*_*.to"]),
+    (
+        "rig/transmission",
+        ["rig", "transmission", *LAST],
+        "out/summary.json",
+        ["steady.ranges[*].*_*.from", "steady.ranges[*].*_*.to"],
+    ),
     (
         "rig/variator",
         ["rig", "variator", *LAST],
@@ -122,7 +127,11 @@ PICKS += [
         "study/ambient",
         ["study", "ambient", *LAST],
         "out/matrix.csv",
-        (["output", "car", "row", "column"], ["value"], lambda row: row["output"] == "headline_fuel_l_per_100km" and row["row"] in ("-10 °C", "40 °C")),
+        (
+            ["output", "car", "row", "column"],
+            ["value"],
+            lambda row: row["output"] == "headline_fuel_l_per_100km" and row["row"] in ("-10 °C", "40 °C"),
+        ),
     ),
     (
         "study/pump_and_offset",
@@ -157,9 +166,11 @@ PICKS += [
         (
             ["output", "car", "factor"],
             ["first", "total"],
-            lambda row: row["output"] == "subject_excess_percent"
-            and row["samples"] == "16"
-            and row["factor"] in ("gear set", "efficiency over load", "hot friction"),
+            lambda row: (
+                row["output"] == "subject_excess_percent"
+                and row["samples"] == "16"
+                and row["factor"] in ("gear set", "efficiency over load", "hot friction")
+            ),
         ),
     ),
 ]
@@ -168,7 +179,14 @@ for _name, _plan, _more in (
     ("warm_up", "rover_216_warm_up", []),
     ("example", str(EXAMPLE), []),
 ):
-    _paths = ["cost_before", "cost_after", "chi2", "degrees_of_freedom", "parameters[*].value", "folds[*].predicted_rms_sd"]
+    _paths = [
+        "cost_before",
+        "cost_after",
+        "chi2",
+        "degrees_of_freedom",
+        "parameters[*].value",
+        "folds[*].predicted_rms_sd",
+    ]
     PICKS.append((f"calibrate/{_name}", ["calibrate", _plan, *_more, "--json"], "out_1", _paths))
 
 
@@ -194,7 +212,9 @@ def short(path):
         if element and parts and parts[-1] != "over":
             parts.pop()
         # Of a name of several fields, those that the path does not have yet: `rover_216_cvt,subject`.
-        parts += [name] if name else [part for part in element.split(",") if part not in [*parts, "subject", "baseline"]]
+        parts += (
+            [name] if name else [part for part in element.split(",") if part not in [*parts, "subject", "baseline"]]
+        )
     return "/".join(part for part in parts if part not in ("value", "summary", "price", "losses", "groups", "range"))
 
 
@@ -221,7 +241,10 @@ def from_csv(file, names, values, condition):
             if condition is None or condition(row):
                 for value in values:
                     if row[value]:
-                        yield "/".join([*(row[name] for name in names), *([] if value == "value" else [value])]), float(row[value])
+                        yield (
+                            "/".join([*(row[name] for name in names), *([] if value == "value" else [value])]),
+                            float(row[value]),
+                        )
 
 
 def read(directory, topic, file, paths):
