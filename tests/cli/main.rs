@@ -15,4 +15,3 @@ mod commands;
 mod documents;
 mod faults;
 mod limits;
-mod results_page;

@@ -1,5 +1,5 @@
 //! Shipped plan `plans/uncertainty_rover.toml` and its page `docs/uncertainty.md` against the cars: every uncertain value is a factor or
-//! left out with its effect, every range is valid, and the numbers on the page are current.
+//! left out with its effect, and every range is valid. `tools/tables` makes the effects on the page.
 //! Truth: the program's registry of keys with their status, and new drives.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -447,85 +447,4 @@ fn numbers(cell: &str) -> Vec<f64> {
                 .unwrap_or_else(|_| panic!("`{cell}` is no pair of numbers"))
         })
         .collect()
-}
-
-/// Fuel of both cars as shipped, and the effects of overrides on it: difference in points, each car in per cent.
-struct Screen {
-    cycle: Cycle,
-    shipped: [f64; 2],
-}
-
-impl Screen {
-    fn effect(&self, cars: &str, set: &str) -> [f64; 3] {
-        let fuel = |k: usize, car: &str| {
-            if meant(cars).contains(&car) {
-                litres(car, &[set.to_owned()], &self.cycle).0
-            } else {
-                self.shipped[k]
-            }
-        };
-        let (cvt, manual) = (fuel(0, CVT), fuel(1, MANUAL));
-        let points = |cvt: f64, manual: f64| 100.0 * (cvt / manual - 1.0);
-        [
-            points(cvt, manual) - points(self.shipped[0], self.shipped[1]),
-            points(cvt, self.shipped[0]),
-            points(manual, self.shipped[1]),
-        ]
-    }
-
-    /// Compares the three cells from `at` with both effects.
-    fn check(&self, row: &Row, at: usize, effects: [[f64; 3]; 2]) {
-        for k in 0..3 {
-            let now = effects.map(|effect| effect[k]);
-            let said = numbers(&row.cells[at + k]);
-            let same = said.len() == 2
-                && said
-                    .iter()
-                    .zip(now)
-                    .all(|(said, now)| (said - now).abs() < 0.015);
-            assert!(
-                same,
-                "{} ({}): docs/uncertainty.md says {}, today {:+.2} / {:+.2}",
-                row.key(),
-                row.cars(),
-                row.cells[at + k],
-                now[0],
-                now[1]
-            );
-        }
-    }
-}
-
-#[test]
-fn the_numbers_of_the_page_are_current() {
-    let cycle = cycle("ece15_eudc");
-    let screen = Screen {
-        shipped: [CVT, MANUAL].map(|car| litres(car, &[], &cycle).0),
-        cycle,
-    };
-    let shipped = 100.0 * (screen.shipped[0] / screen.shipped[1] - 1.0);
-    assert!(
-        PAGE.contains(&format!("the answer is {shipped:+.2} %")),
-        "today {shipped:+.2} %"
-    );
-    for (row, f) in rows("Factors").iter().zip(&factors()) {
-        let keys = keys(meant(&f.cars)[0]);
-        let mut effects: Vec<[f64; 3]> = f
-            .ends
-            .iter()
-            .map(|end| screen.effect(&f.cars, &set(f, end, &keys)))
-            .collect();
-        if f.values.starts_with("list") {
-            effects.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        }
-        screen.check(row, 3, [effects[0], *effects.last().unwrap()]);
-    }
-    for row in rows("Left out") {
-        let (low, high) = row.cells[2].split_once(" to ").unwrap();
-        screen.check(
-            &row,
-            3,
-            [low, high].map(|end| screen.effect(row.cars(), &format!("{}={end}", row.key()))),
-        );
-    }
 }

@@ -194,7 +194,6 @@ def together():
             (f"{name}/summary", "out/summary.json", "json"),
             (f"{name}/inputs", "out/inputs.json", "json"),
             (f"{name}/printed", "out_2", "json"),
-            (f"bytes/{name}", "out/*.parquet", "bytes"),
         ]
         commands = [
             [*run, "--format", "parquet", "--out", "out", "--quiet"],
@@ -361,7 +360,6 @@ def studies():
             (f"{name}/runs", "runs.csv", "csv"),
             (f"{name}/statistics", "out/statistics.json", "json"),
             (f"{name}/statistics_table", "out/statistics.csv", "csv"),
-            (f"bytes/{name}", "out/parts/*.parquet", "bytes"),
         ]
         if plan == "sobol_4000":
             items.append((f"{name}/study", "out/study.json", "json"))

@@ -1,6 +1,6 @@
 //! Golden tables of an independent program.
 
-use super::table::{self, Table, away_from_changes, close};
+use super::table::{Table, close};
 use super::{EDGES, NAMES, POINTS, made, one};
 
 /// Compares every column of the golden table in both formulations. At gross slip it compares segments and status only.
@@ -113,57 +113,5 @@ fn val_printed_defaults_need_no_columns() {
                 "{formulation} {name}"
             );
         }
-    }
-}
-
-/// Difference between the driving form and the printed one without a change of regime, as on the book's page.
-#[test]
-fn smooth_stays_near_appendix_c_away_from_the_changes() {
-    let golden = Table::new(POINTS);
-    let rows: Vec<usize> = (0..golden.len())
-        .filter(|row| away_from_changes(&golden, *row))
-        .collect();
-    let columns = format!("{NAMES},band_friction,segment_friction,primary_on_stop");
-    let input: Vec<String> = rows
-        .iter()
-        .map(|row| {
-            columns
-                .split(',')
-                .map(|name| golden.cell(*row, name))
-                .collect::<Vec<_>>()
-                .join(",")
-        })
-        .collect();
-    let got = made(&format!("{columns}\n{}\n", input.join("\n")), &[]);
-    let differences = |name: &str| -> Vec<(f64, f64)> {
-        rows.iter()
-            .enumerate()
-            .map(|(k, row)| (got.number(k, name), golden.number(*row, name)))
-            .collect()
-    };
-    let slip = table::spread(
-        differences("slip_percent")
-            .iter()
-            .map(|(a, b)| (a - b).abs()),
-    );
-    let loss = table::spread(
-        differences("belt_loss_nm")
-            .iter()
-            .map(|(a, b)| (a - b).abs()),
-    );
-    let share = table::spread(
-        differences("belt_loss_nm")
-            .iter()
-            .map(|(a, b)| 100.0 * (a / b - 1.0).abs()),
-    );
-    println!(
-        "{} points; mean, 95th percentile, largest: slip {slip:.4?} points, loss {loss:.4?} Nm, {share:.3?} %",
-        rows.len()
-    );
-    assert_eq!(rows.len(), 519);
-    let page = include_str!("../../../docs/book/src/formulations_difference.md");
-    for (numbers, figures) in [(slip, 3), (loss, 3), (share, 2)] {
-        let cells = numbers.map(|x| format!("{x:.figures$}")).join(" | ");
-        assert!(page.contains(&cells), "{cells} is not on the page");
     }
 }
