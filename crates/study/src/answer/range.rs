@@ -72,7 +72,7 @@ impl Range {
         }))
     }
 
-    /// Whether all values are the same.
+    /// True if all values have the same bits and there is at least one.
     pub fn is_one(&self) -> bool {
         let bits = |x: Option<f64>| x.map(f64::to_bits);
         self.n > 0 && bits(self.least) == bits(self.largest)

@@ -45,7 +45,7 @@ impl TableSource for store::Study {
 
 /// A study's table, seen by car and point. Points of parts that are not there have no numbers. No column is held, but those that are asked for.
 pub struct StudyTable<'a> {
-    /// What the table is.
+    /// Manifest of the study that made the table.
     pub outline: &'a StudyManifest,
     source: &'a dyn TableSource,
     /// Runs of each car that ended, by how.
@@ -59,17 +59,17 @@ pub enum Status {
     Ok,
     /// A check failed.
     Failed,
-    /// Its values do not go together.
+    /// Point with values that are not possible together.
     NotRun,
-    /// Its part is not there.
+    /// Point in a part that is missing.
     Missing,
 }
 
 /// Rows of one part.
 struct PartRows {
-    /// Its first point.
+    /// Index of the first point.
     first: usize,
-    /// Its points; a damaged part may have more rows.
+    /// Number of points; a damaged part may have more rows.
     points: usize,
     /// Cells of the columns, car by car at each point.
     values: Vec<Values>,
@@ -94,7 +94,7 @@ impl Status {
         }
     }
 
-    /// Whether there is no result to be trusted.
+    /// True if the run has no valid result.
     pub fn is_bad(self) -> bool {
         matches!(self, Status::Failed | Status::NotRun)
     }

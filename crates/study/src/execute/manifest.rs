@@ -140,7 +140,7 @@ pub struct StudyManifest {
     pub cars: Vec<String>,
     /// Phase groups.
     pub phases: Vec<String>,
-    /// What the results do not show, a sentence each.
+    /// Limits of the results, a sentence each.
     pub notes: Vec<String>,
     /// Names and units of the numbers that are analysed.
     pub analysed: Vec<(String, String)>,
@@ -152,7 +152,7 @@ pub struct StudyManifest {
     pub points_per_part: u64,
     /// Factors and design.
     pub plan: Plan,
-    /// What its columns are, where they are changes of cars.
+    /// Description of the columns, where they are changes of cars.
     pub levers: Option<Value>,
 }
 

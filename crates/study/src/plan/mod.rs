@@ -1,4 +1,4 @@
-//! What a study is to do, read from a TOML file and checked.
+//! Plan of a study, read from a TOML file and checked.
 //!
 //! | file | contents |
 //! |---|---|
@@ -43,19 +43,19 @@ use cvtcycle_model::transmission::cvt::variator::Formulation;
 pub struct Plan {
     /// Name of the file, as problems cite it.
     pub file: String,
-    /// Its text, byte for byte.
+    /// Text of the file, byte for byte.
     pub text: String,
     /// Name for people.
     pub title: String,
     /// The question that the study is to answer, in words; may be empty.
     pub question: String,
-    /// What is driven where no factor says otherwise.
+    /// Inputs of the runs where no factor says otherwise.
     pub base: Base,
-    /// What is varied.
+    /// Inputs that are varied.
     pub factors: Vec<Factor>,
-    /// Which combinations are driven.
+    /// Combinations that are driven.
     pub design: Design,
-    /// What is kept of each run in addition to its summary.
+    /// Data kept of each run in addition to its summary.
     pub keep: Keep,
     /// Columns of the summary that are analysed, in their order; the fuel columns if there are none.
     pub analyse: Vec<String>,
@@ -109,9 +109,9 @@ pub struct Factor {
     /// Unit of its numbers: the key's, `-` where they multiply, `K` where they are added to a temperature. Empty for words: either all
     /// values of a factor are numbers and there is a unit, or all are words.
     pub unit: String,
-    /// Whose value it is.
+    /// Cars that the value acts on.
     pub cars: Cars,
-    /// What a number does with the value of the car's file.
+    /// Action of a number on the value of the car's file.
     pub acts: Acts,
     /// The values.
     pub values: FactorValues,
@@ -279,7 +279,7 @@ impl FactorValues {
         }
     }
 
-    /// Whether they are numbers.
+    /// True if the values are numbers.
     pub fn are_numbers(&self) -> bool {
         self.list().iter().all(FactorValue::is_number)
     }
@@ -361,7 +361,7 @@ pub enum Design {
     },
 }
 
-/// What is kept of each run in addition to its row.
+/// Data kept of each run in addition to its row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Keep {
     /// Nothing.

@@ -94,7 +94,7 @@ impl Summary {
 }
 
 impl Spread {
-    /// Of all finite values.
+    /// Computes the moments of all finite values.
     pub(super) fn over<P: Numbers + ?Sized>(values: &P) -> Result<Self, P::Error> {
         Moments::of(values)
     }

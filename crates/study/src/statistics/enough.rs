@@ -1,4 +1,4 @@
-//! Whether a sample is large enough for what is asked of it.
+//! Sample sizes that the statistics need.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -14,7 +14,7 @@ use super::intervals::{clopper_pearson, least_draws};
 /// Share of cases that "in nearly all" means.
 const NEARLY_ALL: f64 = 0.9;
 
-/// What a number of draws can tell.
+/// Statements that a number of draws allows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Enough {
     /// Draws.
@@ -46,7 +46,7 @@ impl Enough {
         }
     }
 
-    /// What it cannot tell, a sentence each; nothing of enough draws.
+    /// Lists statements that the draws do not allow, a sentence each; empty if there are enough.
     pub fn doubts(&self, confidence: Confidence) -> Vec<String> {
         let n = self.n;
         if n < 2 {

@@ -52,7 +52,7 @@ impl Format {
     }
 }
 
-/// What was exported.
+/// Size of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// Rows without the header.

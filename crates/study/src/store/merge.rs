@@ -21,7 +21,7 @@ struct Shard {
     layout: Layout,
 }
 
-/// What a study was begun with, byte for byte.
+/// Inputs that a study was begun with, byte for byte.
 struct Begun {
     path: PathBuf,
     manifest: Vec<u8>,

@@ -164,7 +164,7 @@ fn damage(message: &str) -> ParquetError {
     ParquetError::General(message.to_owned())
 }
 
-/// Whether all that the footer says lies within the file: the library trusts it, and makes room for what it says.
+/// Checks that all offsets in the footer lie within the file: the library trusts them and allocates by them.
 fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
     let metadata = file.metadata();
     let rows = u64::try_from(metadata.file_metadata().num_rows());

@@ -34,12 +34,11 @@ impl Values {
         }
     }
 
-    /// Whether there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// What the cells are.
+    /// Type of the cells.
     pub fn kind(&self) -> Kind {
         match self {
             Values::Number(_) => Kind::Number,
@@ -102,7 +101,6 @@ impl Rows {
         self.values.first().map_or(0, Values::len)
     }
 
-    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
