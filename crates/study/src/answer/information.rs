@@ -29,6 +29,7 @@ pub struct Information {
 /// Effect of knowing one factor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KnownFactor {
+    /// Name of the factor.
     pub name: String,
     /// The test that would tell it, in the words of the plan; may be empty.
     #[serde(skip_serializing_if = "String::is_empty")]

@@ -34,6 +34,7 @@ impl Values {
         }
     }
 
+    /// True if there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -101,6 +102,7 @@ impl Rows {
         self.values.first().map_or(0, Values::len)
     }
 
+    /// True if there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
