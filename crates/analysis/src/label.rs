@@ -28,7 +28,7 @@ const CITY: f64 = 0.55;
 const COLD_STARTS: f64 = 0.24;
 /// Share of a mile's air conditioning (LB-4).
 const AIR_CONDITIONED: f64 = 0.133;
-/// What the five cycles leave out: wind, tyres, fuel and roads (LB-4).
+/// Factor for effects absent from the five cycles: wind, tyres, fuel and roads (LB-4).
 const NOT_TESTED: f64 = 0.905;
 /// Road load of the cold test over that of the others.
 pub const COLD_LOAD_FACTOR: f64 = 1.1;
@@ -64,7 +64,7 @@ pub struct Cycles<'a> {
 pub struct Tests {
     /// Weighted FTP75 at 24 degC.
     pub ftp75: f64,
-    /// Its bags.
+    /// Results of the bags.
     pub bags: [f64; 3],
     /// Bags of FTP75 at -6.7 degC.
     pub cold_bags: [f64; 3],
@@ -101,7 +101,7 @@ pub struct Wltp {
 /// All figures of a car.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// What the tests burnt.
+    /// Fuel burnt in the tests.
     pub tests: Tests,
     /// Without adjustment (LB-1).
     pub unadjusted: Label,

@@ -19,7 +19,7 @@ use super::reference::Reference;
 use super::scene::{Scene, free_law};
 use super::stage::{Driven, IN_LOW, Stage, Table, stage};
 
-/// Of so many ratios one is enough where the ratio hardly matters.
+/// Spacing of the ratios where the ratio hardly matters: one in so many.
 const SPARSE: usize = 16;
 
 /// The problem: a scene under limits, in the temperatures of a reference drive.
@@ -38,7 +38,7 @@ pub struct From<'a> {
     engine: EngineAtTemperature<'a>,
     place: Option<Place>,
     x: f64,
-    /// Whether the coupling was locked.
+    /// True if the coupling was locked.
     locked: bool,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Problem<'a> {
         Some((burn.fuel_kg_s, heat_w)) // DP-2
     }
 
-    /// What drives a path.
+    /// Gives the controls along a path.
     pub fn holds(&self, path: &Path) -> Vec<Hold> {
         let hold = |k: usize| {
             let nodes = &self.stages[k].nodes;

@@ -1,4 +1,4 @@
-//! What decides an output, in a sentence: the factor that moves it most or is worth knowing, and where it is least.
+//! Main cause of an output, in a sentence: the factor that moves it most or is worth knowing, and where it is smallest.
 
 use super::decimals;
 use cvtcycle_output::number::{fixed, plain, signed};
@@ -8,7 +8,7 @@ use cvtcycle_study::answer::{
 use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::Tornado;
 
-/// What decides an output, by design.
+/// Describes the main cause of an output, by design.
 pub(super) fn decided(output: &OutputAnswer, answer: &Answer) -> Option<String> {
     let unit = match output.output.as_str() {
         EXCESS => "points",
@@ -105,7 +105,7 @@ fn least(matrix: &GridMatrix, unit: &str) -> Option<String> {
 /// Width of the interval of a share from which on it says next to nothing.
 const WIDE: f64 = 0.5;
 
-/// Which factor is worth a test, and what it would leave of the spread; that none is above chance where none is.
+/// Names the factor that is worth a test and the spread that remains; says so if none is above chance.
 fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
     let causes: Vec<&KnownFactor> = of.causes().collect();
     let share = |factor: &KnownFactor| fixed(100.0 * factor.share.value, 0);
@@ -160,7 +160,7 @@ fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
     ))
 }
 
-/// Whether the order of two factors is known: intervals that do not overlap, or shares further apart than chance makes them.
+/// True if the order of two factors is known: intervals that do not overlap, or shares that differ by more than chance.
 fn is_settled(first: &KnownFactor, second: &KnownFactor, noise: f64) -> bool {
     match (first.share.interval, second.share.interval) {
         (Some([low, _]), Some([_, high])) => low > high,

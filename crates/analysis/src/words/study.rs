@@ -1,4 +1,4 @@
-//! What a study says: how often and by how much the subject uses more, which factor decides it and is worth knowing, where an output is least,
+//! Sentences about a study: how often and by how much the subject uses more, the factor that decides it and is worth knowing, the minimum of an output,
 //! and the published numbers that contradict it.
 
 use cvtcycle_config::setup::Kind;
