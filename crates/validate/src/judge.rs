@@ -50,7 +50,7 @@ impl Judged {
         }
     }
 
-    /// The fleet it is held against.
+    /// Fleet that it is compared with.
     #[must_use]
     pub fn fleet(&self) -> Option<Fleet> {
         match self.row.printed? {

@@ -82,7 +82,7 @@ impl<'a> Store<'a> {
         })
     }
 
-    /// Evaluations so far; none if more were asked for than there may be.
+    /// Evaluations so far; `None` above the limit.
     pub fn evaluations(&self) -> Option<u64> {
         self.left.get().map(|left| MAX_EVALUATIONS - left)
     }

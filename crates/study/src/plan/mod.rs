@@ -63,10 +63,10 @@ pub struct Plan {
     pub most_runs: u64,
     /// A factor does not act on a car that does not have its key; else the study does not begin.
     pub skip_missing: bool,
-    /// A number outside the range of its key is held at the end of the range; else the study does not begin.
+    /// True clamps a number outside the range of its key to that range; else the study does not begin.
     pub clip: bool,
-    /// Whose the factors of the subject are, by the kind of box: `Some(true)` of every car with a CVT, `Some(false)` of every manual one, and
-    /// those of the baselines of all others. None: of subject and baselines by their roles.
+    /// Cars of the subject's factors by the kind of box: `Some(true)` every car with a CVT, `Some(false)` every manual one; the factors
+    /// of the baselines act on all others. `None`: subject and baselines by their roles.
     pub by_box: Option<bool>,
     /// Places of the keys of `[study]`; `design` is the place of the design's table.
     pub places: Places,
@@ -292,7 +292,7 @@ impl Factor {
         at.map_or(0, |k| k + 1)
     }
 
-    /// Its value where a design puts it; none for the value of the car's own file.
+    /// Gives the value where a design puts it; `None` for the value of the car's own file.
     pub fn value(&self, level: Level) -> Option<FactorValue> {
         match (&self.values, level) {
             (_, Level::Base) => None,
@@ -320,7 +320,7 @@ pub enum Level {
     Share(f64),
 }
 
-/// Which combinations of values are driven.
+/// Combinations of values that are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Design {

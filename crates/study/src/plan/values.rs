@@ -21,7 +21,7 @@ const MIN_LEFT: f64 = 0.01;
 /// Least standard deviation over the mean: below it the draws hardly differ as they are stored.
 const MIN_SPREAD: f64 = 1e-9;
 
-/// Whose values they are.
+/// Factor that the values belong to.
 #[derive(Clone, Copy)]
 pub(super) struct Of<'a> {
     /// Key of the factor.

@@ -30,7 +30,7 @@ pub struct Enough {
 }
 
 impl Enough {
-    /// Of a number of draws.
+    /// Evaluates ES-1 to ES-3 for a number of draws.
     pub fn of(n: usize, confidence: Confidence) -> Self {
         let reaches = |p: f64| n >= least_draws(p, confidence);
         let at_most_shown = match n {

@@ -86,7 +86,7 @@ impl Moments {
             self.min = x.min(self.min);
             self.max = x.max(self.max);
         }
-        // Of the mean so far: none in the first pass.
+        // Deviation from the mean so far, which is 0 in the first pass.
         let d = x - self.mean;
         self.sum += d;
         self.squares += d * d;

@@ -16,8 +16,8 @@ const MAX_DEPTH: usize = 24;
 /// The end of a file: the length of its footer, and its magic word.
 const END: u64 = 8;
 
-/// Whether a file has no footer, which the library reports, or one in which every list and text is as long as it says. The file is left at
-/// its beginning.
+/// Checks that every list and text of the footer is as long as it says; a file without footer passes, as the library reports it. Leaves the file at
+/// the beginning.
 pub(super) fn is_sound(file: &mut File) -> io::Result<bool> {
     let whole = file.seek(SeekFrom::End(0))?;
     let mut end = [0; 8];

@@ -23,7 +23,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::{ColumnChunkMetaData, KeyValue};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
-/// What helps with a damaged file.
+/// Advice for a damaged file.
 pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued";
 
 /// Bytes that a byte of a column can become at most: a copy of Snappy's takes three bytes for up to 64. Small columns have a head in addition.
