@@ -121,7 +121,7 @@ pub struct Figures {
 
 impl Label {
     /// A label from gallons a mile in city and on the highway.
-    fn of(city: f64, highway: f64) -> Self {
+    fn from_consumption(city: f64, highway: f64) -> Self {
         Label {
             city_mpg: 1.0 / city,
             highway_mpg: 1.0 / highway,
@@ -133,13 +133,13 @@ impl Label {
 impl Tests {
     /// City and highway without adjustment (LB-1).
     pub fn unadjusted(&self) -> Label {
-        Label::of(self.ftp75 / MPG_US, self.hwfet / MPG_US)
+        Label::from_consumption(self.ftp75 / MPG_US, self.hwfet / MPG_US)
     }
 
     /// The label by the formulas of 2008 (LB-2).
     pub fn derived(&self) -> Label {
         let [city, highway] = [self.ftp75, self.hwfet].map(|fuel| fuel / MPG_US);
-        Label::of(0.003_259 + 1.1805 * city, 0.001_376 + 1.3466 * highway) // LB-2
+        Label::from_consumption(0.003_259 + 1.1805 * city, 0.001_376 + 1.3466 * highway) // LB-2
     }
 
     /// The label by the five cycles (LB-4).
@@ -158,7 +158,7 @@ impl Tests {
         let highway = 0.33 * starts / 60.0
             + 1.007 * (0.79 * us06_highway + 0.21 * self.hwfet / MPG_US)
             + AIR_CONDITIONED * 0.377 * cooling; // LB-4
-        Label::of(city / NOT_TESTED, highway / NOT_TESTED)
+        Label::from_consumption(city / NOT_TESTED, highway / NOT_TESTED)
     }
 }
 

@@ -51,7 +51,7 @@ pub struct Perturbations {
 impl Perturbations {
     /// The changes of the cars of all sources.
     #[must_use]
-    pub fn of(files: &[RowFile], candidate: &CandidateVehicle) -> Self {
+    pub fn new(files: &[RowFile], candidate: &CandidateVehicle) -> Self {
         let mut known = KnownCars::new();
         let sources = files.iter().flat_map(|file| &file.sources).map(Some);
         for source in std::iter::once(None).chain(sources) {

@@ -251,7 +251,7 @@ pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverA
         draws: outline.points,
         draws_done: done as u64,
         confidence,
-        enough: Enough::of(if about.plan.is_some() { done } else { 0 }, confidence),
+        enough: Enough::from_draws(if about.plan.is_some() { done } else { 0 }, confidence),
         plan: about.plan,
         heard_rpm: about.heard_rpm,
         runs: ended(frame)?,

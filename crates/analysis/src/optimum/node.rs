@@ -107,7 +107,7 @@ impl Node {
     }
 
     /// The node at a place.
-    pub fn of(nodes: &[Node], at: Place) -> Node {
+    pub fn at_place(nodes: &[Node], at: Place) -> Node {
         match at.share > 0.0 {
             true => Node::between(&nodes[at.node], &nodes[at.node + 1], at.share),
             false => nodes[at.node],

@@ -171,7 +171,7 @@ fn best<S: Stages>(
         }
         if controls == Controls::WithEnds {
             for x in [low, high, x.clamp(low, high)] {
-                if let Some(place) = Place::of(x, nodes).filter(|place| place.share > 0.0) {
+                if let Some(place) = Place::locate(x, nodes).filter(|place| place.share > 0.0) {
                     consider(x, place.later(begin)); // DP-3
                 }
             }

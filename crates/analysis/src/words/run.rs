@@ -166,7 +166,7 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
         let (of, percent) = (comparison.interval.as_ref()?, comparison.fuel_percent?);
         let [low, median, high] = of.percent;
         let n = usize::try_from(of.draws).ok()?;
-        let mut doubts = Enough::of(n, confidence).doubts(confidence);
+        let mut doubts = Enough::from_draws(n, confidence).doubts(confidence);
         if (percent - median).abs() > NEAR_MEDIAN * (high - low) {
             let decimals = decimals([low, high]);
             let [median, percent] = [median, percent].map(|x| signed(x, decimals));

@@ -235,7 +235,7 @@ mod tests {
             text(101),
             "90 % of the runs are +5 to +95 %, the median is +50 %"
         );
-        let wide = Confidence::of(0.99);
+        let wide = Confidence::from_level(0.99);
         let text = middle(&Summary::of(&draws(101), wide), wide, ("%", signed)).0;
         assert!(
             text.starts_with("the least and the largest of 101 runs"),

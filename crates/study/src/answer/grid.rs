@@ -42,7 +42,7 @@ const CONDITIONS: [&str; 3] = ["ambient_degc", "start", "cycle"];
 
 impl GridMatrix {
     /// The matrix of a plan with two factors from the numbers of its points; none for another plan.
-    pub(super) fn of(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
+    pub(super) fn from_points(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
         let [first, second] = plan.factors.as_slice() else {
             return Ok(None);
         };

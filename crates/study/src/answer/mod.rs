@@ -138,7 +138,7 @@ pub struct Comparison {
 /// let study = Study::prepare(Plan::read("plan.toml", text)?)?;
 /// let table = Memory(&study, Mutex::default());
 /// study.execute(&BTreeSet::new(), &table, &NoProgress)?;
-/// let manifest = StudyManifest::of(&study);
+/// let manifest = StudyManifest::new(&study);
 /// let answer = answer(&StudyTable::new(&manifest, &table)?, Confidence::default())?;
 /// let fuel = answer.outputs[0].range.as_ref().expect("a grid is no sample");
 /// assert_eq!((answer.points, answer.runs.ok, fuel.n, fuel.least_at.as_str()), (2, 2, 2, "ambient_degc 25 °C"));
@@ -157,7 +157,7 @@ pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Prob
             baseline: outline.cars[car].clone(),
             worse: Share::over_zero(&excess, sample)?,
             excess_percent: summary(&excess, sample)?,
-            excess_range: Range::of(&outline.plan, &excess)?,
+            excess_range: Range::from_points(&outline.plan, &excess)?,
         })
     };
     let mut outputs = Vec::new();

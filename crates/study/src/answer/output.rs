@@ -79,13 +79,13 @@ pub(super) fn output(
         unit: unit.clone(),
         car: frame.outline.cars[car].clone(),
         summary: summary(&drawn, sample)?,
-        range: Range::of(plan, &drawn)?,
+        range: Range::from_points(plan, &drawn)?,
         sobol: Vec::new(),
         information: None,
         tornado: None,
         rank: None,
         levels: Vec::new(),
-        matrix: GridMatrix::of(plan, &drawn)?,
+        matrix: GridMatrix::from_points(plan, &drawn)?,
     };
     match plan.design {
         Design::Saltelli { .. } => {

@@ -30,7 +30,7 @@ pub struct Range {
 
 impl Range {
     /// Over the numbers of the points of a plan; none of a plan that draws its points.
-    pub(super) fn of(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
+    pub(super) fn from_points(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
         if plan.design.is_sampled() {
             return Ok(None);
         }

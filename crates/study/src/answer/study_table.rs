@@ -86,7 +86,7 @@ impl PartRows {
 }
 
 impl Status {
-    fn of(word: &str) -> Self {
+    fn from_word(word: &str) -> Self {
         match word {
             "ok" => Status::Ok,
             "failed" => Status::Failed,
@@ -115,7 +115,7 @@ impl<'a> StudyTable<'a> {
         frame.each(&["status"], |part| {
             let cars = ended.len();
             for (k, word) in part.status().iter().enumerate().take(part.points * cars) {
-                ended[k % cars][Status::of(word) as usize] += 1;
+                ended[k % cars][Status::from_word(word) as usize] += 1;
             }
             Ok(())
         })?;
@@ -196,7 +196,7 @@ impl<'a> StudyTable<'a> {
     /// # Errors
     /// A part that cannot be read.
     pub fn status(&self, car: usize) -> Result<Vec<Status>, Problem> {
-        let of = |word: &Arc<str>| Status::of(word);
+        let of = |word: &Arc<str>| Status::from_word(word);
         self.of_car("status", car, Status::Missing, |values| match values {
             Values::Text(words) => words.iter().map(of).collect(),
             _ => Vec::new(),
@@ -305,7 +305,7 @@ impl<'a> StudyTable<'a> {
             };
             let pairs = part.status().iter().zip(reasons);
             for (word, reason) in pairs.take(part.points * self.cars()) {
-                let status = Status::of(word);
+                let status = Status::from_word(word);
                 if status.is_bad() {
                     f(status, reason);
                 }

@@ -189,7 +189,7 @@ struct StoredCar {
 
 impl StudyManifest {
     /// The manifest of a study that is ready to run.
-    pub fn of(study: &Study) -> Self {
+    pub fn new(study: &Study) -> Self {
         let heads = study.columns.iter();
         let columns: Vec<_> = heads.map(|c| (c.name.clone(), c.unit.clone())).collect();
         StudyManifest {

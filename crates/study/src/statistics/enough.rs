@@ -31,7 +31,7 @@ pub struct Enough {
 
 impl Enough {
     /// Evaluates ES-1 to ES-3 for a number of draws.
-    pub fn of(n: usize, confidence: Confidence) -> Self {
+    pub fn from_draws(n: usize, confidence: Confidence) -> Self {
         let reaches = |p: f64| n >= least_draws(p, confidence);
         let at_most_shown = match n {
             0 => 0.0,
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn val_least_numbers_of_draws() {
         let usual = Confidence::default();
-        let at = |n: usize| Enough::of(n, usual);
+        let at = |n: usize| Enough::from_draws(n, usual);
         assert!(!at(5).median && at(6).median);
         assert!(!at(35).nearly_all && at(36).nearly_all);
         assert!(!at(71).ends && at(72).ends);

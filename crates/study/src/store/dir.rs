@@ -346,7 +346,8 @@ fn no_link(path: &Path) -> Result<(), Problem> {
 
 fn layout_of(path: &Path, manifest: &[u8]) -> Result<(Layout, Option<String>), Problem> {
     let parsed = bounded::json(manifest).ok();
-    let read = parsed.and_then(|manifest| Some((Layout::of(&manifest)?, run_of(&manifest))));
+    let read =
+        parsed.and_then(|manifest| Some((Layout::from_manifest(&manifest)?, run_of(&manifest))));
     read.ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
 }
 

@@ -103,7 +103,7 @@ pub struct Layout {
 
 impl Layout {
     /// The layout that a manifest states; none if it states none, or one that cannot be.
-    pub fn of(manifest: &Value) -> Option<Self> {
+    pub fn from_manifest(manifest: &Value) -> Option<Self> {
         let layout: Layout = serde_json::from_value(manifest.get("layout")?.clone()).ok()?;
         let tables = &layout.tables;
         let unlike = tables

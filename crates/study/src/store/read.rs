@@ -87,7 +87,7 @@ impl Study {
             TooLarge => found.in_file(file.display().to_string()),
             _ => damaged(),
         })?;
-        let layout = Layout::of(&manifest).ok_or_else(damaged)?;
+        let layout = Layout::from_manifest(&manifest).ok_or_else(damaged)?;
         let parts = names::parts_folder(&path);
         let marked = marked_parts(&path, &layout);
         let mut present = marked.map_err(|error| unreadable(&parts, &error.into()))?;
