@@ -402,7 +402,7 @@ fn drawn() -> Result<String, Problems> {
     let (manifest, plan) = (study.manifest(false), study.plan.text.as_bytes());
     let dir = StudyDir::create(&path, manifest.as_bytes(), plan, false)?;
     study.execute(&BTreeSet::new(), &DirWriter::new(&study, &dir), &NoProgress)?;
-    let (outline, store) = (StudyManifest::of(&study), dir.study()?);
+    let (outline, store) = (StudyManifest::new(&study), dir.study()?);
     let frame = StudyTable::new(&outline, &store)?;
     let answer = levers::lever_answer(&frame, Confidence::default())?;
     let [cold, warm] = [0, 1].map(|k| &answer.blocks[k].rows);

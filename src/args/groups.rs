@@ -224,7 +224,7 @@ impl ConfidenceArgs {
         let given = self.confidence.as_ref();
         let level = given.map(|text| number("--confidence", text, CONFIDENCE, ""));
         let level = level.and_then(|level| problems.take(level));
-        level.map_or_else(Confidence::default, Confidence::of)
+        level.map_or_else(Confidence::default, Confidence::from_level)
     }
 }
 

@@ -215,7 +215,7 @@ impl ValidateArgs {
 
     /// Effect of changes of the cars on the verdicts. None after an interruption.
     fn power_report(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
-        let changes = Perturbations::of(files, &report.candidate);
+        let changes = Perturbations::new(files, &report.candidate);
         let progress =
             Progress::counted("changes", changes.count() as u64, self.results.output.quiet);
         let power = changes.power(files, report, &progress);

@@ -55,7 +55,7 @@ struct FinishedStudy {
 impl FinishedStudy {
     /// Column of the table, by car and point.
     fn column(&self, name: &str) -> Vec<Vec<f64>> {
-        let manifest = StudyManifest::of(&self.study);
+        let manifest = StudyManifest::new(&self.study);
         let frame = StudyTable::new(&manifest, &self.table).unwrap();
         frame.by_car(&[name]).unwrap().remove(0)
     }
@@ -82,7 +82,7 @@ fn run(request: &LeverRequest, threads: usize) -> FinishedStudy {
         columns: study.columns.clone(),
         parts: shelf.0.into_inner().unwrap(),
     };
-    let manifest = StudyManifest::of(&study);
+    let manifest = StudyManifest::new(&study);
     let answer = lever_answer(
         &StudyTable::new(&manifest, &table).unwrap(),
         Confidence::default(),

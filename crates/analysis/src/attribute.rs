@@ -1,4 +1,4 @@
-//! What each loss costs: the car driven again with less of it, or without it.
+//! Price of each loss: the car driven again with less of it, or without it.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -33,7 +33,7 @@ use cvtcycle_output::number::fixed;
 use cvtcycle_output::summary::{PairPrice, PriceSummary, RunSummary, Settings};
 
 /// A component that loses less over the whole cycle has no price, kJ.
-const LEAST_KJ: f64 = 1e-3;
+const MIN_KJ: f64 = 1e-3;
 /// Interaction of a pair that is large, per cent of the fuel, ...
 const LARGE_PERCENT: f64 = 0.1;
 /// ... or as a share of the smaller of both prices, ...
@@ -46,21 +46,21 @@ const SAME_WORK_KJ: f64 = 1.0;
 /// A car that has been driven, and how its losses are changed.
 #[derive(Clone, Copy, Debug)]
 pub struct Attribution<'a> {
-    /// Its input.
+    /// Input of the car.
     pub setup: &'a Setup,
     /// The cycle.
     pub cycle: &'a Cycle,
     /// How it was driven.
     pub conditions: Conditions,
-    /// What else was asked for.
+    /// Settings of the drives.
     pub settings: &'a Settings,
     /// Factor phi on a loss: 0 is without it.
     pub factor: f64,
-    /// What is computed besides single losses.
+    /// Results in addition to single losses.
     pub depth: Depth,
 }
 
-/// What is computed besides the price of each loss and of all.
+/// Results in addition to the price of each loss and of all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Depth {
     /// Price of each loss alone (AT-5).
@@ -71,7 +71,7 @@ pub struct Depth {
     pub shapley: bool,
 }
 
-/// Which pairs are given.
+/// Pairs of losses that are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pairs {
     /// None; none is driven.
@@ -138,7 +138,7 @@ pub fn attribute(of: &Attribution, base: &RunSummary) -> PriceSummary {
     }
 }
 
-/// Which losses are changed in which drives.
+/// Losses that are changed, by drive.
 struct Design {
     /// The components that lose something, in the order of the power flow.
     components: Vec<Component>,
@@ -150,7 +150,7 @@ struct Design {
 impl Design {
     fn new(of: &Attribution, base: &RunSummary) -> Self {
         let own = of.setup.transmission().components().into_iter();
-        let loses = |c: &Component| base.loss_kj.get(c.name()).is_some_and(|kj| kj >= LEAST_KJ);
+        let loses = |c: &Component| base.loss_kj.get(c.name()).is_some_and(|kj| kj >= MIN_KJ);
         let components: Vec<Component> = own.filter(loses).collect();
         let count = components.len();
         let first = (0..count).filter(|_| of.depth.pairs != Pairs::None);

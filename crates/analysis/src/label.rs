@@ -28,7 +28,7 @@ const CITY: f64 = 0.55;
 const COLD_STARTS: f64 = 0.24;
 /// Share of a mile's air conditioning (LB-4).
 const AIR_CONDITIONED: f64 = 0.133;
-/// What the five cycles leave out: wind, tyres, fuel and roads (LB-4).
+/// Factor for effects absent from the five cycles: wind, tyres, fuel and roads (LB-4).
 const NOT_TESTED: f64 = 0.905;
 /// Road load of the cold test over that of the others.
 pub const COLD_LOAD_FACTOR: f64 = 1.1;
@@ -64,7 +64,7 @@ pub struct Cycles<'a> {
 pub struct Tests {
     /// Weighted FTP75 at 24 degC.
     pub ftp75: f64,
-    /// Its bags.
+    /// Results of the bags.
     pub bags: [f64; 3],
     /// Bags of FTP75 at -6.7 degC.
     pub cold_bags: [f64; 3],
@@ -101,7 +101,7 @@ pub struct Wltp {
 /// All figures of a car.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// What the tests burnt.
+    /// Fuel burnt in the tests.
     pub tests: Tests,
     /// Without adjustment (LB-1).
     pub unadjusted: Label,
@@ -121,7 +121,7 @@ pub struct Figures {
 
 impl Label {
     /// A label from gallons a mile in city and on the highway.
-    fn of(city: f64, highway: f64) -> Self {
+    fn from_consumption(city: f64, highway: f64) -> Self {
         Label {
             city_mpg: 1.0 / city,
             highway_mpg: 1.0 / highway,
@@ -133,13 +133,13 @@ impl Label {
 impl Tests {
     /// City and highway without adjustment (LB-1).
     pub fn unadjusted(&self) -> Label {
-        Label::of(self.ftp75 / MPG_US, self.hwfet / MPG_US)
+        Label::from_consumption(self.ftp75 / MPG_US, self.hwfet / MPG_US)
     }
 
     /// The label by the formulas of 2008 (LB-2).
     pub fn derived(&self) -> Label {
         let [city, highway] = [self.ftp75, self.hwfet].map(|fuel| fuel / MPG_US);
-        Label::of(0.003_259 + 1.1805 * city, 0.001_376 + 1.3466 * highway) // LB-2
+        Label::from_consumption(0.003_259 + 1.1805 * city, 0.001_376 + 1.3466 * highway) // LB-2
     }
 
     /// The label by the five cycles (LB-4).
@@ -158,7 +158,7 @@ impl Tests {
         let highway = 0.33 * starts / 60.0
             + 1.007 * (0.79 * us06_highway + 0.21 * self.hwfet / MPG_US)
             + AIR_CONDITIONED * 0.377 * cooling; // LB-4
-        Label::of(city / NOT_TESTED, highway / NOT_TESTED)
+        Label::from_consumption(city / NOT_TESTED, highway / NOT_TESTED)
     }
 }
 

@@ -19,9 +19,9 @@ pub struct RunQuestion<'a> {
     pub ambient_degc: f64,
     /// Start as it was given.
     pub start: StartWord,
-    /// What else was asked for.
+    /// Settings of the drives.
     pub settings: Settings,
-    /// Whether each car is driven again without each loss, for the fuel that it costs.
+    /// True to drive each car again without each loss, for the price of that loss in fuel.
     pub price: bool,
     /// Published numbers about the subject on the cycle, as [`published`](cvtcycle_validate::published) has them, where they are read already.
     pub published: Option<Vec<ValidationRow>>,

@@ -1,7 +1,7 @@
 //! The vehicle file, and the fluid files, with the fitted values in them.
 //!
 //! A file keeps its form and comments. A fitted value gets the status `fitted`, the plan, the date and its standard error as its source.
-//! What the plan sets gets the status `assumed`. Paths in the vehicle file that are relative to it become
+//! Values that the plan sets get the status `assumed`. Paths in the vehicle file that are relative to it become
 //! absolute, so that the fitted file may be in any folder.
 
 use std::path::Path;

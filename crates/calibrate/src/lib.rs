@@ -56,10 +56,10 @@ pub fn open(word: &str) -> Result<CalibrationPlan, Problems> {
     }
 }
 
-/// Fits the parameters of a plan, and says what the fit is worth.
+/// Fits the parameters of a plan, and computes the uncertainty of the fit.
 ///
 /// # Errors
-/// What is wrong with the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
+/// Problems of the plan's vehicle, keys, bounds and sources; a problem if the model has no answer at any start.
 ///
 /// ```no_run
 /// use cvtcycle_output::progress::NoProgress;

@@ -21,7 +21,7 @@ pub const SCHEMA: u32 = 1;
 pub struct Parameter {
     /// Dotted key; `common error of GROUP` for an error that a group has in common.
     pub name: String,
-    /// Whether it is a key of the files.
+    /// True for a key of the files.
     pub is_key: bool,
     /// Unit.
     pub unit: String,
@@ -45,7 +45,7 @@ pub struct Parameter {
     pub prior_share: Option<f64>,
     /// `low` or `high` where the value lies at a bound.
     pub at_bound: Option<&'static str>,
-    /// Whether it moves no observation.
+    /// True if it moves no observation.
     pub is_dead: bool,
 }
 
@@ -138,7 +138,7 @@ pub struct Outcome {
     pub vehicle: String,
     /// How the best start ended.
     pub end: String,
-    /// Whether it converged.
+    /// True if the search converged.
     pub converged: bool,
     /// Sum of squares of the residuals of data and priors with the file's values; none where the model has no result there.
     pub cost_before: Option<f64>,
@@ -160,7 +160,7 @@ pub struct Outcome {
     pub covariance: Vec<Vec<Option<f64>>>,
     /// Directions, least determined first.
     pub directions: Vec<Direction>,
-    /// What the data alone do not identify, as sentences.
+    /// Parameters and combinations that the data alone do not identify, as sentences.
     pub not_identified: Vec<String>,
     /// Folds.
     pub folds: Vec<Fold>,

@@ -185,7 +185,7 @@ impl StoredStudy {
         let confidence = match confidence {
             None => Confidence::default(),
             Some(level) => {
-                Confidence::of(number("confidence", level, Range::closed(0.5, 0.999), "")?)
+                Confidence::from_level(number("confidence", level, Range::closed(0.5, 0.999), "")?)
             }
         };
         let folder = self.0.clone();

@@ -185,7 +185,7 @@ pub fn page(report: &Report) -> Result<String, String> {
     let group = |group: Group| GroupLine {
         name: group.word(),
         total: report.of_group(group).count(),
-        counts: Counts::of(report.of_group(group)),
+        counts: Counts::from_rows(report.of_group(group)),
     };
     let page = Page {
         program: cvtcycle_output::PROGRAM,
@@ -207,7 +207,7 @@ fn chapters(report: &Report) -> Vec<Chapter> {
         Chapter {
             title: chapter_title(name),
             anchor: format!("part-{}", k + 1),
-            counts: Counts::of(own.clone()),
+            counts: Counts::from_rows(own.clone()),
             rows: own.map(line).collect(),
         }
     };

@@ -17,7 +17,7 @@ use crate::execute::{reason, status};
 /// The argument that is no key of the car's files.
 const AMBIENT_DEGC: &str = "ambient_degc";
 
-/// What a number of a point is.
+/// Target of a number of a point.
 enum Argument {
     /// A number of the car's files.
     Number(ParameterRef),
@@ -54,7 +54,7 @@ pub struct Family {
 /// The documents of a family's car, for one thread.
 pub struct FamilyWorker(Variant);
 
-/// What comes of a point.
+/// Results of a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FamilyPoint {
     /// The wanted outputs; NaN for a car that cannot be driven, and for what it has not.
@@ -213,7 +213,7 @@ impl Family {
         Ok((setup, conditions))
     }
 
-    /// What comes of a car that has been driven.
+    /// Collects the results of a car that has been driven.
     fn finished(&self, setup: &Setup, outcome: &Outcome, wanted: &[usize]) -> FamilyPoint {
         let driven = Driven {
             name: &self.setup.name,

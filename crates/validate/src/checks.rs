@@ -12,7 +12,7 @@ use cvtcycle_config::setup::catalogue;
 use cvtcycle_config::{Place, Problem, Section};
 use cvtcycle_model::keys::{Key, Values};
 
-/// What the keys of a number or range accept together.
+/// Allowed keys of a number or range together.
 const VALUE_OR_ENDS: &str = "value, or low and high";
 
 /// A number or range: `value`, or `low` and `high`, of which one may be absent.
@@ -119,7 +119,7 @@ fn fleet(s: &Section) -> Option<Fleet> {
     })
 }
 
-/// What a row needs besides its keys.
+/// Checks that a row has the parts that its keys imply.
 pub fn complete(s: &Section, row: &ValidationRow) {
     let is = |verdict| row.recorded == Some(verdict);
     let is_computed = !row.compute_text.trim().is_empty();

@@ -18,9 +18,9 @@ use cvtcycle_model::rig::transmission::Conditions;
 pub struct Judged {
     /// The row.
     pub row: ValidationRow,
-    /// Its file.
+    /// File of the row.
     pub file: String,
-    /// Whose number it has.
+    /// Origin of the published number.
     pub group: Group,
     /// Computed; none for what cannot be compared, or not for this car.
     pub computed: Option<Computed>,
@@ -28,7 +28,7 @@ pub struct Judged {
     pub failure: Option<String>,
     /// Verdict of the rule.
     pub verdict: Verdict,
-    /// Whether it is another one than recorded, or the row cannot be computed.
+    /// True if the verdict differs from the recorded one, or the row cannot be computed.
     pub moved: bool,
     /// Number behind the reason.
     pub cause: Option<Computed>,
@@ -50,7 +50,7 @@ impl Judged {
         }
     }
 
-    /// The fleet it is held against.
+    /// Fleet that it is compared with.
     #[must_use]
     pub fn fleet(&self) -> Option<Fleet> {
         match self.row.printed? {
@@ -339,7 +339,7 @@ pub struct CandidateVehicle {
     pub engine_oil: Option<String>,
     /// Overrides.
     pub set: Vec<Override>,
-    /// What gives the names of vehicle and fluids.
+    /// Source of the names of vehicle and fluids.
     pub named_by: NamedBy,
 }
 

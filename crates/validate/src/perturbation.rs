@@ -123,7 +123,7 @@ impl Perturbation {
         }
     }
 
-    /// What it sets in a car with these keys.
+    /// Gives the overrides for a car with these keys.
     pub(super) fn overrides(&self, known: &[KeyInfo]) -> Vec<Override> {
         let of_key = |key: &String| {
             let info = known.iter().find(|info| info.key == *key)?;

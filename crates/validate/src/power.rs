@@ -1,4 +1,4 @@
-//! What the rows can see: every number of the cars changed by itself, and every choice made otherwise, and the rows judged again. A row that
+//! Power of the rows: every number of the cars changed by itself, every choice made otherwise, and the rows judged again. A row that
 //! keeps its verdict under all of that is no evidence for any of it.
 //!
 //! A change goes to every car of the sources that has its keys, before the overrides of the source. Small factors and choices are tried on all
@@ -51,7 +51,7 @@ pub struct Perturbations {
 impl Perturbations {
     /// The changes of the cars of all sources.
     #[must_use]
-    pub fn of(files: &[RowFile], candidate: &CandidateVehicle) -> Self {
+    pub fn new(files: &[RowFile], candidate: &CandidateVehicle) -> Self {
         let mut known = KnownCars::new();
         let sources = files.iter().flat_map(|file| &file.sources).map(Some);
         for source in std::iter::once(None).chain(sources) {
@@ -201,16 +201,16 @@ impl Strength {
 pub struct Flip {
     /// The change, such as `transmission.cvt.ratio.low x0.6`.
     pub change: String,
-    /// What the verdict is then.
+    /// Verdict after the change.
     pub verdict: &'static str,
-    /// Whether it is a small factor on a number.
+    /// True for a small factor on a number.
     pub small: bool,
     /// Key, or name of the keys.
     #[serde(skip)]
     name: String,
 }
 
-/// What the changes do to a row.
+/// Effect of the changes on a row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowPower {
     /// Identifier.
@@ -279,7 +279,7 @@ impl RowPower {
         texts.join("; ")
     }
 
-    /// What is wrong with the recorded verdict, by what the changes do.
+    /// Finds a fault of the recorded verdict from the effect of the changes.
     fn fault(&self) -> Option<String> {
         let id = &self.id;
         match (self.recorded?, self.flips.first()) {
@@ -304,7 +304,7 @@ pub struct Refused {
     pub why: String,
 }
 
-/// What the changes do to the rows that are compared.
+/// Effect of the changes on the rows that are compared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerReport {
     /// Rows in order.

@@ -65,7 +65,7 @@ const ROW: &str = "\n[[row]]\n";
 /// The beginning of a tolerance or a source.
 const PART: &str = "\n[";
 
-/// What is before the rows of a file.
+/// Gives the text before the rows of a file.
 fn head_of(name: &str) -> &'static str {
     let file = embedded_rows().iter().find(|(of, _)| *of == name);
     file.and_then(|(_, text)| text.split(ROW).next())

@@ -145,7 +145,7 @@ fn tolerance(s: &Section, name: &str) -> Tolerance {
     }
 }
 
-/// What the rows of a file may refer to.
+/// Names that the rows of a file may refer to.
 struct Head<'a> {
     tolerances: &'a [Tolerance],
     names: FileNames<'a>,

@@ -33,7 +33,7 @@ pub struct Counts {
 
 impl Counts {
     /// Counts of some rows.
-    pub fn of<'a>(rows: impl Iterator<Item = &'a Judged> + Clone) -> Self {
+    pub fn from_rows<'a>(rows: impl Iterator<Item = &'a Judged> + Clone) -> Self {
         let count = |verdict: Verdict| rows.clone().filter(|row| row.verdict == verdict).count();
         Counts {
             agrees: count(Verdict::Agrees),
@@ -51,7 +51,7 @@ impl Counts {
 pub fn json(report: &Report) -> Value {
     let group = |group: Group| {
         let found = object!({
-            "counts": Counts::of(report.of_group(group)),
+            "counts": Counts::from_rows(report.of_group(group)),
             "held_out": report.held_out(group),
         });
         (group.word().to_owned(), found)
@@ -59,7 +59,7 @@ pub fn json(report: &Report) -> Value {
     let rest = object!({
         "vehicle": report.candidate.vehicle,
         "set": report.candidate.set,
-        "counts": Counts::of(report.rows.iter()),
+        "counts": Counts::from_rows(report.rows.iter()),
         "groups": report.groups().into_iter().map(group).collect::<serde_json::Map<_, _>>(),
         "moved": report.moved().map(|row| row.row.id.as_str()).collect::<Vec<_>>(),
         "rows": report.rows.iter().map(row_of).collect::<Vec<_>>(),

@@ -23,9 +23,9 @@ pub struct Tolerance {
 /// A computed number that supports the reason of a row that differs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
-    /// What it is.
+    /// Meaning of the number, in words.
     pub what: String,
-    /// Its unit.
+    /// Unit of the number.
     pub unit: String,
     /// How it is computed.
     pub compute: Expr,
@@ -61,7 +61,7 @@ pub struct ValidationRow {
     pub chapter: String,
     /// Page of the book.
     pub mechanism: &'static str,
-    /// What is compared.
+    /// Quantity that is compared.
     pub what: String,
     /// At which condition.
     pub condition: String,
@@ -75,7 +75,7 @@ pub struct ValidationRow {
     pub printed: Option<Printed>,
     /// Name of the tolerance; empty for orders and signs.
     pub tolerance: String,
-    /// Its widths below the lower and above the upper printed number, in the unit of the row.
+    /// Widths of the tolerance below the lower and above the upper printed number, in the unit of the row.
     pub tolerance_widths: [f64; 2],
     /// File and lines that the numbers of a fleet come from.
     pub data: String,
@@ -87,7 +87,7 @@ pub struct ValidationRow {
     pub recorded: Option<Verdict>,
     /// Why it differs or cannot be compared.
     pub reason: String,
-    /// What else a reader should know.
+    /// Remark for the reader.
     pub remark: String,
     /// Number behind the reason.
     pub cause: Option<Cause>,
@@ -98,7 +98,7 @@ pub struct ValidationRow {
 }
 
 impl ValidationRow {
-    /// Whether the row tests the program: computed, no parameter was fitted to it, no constant that the program was given, and able to fail.
+    /// True if the row tests the program: computed, no parameter was fitted to it, no constant that the program was given, and able to fail.
     #[must_use]
     pub fn is_held_out(&self) -> bool {
         self.compute.is_some()
@@ -109,7 +109,7 @@ impl ValidationRow {
 }
 
 impl ValidationRow {
-    /// Whether a number is another one than the row has, by the rule of its verdict.
+    /// True if a number contradicts the row by the rule of its verdict.
     #[must_use]
     pub fn contradicts(&self, computed: f64) -> bool {
         let verdict = |printed| {
@@ -129,7 +129,7 @@ impl ValidationRow {
 pub struct RowFile {
     /// Name.
     pub name: String,
-    /// Whose numbers its rows have.
+    /// Origin of the numbers of the rows.
     pub group: Group,
     /// Own tolerances, then those of the common file.
     pub tolerances: Vec<Tolerance>,

@@ -7,7 +7,7 @@
 use super::expr::Computed;
 use super::keys::{GROUPS, VERDICTS};
 
-/// What came out of a row.
+/// Verdict on a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// Computed as printed, within the tolerance.
@@ -50,7 +50,7 @@ impl Verdict {
     }
 }
 
-/// Whose numbers the rows of a file have.
+/// Origin of the numbers in the rows of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Group {
     /// The thesis.
@@ -100,7 +100,7 @@ impl Fleet {
     }
 }
 
-/// What is printed, in numbers.
+/// Published value, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Printed {
     /// From a smallest to a largest number; infinite where one side is open.
@@ -128,7 +128,7 @@ pub fn verdict(computed: &Computed, printed: Printed, widths: [f64; 2], fitted: 
     }
 }
 
-/// Whether both ends lie within what is printed and its tolerance; on the limits but for rounding.
+/// True if both ends lie within the printed range and its tolerance, limits included up to rounding.
 fn within([from, to]: [f64; 2], printed: Printed, widths: [f64; 2]) -> bool {
     let Printed::Range(low, high) = printed else {
         return false;

@@ -13,7 +13,7 @@ use cvtcycle_model::keys::{Key, Presence, Values};
 use cvtcycle_model::rig::transmission::MAX_DURATION_S;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
-/// What a source computes.
+/// Computation of a source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A transmission on the bench.
@@ -66,7 +66,7 @@ pub struct Source {
     pub name: String,
     /// Place of its overrides, or of its kind.
     pub place: Place,
-    /// What it computes.
+    /// Computation that it makes.
     pub kind: Kind,
     /// Vehicle; none for the candidate vehicle.
     pub vehicle: Option<String>,
@@ -176,7 +176,7 @@ pub fn resolve_paths(sources: &mut [Source], file: &str) {
 
 fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     let Some(kind) = kind(s, base.as_ref()) else {
-        // What its keys mean is not known.
+        // The keys of an unknown kind are skipped.
         s.pass_over();
         return Source::new(name, Kind::Vehicle);
     };
@@ -216,7 +216,7 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     source
 }
 
-/// What a source computes; none, and reported, if it does not say so.
+/// Reads the kind of a source; `None`, and a problem, if it is missing.
 fn kind(s: &Section, base: Option<&Source>) -> Option<Kind> {
     if s.has("source") {
         let word = Values::word(s, &SOURCE.source);

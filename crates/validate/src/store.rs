@@ -18,13 +18,13 @@ pub trait Cars {
     /// The car of a source; the subject for none.
     ///
     /// # Errors
-    /// What is wrong with its files, or with its numbers.
+    /// Problems of its files or numbers.
     fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Problems>;
 
-    /// What the transmission rig is set to, for a source.
+    /// Conditions of the transmission rig for a source.
     ///
     /// # Errors
-    /// What is wrong with its values.
+    /// Problems of its values.
     fn conditions(&self, source: Option<&Source>) -> Result<(Conditions, Vec<KeyInfo>), Problems>;
 }
 
@@ -82,7 +82,7 @@ impl<'a> Store<'a> {
         })
     }
 
-    /// Evaluations so far; none if more were asked for than there may be.
+    /// Evaluations so far; `None` above the limit.
     pub fn evaluations(&self) -> Option<u64> {
         self.left.get().map(|left| MAX_EVALUATIONS - left)
     }
@@ -135,7 +135,7 @@ pub struct View<'a> {
     sources: &'a [Source],
     left_out: Cell<usize>,
     outside: Cell<usize>,
-    /// What was found, by source: expressions may look for it in every evaluation.
+    /// Tables by source, cached: expressions may read them in every evaluation.
     tables: RefCell<HashMap<(usize, bool), Made>>,
     keys: RefCell<HashMap<Owner, Numbers>>,
 }

@@ -4,7 +4,7 @@ use crate::print::colour::Paint;
 use crate::print::sections;
 use cvtcycle::output::number::{NONE, fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
-use cvtcycle::study::answer::{Information, LeastOf, OutputAnswer};
+use cvtcycle::study::answer::{Information, MinimumOver, OutputAnswer};
 use cvtcycle::study::execute::outputs::EXCESS;
 use cvtcycle::study::statistics::{
     Confidence, Estimate, FactorIndices, Group, Groups, SobolIndices, Tornado,
@@ -76,9 +76,9 @@ fn grid(output: &OutputAnswer) -> String {
         table.row([name.clone()].into_iter().chain(cells));
     }
     let scope = match matrix.least_of {
-        LeastOf::All => "",
-        LeastOf::Row => " of its row",
-        LeastOf::Column => " of its column",
+        MinimumOver::All => "",
+        MinimumOver::Row => " of its row",
+        MinimumOver::Column => " of its column",
     };
     format!("{}  * least{scope}\n", table.text())
 }

@@ -135,7 +135,7 @@ impl StudyRunArgs {
         }
         // Already checked when the study began.
         let confidence = self.confidence.get(&mut Problems::default());
-        let found = S::evaluate(StudyManifest::of(study), dir.study()?, confidence)?;
+        let found = S::evaluate(StudyManifest::new(study), dir.study()?, confidence)?;
         let list = match &self.out.out {
             Some(_) => tables::written(dir.path(), &dir.finish(&found.files()?)?),
             None => String::new(),

@@ -52,7 +52,7 @@ impl Execute for StudyExportArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let path = self.out.path(problems)?;
-        let format = problems.take(Format::of(path));
+        let format = problems.take(Format::from_path(path));
         let study = problems.take(Study::open(&self.dir));
         // Without a valid format, other problems of the file name are not reported.
         let format = format?;

@@ -143,7 +143,7 @@ fn shares_leave_out_what_is_missing() {
 fn val_intervals_hold_the_truth_as_often_as_they_say() {
     for (confidence, mean, ranks) in [
         (USUAL, 925..=975, 935..=985),
-        (Confidence::of(0.8), 755..=845, 775..=875),
+        (Confidence::from_level(0.8), 755..=845, 775..=875),
     ] {
         let hits = hits(confidence);
         println!("mean, median, share: {hits:?} of 1000, {confidence:?}");

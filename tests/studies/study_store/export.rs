@@ -25,7 +25,7 @@ const HEADER: [&str; 5] = [
 ];
 
 fn exported(study: &Path, table: &str, to: &Path) -> Result<Exported, cvtcycle::config::Problem> {
-    let format = Format::of(to)?;
+    let format = Format::from_path(to)?;
     let mut out = OutputFile::create(to, true)?;
     let exported = export(&Study::open(study)?, table, format, &mut out)?;
     out.commit()?;
@@ -153,7 +153,7 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
         );
     }
     for name in ["a", "a.xlsx", "a.csv.gz", "csv"] {
-        let problem = Format::of(Path::new(name)).unwrap_err();
+        let problem = Format::from_path(Path::new(name)).unwrap_err();
         assert!(problem.allowed.contains(".parquet"), "{name}");
     }
     let spoiled = path.join("parts/trace_00001.parquet");

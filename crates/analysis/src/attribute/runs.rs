@@ -20,7 +20,7 @@ pub(super) struct Burnt {
 }
 
 impl Burnt {
-    fn of(run: &RunSummary) -> Self {
+    fn from_run(run: &RunSummary) -> Self {
         let phases = run.phases.iter().map(|phase| phase.fuel_l_per_100km);
         let fuel = std::iter::once(run.headline_fuel()).chain(phases);
         Burnt {
@@ -44,7 +44,7 @@ pub(super) struct Runs<'a> {
 
 impl<'a> Runs<'a> {
     pub(super) fn new(of: &'a Attribution<'a>, numbers: &'a RunSummary) -> Self {
-        let base = Burnt::of(numbers);
+        let base = Burnt::from_run(numbers);
         Runs { of, numbers, base }
     }
 
@@ -76,7 +76,7 @@ impl<'a> Runs<'a> {
                     outcome,
                 };
                 let role = &self.numbers.role;
-                Burnt::of(&run_summary(of.cycle, role, of.settings, &driven))
+                Burnt::from_run(&run_summary(of.cycle, role, of.settings, &driven))
             };
             drive_each(&runs, of.cycle).iter().map(burnt).collect()
         };

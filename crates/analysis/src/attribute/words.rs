@@ -1,4 +1,4 @@
-//! What the prices say, as sentences: for the terminal and for reports.
+//! Prices as sentences, for the terminal and for reports.
 
 use cvtcycle_output::Component;
 use cvtcycle_output::number::{fixed, plain};
@@ -9,7 +9,7 @@ const NAMED: usize = 5;
 /// Interaction that a sentence takes for none, points.
 const SMALL: f64 = 0.05;
 
-/// What the losses of a car cost, in a sentence; none without a price.
+/// Describes the cost of a car's losses in a sentence; `None` without a price.
 pub fn answer(run: &RunSummary) -> Option<String> {
     let price = run.price.as_ref()?;
     let whole = price.together.percent?;

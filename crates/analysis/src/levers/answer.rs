@@ -27,7 +27,7 @@ use cvtcycle_study::statistics::{
 const NOTHING_PERCENT: f64 = 0.005;
 
 /// Share of the draws above which failed ones make that a lever does not work in a car, or a car not in its draws.
-const MOST_FAILED: f64 = 0.5;
+const MAX_FAILED: f64 = 0.5;
 
 /// Column of the carbon dioxide.
 const CO2: &str = "co2_g_per_km";
@@ -44,7 +44,7 @@ const EFFECTS: [(&str, &str, bool); 8] = [
     ("end_transmission_sump_degc", "degC", true),
 ];
 
-/// What a lever study says.
+/// Results of a lever study.
 #[derive(Clone, Debug, Serialize)]
 pub struct LeverAnswer {
     /// Version of this object.
@@ -59,7 +59,7 @@ pub struct LeverAnswer {
     pub draws_done: u64,
     /// How sure the intervals are.
     pub confidence: Confidence,
-    /// What the number of draws can tell.
+    /// Statements that the number of draws allows.
     pub enough: Enough,
     /// Engine speed below which a loaded engine behind a closed clutch is heard and felt, rpm.
     pub heard_rpm: f64,
@@ -67,7 +67,7 @@ pub struct LeverAnswer {
     pub runs: Ended,
     /// By car and ambient temperature.
     pub blocks: Vec<LeverBlock>,
-    /// What a reader should know, a sentence each.
+    /// Notes for the reader, a sentence each.
     pub notes: Vec<String>,
 }
 
@@ -82,7 +82,7 @@ pub struct LeverBlock {
     pub fuel_l_per_100km: f64,
     /// Draws in which the car as it is fails a check or cannot be driven.
     pub failed: usize,
-    /// Of how many.
+    /// Number of draws in total.
     pub n: usize,
     /// Checks that it fails there with their counts, the commonest first.
     pub reasons: Vec<(String, usize)>,
@@ -93,7 +93,7 @@ pub struct LeverBlock {
 /// One lever of a car.
 #[derive(Clone, Debug, Serialize)]
 pub struct LeverRow {
-    /// What it is.
+    /// Description of the column.
     #[serde(flatten)]
     pub of: ColumnNote,
     /// Draws with both runs.
@@ -114,10 +114,10 @@ pub struct LeverRow {
     pub fuel_l_per_100km: f64,
     /// Median change of carbon dioxide, g/km.
     pub co2_g_per_km: f64,
-    /// Of a combination the sum of the medians of its levers, %.
+    /// Sum of the medians of the levers of a combination, %.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sum_percent: Option<f64>,
-    /// What it does besides.
+    /// Effects other than fuel.
     pub effects: Vec<SideEffect>,
 }
 
@@ -126,7 +126,7 @@ pub struct LeverRow {
 pub struct SideEffect {
     /// Column of the table of runs.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit of the effect.
     pub unit: &'static str,
     /// Worst of all draws.
     pub worst: f64,
@@ -137,7 +137,7 @@ pub struct SideEffect {
 }
 
 impl LeverAnswer {
-    /// Whether a car as it is fails in most of its draws; without draws, whether any run fails.
+    /// True if an unchanged car fails in most of its draws; without draws, if any run fails.
     pub fn is_failed(&self) -> bool {
         match self.plan {
             Some(_) => self
@@ -149,13 +149,13 @@ impl LeverAnswer {
     }
 }
 
-/// Whether failed draws are too many for the others to speak for all.
+/// True if too many draws failed for the others to represent all.
 fn is_most(failed: usize, n: usize) -> bool {
-    failed as f64 > MOST_FAILED * n as f64
+    failed as f64 > MAX_FAILED * n as f64
 }
 
 impl LeverRow {
-    /// Whether it fails in most of the draws in which its reference does not.
+    /// True if it fails in most of the draws in which its reference does not.
     pub fn does_not_work(&self) -> bool {
         is_most(self.failed, self.failed + self.n)
     }
@@ -166,7 +166,7 @@ impl LeverRow {
         found.map_or(f64::NAN, |effect| effect.worst)
     }
 
-    /// Whether it is a combination.
+    /// True for a combination.
     pub fn is_combination(&self) -> bool {
         self.of.kind == "combination"
     }
@@ -251,7 +251,7 @@ pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverA
         draws: outline.points,
         draws_done: done as u64,
         confidence,
-        enough: Enough::of(if about.plan.is_some() { done } else { 0 }, confidence),
+        enough: Enough::from_draws(if about.plan.is_some() { done } else { 0 }, confidence),
         plan: about.plan,
         heard_rpm: about.heard_rpm,
         runs: ended(frame)?,

@@ -12,7 +12,7 @@ pub(super) struct LeverCar {
     pub word: String,
     /// Name, unique within the study.
     pub name: String,
-    /// Whether it has a CVT.
+    /// True if the car has a CVT.
     pub is_cvt: bool,
     /// Indices of its levers.
     pub levers: Vec<usize>,
@@ -84,7 +84,7 @@ pub(super) fn cars(
     (cars, notes)
 }
 
-/// Whether a car can have a lever, and differs by it.
+/// Checks that a car can have a lever, and that the lever changes it.
 fn try_lever(
     request: &LeverRequest,
     word: &str,

@@ -1,4 +1,4 @@
-//! Which levers go together.
+//! Combinations of levers.
 
 use super::cars::LeverCar;
 use super::{Lever, LeverRequest, options};
@@ -24,7 +24,7 @@ pub(super) struct Nominal {
     pub lever: usize,
     /// Change of the fuel, mean of the ambient temperatures.
     pub percent: f64,
-    /// Whether no run failed.
+    /// True if no run failed.
     pub is_good: bool,
 }
 
@@ -111,7 +111,7 @@ fn together<'l>(
     problems.first().map(|problem| problem.message.clone())
 }
 
-/// What is wrong with the combinations that the user names.
+/// Checks the combinations that the user names.
 pub(super) fn check(request: &LeverRequest, cars: &[LeverCar], problems: &mut Problems) {
     let Combine::Lists(lists) = &request.combine else {
         return;

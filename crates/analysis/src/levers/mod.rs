@@ -58,17 +58,17 @@ pub struct Lever {
     pub engine_oil: Option<String>,
     /// A combination has one lever of a group.
     pub group: Option<String>,
-    /// Whether the automatic combination may have it.
+    /// True if the automatic combination may include it.
     pub combine: bool,
-    /// What it takes; may be empty.
+    /// Requirements; may be empty.
     pub needs: String,
     /// `source`, `derived`, `fitted` or `assumed`.
     pub status: String,
     /// Reason or reference; may be empty.
     pub source: String,
-    /// Whether it is for cars with a CVT alone, or for those without one alone.
+    /// `true`: only for cars with a CVT; `false`: only for those without; `None`: for all.
     pub of_cvt: Option<bool>,
-    /// Whether the user has named it or its file: then it has to be one that a car can have.
+    /// True if the user has named it or its file: a car that cannot have it is then an error.
     pub is_named: bool,
     /// Place of its name.
     pub place: Place,
@@ -102,7 +102,7 @@ impl LeverFile {
 }
 
 impl Lever {
-    /// Whether it gives a value to the key of a factor, which then has no doubt left.
+    /// True if it gives a value to the key of a factor, which is then no longer uncertain.
     fn fixes(&self, factor: &Factor) -> bool {
         let sets = |by: &Override| by.acts() == Acts::Value && by.key() == factor.key;
         self.set.iter().any(sets)
@@ -134,14 +134,14 @@ impl Lever {
     }
 }
 
-/// Whether an override chooses an option in which the key of another one is not.
+/// True if an override chooses an option that lacks the key of another override.
 fn removes(by: &Override, other: &Override) -> bool {
     let below = other.key().strip_prefix(by.key());
     let option = below.and_then(|below| below.strip_prefix('.')?.split('.').next());
     by.acts() == Acts::Value && option.is_some_and(|option| option != by.value())
 }
 
-/// What cars with some levers are read with.
+/// Collects the options that cars with some levers are read with.
 fn options<'l>(engine_oil: Option<&String>, levers: impl Iterator<Item = &'l Lever>) -> Options {
     let mut options = Options {
         engine_oil: engine_oil.cloned(),

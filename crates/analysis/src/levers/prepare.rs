@@ -1,6 +1,6 @@
 //! Levers, cars and ambient temperatures to the columns of a study.
 //!
-//! Of each car at each ambient temperature there is a reference, the car as it is, and a column for each lever and each combination. Columns
+//! Each car at each ambient temperature has a reference, the car as it is, and a column for each lever and each combination. Columns
 //! of one point have the same draw. A lever that gives a key a value leaves the factor of that key out of its own draw and out of that of
 //! its reference, so that the doubt about a value which the lever replaces is no doubt about the lever; levers that leave the same factors
 //! out share a reference.
@@ -198,7 +198,7 @@ fn nominal(request: &LeverRequest, plan: &Plan, car: &LeverCar) -> Result<Vec<No
 struct Builder<'r> {
     request: &'r LeverRequest,
     plan: &'r Plan,
-    /// Whether the subject of the plan has a CVT: cars without one are varied as its baselines.
+    /// True if the subject of the plan has a CVT: cars without one are varied as its baselines.
     of_cvt: bool,
     list: Vec<Column>,
     notes: Vec<ColumnNote>,

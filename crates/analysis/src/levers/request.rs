@@ -1,11 +1,11 @@
-//! What is to be driven with levers, and what the columns of its table are.
+//! Request for a lever study, and descriptions of the columns of its table.
 
 use super::Lever;
 use super::combine::Combine;
 use cvtcycle_study::plan::Plan;
 use serde::{Deserialize, Serialize};
 
-/// What is to be driven.
+/// Cars, levers and conditions of a lever study.
 #[derive(Clone, Debug)]
 pub struct LeverRequest {
     /// Levers, in the order of their files.
@@ -30,7 +30,7 @@ pub struct LeverRequest {
     pub heard_rpm: f64,
 }
 
-/// What the columns of a lever study are.
+/// Description of the columns of a lever study.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LeverNotes {
     /// Name of the plan whose factors are drawn; none without draws.
@@ -39,11 +39,11 @@ pub struct LeverNotes {
     pub heard_rpm: f64,
     /// In the order of the cars of the table.
     pub columns: Vec<ColumnNote>,
-    /// What a reader of the results should know, a sentence each.
+    /// Notes for the reader, a sentence each.
     pub notes: Vec<String>,
 }
 
-/// What a column is.
+/// Description of a column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ColumnNote {
     /// Name of the car.
@@ -61,16 +61,16 @@ pub struct ColumnNote {
     /// Levers of a combination.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub members: Vec<String>,
-    /// What is changed.
+    /// Overrides of the car.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub set: Vec<String>,
     /// Factors that are left out of its draw and of that of its reference.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<String>,
-    /// Its group; empty without one.
+    /// Group; empty without one.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub group: String,
-    /// What it takes; may be empty.
+    /// Requirements; may be empty.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub needs: String,
     /// How its size is known.

@@ -3,7 +3,7 @@
 use super::{LeverAnswer, LeverBlock, LeverRow};
 use cvtcycle_output::number::{fixed, signed};
 
-/// What a car's levers save, the first lines of the answer.
+/// Describes the savings of a car's levers: the first lines of the answer.
 pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> {
     let mut sentences = Vec::new();
     let fuel = fixed(block.fuel_l_per_100km, 2);
@@ -15,7 +15,7 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         None => String::new(),
     };
     let all = || block.rows.iter().filter(|row| !row.is_combination());
-    // What little holds of a lever that mostly fails says nothing.
+    // Levers that mostly fail are left out: the few draws that remain prove nothing.
     let single = || all().filter(|row| !row.does_not_work());
     match single().find(|row| row.fuel_percent.value < 0.0) {
         Some(best) => {

@@ -175,7 +175,7 @@ fn locked(row: &Row) -> bool {
     row.speed_m_s > 0.0 && !row.flags.any(Flags(unlocked | Flags::ENGINE_OFF.0))
 }
 
-/// What a limit costs, from the share of the fuel that is burnt without it.
+/// Computes the price of a limit from the fuel without it, a fraction of the fuel with it.
 fn price(limit: &'static str, without: f64) -> LimitPrice {
     LimitPrice {
         limit,
@@ -319,7 +319,7 @@ impl Question<'_> {
         if let Some((file, here)) = texts(from).filter(|(_, here)| reads(here)) {
             return (file, here, options);
         }
-        // What no file can have is given again.
+        // Options that no file can hold are given again.
         let options = Options {
             lubricant: None,
             engine_oil: None,
@@ -375,7 +375,7 @@ fn optimum_low(of: &Transmission) -> f64 {
     }
 }
 
-/// What has to be given again with a file, in the words of a user.
+/// Lists the options that must be given again with a file, as users write them.
 fn again_in_words(options: &Options) -> Vec<String> {
     let sets = options.set.iter().map(|by| by.input().to_string());
     let plain = options.formulation == Formulation::default();

@@ -27,13 +27,13 @@ pub struct LineFile<'a> {
 pub struct ReadFrom<'a> {
     /// Name or path of its vehicle.
     pub vehicle: &'a str,
-    /// What it was read with.
+    /// Options that it was read with.
     pub options: &'a Options,
     /// How the written file names a vehicle or a fluid that a name or a path has here.
     pub named: &'a dyn Fn(&str) -> String,
 }
 
-/// What has to be given again when the file is read, as the options of a reading: values of a fluid and the reading of the belt model, which a
+/// Options that must be given again when the file is read: values of a fluid and the reading of the belt model, which a
 /// vehicle file does not have.
 pub fn again(options: &Options) -> Options {
     let of_fluid = |by: &&Override| by.target() != Target::Vehicle;

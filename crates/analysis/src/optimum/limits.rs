@@ -1,4 +1,4 @@
-//! What each limit costs, and which one cannot be held.
+//! Price of each limit, and limits that make a task infeasible.
 
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::thermal::NODES;
@@ -115,7 +115,7 @@ const SETS: [&[LimitName]; 7] = {
 /// Halvings of the range in which the largest value of a limit is sought.
 const HALVINGS: usize = 10;
 
-/// Which limits make a task infeasible, and where.
+/// Finds the limits that make a task infeasible, and where.
 pub(super) fn infeasible(
     scene: &Scene,
     table: &Table,

@@ -66,7 +66,7 @@ use self::stages::Problem;
 /// Largest change of the driven fuel between two sets of temperatures that is taken for settled.
 const SETTLED: f64 = 2e-4;
 /// Most sets of temperatures.
-const MOST_TEMPERATURES: usize = 6;
+const MAX_TEMPERATURES: usize = 6;
 /// Part of what the best path, driven, burns less than the least fuel less the other tolerances that is in the tolerance. ASSUMED: once for that path, and as much again for
 /// others, which have the same launches.
 const LAG: f64 = 2.0;
@@ -86,7 +86,7 @@ pub struct Limits {
     pub down_per_s: f64,
 }
 
-/// What clamps the belt.
+/// Control of the clamping pressure of the belt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Clamp {
     /// The car's law.
@@ -100,12 +100,12 @@ pub enum Clamp {
     },
 }
 
-/// What is to be driven.
+/// Drives to be optimized.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a> {
     /// The car.
     pub car: &'a Car,
-    /// Its CVT.
+    /// CVT of the car.
     pub cvt: &'a Cvt,
     /// The steps of the trace.
     pub steps: &'a [Step],
@@ -113,9 +113,9 @@ pub struct Task<'a> {
     pub trace: &'a Trace,
     /// State before the first step.
     pub start: State,
-    /// Whether each drive is warmed up by itself: it begins in the state in which the same drive from `start` ends.
+    /// True if each drive is warmed up by itself: it begins in the state in which the same drive from `start` ends.
     pub warm: bool,
-    /// What clamps the belt.
+    /// Control of the clamping pressure.
     pub clamp: Clamp,
     /// Limits.
     pub limits: Limits,
@@ -146,7 +146,7 @@ pub struct Bound {
     pub without: Vec<(LimitName, f64)>,
     /// Rows of the path as driven.
     pub rows: Vec<Row>,
-    /// What drives it.
+    /// Controls of each step.
     pub holds: Vec<Hold>,
     /// Steps in which a ratio is chosen and the limits of speed and reserve count while the coupling is locked.
     pub chosen: Vec<bool>,
@@ -155,7 +155,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// What no controller within the limits goes below, kg.
+    /// Lower bound of the fuel of any controller within the limits, kg.
     pub fn least_kg(&self) -> f64 {
         self.fuel_kg - self.tolerance_kg
     }
@@ -295,7 +295,7 @@ fn settled(scene: &Scene, task: &Task) -> Result<(Reference, Vec<f64>), Box<Infe
         let moved = [driven.fuel_kg() / fuel_kg, change(&least)];
         fuel_kg = driven.fuel_kg();
         let settled = moved.iter().all(|ratio| (ratio - 1.0).abs() < SETTLED);
-        if settled || least.len() >= MOST_TEMPERATURES {
+        if settled || least.len() >= MAX_TEMPERATURES {
             return Ok((driven, least));
         }
     }

@@ -1,4 +1,4 @@
-//! What engine and box do in a step at one ratio: the numbers of a node, and those between two of them.
+//! Engine and box in a step at one ratio: the numbers of a node, and those interpolated between two of them.
 
 use cvtcycle_model::thermal::NODES;
 
@@ -33,7 +33,7 @@ pub struct Node {
     pub fired_nm: f64,
     /// The same where it is cut.
     pub cut_nm: f64,
-    /// What a full cut takes from it at most, Nm.
+    /// Maximum torque taken by a full fuel cut, Nm.
     pub drag_nm: f64,
     /// Full load, Nm.
     pub full_load_nm: f64,
@@ -47,11 +47,11 @@ pub struct Node {
     pub deficit_w: f64,
     /// Least speed at which the coupling stays locked, rad/s.
     pub locked_rad_s: f64,
-    /// Whether the coupling stays in this mode, the belt holds, and the engine is no faster than it may be.
+    /// True if the coupling stays in this mode, the belt holds, and the engine is within its maximum speed.
     pub ok: bool,
     /// Mode of the coupling.
     pub mode: Mode,
-    /// Whether the law of the coupling locks it here where it was open before, and where it was locked.
+    /// Result of the lock-up law here for a coupling that was open before, and for one that was locked: true if locked.
     pub locks: [bool; 2],
 }
 
@@ -107,7 +107,7 @@ impl Node {
     }
 
     /// The node at a place.
-    pub fn of(nodes: &[Node], at: Place) -> Node {
+    pub fn at_place(nodes: &[Node], at: Place) -> Node {
         match at.share > 0.0 {
             true => Node::between(&nodes[at.node], &nodes[at.node + 1], at.share),
             false => nodes[at.node],

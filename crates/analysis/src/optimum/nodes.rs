@@ -1,4 +1,4 @@
-//! What engine and box do in a step at a ratio, by the model's own step.
+//! Engine and box in a step at a ratio, by the model's own step.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -24,7 +24,7 @@ use super::scene::{Scene, free_law};
 const SAFETIES: [f64; 5] = [1.0, 1.3, 1.7, 2.3, 3.4];
 /// Halvings of the distance between them about the best one.
 const HALVINGS: usize = 2;
-/// Of so many ratios one is searched for its best free clamp.
+/// Spacing of the ratios at which the best free clamp is searched: one in so many.
 const SEARCHED: usize = 4;
 /// Share of fuel by which a higher pressure has to be better.
 const CLEARLY: f64 = 1e-6;

@@ -19,7 +19,7 @@ impl Place {
     }
 
     /// Where `x` is among ascending `nodes`; none outside them.
-    pub fn of(x: f64, nodes: &[f64]) -> Option<Self> {
+    pub fn locate(x: f64, nodes: &[f64]) -> Option<Self> {
         let above = nodes.partition_point(|node| *node < x - NEAR);
         let node = *nodes.get(above)?;
         if node <= x + NEAR {

@@ -13,7 +13,7 @@ use super::place::{NEAR, Place};
 
 /// A problem in stages. The state between two stages is one number, known at the nodes of the stage before.
 pub trait Stages: Sync {
-    /// What a stage knows of the place that it is left from.
+    /// Data that a stage has for the place that it is left from.
     type From;
 
     /// How many stages there are.
@@ -40,7 +40,7 @@ pub trait Stages: Sync {
     fn cost(&self, stage: usize, from: &Self::From, to: Place) -> f64;
 }
 
-/// Which controls are tried besides the nodes.
+/// Controls tried in addition to the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Controls {
     /// None: for a comparison with all paths over the nodes.
@@ -171,7 +171,7 @@ fn best<S: Stages>(
         }
         if controls == Controls::WithEnds {
             for x in [low, high, x.clamp(low, high)] {
-                if let Some(place) = Place::of(x, nodes).filter(|place| place.share > 0.0) {
+                if let Some(place) = Place::locate(x, nodes).filter(|place| place.share > 0.0) {
                     consider(x, place.later(begin)); // DP-3
                 }
             }

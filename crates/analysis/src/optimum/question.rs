@@ -1,4 +1,4 @@
-//! What is asked about a car with a CVT, and the answer in numbers.
+//! Question about a car with a CVT, and the answer in numbers.
 
 use super::limits::Infeasible;
 use cvtcycle_config::Problems;
@@ -12,11 +12,11 @@ use serde::Serialize;
 pub struct LawCar<'a> {
     /// Name of the law.
     pub law: &'a str,
-    /// Its input.
+    /// Input of the car.
     pub setup: &'a Setup,
 }
 
-/// What is asked for.
+/// Task and limits of the optimization.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
     /// The car with its own clamp law, then with the others.
@@ -35,9 +35,9 @@ pub struct Question<'a> {
     pub rates_per_s: Option<(f64, f64)>,
     /// Ratios of the grid.
     pub grid: usize,
-    /// Whether the operating line is sought.
+    /// True to search for the operating line.
     pub line: bool,
-    /// Whether the worth of a clutch is asked for that carries any torque at idle speed.
+    /// True to compute the worth of a clutch that carries any torque at idle speed.
     pub launch_at_idle: bool,
     /// Other least engine speeds, rpm.
     pub least_speeds_rpm: &'a [f64],
@@ -80,7 +80,7 @@ pub struct LawBound {
     pub temperatures: Vec<f64>,
 }
 
-/// What a limit costs.
+/// Price of a limit.
 #[derive(Clone, Debug, Serialize)]
 pub struct LimitPrice {
     /// Limit.
@@ -126,7 +126,7 @@ pub struct LineAnswer {
     pub above_least_percent: f64,
     /// The same above the least fuel less the tolerance.
     pub above_bound_percent: f64,
-    /// Whether the car of the file burns what the line does.
+    /// True if the car of the file burns as much as the line.
     pub proven: bool,
     /// Slowest engine where there is a choice, rpm.
     pub slowest_rpm: f64,
@@ -134,7 +134,7 @@ pub struct LineAnswer {
     pub drives: usize,
     /// Fuel on other cycles.
     pub elsewhere: Vec<Elsewhere>,
-    /// What has to be given again with the file: it has all else.
+    /// Options that must be given again with the file: it has all others.
     pub again: Vec<String>,
     /// The vehicle file.
     #[serde(skip)]
@@ -148,7 +148,7 @@ pub struct Answer {
     pub bounds: Vec<LawBound>,
     /// Least fuel with the car's law by least engine speed, rpm; none where no ratio holds it.
     pub least_speeds: Vec<(f64, Option<f64>)>,
-    /// What each limit costs with the car's law, and that of a clutch which needs its speed to carry a torque.
+    /// Price of each limit with the car's law, and that of a clutch which needs its speed to carry a torque.
     pub limits: Vec<LimitPrice>,
     /// Where the coupling's own limit is above the least engine speed; none where no ratio is chosen with it locked.
     pub lock_floor: Option<LockFloor>,

@@ -26,7 +26,7 @@ pub struct Reference {
     pub holds: Vec<Hold>,
 }
 
-/// What is given each step of a drive: its number, the state before it, what held it, and its row.
+/// Observer of each step of a drive: its number, the state before it, its controls, and its row.
 type Seen<'a> = dyn FnMut(usize, State, Option<Hold>, &Row) + 'a;
 
 /// Drives the steps of a task with a car, each held as `hold` says from its number and the state before it, or by the car's own controller where

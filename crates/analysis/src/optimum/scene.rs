@@ -25,7 +25,7 @@ const WARMER_K: f64 = 1.5;
 pub struct Scene<'a> {
     /// The car.
     pub car: &'a Car,
-    /// Its box.
+    /// CVT of the car.
     pub cvt: &'a Cvt,
     /// The steps of the trace.
     pub steps: &'a [Step],
@@ -35,7 +35,7 @@ pub struct Scene<'a> {
     speed_m_s: Vec<f64>,
     /// Speed of the secondary in each step, rad/s.
     pub secondary_rad_s: Vec<f64>,
-    /// What clamps the belt.
+    /// Control of the clamping pressure.
     pub clamp: Clamp,
     /// By how much the sump may be warmer than that of the reference where its temperature locks the coupling, K (DP-14).
     pub warmer_k: f64,
@@ -225,7 +225,7 @@ impl<'a> Scene<'a> {
         0.5 * self.car.engine.inertia_kg_m2 * engine_rad_s * engine_rad_s
     }
 
-    /// What a step that no ratio holds is driven with.
+    /// Controls for a step in which no ratio is chosen.
     pub fn law_held(&self, ratio: f64) -> Hold {
         let clamp = match self.clamp {
             Clamp::Law => None,
@@ -238,7 +238,7 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// What the law of the coupling does in a step at a ratio where it was open before, and where it was locked (TC-7). A clutch that locks by
+    /// Applies the law of the coupling in a step at a ratio, for open before and locked before (TC-7). A clutch that locks by
     /// itself is locked wherever a ratio is chosen (DP-5).
     pub(super) fn locks(&self, reference: &Reference, k: usize, ratio: f64) -> [bool; 2] {
         self.locks_with(reference, k, (ratio, self.warmer_k))

@@ -1,4 +1,4 @@
-//! Which ratios a step may have: a table of all in every step, and those of it that the limits leave.
+//! Admissible ratios of a step: a table of all in every step, and those that the limits leave.
 
 use super::Limits;
 use super::node::{At, Mode, Node};
@@ -19,7 +19,7 @@ const NEAR: f64 = 1e-6;
 pub struct Table {
     /// Logarithms of the ratio, ascending to low.
     pub grid: Vec<f64>,
-    /// Of each step in which a ratio is chosen: with the coupling locked and open; the latter empty with a clutch.
+    /// Nodes by step in which a ratio is chosen: with the coupling locked and open; the latter empty with a clutch.
     nodes: Vec<Option<[Vec<Node>; 2]>>,
 }
 
@@ -72,9 +72,9 @@ pub(super) struct Stage {
     pub(super) nodes: Vec<Node>,
     /// How many of them are locked.
     pub(super) locked: usize,
-    /// Whether low gives the least engine speed, so that the limits count.
+    /// True if low gives the minimum engine speed, so that the limits apply.
     pub(super) limited: bool,
-    /// Of a step without: fuel and heat, from each place of the stage before.
+    /// Fuel and heat of a step without nodes, from each place of the stage before.
     pub(super) by_law: Vec<Driven>,
     /// The car pulls away in low.
     pub(super) from_low: bool,
@@ -101,7 +101,7 @@ fn impossible(x: f64, node: Node) -> (Vec<f64>, Vec<Node>) {
     (vec![x], vec![node])
 }
 
-/// Which ratios a step may have.
+/// Selects the admissible ratios of a step.
 pub(super) fn stage(
     scene: &Scene,
     table: &Table,
@@ -153,7 +153,7 @@ pub(super) fn stage(
     }
 }
 
-/// What a node of a step may be.
+/// Admissible states of a node of a step.
 struct May {
     /// Least engine speed with the coupling locked, rad/s.
     least_rad_s: f64,

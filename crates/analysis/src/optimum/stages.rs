@@ -19,7 +19,7 @@ use super::reference::Reference;
 use super::scene::{Scene, free_law};
 use super::stage::{Driven, IN_LOW, Stage, Table, stage};
 
-/// Of so many ratios one is enough where the ratio hardly matters.
+/// Spacing of the ratios where the ratio hardly matters: one in so many.
 const SPARSE: usize = 16;
 
 /// The problem: a scene under limits, in the temperatures of a reference drive.
@@ -38,7 +38,7 @@ pub struct From<'a> {
     engine: EngineAtTemperature<'a>,
     place: Option<Place>,
     x: f64,
-    /// Whether the coupling was locked.
+    /// True if the coupling was locked.
     locked: bool,
 }
 
@@ -108,7 +108,8 @@ impl<'a> Problem<'a> {
         let places: Vec<usize> = (0..last).step_by(SPARSE).chain([last]).collect();
         let known: Vec<Driven> = places.iter().map(|place| of(*place)).collect();
         let at: Vec<f64> = places.iter().map(|place| begins[*place]).collect();
-        let between = |x: &f64| Place::of(*x, &at).map_or(known[0], |place| driven(&known, place));
+        let between =
+            |x: &f64| Place::locate(*x, &at).map_or(known[0], |place| driven(&known, place));
         begins.iter().map(between).collect()
     }
 
@@ -118,7 +119,7 @@ impl<'a> Problem<'a> {
         let nodes = k.checked_sub(1).map(|k| &self.stages[k].nodes);
         match (nodes.filter(|nodes| !nodes.is_empty()), place) {
             (Some(nodes), Some(place)) => {
-                let node = Node::of(nodes, place);
+                let node = Node::at_place(nodes, place);
                 let scene = self.scene;
                 scene.rolling_at(before, x.exp(), node.engine_rad_s, node.mode)
             }
@@ -132,7 +133,7 @@ impl<'a> Problem<'a> {
         let (fuel_kg_s, heat_w) = if stage.nodes.is_empty() {
             driven(&stage.by_law, from.place.unwrap_or(Place::at(0)))
         } else {
-            self.held(&Node::of(&stage.nodes, to), from, dt_s)?
+            self.held(&Node::at_place(&stage.nodes, to), from, dt_s)?
         };
         let worth = heat_w.iter().zip(&self.worth[k]);
         let worth_kg_s: f64 = worth.map(|(w, worth)| w * worth).sum();
@@ -165,13 +166,13 @@ impl<'a> Problem<'a> {
         Some((burn.fuel_kg_s, heat_w)) // DP-2
     }
 
-    /// What drives a path.
+    /// Gives the controls along a path.
     pub fn holds(&self, path: &Path) -> Vec<Hold> {
         let hold = |k: usize| {
             let nodes = &self.stages[k].nodes;
             let mut hold = self.scene.law_held(path.x[k].exp());
             if let (Some(law), false) = (&mut hold.clamp, nodes.is_empty()) {
-                *law = free_law(Node::of(nodes, path.places[k]).safety);
+                *law = free_law(Node::at_place(nodes, path.places[k]).safety);
             }
             hold
         };
@@ -241,7 +242,7 @@ impl<'a> Stages for Problem<'a> {
         let nodes = nodes.filter(|nodes| !nodes.is_empty());
         let (engine_rad_s, kinetic_j, locked) = match (nodes, place) {
             (Some(nodes), Some(place)) => {
-                let node = Node::of(nodes, place);
+                let node = Node::at_place(nodes, place);
                 let w = node.engine_rad_s;
                 (w, self.scene.kinetic_j(w), node.mode == Mode::Locked)
             }

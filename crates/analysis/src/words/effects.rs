@@ -1,12 +1,14 @@
-//! What decides an output, in a sentence: the factor that moves it most or is worth knowing, and where it is least.
+//! Main cause of an output, in a sentence: the factor that moves it most or is worth knowing, and where it is smallest.
 
 use super::decimals;
 use cvtcycle_output::number::{fixed, plain, signed};
-use cvtcycle_study::answer::{Answer, GridMatrix, Information, KnownFactor, LeastOf, OutputAnswer};
+use cvtcycle_study::answer::{
+    Answer, GridMatrix, Information, KnownFactor, MinimumOver, OutputAnswer,
+};
 use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::Tornado;
 
-/// What decides an output, by design.
+/// Describes the main cause of an output, by design.
 pub(super) fn decided(output: &OutputAnswer, answer: &Answer) -> Option<String> {
     let unit = match output.output.as_str() {
         EXCESS => "points",
@@ -58,7 +60,7 @@ fn least(matrix: &GridMatrix, unit: &str) -> Option<String> {
     let number = |[i, k]: [usize; 2]| matrix.cells.get(i).and_then(|row| *row.get(k)?);
     let [of_rows, of_columns] = &matrix.factors;
     let (condition, other, along, names) = match matrix.least_of {
-        LeastOf::All => {
+        MinimumOver::All => {
             let place = *matrix.least.first()?;
             let value = fixed(number(place)?, 3);
             let (row, column) = (&matrix.rows[place[0]], &matrix.columns[place[1]]);
@@ -66,8 +68,8 @@ fn least(matrix: &GridMatrix, unit: &str) -> Option<String> {
                 "Least, {value} {unit}, with {of_rows} {row} and {of_columns} {column}."
             ));
         }
-        LeastOf::Row => (of_rows, of_columns, 0, (&matrix.rows, &matrix.columns)),
-        LeastOf::Column => (of_columns, of_rows, 1, (&matrix.columns, &matrix.rows)),
+        MinimumOver::Row => (of_rows, of_columns, 0, (&matrix.rows, &matrix.columns)),
+        MinimumOver::Column => (of_columns, of_rows, 1, (&matrix.columns, &matrix.rows)),
     };
     let (conditions, choices) = names;
     let by_choice = |choice: usize| -> Vec<&str> {
@@ -103,7 +105,7 @@ fn least(matrix: &GridMatrix, unit: &str) -> Option<String> {
 /// Width of the interval of a share from which on it says next to nothing.
 const WIDE: f64 = 0.5;
 
-/// Which factor is worth a test, and what it would leave of the spread; that none is above chance where none is.
+/// Names the factor that is worth a test and the spread that remains; says so if none is above chance.
 fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
     let causes: Vec<&KnownFactor> = of.causes().collect();
     let share = |factor: &KnownFactor| fixed(100.0 * factor.share.value, 0);
@@ -158,7 +160,7 @@ fn worth_knowing(of: &Information, unit: &str) -> Option<String> {
     ))
 }
 
-/// Whether the order of two factors is known: intervals that do not overlap, or shares further apart than chance makes them.
+/// True if the order of two factors is known: intervals that do not overlap, or shares that differ by more than chance.
 fn is_settled(first: &KnownFactor, second: &KnownFactor, noise: f64) -> bool {
     match (first.share.interval, second.share.interval) {
         (Some([low, _]), Some([_, high])) => low > high,
@@ -263,7 +265,7 @@ mod tests {
         );
     }
 
-    fn matrix(cells: [[f64; 2]; 2], least_of: LeastOf, least: &[[usize; 2]]) -> GridMatrix {
+    fn matrix(cells: [[f64; 2]; 2], least_of: MinimumOver, least: &[[usize; 2]]) -> GridMatrix {
         let words = |list: [&str; 2]| list.map(str::to_owned);
         GridMatrix {
             factors: words(["ambient", "oil"]),
@@ -277,25 +279,40 @@ mod tests {
 
     #[test]
     fn the_least_is_found_by_condition() {
-        let always = matrix([[0.4, -0.5], [0.1, 0.0]], LeastOf::Row, &[[0, 1], [1, 1]]);
+        let always = matrix(
+            [[0.4, -0.5], [0.1, 0.0]],
+            MinimumOver::Row,
+            &[[0, 1], [1, 1]],
+        );
         assert_eq!(
             least(&always, "%").unwrap(),
             "Least with oil thin at every ambient: -0.500 to 0.000 %."
         );
-        let changing = matrix([[0.4, -0.5], [0.1, 0.3]], LeastOf::Row, &[[0, 1], [1, 0]]);
+        let changing = matrix(
+            [[0.4, -0.5], [0.1, 0.3]],
+            MinimumOver::Row,
+            &[[0, 1], [1, 0]],
+        );
         assert_eq!(
             least(&changing, "%").unwrap(),
             "Least by ambient: thick at 40 \u{b0}C; thin at -30 \u{b0}C."
         );
         // A row without numbers has no least: then it is not every one.
-        let gap = matrix([[0.4, -0.5], [f64::NAN, f64::NAN]], LeastOf::Row, &[[0, 1]]);
+        let gap = matrix(
+            [[0.4, -0.5], [f64::NAN, f64::NAN]],
+            MinimumOver::Row,
+            &[[0, 1]],
+        );
         assert!(least(&gap, "%").unwrap().contains("at ambient -30 \u{b0}C"));
-        let one = matrix([[0.4, -0.5], [0.1, 0.3]], LeastOf::All, &[[0, 1]]);
+        let one = matrix([[0.4, -0.5], [0.1, 0.3]], MinimumOver::All, &[[0, 1]]);
         assert_eq!(
             least(&one, "%").unwrap(),
             "Least, -0.500 %, with ambient -30 \u{b0}C and oil thin."
         );
-        assert_eq!(least(&matrix([[0.0; 2]; 2], LeastOf::All, &[]), "%"), None);
+        assert_eq!(
+            least(&matrix([[0.0; 2]; 2], MinimumOver::All, &[]), "%"),
+            None
+        );
     }
 
     #[test]

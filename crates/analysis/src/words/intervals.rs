@@ -50,7 +50,7 @@ pub const CASES: [(&str, f64, &str); 8] = [
     ("wltc_class3b", -7.0, "soak"),
 ];
 
-/// What the file has for a case: cells of its row.
+/// Finds the row of a case in the file; gives its cells.
 fn row(pair: &Pair) -> Option<Vec<&'static str>> {
     let rows = TABLE
         .lines()
@@ -79,7 +79,7 @@ fn plan_sha256() -> String {
     text.map_or_else(String::new, |(_, text)| hash(text.as_bytes()))
 }
 
-/// What is known of the difference; none of a case that was not drawn, or with other cars, another cycle or another plan.
+/// Looks up the interval of the difference; `None` for a case that was not drawn, or with other cars, another cycle or another plan.
 pub fn known(pair: &Pair) -> Option<DrawnDifference> {
     let cells = row(pair)?;
     let count = |k: usize| cells.get(k)?.parse().ok();

@@ -1,4 +1,4 @@
-//! What a run says of its subject: fuel, difference to each baseline with what is known of it, the price of its losses, and the published
+//! Sentences about a run: fuel, difference to each baseline with its uncertainty, the price of its losses, and the published
 //! numbers that contradict it.
 
 use std::borrow::Cow;
@@ -60,7 +60,7 @@ pub fn assess(
     }
 }
 
-/// Whether a car is that of its file, unchanged. One with an override may be so all the same.
+/// True if a car is that of its file, unchanged. Overrides that repeat the file's values count as unchanged.
 fn is_shipped(name: &str, setup: &Setup) -> bool {
     if setup.origin.is_shipped && setup.name == name {
         return true;
@@ -141,7 +141,7 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let Some((run, fuel)) = run.and_then(|run| run.headline_fuel().map(|fuel| (run, fuel))) else {
         return Vec::new();
     };
-    // What a run of an interval is, is said of the first one.
+    // The first interval alone carries the explanation of runs.
     let mut explained = false;
     let against = summary.comparison.iter().filter_map(|of| {
         let said = against(of, explained);
@@ -166,7 +166,7 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
         let (of, percent) = (comparison.interval.as_ref()?, comparison.fuel_percent?);
         let [low, median, high] = of.percent;
         let n = usize::try_from(of.draws).ok()?;
-        let mut doubts = Enough::of(n, confidence).doubts(confidence);
+        let mut doubts = Enough::from_draws(n, confidence).doubts(confidence);
         if (percent - median).abs() > NEAR_MEDIAN * (high - low) {
             let decimals = decimals([low, high]);
             let [median, percent] = [median, percent].map(|x| signed(x, decimals));

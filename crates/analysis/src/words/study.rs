@@ -1,4 +1,4 @@
-//! What a study says: how often and by how much the subject uses more, which factor decides it and is worth knowing, where an output is least,
+//! Sentences about a study: how often and by how much the subject uses more, the factor that decides it and is worth knowing, the minimum of an output,
 //! and the published numbers that contradict it.
 
 use cvtcycle_config::setup::Kind;
@@ -235,7 +235,7 @@ mod tests {
             text(101),
             "90 % of the runs are +5 to +95 %, the median is +50 %"
         );
-        let wide = Confidence::of(0.99);
+        let wide = Confidence::from_level(0.99);
         let text = middle(&Summary::of(&draws(101), wide), wide, ("%", signed)).0;
         assert!(
             text.starts_with("the least and the largest of 101 runs"),

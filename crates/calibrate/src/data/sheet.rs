@@ -26,7 +26,7 @@ pub enum Cell {
 pub struct Row {
     /// Line, counted from 1.
     pub line: usize,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
     /// Cells in the order of the columns, with the place of each: column of the first character, width.
     pub cells: Vec<(Cell, usize, usize)>,
@@ -105,7 +105,7 @@ impl Sheet {
     }
 }
 
-/// What is measured in a sort of file.
+/// Columns that a sort of file can measure.
 #[derive(Clone, Copy)]
 pub struct Measured<'r> {
     /// Names of the columns that can be measured.

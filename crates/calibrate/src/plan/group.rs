@@ -57,7 +57,7 @@ pub(super) fn read(document: &Document, context: &Context) -> Result<Found, Prob
         [.., last] => {
             let message = format!("{} in one group", ways.join(" and "));
             s.conflict(last, "one of them", &message, "write a [[data]] for each");
-            // Which keys belong to it is not known.
+            // The keys of an unknown group are skipped.
             s.pass_over();
         }
     }

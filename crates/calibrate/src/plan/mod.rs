@@ -63,7 +63,7 @@ pub struct Group {
     pub place: Place,
 }
 
-/// What was measured.
+/// Measured value, or range of values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Measured {
     /// A number.
@@ -154,7 +154,7 @@ pub struct Observation {
     pub fold: usize,
     /// Short name: identifier of a row, or column and line of a file.
     pub label: String,
-    /// What it is, in words; may be empty.
+    /// Meaning of the observation, in words; may be empty.
     pub what: String,
     /// Name of the measured column; empty for expressions.
     pub column: String,
@@ -205,7 +205,7 @@ pub struct BenchPoints {
 pub struct CalibrationPlan {
     /// Name of the file as problems cite it.
     pub file: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
     /// Name for people.
     pub title: String,
@@ -213,7 +213,7 @@ pub struct CalibrationPlan {
     pub car: CandidateVehicle,
     /// How the search is done.
     pub search: Options,
-    /// Whether each fold is predicted by a fit to the others.
+    /// True if each fold is predicted by a fit to the others.
     pub leave_out: bool,
     /// Free parameters.
     pub parameters: Vec<FreeParameter>,
@@ -239,7 +239,7 @@ pub struct CalibrationPlan {
     pub places: [Place; 4],
 }
 
-/// What the groups of a plan may use.
+/// Context that the groups of a plan may use.
 pub(super) struct Context<'a> {
     /// The plan's own sources, then the common ones.
     pub names: &'a FileNames<'a>,

@@ -78,7 +78,7 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
         ));
     }
     problems.extend(source::within_budget(&sources[..own]).err());
-    // What is written in another way is there all the same.
+    // Tables written in another form count as present, so that they are not reported as missing.
     let written = [("[[parameter]]", &parameters), ("[[data]]", &data)];
     let written = written.map(|(header, list)| list.len().max(usize::from(is_hinted(header))));
     for document in &parameters {

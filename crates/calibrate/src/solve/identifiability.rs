@@ -23,7 +23,7 @@ const ALIKE: f64 = 0.995;
 /// Exponents this near to a whole one count as one.
 const WHOLE: f64 = 0.03;
 
-/// What the data alone, without priors, do not identify: sentences in the order of the parameters. Empty if they identify all.
+/// Lists what the data alone, without priors, do not identify: sentences in the order of the parameters. Empty if they identify all.
 #[must_use]
 pub fn not_identified(fit: &Fit, parameters: &[Parameter]) -> Vec<String> {
     let dead = dead(fit, parameters);
@@ -108,7 +108,7 @@ impl<'a> Analysis<'a> {
         &self.parameters[self.members[member]].name
     }
 
-    /// What is known of a group.
+    /// Describes the uncertainty of a group.
     fn sentences(&self, group: &[usize]) -> Vec<String> {
         if let [one] = group {
             return vec![self.alone(*one)];

@@ -37,7 +37,7 @@ pub struct FuelPart {
 /// A temperature at the end.
 #[derive(Clone, Debug, Serialize)]
 pub struct EndPart {
-    /// Whose.
+    /// Name of the part.
     pub name: String,
     /// Temperature, degC.
     pub degc: Vec<Vec<Vec<f64>>>,

@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, Read, Seek, Write};
 use crate::statistics::Numbers;
 use cvtcycle_config::{Problem, ProblemKind};
 
-/// Numbers that are held at most; a longer column takes no memory.
+/// Maximum of numbers kept in memory; a longer column goes to a file.
 const HELD: usize = 1 << 18;
 /// Numbers of a piece that is read from the file.
 const PIECE: usize = 1 << 13;

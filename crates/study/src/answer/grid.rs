@@ -18,17 +18,17 @@ pub struct GridMatrix {
     pub columns: Vec<String>,
     /// Numbers by row and column; none of a run that gave none.
     pub cells: Vec<Vec<Option<f64>>>,
-    /// Of what each of the smallest numbers is the smallest.
-    pub least_of: LeastOf,
+    /// Cells that each minimum is taken over.
+    pub least_of: MinimumOver,
     /// Row and column of the smallest numbers.
     pub least: Vec<[usize; 2]>,
 }
 
-/// Of what a number is the smallest. A condition such as the ambient temperature is not chosen: at each of its levels the other factor has a
-/// smallest number.
+/// Cells that a minimum is taken over. A condition such as the ambient temperature is not chosen, so each of its levels has a minimum
+/// over the other factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum LeastOf {
+pub enum MinimumOver {
     /// All cells.
     All,
     /// A row.
@@ -42,7 +42,7 @@ const CONDITIONS: [&str; 3] = ["ambient_degc", "start", "cycle"];
 
 impl GridMatrix {
     /// The matrix of a plan with two factors from the numbers of its points; none for another plan.
-    pub(super) fn of(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
+    pub(super) fn from_points(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
         let [first, second] = plan.factors.as_slice() else {
             return Ok(None);
         };
@@ -59,29 +59,29 @@ impl GridMatrix {
         let factors = [first.name.clone(), second.name.clone()];
         let condition = |key: &str| CONDITIONS.contains(&key);
         let least_of = match (condition(&first.key), condition(&second.key)) {
-            (true, false) => LeastOf::Row,
-            (false, true) => LeastOf::Column,
-            _ => LeastOf::All,
+            (true, false) => MinimumOver::Row,
+            (false, true) => MinimumOver::Column,
+            _ => MinimumOver::All,
         };
         let matrix = folded(factors, &rows, columns, &numbers);
         Ok(Some(matrix.with_least(least_of)))
     }
 
     /// Finds the smallest numbers.
-    fn with_least(mut self, least_of: LeastOf) -> Self {
+    fn with_least(mut self, least_of: MinimumOver) -> Self {
         let (high, wide) = (self.rows.len(), self.columns.len());
         let all = (0..high).flat_map(|i| (0..wide).map(move |k| [i, k]));
         let groups = match least_of {
-            LeastOf::All => 1,
-            LeastOf::Row => high,
-            LeastOf::Column => wide,
+            MinimumOver::All => 1,
+            MinimumOver::Row => high,
+            MinimumOver::Column => wide,
         };
         let number = |[i, k]: [usize; 2]| self.cells.get(i).and_then(|row| *row.get(k)?);
         let least = |group: usize| {
             let of_group = |place: &[usize; 2]| match least_of {
-                LeastOf::All => true,
-                LeastOf::Row => place[0] == group,
-                LeastOf::Column => place[1] == group,
+                MinimumOver::All => true,
+                MinimumOver::Row => place[0] == group,
+                MinimumOver::Column => place[1] == group,
             };
             let own = all.clone().filter(of_group);
             let known = own.filter_map(|place| Some((place, number(place)?)));
@@ -113,7 +113,7 @@ fn folded(
         rows: rows.iter().step_by(width).cloned().collect(),
         columns,
         cells: cells.collect(),
-        least_of: LeastOf::All,
+        least_of: MinimumOver::All,
         least: Vec::new(),
     }
 }
@@ -135,9 +135,9 @@ mod tests {
         assert_eq!(matrix.cells[0], [Some(5.0), Some(6.0), Some(7.0)]);
         assert_eq!(matrix.cells[1], [Some(4.5), None, Some(8.0)]);
         let least = |of| matrix.clone().with_least(of).least;
-        assert_eq!(least(LeastOf::All), [[1, 0]]);
-        assert_eq!(least(LeastOf::Row), [[0, 0], [1, 0]]);
+        assert_eq!(least(MinimumOver::All), [[1, 0]]);
+        assert_eq!(least(MinimumOver::Row), [[0, 0], [1, 0]]);
         // A cell without a number is never the smallest.
-        assert_eq!(least(LeastOf::Column), [[1, 0], [0, 1], [0, 2]]);
+        assert_eq!(least(MinimumOver::Column), [[1, 0], [0, 1], [0, 2]]);
     }
 }

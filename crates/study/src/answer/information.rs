@@ -1,4 +1,4 @@
-//! Which factor is worth knowing: the next test.
+//! Expected reduction of variance by knowing a factor: the choice of the next test.
 
 use serde::Serialize;
 
@@ -13,7 +13,7 @@ use cvtcycle_config::Problem;
 /// Draws from which shares are computed at most: more would cost time and tell nothing that can be seen.
 const MAX_DRAWS: usize = 1 << 13;
 
-/// What knowing a factor would leave of the spread of an output.
+/// Spread of an output that remains when a factor is known.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Information {
     /// Number of draws, or of samples of a Saltelli design.
@@ -26,10 +26,10 @@ pub struct Information {
     pub factors: Vec<KnownFactor>,
 }
 
-/// What knowing one factor would do.
+/// Effect of knowing one factor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KnownFactor {
-    /// Its name.
+    /// Name of the factor.
     pub name: String,
     /// The test that would tell it, in the words of the plan; may be empty.
     #[serde(skip_serializing_if = "String::is_empty")]
@@ -38,7 +38,7 @@ pub struct KnownFactor {
     pub share: Estimate,
     /// Standard deviation that would be left.
     pub sd_left: Estimate,
-    /// Whether its share is above what chance gives.
+    /// True if its share is above the level that chance gives.
     pub above_chance: bool,
 }
 

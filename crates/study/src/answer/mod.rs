@@ -11,7 +11,7 @@ mod study_table;
 mod tables;
 
 pub use column::Column;
-pub use grid::{GridMatrix, LeastOf};
+pub use grid::{GridMatrix, MinimumOver};
 pub use information::{Information, KnownFactor};
 pub use output::{OutputAnswer, Ranked};
 pub use range::Range;
@@ -34,7 +34,7 @@ pub use study_table::Status;
 /// Version of an [`Answer`] as JSON. 2: intervals of any confidence under one name, ends in place of moments where the points are no sample.
 const SCHEMA: u32 = 2;
 
-/// What a study says.
+/// Statistics of a study's results.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
     /// Version of this object.
@@ -43,7 +43,7 @@ pub struct Answer {
     pub title: String,
     /// The question; may be empty.
     pub question: String,
-    /// What the results do not show, a sentence each.
+    /// Limits of the results, a sentence each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
     /// Points of the design.
@@ -56,7 +56,7 @@ pub struct Answer {
     pub runs: Ended,
     /// Samples that are described: of a Saltelli design A and B alone.
     pub described: &'static str,
-    /// Of all intervals.
+    /// Confidence of all intervals.
     pub confidence: Confidence,
     /// The subject against each baseline.
     pub comparisons: Vec<Comparison>,
@@ -89,7 +89,7 @@ pub struct Comparison {
     pub baseline: String,
     /// Excess of the subject's fuel, per cent, over draws.
     pub excess_percent: Option<Summary>,
-    /// Its ends, where the points are no sample.
+    /// Lowest and highest excess, where the points are not a sample.
     pub excess_range: Option<Range>,
     /// Pairs in which the subject uses more.
     pub worse: Share,
@@ -138,7 +138,7 @@ pub struct Comparison {
 /// let study = Study::prepare(Plan::read("plan.toml", text)?)?;
 /// let table = Memory(&study, Mutex::default());
 /// study.execute(&BTreeSet::new(), &table, &NoProgress)?;
-/// let manifest = StudyManifest::of(&study);
+/// let manifest = StudyManifest::new(&study);
 /// let answer = answer(&StudyTable::new(&manifest, &table)?, Confidence::default())?;
 /// let fuel = answer.outputs[0].range.as_ref().expect("a grid is no sample");
 /// assert_eq!((answer.points, answer.runs.ok, fuel.n, fuel.least_at.as_str()), (2, 2, 2, "ambient_degc 25 °C"));
@@ -157,7 +157,7 @@ pub fn answer(frame: &StudyTable, confidence: Confidence) -> Result<Answer, Prob
             baseline: outline.cars[car].clone(),
             worse: Share::over_zero(&excess, sample)?,
             excess_percent: summary(&excess, sample)?,
-            excess_range: Range::of(&outline.plan, &excess)?,
+            excess_range: Range::from_points(&outline.plan, &excess)?,
         })
     };
     let mut outputs = Vec::new();
@@ -205,7 +205,7 @@ pub fn described(frame: &StudyTable, output: &str, car: usize) -> Result<Column,
     frame.column(output, car, |point| !mixed || is_drawn(point))
 }
 
-/// Of numbers that are a sample.
+/// Summarizes numbers that are a sample.
 fn summary(numbers: &Column, sample: Option<Confidence>) -> Result<Option<Summary>, Problem> {
     let over = |confidence| Summary::over(numbers, confidence);
     sample.map(over).transpose()
@@ -219,7 +219,7 @@ pub fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons = Counts::default();
     frame.each_reason(|status, reason| {
         for one in reason.split("; ") {
-            // Of a failed check the name alone: what follows differs from run to run.
+            // A failed check is counted by its name: the text after it differs from run to run.
             let name = one.split(' ').next().unwrap_or_default();
             reasons.add(if status == Status::Failed { name } else { one });
         }

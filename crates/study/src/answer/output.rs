@@ -1,4 +1,4 @@
-//! What the runs say of one output of a car, by the design of the study.
+//! Statistics of one output of a car, by the design of the study.
 
 use super::levels::{label, numbers, values, words};
 use super::{Column, GridMatrix, Information, Range, StudyTable, described, summary};
@@ -15,7 +15,7 @@ use serde::Serialize;
 pub struct OutputAnswer {
     /// Column.
     pub output: String,
-    /// Its unit.
+    /// Unit of the output.
     pub unit: String,
     /// Car; for an excess the baseline.
     pub car: String,
@@ -26,19 +26,19 @@ pub struct OutputAnswer {
     /// Sobol indices of growing numbers of samples, the last of all; of a Saltelli design.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sobol: Vec<SobolIndices>,
-    /// What knowing each factor would leave of the spread; of designs that sample.
+    /// Spread that remains when each factor is known; designs that sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub information: Option<Information>,
-    /// Of a one-at-a-time design.
+    /// Present in a one-at-a-time design.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tornado: Option<Tornado>,
-    /// Of factors that are numbers, in designs that sample.
+    /// Present for numeric factors in designs that sample.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rank: Option<Ranked>,
     /// Means at the levels of factors: in grids of all, else of words.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub levels: Vec<(String, Groups)>,
-    /// Of a grid of two factors.
+    /// Present in a grid of two factors.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub matrix: Option<GridMatrix>,
 }
@@ -79,13 +79,13 @@ pub(super) fn output(
         unit: unit.clone(),
         car: frame.outline.cars[car].clone(),
         summary: summary(&drawn, sample)?,
-        range: Range::of(plan, &drawn)?,
+        range: Range::from_points(plan, &drawn)?,
         sobol: Vec::new(),
         information: None,
         tornado: None,
         rank: None,
         levels: Vec::new(),
-        matrix: GridMatrix::of(plan, &drawn)?,
+        matrix: GridMatrix::from_points(plan, &drawn)?,
     };
     match plan.design {
         Design::Saltelli { .. } => {

@@ -30,7 +30,7 @@ pub struct Range {
 
 impl Range {
     /// Over the numbers of the points of a plan; none of a plan that draws its points.
-    pub(super) fn of(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
+    pub(super) fn from_points(plan: &Plan, numbers: &Column) -> Result<Option<Self>, Problem> {
         if plan.design.is_sampled() {
             return Ok(None);
         }
@@ -72,7 +72,7 @@ impl Range {
         }))
     }
 
-    /// Whether all values are the same.
+    /// True if all values have the same bits and there is at least one.
     pub fn is_one(&self) -> bool {
         let bits = |x: Option<f64>| x.map(f64::to_bits);
         self.n > 0 && bits(self.least) == bits(self.largest)

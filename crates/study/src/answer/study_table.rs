@@ -45,7 +45,7 @@ impl TableSource for store::Study {
 
 /// A study's table, seen by car and point. Points of parts that are not there have no numbers. No column is held, but those that are asked for.
 pub struct StudyTable<'a> {
-    /// What the table is.
+    /// Manifest of the study that made the table.
     pub outline: &'a StudyManifest,
     source: &'a dyn TableSource,
     /// Runs of each car that ended, by how.
@@ -59,17 +59,17 @@ pub enum Status {
     Ok,
     /// A check failed.
     Failed,
-    /// Its values do not go together.
+    /// Point with values that are not possible together.
     NotRun,
-    /// Its part is not there.
+    /// Point in a part that is missing.
     Missing,
 }
 
 /// Rows of one part.
 struct PartRows {
-    /// Its first point.
+    /// Index of the first point.
     first: usize,
-    /// Its points; a damaged part may have more rows.
+    /// Number of points; a damaged part may have more rows.
     points: usize,
     /// Cells of the columns, car by car at each point.
     values: Vec<Values>,
@@ -86,7 +86,7 @@ impl PartRows {
 }
 
 impl Status {
-    fn of(word: &str) -> Self {
+    fn from_word(word: &str) -> Self {
         match word {
             "ok" => Status::Ok,
             "failed" => Status::Failed,
@@ -94,7 +94,7 @@ impl Status {
         }
     }
 
-    /// Whether there is no result to be trusted.
+    /// True if the run has no valid result.
     pub fn is_bad(self) -> bool {
         matches!(self, Status::Failed | Status::NotRun)
     }
@@ -115,7 +115,7 @@ impl<'a> StudyTable<'a> {
         frame.each(&["status"], |part| {
             let cars = ended.len();
             for (k, word) in part.status().iter().enumerate().take(part.points * cars) {
-                ended[k % cars][Status::of(word) as usize] += 1;
+                ended[k % cars][Status::from_word(word) as usize] += 1;
             }
             Ok(())
         })?;
@@ -196,7 +196,7 @@ impl<'a> StudyTable<'a> {
     /// # Errors
     /// A part that cannot be read.
     pub fn status(&self, car: usize) -> Result<Vec<Status>, Problem> {
-        let of = |word: &Arc<str>| Status::of(word);
+        let of = |word: &Arc<str>| Status::from_word(word);
         self.of_car("status", car, Status::Missing, |values| match values {
             Values::Text(words) => words.iter().map(of).collect(),
             _ => Vec::new(),
@@ -305,7 +305,7 @@ impl<'a> StudyTable<'a> {
             };
             let pairs = part.status().iter().zip(reasons);
             for (word, reason) in pairs.take(part.points * self.cars()) {
-                let status = Status::of(word);
+                let status = Status::from_word(word);
                 if status.is_bad() {
                     f(status, reason);
                 }

@@ -233,7 +233,7 @@ fn tornado_rows(answer: &Answer) -> Vec<TornadoRow<'_>> {
 }
 
 fn tornado<'a>() -> Vec<Column<TornadoRow<'a>>> {
-    /// Which end of the bar the level is.
+    /// Names the end of the bar that the level is at; empty if neither.
     fn end((_, _, bar, level): &TornadoRow) -> &'static str {
         match (&bar.low, &bar.high) {
             (Some(low), _) if low == *level => "low",

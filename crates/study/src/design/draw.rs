@@ -14,7 +14,7 @@ use rand_pcg::Pcg64;
 /// Rounds of the network; four make a good permutation of a large set, small ones need more to make all orders equally likely.
 const ROUNDS: u64 = 16;
 
-/// What a draw is for, so that the draws of one purpose say nothing about those of another.
+/// Purpose of a draw. Each has its own stream, so that draws for different purposes are independent.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Purpose {
     MonteCarlo = 1,

@@ -16,7 +16,7 @@ use super::plan::{Design, Factor, FactorValues};
 pub use super::plan::{Level, MAX_SOBOL_SAMPLES};
 use draw::{Purpose, mix, permute, uniform};
 
-/// Which of Saltelli's matrices a point belongs to.
+/// Saltelli matrix that a point belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// First independent sample.
@@ -118,7 +118,7 @@ impl Design {
         Some(self)
     }
 
-    /// Whether the factors are drawn rather than taken one by one.
+    /// True if the factors are drawn rather than taken one by one.
     pub fn is_sampled(&self) -> bool {
         !matches!(self, Design::Grid | Design::OneAtATime { .. })
     }

@@ -54,15 +54,15 @@ pub(super) struct CarVariant {
 pub struct Column {
     /// Name in the table, unique within the study.
     pub name: String,
-    /// What it is in the study, a word.
+    /// Role in the study, a word.
     pub role: String,
     /// Name or path of its file.
     pub word: String,
-    /// Whether it is varied as the subject of the plan is, and not as its baselines are.
+    /// True if it is varied as the subject of the plan, false if as its baselines.
     pub is_subject: bool,
-    /// Its ambient temperature, degC.
+    /// Ambient temperature, degC.
     pub ambient_degc: f64,
-    /// Its changes: overrides and fluids. A relative one acts on what the draw has made of the value.
+    /// Changes: overrides and fluids. A relative one acts on the drawn value.
     pub options: Options,
     /// Factors that do not act on it.
     pub left_out: Vec<usize>,
@@ -81,9 +81,9 @@ pub struct StudyCar {
     /// Factors that would act on it, but for a key that it does not have, or for 0 of which they are a share.
     pub idle: Vec<usize>,
     pub(super) bindings: Vec<Binding>,
-    /// Of each factor what is done with its value afterwards.
+    /// Overrides applied to the drawn value, by factor.
     then: Vec<Vec<Override>>,
-    /// Of each factor the range in which its values are held, where the plan says so.
+    /// Range that values are clamped to, by factor, where the plan says so.
     held: Vec<Option<Bound>>,
     options: Options,
     variants: Vec<OnceLock<Result<CarVariant, Problems>>>,
@@ -192,7 +192,7 @@ impl StudyCar {
         Ok(self)
     }
 
-    /// Whether the key of a factor is none of the car's: unknown, of an option that is not chosen, or without a value to act on.
+    /// True if the car lacks the key of a factor: unknown, of an option that is not chosen, or without a value to act on.
     fn is_missing(&self, factor: &Factor, template: &VehicleTemplate) -> bool {
         if RUN_OPTIONS.contains(&factor.key.as_str()) {
             return false;
@@ -210,7 +210,7 @@ impl StudyCar {
         !template.has(&factor.key) || VehicleTemplate::load(&self.word, &options).is_err()
     }
 
-    /// What a number of a factor makes of the value of the car's file, before it is held in the range of its key.
+    /// Computes the value from a number of a factor and the file's value, before it is clamped to the range of its key.
     pub(super) fn drawn(&self, factor: usize, acts: Acts, base: f64, number: f64) -> f64 {
         let change = |x: f64, by: &Override| by.number_over(Some(x)).unwrap_or(x);
         let then = &self.then[factor];
@@ -329,7 +329,7 @@ impl StudyCar {
     }
 }
 
-/// What the plan says for all runs, of one car.
+/// Takes the options of one car from the plan's options for all runs.
 fn options(base: &Base, subject: bool) -> Options {
     let own: &[Override] = if subject { &base.set } else { &[] };
     Options {
@@ -387,7 +387,7 @@ fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
     }
 }
 
-/// Whether a share of the value of the car's file is drawn that is 0.
+/// True if the factor scales a value that is 0 in the car's file.
 fn is_share_of_zero(binding: Binding, factor: &Factor, template: &VehicleTemplate) -> bool {
     let base = || template.slot(&factor.key).map(|slot| slot.base());
     binding == Binding::Number(Acts::Scale) && base().is_ok_and(|base| base == 0.0)

@@ -140,7 +140,7 @@ pub struct StudyManifest {
     pub cars: Vec<String>,
     /// Phase groups.
     pub phases: Vec<String>,
-    /// What the results do not show, a sentence each.
+    /// Limits of the results, a sentence each.
     pub notes: Vec<String>,
     /// Names and units of the numbers that are analysed.
     pub analysed: Vec<(String, String)>,
@@ -152,7 +152,7 @@ pub struct StudyManifest {
     pub points_per_part: u64,
     /// Factors and design.
     pub plan: Plan,
-    /// What its columns are, where they are changes of cars.
+    /// Description of the columns, where they are changes of cars.
     pub levers: Option<Value>,
 }
 
@@ -189,7 +189,7 @@ struct StoredCar {
 
 impl StudyManifest {
     /// The manifest of a study that is ready to run.
-    pub fn of(study: &Study) -> Self {
+    pub fn new(study: &Study) -> Self {
         let heads = study.columns.iter();
         let columns: Vec<_> = heads.map(|c| (c.name.clone(), c.unit.clone())).collect();
         StudyManifest {

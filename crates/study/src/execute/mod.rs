@@ -53,7 +53,7 @@ pub trait PartWriter: Sync {
     /// Takes a part, whole or not at all.
     ///
     /// # Errors
-    /// What is in the way; the study then stops.
+    /// The cause of a failed write; the study then stops.
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem>;
 }
 
@@ -240,7 +240,7 @@ impl Study {
         })
     }
 
-    /// What one thread does until nothing is left.
+    /// Takes work from the queue until it is empty; runs in each thread.
     fn work(
         &self,
         queue: &Queue,
@@ -357,7 +357,7 @@ struct QueueState<'s> {
     left: Box<dyn Iterator<Item = u64> + Send + 's>,
     /// The part that points are taken from, and those that are left of it.
     points: (u64, Range<u64>),
-    /// Of every part that is not whole its pieces, by their first point.
+    /// Pieces of incomplete parts: by part, then by first point.
     pieces: BTreeMap<u64, BTreeMap<u64, Piece>>,
     /// Tables of traces that have been written, empty: room for so many rows is costly to get anew.
     spare: Vec<Rows>,

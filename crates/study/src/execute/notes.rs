@@ -1,17 +1,17 @@
-//! What the results of a study do not show, a sentence each.
+//! Limits of the results of a study, a sentence each.
 
 use super::cars::{Binding, StudyCar, words};
 use crate::plan::{Factor, Plan};
 use cvtcycle_config::setup::is_twin;
 
 /// Names of factors that a sentence lists.
-const MOST_NAMES: usize = 10;
+const MAX_NAMES: usize = 10;
 
 /// The factors that do not act on a car though they are of its kind, in a sentence; none where all act.
 pub fn idle(vehicle: &str, car: &StudyCar, factors: &[Factor]) -> Option<String> {
     let names = car.idle.iter().map(|f| factors[*f].name.as_str());
-    let first: Vec<&str> = names.take(MOST_NAMES).collect();
-    let more = match car.idle.len().saturating_sub(MOST_NAMES) {
+    let first: Vec<&str> = names.take(MAX_NAMES).collect();
+    let more = match car.idle.len().saturating_sub(MAX_NAMES) {
         0 => String::new(),
         n => format!(" and {n} more"),
     };
@@ -25,7 +25,7 @@ pub fn idle(vehicle: &str, car: &StudyCar, factors: &[Factor]) -> Option<String>
     })
 }
 
-/// What no factor of a study of draws moves in its cars: factors that do not act, and the shift speeds of a twin, which no file has.
+/// Lists inputs that no factor of a sampled study moves: factors without effect, and the shift speeds of a twin, which no file has.
 pub(super) fn not_drawn(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     if !plan.design.is_sampled() {
         return Vec::new();
@@ -44,7 +44,7 @@ pub(super) fn not_drawn(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     cars.iter().flat_map(of_car).collect()
 }
 
-/// What is to be said of a car with every word of a factor, and not of the car without: of oils, that none has a friction of its own.
+/// Lists notes that hold for a car with every word of a factor but not without it: oils without a friction of their own.
 pub(super) fn notes(plan: &Plan, cars: &[StudyCar]) -> Vec<String> {
     let mut list: Vec<String> = Vec::new();
     for car in cars {

@@ -1,4 +1,4 @@
-//! What a study will take, from a few of its points driven at once.
+//! Estimates time and size of a study from a few of its points, driven at once.
 
 use std::ops::Range;
 use std::time::Instant;
@@ -12,7 +12,7 @@ use serde::Serialize;
 /// Points of a pilot.
 const POINTS: u64 = 32;
 
-/// What a study will take. Times and sizes are estimates: points are as different as their draws.
+/// Estimated cost of a study. Times and sizes vary with the draws.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pilot {
     /// Points that were driven.

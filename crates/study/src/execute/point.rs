@@ -16,7 +16,7 @@ use cvtcycle_model::drive::{Conditions, Outcome, Row, Run, Start, drive_each, dr
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Failure, RunSummary, Settings, compare, run_summary};
 
-/// What one thread keeps from point to point: a bench for each variant of each car.
+/// Vehicle variants reused by one thread from point to point, one for each variant of each car.
 #[derive(Default)]
 pub(super) struct Worker {
     benches: HashMap<(usize, usize), Variant>,
@@ -51,7 +51,7 @@ impl Study {
         let mut runs: Vec<Vec<PointRun>> = (values.iter())
             .map(|_| Vec::with_capacity(self.cars.len()))
             .collect();
-        // What looks at rows drives them one by one, each point with all its cars.
+        // Observers of rows need single drives: each point with all its cars, one by one.
         if traces.is_some() || self.sides.is_some() {
             for (k, point) in points.enumerate() {
                 for (index, car) in self.cars.iter().enumerate() {
@@ -252,7 +252,7 @@ impl CarAtPoint<'_> {
         (run, Some(row.0))
     }
 
-    /// What each factor has become in the car, and the car with these values or the reason why there is none.
+    /// Resolves the factors in the car; builds the car with these values, or gives the reason why it is refused.
     fn build(&self, worker: &mut Worker) -> (Vec<Option<FactorValue>>, Result<Setup, String>) {
         let all = &self.study.plan.factors;
         let weight =
@@ -279,7 +279,7 @@ impl CarAtPoint<'_> {
         let bench = bench.or_insert_with(|| variant.blueprint.bench());
         bench.reset();
         for ((slot, value), given) in variant.slots.iter().zip(&factors).zip(self.values) {
-            // What the design leaves alone is not put in again: a file may well not give it.
+            // Values that the design leaves alone are not set again: the file may not give them.
             if let (Some(slot), Some(FactorValue::Number(x)), Some(_)) = (slot, value, given) {
                 bench.set(slot, *x);
             }
@@ -288,7 +288,7 @@ impl CarAtPoint<'_> {
         (factors, built)
     }
 
-    /// What a factor's value has become in the car, or the car's own where the design leaves it; none where the factor does not reach it.
+    /// Resolves a factor to its value in the car, or the car's own where the design leaves it; `None` if the factor does not reach the car.
     fn resolve(&self, f: usize, base: Option<f64>) -> Option<FactorValue> {
         let value = self.values[f].as_ref();
         let own = &self.study.plan.base;

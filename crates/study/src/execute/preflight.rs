@@ -9,7 +9,7 @@ pub(super) fn factor(plan: &Plan, index: usize, cars: &[StudyCar], problems: &mu
     let factor = &plan.factors[index];
     for car in cars {
         match car.bindings[index] {
-            // What is held in its range by itself is left to the points.
+            // Clipped values are always in range; other faults show at the points.
             Binding::Number(_) if plan.clip => {}
             Binding::Number(acts) => numbers(plan, index, car, acts, problems),
             Binding::Words { stride } => variants(plan, index, car, stride, problems),
@@ -53,7 +53,7 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
     }
 }
 
-/// Whether a value that is not possible by itself is so with some value of another factor: then it is for the points to tell.
+/// True if a value that is refused by itself is accepted with some value of another factor: the points then report it.
 fn goes_with_another(
     plan: &Plan,
     index: usize,

@@ -34,7 +34,7 @@ pub struct Study {
     pub columns: Vec<Head>,
     /// Columns of the table of traces; empty if none are kept.
     pub trace_columns: Vec<Head>,
-    /// What its results do not show, a sentence each.
+    /// Limits of the results, a sentence each.
     pub notes: Vec<String>,
     /// Factors of each column that holds the values of a key.
     pub(super) factor_columns: Vec<Vec<usize>>,
@@ -42,7 +42,7 @@ pub struct Study {
     pub(super) traces: Vec<&'static TraceColumn>,
     /// Engine speed, rpm, below which load is heard and felt, where side effects are kept.
     pub(super) sides: Option<f64>,
-    /// What the columns are, for the manifest; none where the cars are those of the plan.
+    /// Description of the columns for the manifest; `None` if the cars are those of the plan.
     pub levers: Option<Value>,
 }
 
@@ -52,7 +52,7 @@ pub struct Columns {
     pub list: Vec<Column>,
     /// Engine speed below which load is heard and felt, rpm.
     pub heard_rpm: f64,
-    /// What they are, for the manifest.
+    /// Description of the columns for the manifest.
     pub about: Value,
 }
 

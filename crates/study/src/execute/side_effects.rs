@@ -1,4 +1,4 @@
-//! What a change of the car does besides its fuel, from the rows of a run.
+//! Side effects of a change of the car other than fuel, from the rows of a run.
 
 use crate::store::{Head, Kind};
 use cvtcycle_model::keys::{RPM, rpm};

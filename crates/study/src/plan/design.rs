@@ -97,7 +97,7 @@ pub(super) fn read(study: &Section, places: &mut Places) -> Design {
     }
 }
 
-/// What is wrong between factors.
+/// Finds conflicts between factors.
 pub(super) fn clashes(factors: &[Factor]) -> Problems {
     let mut problems = Problems::new();
     for (k, factor) in factors.iter().enumerate() {
@@ -135,7 +135,7 @@ fn of_factor(
     message: String,
     hint: &str,
 ) -> Problem {
-    // What is not given follows from the key.
+    // Missing places are those of the factor itself.
     let place = match factor.places.of(key) {
         place if place == factor.places.of("") => &factor.place,
         place => place,
@@ -146,7 +146,7 @@ fn of_factor(
         .hint(hint)
 }
 
-/// What is wrong between the design of a plan and the number of its factors, not all of which could be read.
+/// Checks the design against the number of factors, not all of which could be read.
 pub(super) fn limits(plan: &Plan, number: usize) -> Problems {
     let (design, read) = (&plan.design, &plan.factors);
     let mut problems = Problems::new();
@@ -232,7 +232,7 @@ pub(super) fn shadowed(plan: &Plan) -> Problems {
     problems
 }
 
-/// What only a whole plan shows: distributions of run options that leave their range, and factors of cars that do not exist.
+/// Checks that need a whole plan: distributions of run options that leave their range, and factors of cars that do not exist.
 pub(super) fn reach(plan: &Plan) -> Problems {
     let mut problems = Problems::new();
     let no_baselines = plan.base.baselines.as_ref().is_some_and(Vec::is_empty);

@@ -280,7 +280,7 @@ fn options(kind: &Kind) -> impl Iterator<Item = &'static str> {
     choices.iter().map(|choice| choice.name)
 }
 
-/// What a row gives where the key is absent.
+/// Gives the value of a row where the key is absent.
 pub(super) fn default(row: &Key) -> Option<FactorValue> {
     match row.presence {
         Presence::Number(x) => Some(FactorValue::Number(x)),

@@ -1,4 +1,4 @@
-//! What a study is to do, read from a TOML file and checked.
+//! Plan of a study, read from a TOML file and checked.
 //!
 //! | file | contents |
 //! |---|---|
@@ -43,19 +43,19 @@ use cvtcycle_model::transmission::cvt::variator::Formulation;
 pub struct Plan {
     /// Name of the file, as problems cite it.
     pub file: String,
-    /// Its text, byte for byte.
+    /// Text of the file, byte for byte.
     pub text: String,
     /// Name for people.
     pub title: String,
     /// The question that the study is to answer, in words; may be empty.
     pub question: String,
-    /// What is driven where no factor says otherwise.
+    /// Inputs of the runs where no factor says otherwise.
     pub base: Base,
-    /// What is varied.
+    /// Inputs that are varied.
     pub factors: Vec<Factor>,
-    /// Which combinations are driven.
+    /// Combinations that are driven.
     pub design: Design,
-    /// What is kept of each run in addition to its summary.
+    /// Data kept of each run in addition to its summary.
     pub keep: Keep,
     /// Columns of the summary that are analysed, in their order; the fuel columns if there are none.
     pub analyse: Vec<String>,
@@ -63,10 +63,10 @@ pub struct Plan {
     pub most_runs: u64,
     /// A factor does not act on a car that does not have its key; else the study does not begin.
     pub skip_missing: bool,
-    /// A number outside the range of its key is held at the end of the range; else the study does not begin.
+    /// True clamps a number outside the range of its key to that range; else the study does not begin.
     pub clip: bool,
-    /// Whose the factors of the subject are, by the kind of box: `Some(true)` of every car with a CVT, `Some(false)` of every manual one, and
-    /// those of the baselines of all others. None: of subject and baselines by their roles.
+    /// Cars of the subject's factors by the kind of box: `Some(true)` every car with a CVT, `Some(false)` every manual one; the factors
+    /// of the baselines act on all others. `None`: subject and baselines by their roles.
     pub by_box: Option<bool>,
     /// Places of the keys of `[study]`; `design` is the place of the design's table.
     pub places: Places,
@@ -109,9 +109,9 @@ pub struct Factor {
     /// Unit of its numbers: the key's, `-` where they multiply, `K` where they are added to a temperature. Empty for words: either all
     /// values of a factor are numbers and there is a unit, or all are words.
     pub unit: String,
-    /// Whose value it is.
+    /// Cars that the value acts on.
     pub cars: Cars,
-    /// What a number does with the value of the car's file.
+    /// Action of a number on the value of the car's file.
     pub acts: Acts,
     /// The values.
     pub values: FactorValues,
@@ -279,7 +279,7 @@ impl FactorValues {
         }
     }
 
-    /// Whether they are numbers.
+    /// True if the values are numbers.
     pub fn are_numbers(&self) -> bool {
         self.list().iter().all(FactorValue::is_number)
     }
@@ -292,7 +292,7 @@ impl Factor {
         at.map_or(0, |k| k + 1)
     }
 
-    /// Its value where a design puts it; none for the value of the car's own file.
+    /// Gives the value where a design puts it; `None` for the value of the car's own file.
     pub fn value(&self, level: Level) -> Option<FactorValue> {
         match (&self.values, level) {
             (_, Level::Base) => None,
@@ -320,7 +320,7 @@ pub enum Level {
     Share(f64),
 }
 
-/// Which combinations of values are driven.
+/// Combinations of values that are driven.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Design {
@@ -361,7 +361,7 @@ pub enum Design {
     },
 }
 
-/// What is kept of each run in addition to its row.
+/// Data kept of each run in addition to its row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Keep {
     /// Nothing.

@@ -28,7 +28,7 @@ impl FactorValue {
         }
     }
 
-    /// Whether it is a number.
+    /// True for a number.
     pub fn is_number(&self) -> bool {
         self.number().is_some()
     }

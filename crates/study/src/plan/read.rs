@@ -194,7 +194,7 @@ fn keep(s: &Section, places: &mut Places) -> Keep {
     Keep::Summary
 }
 
-/// Whether the trace has a column; reported if not.
+/// Checks that the trace has a column; reports it if not.
 fn is_trace_column(item: &RawValue, word: &str) -> bool {
     let names = || COLUMNS.iter().map(|column| &*column.name);
     let is_known = names().any(|name| name == word);

@@ -21,12 +21,12 @@ const MIN_LEFT: f64 = 0.01;
 /// Least standard deviation over the mean: below it the draws hardly differ as they are stored.
 const MIN_SPREAD: f64 = 1e-9;
 
-/// Whose values they are.
+/// Factor that the values belong to.
 #[derive(Clone, Copy)]
 pub(super) struct Of<'a> {
     /// Key of the factor.
     pub key: &'a str,
-    /// What its numbers do.
+    /// Action of the numbers.
     pub acts: Acts,
 }
 
@@ -297,7 +297,7 @@ fn distribution(s: &Section, of: Of, places: &mut Places) -> Option<Distribution
     (fits(&t, &found, of.acts) && t.exists()).then_some(found)
 }
 
-/// Whether the parameters of a distribution go together; if not, it is reported. Parameters that were reported already are NaN.
+/// Checks that the parameters of a distribution go together and reports if not. NaN marks parameters that were reported already.
 fn fits(t: &Section, found: &Distribution, acts: Acts) -> bool {
     let refused = |kind, wrong: bool, key: &str, allowed: &str, message: &str, hint: &str| {
         if wrong {

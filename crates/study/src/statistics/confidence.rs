@@ -26,7 +26,7 @@ impl Default for Confidence {
 
 impl Confidence {
     /// The same probability for both; above 0 and below 1.
-    pub fn of(level: f64) -> Self {
+    pub fn from_level(level: f64) -> Self {
         Confidence {
             intervals: level,
             draws: level,
@@ -90,10 +90,10 @@ mod tests {
         );
         assert_eq!(usual.quantiles(), QUANTILES);
         assert_eq!([usual.percent(), usual.draws_percent()], ["95", "90"]);
-        assert_eq!(Confidence::of(0.999).percent(), "99.9");
-        let given = Confidence::of(0.8);
+        assert_eq!(Confidence::from_level(0.999).percent(), "99.9");
+        let given = Confidence::from_level(0.8);
         assert_eq!(given.ends().map(f64::to_bits), [0.1, 0.9].map(f64::to_bits));
         assert_eq!(given.quantiles()[2..8], [0.1, 0.25, 0.5, 0.75, 0.9, 0.95]);
-        assert_eq!(Confidence::of(0.95).quantiles(), QUANTILES);
+        assert_eq!(Confidence::from_level(0.95).quantiles(), QUANTILES);
     }
 }

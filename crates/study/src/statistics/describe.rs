@@ -59,7 +59,7 @@ impl Summary {
         summary
     }
 
-    /// Describes a sample that is not held: in a few passes over it.
+    /// Describes a sample that is not in memory: in a few passes over it.
     ///
     /// # Errors
     /// Numbers that cannot be had.
@@ -94,7 +94,7 @@ impl Summary {
 }
 
 impl Spread {
-    /// Of all finite values.
+    /// Computes the moments of all finite values.
     pub(super) fn over<P: Numbers + ?Sized>(values: &P) -> Result<Self, P::Error> {
         Moments::of(values)
     }
@@ -116,7 +116,7 @@ pub fn quantile_of_sorted(sorted: &[f64], p: f64) -> f64 {
     sorted[k] + share * (sorted[next] - sorted[k]) // DS-3
 }
 
-/// Quantiles by DS-3 of a sample that is not held.
+/// Quantiles by DS-3 of a sample that is not in memory.
 ///
 /// # Errors
 /// Numbers that cannot be had.
@@ -153,7 +153,7 @@ impl Share {
         share
     }
 
-    /// The same of values that are not held.
+    /// Counts over values that are not in memory.
     ///
     /// # Errors
     /// Numbers that cannot be had.
@@ -184,7 +184,7 @@ impl Share {
         Self::of(values, confidence, is_above_zero)
     }
 
-    /// The same of values that are not held.
+    /// Counts over values that are not in memory.
     ///
     /// # Errors
     /// Numbers that cannot be had.

@@ -1,4 +1,4 @@
-//! Whether a sample is large enough for what is asked of it.
+//! Sample sizes that the statistics need.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -14,7 +14,7 @@ use super::intervals::{clopper_pearson, least_draws};
 /// Share of cases that "in nearly all" means.
 const NEARLY_ALL: f64 = 0.9;
 
-/// What a number of draws can tell.
+/// Statements that a number of draws allows.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Enough {
     /// Draws.
@@ -30,8 +30,8 @@ pub struct Enough {
 }
 
 impl Enough {
-    /// Of a number of draws.
-    pub fn of(n: usize, confidence: Confidence) -> Self {
+    /// Evaluates ES-1 to ES-3 for a number of draws.
+    pub fn from_draws(n: usize, confidence: Confidence) -> Self {
         let reaches = |p: f64| n >= least_draws(p, confidence);
         let at_most_shown = match n {
             0 => 0.0,
@@ -46,7 +46,7 @@ impl Enough {
         }
     }
 
-    /// What it cannot tell, a sentence each; nothing of enough draws.
+    /// Lists statements that the draws do not allow, a sentence each; empty if there are enough.
     pub fn doubts(&self, confidence: Confidence) -> Vec<String> {
         let n = self.n;
         if n < 2 {
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn val_least_numbers_of_draws() {
         let usual = Confidence::default();
-        let at = |n: usize| Enough::of(n, usual);
+        let at = |n: usize| Enough::from_draws(n, usual);
         assert!(!at(5).median && at(6).median);
         assert!(!at(35).nearly_all && at(36).nearly_all);
         assert!(!at(71).ends && at(72).ends);

@@ -128,7 +128,7 @@ impl Groups {
         let between = |g: &Group| g.n as f64 * (g.mean - all.mean).powi(2);
         let between: f64 = filled().map(between).sum();
         let within = all.sd.powi(2) * (all.n as f64 - 1.0);
-        // Of a constant only rounding is left of both.
+        // Both are rounding errors for a constant.
         let eta_squared = match all.max > all.min {
             true => (between / within).min(1.0), // GR-1
             false => f64::NAN,

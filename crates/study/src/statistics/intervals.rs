@@ -93,7 +93,7 @@ pub fn least_draws(p: f64, confidence: Confidence) -> usize {
 mod tests {
     use super::*;
 
-    /// Of intervals of 95 %.
+    /// Tail of intervals of 95 %.
     const TAIL: f64 = 0.025;
 
     #[test]

@@ -6,7 +6,7 @@ use super::spread::Spread;
 
 /// Numbers in one order, in pieces. A description of them takes several passes, so that it needs no memory that grows with them.
 pub trait Numbers {
-    /// What can go wrong on the way.
+    /// Error of reading the numbers.
     type Error;
 
     /// Hands on all numbers, in their order.
@@ -65,7 +65,7 @@ impl Moments {
     /// Passes that it takes.
     pub(super) const PASSES: usize = 3;
 
-    /// Of all finite numbers.
+    /// Computes the spread of all finite numbers.
     pub(super) fn of<P: Numbers + ?Sized>(numbers: &P) -> Result<Spread, P::Error> {
         let mut moments = Moments::default();
         for _ in 0..Self::PASSES {
@@ -86,13 +86,13 @@ impl Moments {
             self.min = x.min(self.min);
             self.max = x.max(self.max);
         }
-        // Of the mean so far: none in the first pass.
+        // Deviation from the mean so far, which is 0 in the first pass.
         let d = x - self.mean;
         self.sum += d;
         self.squares += d * d;
     }
 
-    /// Whether this is the first pass.
+    /// True in the first pass.
     pub(super) fn is_first(&self) -> bool {
         self.pass == 0
     }
@@ -106,7 +106,7 @@ impl Moments {
         }
     }
 
-    /// What the passes found.
+    /// Gives the spread after all passes.
     pub(super) fn spread(&self) -> Spread {
         let count = self.n as f64;
         let sd = match self.n {

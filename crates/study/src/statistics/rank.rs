@@ -9,7 +9,7 @@
 //!
 //! A row in which the output or any factor is missing is left out whole and counted. A factor that does not vary has neither coefficient and
 //! takes no part in the regression; where factors follow from each other (one inflates another's variance beyond 1e8) no factor has an RK-3.
-//! Of a Saltelli design only the rows of A and B may go in. Both coefficients see what rises or falls throughout; R2 says how much of the
+//! A Saltelli design may give only the rows of A and B. Both coefficients see what rises or falls throughout; R2 says how much of the
 //! ranks of the output they explain. Where it is low, ask for Sobol indices.
 
 use nalgebra::{DMatrix, DVector};

@@ -31,11 +31,11 @@ use super::{Confidence, Estimate};
 /// Outputs of a Saltelli design, sample by sample. Where a column is shorter than others, its outputs are missing.
 #[derive(Clone, Debug, Default)]
 pub struct Blocks<'a> {
-    /// Of A.
+    /// Outputs at the rows of A.
     pub a: &'a [f64],
-    /// Of B.
+    /// Outputs at the rows of B.
     pub b: &'a [f64],
-    /// Of A with one factor from B, by factor.
+    /// Outputs at the rows of A with one factor from B, by factor.
     pub ab: Vec<&'a [f64]>,
 }
 
@@ -200,7 +200,7 @@ impl Table {
     fn indices(&self, counts: Option<&[u32]>) -> Option<Indices> {
         let (d, n) = (self.factors, self.samples as f64);
         let (mut all, mut ab, mut squares) = (0.0, 0.0, 0.0);
-        // Of each factor: sum of f(B) e, of e and of e^2, with e = f(AB) - f(A).
+        // Sums of f(B) e, e and e^2 by factor, with e = f(AB) - f(A).
         let mut sums = vec![[0.0; 3]; d];
         for (j, row) in self.rows.chunks_exact(d + 2).enumerate() {
             let w = f64::from(counts.map_or(1, |counts| counts[j]));
@@ -230,7 +230,7 @@ impl Table {
         })
     }
 
-    /// What there is to say of a constant, or of too few samples.
+    /// Gives indices of NaN for a constant or too few samples.
     fn without_indices(&self) -> SobolIndices {
         let none = FactorIndices {
             first: Estimate::NONE,

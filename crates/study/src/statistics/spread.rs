@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What needs no order.
+/// Statistics that need no sorting.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Number of values.

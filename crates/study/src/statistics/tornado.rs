@@ -25,7 +25,7 @@ pub struct TornadoEnd {
     pub label: String,
     /// Output there.
     pub output: f64,
-    /// Its difference from the base.
+    /// Difference from the base.
     pub effect: f64,
 }
 

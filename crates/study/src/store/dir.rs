@@ -29,7 +29,7 @@ pub struct PartTable<'a> {
     pub name: &'a str,
     /// Heads of its columns.
     pub columns: &'a [Head],
-    /// Its rows.
+    /// Rows of the table.
     pub rows: &'a Rows,
     /// Pairs for the metadata of the Parquet file.
     pub metadata: &'a [(&'a str, &'a str)],
@@ -40,7 +40,7 @@ pub struct PartTable<'a> {
 pub struct StudyDir {
     path: PathBuf,
     layout: Layout,
-    /// Its word in the manifest, where there is one.
+    /// Word of the run in the manifest, where there is one.
     run: Option<String>,
     whole: Mutex<BTreeSet<usize>>,
     lock: DirLock,
@@ -146,7 +146,7 @@ impl StudyDir {
         (0..self.layout.parts).filter(is_missing).collect()
     }
 
-    /// Whether all parts are there.
+    /// True if all parts are present.
     pub fn is_complete(&self) -> bool {
         self.whole().len() == self.layout.parts
     }
@@ -249,7 +249,7 @@ impl StudyDir {
         Ok(files.iter().map(|(name, _)| self.path.join(name)).collect())
     }
 
-    /// What is there so far, to be read.
+    /// Opens the parts written so far for reading.
     ///
     /// # Errors
     /// Those of [`Study::open`], and a part that was written is no longer there.
@@ -346,16 +346,17 @@ fn no_link(path: &Path) -> Result<(), Problem> {
 
 fn layout_of(path: &Path, manifest: &[u8]) -> Result<(Layout, Option<String>), Problem> {
     let parsed = bounded::json(manifest).ok();
-    let read = parsed.and_then(|manifest| Some((Layout::of(&manifest)?, run_of(&manifest))));
+    let read =
+        parsed.and_then(|manifest| Some((Layout::from_manifest(&manifest)?, run_of(&manifest))));
     read.ok_or_else(|| problem(path, "the study has no manifest with a layout", ""))
 }
 
-/// Whether the directory holds an earlier study. Refuses what is not to be written over.
+/// Checks for an earlier study in the directory. Refuses contents that must not be overwritten.
 fn check_contents(path: &Path, force: bool) -> Result<bool, Problem> {
     let name = path.display();
     let cannot = |error| failed(path, &format!("cannot read directory {name}"), &error);
     let mut found = names_in(path).map_err(cannot)?;
-    // What is left of a study that never began.
+    // An empty folder of parts is left by a study that never began.
     let is_empty =
         || fs::read_dir(names::parts_folder(path)).is_ok_and(|mut all| all.next().is_none());
     found.retain(|name| !(name == PARTS && is_empty()));

@@ -38,7 +38,7 @@ impl Format {
     ///
     /// # Errors
     /// A problem of `--out` that names the endings.
-    pub fn of(path: &Path) -> Result<Self, Problem> {
+    pub fn from_path(path: &Path) -> Result<Self, Problem> {
         let ending = path.extension().unwrap_or_default();
         let ending = ending.to_string_lossy().to_lowercase();
         let known = Self::NAMES.iter().find(|(name, _)| *name == ending);
@@ -52,7 +52,7 @@ impl Format {
     }
 }
 
-/// What was exported.
+/// Size of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// Rows without the header.

@@ -100,7 +100,7 @@ pub fn clear(path: &Path) -> io::Result<()> {
     removals(path)?.iter().try_for_each(fs::remove_file)
 }
 
-/// What [`clear`] removes, in this order: marks go before the files that they vouch for, so that what an interruption leaves is a
+/// Lists the files that [`clear`] removes, in this order: marks go before the files that they vouch for, so that an interruption leaves a
 /// study with fewer parts, and the list of the results after them, so that the next one finds them.
 fn removals(path: &Path) -> io::Result<Vec<PathBuf>> {
     let results = Checksums::read(&path.join(RESULTS)).unwrap_or_default();
@@ -132,7 +132,7 @@ pub fn link_in(path: &Path) -> Option<String> {
     ))
 }
 
-/// What helps against [`link_in`].
+/// Advice where [`link_in`] finds a link.
 pub const NO_LINK: &str = "put the file or folder itself there, or name another directory";
 
 #[cfg(test)]

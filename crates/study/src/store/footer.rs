@@ -16,8 +16,8 @@ const MAX_DEPTH: usize = 24;
 /// The end of a file: the length of its footer, and its magic word.
 const END: u64 = 8;
 
-/// Whether a file has no footer, which the library reports, or one in which every list and text is as long as it says. The file is left at
-/// its beginning.
+/// Checks that every list and text of the footer is as long as it says; a file without footer passes, as the library reports it. Leaves the file at
+/// the beginning.
 pub(super) fn is_sound(file: &mut File) -> io::Result<bool> {
     let whole = file.seek(SeekFrom::End(0))?;
     let mut end = [0; 8];
@@ -55,7 +55,7 @@ const LIST: u8 = 9;
 const SET: u8 = 10;
 const STRUCTURE: u8 = 12;
 
-/// What a structure is.
+/// Type of a structure.
 #[derive(Clone, Copy)]
 enum Part {
     /// The footer itself.
@@ -67,7 +67,7 @@ enum Part {
     Other,
 }
 
-/// Whether every list and text of a footer is as long as it says.
+/// Checks that every list and text of a footer is as long as it says.
 fn is_whole(footer: &[u8]) -> bool {
     let mut walk = Walk {
         rest: footer,
@@ -76,7 +76,7 @@ fn is_whole(footer: &[u8]) -> bool {
     walk.structure(Part::Footer, 0).is_some()
 }
 
-/// What is left of a footer. Every step takes at least one byte of it, or ends.
+/// Unread bytes of a footer. Every step takes at least one byte, or ends.
 struct Walk<'f> {
     rest: &'f [u8],
     structures: usize,
@@ -239,7 +239,7 @@ mod tests {
     fn a_footer_is_walked_to_its_end() {
         let whole = footer(GROUP, TEXTS, FIELDS);
         assert!(is_whole(&whole) && with_fields(&[0]));
-        // What comes after its end is not looked at.
+        // Bytes after the end are ignored.
         assert!(is_whole(&[&whole[..], &[0xff; 9]].concat()));
         for length in 0..whole.len() {
             assert!(!is_whole(&whole[..length]), "cut at {length}");

@@ -1,4 +1,4 @@
-//! What differs between two manifests.
+//! Differences between two manifests.
 
 use serde_json::Value;
 
@@ -10,9 +10,9 @@ const MAX_LEN: usize = 60;
 pub struct Difference {
     /// Dotted path of the value, `cars[0].values.mass_kg`; with the line for words of several lines.
     pub path: String,
-    /// What the study was begun with.
+    /// Value that the study was begun with.
     pub stored: String,
-    /// What it would go on with.
+    /// Value that it would continue with.
     pub now: String,
 }
 

@@ -21,7 +21,7 @@ struct Shard {
     layout: Layout,
 }
 
-/// What a study was begun with, byte for byte.
+/// Inputs that a study was begun with, byte for byte.
 struct Begun {
     path: PathBuf,
     manifest: Vec<u8>,
@@ -108,7 +108,7 @@ impl StudyDir {
         let (Some(first), shards) = (first, opened) else {
             return Err(problems);
         };
-        // What a foreign study lacks or has is no news.
+        // Problems of the parts of a foreign study would only follow from the first.
         problems.finish()?;
         let mut problems = Problems::new();
         let found = parts_of(&shards, &mut problems);

@@ -1,4 +1,4 @@
-//! Which files a study has, and their names.
+//! Names of the files of a study.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ pub const PLAN: &str = "plan.toml";
 pub const PARTS: &str = "parts";
 /// Checksums of the results; marks a finished study.
 pub const RESULTS: &str = "results.sha256";
-/// Of the results, this one appears last.
+/// Written last of the results.
 pub const SUMMARY: &str = "summary.json";
 /// Word before the number of a part's mark.
 const MARK: &str = "part";
@@ -32,7 +32,7 @@ const MARK_ENDING: &str = "sha256";
 /// Endings of the files of a part.
 const ENDINGS: [&str; 3] = ["parquet", "csv", MARK_ENDING];
 
-/// Whether a directory holds a study, whole or not.
+/// True if a directory holds a study, complete or not.
 pub fn is_study(path: impl AsRef<Path>) -> bool {
     path.as_ref().join(MANIFEST).is_file()
 }
@@ -60,7 +60,7 @@ pub fn marked_part(name: &str) -> Option<usize> {
     (part_mark(index) == name).then_some(index)
 }
 
-/// Whether a name is that of a file of some part.
+/// True for the file name of any part.
 pub fn is_part_file(name: &str) -> bool {
     let (stem, ending) = name.rsplit_once('.').unwrap_or_default();
     let (table, digits) = stem.rsplit_once('_').unwrap_or_default();
@@ -68,7 +68,7 @@ pub fn is_part_file(name: &str) -> bool {
     ENDINGS.contains(&ending) && is_word(table) && is_number
 }
 
-/// Whether a name can be that of a table: small letters, digits and `_`, and not that of the marks.
+/// Checks the name of a table: small letters, digits and `_`, and not that of the marks.
 pub fn is_table(name: &str) -> bool {
     is_word(name) && name != MARK
 }
@@ -78,7 +78,7 @@ fn is_word(name: &str) -> bool {
     (1..=40).contains(&name.len()) && name.bytes().all(is_letter)
 }
 
-/// Whether a name can be that of a result: plain, and none of the study's own files.
+/// Checks the name of a result: plain, and none of the study's own files.
 pub fn is_result(name: &str) -> bool {
     let plain = Path::new(name).file_name().is_some_and(|last| last == name);
     let own = [MANIFEST, PLAN, PARTS, RESULTS];
@@ -97,13 +97,13 @@ pub struct Layout {
     pub parts: usize,
     /// Names of the tables of which each part has a piece: small letters, digits and `_`.
     pub tables: Vec<String>,
-    /// Whether each table of a part is written as CSV too.
+    /// True if each table of a part is written as CSV too.
     pub csv: bool,
 }
 
 impl Layout {
     /// The layout that a manifest states; none if it states none, or one that cannot be.
-    pub fn of(manifest: &Value) -> Option<Self> {
+    pub fn from_manifest(manifest: &Value) -> Option<Self> {
         let layout: Layout = serde_json::from_value(manifest.get("layout")?.clone()).ok()?;
         let tables = &layout.tables;
         let unlike = tables

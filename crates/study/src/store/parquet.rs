@@ -132,7 +132,7 @@ fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> Writ
         // Least and largest of each group; pages need none in groups of this size.
         .set_statistics_enabled(EnabledStatistics::Chunk)
         .set_offset_index_disabled(true)
-        // What is one group here is to be one in the file.
+        // Groups of the file are exactly those given.
         .set_max_row_group_row_count(None)
         .set_key_value_metadata(Some(pairs.collect()));
     for (column, values) in columns.iter().zip(&first.values) {
@@ -143,7 +143,7 @@ fn properties(columns: &[Head], metadata: &[(&str, &str)], first: &Rows) -> Writ
     builder.build()
 }
 
-/// Whether values come again often enough for a dictionary to be shorter and quicker.
+/// True if values repeat often enough for a dictionary to be shorter and quicker.
 fn dictionary_helps(values: &Values) -> bool {
     let looked_at = values.len().min(LOOKED_AT);
     let most = looked_at / REPEATED;
@@ -154,7 +154,7 @@ fn dictionary_helps(values: &Values) -> bool {
     }
 }
 
-/// Whether there are no more different ones than `most`.
+/// True if there are at most `most` different values.
 fn few(mut bits: impl Iterator<Item = u64>, most: usize) -> bool {
     let mut seen: HashSet<u64, BuildHasherDefault<Mixed>> = HashSet::default();
     bits.all(|bits| {

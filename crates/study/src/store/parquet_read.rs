@@ -23,7 +23,7 @@ use parquet::errors::ParquetError;
 use parquet::file::metadata::{ColumnChunkMetaData, KeyValue};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
-/// What helps with a damaged file.
+/// Advice for a damaged file.
 pub(super) const MEND: &str = "a study computes its damaged parts anew when it is continued";
 
 /// Bytes that a byte of a column can become at most: a copy of Snappy's takes three bytes for up to 64. Small columns have a head in addition.
@@ -164,7 +164,7 @@ fn damage(message: &str) -> ParquetError {
     ParquetError::General(message.to_owned())
 }
 
-/// Whether all that the footer says lies within the file: the library trusts it, and makes room for what it says.
+/// Checks that all offsets in the footer lie within the file: the library trusts them and allocates by them.
 fn fits(file: &SerializedFileReader<File>, bytes: u64) -> bool {
     let metadata = file.metadata();
     let rows = u64::try_from(metadata.file_metadata().num_rows());

@@ -26,12 +26,12 @@ pub struct Status {
     pub present: usize,
     /// Parts that the study will have.
     pub expected: usize,
-    /// Whether its results were written.
+    /// True if the results were written.
     pub finished: bool,
 }
 
 impl Status {
-    /// Whether all parts are there.
+    /// True if all parts are present.
     pub fn is_complete(self) -> bool {
         self.present == self.expected
     }
@@ -52,7 +52,7 @@ pub struct Study {
 /// Files of parts that stay open: of a larger study those that were opened first. Each holds its footer, some 0.1 MB.
 const MAX_OPEN: usize = 64;
 
-/// What is known of the files of parts.
+/// State of the files of parts.
 #[derive(Debug, Default)]
 struct Files {
     /// Those whose checksum was found right: it is computed once only.
@@ -87,7 +87,7 @@ impl Study {
             TooLarge => found.in_file(file.display().to_string()),
             _ => damaged(),
         })?;
-        let layout = Layout::of(&manifest).ok_or_else(damaged)?;
+        let layout = Layout::from_manifest(&manifest).ok_or_else(damaged)?;
         let parts = names::parts_folder(&path);
         let marked = marked_parts(&path, &layout);
         let mut present = marked.map_err(|error| unreadable(&parts, &error.into()))?;
@@ -107,12 +107,12 @@ impl Study {
         &self.path
     }
 
-    /// What it was begun with.
+    /// Manifest that the study was begun with.
     pub fn manifest(&self) -> &Value {
         &self.manifest
     }
 
-    /// Its parts and tables.
+    /// Parts and tables.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -256,7 +256,7 @@ pub(super) fn marked_parts(study: &Path, layout: &Layout) -> io::Result<Vec<usiz
     Ok(found)
 }
 
-/// Whether all files of a part are there, with the checksums in its mark.
+/// Checks that all files of a part are present, with the checksums in its mark.
 pub(super) fn is_whole(study: &Path, layout: &Layout, index: usize) -> bool {
     let folder = names::parts_folder(study);
     let Some(list) = Checksums::read(&folder.join(names::part_mark(index))) else {

@@ -34,12 +34,12 @@ impl Values {
         }
     }
 
-    /// Whether there are no cells.
+    /// True if there are no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// What the cells are.
+    /// Type of the cells.
     pub fn kind(&self) -> Kind {
         match self {
             Values::Number(_) => Kind::Number,
@@ -102,7 +102,7 @@ impl Rows {
         self.values.first().map_or(0, Values::len)
     }
 
-    /// Whether there are none.
+    /// True if there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

@@ -190,7 +190,7 @@ fn steps(
     }));
 }
 
-/// What is wrong with the times and the lengths of the steps: of each the first bad one.
+/// Checks times and lengths of the steps; reports the first bad one of each.
 fn times(path: &Path, history: &History) -> Problems {
     let (time, dt) = (history.time_s(), history.dt_s());
     let late = |row: &usize| !time[*row].is_finite() || (*row > 0 && time[*row] <= time[row - 1]);

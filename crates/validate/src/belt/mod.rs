@@ -36,9 +36,9 @@ pub trait Take {
     fn put(&mut self, case: &str, row: &Solved) -> Result<(), Problems>;
 }
 
-/// What is to be done with the points.
+/// Settings for the points of a table.
 pub struct Job<'t> {
-    /// None where the options are bad: rows are then checked and not computed.
+    /// `None` if the options are bad: rows are then checked and not computed.
     pub model: Option<Model>,
     /// Formulation of rows that name none.
     pub formulation: Formulation,
@@ -46,7 +46,7 @@ pub struct Job<'t> {
     pub rows: &'t mut dyn Take,
 }
 
-/// What came of a table.
+/// Results of solving a table.
 #[derive(Debug)]
 pub struct Done {
     /// Points by status and flag.
@@ -160,7 +160,7 @@ impl Job<'_> {
         }
         match model.solve(&given, self.formulation) {
             Err(refused) => row.report(refused.0, problems, refused.1),
-            // What will not be written need not be formatted.
+            // Rows are written, and thus formatted, only without problems.
             Ok(solved) if problems.is_empty() => {
                 counts.add(&solved);
                 self.rows.put(given.case, &solved)?;

@@ -24,7 +24,7 @@ const PRINTED_BAND_FRICTION: f64 = 0.13;
 /// Largest mu beta/2 for which tension and compression have a solution worth the name (TE-5 needs less than 1).
 const LARGEST_GRIP: f64 = 0.98;
 
-/// What to do where a printed form has no value.
+/// Hint where a printed form has no value.
 const DEFINED: &str = "the formulation smooth is defined there";
 
 /// A computed point with the values that it was computed from.
@@ -32,7 +32,7 @@ const DEFINED: &str = "the formulation smooth is defined there";
 pub struct Solved {
     /// Answer of the belt model.
     pub point: BeltPoint,
-    /// What it departs from.
+    /// Marks of departures from the model's range.
     pub flags: PointFlags,
     /// The reading in force.
     pub formulation: Formulation,
@@ -179,7 +179,7 @@ impl Model {
     }
 }
 
-/// What is given of friction and temperature at a point; NaN where nothing is.
+/// Friction and temperature given at a point; NaN where missing.
 pub(crate) struct GivenFriction {
     pub band: f64,
     pub segment: f64,
@@ -245,7 +245,7 @@ fn no_geometry(ratios: [f64; 2]) -> Problem {
         .hint("I = R_sec / R_pri")
 }
 
-/// Whether the belt has radii at this ratio.
+/// True if the belt has radii at this ratio.
 fn runs(belt: &Belt, ratio: f64) -> bool {
     let geometry = |ratio| Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
     ratio > 0.0 && geometry(ratio).is_real(belt.length_m, belt.segment_thickness_m)

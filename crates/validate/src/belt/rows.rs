@@ -25,12 +25,12 @@ pub const REQUIRED: usize = 4;
 
 const HALF_ANGLE: Bound = VARIATOR.half_wedge_deg.range();
 
-/// Numbers that are read, in the order of the output. Their ranges keep out what is a slip of the pen or has no solution;
-/// what is merely outside the vehicle's or the model's validity is computed and flagged.
-/// What a vehicle or a lubricant has a key for has the range of that key; the friction of the bands is that at the point's temperature and
+/// Numbers that are read, in the order of the output. Their ranges exclude slips of the pen and points without a solution;
+/// points that are only outside the vehicle's or the model's validity are computed and flagged.
+/// Numbers with a key of a vehicle or a lubricant have the range of that key; the friction of the bands is that at the point's temperature and
 /// sliding speed, not the key's at 85 degC.
 pub const NUMBERS: [Number; 12] = [
-    // What the belt can run at is the model's to say.
+    // The model decides the ratios at which the belt runs.
     ("ratio", "", Bound::any()),
     ("input_speed_rpm", "rpm", Bound::closed(0.0, 100_000.0)),
     (

@@ -309,7 +309,7 @@ impl Context<'_> {
 #[derive(Default)]
 struct Listed {
     text: String,
-    /// What goes before the next entry.
+    /// Text before the next entry.
     begin: String,
     is_full: bool,
 }

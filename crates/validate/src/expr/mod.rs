@@ -26,9 +26,9 @@ pub struct Fault {
     pub width: usize,
     /// The offending word.
     pub word: String,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
-    /// What to do; may be empty.
+    /// Advice; may be empty.
     pub hint: String,
 }
 

@@ -67,7 +67,7 @@ impl<'a> Parser<'a> {
         &self.tokens[self.next.min(self.tokens.len() - 1)]
     }
 
-    /// Whether the token behind the next one is a colon.
+    /// True if a colon follows the next token.
     fn colon_follows(&self) -> bool {
         let second = self.tokens.get(self.next + 1);
         second.is_some_and(|token| token.text == ":")

@@ -62,7 +62,7 @@ fn efficiency(a: &BenchAnswer) -> f64 {
     }
 }
 
-/// What counts of a solved point besides its numbers.
+/// Marks of a solved point, in addition to its numbers.
 pub(super) fn marks(answer: &BenchAnswer) -> Marks {
     Marks {
         gross: answer.flags.contains(Flags::GROSS_SLIP),
@@ -84,7 +84,7 @@ pub(super) fn width() -> usize {
     COLUMNS.len() + LOSSES.len()
 }
 
-/// What sets a point, in the order in which [`point`] takes the values.
+/// Keys that set a point, in the order in which [`point`] takes the values.
 pub const SETTINGS: [&Key; 9] = [
     &BENCH.ratio,
     &BENCH.torque_nm,

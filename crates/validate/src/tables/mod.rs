@@ -46,7 +46,7 @@ pub fn combinations(axes: &[Vec<f64>]) -> Vec<Vec<f64>> {
     })
 }
 
-/// What counts of a row besides its numbers.
+/// Marks of a row, in addition to its numbers.
 pub struct Marks {
     /// Weight in means.
     pub weight: f64,
@@ -66,7 +66,7 @@ impl Default for Marks {
     }
 }
 
-/// What the rows of a table are of, with their marks.
+/// Rows of a table, with their marks.
 pub struct Rows<T> {
     of: Vec<T>,
     weight: Vec<f64>,

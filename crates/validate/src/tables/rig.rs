@@ -21,7 +21,7 @@ const OF_MOMENT: [&str; 4] = ["time_s", "cooling", "metal_degc", "gap_nm"];
 /// Columns of a strip-down before those of the pieces.
 const OF_POINT: [&str; 3] = ["ratio", "speed_rpm", "temp_degc"];
 
-/// What is computed of a piece.
+/// Quantities computed for a piece.
 const OF_PIECE: [&str; 3] = ["found", "true", "interaction"];
 
 static PIECES: LazyLock<Vec<&'static str>> = LazyLock::new(|| {
