@@ -9,7 +9,7 @@
 //! | `problem` | what is wrong, where, and its text |
 //! | `files` | files that an input names, limits of their size, the files that the program carries |
 //! | `csv` | CSV tables against a schema |
-//! | `document` | TOML text to a tree with places; overrides and changed numbers over it |
+//! | `document` | TOML text to a tree with places; overrides over it |
 //! | `reader` | values of keys in SI units with their origin: numbers, lists, choices, maps |
 //! | `setup` | vehicles, lubricants, rig; the catalogue of keys, the book of assumptions |
 //! | `cycle` | drive cycles |
@@ -27,7 +27,6 @@ pub use cvtcycle_model::keys::Bound;
 use cvtcycle_model::keys::Quantity;
 pub use document::Document;
 pub use document::overrides::{Acts, Override};
-pub use document::patched::PatchedDocument;
 pub use document::syntax::decode;
 pub use document::target::{KeyPath, Target};
 pub use files::{bounded, carried, embedded};

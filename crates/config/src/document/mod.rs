@@ -1,8 +1,8 @@
 //! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML; `units`: numbers with units), and the overrides put into it.
 
+mod assigned;
 mod entries;
 pub(crate) mod overrides;
-pub(crate) mod patched;
 mod shape;
 pub(crate) mod syntax;
 pub(crate) mod target;
@@ -19,6 +19,9 @@ use self::shape::Excess;
 use crate::problem::place::{Input, Place};
 use crate::problem::source::{MAX_VALUE, Parent, Source, shortened};
 use crate::problem::{Problem, Problems};
+
+/// Origin of a value that an override has set.
+pub(crate) const OVERRIDE: &str = "override";
 
 /// A stretch of one source, in bytes.
 #[derive(Clone, Debug)]
@@ -256,7 +259,7 @@ impl Document {
     /// From where a value comes: its line in the file, the class or car that it is inherited from, or an override.
     pub(crate) fn from(&self, span: &Span) -> String {
         match self.parent(span) {
-            _ if span.is_set() => "override".to_owned(),
+            _ if span.is_set() => OVERRIDE.to_owned(),
             Some(parent) => parent.from.clone(),
             None => {
                 let line = self.sources[span.source].line_number(&span.range);

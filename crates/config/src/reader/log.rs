@@ -2,6 +2,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use crate::problem::Problem;
+use crate::reader::recorded::Recorded;
 use cvtcycle_model::keys::with_labels;
 
 /// What is known about one key after reading it.
@@ -35,6 +36,12 @@ pub struct KeyInfo {
 }
 
 impl KeyInfo {
+    /// With the prefix of its file before its key.
+    pub(crate) fn prefixed(mut self, prefix: &str) -> Self {
+        self.key.insert_str(0, prefix);
+        self
+    }
+
     /// Meaning and labels as they are printed: "displacement (PU-1, PU-4)".
     pub fn meaning(&self) -> String {
         with_labels(&self.doc, self.labels)
@@ -52,6 +59,8 @@ pub(crate) struct Log {
     /// Problems beyond those that are shown.
     pub more: usize,
     pub keys: Vec<KeyInfo>,
+    /// Values for the parts of the model.
+    pub values: Recorded,
     /// Index of `keys` by their dotted path.
     pub index: HashMap<String, usize>,
     /// Paths whose whole content counts as read.

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use crate::document::{Document, Entry, Node, Table, Value};
+use crate::document::{Document, Entry, Node, OVERRIDE, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{did_you_mean, one_of, suggest};
-use crate::reader::log::join;
+use crate::reader::log::{KeyInfo, join};
 use crate::reader::section::Section;
 
 /// What a value's status may be in a file.
@@ -16,6 +16,16 @@ const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
 pub(crate) const COLUMNS: &str = "columns";
 /// Status and source of what an override gives.
 const SET: (&str, &str) = ("set", "command line");
+
+impl KeyInfo {
+    /// With a number in the key's unit, and its value in SI units, as an override would set it.
+    pub(crate) fn set(&mut self, number: f64, si: f64) {
+        (self.value, self.si) = (number.to_string(), Some(si));
+        (self.status, self.source) = (SET.0.to_owned(), SET.1.to_owned());
+        self.note.clear();
+        self.from = OVERRIDE.to_owned();
+    }
+}
 
 /// A value as found, with its origin.
 pub(crate) struct Found<'r> {

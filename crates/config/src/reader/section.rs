@@ -78,6 +78,7 @@ impl<'r> Section<'r> {
     pub fn table(&self, name: &str) -> Section<'r> {
         let mut section = self.below(name);
         self.reader.record(|log| {
+            log.values.add_table(&section.path);
             log.tables.insert(section.path.clone());
         });
         match self
@@ -103,13 +104,9 @@ impl<'r> Section<'r> {
         section
     }
 
-    /// The table `name` within this one, before it is known whether there is one. Silent readings know no paths.
+    /// The table `name` within this one, before it is known whether there is one.
     pub(crate) fn below(&self, name: &str) -> Section<'r> {
-        let path = if self.reader.is_check_only() {
-            String::new()
-        } else {
-            join(&self.path, name)
-        };
+        let path = join(&self.path, name);
         Section {
             reader: self.reader,
             path,

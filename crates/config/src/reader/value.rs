@@ -151,11 +151,9 @@ impl<'r> Section<'r> {
             return Lookup::Bad;
         };
         found.node = value;
-        if !self.reader.is_check_only() {
-            let own = self.origin(key, table, is_csv);
-            let is_inherited = self.reader.document.parent(&node.span).is_some();
-            found.add(own, is_inherited && found.status != "set");
-        }
+        let own = self.origin(key, table, is_csv);
+        let is_inherited = self.reader.document.parent(&node.span).is_some();
+        found.add(own, is_inherited && found.status != "set");
         Lookup::Found(found)
     }
 

@@ -7,12 +7,13 @@ pub mod carried;
 pub mod catalogue;
 mod doubts;
 pub mod new_car;
-pub mod template;
 mod inputs;
 mod like;
+mod params;
 pub mod rig;
 mod twin;
 
+pub use self::params::{Param, ParamSet, ParamValue};
 pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
 };
@@ -88,6 +89,23 @@ pub struct Origin {
 }
 
 impl Setup {
+    /// The car of a set of values; its keys and its origin, which take as long as all the rest, are left out ([`ParamSet::setup`] has them).
+    #[must_use]
+    pub fn from_params(params: &ParamSet) -> Self {
+        let head = &params.assembled.head;
+        let frame = &params.read.inputs.frame;
+        Setup {
+            name: frame.name.clone(),
+            title: head.title.clone(),
+            short: head.short.clone(),
+            baselines: head.baselines.clone(),
+            vehicle: params.vehicle().clone(),
+            keys: Vec::new(),
+            notes: frame.notes(params.vehicle()),
+            origin: Origin::default(),
+        }
+    }
+
     /// What looks like a slip in its values, a sentence each.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
@@ -327,7 +345,7 @@ pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load(word: &str, options: &Options) -> Result<Setup, Problems> {
-    inputs::Inputs::gather(word, options)?.read()
+    Ok(ParamSet::load(word, options)?.setup())
 }
 
 /// As [`load`], for a vehicle's text that need not be on disk. `file` is its name or path, which problems cite and from which paths of
@@ -349,7 +367,7 @@ pub fn read(
     files: Box<dyn Files>,
     options: &Options,
 ) -> Result<Setup, Problems> {
-    inputs::Inputs::of_text(file, text, files, options)?.read()
+    Ok(ParamSet::read(file, text, files, options)?.setup())
 }
 
 /// As [`read`], for the twin of the vehicle: the same car with a manual box.
@@ -362,7 +380,7 @@ pub fn read_twin(
     files: Box<dyn Files>,
     options: &Options,
 ) -> Result<Setup, Problems> {
-    inputs::Inputs::of(file, text, files, options, true)?.read()
+    Ok(ParamSet::read_twin(file, text, files, options)?.setup())
 }
 
 /// Range of the temperature of all parts at the start, degC.

@@ -178,7 +178,7 @@ pub(super) fn twin(
     file: &str,
     files: &dyn Files,
 ) -> Result<Document, Problems> {
-    let reader = Reader::check_only(&document);
+    let reader = Reader::new(&document);
     let root = reader.root();
     let refused = |problem: Problem| {
         let place = root.table("vehicle").place(HEAD.baselines.name);
