@@ -1,4 +1,4 @@
-//! How long the parts and the whole take: `cargo bench`.
+//! Times of the parts and of whole runs: `cargo bench`.
 //!
 //! Steps and cycles are those of shipped cars after a soak at -10 degC; `history` and `runs_per_second<true>` keep every row.
 #![allow(
@@ -9,27 +9,28 @@
 
 use std::collections::BTreeSet;
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
+use cvtcycle::analysis::levers::{Combine, LeverFile, LeverRequest, prepare};
+use cvtcycle::analysis::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::config::cycle::{Cycle, embedded, read_csv};
 use cvtcycle::config::setup::template::VehicleTemplate;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, Problem, render};
 use cvtcycle::model::drive::{Car, Recorder, State, simulate};
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::lubricant::BandFriction;
 use cvtcycle::model::road::WheelDemand;
 use cvtcycle::model::thermal::{Heat, HeatInput};
 use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_point, belt_state,
 };
 use cvtcycle::model::transmission::{StepInput, Transmission, TransmissionState};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::summary::{Driven, Settings, run_summary};
 use cvtcycle::output::{EnergyTerms, Row};
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
-use cvtcycle::study::levers::{Combine, LeverFile, LeverRequest, prepare};
-use cvtcycle::study::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Rows;
-use cvtcycle::study::{NoProgress, PartWriter, Study};
+use cvtcycle::study::{PartWriter, Study};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
@@ -72,7 +73,7 @@ fn load_at(torque_nm: f64) -> BeltLoad {
     }
 }
 
-/// One evaluation of the belt at a prepared ratio: away from the change of loading branch, and at it.
+/// Evaluates the belt once at a prepared ratio: away from the change of loading branch, and at it.
 #[divan::bench(args = [40.0, 3.0, -30.0])]
 fn belt_evaluation(bencher: Bencher, torque_nm: f64) {
     let car = setup("rover_216_cvt").car(COLD_K);
@@ -81,7 +82,7 @@ fn belt_evaluation(bencher: Bencher, torque_nm: f64) {
     bencher.bench_local(|| belt_state(black_box(belt(&car)), black_box(&at), black_box(&load)));
 }
 
-/// Belt points with their geometry, as `belt` computes them, in each formulation: points a second.
+/// Computes belt points with their geometry, as `belt` does, in each formulation: points a second.
 #[divan::bench(args = ["smooth", "appendix_c", "chapter_8"])]
 fn belt_points(bencher: Bencher, name: &str) {
     let formulation = Formulation::NAMES
@@ -112,7 +113,7 @@ fn belt_geometry(bencher: Bencher, ratio: f64) {
     bencher.bench_local(|| BeltAtRatio::new(black_box(belt(&car)), black_box(ratio)));
 }
 
-/// One implicit solve of a driveline at 60 km/h, away from its last answer.
+/// Solves a driveline implicitly once at 60 km/h, away from its last answer.
 #[divan::bench(args = CARS)]
 fn driveline_step(bencher: Bencher, name: &str) {
     let car = setup(name).car(COLD_K);
@@ -168,7 +169,7 @@ impl Recorder for NullRecorder {
     }
 }
 
-/// Steps of a whole drive, without any totals: time a step.
+/// Drives whole cycles without totals: time a step.
 #[divan::bench(args = CARS)]
 fn step_of_a_cycle(bencher: Bencher, name: &str) {
     let car = setup(name).car(COLD_K);
@@ -179,7 +180,7 @@ fn step_of_a_cycle(bencher: Bencher, name: &str) {
         .bench_local(|| simulate(&car, trace, 1.0, State::at(COLD_K), &mut NullRecorder));
 }
 
-fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
+fn drive_cycle(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
     let setup = setup(name);
     let cycle = cycle(cycle_name);
     let conditions = Conditions {
@@ -198,12 +199,12 @@ fn whole(bencher: Bencher, name: &str, cycle_name: &str, keep_rows: bool) {
 
 #[divan::bench(args = CARS)]
 fn cycle_without_history(bencher: Bencher, name: &str) {
-    whole(bencher, name, "ece15_eudc", false);
+    drive_cycle(bencher, name, "ece15_eudc", false);
 }
 
 #[divan::bench(args = CARS)]
 fn cycle_with_history(bencher: Bencher, name: &str) {
-    whole(bencher, name, "ece15_eudc", true);
+    drive_cycle(bencher, name, "ece15_eudc", true);
 }
 
 /// The CVT with each launch device, and with a converter that never locks.
@@ -232,7 +233,7 @@ fn launch_device(bencher: Bencher, set: &str) {
     bencher.bench_local(|| drive(&setup, black_box(&cycle), &conditions));
 }
 
-/// Whole runs of ECE15+EUDC, the car built anew for each as in a study: runs a second on one core (target of studies: 3 000).
+/// Runs ECE15+EUDC, rebuilding the car for each run as in a study: runs a second on one core (target of studies: 3 000).
 #[divan::bench(args = ["rover_216_cvt", "rover_216_5mt"], consts = [false, true])]
 fn runs_per_second<const ROWS: bool>(bencher: Bencher, name: &str) {
     let (setup, cycle) = (setup(name), cycle("ece15_eudc"));
@@ -247,7 +248,8 @@ fn runs_per_second<const ROWS: bool>(bencher: Bencher, name: &str) {
         .bench_local(|| drive(&setup, black_box(&cycle), &conditions));
 }
 
-/// The main job with the price of each loss of the CVT: on all cores, the whole car first; with both orders of all pairs and shares of groups too.
+/// Runs the main job with the price of each loss of the CVT: on all cores, the whole car first; with both orders of all pairs and shares of
+/// groups too.
 #[divan::bench(args = [false, true])]
 fn prices_of_the_main_job(bencher: Bencher, pairs: bool) {
     let (setup, cycle) = (setup("rover_216_cvt"), cycle("ece15_eudc"));
@@ -283,7 +285,7 @@ fn prices_of_the_main_job(bencher: Bencher, pairs: bool) {
     });
 }
 
-/// The least fuel of the CVT on ECE15+EUDC in steps of a quarter of a second, under its own clamp law and under a free one.
+/// Optimises the fuel of the CVT on ECE15+EUDC in steps of a quarter of a second, under its own clamp law and under a free one.
 #[divan::bench(args = [false, true], sample_count = 3)]
 fn least_fuel(bencher: Bencher, free: bool) {
     let (car, cycle) = (setup("rover_216_cvt").car(COLD_K), cycle("ece15_eudc"));
@@ -322,7 +324,7 @@ fn least_fuel(bencher: Bencher, free: bool) {
 
 #[divan::bench(args = ["us06", "wltc_class3b", "ftp75"])]
 fn other_cycle_without_history(bencher: Bencher, name: &str) {
-    whole(bencher, "rover_216_cvt", name, false);
+    drive_cycle(bencher, "rover_216_cvt", name, false);
 }
 
 #[divan::bench(args = CARS)]
@@ -351,7 +353,7 @@ fn parse_user_cycle(bencher: Bencher) {
         .bench_local(|| read_csv("user.csv", black_box(text.as_bytes())).map_err(|p| p.len()));
 }
 
-/// A car with two changed numbers, from its parsed files, as each run of a study begins.
+/// Builds a car with two changed numbers from its parsed files, as at the start of each run of a study.
 #[divan::bench(args = CARS)]
 fn blueprint_build(bencher: Bencher, name: &str) {
     let (blueprint, _) = VehicleTemplate::load(name, &Options::default())
@@ -368,17 +370,17 @@ fn blueprint_build(bencher: Bencher, name: &str) {
     });
 }
 
-/// Takes the parts of a study and drops them.
-struct Nowhere;
+/// Sink that drops the parts of a study.
+struct NullSink;
 
-impl PartWriter for Nowhere {
+impl PartWriter for NullSink {
     fn write(&self, _: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         black_box((runs.len(), trace.map(Rows::len)));
         Ok(())
     }
 }
 
-/// A study of 512 points of the CVT alone over ECE15+EUDC, each with four changed numbers: runs a second, on one and two threads, without
+/// Runs a study of 512 points of the CVT alone over ECE15+EUDC, each with four changed numbers: runs a second, on one and two threads, without
 /// and with all columns of the traces.
 #[divan::bench(args = [(1, false), (2, false), (1, true), (2, true)], sample_count = 10)]
 fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
@@ -405,13 +407,13 @@ fn study_runs(bencher: Bencher, (threads, traces): (usize, bool)) {
     bencher.counter(ItemsCount::new(512_usize)).bench_local(|| {
         pool.install(|| {
             study
-                .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
+                .execute(&BTreeSet::new(), &NullSink, &NoProgress)
                 .map_err(|p| p.message)
         })
     });
 }
 
-/// The built-in levers of a CVT, each with 256 draws in two cars over ECE15+EUDC, read and driven on two threads.
+/// Evaluates the built-in levers of a CVT, each with 256 draws in two cars over ECE15+EUDC, on two threads.
 #[divan::bench(sample_count = 1, sample_size = 1)]
 fn levers(bencher: Bencher) {
     let request = LeverRequest {
@@ -435,7 +437,7 @@ fn levers(bencher: Bencher) {
             let study =
                 prepare(&request).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
             study
-                .execute(&BTreeSet::new(), &Nowhere, &NoProgress)
+                .execute(&BTreeSet::new(), &NullSink, &NoProgress)
                 .map_err(|p| p.message)
         })
     });

@@ -4,14 +4,38 @@
     python benches/python.py [--native target/release/examples/native_run]
     python benches/python.py --ratio        both programs in turn on UDDS, time a step; `benches/against_fastsim` installs all of it
 
-Each time is the median of many calls; of --ratio it is the least. `native_run` drives the same run without Python and prints its own median.
+Each time is the median of many calls; of --ratio it is processor time, with its quartiles. `native_run` drives the same run without Python and prints its own median.
+
+RUST_BACKTRACE and RUST_LIB_BACKTRACE are unset first: FASTSim 3.1 makes an error value in each step, and with either variable a backtrace for it,
+which is most of its time then. --keep-environment leaves them as they are.
 """
 
 import argparse
+import os
+import platform
 import statistics
 import subprocess
 import sys
 import time
+from importlib.metadata import version
+
+BACKTRACE = ("RUST_BACKTRACE", "RUST_LIB_BACKTRACE")
+
+
+def environment():
+    """Processor, load, versions and variables that a time depends on."""
+    with open("/proc/cpuinfo") as file:
+        models = [line.split(":")[1].strip() for line in file if line.startswith("model name")]
+    yield "processor", f"{models[0] if models else platform.machine()}, {os.cpu_count()} processors"
+    yield "load", " ".join(f"{load:.1f}" for load in os.getloadavg())
+    yield "system", f"{platform.system()} {platform.release()}, {' '.join(platform.libc_ver())}, Python {platform.python_version()}"
+    for name in ("cvtcycle", "fastsim", "numpy"):
+        yield name, version(name)
+    for name in BACKTRACE:
+        yield name, os.environ.get(name, "unset, for both programs")
+    for name, value in sorted(os.environ.items()):
+        if name.startswith(("RUST", "RAYON", "OMP_", "POLARS")) and name not in BACKTRACE:
+            yield name, value
 
 
 def median_us(call, count):
@@ -78,13 +102,19 @@ def fair():
 
 
 def once_us(call, *given):
-    begun = time.perf_counter_ns()
+    """Processor time of a call in all threads: other work on the machine does not count."""
+    begun = time.process_time_ns()
     call(*given)
-    return (time.perf_counter_ns() - begun) / 1e3
+    return (time.process_time_ns() - begun) / 1e3
 
 
-def ratio(rounds=60):
-    """Time a step of UDDS, one run of each program after the other, so that both have the same machine."""
+def quartiles(numbers):
+    low, middle, high = statistics.quantiles(numbers, n=4)
+    return f"{middle:8.3f}  ({low:.3f} to {high:.3f})"
+
+
+def ratio(rounds=200):
+    """Time a step of UDDS. One run of each program after the other, so that both have the same machine; ratios of neighbours."""
     import cvtcycle as cc
     import fastsim as fsim
     import numpy
@@ -100,26 +130,38 @@ def ratio(rounds=60):
     times = {}
 
     def took(name, count, call, *given):
-        times[name] = min(times.get(name, float("inf")), once_us(call, *given) / count)
+        times.setdefault(name, []).append(once_us(call, *given) / count)
 
     for _ in range(rounds):
-        for name, car in cars.items():
-            took(f"cvtcycle {name}", steps["cvtcycle"], lambda: cc.run(car, cycle, trace=False))
-            took(f"cvtcycle {name}, 64 cars on one thread", steps["cvtcycle"] * len(masses_kg), families[name], masses_kg)
         for name, vehicle in vehicles.items():
             sim = fsim.SimDrive(vehicle, theirs)
             took("FASTSim with its thermal model" if name else "FASTSim without temperatures", steps["FASTSim"], sim.run)
-    yield from ((f"{name}, us a step", number) for name, number in times.items())
-    thermal = times["FASTSim with its thermal model"]
-    for name in [name for name in times if name.startswith("cvtcycle")]:
-        yield f"FASTSim with its thermal model / {name}", thermal / times[name]
+        for name, car in cars.items():
+            took(f"cvtcycle {name}", steps["cvtcycle"], lambda: cc.run(car, cycle, trace=False))
+            took(f"cvtcycle {name}, 64 cars on one thread", steps["cvtcycle"] * len(masses_kg), families[name], masses_kg)
+    print(f"processor time, us a step of UDDS, {rounds} rounds: median (quartiles)")
+    for name, numbers in times.items():
+        print(f"{name:60} {quartiles(numbers)}")
+    print("time of FASTSim over that of cvtcycle, each round by itself: median (quartiles)")
+    for theirs in ("FASTSim with its thermal model", "FASTSim without temperatures"):
+        for name in [name for name in times if name.startswith("cvtcycle")]:
+            print(f"{theirs} / {name:55} {quartiles([a / b for a, b in zip(times[theirs], times[name])])}")
 
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser()
     arguments.add_argument("--native")
     arguments.add_argument("--ratio", action="store_true")
+    arguments.add_argument("--keep-environment", action="store_true")
     given = arguments.parse_args()
-    for rows in (ratio(),) if given.ratio else (cvtcycle(given.native), fair(), fastsim()):
-        for name, number in rows:
-            print(f"{name:75} {number:10.1f}", flush=True)
+    if not given.keep_environment:
+        for variable in BACKTRACE:
+            os.environ.pop(variable, None)
+    for name, value in environment():
+        print(f"{name}: {value}")
+    if given.ratio:
+        ratio()
+    else:
+        for rows in cvtcycle(given.native), fair(), fastsim():
+            for name, number in rows:
+                print(f"{name:75} {number:10.1f}", flush=True)

@@ -11,7 +11,7 @@ use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{Override, render};
 use cvtcycle::model::drive::{Conditions, Start, drive, litres_per_100km};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 
 fn main() {
     // Warm: the same 600 s have just been driven.

@@ -1,5 +1,5 @@
-//! How much of the like-for-like comparison is the manual car's gear set and its driver: the CVT's penalty over plausible
-//! gear sets and shift speeds. Run with `cargo run --release --example gear_set_sensitivity`.
+//! Effect of the manual car's gear set and driver on the like-for-like comparison: the CVT's penalty over plausible gear sets and shift speeds.
+//! Run with `cargo run --release --example gear_set_sensitivity`.
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 

@@ -4,8 +4,8 @@
 
 use std::io::Write;
 
+use cvtcycle::analysis::words::intervals::file;
 use cvtcycle::config::render;
-use cvtcycle::study::words::intervals::file;
 
 fn main() -> std::process::ExitCode {
     match file() {

@@ -1,4 +1,4 @@
-//! The median time of a run without Python, us: what `benches/python.py` is compared with.
+//! Median time of a run without Python, us, as the reference of `benches/python.py`.
 
 #![allow(clippy::print_stdout, reason = "an example shows its result")]
 

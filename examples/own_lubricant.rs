@@ -1,7 +1,6 @@
-//! A CVT fluid of one's own: the same car over the cold NEDC with two fluids, and where the difference goes.
+//! Custom CVT fluid: compares the same car over the cold NEDC with two fluids, and locates the difference.
 //!
-//! `cargo run --release --example own_lubricant -- my_fluid.toml` takes a file; without it a thinner fluid is made up from
-//! the embedded one.
+//! `cargo run --release --example own_lubricant -- my_fluid.toml` takes a file; the default is a thinner variant of the embedded one.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -12,7 +11,7 @@ use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{Override, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
 
 const AMBIENT_DEGC: f64 = -10.0;

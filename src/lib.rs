@@ -1,13 +1,17 @@
 //! Drive-cycle losses and fuel of cars with a pushing-metal-V-belt CVT, cold and warm.
 //!
-//! One crate for each layer; each uses only those before it in the order model, config, output, study, report. The features are
-//! `cli` (default), the program, and `studies`, the crates study and report. The program is the function `program`, which the binary and
-//! the Python package call.
+//! One crate for each layer; each uses only those before it in the order model, config, output, study and validate, analysis and calibrate,
+//! report. The features are `cli` (default), the program, and `studies`, the crates from study on. The program is the function `program`,
+//! which the binary and the Python package call.
 
 #[cfg(feature = "cli")]
 mod args;
 #[cfg(feature = "cli")]
 mod commands;
+#[cfg(feature = "studies")]
+pub mod equations;
+#[cfg(feature = "studies")]
+pub mod explain;
 #[cfg(feature = "cli")]
 mod print;
 
@@ -18,6 +22,10 @@ extern crate self as cvtcycle;
 #[cfg(feature = "cli")]
 pub use commands::program;
 
+#[cfg(feature = "studies")]
+pub use cvtcycle_analysis as analysis;
+#[cfg(feature = "studies")]
+pub use cvtcycle_calibrate as calibrate;
 pub use cvtcycle_config as config;
 pub use cvtcycle_model as model;
 pub use cvtcycle_output as output;
@@ -25,3 +33,5 @@ pub use cvtcycle_output as output;
 pub use cvtcycle_report as report;
 #[cfg(feature = "studies")]
 pub use cvtcycle_study as study;
+#[cfg(feature = "studies")]
+pub use cvtcycle_validate as validate;

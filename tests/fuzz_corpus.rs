@@ -1,6 +1,6 @@
-//! Runs the committed inputs of the fuzzers with the targets of the fuzzers: a mended defect stays mended.
+//! Runs the committed inputs of the fuzzers, so that corrected defects stay corrected.
 //!
-//! Truth: for any bytes the program answers or refuses with words, within the memory that it states; see `tools/fuzz/src/targets/mod.rs`.
+//! Truth: for any bytes the program answers or refuses with a message, within its documented memory; see `tools/fuzz/src/targets/mod.rs`.
 #![allow(
     missing_docs,
     clippy::unwrap_used,
@@ -15,7 +15,7 @@ mod targets;
 
 use std::fs::read_to_string;
 
-/// Limit of the corpus in bytes: it holds only inputs that reach code which no other input reaches.
+/// Maximum size of the corpus, bytes. It holds only inputs that reach code which no other input reaches.
 const MAX_BYTES: usize = 1 << 20;
 
 const CORPUS: &str = "tools/fuzz/corpus.txt";
@@ -43,11 +43,11 @@ fn every_committed_input_is_answered_or_refused() {
     assert!(size <= MAX_BYTES, "{size} bytes");
 }
 
-/// The bound on memory can fail: it is a number, and the counter counts.
+/// Checks that the memory bound can fail: it is finite, and the counter counts.
 #[test]
 fn memory_is_counted() {
     let held =
         allocation_counter::measure(|| drop(std::hint::black_box(vec![1_u8; 1 << 20]))).bytes_max;
     assert!(held >= 1 << 20);
-    assert!(targets::most_bytes(0) < targets::most_bytes(1000));
+    assert!(targets::max_bytes(0) < targets::max_bytes(1000));
 }

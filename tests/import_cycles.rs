@@ -1,6 +1,6 @@
-//! No import cycle between the modules of a crate, read from the `use` lines of its sources.
+//! Import cycles between the modules of a crate, found from the `use` lines of the sources.
 //!
-//! The modules of every folder are compared with each other; what is below a folder counts as the folder. Unit tests below
+//! The modules of every folder are compared with each other; contents of a folder count as the folder. Unit tests below
 //! `#[cfg(test)]` do not count.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
@@ -45,7 +45,7 @@ fn module_of(file: &Path, src: &Path) -> Vec<String> {
     path
 }
 
-/// Every path in a `use` tree, as segments: `a::{b, c::d}` gives `a::b` and `a::c::d`.
+/// All paths in a `use` tree, as segments: `a::{b, c::d}` gives `a::b` and `a::c::d`.
 fn paths(tree: &str, before: &[String], into: &mut Vec<Vec<String>>) {
     let tree = tree.trim();
     let mut head: Vec<String> = before.to_vec();
@@ -87,7 +87,7 @@ fn paths(tree: &str, before: &[String], into: &mut Vec<Vec<String>>) {
     }
 }
 
-/// The source without comments and without the unit tests at its end.
+/// Removes comments, and the unit tests at the end.
 fn code(text: &str) -> String {
     text.split("#[cfg(test)]")
         .next()
@@ -98,7 +98,7 @@ fn code(text: &str) -> String {
         .join("\n")
 }
 
-/// Absolute paths, from the crate's root, of all imports of a file.
+/// Absolute paths of all imports of a file, from the crate's root.
 fn imports(text: &str, module: &[String]) -> Vec<Vec<String>> {
     let mut found = Vec::new();
     let code = code(text);
@@ -166,7 +166,7 @@ fn graph(src: &Path, root: &[String]) -> Graph {
     graph
 }
 
-/// A cycle, if there is one, as the modules on it.
+/// Modules of an import cycle, if there is one.
 fn cycle(graph: &Graph) -> Option<Vec<String>> {
     fn visit(graph: &Graph, at: &str, way: &mut Vec<String>, done: &mut BTreeSet<String>) -> bool {
         if let Some(from) = way.iter().position(|m| m == at) {
@@ -209,7 +209,7 @@ fn complaint(src: &str, root: &[String]) -> Option<String> {
     })
 }
 
-/// Property: the modules of each crate can be put in an order in which each imports those before it only.
+/// Property: the modules of each crate can be ordered so that each imports earlier ones only.
 #[test]
 fn modules_import_in_one_direction() {
     let crates = ["config", "model", "output", "report", "study"];
@@ -221,7 +221,7 @@ fn modules_import_in_one_direction() {
     assert!(found.is_empty(), "import cycles:\n{}", found.join("\n"));
 }
 
-/// Module paths of a crate that have modules below them, the crate's root among them.
+/// Module paths of a crate that have submodules, including the crate's root.
 fn rooms(src: &str) -> BTreeSet<Vec<String>> {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join(src);
     let mut files = Vec::new();
@@ -234,7 +234,7 @@ fn rooms(src: &str) -> BTreeSet<Vec<String>> {
 
 /// Property: `docs/img/house.svg` names the modules of every crate, and no others.
 #[test]
-fn the_picture_of_the_house_is_true() {
+fn the_picture_of_the_house_matches_the_modules() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let picture = fs::read_to_string(root.join("docs/img/house.svg")).unwrap();
     let floors = ["src", "report", "study", "output", "config", "model"];
@@ -258,7 +258,7 @@ fn the_picture_of_the_house_is_true() {
     }
 }
 
-/// The reader of imports sees what it has to: nested trees, `super`, `self`, inline paths; neither comments nor unit tests.
+/// Imports are found in nested trees, `super`, `self` and inline paths, but not in comments or unit tests.
 #[test]
 fn imports_are_read() {
     let text = "use crate::a::{b, c::{D, e}};\nuse super::{x::Y, z};\nuse self::own;\nuse std::fmt;\n// use crate::not;\n\

@@ -1,4 +1,4 @@
-//! Makes the tables of `docs/results.md` anew: `cargo run --release --example results` writes the page.
+//! Regenerates the tables of `docs/results.md`: `cargo run --release --example results` writes the page.
 
 mod tables;
 

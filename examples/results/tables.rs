@@ -1,7 +1,9 @@
-//! The tables of `docs/results.md`, between markers `<!-- NAME -->` and `<!-- end -->`.
+//! Tables of `docs/results.md`, between markers `<!-- NAME -->` and `<!-- end -->`.
 
 use std::collections::BTreeSet;
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, attribute};
+use cvtcycle::analysis::levers::{self, Combine, LeverFile, LeverRequest, LeverRow};
 use cvtcycle::config::Override;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::{self, Cycle};
@@ -9,14 +11,13 @@ use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::summary::{Driven, Settings, StartWord, Summary, summarise};
-use cvtcycle::study::attribute::{Attribution, Depth, attribute};
 use cvtcycle::study::execute::DirWriter;
-use cvtcycle::study::levers::{self, Combine, LeverFile, LeverRequest, LeverRow};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::store::StudyDir;
-use cvtcycle::study::{NoProgress, StudyManifest, StudyTable};
+use cvtcycle::study::{StudyManifest, StudyTable};
 
 /// A table by its name in the page.
 type Named = (&'static str, fn() -> Result<String, Problems>);
@@ -35,12 +36,12 @@ const CVT: &str = "rover_216_cvt";
 const FLUIDS: [&str; 3] = ["cvtf_ezl799_class", "dexron_ii", "dexron_iii"];
 const END: &str = "<!-- end -->";
 
-/// The page with every table made anew.
+/// Replaces every table of the page by a new one.
 ///
 /// # Errors
 /// Problems of cars and cycles.
 ///
-/// # Panics
+/// The page has no place for a table.
 /// If the page has no place for a table.
 pub fn filled(page: &str) -> Result<String, Problems> {
     let mut page = page.to_owned();
@@ -53,7 +54,7 @@ pub fn filled(page: &str) -> Result<String, Problems> {
     Ok(page)
 }
 
-/// Cars with their options through a cycle.
+/// Runs cars with their options through a cycle.
 fn run(cars: &[(&str, Options)], degc: f64, start: &str) -> Result<Summary, Problems> {
     let (cycle, conditions) = (cycle()?, conditions(degc, start));
     let loaded: Result<Vec<(&str, Setup)>, Problems> = cars
@@ -95,7 +96,7 @@ fn conditions(degc: f64, start: &str) -> Conditions {
     }
 }
 
-/// Rows of cells as Markdown.
+/// Formats rows of cells as Markdown.
 fn markdown(head: &[&str], rows: &[Vec<String>]) -> String {
     let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
     let head_line = line(head.iter().map(|cell| (*cell).to_owned()).collect());
@@ -104,7 +105,7 @@ fn markdown(head: &[&str], rows: &[Vec<String>]) -> String {
     head_line + &rule + &rows
 }
 
-/// The comparison over ambient temperature and start.
+/// Compares over ambient temperature and start.
 fn ambient() -> Result<String, Problems> {
     let cars = [CVT, "rover_216_5mt", "mondeo_20_5mt"].map(|name| (name, Options::default()));
     let mut rows = Vec::new();
@@ -140,7 +141,7 @@ fn ambient() -> Result<String, Problems> {
     Ok(markdown(&head, &rows))
 }
 
-/// What each loss of the CVT costs, cold and at 25 degC: share of the fuel's energy, and fuel saved without it.
+/// Prices of the CVT's losses, cold and at 25 degC: share of the fuel's energy, and fuel saved without the loss.
 fn price() -> Result<String, Problems> {
     let (setup, cycle) = (load(CVT, &Options::default())?, cycle()?);
     let mut prices = Vec::new();
@@ -220,7 +221,7 @@ fn overrides(set: &[&str]) -> Result<Vec<Override>, Problems> {
     set.iter().map(read).collect()
 }
 
-/// Changes that engineers want to know first: words, oil, overrides.
+/// Changes of common engineering interest: words, oil, overrides.
 const CHANGES: [(&str, &str, &[&str]); 13] = [
     (
         "pump 6 instead of 7.29 cc/rev",
@@ -295,7 +296,7 @@ fn changes() -> Result<String, Problems> {
     Ok(markdown(&["change", "-10 degC", "25 degC"], &rows))
 }
 
-/// Levers of thesis chapters 9 and 10: words, what version 0.1 said, overrides, what changed.
+/// Levers of thesis chapters 9 and 10: words, statement of version 0.1, overrides, changed inputs.
 const LEVERS: [(&str, &str, &[&str], &str); 6] = [
     (
         "clamp law torque following, safety 1.3",
@@ -381,7 +382,7 @@ fn restated() -> Result<String, Problems> {
     Ok(markdown(&["lever", "0.1", "now", "what changed"], &rows))
 }
 
-/// What the built-in levers of a CVT save, over paired draws of the plan of uncertainty, cold and at 25 degC.
+/// Savings by the built-in levers of a CVT, over paired draws of the plan of uncertainty, cold and at 25 degC.
 fn drawn() -> Result<String, Problems> {
     let request = LeverRequest {
         levers: LeverFile::open("cvt")?.levers,
@@ -413,7 +414,7 @@ fn drawn() -> Result<String, Problems> {
     };
     let row = |row: &LeverRow| {
         let same = cold.iter().find(|other| other.of.name == row.of.name);
-        // The combination is that of each temperature.
+        // The combination is evaluated at each temperature.
         let in_cold = same.map_or([NONE, NONE].map(str::to_owned), cells);
         let name = format!("{} (`{}`)", row.of.title, row.of.name);
         [name]
@@ -427,7 +428,7 @@ fn drawn() -> Result<String, Problems> {
     Ok(markdown(&head, &rows))
 }
 
-/// Fuel with each oil over that with the car's own, by ambient temperature.
+/// Fuel with each oil relative to the car's own, by ambient temperature.
 fn fluids() -> Result<String, Problems> {
     let mut rows = Vec::new();
     for k in -3..=4 {

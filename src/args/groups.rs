@@ -7,16 +7,16 @@ use cvtcycle::config::setup::{
 };
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::model::drive::Start;
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::StartWord;
 use cvtcycle::study::statistics::Confidence;
 
 use super::problems::{bad_value, did_you_mean, overrides, problem};
-use super::{Names, count, cycles, names_of, number, one_of, ranges::values};
+use super::{Names, choice_names, count, cycles, number, one_of, ranges::values};
 
-/// Most ambient temperatures of one command: each whole degree that is allowed.
-const MOST_AMBIENTS: usize = 101;
+/// Maximum number of ambient temperatures of one command: every whole degree of the allowed range.
+const MAX_AMBIENTS: usize = 101;
 
 /// The vehicle and its transmission oil.
 #[derive(Args, Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct VehicleArgs {
 }
 
 impl VehicleArgs {
-    /// Options of reading this vehicle.
+    /// Options for reading this vehicle.
     pub fn options(&self, formulation: Formulation, problems: &mut Problems) -> Options {
         Options {
             lubricant: self.lubricant.clone(),
@@ -63,19 +63,19 @@ impl VehicleArgs {
 #[derive(Args, Clone, Debug)]
 pub struct FormulationArgs {
     /// Belt model: smooth (for driving), appendix_c or chapter_8 (as printed in the thesis)
-    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(|| names_of(&Formulation::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", default_value = "smooth", value_parser = Names(|| choice_names(&Formulation::NAMES)), hide_possible_values = true)]
     pub formulation: String,
 }
 
 impl FormulationArgs {
-    /// The variant; the default with a problem if the name is unknown.
+    /// Parses the variant. After an unknown name it records a problem and returns the default.
     pub fn get(&self, problems: &mut Problems) -> Formulation {
         let found = one_of("--formulation", &self.formulation, &Formulation::NAMES);
         problems.take(found).unwrap_or_default()
     }
 }
 
-/// How a cycle is driven: its start and its steps.
+/// Start and time step of a drive.
 #[derive(Args, Clone, Debug)]
 pub struct DriveArgs {
     /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), or all
@@ -98,14 +98,14 @@ pub struct DriveArgs {
 }
 
 impl DriveArgs {
-    /// Start and longest time step, s; none of what has a problem.
+    /// Parses the start and the longest time step, s. A part with a problem is None.
     pub fn get(&self, problems: &mut Problems) -> (Option<(Start, StartWord)>, Option<f64>) {
         let start = problems.take(start(&self.start));
         (start, problems.take(number("--dt", &self.dt, STEP, "dt_s")))
     }
 }
 
-/// How cars are driven, and with which belt model.
+/// Conditions of a drive, and the belt model.
 #[derive(Args, Clone, Debug)]
 pub struct DrivingArgs {
     #[command(flatten)]
@@ -128,13 +128,13 @@ pub struct AmbientArgs {
 }
 
 impl AmbientArgs {
-    /// The temperature, degC.
+    /// Parses the temperature, degC.
     pub fn get(&self, problems: &mut Problems) -> Option<f64> {
         problems.take(number("--ambient", &self.ambient, AMBIENT, "ambient_degc"))
     }
 }
 
-/// Ambient temperatures of a command that drives the same at each.
+/// Ambient temperatures at which a command repeats the same drives.
 #[derive(Args, Clone, Debug)]
 pub struct AmbientsArgs {
     /// Ambient temperature, degC, -40 to 60: a number, a list or a range
@@ -148,12 +148,12 @@ pub struct AmbientsArgs {
 }
 
 impl AmbientsArgs {
-    /// The temperatures, degC.
+    /// Parses the temperatures, degC.
     pub fn get(&self, problems: &mut Problems) -> Option<Vec<f64>> {
         let given = values("--ambient", &self.ambient, AMBIENT, "ambient_degc");
         let degc = problems.take(given)?;
-        if degc.len() > MOST_AMBIENTS {
-            let allowed = format!("at most {MOST_AMBIENTS} temperatures");
+        if degc.len() > MAX_AMBIENTS {
+            let allowed = format!("at most {MAX_AMBIENTS} temperatures");
             let many = degc.len();
             let message = format!("{many} ambient temperatures are too many for one command");
             let hint = "take a larger step; `cvtcycle study` varies any value";
@@ -165,7 +165,7 @@ impl AmbientsArgs {
     }
 }
 
-/// The start that a word names.
+/// Parses a start.
 fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     let word = |start: Start| Ok((start, StartWord::Word(value.to_owned())));
     match value {
@@ -186,7 +186,7 @@ fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
 
-/// Which columns of a cycle's file are meant.
+/// Mapping of the columns of a cycle's file.
 #[derive(Args, Clone, Debug)]
 pub struct ColumnsArgs {
     /// Columns of the cycle's file that are meant, such as time=Time_ADC:s,speed=VehSpd:mph; all others are passed over. For a file
@@ -196,7 +196,7 @@ pub struct ColumnsArgs {
 }
 
 impl ColumnsArgs {
-    /// The columns; those that the file names itself if none are given, or after a problem.
+    /// Parses the columns. Without the option, or after a problem, the file's own names are used.
     pub fn get(&self, problems: &mut Problems) -> Columns {
         let columns = self.columns.as_deref().map(Columns::parse);
         problems
@@ -206,7 +206,7 @@ impl ColumnsArgs {
     }
 }
 
-/// How sure intervals are.
+/// Confidence of intervals.
 #[derive(Args, Clone, Debug)]
 pub struct ConfidenceArgs {
     /// Confidence of all intervals, and share of the draws between the two ends that are printed of an output, 0.5 to 0.999
@@ -219,7 +219,7 @@ pub struct ConfidenceArgs {
 const CONFIDENCE: Bound = Bound::closed(0.5, 0.999);
 
 impl ConfidenceArgs {
-    /// The confidence; the default with a problem if it is none.
+    /// Parses the confidence. After a problem it returns the default.
     pub fn get(&self, problems: &mut Problems) -> Confidence {
         let given = self.confidence.as_ref();
         let level = given.map(|text| number("--confidence", text, CONFIDENCE, ""));
@@ -253,7 +253,7 @@ pub struct ComparisonArgs {
 }
 
 impl ComparisonArgs {
-    /// Names of the baselines: those given, else those of the file of the vehicle.
+    /// Names of the baselines: those of the options, else those of the vehicle file.
     pub fn baselines(
         &self,
         vehicle: &str,
@@ -277,14 +277,14 @@ impl ComparisonArgs {
         named
     }
 
-    /// The baselines given, without `none`.
+    /// Baselines of the options without `none`.
     pub fn named_baselines(&self) -> impl Iterator<Item = &String> {
         self.baseline.iter().filter(|name| *name != "none")
     }
 }
 
-/// Most threads.
-pub const MOST_THREADS: u64 = 1024;
+/// Maximum number of threads.
+pub const MAX_THREADS: u64 = 1024;
 
 /// Number of threads.
 #[derive(Args, Clone, Debug)]
@@ -295,10 +295,10 @@ pub struct ThreadArgs {
 }
 
 impl ThreadArgs {
-    /// Their number, if it is given; 1 after a problem with it.
+    /// Parses the number of threads. Without the option it is None, after a problem 1.
     pub fn given(&self, problems: &mut Problems) -> Option<u64> {
         let text = self.threads.as_ref()?;
-        let given = count("--threads", text, 1..=MOST_THREADS);
+        let given = count("--threads", text, 1..=MAX_THREADS);
         Some(problems.take(given).unwrap_or(1))
     }
 }

@@ -58,7 +58,7 @@ const LUBRICANT: [&str; 5] = [
     "density15_kg_m3",
     "friction",
 ];
-/// Beginnings of table headers that only a plan has, whose ends may be misspelt: of a calibration or of a study; or a lever file.
+/// Beginnings of table headers that only a plan or a lever file has; the rest of a header may be misspelt.
 const PLANS: [(InputKind, &[&str]); 3] = [
     (
         InputKind::Calibration,
@@ -75,26 +75,25 @@ impl InputKind {
         own.map_or("", |(_, word, _)| word)
     }
 
-    /// Kind of an embedded name or of a file, and the word by which the library finds it.
-    ///
+    /// Finds the kind of an embedded name or of a file, and the word by which the library finds it.
     /// # Errors
-    /// Unknown name, unreadable file, or a file of none of the kinds.
+    /// Unknown name, unreadable file, or a file of unknown kind.
     pub fn detect(word: &str, prefer_file: bool) -> Result<(Self, String), Problems> {
         let exists = Path::new(word).exists();
         if is_twin(word) {
             return Ok((InputKind::Vehicle, word.to_owned()));
         }
-        // As `like` has it.
+        // `like` accepts the same prefix.
         let word = word.strip_prefix("class:").unwrap_or(word);
         if !prefer_file || !exists {
-            if let Some(kind) = InputKind::of_embedded(word) {
+            if let Some(kind) = InputKind::from_name(word) {
                 return Ok((kind, word.to_owned()));
             }
             if !is_path(word) && !exists {
                 return Err(unknown(word).into());
             }
         }
-        // The library takes a word that is no path for an embedded name.
+        // The library reads a word that is not a path as an embedded name.
         let path = match is_path(word) {
             true => word.to_owned(),
             false => format!("./{word}"),
@@ -103,12 +102,12 @@ impl InputKind {
             Some("csv" | "tsv" | "txt" | "vdri") => {
                 bytes("FILE", word, bounded::TABLE).map(|_| InputKind::Cycle)
             }
-            _ => InputKind::of_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),
+            _ => InputKind::from_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),
         };
         kind.map(|kind| (kind, path))
     }
 
-    fn of_embedded(word: &str) -> Option<Self> {
+    fn from_name(word: &str) -> Option<Self> {
         let named = KINDS.iter().find(|(_, _, names)| names().contains(&word));
         let is_cycle = cycle::name_of(word).is_some()
             || (word.starts_with("constant_") && !cycle::is_csv(word));
@@ -116,9 +115,9 @@ impl InputKind {
         named.map(|(kind, ..)| *kind).or(cycle)
     }
 
-    /// Kind by the first words of the lines; the text may have any other error.
-    fn of_text(word: &str, text: &str) -> Result<Self, Problems> {
-        // A plan names a vehicle as well: its own headers are looked for first, in the whole text.
+    /// Finds the kind by the first words of the lines, so that it works with any other error in the text.
+    fn from_text(word: &str, text: &str) -> Result<Self, Problems> {
+        // A plan names a vehicle too, so its headers are searched in the whole text before those of a vehicle.
         let is_one = |headers: &[&str]| {
             let mut lines = text.lines().map(str::trim_start);
             lines.any(|line| headers.iter().any(|header| line.starts_with(header)))

@@ -44,7 +44,7 @@ impl TypedValueParser for Names {
 }
 
 /// Names of the choices of an option.
-pub fn names_of<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
+pub fn choice_names<T>(list: &[(&'static str, T)]) -> Vec<&'static str> {
     list.iter().map(|(name, _)| *name).collect()
 }
 
@@ -53,7 +53,7 @@ pub fn cycles() -> Vec<&'static str> {
     cycle::names().to_vec()
 }
 
-/// The value in backquotes.
+/// Puts the value in backquotes.
 fn quoted(value: &str) -> String {
     if value.is_empty() {
         "an empty value".to_owned()
@@ -62,7 +62,7 @@ fn quoted(value: &str) -> String {
     }
 }
 
-/// A finite number within its range; `suffix` is that of a key with the same unit.
+/// Parses a finite number within its range; `suffix` is that of a key with the same unit.
 pub fn number(option: &str, value: &str, range: Bound, suffix: &str) -> Result<f64, Problems> {
     let unit = unit_of(suffix);
     let bad = |what: &str, hint: &str| {
@@ -77,7 +77,7 @@ pub fn number(option: &str, value: &str, range: Bound, suffix: &str) -> Result<f
     }
 }
 
-/// What helps with a number out of its range; nothing where its end is not allowed itself.
+/// Hint for a number out of its range. Empty where the nearer end is excluded.
 fn nearest(range: Bound, x: f64, unit: &str) -> String {
     let end = match x > range.high() {
         true => range.high(),
@@ -91,7 +91,7 @@ fn nearest(range: Bound, x: f64, unit: &str) -> String {
     )
 }
 
-/// A whole number within its range.
+/// Parses an integer within its range.
 pub fn count(option: &str, value: &str, range: RangeInclusive<u64>) -> Result<u64, Problem> {
     let (low, high) = (*range.start(), *range.end());
     let bad = |what: &str, hint: &str| {
@@ -119,7 +119,7 @@ pub fn count(option: &str, value: &str, range: RangeInclusive<u64>) -> Result<u6
     }
 }
 
-/// The same for an option that may be left out.
+/// As [`count`], for an optional argument.
 pub fn count_if_given(
     option: &str,
     value: Option<&String>,
@@ -129,7 +129,7 @@ pub fn count_if_given(
     value.and_then(|value| problems.take(count(option, value, range)))
 }
 
-/// What people write behind a temperature in degC or a time in s.
+/// Units that users write after a temperature in degC or a time in s.
 const UNITS: [&str; 7] = ["c", "°c", "degc", "celsius", "s", "sec", "seconds"];
 
 fn number_hint(option: &str, value: &str, unit: &str) -> String {
@@ -137,7 +137,7 @@ fn number_hint(option: &str, value: &str, unit: &str) -> String {
     if value.contains(',') && pointed.parse::<f64>().is_ok() {
         return format!("write a decimal point: {option} {pointed}");
     }
-    // Only if a unit follows: a digit mistyped as a letter must not be cut off.
+    // Cuts off known units only, so that a letter typed in place of a digit stays in the message.
     let rest = value
         .trim()
         .trim_start_matches(|c: char| c.is_ascii_digit() || "+-.".contains(c));
@@ -148,7 +148,7 @@ fn number_hint(option: &str, value: &str, unit: &str) -> String {
     format!("write a number in {unit}")
 }
 
-/// The choice of that name.
+/// Looks up a choice by name.
 pub fn one_of<T: Copy>(
     option: &str,
     value: &str,
@@ -157,20 +157,20 @@ pub fn one_of<T: Copy>(
     if let Some((_, found)) = known.iter().find(|(name, _)| *name == value) {
         return Ok(*found);
     }
-    let names = names_of(known);
+    let names = choice_names(known);
     let allowed = format!("one of {}", names.join(", "));
     let message = format!("{} is not known", quoted(value));
     let hint = did_you_mean(value, &names);
     Err(bad_value(option, value, &allowed, &message, &hint).into())
 }
 
-/// The bytes of a file that an option names.
+/// Reads the bytes of a file named by an option.
 pub fn bytes(option: &str, path: &str, limit: Limit) -> Result<Vec<u8>, Problems> {
     cycle::bytes(Argument::File, path, limit).map_err(|found| cite(option, found))
 }
 
-/// A name or path of the command line as a plan has it: paths of the command line begin at the current folder, those of a plan at its own.
-pub fn word_of_plan(word: &str) -> String {
+/// Converts a name or path of the command line for use in a plan. Relative paths start at the current folder there, and at the plan's own folder in a plan.
+pub fn word_for_plan(word: &str) -> String {
     match is_path(word) {
         true => absolute(word).map_or_else(|_| word.to_owned(), |path| path.display().to_string()),
         false => word.to_owned(),

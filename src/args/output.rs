@@ -1,4 +1,4 @@
-//! Options that say where results go, and in which form.
+//! Options for the place and the form of results.
 
 use std::path::{Path, PathBuf};
 
@@ -7,9 +7,9 @@ use cvtcycle::config::Problems;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::OutputDir;
 
-use super::problems::{bad_value, in_options, problem};
+use super::problems::{bad_value, cite_options, problem};
 
-/// Where the files go.
+/// Output directory or file.
 #[derive(Args, Clone, Debug)]
 pub struct OutArgs {
     /// Write the results as files into this directory
@@ -21,13 +21,13 @@ pub struct OutArgs {
 }
 
 impl OutArgs {
-    /// Creates the output directory, if one is given.
+    /// Creates the output directory, if the option is given.
     pub fn dir(&self, problems: &mut Problems) -> Option<OutputDir> {
         let path = self.path(problems)?;
         problems.take(OutputDir::create(path, self.force))
     }
 
-    /// Begins the one file of a command, whose name has an ending. Its usual name may be unknown, where the input that it is made of is bad.
+    /// Begins the single output file of a command, with a fixed extension. The default name is None where it follows from bad input.
     pub fn file(
         &self,
         usual: Option<PathBuf>,
@@ -43,10 +43,10 @@ impl OutArgs {
             problems.add(bad_value("--out", &value, &allowed, message, &hint));
             return None;
         }
-        problems.take(OutputFile::create(path, self.force).map_err(in_options))
+        problems.take(OutputFile::create(path, self.force).map_err(cite_options))
     }
 
-    /// The path, if one is given.
+    /// Output path, if the option is given.
     pub fn path(&self, problems: &mut Problems) -> Option<&Path> {
         if self.force && self.out.is_none() {
             let message = "there is no --out whose files could be replaced";
@@ -75,13 +75,13 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
-    /// Whether a JSON object is printed.
+    /// True if a JSON object is printed.
     pub fn json(&self) -> bool {
         self.json.json
     }
 }
 
-/// Where the results of a command go, and in which form.
+/// Place and form of the results of a command.
 #[derive(Args, Clone, Debug)]
 pub struct ResultArgs {
     #[command(flatten)]
@@ -93,7 +93,7 @@ pub struct ResultArgs {
 /// Form of a table of points on standard output.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct TableOutputArgs {
-    /// What to print: a table for people, or CSV with all columns
+    /// Print a table for people, or CSV with all columns
     #[arg(
         long,
         value_enum,
@@ -116,7 +116,7 @@ enum TableFormat {
 }
 
 impl TableOutputArgs {
-    /// True if JSON or CSV is printed, which is written as it is made.
+    /// True if JSON or CSV is printed row by row.
     pub fn is_streamed(&self) -> bool {
         self.output.json() || self.format == TableFormat::Csv
     }

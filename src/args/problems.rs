@@ -15,48 +15,48 @@ pub fn bad_value(option: &str, value: &str, allowed: &str, message: &str, hint: 
     problem(option, message, hint).value(value).allowed(allowed)
 }
 
-/// A question for the known names that are similar to the given one; empty if there are none.
+/// Hint that names known names similar to the given one; empty without any.
 pub fn did_you_mean(value: &str, known: &[&str]) -> String {
     cvtcycle::config::did_you_mean(value, known.iter().copied()).unwrap_or_default()
 }
 
-/// The overrides that an option gives, except those that are none, which are reported under it.
+/// Parses the overrides of an option. Invalid ones are reported under it and left out.
 pub fn overrides(option: &str, texts: &[String], problems: &mut Problems) -> Vec<Override> {
     let parse = |text: &String| {
         let found = text.parse::<Override>();
-        problems.take(found.map_err(|problem| assigned(option, text, problem)))
+        problems.take(found.map_err(|problem| cite_override(option, text, problem)))
     };
     texts.iter().filter_map(parse).collect()
 }
 
 /// A problem of an override under the option that gives it.
-pub fn assigned(option: &str, text: &str, problem: Problem) -> Problem {
+pub fn cite_override(option: &str, text: &str, problem: Problem) -> Problem {
     problem.in_file(format!("{option} {text}"))
 }
 
 /// Problems of arguments of the library under the option that gives them.
 pub fn cite(option: &str, found: impl Into<Problems>) -> Problems {
     found.into().map(|problem| match problem.place.input {
-        // It has an option of its own.
-        Input::Argument(Argument::Columns) => in_options(problem),
+        // Columns have an option of their own.
+        Input::Argument(Argument::Columns) => cite_options(problem),
         Input::Argument(_) => problem.in_file(option).key(option),
         _ => problem,
     })
 }
 
-/// A problem under the option or argument of the command line that it is about, with the options that its hint speaks about.
-pub fn in_options(mut problem: Problem) -> Problem {
+/// Cites the option or argument of the command line that a problem is about, and those that its hint mentions.
+pub fn cite_options(mut problem: Problem) -> Problem {
     if !problem.settings.is_empty() {
-        let options: Vec<&str> = problem.settings.iter().map(|s| flag_of(*s)).collect();
+        let options: Vec<&str> = problem.settings.iter().map(|s| setting_flag(*s)).collect();
         problem.hint += &format!(" ({})", options.join(", "));
-        // Once, however often it is handed on.
+        // Added once, even if the problem passes here again.
         problem.settings = &[];
     }
     match &problem.place.input {
         Input::File(_) => {}
         Input::Override(text) => problem.place = Place::file(format!("--set {text}")),
         Input::Argument(argument) => {
-            let option = option_of(*argument);
+            let option = argument_option(*argument);
             problem = problem.in_file(option);
             if problem.key.is_empty() {
                 option.clone_into(&mut problem.key);
@@ -67,7 +67,7 @@ pub fn in_options(mut problem: Problem) -> Problem {
 }
 
 /// The option of the command line for a setting of the library.
-fn flag_of(setting: Setting) -> &'static str {
+fn setting_flag(setting: Setting) -> &'static str {
     match setting {
         Setting::Replace => "--force",
         Setting::Resume => "--resume",
@@ -78,7 +78,7 @@ fn flag_of(setting: Setting) -> &'static str {
 }
 
 /// The option or argument of the command line for an argument of the library.
-fn option_of(argument: Argument) -> &'static str {
+fn argument_option(argument: Argument) -> &'static str {
     match argument {
         Argument::Vehicle => "--vehicle",
         Argument::Lubricant => "--lubricant",
@@ -93,7 +93,7 @@ fn option_of(argument: Argument) -> &'static str {
 }
 
 /// A problem with the vehicle cites the argument `CAR` of a command that names it without an option.
-pub fn of_car(problem: Problem) -> Problem {
+pub fn cite_car(problem: Problem) -> Problem {
     match problem.place.is_argument(Argument::Vehicle) {
         true => problem.in_file("CAR").key("CAR"),
         false => problem,

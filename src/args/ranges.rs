@@ -5,18 +5,16 @@ use cvtcycle::config::{Bound, Problem, Problems, decimal, evenly, unit_of};
 use super::problems::bad_value;
 use super::{nearest, quoted};
 
-/// Largest number of values of one option.
+/// Maximum number of values of one option.
 const MAX_VALUES: f64 = 1e6;
 /// A range without a step is cut into at most this many pieces.
 const PIECES: f64 = 10.0;
 
-/// The values that the text of an option gives, in the order written, each once.
-///
+/// Parses the values of an option, in the order written, without repetitions.
 /// Parts are separated by commas. A part is a number, `FROM..TO:STEP` or `FROM..TO` with a round step; the ends of a range
-/// belong to it, and TO closes it even where the steps do not meet it. `suffix` is that of a key with the same unit.
-///
+/// belong to it, and TO closes it even if no step meets it. `suffix` is that of a key with the same unit.
 /// # Errors
-/// A problem for each part that is none or out of range.
+/// One problem for each part that is malformed or out of range.
 pub fn values(
     option: &str,
     text: &str,
@@ -26,8 +24,7 @@ pub fn values(
     values_or_words(option, text, allowed, suffix, &[])
 }
 
-/// Like [`values`], with words for some numbers.
-///
+/// As [`values`], with words for some numbers.
 /// # Errors
 /// As [`values`].
 pub fn values_or_words(
@@ -47,13 +44,13 @@ pub fn values_or_words(
     for part in text.split(',') {
         found.extend(problems.take(list.part(part.trim())).unwrap_or_default());
     }
-    problems.finish().map(|()| once(found))
+    problems.finish().map(|()| without_repeats(found))
 }
 
-/// Removes repeated values.
-fn once(values: Vec<f64>) -> Vec<f64> {
+/// Removes repeated values and keeps the order.
+fn without_repeats(values: Vec<f64>) -> Vec<f64> {
     let mut seen = std::collections::BTreeSet::new();
-    // Adding zero turns a negative zero into a plain one.
+    // Adding zero turns -0.0 into 0.0.
     let values = values.into_iter().map(|x| x + 0.0);
     values.filter(|x| seen.insert(x.to_bits())).collect()
 }
@@ -139,12 +136,12 @@ impl List<'_> {
     }
 }
 
-/// A round step for a range.
+/// Round step that divides a range into at most [`PIECES`].
 fn step_for(low: f64, high: f64) -> f64 {
     decimal(round_step((high - low) / PIECES))
 }
 
-/// 1, 2 or 5 times a power of ten, not below `x`; 1 where there is no range.
+/// Smallest number not below `x` that is 1, 2 or 5 times a power of ten; 1 for an empty range.
 fn round_step(x: f64) -> f64 {
     if x <= 0.0 {
         return 1.0;

@@ -4,24 +4,24 @@ mod files;
 mod tables;
 
 use clap::Args;
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::config::{Bound, Problems};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, Summary, summarise};
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use serde::Serialize;
 
 use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles};
 use super::{Execute, run, threads};
 use crate::args::problems::bad_value;
 use crate::args::{
-    AmbientsArgs, DrivingArgs, Names, ResultArgs, ThreadArgs, names_of, number, one_of,
+    AmbientsArgs, DrivingArgs, Names, ResultArgs, ThreadArgs, choice_names, number, one_of,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
 /// Allowed factor on a loss.
 const FACTOR: Bound = Bound::closed(0.0, 5.0);
-/// Which pairs are given.
+/// Names of the choices of `--pairs`.
 const PAIRS: [(&str, Pairs); 3] = [
     ("large", Pairs::Large),
     ("all", Pairs::All),
@@ -61,7 +61,7 @@ pub struct AttributeArgs {
     )]
     factor: String,
     /// Pairs of losses in both orders: large, all or none
-    #[arg(long, value_name = "WHICH", default_value = "large", value_parser = Names(|| names_of(&PAIRS)), hide_possible_values = true)]
+    #[arg(long, value_name = "WHICH", default_value = "large", value_parser = Names(|| choice_names(&PAIRS)), hide_possible_values = true)]
     pairs: String,
     /// Share the whole price out over groups of losses, by Shapley's rule
     #[arg(long)]
@@ -148,7 +148,7 @@ impl Execute for AttributeArgs {
 }
 
 impl AttributeArgs {
-    /// The runs at one ambient temperature, with their prices.
+    /// Drives the cars at one ambient temperature and computes their prices.
     fn priced(&self, plan: &AttributePlan, ambient_degc: f64) -> Summary {
         let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
         let conditions = plan.cars.conditions(ambient_degc, false);
@@ -158,7 +158,7 @@ impl AttributeArgs {
         let start = plan.cars.start.1.clone();
         let mut summary = summarise(cycle, ambient_degc, start, settings.clone(), &driven);
         for (run, car) in summary.runs.iter_mut().zip(vehicles) {
-            let of = Attribution {
+            let attribution = Attribution {
                 setup: &car.setup,
                 cycle,
                 conditions,
@@ -166,15 +166,15 @@ impl AttributeArgs {
                 factor: plan.factor,
                 depth: plan.depth,
             };
-            run.price = Some(attribute(&of, run));
+            run.price = Some(attribute(&attribution, run));
         }
         summary
     }
 }
 
-/// One line for each failed check, of a car as it is and of one with changed losses.
+/// One line for each failed check, of the original cars and of those with changed losses.
 fn failures(summary: &AttributionSummary) -> Vec<String> {
-    let of = |summary: &Summary| {
+    let failed_checks = |summary: &Summary| {
         let runs = summary.runs.iter();
         let changed = runs.flat_map(|run| {
             let price = run.price.iter().flat_map(|price| &price.failures);
@@ -185,5 +185,5 @@ fn failures(summary: &AttributionSummary) -> Vec<String> {
             .chain(changed)
             .collect::<Vec<_>>()
     };
-    summary.conditions.iter().flat_map(of).collect()
+    summary.conditions.iter().flat_map(failed_checks).collect()
 }

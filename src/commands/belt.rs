@@ -12,7 +12,7 @@ use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::files::listed;
 use cvtcycle::output::record::Manifest;
-use cvtcycle::study::points::{self, Counts, Done, Job, Model};
+use cvtcycle::validate::belt::{self, Counts, Done, Job, Model};
 use serde_json::{Map, Value, json};
 
 use super::Execute;
@@ -21,7 +21,7 @@ use crate::args::{FormulationArgs, OutArgs, OutputArgs, VehicleArgs, number};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 use sink::RowSink;
 
-/// Names of a note that are listed.
+/// Maximum number of names that a note lists.
 const MAX_LISTED: usize = 6;
 
 /// Arguments of `belt`.
@@ -65,10 +65,10 @@ pub struct BeltArgs {
 }
 
 impl Execute for BeltArgs {
-    /// Computed rows, ready to be written; the JSON object without them; what is printed besides.
+    /// Computed rows, the JSON object without them, and the output printed along with them.
     type Plan = (RowSink, Value, CommandOutput);
 
-    /// Reads and computes row by row: a table may be larger than memory, and all its problems are reported.
+    /// Reads and computes row by row, because a table may exceed memory. Reports the problems of all rows.
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let formulation = self.formulation.get(problems);
         let setup = self.car.load(Formulation::default(), problems);
@@ -86,7 +86,7 @@ impl Execute for BeltArgs {
             .filter(|path| path.as_os_str() != "-");
         let file = file.and_then(|path| problems.take(OutputFile::create(path, self.out.force)));
         let out = file.as_ref().map(|out| out.path().display().to_string());
-        // Points are computed only if everything else is good; otherwise they are checked.
+        // Computes points only if all other input is good, since they would be dropped otherwise.
         let model = model.filter(|_| problems.is_empty());
         let reader = problems.take(open(&self.points))?;
         let name = match self.points.as_str() {
@@ -99,7 +99,7 @@ impl Execute for BeltArgs {
             formulation,
             rows: &mut rows,
         };
-        let Done { counts, ignored } = problems.take(points::read(name, reader, job))?;
+        let Done { counts, ignored } = problems.take(belt::read(name, reader, job))?;
         let setup = setup?;
         let quiet = self.output.quiet;
         let ignored = listed(&ignored, MAX_LISTED);
@@ -142,7 +142,7 @@ fn open(points: &str) -> Result<Box<dyn BufRead>, Problems> {
     }
 }
 
-/// The JSON object without its rows.
+/// Builds the JSON object without its rows.
 fn head(vehicle: &str, lubricant: &str, counts: &Counts) -> Value {
     let object = |counts: &mut dyn Iterator<Item = (&'static str, u64)>| {
         counts

@@ -5,14 +5,14 @@ mod tables;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use cvtcycle::calibrate::outcome::Outcome;
+use cvtcycle::calibrate::outcome::tables as csv_tables;
+use cvtcycle::calibrate::plan::CalibrationPlan;
+use cvtcycle::calibrate::{MAX_STARTS, calibrate, fitted, open};
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{ProblemKind, Problems};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::charts::calibration::calibration_pictures;
-use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::outcome::tables as csv_tables;
-use cvtcycle::study::fit::plan::CalibrationPlan;
-use cvtcycle::study::fit::{MAX_STARTS, calibrate, fitted, open};
 
 use super::{Execute, threads};
 use crate::args::{Names, OutArgs, OutputArgs, ThreadArgs, count_if_given};
@@ -117,7 +117,7 @@ fn stopped() -> CommandOutput {
     }
 }
 
-/// Reasons for exit code 1; a parameter at a bound is a warning only.
+/// Reasons for exit code 1. A parameter at a bound gives a warning only.
 fn failures(outcome: &Outcome) -> Vec<String> {
     let mut list = Vec::new();
     if !outcome.converged {
@@ -150,7 +150,7 @@ fn failures(outcome: &Outcome) -> Vec<String> {
 
 const DAY_S: u64 = 86_400;
 
-/// Today as YYYY-MM-DD, in universal time; the day of `SOURCE_DATE_EPOCH` where that is set, so that files can be made again byte for byte.
+/// Date as YYYY-MM-DD in UTC. `SOURCE_DATE_EPOCH` replaces the clock, for reproducible files.
 fn today() -> String {
     let given = std::env::var("SOURCE_DATE_EPOCH").ok();
     let given = given.and_then(|text| text.trim().parse::<u64>().ok());
@@ -159,9 +159,9 @@ fn today() -> String {
     date(given.unwrap_or(now) / DAY_S)
 }
 
-/// The date so many days after 1 January 1970 in the Gregorian calendar, up to the year 9999.
+/// Gregorian date of a number of days after 1 January 1970, up to the year 9999.
 fn date(days: u64) -> String {
-    // Counted from 1 March of the year 0, so that a leap day is the last of its year and months have a fixed pattern of lengths.
+    // Days since 1 March of year 0: a leap day is then the last day of its year, and the lengths of months follow a fixed pattern.
     let days = days.min(2_932_896) + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year_of_era = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;

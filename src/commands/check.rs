@@ -3,20 +3,20 @@
 mod physics;
 
 use clap::Args;
+use cvtcycle::analysis::levers::LeverFile;
+use cvtcycle::calibrate::open;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, bounded, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::output::table::wrapped;
 use cvtcycle::study::Study;
-use cvtcycle::study::fit::open;
-use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 
 use super::Execute;
 use crate::args::input_kind::InputKind;
-use crate::args::problems::{bad_value, cite, in_options};
+use crate::args::problems::{bad_value, cite, cite_options};
 use crate::args::{ColumnsArgs, JsonArgs, Names, bytes, cycles};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
 use physics::PhysicsPlan;
@@ -56,7 +56,7 @@ pub struct CheckArgs {
     output: JsonArgs,
 }
 
-/// Kind of a file, and what its reader should know.
+/// Kind of a file and notes for its reader, or its problems.
 type Checked = Result<(InputKind, Vec<String>), Problems>;
 
 impl Execute for CheckArgs {
@@ -84,7 +84,7 @@ impl Execute for CheckArgs {
     }
 }
 
-/// What is checked.
+/// Checked input of `check`.
 pub enum CheckPlan {
     Files(Vec<(String, Checked)>),
     Physics(Box<PhysicsPlan>),
@@ -139,9 +139,9 @@ fn check(file: &str, columns: &Columns) -> Checked {
                 let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
                 Ok(read_as.into_iter().collect())
             }
-            Err(found) => Err(of_map(&word).map_or(found, Into::into)),
+            Err(found) => Err(map_problem(&word).map_or(found, Into::into)),
         },
-        // Only embedded.
+        // Classes and rigs are embedded and have no files.
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
         InputKind::Levers => LeverFile::open(&word).map(drop).map(none),
@@ -152,21 +152,21 @@ fn check(file: &str, columns: &Columns) -> Checked {
         InputKind::Lubricant => setup::load_lubricant(&word).map(drop).map(none),
         InputKind::Vehicle => check_vehicle(file, &word),
     }
-    .map_err(|found| cite("FILE", found).map(in_options))?;
+    .map_err(|found| cite("FILE", found).map(cite_options))?;
     Ok((kind, notes))
 }
 
-/// Columns that only the measured maps of a vehicle have.
-const OF_MAPS: [&str; 2] = ["torque_loss_nm", "bsfc_g_kwh"];
+/// Columns found in measured maps of a vehicle and nowhere else.
+const MAP_COLUMNS: [&str; 2] = ["torque_loss_nm", "bsfc_g_kwh"];
 
-/// What is said of a table that is a map of a vehicle, and no cycle.
-fn of_map(word: &str) -> Option<Problem> {
+/// Problem of a table that is a map of a vehicle instead of a cycle.
+fn map_problem(word: &str) -> Option<Problem> {
     let bytes = bytes("FILE", word, bounded::TABLE).ok()?;
     let text = String::from_utf8_lossy(&bytes);
     let head = text
         .lines()
         .find(|line| !line.trim_start().starts_with('#'))?;
-    let is_map = OF_MAPS.iter().any(|column| head.contains(column));
+    let is_map = MAP_COLUMNS.iter().any(|column| head.contains(column));
     let hint = "check the vehicle file that names it: its maps are read with it";
     is_map.then(|| {
         bad_value(
@@ -179,7 +179,7 @@ fn of_map(word: &str) -> Option<Problem> {
     })
 }
 
-/// Only a run reads the baselines; what is wrong with them is reported here, and what makes that they are not like for like is doubted.
+/// Reads the baselines as well, which otherwise only a run does. Their problems are reported, and differences that spoil the comparison give a note.
 fn check_vehicle(file: &str, word: &str) -> Result<Vec<String>, Problems> {
     let setup = setup::load(word, &Options::default())?;
     let mut problems = Problems::default();

@@ -6,7 +6,7 @@ use clap::Args;
 use cvtcycle::config::Problems;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::report::compare::{Comparison, Side, compare, names};
+use cvtcycle::report::compare::{RunComparison, Side, compare, names};
 
 use super::{Execute, threads};
 use crate::args::OutputArgs;
@@ -14,10 +14,10 @@ use crate::args::problems::bad_value;
 use crate::print::colour::Paint;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text, sections};
 
-/// Most runs of a comparison.
-const MOST: usize = 20;
-/// Runs next to each other in a table.
-const ABREAST: usize = 5;
+/// Maximum number of runs of a comparison.
+const MAX_RUNS: usize = 20;
+/// Maximum number of runs abreast in a table.
+const MAX_RUNS_ABREAST: usize = 5;
 
 /// Arguments of `compare`.
 #[derive(Args, Clone, Debug)]
@@ -46,15 +46,15 @@ pub struct CompareArgs {
 }
 
 impl Execute for CompareArgs {
-    type Plan = Comparison;
+    type Plan = RunComparison;
 
-    fn plan(&self, problems: &mut Problems) -> Option<Comparison> {
+    fn plan(&self, problems: &mut Problems) -> Option<RunComparison> {
         problems.take(threads::begin(None));
         let count = self.dirs.len();
-        if !(2..=MOST).contains(&count) {
+        if !(2..=MAX_RUNS).contains(&count) {
             let message = format!("{count} directories cannot be compared");
             let hint = "name the directories of the runs, the one to compare with first";
-            let allowed = format!("2 to {MOST} directories");
+            let allowed = format!("2 to {MAX_RUNS} directories");
             problems.add(bad_value(
                 "DIR",
                 &count.to_string(),
@@ -78,7 +78,7 @@ impl Execute for CompareArgs {
         problems.take(compare(&self.dirs, reference, self.loosely))
     }
 
-    fn run(&self, found: Comparison, terminal: Terminal) -> CommandResult {
+    fn run(&self, found: RunComparison, terminal: Terminal) -> CommandResult {
         let json = json_text(&found)?;
         let failures = found.runs.iter().flat_map(|run| {
             let failed = run.failed_checks.iter();
@@ -89,9 +89,9 @@ impl Execute for CompareArgs {
     }
 }
 
-fn text(found: &Comparison, paint: Paint) -> String {
+fn text(found: &RunComparison, paint: Paint) -> String {
     let (reference, others) = found.runs.split_at(1);
-    let tables = others.chunks(ABREAST).map(|chunk| {
+    let tables = others.chunks(MAX_RUNS_ABREAST).map(|chunk| {
         let runs: Vec<&Side> = reference.iter().chain(chunk).collect();
         (format!("Against {}", found.reference), table(found, &runs))
     });
@@ -105,7 +105,7 @@ fn text(found: &Comparison, paint: Paint) -> String {
     body.trim_start().to_owned() + "\n" + &notes
 }
 
-fn table(found: &Comparison, runs: &[&Side]) -> String {
+fn table(found: &RunComparison, runs: &[&Side]) -> String {
     let mut table = TextTable::new(&("ll".to_owned() + &"r".repeat(runs.len())));
     let mut add = |name: &str, unit: &str, cell: &dyn Fn(&Side) -> String| {
         let head = [name.to_owned(), unit.to_owned()].into_iter();

@@ -10,8 +10,8 @@ use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::output::file::OutputFile;
 
 use super::Execute;
-use crate::args::problems::{bad_value, cite, in_options, problem};
-use crate::args::{ColumnsArgs, Names, cycles, names_of, one_of};
+use crate::args::problems::{bad_value, cite, cite_options, problem};
+use crate::args::{ColumnsArgs, Names, choice_names, cycles, one_of};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
 /// Arguments of `convert`.
@@ -24,14 +24,14 @@ Examples:
 
 How the file was read, and what the new form cannot hold, is said on standard error; `cvtcycle list columns` prints the names that are known.")]
 pub struct ConvertArgs {
-    /// What the file is
+    /// Kind of the file
     #[arg(value_enum)]
     what: ConvertedKind,
     /// Cycle: a name, constant_V (V in km/h), or a file
     #[arg(value_name = "NAME|FILE", value_parser = Names(cycles), hide_possible_values = true)]
     file: String,
     /// Form: csv (of this program), vdri (VECTO), fastsim or epa
-    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| names_of(&Format::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| choice_names(&Format::NAMES)), hide_possible_values = true)]
     to: String,
     /// With the gears that this manual car drives, in place of the cycle's columns
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
@@ -49,14 +49,14 @@ pub struct ConvertArgs {
     force: bool,
 }
 
-/// What can be converted.
+/// Kinds of input that can be converted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ConvertedKind {
     /// A drive cycle
     Cycle,
 }
 
-/// The text, what is said about it, and where it goes.
+/// Converted text, notes about it, and its destination.
 pub struct ConvertPlan {
     written: Written,
     said: Vec<String>,
@@ -82,7 +82,7 @@ impl Execute for ConvertArgs {
             .as_deref()
             .map(|path| OutputFile::create(path, self.force));
         let file = problems
-            .take(file.transpose().map_err(in_options))
+            .take(file.transpose().map_err(cite_options))
             .flatten();
         let (mut cycle, format) = (found?, format?);
         let mut said: Vec<String> = Vec::new();
@@ -119,8 +119,8 @@ impl Execute for ConvertArgs {
             });
         };
         let written = file.write_all(plan.written.text.as_bytes());
-        written.map_err(|error| in_options(file.cannot_write(&error)))?;
-        let path = file.commit().map_err(in_options)?;
+        written.map_err(|error| cite_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(cite_options)?;
         Ok(CommandOutput {
             stdout: format!("{}\n", path.display()),
             stderr,
@@ -130,7 +130,7 @@ impl Execute for ConvertArgs {
 }
 
 impl ConvertArgs {
-    /// Puts the gears of a car into the cycle, and says what decides them; none, with a problem, where they are not known beforehand.
+    /// Adds the gears of a car to the cycle and notes their origin. Records a problem and returns None if they depend on the drive.
     fn shift(
         &self,
         cycle: &mut Cycle,

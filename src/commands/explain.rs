@@ -2,10 +2,10 @@
 
 use clap::Args;
 use cvtcycle::config::{KeyInfo, Override, Problems};
+use cvtcycle::equations::{Equation, of_labels};
+use cvtcycle::explain::{Meanings, plan_keys};
 use cvtcycle::model::keys::Presence;
 use cvtcycle::output::table::TextTable;
-use cvtcycle::study::equations::{Equation, of_labels};
-use cvtcycle::study::explain::{Meanings, plan_keys};
 
 use super::Execute;
 use super::show::value_row;
@@ -13,7 +13,7 @@ use crate::args::JsonArgs;
 use crate::print::colour::Paint;
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
-/// Longest value in the column of values.
+/// Maximum length in the column of values.
 const MAX_VALUE_LEN: usize = 24;
 /// Arguments of `explain`.
 #[derive(Args, Clone, Debug)]
@@ -55,23 +55,23 @@ impl Execute for ExplainArgs {
     }
 }
 
-fn text(of: &Meanings, paint: Paint) -> String {
-    let keys = of
+fn text(meanings: &Meanings, paint: Paint) -> String {
+    let keys = meanings
         .keys
         .iter()
         .map(|(known, values)| key_text(known, values, paint));
-    let columns = of.columns.iter().map(|(table, c)| {
+    let columns = meanings.columns.iter().map(|(table, c)| {
         let what = format!("column of the {table}");
         let unit = or_none(&c.unit);
         let facts = [("what", &*what), ("meaning", &c.doc), ("unit", unit)];
         paragraph(&c.name, &facts, paint)
     });
-    let flags = of.flags.iter().map(|(name, meaning)| {
+    let flags = meanings.flags.iter().map(|(name, meaning)| {
         let what =
             "flag of a time step, in the column `flags`; seconds in `flags_s` of the summary";
         paragraph(name, &[("what", what), ("meaning", meaning)], paint)
     });
-    let equation = of.equation.iter().map(|e| {
+    let equation = meanings.equation.iter().map(|e| {
         let facts = [
             ("what", "equation of the model"),
             ("statement", &*e.statement.replace("\\|", "|")),
@@ -104,7 +104,7 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
     }
     let text = paragraph(&known.key, &facts, paint);
     if values.is_empty() {
-        let default = default_of(known).map(|value| format!("; {value} by default"));
+        let default = default_text(known).map(|value| format!("; {value} by default"));
         let default = default.unwrap_or_default();
         return text + &format!("  not set in any built-in file{default}\n");
     }
@@ -115,8 +115,8 @@ fn key_text(known: &KeyInfo, values: &[(&str, KeyInfo)], paint: Paint) -> String
     text + &table.text()
 }
 
-/// The value of a key that is not given, with its unit.
-fn default_of(known: &KeyInfo) -> Option<String> {
+/// Default of a key with its unit.
+fn default_text(known: &KeyInfo) -> Option<String> {
     let value = match Override::number(&known.key, 0.0).row()?.presence {
         Presence::Number(x) => x.to_string(),
         Presence::Integer(n) => n.to_string(),

@@ -8,13 +8,13 @@ use cvtcycle::config::setup::carried::CarriedCar;
 use cvtcycle::config::setup::{Kind as FileKind, Options, Setup};
 use cvtcycle::config::{Problem, Problems, bounded};
 use cvtcycle::output::file::OutputFile;
-use cvtcycle_cosim::Kind;
-use cvtcycle_cosim::description::Fmi;
-use cvtcycle_cosim::package::{Package, Platform};
+use cvtcycle_fmu::Kind;
+use cvtcycle_fmu::description::Fmi;
+use cvtcycle_fmu::package::{Package, Platform};
 
 use super::Execute;
-use crate::args::problems::{bad_value, in_options, of_car, overrides, problem};
-use crate::args::{Names, OutArgs, names_of, one_of};
+use crate::args::problems::{bad_value, cite_car, cite_options, overrides, problem};
+use crate::args::{Names, OutArgs, choice_names, one_of};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
 /// Arguments of `fmu`.
@@ -28,17 +28,17 @@ Examples:
   cvtcycle fmu mycar.toml --kind losses --fmi 3 --out mycar_losses.fmu
 
 The FMU holds the car's files and a shared library for each platform. The libraries are taken from the folder of this program, or named with --library; \
-`cargo build --release -p cvtcycle-fmu` builds that of this machine, with --target x86_64-pc-windows-gnu that of Windows. docs/fmu.md has the variables."
+`cargo build --release -p cvtcycle-fmu-library` builds that of this machine, with --target x86_64-pc-windows-gnu that of Windows. docs/fmu.md has the variables."
 )]
 pub struct FmuArgs {
     /// Vehicle
     #[arg(value_name = "NAME|FILE.toml", value_parser = Names(|| FileKind::Vehicle.names()), hide_possible_values = true)]
     car: String,
-    /// What it simulates: `car`, the whole car that follows a speed; `losses`, the transmission at an operating point
-    #[arg(long, value_name = "KIND", default_value = "car", value_parser = Names(|| names_of(&Kind::NAMES)), hide_possible_values = true)]
+    /// Kind of unit: `car`, the whole car that follows a speed; `losses`, the transmission at an operating point
+    #[arg(long, value_name = "KIND", default_value = "car", value_parser = Names(|| choice_names(&Kind::NAMES)), hide_possible_values = true)]
     kind: String,
     /// Version of the standard: 2 (FMI 2.0) or 3 (FMI 3.0)
-    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = Names(|| names_of(&Fmi::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = Names(|| choice_names(&Fmi::NAMES)), hide_possible_values = true)]
     fmi: String,
     /// Transmission oil [default: from the vehicle file]
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| FileKind::Lubricant.names()), hide_possible_values = true)]
@@ -49,14 +49,14 @@ pub struct FmuArgs {
     /// Override one value of the vehicle; repeatable
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Shared library of cvtcycle-fmu, for Linux or Windows; repeatable [default: those in the folder of this program]
+    /// Shared library of cvtcycle-fmu-library, for Linux or Windows; repeatable [default: those in the folder of this program]
     #[arg(long, value_name = "FILE")]
     library: Vec<PathBuf>,
     #[command(flatten)]
     out: OutArgs,
 }
 
-/// An FMU, and the file that it goes to.
+/// Contents of an FMU, and its file.
 pub struct FmuPlan {
     kind: Kind,
     fmi: Fmi,
@@ -79,7 +79,7 @@ impl Execute for FmuArgs {
             ..Options::default()
         };
         let car = CarriedCar::load(&self.car, &options);
-        let car = problems.take(car.map_err(|found| found.map(of_car)));
+        let car = problems.take(car.map_err(|found| found.map(cite_car)));
         let libraries = problems.take(self.libraries());
         let usual = car.as_ref().zip(kind);
         let usual = usual.map(|((_, setup), kind)| format!("{}_{}.fmu", setup.name, kind.name()));
@@ -118,12 +118,12 @@ impl Execute for FmuArgs {
             car: plan.car,
             libraries: plan.libraries,
         };
-        // A zip is written with going back, which a file under way has not.
+        // Writing a zip needs seeking, which a pending output file does not allow.
         let mut bytes = io::Cursor::new(Vec::new());
         let written = package.write(&mut bytes);
         let written = written.and_then(|()| io::Write::write_all(&mut file, bytes.get_ref()));
-        written.map_err(|error| in_options(file.cannot_write(&error)))?;
-        let path = file.commit().map_err(in_options)?;
+        written.map_err(|error| cite_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(cite_options)?;
         Ok(CommandOutput::text(format!(
             "{}  {}, FMI {}.0, {platforms}\n",
             path.display(),
@@ -134,7 +134,7 @@ impl Execute for FmuArgs {
 }
 
 impl FmuArgs {
-    /// The shared libraries, one a platform.
+    /// Shared libraries, at most one for each platform.
     fn libraries(&self) -> Result<Vec<(Platform, Vec<u8>)>, Problems> {
         let mut problems = Problems::new();
         let mut found: Vec<(Platform, Vec<u8>)> = Vec::new();
@@ -159,15 +159,15 @@ impl FmuArgs {
     }
 }
 
-/// A library that is named.
+/// Reads a library named by the option.
 fn library(path: &Path) -> Result<(Platform, Vec<u8>), Problem> {
     let value = path.display().to_string();
     let bytes = bounded::read_file(path, bounded::RECORD).map_err(|error| {
         let message = format!("cannot read the library: {error}");
-        let hint = "build it: cargo build --release -p cvtcycle-fmu";
+        let hint = "build it: cargo build --release -p cvtcycle-fmu-library";
         bad_value("--library", &value, "a readable file", &message, hint)
     })?;
-    let platform = Platform::of(&bytes).ok_or_else(|| {
+    let platform = Platform::detect(&bytes).ok_or_else(|| {
         let allowed = "a shared library for Linux (ELF) or Windows (PE) on x86-64";
         let message = "the file is no such library";
         bad_value("--library", &value, allowed, message, "")
@@ -175,7 +175,7 @@ fn library(path: &Path) -> Result<(Platform, Vec<u8>), Problem> {
     Ok((platform, bytes))
 }
 
-/// The libraries in the folder of this program, with that of Windows also where Cargo puts it.
+/// Libraries next to this program; that for Windows is also searched in Cargo's target folder.
 fn own_libraries() -> Result<Vec<(Platform, Vec<u8>)>, Problem> {
     let program = std::env::current_exe().unwrap_or_default();
     let folder = program.parent().unwrap_or(Path::new("."));
@@ -191,6 +191,6 @@ fn own_libraries() -> Result<Vec<(Platform, Vec<u8>)>, Problem> {
         return Ok(found);
     }
     let message = format!("there is no shared library in {}", folder.display());
-    let hint = "build it: cargo build --release -p cvtcycle-fmu";
+    let hint = "build it: cargo build --release -p cvtcycle-fmu-library";
     Err(problem("--library", &message, hint))
 }

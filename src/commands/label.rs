@@ -1,6 +1,7 @@
 //! `label`: the figures of a fuel label.
 
 use clap::Args;
+use cvtcycle::analysis::label::{self, COLD_LOAD_FACTOR, Cars, Cycles, Figures};
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
@@ -9,7 +10,6 @@ use cvtcycle::output::number::fixed;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::SCHEMA;
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::study::label::{self, COLD_LOAD_FACTOR, Cars, Cycles, Figures};
 use serde::Serialize;
 
 use super::{Execute, threads};
@@ -62,7 +62,7 @@ pub struct LabelArgs {
     output: OutputArgs,
 }
 
-/// A car as each climate has it.
+/// Car in the variants of the three climates.
 struct Car {
     name: String,
     mild: Setup,
@@ -78,7 +78,7 @@ pub struct LabelPlan {
     loads: Loads,
 }
 
-/// What heating and air conditioning take, W.
+/// Electric loads of heating and air conditioning, W.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Loads {
     cold_w: f64,
@@ -95,7 +95,7 @@ struct LabelSummary {
     cars: Vec<CarLabel>,
 }
 
-/// A car with its figures.
+/// Car with its label figures.
 #[derive(Debug, Serialize)]
 struct CarLabel {
     vehicle: String,
@@ -172,7 +172,7 @@ impl Execute for LabelArgs {
     }
 }
 
-/// Reads a car three times: as it is, in the cold test, and with air conditioning.
+/// Reads a car in three variants: as is, for the cold test, and with air conditioning.
 fn car(
     name: &str,
     set: &[Override],
@@ -228,7 +228,7 @@ fn text(found: &LabelSummary, paint: Paint) -> String {
     sections(parts.to_vec(), paint).trim_start().to_owned() + "\n" + &notes
 }
 
-/// A row of a table: name, unit, decimals and the number of a car.
+/// Row of a table: name, unit, decimals, and accessor of the value.
 type Line<'a> = (&'a str, &'a str, usize, &'a dyn Fn(&Figures) -> f64);
 
 /// A table with a column for each car.

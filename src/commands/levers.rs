@@ -1,25 +1,25 @@
 //! `levers`: changes of a design next to the car as it is.
 
 use clap::Args;
+use cvtcycle::analysis::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{Kind, is_path};
 use cvtcycle::config::{Bound, Problem, Problems};
 use cvtcycle::study::Study;
-use cvtcycle::study::levers::{COMBINE, Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::plan::{MAX_SAMPLES, Plan};
 
 use super::Execute;
 use super::study::execution::StudyRunArgs;
 use super::study::levers::LeverResults;
 use crate::args::input_kind::InputKind;
-use crate::args::problems::{bad_value, cite, did_you_mean, in_options};
+use crate::args::problems::{bad_value, cite, cite_options, did_you_mean};
 use crate::args::{AmbientsArgs, CycleArgs, DriveArgs, Names, count, number};
 use crate::print::{CommandResult, Terminal};
 
-/// Allowed speed below which a loaded engine is heard and felt, rpm.
-const HEARD: Bound = Bound::closed(500.0, 4000.0);
-/// Most columns of a study: each is a car that is held in memory.
-const MOST_COLUMNS: usize = 500;
+/// Allowed `--nvh-rpm`, rpm: engine speed below which load causes noise and vibration.
+const NVH_SPEED_RPM: Bound = Bound::closed(500.0, 4000.0);
+/// Maximum number of vehicle variants of a study, all of which are in memory.
+const MAX_VARIANTS: usize = 500;
 
 /// Arguments of `levers`.
 #[derive(Args, Clone, Debug)]
@@ -100,7 +100,7 @@ impl Execute for LeversArgs {
     fn plan(&self, problems: &mut Problems) -> Option<Study> {
         self.run.begin(problems);
         let study = self.study(problems);
-        self.run.look(problems);
+        self.run.check_directory(problems);
         study
     }
 
@@ -110,7 +110,7 @@ impl Execute for LeversArgs {
 }
 
 impl LeversArgs {
-    /// The study of all levers; none after a problem.
+    /// Builds the study of all levers. None after a problem.
     fn study(&self, problems: &mut Problems) -> Option<Study> {
         let levers = self.levers(problems);
         let cycle = problems.take(cycle::find(&self.cycle.word));
@@ -118,7 +118,12 @@ impl LeversArgs {
         let (start, dt_s) = self.drive.get(problems);
         let draws = self.draws(problems);
         let combine = self.combinations(problems);
-        let heard_rpm = problems.take(number("--nvh-rpm", &self.nvh_rpm, HEARD, "heard_rpm"));
+        let heard_rpm = problems.take(number(
+            "--nvh-rpm",
+            &self.nvh_rpm,
+            NVH_SPEED_RPM,
+            "heard_rpm",
+        ));
         cycle?;
         let request = LeverRequest {
             levers: levers?,
@@ -133,9 +138,9 @@ impl LeversArgs {
             heard_rpm: heard_rpm?,
         };
         let columns = request.vehicles.len() * request.ambients_degc.len() * request.levers.len();
-        if columns > MOST_COLUMNS {
+        if columns > MAX_VARIANTS {
             let message = format!("{columns} levers of all vehicles at all temperatures");
-            let (allowed, hint) = (format!("up to {MOST_COLUMNS}"), "take fewer temperatures");
+            let (allowed, hint) = (format!("up to {MAX_VARIANTS}"), "take fewer temperatures");
             problems.add(bad_value(
                 "--ambient",
                 &self.ambients.ambient,
@@ -148,17 +153,17 @@ impl LeversArgs {
         if !problems.is_empty() {
             return None;
         }
-        let of_option = |problem: Problem| match problem.key.as_str() {
+        let cite_option = |problem: Problem| match problem.key.as_str() {
             COMBINE => problem.in_file("--combine").key("--combine"),
-            _ => in_options(problem),
+            _ => cite_options(problem),
         };
-        let study = prepare(&request).map_err(|found| found.map(of_option));
-        self.run.confirmed(problems.take(study)?, problems)
+        let study = prepare(&request).map_err(|found| found.map(cite_option));
+        self.run.check_run_count(problems.take(study)?, problems)
     }
 }
 
-/// The levers of a file; a vehicle in its place has a hint.
-fn of_levers(word: &str) -> Result<LeverFile, Problems> {
+/// Reads a lever file; the problem of a vehicle file in its place has a hint.
+fn read_levers(word: &str) -> Result<LeverFile, Problems> {
     let is_vehicle = || matches!(InputKind::detect(word, true), Ok((InputKind::Vehicle, _)));
     if is_path(word) && is_vehicle() {
         let hint = format!("name it with --vehicle {word}");
@@ -169,7 +174,7 @@ fn of_levers(word: &str) -> Result<LeverFile, Problems> {
 }
 
 impl LeversArgs {
-    /// The levers of all files that are asked for; none after a problem.
+    /// Reads the levers of all requested files. None after a problem.
     fn levers(&self, problems: &mut Problems) -> Option<Vec<Lever>> {
         let is_named = !self.files.is_empty();
         let shipped = || {
@@ -185,7 +190,7 @@ impl LeversArgs {
         };
         let mut all: Vec<Lever> = Vec::new();
         for word in &words {
-            let file = problems.take(of_levers(word));
+            let file = problems.take(read_levers(word));
             for lever in file?.levers {
                 let same = |other: &&Lever| {
                     let apart = other.of_cvt.zip(lever.of_cvt).is_some_and(|(a, b)| a != b);
@@ -222,7 +227,7 @@ impl LeversArgs {
         Some(levers)
     }
 
-    /// Names of levers in an option; one that is none is a problem.
+    /// Parses names of levers; unknown ones are problems.
     fn named(
         &self,
         option: &str,
@@ -239,7 +244,7 @@ impl LeversArgs {
         names.to_vec()
     }
 
-    /// The plan, the number of draws and the seed; none inside for no draws.
+    /// Parses the plan, the number of draws and the seed. The inner value is None for no draws.
     fn draws(&self, problems: &mut Problems) -> Option<Option<(Plan, u64, u64)>> {
         let samples = problems.take(count("--samples", &self.samples, 0..=MAX_SAMPLES));
         let seed = problems.take(count("--seed", &self.seed, 0..=u64::MAX));

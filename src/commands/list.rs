@@ -1,16 +1,16 @@
-//! `list`: what is built in.
+//! `list`: built-in inputs.
 
 use clap::{Args, ValueEnum};
+use cvtcycle::analysis::levers::{Lever, LeverFile};
 use cvtcycle::config::Problems;
 use cvtcycle::config::csv::UNITS;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::catalogue::{self, File};
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
-use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::model::keys::stem;
+use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::{TextColumns, paragraphs};
-use cvtcycle::study::levers::{Lever, LeverFile};
 use cvtcycle::study::plan::Plan;
 use serde_json::{Value, json};
 
@@ -22,14 +22,14 @@ use crate::print::{CommandOutput, CommandResult, Terminal};
 #[derive(Args, Clone, Debug)]
 #[command(after_help = "Example: cvtcycle list cycles")]
 pub struct ListArgs {
-    /// What to list
+    /// List to print
     #[arg(value_enum)]
     what: ListedKind,
     #[command(flatten)]
     output: JsonArgs,
 }
 
-/// What can be listed.
+/// Lists that the program has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum ListedKind {
     /// Drive cycles with duration, distance, highest speed
@@ -48,7 +48,7 @@ enum ListedKind {
     Plans,
 }
 
-/// A list in both forms.
+/// A list as JSON and as text.
 pub struct Listing {
     json: Value,
     heading: &'static str,
@@ -259,17 +259,20 @@ fn list_lubricants(problems: &mut Problems) -> Option<Listing> {
     })
 }
 
-/// A column of a cycle's file: its name, whole names elsewhere, and other words for it.
+/// Column of a cycle's file: name here, names in files of other programs, and synonyms.
 type ColumnNames = (String, Vec<&'static str>, Vec<&'static str>);
 
 fn list_columns() -> Listing {
     let foreign = cycle::FOREIGN;
-    let of = |list: &[(&'static str, &'static str)], wanted: &str| -> Vec<&'static str> {
+    let names_for = |list: &[(&'static str, &'static str)], wanted: &str| -> Vec<&'static str> {
         let own = list.iter().filter(|(_, name)| *name == wanted);
         own.map(|(written, _)| *written).collect()
     };
     let names = |name: String| -> ColumnNames {
-        let (headings, words) = (of(foreign.headings, &name), of(foreign.words, stem(&name)));
+        let (headings, words) = (
+            names_for(foreign.headings, &name),
+            names_for(foreign.words, stem(&name)),
+        );
         (name, headings, words)
     };
     let list: Vec<ColumnNames> = cycle::columns().into_iter().map(names).collect();

@@ -16,14 +16,14 @@ use cvtcycle::output::losses::{Axis, LossRow};
 use cvtcycle::report::charts::loss_figures;
 
 use super::Execute;
-use crate::args::{FormulationArgs, Names, OutArgs, TableOutputArgs, VehicleArgs, names_of};
+use crate::args::{FormulationArgs, Names, OutArgs, TableOutputArgs, VehicleArgs, choice_names};
 use crate::print::{
     CommandOutput, CommandResult, Form, Paint, Results, Terminal, WrittenFiles, json_text, stream,
     to_stdout,
 };
 use plan::LossesPlan;
 
-/// Largest number of points that are drawn.
+/// Maximum number of points drawn.
 const MAX_DRAWN: usize = 100_000;
 const NOT_DRAWN: &str = "  no plots: more than 100000 points\n";
 
@@ -83,11 +83,11 @@ pub struct LossesArgs {
     /// Write the loss of one component as a map (CSV) that a vehicle file can use in place of the model: belt, pump,
     /// input_shaft, clutch_drag, seal_ring, final_drive, or the whole box. --torque is then that of the map: at the
     /// secondary pulley (belt, final_drive) or at the input shaft (box)
-    #[arg(long, value_name = "COMPONENT", value_parser = Names(|| names_of(&MapPart::NAMES)), hide_possible_values = true, conflicts_with_all = ["json", "format"])]
+    #[arg(long, value_name = "COMPONENT", value_parser = Names(|| choice_names(&MapPart::NAMES)), hide_possible_values = true, conflicts_with_all = ["json", "format"])]
     as_map: Option<String>,
     /// Form of a map of the whole box: csv, as a vehicle file can name it; vtlm, a transmission loss map of VECTO; gem, the table of 40 CFR
     /// 1037.565(g), with its grid where none is given; modelica, tables over speed and kinematic viscosity
-    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| names_of(&MapForm::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", default_value = "csv", value_parser = Names(|| choice_names(&MapForm::NAMES)), hide_possible_values = true)]
     map_form: String,
     #[command(flatten)]
     out: OutArgs,
@@ -133,7 +133,7 @@ impl Execute for LossesArgs {
         let look = |row: &LossRow| {
             if row.answer.flags.contains(Flags::NOT_CONVERGED) {
                 let (count, first) = unsolved.get();
-                unsolved.set((count + 1, first.or(Some(row.asked))));
+                unsolved.set((count + 1, first.or(Some(row.requested))));
             }
         };
         let rows = || losses.rows().inspect(look);
@@ -146,7 +146,7 @@ impl Execute for LossesArgs {
         let (count, all) = (unsolved.get().0, losses.grid.len());
         let failure = |first: [f64; Axis::COUNT]| {
             let has = if count == 1 { "has" } else { "have" };
-            let first = losses.held(&first, &Axis::ALL);
+            let first = losses.values_in_words(&first, &Axis::ALL);
             format!("check failed: {count} of {all} points {has} no solution, first at {first}")
         };
         let failures = unsolved.get().1.map(failure).into_iter().collect();

@@ -1,4 +1,4 @@
-//! The commands, one file each: arguments, a checked plan made of them, and what it computes.
+//! The commands, one file each: arguments, a checked plan, and the computation.
 
 mod attribute;
 mod belt;
@@ -36,7 +36,7 @@ use crate::print::{CommandResult, Terminal};
 use cvtcycle::config::Problems;
 use cvtcycle::output::BUILD;
 
-/// Version, and which build of it: a study is resumed by the same build only.
+/// Version and identity of the build. A study can be resumed by the same build only.
 static LONG_VERSION: LazyLock<String> =
     LazyLock::new(|| format!("{} (build {BUILD})", env!("CARGO_PKG_VERSION")));
 
@@ -123,16 +123,16 @@ enum Command {
 
 /// A command with parsed arguments: first its plan with all problems at once, then the run.
 trait Execute {
-    /// Checked input.
+    /// Checked input of the command.
     type Plan;
 
-    /// Checks the arguments and reads the input files. None only if a problem was recorded.
+    /// Checks the arguments and reads the input files. Returns None only after recording a problem.
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan>;
 
-    /// Computes, writes the files and returns what is printed.
+    /// Computes, writes the files and returns the text to print.
     fn run(&self, plan: Self::Plan, terminal: Terminal) -> CommandResult;
 
-    /// Plans, and runs if there is no problem.
+    /// Plans, and runs without a problem.
     fn execute(&self, terminal: Terminal) -> CommandResult {
         let mut problems = Problems::default();
         match self.plan(&mut problems) {

@@ -13,7 +13,7 @@ use cvtcycle::config::{Problem, Problems, decode};
 use cvtcycle::output::file::OutputFile;
 
 use super::Execute;
-use crate::args::problems::{bad_value, in_options};
+use crate::args::problems::{bad_value, cite_options};
 use crate::args::{Names, OutArgs, bytes};
 use crate::print::{CommandOutput, CommandResult, Terminal};
 
@@ -58,7 +58,7 @@ pub struct NewArgs {
     out: OutArgs,
 }
 
-/// The catalogue numbers, an option each.
+/// Catalogue numbers, one option each.
 #[derive(Clone, Debug, Default)]
 struct Numbers(Vec<(&'static str, String)>);
 
@@ -92,13 +92,13 @@ impl Args for Numbers {
     }
 }
 
-/// What is to be known of the box that is taken where none is named.
+/// Note on the default box, printed if no box is named.
 const USUAL_BOX: &str = "box: box_cvt_clutch, with a wet launch clutch; most CVTs from 2010 on have a torque converter: --box box_cvt_converter\n";
 
-/// A car, and the file that it goes to.
+/// Car and its file.
 pub struct NewPlan {
     car: NewCar,
-    /// Whether the box is the usual one because no other was named.
+    /// True if the box is the default because none was named.
     has_usual_box: bool,
     file: OutputFile,
 }
@@ -146,8 +146,8 @@ impl Execute for NewArgs {
             mut file,
         } = plan;
         let written = file.write_all(car.text.as_bytes());
-        written.map_err(|error| in_options(file.cannot_write(&error)))?;
-        let path = file.commit().map_err(in_options)?;
+        written.map_err(|error| cite_options(file.cannot_write(&error)))?;
+        let path = file.commit().map_err(cite_options)?;
         let path = path.display();
         let is_fluid = |key: &str| key.starts_with(OIL) || key.starts_with(ENGINE_OIL);
         let count = |status: &str| {
@@ -171,7 +171,7 @@ impl Execute for NewArgs {
 }
 
 impl NewArgs {
-    /// Adds what a file and a person say, and a title.
+    /// Adds answers from a file and from the terminal, and a default title.
     fn complete(&self, answers: &mut Answers, problems: &mut Problems) {
         if let Some(file) = &self.answers {
             let text = bytes("--answers", file, TOML).and_then(|bytes| decode(file, &bytes));
@@ -193,13 +193,13 @@ impl NewArgs {
     }
 }
 
-/// Whether a number is missing that neither class nor car has.
+/// True if a number is missing that neither the class nor the base car has.
 fn needs_numbers(answers: &Answers) -> bool {
     new_car::questions(answers)
         .is_ok_and(|list| list.iter().any(|question| question.usual.is_none()))
 }
 
-/// A problem of a number under its option.
+/// Cites the option of a catalogue number.
 fn option(problem: Problem) -> Problem {
     if problem.place.line > 0 {
         return problem;

@@ -6,17 +6,17 @@ mod tables;
 use std::path::Path;
 
 use clap::Args;
+use cvtcycle::analysis::optimum::{self, Answer, LawCar, NoAnswer, Question, ReadFrom};
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::config::setup::{self, Options, Setup};
 use cvtcycle::config::{Problems, cycle};
 use cvtcycle::model::drive::{Conditions, Start};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::controller::{ClampKeys, ClampLaw};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::{SCHEMA, StartWord};
-use cvtcycle::study::optimum::{self, Answer, LawCar, NoAnswer, Question, ReadFrom};
 use serde::Serialize;
 
 use super::{Execute, threads, vehicles};
@@ -26,10 +26,10 @@ use crate::args::{
     cycles, number,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
-use limits::{LEAST_RPM, Numbers, infeasible};
+use limits::{MIN_RPM, Numbers, infeasible};
 
-/// Least engine speeds for which the bound is printed, rpm.
-const LEAST_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
+/// Minimum engine speeds for which the bound is printed, rpm.
+const MIN_SPEEDS_RPM: [f64; 5] = [1000.0, 1100.0, 1200.0, 1300.0, 1500.0];
 
 /// Arguments of `optimum`.
 #[derive(Args, Clone, Debug)]
@@ -124,7 +124,7 @@ pub struct OptimumArgs {
 /// Checked input.
 pub struct OptimumPlan {
     cycle: Cycle,
-    /// Other cycles for its line.
+    /// Further cycles for its line.
     elsewhere: Vec<Cycle>,
     /// The car under its own clamp law, then under the others.
     cars: Vec<(&'static str, Setup)>,
@@ -162,11 +162,11 @@ impl Execute for OptimumArgs {
         let hint = "a manual box has gears; `study` varies its shift speeds";
         self.car.need_cvt(setup.as_ref(), hint, problems);
         let (start, dt_s) = self.driving.drive.get(problems);
-        let least = number("--least-rpm", &self.least_rpm, LEAST_RPM, "least_rpm");
+        let least = number("--least-rpm", &self.least_rpm, MIN_RPM, "least_rpm");
         let least = problems.take(least);
         let numbers = self.numbers((dt_s, least), problems);
         if let Some(setup) = &setup {
-            self.check_least(setup, least, problems);
+            self.check_min_speed(setup, least, problems);
         }
         if let (Some(cycle), Some(dt_s)) = (&cycle, dt_s) {
             self.check_cycle(cycle, dt_s, problems);
@@ -212,7 +212,7 @@ impl Execute for OptimumArgs {
             line: !self.no_line,
             elsewhere: &plan.elsewhere,
             launch_at_idle: !self.own_clamp,
-            least_speeds_rpm: &LEAST_SPEEDS_RPM,
+            least_speeds_rpm: &MIN_SPEEDS_RPM,
         };
         let dir = self.results.out.out.as_deref();
         let from = ReadFrom {
@@ -262,7 +262,7 @@ fn conditions(numbers: &Numbers, start: Start) -> Conditions {
 }
 
 impl OptimumArgs {
-    /// The cycle; columns may be those of a file of `--prove` alone.
+    /// Reads the cycle. Columns may be meant for the files of `--prove` only.
     fn own_cycle(&self, columns: &Columns) -> Result<Cycle, Problems> {
         let is_file = |word: &String| word.ends_with(".csv");
         match !is_file(&self.cycle.word) && self.prove.iter().any(is_file) {
@@ -271,7 +271,7 @@ impl OptimumArgs {
         }
     }
 
-    /// Other cycles for the line, as they are named; the columns are those of any of their files.
+    /// Reads the further cycles of the line by their names on the command line. The columns may apply to any of their files.
     fn elsewhere(&self, columns: &Columns, problems: &mut Problems) -> Vec<(String, Cycle)> {
         let others = |word: &&String| word.as_str() != "none";
         let mut open = |word: &String| {
@@ -296,7 +296,7 @@ impl OptimumArgs {
         problems.take(vehicles::kept_count(trace.step_count(dt_s), dt_s));
     }
 
-    /// The car under its own clamp law, then under each other one that its file has values for.
+    /// The car under its own clamp law, then under each other law that its file has values for.
     fn laws(&self, own: Setup, options: &Options) -> Vec<(&'static str, Setup)> {
         let name = law_of(&own);
         let mut cars = vec![(name, own)];
@@ -312,7 +312,7 @@ impl OptimumArgs {
     }
 }
 
-/// How a file in a directory names what a name or a path from here means: a path is one from that directory.
+/// Converts a name, or a path from the current folder, for a file in another directory.
 fn named_from(dir: Option<&Path>, word: &str) -> String {
     let Some(dir) = dir.filter(|_| word.ends_with(".toml")) else {
         return word.to_owned();

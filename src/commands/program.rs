@@ -1,4 +1,4 @@
-//! The program: the words of a command line to its output and exit code.
+//! The program: command line to output and exit code.
 
 use std::ffi::OsString;
 use std::sync::{Mutex, PoisonError};
@@ -13,20 +13,20 @@ use crate::args::problems::bad_value;
 use crate::print::colour::choice;
 use crate::print::{self, CommandOutput, Ending, Terminal};
 
-/// The words after the name of the program, for the record of a run.
+/// Words after the program's name, recorded in the inputs of a run.
 static WORDS: Mutex<Vec<OsString>> = Mutex::new(Vec::new());
 
-/// The words of the command line after the name of the program.
+/// Words of the command line after the program's name.
 pub fn words() -> Vec<OsString> {
     WORDS.lock().unwrap_or_else(PoisonError::into_inner).clone()
 }
 
-/// Runs the program: parses the words of a command line, the first of which is its own name, runs the command, prints, and returns the
-/// exit code. It is the whole program and takes the process for itself: threads, handling of Ctrl-C, standard output.
+/// Runs the program: parses the command line (its first word is the program's name), runs the command, prints, and returns the
+/// exit code. It configures the whole process: threads, Ctrl-C, standard output.
 pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
     let words: Vec<OsString> = words.into_iter().collect();
     *WORDS.lock().unwrap_or_else(PoisonError::into_inner) = words.iter().skip(1).cloned().collect();
-    // Read before clap parses the words, because it applies to its messages as well.
+    // Found before clap parses the words, because clap's messages are coloured too.
     let colour = choice(&words);
     let parsed = Cli::command()
         .color(colour)
@@ -49,7 +49,7 @@ pub fn program(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// `run mycar.toml`: where a command has `--vehicle`, a file without an option is likely to be one.
+/// Suggests `--vehicle` for a file without an option (`run mycar.toml`) where the command has it.
 fn suggest_vehicle(error: &mut clap::Error, words: &[OsString]) {
     let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else {
         return;
@@ -72,7 +72,7 @@ fn suggest_vehicle(error: &mut clap::Error, words: &[OsString]) {
     }
 }
 
-/// Values and names of input files are UTF-8; only paths of output may be any path of the system.
+/// Reports words that are not UTF-8. Only output paths may be.
 fn not_utf8(words: &[OsString]) -> Problem {
     let word = words.iter().find(|word| word.to_str().is_none());
     let value = word.map_or_else(String::new, |word| word.to_string_lossy().into_owned());
@@ -81,10 +81,10 @@ fn not_utf8(words: &[OsString]) -> Problem {
     bad_value("command line", &value, "", &message, hint)
 }
 
-/// Help, version and usage errors, written by our own writer, which handles a closed pipe and a full disk.
+/// Prints help, version and usage errors through the program's own writer, which handles a closed pipe and a full disk.
 fn usage(error: &clap::Error, terminal: Terminal) -> CommandOutput {
     let plain = error.render().to_string();
-    // It repeats words of the command line.
+    // The message repeats words of the command line.
     let has_hidden = plain.contains(is_hidden);
     let text = |colours: bool| match colours && !has_hidden {
         true => error.render().ansi().to_string(),

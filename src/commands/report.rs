@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use cvtcycle::report::document::Document;
-use cvtcycle::report::live::{LiveSection, of_dir};
 use cvtcycle::report::report;
+use cvtcycle::report::whatif::{LiveSection, section_of_dir};
 use cvtcycle::report::write::{Form, Target};
 
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{Names, ResultArgs, names_of, one_of};
+use crate::args::{Names, ResultArgs, choice_names, one_of};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::config::Problems;
 
@@ -48,14 +48,14 @@ pub struct ReportArgs {
     #[arg(long, value_name = "FILE.toml")]
     cover: Option<String>,
     /// Format of the report: html or md [default: from the file extension of --out, else html]
-    #[arg(long, value_name = "FORM", value_parser = Names(|| names_of(&Form::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "FORM", value_parser = Names(|| choice_names(&Form::NAMES)), hide_possible_values = true)]
     format: Option<String>,
     #[command(flatten)]
     results: ResultArgs,
 }
 
 impl ReportArgs {
-    /// Whether the report can have a section that is driven again.
+    /// Checks the options of the interactive section, and returns whether it is wanted.
     fn check_live(&self, form: Form, problems: &mut Problems) -> bool {
         let refused = match (&self.dirs[..], form) {
             (_, Form::Markdown) => Some(("levers are in a page alone", "choose --format html")),
@@ -82,13 +82,13 @@ impl Execute for ReportArgs {
             Some(word) => problems.take(one_of("--format", word, &Form::NAMES)),
             None => None,
         };
-        let form = form.or_else(|| out.and_then(Form::of));
+        let form = form.or_else(|| out.and_then(Form::from_path));
         let form = form.unwrap_or(Form::Html);
         let fits = !self.live || self.check_live(form, problems);
         let document = problems.take(report(&self.dirs, &self.with, self.cover.as_deref()));
         let file = match out {
             Some(file) => file.to_path_buf(),
-            // Without a readable directory, a problem of the file in it would repeat the problem of the directory.
+            // An unreadable directory would be reported a second time through the file in it.
             None if document.is_none() => return None,
             None => self
                 .dirs
@@ -99,7 +99,7 @@ impl Execute for ReportArgs {
         let mut document = document?.shown(self.full);
         if self.live && fits {
             let first_figure = document.figures().count() + 1;
-            let live: LiveSection = problems.take(of_dir(&self.dirs[0], first_figure))?;
+            let live: LiveSection = problems.take(section_of_dir(&self.dirs[0], first_figure))?;
             document.live = Some(live);
         }
         Some((document, target?))

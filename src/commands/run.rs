@@ -9,24 +9,24 @@ pub use tables::failures;
 use std::ops::RangeInclusive;
 
 use clap::Args;
+use cvtcycle::analysis::run::{RunQuestion, summary};
+use cvtcycle::analysis::words::drawn::{differences, prepare};
 use cvtcycle::config::Problems;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::FILE;
 use cvtcycle::output::summary::{StartWord, name_run};
-use cvtcycle::study::check::published;
 use cvtcycle::study::execute::Study;
 use cvtcycle::study::plan::Base;
-use cvtcycle::study::run::{RunQuestion, summary};
-use cvtcycle::study::words::drawn::{differences, prepare};
+use cvtcycle::validate::published;
 
-use super::threads::at_once;
+use super::threads::in_parallel;
 use super::vehicles::{self, Baselines, ComparedArgs, ComparedVehicles, RunVehicle};
 use super::{Execute, threads};
 use crate::args::problems::{overrides, problem};
 use crate::args::{
-    AmbientArgs, DrivingArgs, Names, OutArgs, OutputArgs, count_if_given, names_of, one_of,
-    word_of_plan,
+    AmbientArgs, DrivingArgs, Names, OutArgs, OutputArgs, choice_names, count_if_given, one_of,
+    word_for_plan,
 };
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 use cvtcycle::report::run_files::{self, TraceFormat};
@@ -59,7 +59,7 @@ pub struct RunArgs {
     driving: DrivingArgs,
     /// Drive each vehicle again without each loss for the fuel that it costs: always, never, or auto (unless the cycle has more
     /// than 20 000 steps)
-    #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "WHEN", default_value = "auto", value_parser = Names(|| choice_names(&When::NAMES)), hide_possible_values = true)]
     price: String,
     /// How sure the difference to each baseline is: drive all cars again with so many draws of the plan uncertainty_rover, its
     /// ranges relative to the values of these cars. What --set gives is certain; not with --columns [default: only what is known of
@@ -73,11 +73,11 @@ pub struct RunArgs {
     #[command(flatten)]
     out: OutArgs,
     /// Format of the traces: csv, parquet or both
-    #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Names(|| names_of(&TraceFormat::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "NAME", default_value = "csv", requires = "out", value_parser = Names(|| choice_names(&TraceFormat::NAMES)), hide_possible_values = true)]
     format: String,
     /// Compute the effect of each value of each vehicle for the report of --out: always, never, or auto (unless the cycle has
     /// more than 20 000 steps)
-    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(|| names_of(&When::NAMES)), hide_possible_values = true)]
+    #[arg(long, value_name = "WHEN", default_value = "auto", requires = "out", value_parser = Names(|| choice_names(&When::NAMES)), hide_possible_values = true)]
     sensitivity: String,
     #[command(flatten)]
     output: OutputArgs,
@@ -95,7 +95,7 @@ pub struct RunPlan {
 }
 
 impl RunArgs {
-    /// The run as a plan has it, for its draws.
+    /// Plan of this run for its draws.
     fn base(
         &self,
         (ambient_degc, start, dt_s, formulation): (f64, &StartWord, f64, Formulation),
@@ -121,15 +121,15 @@ impl RunArgs {
             return None;
         }
         let named = comparison.named_baselines();
-        let named: Vec<String> = named.map(|name| word_of_plan(name)).collect();
+        let named: Vec<String> = named.map(|name| word_for_plan(name)).collect();
         Some(Base {
-            vehicle: word_of_plan(&car.vehicle),
+            vehicle: word_for_plan(&car.vehicle),
             baselines: (!named.is_empty()).then_some(named),
-            cycle: word_of_plan(&comparison.cycle.word),
+            cycle: word_for_plan(&comparison.cycle.word),
             ambient_degc,
             start: start.text(),
-            lubricant: car.lubricant.as_deref().map(word_of_plan),
-            engine_oil: comparison.engine_oil.as_deref().map(word_of_plan),
+            lubricant: car.lubricant.as_deref().map(word_for_plan),
+            engine_oil: comparison.engine_oil.as_deref().map(word_for_plan),
             set: overrides("--set", &car.set, problems),
             set_all: overrides("--set-all", &comparison.set_all, problems),
             dt_s,
@@ -184,9 +184,9 @@ impl Execute for RunArgs {
         let out = plan.out.take();
         let (cycle, vehicles) = (&plan.cars.cycle, &plan.cars.vehicles);
         let conditions = plan.cars.conditions(plan.ambient_degc, out.is_some());
-        // Of a car by its own name, which may be a shipped one; read while the cars are driven.
+        // Looks up published values by the name of a shipped vehicle, in parallel with the drive.
         let read = || published(&vehicles[0].name, &cycle.name);
-        let (published, outcomes) = at_once(read, || plan.cars.drive(&conditions));
+        let (published, outcomes) = in_parallel(read, || plan.cars.drive(&conditions));
         let driven = vehicles::driven(vehicles, &outcomes);
         let question = RunQuestion {
             cycle,
@@ -213,7 +213,7 @@ impl Execute for RunArgs {
         let files = WrittenFiles::write(out, |dir| {
             run_files::write(dir, plan.format, &summary, cycle, &driven)?;
             dir.put("summary.json", &json)?;
-            // Last: it lists the others.
+            // Written last, because it lists the other files.
             if let Some(mut record) = record {
                 record.files = dir.sums().clone();
                 dir.put(FILE, json_text(&record)?)?;

@@ -1,15 +1,15 @@
 //! `schema`, `completions`, `man` and `assumptions`: texts for editors, packagers and readers.
 
 use clap::{Args, CommandFactory, ValueEnum};
+use cvtcycle::analysis::levers::keys::LEVER_FILE;
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::schema;
 use cvtcycle::config::setup::assumptions::book;
+use cvtcycle::equations::equations;
 use cvtcycle::model::files;
 use cvtcycle::model::keys::Table;
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::equations::equations;
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
+use cvtcycle::validate::keys::VALIDATION;
 
 use super::Cli;
 use crate::args::JsonArgs;
@@ -119,7 +119,7 @@ enum SchemaKind {
 }
 
 impl SchemaKind {
-    /// Its word, and the keys of its files.
+    /// Name of the kind, and the keys of its files.
     const fn keys(self) -> (&'static str, Table) {
         match self {
             SchemaKind::Vehicle => ("vehicle", files::VEHICLE),

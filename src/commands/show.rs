@@ -6,9 +6,9 @@ use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::catalogue;
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{KeyInfo, Problems};
+use cvtcycle::explain::key_json;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
-use cvtcycle::study::explain::key_json;
 use serde_json::{Value, json};
 
 use super::Execute;
@@ -18,7 +18,7 @@ use crate::args::{ColumnsArgs, JsonArgs, Names, cycles};
 use crate::print::colour::Paint;
 use crate::print::{CommandOutput, CommandResult, Terminal, sections};
 
-/// Longest value in the column of values; longer ones, lists mostly, are in the last column.
+/// Maximum length in the column of values; longer ones, mostly lists, go into the last column.
 const MAX_VALUE_LEN: usize = 18;
 
 /// Arguments of `show`.
@@ -46,7 +46,7 @@ pub struct ShowArgs {
     output: JsonArgs,
 }
 
-/// Where a value comes from.
+/// Origin of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Status {
     /// Printed or published
@@ -67,7 +67,7 @@ enum Status {
     Default,
 }
 
-/// A row of the values of a key: its name, value, status, source and note. A longer value than `max_len` is in the last column.
+/// Row for a key: name, value, status, source and note. A value longer than `max_len` goes into the last column.
 pub fn value_row(name: &str, info: &KeyInfo, max_len: usize, instead: &str) -> [String; 4] {
     let own = value(info);
     let (shown, moved) = match own.chars().count() > max_len {
@@ -85,18 +85,18 @@ pub fn value_row(name: &str, info: &KeyInfo, max_len: usize, instead: &str) -> [
     ]
 }
 
-/// Whether the value is of a class or of another car.
+/// True if the value comes from a class or from another car.
 fn is_inherited(info: &KeyInfo) -> bool {
     [Status::Class, Status::Like]
         .iter()
         .any(|status| status.word() == info.status)
 }
 
-/// What is shown.
+/// Contents to show.
 pub enum Shown {
     /// A cycle.
     Cycle(Box<Cycle>),
-    /// Title and keys of a file.
+    /// Kind, title and keys of a file.
     Keys(InputKind, String, Vec<KeyInfo>),
 }
 
@@ -115,7 +115,7 @@ impl Execute for ShowArgs {
             InputKind::Vehicle => {
                 let setup =
                     problems.take(setup::load(&word, &Options::default()).map_err(by_name))?;
-                // The fluids are shown by their own names.
+                // Fluids have a heading of their own names.
                 let fluid =
                     |key: &str| key.starts_with("lubricant.") || key.starts_with("engine_oil.");
                 let own = setup.keys.into_iter().filter(|info| !fluid(&info.key));
@@ -203,13 +203,13 @@ impl Status {
     }
 }
 
-/// Table and last name of a key.
+/// Splits a key into table and last name.
 fn split(key: &str) -> (&str, &str) {
     key.rsplit_once('.').unwrap_or(("", key))
 }
 
 fn tables(keys: &[KeyInfo], paint: Paint) -> String {
-    let width = |of: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(of).max().unwrap_or(0);
+    let width = |length: &dyn Fn(&KeyInfo) -> usize| keys.iter().map(length).max().unwrap_or(0);
     let inherits = keys.iter().any(is_inherited);
     let widths = [
         width(&|info| split(&info.key).1.len()),
@@ -217,7 +217,7 @@ fn tables(keys: &[KeyInfo], paint: Paint) -> String {
         width(&|info| info.status.len()),
         width(&|info| if inherits { info.from.len() } else { 0 }),
     ];
-    // In the order of reading, but every table in one piece.
+    // Keeps the order of reading, with each table in one block.
     let order = distinct(keys.iter().map(|info| split(&info.key).0));
     let section = |name: &str| {
         let mut table = match inherits {

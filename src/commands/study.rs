@@ -22,9 +22,9 @@ use cvtcycle::study::{Study, StudyManifest, store};
 
 use super::{Execute, threads};
 use crate::args::problems::problem;
-use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given, word_of_plan};
+use crate::args::{ConfidenceArgs, Names, OutputArgs, count_if_given, word_for_plan};
 use crate::print::{CommandResult, Terminal};
-use execution::{Says, StudyRunArgs};
+use execution::{StudyOutput, StudyRunArgs};
 use levers::LeverResults;
 
 /// Arguments of `study`.
@@ -43,7 +43,7 @@ Examples:
   cvtcycle study my_plan.toml --out s_3 --shard 3/100
   cvtcycle study merge my_study s_*
   cvtcycle study show my_study
-  cvtcycle study export my_study --out my_study.xlsx
+  cvtcycle study export my_study --out my_study.parquet
 
 docs/plan_format.md describes plans. Exit codes: 0 success; 1 some runs failed, with the reason in their rows; 2 bad input or a \
 full disk; 130 stopped by Ctrl-C: finished parts are kept, --resume continues."
@@ -61,7 +61,7 @@ enum StudyCommand {
     Ambient(Box<ambient::StudyAmbientArgs>),
     /// Summarise a finished or partial study
     Show(StudyShowArgs),
-    /// Write the table of all runs as one file: CSV, Parquet or Excel workbook
+    /// Write the table of all runs as one file: CSV or Parquet
     Export(export::StudyExportArgs),
     /// Put the shards of a study together, driven by other processes or machines
     Merge(Box<merge::StudyMergeArgs>),
@@ -114,7 +114,7 @@ impl Execute for StudyPlanArgs {
         };
         self.run.begin(problems);
         let study = self.prepared(word, problems);
-        self.run.look(problems);
+        self.run.check_directory(problems);
         study
     }
 
@@ -124,7 +124,7 @@ impl Execute for StudyPlanArgs {
 }
 
 impl StudyPlanArgs {
-    /// The plan with what the options change.
+    /// Applies the options to the plan.
     fn prepared(&self, word: &str, problems: &mut Problems) -> Option<Study> {
         let mut count = |option, text: &Option<String>, range| {
             count_if_given(option, text.as_ref(), range, problems)
@@ -133,26 +133,26 @@ impl StudyPlanArgs {
         let seed = count("--seed", &self.seed, 0..=u64::MAX);
         let mut plan = problems.take(Plan::open(word))?;
         let changed = plan.design.changed(samples, seed);
-        plan.design = problems.take(changed.map_err(of_option))?;
+        plan.design = problems.take(changed.map_err(cite_option))?;
         if let Some(vehicle) = &self.vehicle {
-            plan = self.of_vehicle(plan, vehicle, problems)?;
+            plan = self.for_vehicle(plan, vehicle, problems)?;
         }
         self.run.prepare(plan, problems)
     }
 
-    /// The plan for another vehicle.
-    fn of_vehicle(&self, plan: Plan, vehicle: &str, problems: &mut Problems) -> Option<Plan> {
+    /// Adapts the plan to another vehicle.
+    fn for_vehicle(&self, plan: Plan, vehicle: &str, problems: &mut Problems) -> Option<Plan> {
         let (mut plan, _) = problems.take(relative(plan))?;
         let named = self.baseline.iter().filter(|name| *name != "none");
-        let named = named.map(|name| word_of_plan(name));
+        let named = named.map(|name| word_for_plan(name));
         plan.base.baselines = (!self.baseline.is_empty()).then(|| named.collect());
-        plan.base.vehicle = word_of_plan(vehicle);
+        plan.base.vehicle = word_for_plan(vehicle);
         let against = match plan.base.baselines.as_deref() {
             None | Some([]) => String::new(),
             Some(_) => format!(" against {}", self.baseline.join(", ")),
         };
-        // Title and question of the plan are of its own cars.
-        let of = self.plan.as_deref().unwrap_or_default();
+        // Title and question of the plan describe its own cars.
+        let name = self.plan.as_deref().unwrap_or_default();
         let is_varied = |key: &str| plan.factors.iter().any(|factor| factor.key == key);
         let mut at = String::new();
         if !is_varied("ambient_degc") {
@@ -161,14 +161,14 @@ impl StudyPlanArgs {
         if !is_varied("cycle") {
             at += &format!(" on {}", plan.base.cycle);
         }
-        plan.title = format!("{vehicle}{against}{at}, with the ranges of {of}");
+        plan.title = format!("{vehicle}{against}{at}, with the ranges of {name}");
         plan.question = String::new();
         Some(plan)
     }
 }
 
-/// The problem of a number that an option gives.
-fn of_option(found: Problem) -> Problem {
+/// Cites the option of a number.
+fn cite_option(found: Problem) -> Problem {
     let option = format!("--{}", found.key);
     found.in_file(option.as_str()).key(option)
 }
@@ -207,12 +207,12 @@ impl Execute for StudyShowArgs {
 }
 
 impl StudyShowArgs {
-    fn show<S: Says>(
+    fn show<S: StudyOutput>(
         &self,
         (outline, store, confidence): (StudyManifest, store::Study, Confidence),
         terminal: Terminal,
     ) -> CommandResult {
-        let study = S::of(outline, store, confidence)?;
+        let study = S::evaluate(outline, store, confidence)?;
         let tables = || study.tables(terminal.stdout);
         Ok(study.results()?.output(&self.output, tables))
     }

@@ -1,4 +1,4 @@
-//! The threads that compute: the first one of the process, and those that the system starts.
+//! Thread pool of the process: as many threads as requested, or as the system can start.
 
 use std::io;
 use std::panic::resume_unwind;
@@ -8,27 +8,26 @@ use std::thread;
 use cvtcycle::config::Problem;
 
 use crate::args::count;
-use crate::args::groups::MOST_THREADS;
+use crate::args::groups::MAX_THREADS;
 use crate::args::problems::problem;
 use crate::print::warn;
 
-/// Their number, where no option gives one.
+/// Environment variable for the number of threads.
 const VARIABLE: &str = "RAYON_NUM_THREADS";
 
-/// The threads of this process, from the first call of [`begin`] on.
+/// Thread pool, from the first call of [`begin`] on.
 static THREADS: OnceLock<rayon::ThreadPool> = OnceLock::new();
 
-/// Begins the threads for all that is computed in parallel from here on: so many as `--threads` gives, else as the variable says, else one
-/// for each core. Where none were asked for and the system starts fewer, there is a warning, and those compute.
-///
+/// Starts the thread pool for all parallel work: `--threads`, else the environment variable, else one thread per
+/// core. If a default number of threads cannot be started, it warns and uses those that started.
 /// # Errors
-/// The variable is no number of threads, or the system starts fewer than `--threads` gives.
+/// Invalid environment variable, or fewer threads than `--threads` requires.
 pub fn begin(given: Option<u64>) -> Result<(), Problem> {
     if THREADS.get().is_some() {
         return Ok(());
     }
     let wanted = wanted(given);
-    // The library gives up if one thread cannot be started. So they are started first, and wait for what it has them do.
+    // rayon gives up after one thread that cannot be started. Therefore starts plain threads first, which wait for their work.
     let (mut waiting, mut refused) = (Vec::new(), None);
     for _ in 1..*wanted.as_ref().unwrap_or(&1) {
         match waiting_thread() {
@@ -39,7 +38,7 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
             }
         }
     }
-    // Also after a problem: the library would else begin threads of its own, as many as the variable says.
+    // Builds the pool even after a problem, since rayon would start its own threads as the variable says.
     let threads = waiting.len() + 1;
     let started = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
@@ -51,7 +50,7 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
         })
         .build();
     match started {
-        // No thread but this one has been here.
+        // First call in this process.
         Ok(started) => drop(THREADS.set(started)),
         Err(error) => refused = Some(format!("cannot start threads: {error}")),
     }
@@ -69,9 +68,9 @@ pub fn begin(given: Option<u64>) -> Result<(), Problem> {
     }
 }
 
-/// Works out two things at once, one of them on a thread of its own: a run is over before the threads of [`begin`] would pay. One after the other
-/// where a process has one thread, or the system starts no other.
-pub fn at_once<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
+/// Computes two values in parallel, one of them on a plain thread: a run ends before starting the pool of [`begin`] would
+/// pay off. Sequential with one thread, or if no thread can be started.
+pub fn in_parallel<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B) -> (A, B) {
     if wanted(None).is_ok_and(|threads| threads < 2) {
         return (other(), own());
     }
@@ -89,15 +88,15 @@ pub fn at_once<A: Send, B>(other: impl Fn() -> A + Sync, own: impl FnOnce() -> B
 fn wanted(given: Option<u64>) -> Result<u64, Problem> {
     match (given, std::env::var(VARIABLE)) {
         (Some(threads), _) => Ok(threads),
-        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MOST_THREADS),
+        (None, Ok(text)) if !text.is_empty() => count(VARIABLE, &text, 1..=MAX_THREADS),
         (None, _) => {
             let cores = thread::available_parallelism();
-            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MOST_THREADS)))
+            Ok(cores.map_or(1, |cores| (cores.get() as u64).min(MAX_THREADS)))
         }
     }
 }
 
-/// A thread that waits for what it is to do.
+/// Starts a thread that waits for its work.
 fn waiting_thread() -> io::Result<mpsc::Sender<rayon::ThreadBuilder>> {
     let (sender, receiver) = mpsc::channel::<rayon::ThreadBuilder>();
     let wait = move || {

@@ -7,14 +7,14 @@ use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Problem, Problems, bounded, decode};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::report::validation::page;
-use cvtcycle::study::check::{
+use cvtcycle::validate::{
     CandidateVehicle, MECHANISMS, Perturbations, PowerReport, Report, RowFile, ValidationRow, csv,
     files, json, judge, markdown,
 };
 
 use super::{Execute, threads};
 use crate::args::problems::{bad_value, did_you_mean, overrides, problem};
-use crate::args::{Names, ResultArgs, ThreadArgs, VehicleArgs, bytes, names_of, one_of};
+use crate::args::{Names, ResultArgs, ThreadArgs, VehicleArgs, bytes, choice_names, one_of};
 use crate::print::progress::{Progress, handle_interrupts};
 use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
@@ -68,7 +68,7 @@ pub struct ValidateArgs {
     #[command(flatten)]
     car: VehicleArgs,
     /// Format of the output: table, csv, html, or md (a fragment for the book)
-    #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(|| names_of(&FORMS)), hide_possible_values = true, conflicts_with = "json")]
+    #[arg(long, value_name = "FORM", default_value = "table", value_parser = Names(|| choice_names(&FORMS)), hide_possible_values = true, conflicts_with = "json")]
     format: String,
     #[command(flatten)]
     results: ResultArgs,
@@ -144,11 +144,11 @@ impl Execute for ValidateArgs {
     }
 
     fn run(&self, plan: ValidatePlan, terminal: Terminal) -> CommandResult {
-        let report = judge(&plan.files, &plan.candidate, |row| self.is_wanted(row))?;
+        let report = judge(&plan.files, &plan.candidate, |row| self.is_selected(row))?;
         let mut object = json(&report);
         let power = match self.power {
             false => None,
-            true => match self.power_of(&plan.files, &report) {
+            true => match self.power_report(&plan.files, &report) {
                 None => return Ok(stopped()),
                 found => found,
             },
@@ -201,7 +201,7 @@ fn stopped() -> CommandOutput {
 }
 
 impl ValidateArgs {
-    /// Rows of the tables: all of what was chosen, of everything only those that need a look.
+    /// Rows to print: all of a selection; without one those that differ or moved.
     fn rows_shown(&self) -> tables::Shown {
         let chosen = self.chapter.is_some()
             || self.mechanism.is_some()
@@ -213,8 +213,8 @@ impl ValidateArgs {
         }
     }
 
-    /// What changes of the cars do to the rows; none if it was stopped.
-    fn power_of(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
+    /// Effect of changes of the cars on the verdicts. None after an interruption.
+    fn power_report(&self, files: &[RowFile], report: &Report) -> Option<PowerReport> {
         let changes = Perturbations::of(files, &report.candidate);
         let progress =
             Progress::counted("changes", changes.count() as u64, self.results.output.quiet);
@@ -223,15 +223,15 @@ impl ValidateArgs {
         power
     }
 
-    /// The built-in rows are about a CVT; with a manual gearbox each of them would be a problem.
+    /// Rejects a manual gearbox for the built-in rows, each of which would report a problem of its own.
     fn check_vehicle(&self, problems: &mut Problems) {
-        // Problems of the vehicle itself are reported together with those of its overrides.
+        // Problems of the vehicle are reported later, together with those of its overrides.
         let vehicle = setup::load(&self.car.vehicle, &Options::default());
         let hint = "`--only-rows` with `--rows FILE.toml` compares your own rows with it";
         self.car.need_cvt(vehicle.as_ref().ok(), hint, problems);
     }
 
-    /// Names and texts of the user's files of rows; none if one of them cannot be read.
+    /// Reads the user's files of rows: names and texts. None if one is unreadable.
     fn texts(&self, problems: &mut Problems) -> Option<Vec<(String, String)>> {
         let read = |path: &String| {
             let text = bytes("--rows", path, bounded::TOML).and_then(|bytes| decode(path, &bytes));
@@ -241,7 +241,7 @@ impl ValidateArgs {
         texts.into_iter().collect()
     }
 
-    fn is_wanted(&self, row: &ValidationRow) -> bool {
+    fn is_selected(&self, row: &ValidationRow) -> bool {
         let is = |wanted: Option<&String>, own: &str| {
             wanted.is_none_or(|wanted| wanted.eq_ignore_ascii_case(own))
         };
@@ -251,7 +251,7 @@ impl ValidateArgs {
             && (!self.held_out || row.is_held_out())
     }
 
-    /// Reports an unknown chapter or mechanism; a known mechanism without rows is none.
+    /// Reports unknown chapters and mechanisms. A known mechanism may have no rows.
     fn check_filters(&self, files: &[RowFile], problems: &mut Problems) {
         let rows = files.iter().flat_map(|file| &file.rows);
         let chapters = rows.map(|row| row.chapter.as_str());

@@ -1,4 +1,4 @@
-//! The vehicles that are driven: the subject with its overrides, then the baselines.
+//! Vehicles of a run: the subject with its overrides, then the baselines.
 
 use clap::Args;
 use cvtcycle::config::bounded;
@@ -6,12 +6,12 @@ use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, NamedBy, Options, Setup};
 use cvtcycle::config::{Argument, Override, Problem, Problems};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::summary::{Driven, Settings, StartWord};
 
-use super::threads::at_once;
-use crate::args::problems::{assigned, overrides};
+use super::threads::in_parallel;
+use crate::args::problems::{cite_override, overrides};
 use crate::args::{ColumnsArgs, ComparisonArgs, FormulationArgs, VehicleArgs};
 
 /// A vehicle of a run.
@@ -20,13 +20,13 @@ pub struct RunVehicle {
     pub name: String,
     /// Checked input.
     pub setup: Setup,
-    /// Name or path as the user, or the file of the subject, has it.
+    /// Name or path, from the command line or from the subject's file.
     pub word: String,
-    /// Options it was loaded with.
+    /// Options of its reading.
     pub options: Options,
 }
 
-/// The vehicles that are compared, and their cycle.
+/// Vehicles to compare, and their cycle.
 #[derive(Args, Clone, Debug)]
 pub struct ComparedArgs {
     #[command(flatten)]
@@ -50,7 +50,7 @@ impl ComparedArgs {
         let (mut of_form, mut of_vehicles) = (Problems::new(), Problems::new());
         let formulation = formulation.get(&mut of_form);
         let comparison = (&self.comparison, baselines);
-        let (cycle, vehicles) = at_once(
+        let (cycle, vehicles) = in_parallel(
             || cycle::open(word, &columns),
             || load(&self.car, comparison, formulation, &mut of_vehicles),
         );
@@ -58,14 +58,14 @@ impl ComparedArgs {
         problems.extend(of_form);
         problems.extend(of_vehicles);
         Loaded {
-            cycle: own_cycle(word, cycle, &vehicles),
+            cycle: subject_cycle(word, cycle, &vehicles),
             vehicles,
             formulation,
         }
     }
 }
 
-/// Vehicles and their cycle as they were read; what has a problem is missing.
+/// Vehicles and cycle; those with problems are missing.
 pub struct Loaded {
     pub cycle: Option<Cycle>,
     pub vehicles: Vec<RunVehicle>,
@@ -73,7 +73,7 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// With how they are driven: their start, and the longest step, s.
+    /// Adds start and longest step, s.
     pub fn driven(
         self,
         start: Option<(Start, StartWord)>,
@@ -89,7 +89,7 @@ impl Loaded {
     }
 }
 
-/// Vehicles that are compared on a cycle, subject first.
+/// Vehicles compared on a cycle, subject first.
 pub struct ComparedVehicles {
     pub cycle: Cycle,
     pub vehicles: Vec<RunVehicle>,
@@ -99,7 +99,7 @@ pub struct ComparedVehicles {
 }
 
 impl ComparedVehicles {
-    /// How they are driven at an ambient temperature.
+    /// Conditions of a drive at an ambient temperature, degC.
     pub fn conditions(&self, ambient_degc: f64, keep_rows: bool) -> Conditions {
         Conditions {
             ambient_k: ambient_degc + ZERO_DEGC_K,
@@ -109,18 +109,18 @@ impl ComparedVehicles {
         }
     }
 
-    /// What was asked for, as a summary has it.
-    pub fn settings(&self, of: &ComparedArgs, strict: bool) -> Settings {
+    /// Settings for the summary.
+    pub fn settings(&self, args: &ComparedArgs, strict: bool) -> Settings {
         Settings {
             dt_s: self.dt_s,
             formulation: self.formulation.name().to_owned(),
-            set: of.car.set.clone(),
-            set_all: of.comparison.set_all.clone(),
+            set: args.car.set.clone(),
+            set_all: args.comparison.set_all.clone(),
             strict,
         }
     }
 
-    /// All of them on the cycle.
+    /// Drives all of them.
     pub fn drive(&self, conditions: &Conditions) -> Vec<Outcome> {
         let drive = |car: &RunVehicle| drive(&car.setup, &self.cycle, conditions);
         let Some((subject, baselines)) = self.vehicles.split_first() else {
@@ -130,12 +130,12 @@ impl ComparedVehicles {
             return vec![drive(subject)];
         }
         let others = || baselines.iter().map(drive).collect::<Vec<_>>();
-        let (others, own) = at_once(others, || drive(subject));
+        let (others, own) = in_parallel(others, || drive(subject));
         std::iter::once(own).chain(others).collect()
     }
 }
 
-/// The vehicles with their outcomes, for a summary.
+/// Pairs the vehicles with their outcomes, for a summary.
 pub fn driven<'a>(vehicles: &'a [RunVehicle], outcomes: &'a [Outcome]) -> Vec<Driven<'a>> {
     let driven = vehicles.iter().zip(outcomes).map(|(car, outcome)| Driven {
         name: &car.name,
@@ -145,8 +145,7 @@ pub fn driven<'a>(vehicles: &'a [RunVehicle], outcomes: &'a [Outcome]) -> Vec<Dr
     driven.collect()
 }
 
-/// Whether the steps of all vehicles are few enough to be kept.
-///
+/// Checks that the steps of all vehicles fit into memory.
 /// # Errors
 /// A problem of `--dt`.
 pub fn kept_steps(vehicles: &[RunVehicle], cycle: &Cycle, dt_s: f64) -> Result<(), Problem> {
@@ -157,8 +156,7 @@ pub fn kept_steps(vehicles: &[RunVehicle], cycle: &Cycle, dt_s: f64) -> Result<(
     kept_count(steps.fold(0, usize::saturating_add), dt_s)
 }
 
-/// Whether so many steps are few enough to be kept.
-///
+/// Checks that a number of steps fits into memory.
 /// # Errors
 /// A problem of `--dt`.
 pub fn kept_count(steps: usize, dt_s: f64) -> Result<(), Problem> {
@@ -166,16 +164,16 @@ pub fn kept_count(steps: usize, dt_s: f64) -> Result<(), Problem> {
         .map_err(|problem| problem.in_file("--dt").key("--dt").value(dt_s.to_string()))
 }
 
-/// Which baselines are driven.
+/// Source of the baselines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Baselines {
-    /// Those given, else those of the vehicle's file.
+    /// Options, else the vehicle file.
     OfFile,
-    /// Those given.
+    /// Options only.
     Named,
 }
 
-/// Loads all vehicles, subject first. A bad one leaves its problems, and the others are read as well.
+/// Loads all vehicles, subject first. A bad one leaves its problems, and the others are read too.
 pub fn load(
     car: &VehicleArgs,
     (comparison, baselines): (&ComparisonArgs, Baselines),
@@ -183,19 +181,19 @@ pub fn load(
     problems: &mut Problems,
 ) -> Vec<RunVehicle> {
     let own = overrides("--set", &car.set, problems);
-    let of_all = overrides("--set-all", &comparison.set_all, problems);
+    let set_all = overrides("--set-all", &comparison.set_all, problems);
     let baseline = Options {
         engine_oil: comparison.engine_oil.clone(),
-        set: of_all.clone(),
+        set: set_all.clone(),
         formulation,
         ..Options::default()
     };
     let subject = Options {
         lubricant: car.lubricant.clone(),
-        set: of_all.iter().cloned().chain(own).collect(),
+        set: set_all.iter().cloned().chain(own).collect(),
         ..baseline.clone()
     };
-    let setup = problems.take(load_one(&car.vehicle, &subject, &of_all));
+    let setup = problems.take(load_one(&car.vehicle, &subject, &set_all));
     if setup.is_none() {
         check_fluids(car, comparison, problems);
     }
@@ -213,23 +211,23 @@ pub fn load(
         ..baseline
     };
     let mut loaded = vec![(&car.vehicle, setup, subject.clone())];
-    // A twin is made of the subject as it is driven.
+    // Derives a twin from the subject with its overrides.
     let twin = subject.of_twin(named_by);
-    let of_baseline = |name: &String| {
+    let load_baseline = |name: &String| {
         let options = match setup::is_twin(name) {
             true => &twin,
             false => &baseline,
         };
-        let setup = load_one(name, options, &of_all).map_err(|found| cite_vehicle(option, found));
+        let setup = load_one(name, options, &set_all).map_err(|found| cite_vehicle(option, found));
         (setup, options.clone())
     };
     let setups = match names.as_slice() {
         [first, others @ ..] if !others.is_empty() => {
-            let others = || others.iter().map(of_baseline).collect::<Vec<_>>();
-            let (others, first) = at_once(others, || of_baseline(first));
+            let others = || others.iter().map(load_baseline).collect::<Vec<_>>();
+            let (others, first) = in_parallel(others, || load_baseline(first));
             std::iter::once(first).chain(others).collect()
         }
-        names => names.iter().map(of_baseline).collect::<Vec<_>>(),
+        names => names.iter().map(load_baseline).collect::<Vec<_>>(),
     };
     for (name, (setup, options)) in names.iter().zip(setups) {
         loaded.push((name, problems.take(setup), options));
@@ -247,8 +245,8 @@ pub fn load(
     vehicles
 }
 
-/// The cycle of a word for the subject, whose class chooses among the WLTC.
-fn own_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
+/// Cycle for the subject: its class selects the WLTC.
+fn subject_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Option<Cycle> {
     let cycle = cycle?;
     Some(match vehicles.first() {
         Some(subject) => cycle::for_car(word, cycle, &subject.setup),
@@ -256,7 +254,7 @@ fn own_cycle(word: &str, cycle: Option<Cycle>, vehicles: &[RunVehicle]) -> Optio
     })
 }
 
-/// Checks the fluids by themselves, where the vehicle cannot be read.
+/// Checks the fluids alone, after a problem with the vehicle.
 fn check_fluids(car: &VehicleArgs, comparison: &ComparisonArgs, problems: &mut Problems) {
     let fluids = [
         (&car.lubricant, Argument::Lubricant),
@@ -272,7 +270,7 @@ fn check_fluids(car: &VehicleArgs, comparison: &ComparisonArgs, problems: &mut P
     }
 }
 
-/// Problems of the vehicle's name under what gives it.
+/// Cites the option behind problems of the vehicle's name.
 fn cite_vehicle(option: &str, found: Problems) -> Problems {
     found.map(
         |problem| match problem.place.is_argument(Argument::Vehicle) {
@@ -282,13 +280,13 @@ fn cite_vehicle(option: &str, found: Problems) -> Problems {
     )
 }
 
-/// Loads a vehicle; problems of an override of all vehicles name the vehicle and their option.
-fn load_one(word: &str, options: &Options, of_all: &[Override]) -> Result<Setup, Problems> {
+/// Loads a vehicle. Problems of an override for all vehicles name the vehicle and the option.
+fn load_one(word: &str, options: &Options, set_all: &[Override]) -> Result<Setup, Problems> {
     let named = |problem: Problem| {
-        let by = of_all.iter().find(|by| by.input() == problem.place.input);
+        let by = set_all.iter().find(|by| by.input() == problem.place.input);
         let Some(by) = by else { return problem };
         let problem = problem.with_context(&format!("{word}: "));
-        assigned("--set-all", &by.to_string(), problem)
+        cite_override("--set-all", &by.to_string(), problem)
     };
     setup::load(word, options).map_err(|problems| problems.map(named))
 }

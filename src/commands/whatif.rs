@@ -7,12 +7,12 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::report::document::Document;
-use cvtcycle::report::live::{LiveSection, Scene, State};
+use cvtcycle::report::whatif::{LiveSection, Scene, State};
 use cvtcycle::report::write::{Form, Target};
 
 use super::Execute;
 use super::vehicles::{self, Baselines};
-use crate::args::problems::of_car;
+use crate::args::problems::cite_car;
 use crate::args::{AmbientArgs, ComparisonArgs, DrivingArgs, Names, ResultArgs, VehicleArgs};
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
@@ -64,7 +64,7 @@ impl Execute for WhatifArgs {
         let comparison = (&self.comparison, Baselines::OfFile);
         let mut found = Problems::new();
         let cars = vehicles::load(&car, comparison, formulation, &mut found);
-        problems.append(found.map(of_car));
+        problems.append(found.map(cite_car));
         let ambient = self.ambient.get(problems);
         let (start, dt_s) = self.driving.drive.get(problems);
         let file = self.results.out.out.clone();

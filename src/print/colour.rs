@@ -8,8 +8,8 @@ use clap::{ColorChoice, ValueEnum};
 use cvtcycle::output::table::set_line_width;
 use terminal_size::{Width, terminal_size_of};
 
-/// Marks of styles within the program: code points that are no characters. [`Screen`](super::screen::Screen) turns them into what a terminal takes;
-/// one in the text of a file can make its line bold and nothing else.
+/// Style markers within the program: Unicode noncharacters, replaced by escape codes in [`Screen`](super::screen::Screen). One
+/// in the text of a file can make its line bold and do nothing else.
 const HEADING: char = '\u{FDD0}';
 const BAD: char = '\u{FDD1}';
 pub const STYLE_END: char = '\u{FDD2}';
@@ -36,7 +36,7 @@ pub struct Terminal {
 #[derive(Clone, Copy, Debug)]
 pub struct Paint(bool);
 
-/// The choice of `--color`, found before the words are parsed.
+/// Value of `--color`, found before clap parses the words.
 pub fn choice(words: &[OsString]) -> ColorChoice {
     let words = words.iter().filter_map(|word| word.to_str());
     let words: Vec<&str> = words.take_while(|word| *word != "--").collect();
@@ -50,12 +50,12 @@ pub fn choice(words: &[OsString]) -> ColorChoice {
 }
 
 impl Terminal {
-    /// Colours of both streams; tables take the width of the terminal that shows standard output, where one does.
+    /// Detects colours of both streams, and the table width from the terminal of standard output.
     pub fn new(choice: ColorChoice) -> Self {
         if let Some((Width(columns), _)) = terminal_size_of(std::io::stdout()) {
             set_line_width(columns.into());
         }
-        // As no-color.org has it: set and not empty; the command line takes precedence.
+        // no-color.org: set and not empty. The command line takes precedence.
         let declined = var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
         let dumb = var_os("TERM").is_some_and(|term| term == "dumb");
         let on = |is_terminal: bool| match choice {
@@ -71,7 +71,7 @@ impl Terminal {
 }
 
 impl Paint {
-    /// Without colours.
+    /// No colours.
     pub const NONE: Paint = Paint(false);
 
     /// True if colours are on.
@@ -79,22 +79,22 @@ impl Paint {
         self.0
     }
 
-    /// A heading.
+    /// Styles a heading.
     pub fn heading(self, text: &str) -> String {
         self.wrap(HEADING, text)
     }
 
-    /// What agrees.
+    /// Styles agreement.
     pub fn good(self, text: &str) -> String {
         self.wrap(GOOD, text)
     }
 
-    /// What says nothing either way.
+    /// Styles an inconclusive value.
     pub fn faint(self, text: &str) -> String {
         self.wrap(FAINT, text)
     }
 
-    /// A failure.
+    /// Styles a failure.
     pub fn bad(self, text: &str) -> String {
         self.wrap(BAD, text)
     }
@@ -106,7 +106,7 @@ impl Paint {
         }
     }
 
-    /// What a terminal takes for the mark of a style; none for other characters, and without colours.
+    /// Escape code of a style marker. None for other characters, and without colours.
     pub fn code(self, mark: char) -> Option<&'static str> {
         let styles = STYLES.iter().filter(|_| self.0);
         let mut codes = styles.filter(|(style, _)| *style == mark);

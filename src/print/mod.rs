@@ -13,19 +13,19 @@ use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::table::wrapped;
 use serde::Serialize;
 
-use crate::args::problems::{in_options, problem};
+use crate::args::problems::{cite_options, problem};
 use crate::args::{OutputArgs, TableOutputArgs};
 pub use colour::{Paint, Terminal};
 pub use screen::Form;
 use screen::Screen;
 
-/// How a command ended; each has its exit code.
+/// End of a command; each has an exit code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ending {
     /// Fine.
     #[default]
     Success,
-    /// It ran, but a check failed.
+    /// Ran, with a failed check.
     CheckFailed,
     /// Bad input, or output that cannot be written.
     BadInput,
@@ -45,23 +45,23 @@ impl Ending {
     }
 }
 
-/// Text of both streams, and how the command ended.
+/// Text of both streams, and the end of the command.
 #[derive(Clone, Debug, Default)]
 pub struct CommandOutput {
     pub stdout: String,
     pub stderr: String,
-    /// On standard error, before the other text: complaints in the styles of their renderer, which lets no hidden character pass.
+    /// Problems for standard error, before other text, with the escape codes of their renderer, which escapes hidden characters.
     pub problems: String,
-    /// On standard output: help in the styles of its renderer.
+    /// Help for standard output, with the escape codes of its renderer.
     pub help: String,
     pub ending: Ending,
 }
 
-/// The output of a command, or all problems of its input.
+/// Output of a command, or all problems of its input.
 pub type CommandResult = Result<CommandOutput, Problems>;
 
 impl CommandOutput {
-    /// Text on standard output.
+    /// Prints a text.
     pub fn text(stdout: String) -> Self {
         CommandOutput {
             stdout,
@@ -69,25 +69,25 @@ impl CommandOutput {
         }
     }
 
-    /// One JSON object on standard output.
+    /// Prints one JSON object.
     pub fn json(value: &impl Serialize) -> CommandResult {
         json_text(value).map(CommandOutput::text)
     }
 }
 
-/// What a command computed: results for both kinds of reader, failed checks, files.
+/// Results of a command: JSON, failed checks, files.
 #[derive(Debug, Default)]
 pub struct Results {
     /// JSON object.
     pub json: String,
-    /// Failed checks, a line each; any of them makes the exit code 1.
+    /// Failed checks, one line each. Any of them gives exit code 1.
     pub failures: Vec<String>,
     /// Files that were written.
     pub files: WrittenFiles,
 }
 
 impl Results {
-    /// Results in all their forms.
+    /// Collects results.
     pub fn new(json: String, failures: Vec<String>, files: WrittenFiles) -> Self {
         Results {
             json,
@@ -96,7 +96,7 @@ impl Results {
         }
     }
 
-    /// Chooses by the options: JSON, tables, or nothing on standard output; warnings on standard error.
+    /// Formats by the options: JSON, tables, or nothing on standard output; warnings on standard error.
     pub fn output(self, args: &OutputArgs, tables: impl FnOnce() -> String) -> CommandOutput {
         let stdout = match (args.json(), args.quiet) {
             (true, _) => self.json.clone(),
@@ -109,7 +109,7 @@ impl Results {
         }
     }
 
-    /// Like [`Results::output`], where JSON or CSV have been printed already.
+    /// As [`Results::output`], if JSON or CSV is printed already.
     pub fn table_output(
         self,
         args: &TableOutputArgs,
@@ -121,7 +121,7 @@ impl Results {
         }
     }
 
-    /// Warnings and ending alone, for results that are printed already.
+    /// Warnings and end, for results printed already.
     pub fn warnings(&self) -> CommandOutput {
         let warnings = self.failures.iter().cloned().chain(self.files.left_over());
         CommandOutput {
@@ -135,10 +135,10 @@ impl Results {
     }
 }
 
-/// Number of files that are named after they were written; of more their number is printed.
+/// Maximum number of written files listed by name; more are counted.
 const MAX_NAMED: usize = 6;
 
-/// Files of a run, and those that an earlier run left in the same directory.
+/// Files of a run, and leftovers of an earlier run in the same directory.
 #[derive(Debug, Default)]
 pub struct WrittenFiles {
     dir: PathBuf,
@@ -148,8 +148,8 @@ pub struct WrittenFiles {
 }
 
 impl WrittenFiles {
-    /// Fills the output directory, if there is one, and gives all files their names, or none of them. `fill` returns a line for below
-    /// the list of the files.
+    /// Fills the output directory, if there is one, and commits all files or none. `fill` returns a line to print after
+    /// the list of files.
     pub fn write(
         out: Option<OutputDir>,
         fill: impl FnOnce(&mut OutputDir) -> Result<&'static str, Problems>,
@@ -188,7 +188,7 @@ impl WrittenFiles {
     }
 }
 
-/// Sections of a text, each below its heading; empty ones are left out.
+/// Joins sections of a text, each below its heading. Empty ones are left out.
 pub fn sections<S: AsRef<str>>(
     sections: impl IntoIterator<Item = (S, String)>,
     paint: Paint,
@@ -198,7 +198,7 @@ pub fn sections<S: AsRef<str>>(
     shown.map(section).collect()
 }
 
-/// A sentence in the style of a heading, wrapped to the width of a line.
+/// Styles a sentence as a heading, wrapped to the line width.
 pub fn bold(sentence: &str, paint: Paint) -> String {
     let lines = wrapped(sentence, "");
     lines
@@ -207,10 +207,9 @@ pub fn bold(sentence: &str, paint: Paint) -> String {
         .collect()
 }
 
-/// Writes a long text in a form to standard output through `f` as it is made.
-///
+/// Streams a long text through `f` to standard output.
 /// # Errors
-/// A problem of standard output with the message of the operating system; a closed pipe is no error.
+/// Failing standard output, with the system's message; a closed pipe is not an error.
 pub fn to_stdout(
     form: Form,
     f: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -219,7 +218,7 @@ pub fn to_stdout(
     unless_closed(f(&mut out).and_then(|()| out.flush())).map_err(|error| unwritten(&error).into())
 }
 
-/// Prints a table as JSON or CSV as it is made, if one of them is chosen.
+/// Streams a table as JSON or CSV, if one of them is chosen.
 pub fn stream(
     args: &TableOutputArgs,
     json: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -232,10 +231,10 @@ pub fn stream(
     }
 }
 
-/// Prints the output of a command, or its problems, and returns the exit code.
+/// Prints the output of a command or its problems, and returns the exit code.
 pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {
-        problems: render(&problems.map(in_options), terminal.stderr.is_on()),
+        problems: render(&problems.map(cite_options), terminal.stderr.is_on()),
         ending: Ending::BadInput,
         ..CommandOutput::default()
     });
@@ -250,7 +249,7 @@ pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
         output.problems.insert_str(0, &text);
         output.ending = Ending::BadInput;
     }
-    // If standard error cannot be written either, no stream is left for a message.
+    // A failing standard error leaves no stream for a message.
     drop(write(
         io::stderr().lock(),
         &output.problems,
@@ -265,14 +264,14 @@ fn unwritten(error: &io::Error) -> Problem {
     problem("standard output", &format!("cannot write: {error}"), hint)
 }
 
-/// Writes a warning to standard error at once, before what the command prints there in its end.
+/// Writes a warning to standard error at once, before the end of the command.
 pub fn warn(line: &str) {
     let line = format!("cvtcycle: {line}\n");
-    // Without a stream there is no place for it.
+    // Without a stream the warning is lost.
     drop(write(io::stderr().lock(), "", &line, Paint::NONE));
 }
 
-/// Writes what a renderer has styled, then text of any origin.
+/// Writes styled text of a renderer, then text of any origin with hidden characters escaped.
 fn write(mut out: impl Write, styled: &str, text: &str, paint: Paint) -> io::Result<()> {
     let written = out.write_all(styled.as_bytes());
     let mut screen = Screen::new(out, Form::Text(paint));
@@ -280,7 +279,7 @@ fn write(mut out: impl Write, styled: &str, text: &str, paint: Paint) -> io::Res
     unless_closed(written.and_then(|()| screen.flush()))
 }
 
-/// A reader that closes the pipe early (`| head`) is no error.
+/// Ignores a closed pipe (`| head`).
 fn unless_closed(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),

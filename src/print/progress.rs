@@ -7,40 +7,40 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use cvtcycle::study;
+use cvtcycle::output;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Ending;
 
-/// Time between two lines where standard error is no terminal.
+/// Interval of lines if standard error is not a terminal.
 const INTERVAL: Duration = Duration::from_secs(10);
-/// Time after which the first of them says how long the work will take, where that is known.
+/// Delay of the first line, which estimates the time left.
 const FIRST: Duration = Duration::from_secs(1);
-/// Time that must be left for that.
+/// Minimum time left for that line, s.
 const WORTH_A_LINE_S: f64 = 4.0;
 
-/// Set by Ctrl-C. SIGTERM ends the process at once, as a kill does: finished parts of a study stay.
+/// Set by Ctrl-C. SIGTERM ends the process at once like a kill; finished parts of a study remain.
 static STOP: AtomicBool = AtomicBool::new(false);
 
-/// Counts what is done, and shows it.
+/// Counts finished work and displays it.
 pub struct Progress {
     display: Display,
     done: AtomicU64,
     begun: Instant,
     unit: &'static str,
-    /// Where it is known.
+    /// Total, if known.
     total: Option<u64>,
 }
 
 enum Display {
     None,
     Bar(ProgressBar),
-    /// Time of the last line, if there was one.
+    /// Time of the last line.
     Lines(Mutex<Option<Instant>>),
 }
 
 impl Progress {
-    /// Counts so many units of work, such as runs of a study.
+    /// Counts a known number of units of work, such as runs of a study.
     pub fn counted(unit: &'static str, total: u64, quiet: bool) -> Self {
         let bar = format!(
             "{{bar:30}} {{percent}}%  {{human_pos}} of {{human_len}} {unit}  {{rate}} {unit}/s  {{eta}} left"
@@ -60,7 +60,7 @@ impl Progress {
         } else if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
             bar.set_style(style(template));
-            // It ticks in a thread of its own, and ends the process where none can be started.
+            // indicatif's ticker aborts the process if its thread cannot start, so a test thread is started first.
             if thread::Builder::new().spawn(|| ()).is_ok() {
                 bar.enable_steady_tick(Duration::from_millis(200));
             }
@@ -89,7 +89,7 @@ impl Progress {
             Display::None => {}
             Display::Bar(bar) => bar.inc(count),
             Display::Lines(last) => {
-                // If another thread prints, this count is in its line or in the next.
+                // Skips the update while another thread prints; the count is included in its line or in the next.
                 let Ok(mut last) = last.try_lock() else {
                     return;
                 };
@@ -97,14 +97,14 @@ impl Progress {
                 let is_first = last.is_none() && waited >= FIRST;
                 if waited >= INTERVAL || (is_first && self.left_s(done) >= Some(WORTH_A_LINE_S)) {
                     *last = Some(Instant::now());
-                    // If standard error cannot be written, no stream is left for a message.
+                    // A failing standard error leaves no stream for a message.
                     drop(std::io::stderr().write_all(self.line(done).as_bytes()));
                 }
             }
         }
     }
 
-    /// Time that is left at the rate so far, s; none where the amount of work is unknown.
+    /// Time left at the current rate, s. None if the total is unknown.
     fn left_s(&self, done: u64) -> Option<f64> {
         let rate = done as f64 / self.begun.elapsed().as_secs_f64();
         self.total
@@ -127,13 +127,13 @@ fn style(template: &str) -> ProgressStyle {
     style.with_key(
         "rate",
         |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-            // Writing into the text of a bar cannot fail.
+            // Writing to a string is infallible.
             let _ = write!(out, "{:.0}", state.per_sec());
         },
     )
 }
 
-impl study::Progress for Progress {
+impl output::progress::Progress for Progress {
     fn advance(&self, count: u64) {
         let done = self.done.fetch_add(count, Ordering::Relaxed) + count;
         self.show(count, done);
@@ -146,7 +146,7 @@ impl study::Progress for Progress {
 
 /// Handles Ctrl-C: the first stops the computation at its next step, the second ends the process.
 pub fn handle_interrupts() {
-    // It fails only if this process has a handler already.
+    // Fails only if the process already has a handler.
     drop(ctrlc::set_handler(|| {
         if STOP.swap(true, Ordering::Relaxed) {
             std::process::exit(i32::from(Ending::Interrupted.code()));

@@ -1,6 +1,6 @@
-//! Text on its way to a stream. What a file or the command line holds does nothing there but be read: each hidden character is shown as U+FFFD,
-//! or in JSON as `\uXXXX`. A stream has the same bytes whether a terminal reads it or not, but for the program's own styles and for the width of a
-//! terminal, to which tables and sentences are wrapped.
+//! Filter in front of a stream. Text of files and of the command line is displayed and cannot act: hidden characters become U+FFFD,
+//! or `\uXXXX` in JSON. The bytes do not depend on the terminal, except for the program's own styles and the width to which
+//! tables and sentences are wrapped.
 
 use std::io::{self, Write};
 
@@ -9,27 +9,27 @@ use cvtcycle::output::escape::push_escaped;
 
 use super::colour::{Paint, STYLE_END};
 
-/// What a stream holds.
+/// Format of a stream.
 #[derive(Clone, Copy, Debug)]
 pub enum Form {
     /// Text, with or without styles.
     Text(Paint),
-    /// JSON, in which hidden characters can only be in texts.
+    /// JSON, where hidden characters occur within strings only.
     Json,
 }
 
-/// A stream that shows what is hidden.
+/// Writer that escapes hidden characters.
 pub struct Screen<W> {
     out: W,
     form: Form,
-    /// Whether a style has begun.
+    /// True while a style is open.
     open: bool,
-    /// The first bytes of a character.
+    /// First bytes of an incomplete character.
     rest: Vec<u8>,
 }
 
 impl<W: Write> Screen<W> {
-    /// In front of a stream.
+    /// Wraps a stream.
     pub fn new(out: W, form: Form) -> Self {
         Screen {
             out,
@@ -50,7 +50,7 @@ impl<W: Write> Screen<W> {
                         self.open = c != STYLE_END;
                     }
                     None => {
-                        // No style goes beyond its line.
+                        // Styles end with their line.
                         if c == '\n' && std::mem::take(&mut self.open) {
                             shown.push_str(paint.code(STYLE_END).unwrap_or_default());
                         }

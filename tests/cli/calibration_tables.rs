@@ -1,6 +1,6 @@
 //! Tables and failures of made-up outcomes.
 
-use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 use super::{date, failures, tables};
 use crate::print::Terminal;
@@ -23,7 +23,7 @@ fn every_outcome_is_printed_without_broken_numbers_and_within_its_width() {
         );
         assert!(text.contains("A fit is no validation"), "{name}");
         if name != "odd" {
-            // The columns of numbers cannot be wrapped: a little more than what prose keeps to.
+            // Columns of numbers cannot be wrapped, so they may exceed the width of prose slightly.
             for line in text.lines().skip(1) {
                 assert!(
                     line.chars().count() <= 118,
@@ -143,28 +143,31 @@ fn a_fit_that_failed_says_why_and_a_bound_alone_does_not_fail() {
 
 #[test]
 fn numbers_have_the_digits_that_their_error_leaves() {
-    let of = |x, error| tables::to_error(x, Some(error));
+    let formatted = |x, error| tables::to_error(x, Some(error));
     assert_eq!(
         [
-            of(8.298_4, 0.098),
-            of(14_750.0, 6317.0),
-            of(0.002_24, 0.000_72)
+            formatted(8.298_4, 0.098),
+            formatted(14_750.0, 6317.0),
+            formatted(0.002_24, 0.000_72)
         ],
         ["8.298", "14750", "0.00224"]
     );
     assert_eq!(
-        [of(0.000_029_8, 0.000_003_4), of(-0.000_000_5, 0.000_1)],
+        [
+            formatted(0.000_029_8, 0.000_003_4),
+            formatted(-0.000_000_5, 0.000_1)
+        ],
         ["2.98e-5", "0.00000"]
     );
     assert_eq!(
-        (of(f64::NAN, 1.0), tables::to_error(0.0, None)),
+        (formatted(f64::NAN, 1.0), tables::to_error(0.0, None)),
         ("-".to_owned(), "0".to_owned())
     );
 }
 
 #[test]
 fn val_known_days() {
-    // As `date -u -d @SECONDS +%F` has them.
+    // As printed by `date -u -d @SECONDS +%F`.
     assert_eq!(
         [0, 58, 59].map(date),
         ["1970-01-01", "1970-02-28", "1970-03-01"]

@@ -1,12 +1,10 @@
-//! README and docs against the program and the files: links lead to files that git holds, and quoted results are those of the program.
+//! README and docs against the files: links point to files in git, and the commands of a page run. Tables of the program: `tools/tables`.
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use std::fs::read_to_string;
 use std::path::{Component, Path, PathBuf};
 
 use assert_cmd::Command;
-use cvtcycle::output::number::signed;
-use serde_json::Value;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -18,21 +16,7 @@ fn read(name: &str) -> String {
         .replace("\r\n", "\n")
 }
 
-/// Standard output of the program.
-fn cvtcycle(args: &[&str]) -> String {
-    let mut command = Command::cargo_bin("cvtcycle").unwrap();
-    let output = command.args(args).current_dir(root()).output().unwrap();
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {error}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-fn run(args: &[&str]) -> Value {
-    let text = cvtcycle(&[&["run", "--json", "--quiet"], args].concat());
-    serde_json::from_str(&text).unwrap()
-}
-
-/// Documents with links: those of the top level, of `docs` and of the tools.
+/// Documents with links: top level, `docs` and tools.
 fn documents() -> Vec<PathBuf> {
     let mut list = Vec::new();
     for folder in ["", "docs", "tools/fuzz", "cycles", "tests/golden"] {
@@ -46,7 +30,7 @@ fn documents() -> Vec<PathBuf> {
     list
 }
 
-/// A path without `.` and `..`.
+/// Removes `.` and `..` from a path.
 fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
     for part in path.components() {
@@ -59,7 +43,7 @@ fn normal(path: &Path) -> PathBuf {
     normal
 }
 
-/// `.gitignore` names paths from the root only, so that its meaning is plain here.
+/// Parses `.gitignore`, which has paths from the root only.
 fn ignored() -> Vec<PathBuf> {
     let text = read(".gitignore");
     let lines = text.lines().filter(|line| !line.starts_with('#'));
@@ -69,7 +53,7 @@ fn ignored() -> Vec<PathBuf> {
 }
 
 #[test]
-fn links_lead_to_files_in_git() {
+fn links_point_to_files_in_git() {
     let (mut wrong, mut links) = (String::new(), 0);
     let ignored = ignored();
     for document in documents() {
@@ -95,118 +79,7 @@ fn links_lead_to_files_in_git() {
     assert!(links > 30, "{links}");
 }
 
-/// Cells of the table below a line of a document, without its head.
-fn table(text: &str, heading: &str) -> Vec<Vec<String>> {
-    let (_, below) = text
-        .split_once(heading)
-        .unwrap_or_else(|| panic!("no {heading:?}"));
-    let lines = below.lines().skip_while(|line| !line.starts_with('|'));
-    let rows = lines.take_while(|line| line.starts_with('|')).skip(2);
-    let cells = |row: &str| {
-        row.trim_matches('|')
-            .split('|')
-            .map(|cell| cell.trim().to_owned())
-            .collect()
-    };
-    rows.map(cells).collect()
-}
-
-fn percent(value: &Value) -> String {
-    format!("{:+.1} %", value.as_f64().unwrap())
-}
-
-fn fuel(run: &Value, car: usize) -> f64 {
-    run["runs"][car]["fuel_l_per_100km"].as_f64().unwrap()
-}
-
-#[test]
-fn val_the_comparison_over_ambient_temperature_is_that_of_the_program() {
-    let rows = table(
-        &read("docs/results.md"),
-        "## The comparison over ambient temperature",
-    );
-    assert_eq!(rows.len(), 10);
-    for row in &rows {
-        let (ambient, start) = row[0].split_once(" degC, ").unwrap();
-        let run = run(&["--ambient", ambient, "--start", start]);
-        let [manual, mondeo] = [0, 1].map(|car| &run["comparison"][car]);
-        let sump = run["runs"][0]["end_degc"]["transmission_sump"]
-            .as_f64()
-            .unwrap();
-        let computed = [
-            row[0].clone(),
-            format!("{:.2}", fuel(&run, 0)),
-            format!("{:.2}", fuel(&run, 1)),
-            percent(&manual["fuel_percent"]),
-            percent(&manual["phases_percent"]["ece15"]),
-            percent(&manual["phases_percent"]["eudc"]),
-            percent(&mondeo["fuel_percent"]),
-            format!("{sump:.0} degC"),
-        ];
-        assert_eq!(*row, computed);
-    }
-}
-
-#[test]
-fn val_the_effects_of_changes_are_those_of_the_program() {
-    let rows = table(&read("docs/results.md"), "## What engineers ask first");
-    assert_eq!(rows.len(), 13);
-    for (column, ambient) in [(1, "-10"), (2, "25")] {
-        let conditions = ["--ambient", ambient, "--baseline", "none"];
-        let shipped = fuel(&run(&conditions), 0);
-        for row in &rows {
-            let change = row[0].split('`').nth(1).unwrap();
-            let option = change.split_once(' ').unwrap_or(("--set", change));
-            let changed = fuel(&run(&[&conditions[..], &[option.0, option.1]].concat()), 0);
-            let effect = format!("{} %", signed(100.0 * (changed / shipped - 1.0), 1));
-            assert_eq!(row[column], effect, "{change} at {ambient} degC");
-        }
-    }
-}
-
-#[test]
-fn val_the_numbers_of_the_readme_are_those_of_the_program() {
-    let readme = read("README.md").replace('\n', " ");
-    let quoted = |text: String| assert!(readme.contains(&text), "README.md does not quote: {text}");
-    let cold = run(&["--ambient", "-10"]);
-    let [cvt, manual, mondeo] = [0, 1, 2].map(|car| fuel(&cold, car));
-    quoted(format!(
-        "Rover CVT {cvt:.2}, the same car with 5-speed {manual:.2}, Mondeo 2.0 {mondeo:.2}"
-    ));
-    let mild = &run(&["--ambient", "25"])["comparison"][0]["fuel_percent"];
-    quoted(format!("{:.1} % at 25 degC", mild.as_f64().unwrap()));
-    let validation: Value = serde_json::from_str(&cvtcycle(&["validate", "--json"])).unwrap();
-    let groups = &validation["groups"];
-    quoted(format!(
-        "the {} that nothing was fitted to",
-        groups["thesis"]["held_out"]["rows"]
-    ));
-    let outside = &groups["outside"]["held_out"];
-    quoted(format!(
-        "of its {} rows that nothing was fitted to {} agree",
-        outside["rows"], outside["agree"]
-    ));
-}
-
-/// The example in docs/calibration.md is what the program prints.
-#[test]
-fn val_the_calibration_example_is_what_the_program_prints() {
-    let printed = cvtcycle(&["calibrate", "docs/calibration_example/plan.toml"]);
-    let page = read("docs/calibration.md");
-    let (_, example) = page
-        .split_once("$ cvtcycle calibrate docs/calibration_example/plan.toml\n")
-        .unwrap();
-    let example = example.split("```").next().unwrap();
-    for part in example.split("...\n") {
-        assert!(
-            printed.contains(part),
-            "not printed:\n{part}\nprinted:\n{printed}"
-        );
-    }
-    assert!(example.lines().count() > 15);
-}
-
-/// Words of a command: blanks separate them, except between single quotes.
+/// Splits a command at blanks, except between single quotes.
 fn words(command: &str) -> Vec<String> {
     let (mut words, mut quoted) = (vec![String::new()], false);
     for letter in command.chars() {
@@ -219,7 +92,7 @@ fn words(command: &str) -> Vec<String> {
     words
 }
 
-/// The blocks of docs/book/src/your_car.md in order, in an empty folder: a file begins with a line that has its name, a command must end with exit code 0.
+/// Runs the blocks of docs/book/src/your_car.md in order in an empty folder. A file begins with a line that names it; a command must end with exit code 0.
 #[test]
 fn the_commands_of_your_car_in_an_hour_run() {
     let page = read("docs/book/src/your_car.md");

@@ -1,4 +1,4 @@
-//! The program as a user runs it: commands, documents, limits of inputs, faults of its surroundings.
+//! The program as run by users: commands, documents, limits of inputs, faults of its environment.
 
 #![allow(
     clippy::unwrap_used,
@@ -15,4 +15,3 @@ mod commands;
 mod documents;
 mod faults;
 mod limits;
-mod results_page;

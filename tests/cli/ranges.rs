@@ -23,7 +23,7 @@ fn numbers_lists_and_ranges_mixed() {
     assert!(good("0,-0").len() == 1);
 }
 
-/// Hand calculation: both ends belong to a range, and decimal steps stay decimal.
+/// By hand: both ends belong to a range, and decimal steps stay decimal.
 #[test]
 fn val_ends_and_decimals() {
     assert_eq!(good("0..0.3:0.1"), [0.0, 0.1, 0.2, 0.3]);

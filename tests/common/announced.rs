@@ -2,7 +2,7 @@
 
 use cvtcycle::config::Problem;
 
-/// A problem that a bad file announces: its line, and parts of its message, hint and allowed range.
+/// Problem announced by a bad file: its line, and parts of its message, hint and allowed range.
 #[derive(Default)]
 pub struct Expected {
     line: usize,
@@ -11,7 +11,7 @@ pub struct Expected {
     allowed: String,
 }
 
-/// What the comments `#~ MESSAGE`, `#~ hint: ...` and `#~ allowed: ...` announce of the line below them.
+/// Parses the comments `#~ MESSAGE`, `#~ hint: ...` and `#~ allowed: ...` about the line below them.
 pub fn expectations(text: &str) -> Vec<Expected> {
     let mut all: Vec<Expected> = Vec::new();
     let mut open = 0;
@@ -39,7 +39,7 @@ pub fn expectations(text: &str) -> Vec<Expected> {
     all
 }
 
-/// The differences between the expected problems and the found ones, as text.
+/// Differences between expected and found problems, as text.
 pub fn differences(expected: &[Expected], found: &[Problem]) -> String {
     let mut rest: Vec<&Problem> = found.iter().collect();
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! One step of a driveline, set up by hand: speeds, torques and temperatures as on a test bench, ratio held.
+//! One step of a driveline with given speeds, torques and temperatures, as on a test bench with fixed ratio.
 
 use cvtcycle_config::cycle::GearCommand;
 use cvtcycle_config::setup::Setup;
@@ -12,10 +12,10 @@ use cvtcycle_model::transmission::{StepInput, StepOutput, Transmission, Transmis
 
 use super::ZERO;
 
-/// What the bench is set to.
+/// Conditions of the bench.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// Belt ratio, held; gear number of a manual box.
+    /// Belt ratio, held constant, or gear of a manual box.
     pub ratio: f64,
     /// Wheel speed, rad/s.
     pub wheel_rad_s: f64,
@@ -27,7 +27,7 @@ pub struct Setting {
     pub belt_degc: f64,
     /// Coolant and engine oil, degC.
     pub engine_degc: f64,
-    /// Whether the launch device had locked.
+    /// True if the launch device is locked.
     pub coupled: bool,
 }
 
@@ -45,13 +45,13 @@ impl Default for Setting {
     }
 }
 
-/// A car on the bench: the ratio stays where it is put, the engine takes any speed at once.
+/// Car on the bench: the ratio stays fixed, and the engine reaches any speed at once.
 pub struct Bench {
     pub car: Car,
 }
 
 impl Bench {
-    /// Puts a car on the bench.
+    /// Mounts a car on the bench.
     pub fn new(setup: &Setup) -> Self {
         let mut car = setup.car(293.15);
         if let Transmission::Cvt(cvt) = &mut car.transmission {
@@ -69,7 +69,7 @@ impl Bench {
         }
     }
 
-    /// Primary speed over wheel speed at a setting without slip; input speed of the box in a gear.
+    /// Primary speed over wheel speed without slip; for a manual box, input speed over wheel speed.
     pub fn overall(&self, ratio: f64) -> f64 {
         match &self.car.transmission {
             Transmission::Cvt(cvt) => cvt.final_drive.ratio * ratio,
@@ -77,7 +77,7 @@ impl Bench {
         }
     }
 
-    /// Solves one step from a fresh memory.
+    /// Solves one step without history.
     pub fn solve(&self, s: &Setting) -> StepOutput {
         let mut node_k = [0.0; 5];
         node_k[COOLANT] = s.engine_degc + ZERO;

@@ -1,11 +1,11 @@
-//! Readings without a row of a table: name, range and meaning are in the call.
+//! Reads values without a table of keys: name, range and meaning are arguments.
 
 use std::ops::RangeInclusive;
 
 use cvtcycle_config::Section;
 use cvtcycle_model::keys::{Bound, Choice, Column, Key, Kind, Presence, Values, spec};
 
-/// As the methods of [`Values`], with the parts of a key in place of the key.
+/// Counterparts of the methods of [`Values`] that take the parts of a key.
 #[allow(dead_code, reason = "each test crate uses a part of it")]
 pub trait Loose: Values {
     fn number(&self, key: &str, allowed: Bound, doc: &str) -> f64 {

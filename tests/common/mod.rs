@@ -1,4 +1,4 @@
-//! What the model tests share: loading cars, driving cycles, and steps that are set up by hand.
+//! Shared by the model tests: loading cars, driving cycles, and steps with given conditions.
 #![allow(
     dead_code,
     clippy::print_stdout,
@@ -11,10 +11,10 @@ pub mod range;
 use cvtcycle_config::cycle::{Cycle, constant_speed, embedded, read_csv};
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
-use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::drive::Recorder;
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive, litres_per_100km};
 use cvtcycle_model::drive::{EnergyTerms, Row};
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::transmission::component::Component;
 
 /// Shipped vehicles.
@@ -25,7 +25,7 @@ pub const RPM: f64 = std::f64::consts::PI / 30.0;
 /// 0 degC in K.
 pub const ZERO: f64 = 273.15;
 
-/// A shipped vehicle with overrides, or the problems as the user would see them.
+/// Loads a shipped vehicle with overrides, or returns its problems as printed for users.
 pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
     let load = |set| {
         let options = Options {
@@ -39,18 +39,18 @@ pub fn try_car(name: &str, sets: &[String]) -> Result<Setup, String> {
         .map_err(|problems| render(&problems, false))
 }
 
-/// A shipped vehicle with overrides.
+/// Loads a shipped vehicle with overrides.
 pub fn car(name: &str, sets: &[&str]) -> Setup {
     let sets: Vec<String> = sets.iter().map(|s| (*s).to_owned()).collect();
     try_car(name, &sets).unwrap_or_else(|problems| panic!("{name} {sets:?}: {problems}"))
 }
 
-/// The bench of the reference car.
+/// Bench with the reference car.
 pub fn rover_bench() -> Bench {
     Bench::new(&car("rover_216_cvt", &[]))
 }
 
-/// A loaded point of the bench: 200 Nm at the output, belt at 90 degC.
+/// Loaded point of the bench: 200 Nm at the output, belt at 90 degC.
 pub fn loaded_point() -> BenchPoint {
     BenchPoint {
         output_nm: 200.0,
@@ -68,7 +68,7 @@ pub fn cycle(name: &str) -> Cycle {
     }
 }
 
-/// A hill: 8 % up from a standing start, over the top and 6 % down again, driven at up to 70 km/h.
+/// Hill: 8 % up from standstill, then 6 % down, driven at up to 70 km/h.
 pub fn hill() -> Cycle {
     let text = "time_s,speed_kmh,grade_percent\n0,0,0\n5,0,8\n20,40,8\n80,60,8\n110,70,8\n140,50,-6\n200,60,-6\n215,0,0\n225,0,0\n";
     read_csv("hill.csv", text.as_bytes())
@@ -85,7 +85,7 @@ pub fn at(ambient_degc: f64, start: Start) -> Conditions {
     }
 }
 
-/// A run after a soak, rows kept.
+/// Drives after a soak and keeps the rows.
 pub fn soak_rows(setup: &Setup, cycle: &Cycle, ambient_degc: f64) -> Outcome {
     drive(
         setup,
@@ -97,12 +97,12 @@ pub fn soak_rows(setup: &Setup, cycle: &Cycle, ambient_degc: f64) -> Outcome {
     )
 }
 
-/// Fuel of a run, kg.
+/// Fuel of a drive, kg.
 pub fn fuel_kg(setup: &Setup, cycle: &Cycle, conditions: &Conditions) -> f64 {
     drive(setup, cycle, conditions).totals.total().fuel_kg
 }
 
-/// L/100 km of the shipped petrol (745 kg/m3) over the phases of a group, or over all of them.
+/// Consumption in L/100 km of the shipped petrol (745 kg/m3) over the phases of a group, or over all.
 pub fn consumption(outcome: &Outcome, cycle: &Cycle, group: Option<&str>) -> f64 {
     let sum = match group {
         Some(name) => {
@@ -115,7 +115,7 @@ pub fn consumption(outcome: &Outcome, cycle: &Cycle, group: Option<&str>) -> f64
     litres_per_100km(sum.fuel_kg, 745.0, sum.distance_m)
 }
 
-/// Keeps rows and ledger terms.
+/// Collects rows and energy terms.
 #[derive(Default)]
 pub struct Keep {
     pub rows: Vec<Row>,
@@ -134,7 +134,7 @@ pub fn component_names() -> [&'static str; Component::COUNT] {
     Component::ALL.map(Component::name)
 }
 
-/// The larger of two numbers; NaN wins, so that it cannot hide.
+/// Maximum of two numbers that returns NaN if either is NaN, so that NaN fails a test.
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }

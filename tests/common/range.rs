@@ -1,6 +1,6 @@
 //! Ranges of keys as numbers.
 
-/// Ends of what a key allows, from its words.
+/// Parses the ends of an allowed range.
 #[must_use]
 pub fn range(allowed: &str) -> Option<(f64, f64)> {
     let words: Vec<&str> = allowed.split(' ').collect();

@@ -3,33 +3,33 @@
 use std::cell::Cell;
 use std::rc::Rc;
 
-use cvtcycle::study::check::expr::{Names, Table, Tables};
+use cvtcycle::validate::expr::{Names, Table, Tables};
 
 pub struct SmallTables {
     keys: Vec<String>,
     low: Rc<Table>,
     trip: Rc<Table>,
-    /// Rows at gross slip so far.
+    /// Number of rows left out at gross slip.
     pub left_out: Cell<usize>,
-    /// Evaluations that are left.
+    /// Evaluations left.
     pub left: Cell<u64>,
 }
 
 impl SmallTables {
-    /// With two groups of rows, `g` 0 and 1.
+    /// Creates tables with two groups of rows, `g` 0 and 1.
     pub fn new(x: [f64; 6], y: [f64; 6], evaluations: u64) -> Self {
         let g = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
-        let of = |columns: Vec<Vec<f64>>, weight: &[f64], gross: &[bool]| {
+        let make_table = |columns: Vec<Vec<f64>>, weight: &[f64], gross: &[bool]| {
             let count = columns.len();
             let make = Box::new(move |place: usize| columns[place].clone());
             Table::new(count, make, weight.to_vec(), [gross.to_vec(), Vec::new()])
         };
-        let low = of(
+        let low = make_table(
             [x, g, y].map(Vec::from).into(),
             &[1.0, 1.0, 2.0, 1.0, 1.0, 1.0],
             &[false, false, false, false, false, true],
         );
-        let trip = of(vec![vec![6.5]], &[1.0], &[]);
+        let trip = make_table(vec![vec![6.5]], &[1.0], &[]);
         SmallTables {
             keys: vec!["belt.offset_mm".to_owned()],
             low: Rc::new(low),

@@ -1,8 +1,8 @@
-//! The Rust sources of all crates, by module.
+//! Rust sources of all crates, by module.
 
 use std::path::Path;
 
-/// A file without its unit tests.
+/// File without its unit tests.
 pub struct Source {
     /// Crate and module: `config::bounded`; the program is `cvtcycle`.
     pub module: String,
@@ -10,7 +10,7 @@ pub struct Source {
     pub code: String,
 }
 
-/// Every source but files of unit tests.
+/// Reads every source except files of unit tests.
 #[must_use]
 pub fn sources() -> Vec<Source> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

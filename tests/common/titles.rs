@@ -1,16 +1,16 @@
-//! Numbers in titles of pictures, against those of tables and files.
+//! Compares numbers in titles of pictures with those of tables and files.
 #![allow(dead_code, reason = "each test crate uses a part of it")]
 
 use std::path::Path;
 
-/// Titles of a picture with the subject after it, with plain spaces and minus signs, and without the small spaces between groups of digits.
+/// Title and subject of a picture with plain spaces and minus signs, and without thin spaces between groups of digits.
 pub fn title(svg: &str) -> String {
     let title = svg.split("<title>").nth(1).unwrap();
     let title = title.split("</title>").next().unwrap();
     plain(title)
 }
 
-/// The same of a file.
+/// As [`title`], for a file.
 pub fn title_of_file(folder: &Path, name: &str) -> String {
     title(&std::fs::read_to_string(folder.join(name)).unwrap())
 }
@@ -21,7 +21,7 @@ fn plain(text: &str) -> String {
         .replace('\u{2212}', "-")
 }
 
-/// The numbers of a text as they are written, signs included: a sign follows a space or a bracket.
+/// Numbers of a text as written, with their signs: a sign follows a space or a bracket.
 pub fn written(text: &str) -> Vec<String> {
     let part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+');
     let text = plain(text);
@@ -32,7 +32,7 @@ pub fn written(text: &str) -> Vec<String> {
     numbers.map(str::to_owned).collect()
 }
 
-/// A number of a table; NaN for an empty cell.
+/// Parses a number of a table; NaN for an empty cell.
 pub fn number(cell: &str) -> f64 {
     plain(cell)
         .trim_start_matches('+')
@@ -40,22 +40,22 @@ pub fn number(cell: &str) -> f64 {
         .unwrap_or(f64::NAN)
 }
 
-/// Half of the last digit of a number.
+/// Half a unit in the last digit of a number.
 fn half(text: &str) -> f64 {
     let decimals = text.split_once('.').map_or(0, |(_, after)| after.len());
     0.500_001 * 10_f64.powi(-i32::try_from(decimals).unwrap())
 }
 
-/// A number of a title has to be a number of the data, to half of its last digit.
-pub fn is(said: &str, wanted: f64, title: &str) {
+/// Asserts that a number of a title equals one of the data, to half a unit in its last digit.
+pub fn assert_number(said: &str, wanted: f64, title: &str) {
     assert!(
         (number(said) - wanted).abs() <= half(said),
         "{said}, not {wanted}: {title}"
     );
 }
 
-/// The same against a cell of a table, which is rounded as well.
-pub fn is_cell(said: &str, cell: &str, title: &str) {
+/// As [`assert_number`], with a cell of a table, which is rounded too.
+pub fn assert_cell(said: &str, cell: &str, title: &str) {
     assert!(
         (number(said) - number(cell)).abs() <= half(said) + half(&plain(cell)),
         "{said}, not {cell}: {title}"

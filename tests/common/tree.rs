@@ -1,10 +1,10 @@
-//! Folders of results: compared file by file, and the finished parts of a study.
+//! Folders of results: comparison file by file, and finished parts of a study.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Every file below a directory with its bytes.
+/// Reads every file below a directory.
 #[must_use]
 pub fn tree(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     fn walk(root: &Path, dir: &Path, files: &mut BTreeMap<PathBuf, Vec<u8>>) {
@@ -25,10 +25,9 @@ pub fn tree(dir: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-/// The same files with the same bytes.
-///
+/// Asserts that two directories have the same files with the same bytes.
 /// # Panics
-/// If they are not.
+/// If they differ.
 pub fn same(a: &Path, b: &Path) {
     let (a, b) = (tree(a), tree(b));
     assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());

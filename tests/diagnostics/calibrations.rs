@@ -1,12 +1,12 @@
-//! Bad plans of calibrations, their bad data files, and sound plans whose fit does not end well.
+//! Bad plans of calibrations, bad data files, and valid plans whose fit fails.
 
+use cvtcycle::calibrate;
 use cvtcycle::config::Problems;
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::study::fit;
 
 use super::kinds::{made_file, rendered};
 
-/// A data file, named by a sound plan in the same folder.
+/// Reads a data file, named by a valid plan in the same folder.
 pub fn data(kind: &str, case: &str) -> Option<Problems> {
     let (folder, name) = case.rsplit_once('/').unwrap();
     let way = kind.trim_start_matches("calibration_");
@@ -19,10 +19,10 @@ pub fn data(kind: &str, case: &str) -> Option<Problems> {
         "[calibration]\nvehicle = \"rover_216_cvt\"\n[sources.cold]\nsource = \"run\"\n[[parameter]]\n\
          key = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\nhigh = 20\n[[data]]\nfrom = \"a test\"\n{way} = \"{name}\"\n{about}\n"
     );
-    fit::plan::read(&format!("{folder}/plan.toml"), &plan).err()
+    calibrate::plan::read(&format!("{folder}/plan.toml"), &plan).err()
 }
 
-/// What a sound plan ends with whose fit is not: exit code 1, and yet all files are there, with the best point so far.
+/// Runs a valid plan with a failing fit: exit code 1, and all files are written with the best point so far.
 pub fn ran(case: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let command = ["calibrate", "--quiet", "--threads", "1", case, "--out"];
@@ -73,7 +73,7 @@ pub fn ran(case: &str) -> String {
     shown
 }
 
-/// Files that are no text, or too large to be kept: name and what is shown.
+/// Files that are not text, or too large to be kept: name and message.
 pub fn made(kind: &str) -> Vec<(String, String)> {
     if kind == "calibration" {
         return plans();
@@ -106,7 +106,12 @@ pub fn made(kind: &str) -> Vec<(String, String)> {
 }
 
 fn plans() -> Vec<(String, String)> {
-    let named = |name: &str, word: &str| (format!("made_{name}"), rendered(fit::open(word).err()));
+    let named = |name: &str, word: &str| {
+        (
+            format!("made_{name}"),
+            rendered(calibrate::open(word).err()),
+        )
+    };
     let mut all = vec![
         named("no_such_name.toml", "rover_216_transmision"),
         named(
@@ -120,7 +125,7 @@ fn plans() -> Vec<(String, String)> {
         ("binary.toml", b"PK\x03\x04\0\x9f"),
         ("latin1.toml", b"# \xe9\n"),
     ];
-    let open = |path: &str, _: &[u8]| rendered(fit::open(path).err());
+    let open = |path: &str, _: &[u8]| rendered(calibrate::open(path).err());
     all.extend(
         binary
             .into_iter()

@@ -1,4 +1,4 @@
-//! The files of the corpus. `tests/diagnostics/KIND.txt` holds the bad files of a kind, one after the other:
+//! Files of the corpus. `tests/diagnostics/KIND.txt` holds the bad files of a kind, one after the other:
 //!
 //! ```text
 //! ======== NAME
@@ -7,8 +7,8 @@
 //! (what the program prints)
 //! ```
 //!
-//! A file that is no plain text (another encoding, other line ends) has `(escaped)` after its name and is lines of
-//! the form of the fuzzers' corpus: bytes outside printable ASCII are escaped as in Rust. A file named `made_...` is written by `kinds::made`; a file without a message is read by another one.
+//! A file that is not plain text (another encoding, other line ends) has `(escaped)` after its name, and its lines are written in
+//! the form of the fuzzers' corpus: bytes outside printable ASCII are escaped as in Rust. `kinds::made` writes files named `made_...`. A file without a message is read by another one.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,10 +18,10 @@ const FILE: &str = "======== ";
 const ESCAPED: &str = " (escaped)";
 const MESSAGE: &str = "-------- message\n";
 
-/// Folder of the corpus in the package, and in the folder in which the program reads it.
+/// Folder of the corpus in the package, and in the folder where the program reads it.
 pub const FOLDER: &str = "tests/diagnostics";
 
-/// A part of `KIND.txt`.
+/// Case in `KIND.txt`.
 #[derive(Debug, Default, PartialEq)]
 pub struct Case {
     pub name: String,
@@ -111,7 +111,7 @@ pub fn cases(kind: &str) -> Vec<Case> {
     )
 }
 
-/// Writes the files of all kinds below [`FOLDER`] in an empty folder and makes it the current one: messages hold these paths.
+/// Writes the files of all kinds below [`FOLDER`] in an empty folder and makes it the current one, because messages contain these paths.
 pub fn unpack() {
     static DONE: LazyLock<()> = LazyLock::new(|| {
         let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnostics_corpus");

@@ -1,8 +1,8 @@
-//! Every key of every shipped vehicle, lubricant and rig, and of every option that they leave unchosen, with a bad value of every sort.
+//! Every key of every shipped vehicle, lubricant and rig, and of every option that they do not choose, with a bad value of every sort.
 //!
-//! The readers register key, range and kind of what they read, so nothing is listed by hand: a file is written with one key a line, one
+//! The readers register the keys with range and kind, so nothing is listed by hand. A file is written with one key per line, one
 //! line is made bad, and there must be one problem, at that line and column, with the key, the value as written and the registered range.
-//! Keys of plans, rows and covers are not in that registry: their rules have bad files.
+//! Keys of plans, rows and covers are not registered that way; their rules have bad files.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,20 +11,20 @@ use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader};
 
 use super::kinds::written;
 
-/// Kinds of mistake, as they are counted.
+/// Sorts of mistake.
 const SORTS: [&str; 8] = [
     "low", "high", "nan", "type", "word", "missing", "misspelt", "twice",
 ];
 
-/// A file with one key a line.
+/// File with one key per line.
 #[derive(Clone)]
 struct Plain {
     kind: Kind,
-    /// Table, and its keys with their values.
+    /// Keys with values, by table.
     tables: BTreeMap<String, Vec<(String, String)>>,
 }
 
-/// A text and the place of a key's line in it.
+/// Text, and the place of a key's line in it.
 struct Text {
     text: String,
     line: usize,
@@ -61,7 +61,7 @@ impl Plain {
         entries.push((name.to_owned(), value));
     }
 
-    /// Takes everything at and under a key away.
+    /// Removes a key and everything below it.
     fn clear(&mut self, key: &str) {
         let under = format!("{key}.");
         self.tables
@@ -73,7 +73,7 @@ impl Plain {
             .retain(|(other, _)| other != name);
     }
 
-    /// The text, with `lines` in place of a key's own.
+    /// Text with `lines` in place of the key's own.
     fn text(&self, key: &str, lines: &[String]) -> Text {
         let (of, name) = key.rsplit_once('.').unwrap_or(("", key));
         let mut tables = self.tables.clone();
@@ -121,7 +121,7 @@ impl Plain {
         .unwrap_or_default()
     }
 
-    /// Every key that its reader reads.
+    /// All keys read by the reader.
     fn keys(&self, path: &str) -> Vec<KeyInfo> {
         let text = self.text("", &[]).text;
         assert!(
@@ -150,11 +150,11 @@ impl Plain {
         }
     }
 
-    /// The same with another option, its required keys filled in from their ranges; none if that gives no good file.
+    /// Chooses another option and fills in its required keys from their ranges. None if that gives no valid file.
     fn with_option(&self, key: &str, option: &str, path: &str) -> Option<Plain> {
         let mut plain = self.clone();
         plain.clear(key);
-        // As the table of an option; a word alone where that is none.
+        // Writes the option as a table, or as a word if it has no keys.
         plain.tables.insert(format!("{key}.{option}"), Vec::new());
         if plain
             .problems(&plain.text("", &[]).text, path)
@@ -169,7 +169,7 @@ impl Plain {
             return Some(plain);
         }
         for problem in missing {
-            // What goes with the other option only.
+            // Belongs to the other option only.
             if problem.message.starts_with("unknown key") {
                 plain.clear(&problem.key);
             } else {
@@ -183,7 +183,7 @@ impl Plain {
     }
 }
 
-/// A good value of a missing key.
+/// Valid value of a missing key.
 fn sample(missing: &Problem) -> Option<String> {
     if missing.key == "engine.model.bsfc_map.file" {
         return Some("\"si_1900_bsfc\"".to_owned());
@@ -202,7 +202,7 @@ fn sample(missing: &Problem) -> Option<String> {
     ))
 }
 
-/// Lowest and highest number of a range in words.
+/// Lowest and highest number in the text of a range.
 fn numbers(allowed: &str) -> Option<(f64, f64)> {
     let range = allowed
         .rsplit("each ")
@@ -228,7 +228,7 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
     let mut list = Vec::new();
     let allowed = info.allowed.as_str();
     let within = |value: &str| {
-        // A bad number among the good ones of a list, so that nothing else is wrong.
+        // Puts one bad number into a valid list, so that nothing else is wrong.
         let items: Vec<&str> = info.value.trim_matches(['[', ']']).split(", ").collect();
         let rest: Vec<&str> = items.iter().skip(1).copied().collect();
         format!("[{}]", [&[value], rest.as_slice()].concat().join(", "))
@@ -272,15 +272,15 @@ fn bad_values(info: &KeyInfo) -> Vec<(&'static str, String)> {
     list
 }
 
-/// Keys that only a car with a measured map has, and none of the shipped ones.
-const OF_MAPS: [&str; 3] = [
+/// Keys that require a measured map, which no shipped car has.
+const MAP_KEYS: [&str; 3] = [
     "transmission.cvt.loss_factor.box_map",
     "transmission.cvt.loss_factor.belt_map",
     "transmission.manual.loss_factor.box_map",
 ];
 
-/// Keys whose mistakes are shown with more than one problem: key and reason.
-const SEVERAL: [(&str, &str); 2] = [
+/// Keys whose mistakes cause several problems, with the reason.
+const MULTIPLE_PROBLEMS: [(&str, &str); 2] = [
     (
         "transmission",
         "whether there is a belt is then not known: the thermal keys of one are missing",
@@ -295,12 +295,12 @@ struct Tried<'p> {
     path: &'p str,
     counts: BTreeMap<&'static str, usize>,
     wrong: Vec<String>,
-    /// Keys of [`SEVERAL`] that were met.
+    /// Keys of [`MULTIPLE_PROBLEMS`] encountered.
     several: BTreeSet<String>,
 }
 
 impl Tried<'_> {
-    /// Tries one bad text; `expected` is line and column.
+    /// Tests one bad text; `expected` is line and column.
     fn one(
         &mut self,
         sort: &'static str,
@@ -312,7 +312,7 @@ impl Tried<'_> {
         *self.counts.entry(sort).or_default() += 1;
         let text = plain.text(&info.key, lines);
         let problems = plain.problems(&text.text, self.path);
-        if problems.len() > 1 && SEVERAL.iter().any(|(key, _)| *key == info.key) {
+        if problems.len() > 1 && MULTIPLE_PROBLEMS.iter().any(|(key, _)| *key == info.key) {
             self.several.insert(info.key.clone());
             return;
         }
@@ -345,7 +345,7 @@ impl Tried<'_> {
             .tables
             .keys()
             .any(|table| table.starts_with(&format!("{}.", info.key)));
-        // An option that is chosen by its table may be named by a word instead.
+        // An option chosen by its table may be named by a word instead.
         let mut bare = plain.clone();
         if is_choice {
             bare.clear(&info.key);
@@ -377,7 +377,7 @@ impl Tried<'_> {
                         && problem.place.line_text == line;
                     let shown = problem.message.contains(&info.key)
                         || problem.place.line_text.starts_with(name);
-                    // A message of a type says itself what is wanted, where that is all.
+                    // A message about a type contains the wanted type, and no range if that is all.
                     let range = problem.allowed == info.allowed
                         || info.allowed.contains(&problem.allowed) && !problem.allowed.is_empty();
                     let said = sort == "type"
@@ -490,11 +490,11 @@ pub fn check() {
     let mut waiting: Vec<Plain> = catalogue::files()
         .iter()
         .rev()
-        // A class is no whole file.
+        // A class is not a complete file.
         .filter(|file| file.kind != Kind::Class)
         .map(|file| Plain::new(file.kind, &file.keys))
         .collect();
-    // No shipped car has a table of its twin, or start-stop: this one is tried last, for these keys alone.
+    // No shipped car has a table for its twin, or start-stop: this one is tried last, for these keys only.
     let twin = Options {
         set: vec![
             Override::number("twin.gears", 6.0),
@@ -528,7 +528,7 @@ pub fn check() {
                 if options.contains(&option) {
                     continue;
                 }
-                // What one car cannot have another one has: no clutch behind the variator of a car with a converter.
+                // Options that one car excludes may be possible in another: a car with a converter has no clutch behind the variator.
                 match plain.with_option(&info.key, word, &path) {
                     Some(other) => {
                         options.insert(option);
@@ -546,7 +546,7 @@ pub fn check() {
     assert!(never.is_empty(), "no good file: {never:?}");
     let unseen: Vec<String> = catalogue::known_names()
         .iter()
-        .filter(|key| !seen.contains(*key) && !OF_MAPS.contains(&key.as_str()))
+        .filter(|key| !seen.contains(*key) && !MAP_KEYS.contains(&key.as_str()))
         .cloned()
         .collect();
     let wrong = tried.wrong.join("\n");
@@ -558,7 +558,7 @@ pub fn check() {
     );
     assert_eq!(
         tried.several.len(),
-        SEVERAL.len(),
+        MULTIPLE_PROBLEMS.len(),
         "an exception is no longer needed: {:?}",
         tried.several
     );

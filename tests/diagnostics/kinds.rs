@@ -1,8 +1,10 @@
 //! Reads each kind of bad file and returns the message.
 //!
-//! A bad vehicle and a bad rig file hold only what is wrong, as dotted keys: what they leave out is put below it, from the shipped file that
-//! their first line names (`# on NAME`), so that the lines of the bad file keep their numbers.
+//! A bad vehicle or rig file contains bad lines only, as dotted keys. Missing keys are appended from the shipped file
+//! named in the first line (`# on NAME`), so that the bad lines keep their numbers.
 
+use cvtcycle::analysis::levers::{Combine, Lever, LeverFile, LeverRequest, prepare};
+use cvtcycle::calibrate;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, Options};
@@ -10,10 +12,8 @@ use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader, r
 use cvtcycle::output::History;
 use cvtcycle::report::cover::Cover;
 use cvtcycle::study::Study;
-use cvtcycle::study::check;
-use cvtcycle::study::fit;
-use cvtcycle::study::levers::{Combine, Lever, LeverFile, LeverRequest, prepare};
 use cvtcycle::study::plan::Plan;
+use cvtcycle::validate;
 
 use super::calibration;
 
@@ -37,7 +37,7 @@ pub const KINDS: [&str; 16] = [
     "calibration_scalars",
 ];
 
-/// What the program prints about a bad file; nothing if it accepts it.
+/// Message of the program about a bad file; empty if it accepts the file.
 pub fn message(kind: &str, case: &str) -> String {
     let bytes = std::fs::read(case).unwrap();
     let name = case.rsplit('/').next().unwrap();
@@ -48,7 +48,7 @@ pub fn message(kind: &str, case: &str) -> String {
         return calibration::ran(case);
     }
     let problems = match kind {
-        "calibration" => fit::open(case).err(),
+        "calibration" => calibrate::open(case).err(),
         "calibration_points" | "calibration_trace" | "calibration_scalars" => {
             calibration::data(kind, case)
         }
@@ -82,7 +82,7 @@ fn cycle(case: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
     cycle::read_columns(case, bytes, &columns)
 }
 
-/// The levers of a file in the Rover, without draws.
+/// Builds a study of the Rover with the levers of a file, without draws.
 fn levers(case: &str) -> Result<Study, Problems> {
     let named = |lever| Lever {
         is_named: true,
@@ -111,8 +111,8 @@ fn rows(case: &str, bytes: &[u8]) -> Option<Problems> {
         Ok(text) => text,
         Err(problems) => return Some(problems),
     };
-    check::read(
-        ("embedded:common.toml", check::COMMON.1),
+    validate::read(
+        ("embedded:common.toml", validate::COMMON.1),
         &[(case.to_owned(), text)],
     )
     .err()
@@ -134,7 +134,7 @@ fn points(case: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// The first word of a map's name says what it is put in place of.
+/// The first word of a map's name is the part that it replaces.
 fn map(case: &str, name: &str) -> Option<Problems> {
     let (vehicle, key) = match name.split('_').next() {
         Some("bsfc") => ("rover_216_cvt", "engine.model.bsfc_map.file"),
@@ -168,7 +168,7 @@ fn vehicle(case: &str, text: &str) -> String {
         .keys
         .iter()
         .filter(|info| !info.key.starts_with("lubricant.") && !info.key.starts_with("engine_oil."));
-    // A folder of its own: the reader looks there for files that it names.
+    // A separate folder, because the reader resolves names of files there.
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("car.toml");
     std::fs::write(&path, completed(text, own)).unwrap();
@@ -200,7 +200,7 @@ fn rig(case: &str, text: &str) -> Option<Problems> {
     Some(problems)
 }
 
-/// Messages are about the bad file itself: the shipped file below it changes for its own reasons.
+/// Asserts that messages are about the bad file, since the shipped file may change for other reasons.
 fn within(case: &str, text: &str, problems: &[Problem]) {
     let beyond: Vec<&Problem> = problems
         .iter()
@@ -219,7 +219,7 @@ fn base(text: &str) -> &str {
         .unwrap_or("rover_216_cvt")
 }
 
-/// The bad lines, and below them all keys that they do not touch.
+/// Appends all keys that the bad lines do not set.
 fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String {
     let given: Vec<&str> = text
         .lines()
@@ -252,7 +252,7 @@ fn completed<'k>(text: &str, keys: impl Iterator<Item = &'k KeyInfo>) -> String 
     whole
 }
 
-/// A value as written in a file.
+/// Writes a value as in a file.
 pub fn written(info: &KeyInfo) -> String {
     let is_text = info.allowed.starts_with("text") || info.allowed.starts_with("one of ");
     if is_text {
@@ -262,7 +262,7 @@ pub fn written(info: &KeyInfo) -> String {
     }
 }
 
-/// Bad files that are too large to be kept, or that hold every column of a trace: name and message.
+/// Bad files that are too large to be kept, or that need every column of a trace: name and message.
 pub fn made(kind: &str) -> Vec<(String, String)> {
     match kind {
         "trace" => traces(),
@@ -355,7 +355,7 @@ pub fn rendered(problems: Option<Problems>) -> String {
     render(&problems.unwrap_or_default(), false)
 }
 
-/// Writes a file into a folder of its own, reads it, and removes the folder from the message.
+/// Reads a file in a temporary folder, and removes the folder's path from the message.
 pub fn made_file(
     name: &str,
     bytes: &[u8],
@@ -371,7 +371,7 @@ pub fn made_file(
     )
 }
 
-/// Traces that are wrong in one way each; their columns are those that the program writes.
+/// Traces with one mistake each; their columns are those of the program.
 fn traces() -> Vec<(String, String)> {
     use cvtcycle::output::{table::Scope, trace::COLUMNS};
     let names: Vec<&str> = COLUMNS
@@ -429,7 +429,7 @@ fn traces() -> Vec<(String, String)> {
     ]
 }
 
-/// A trace with a phase for every step.
+/// Trace with one phase for each step.
 fn many_phases(head: String, row: &str) -> Vec<String> {
     let row = |k: usize| {
         row.replacen("1,", &format!("{k},"), 1)
@@ -438,7 +438,7 @@ fn many_phases(head: String, row: &str) -> Vec<String> {
     std::iter::once(head).chain((1..=201).map(row)).collect()
 }
 
-/// Every bad plan of the plan reader's own test, with the whole text: name and text.
+/// Bad plans of the plan reader's own tests: name and text.
 pub fn plans_of_the_reader() -> impl Iterator<Item = (String, String)> {
     let plans = include_str!("../plans/bad.txt").split("====\n").skip(1);
     let text: String = plans

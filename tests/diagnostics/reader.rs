@@ -1,7 +1,7 @@
 //! `tests/diagnostics/reader.txt`: files with mistakes, each with the expected message above the bad line, and files of any content.
 //!
-//! `#~ part of a message` announces a problem of the next line that is no announcement; `#~ hint: …`
-//! and `#~ allowed: …` add to it what its hint and its allowed range must contain.
+//! `#~ part of a message` announces a problem of the next line that is not an announcement. `#~ hint: …`
+//! and `#~ allowed: …` add parts of its hint and its allowed range.
 use crate::announced::{differences, expectations};
 use crate::loose::Loose;
 use cvtcycle::config::{
@@ -10,7 +10,7 @@ use cvtcycle::config::{
 use cvtcycle::model::keys::{Key, spec};
 use proptest::prelude::*;
 
-/// Reads a small vehicle that has a value of every kind.
+/// Reads a small vehicle with a value of every kind.
 fn read(document: &Document) -> Result<Vec<KeyInfo>, Problems> {
     let reader = Reader::new(document);
     let root = reader.root();
@@ -83,7 +83,7 @@ fn every_mistake_is_found_at_its_line_and_nothing_else() {
     }
 }
 
-/// The place must be within its line, and the rendered text must show it.
+/// Checks that a place is within its line, and that the rendered text shows it.
 fn check_places(text: &str, found: &[Problem]) {
     let shown = render(found, false);
     for problem in found {
@@ -122,7 +122,7 @@ fn a_vehicle_without_mistakes_is_read() {
     );
 }
 
-/// Pieces of the language and of the vehicle above, so that many texts get past the parser.
+/// Pieces of the language and of the vehicle above, so that many texts pass the parser.
 fn piece() -> impl Strategy<Value = String> {
     let known = [
         "[belt]\n",

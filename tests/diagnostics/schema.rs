@@ -1,19 +1,19 @@
-//! `cvtcycle schema`: the shipped files are valid, and mistakes of range, option and key are seen.
+//! `cvtcycle schema`: accepts the shipped files, and detects mistakes of range, option and key.
 //!
-//! Truth: the rules of JSON Schema draft 07 for the words that the schemas use, written here; any other
-//! word fails the test. `tools/schema_check` does the same with an independent validator.
+//! Truth: the rules of JSON Schema draft 07 for the keywords that the schemas use, implemented here; any other
+//! keyword fails the test. `tools/schema_check` does the same with an independent validator.
+use cvtcycle::analysis::levers::keys::LEVER_FILE;
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::schema;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::model::files;
 use cvtcycle::model::keys::Table;
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{COMMON, embedded_rows};
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
+use cvtcycle::validate::keys::VALIDATION;
+use cvtcycle::validate::{COMMON, embedded_rows};
 use serde_json::{Value, json};
 
-/// Where and why a value is not valid.
+/// Places and reasons of mistakes in a value.
 fn mistakes(schema: &Value, value: &Value, at: &str) -> Vec<String> {
     let number = value.as_f64();
     let mut found = Vec::new();
@@ -135,7 +135,7 @@ fn the_shipped_files_are_valid() {
     }
 }
 
-/// Mistakes of a calibration plan and of a validation file, each in a text of its own.
+/// Mistakes of a calibration plan and of a validation file, one per text.
 #[test]
 fn mistakes_in_calibrations_and_rows_are_seen() {
     let parameter = "[calibration]\n[[parameter]]\nkey = \"engine.idle\"\nlow = 1\n";
@@ -220,7 +220,7 @@ fn mistakes_are_seen() {
     );
 }
 
-/// Only a file that inherits may leave out what a car needs.
+/// Only a file that inherits may omit required keys of a car.
 #[test]
 fn a_car_that_inherits_may_be_incomplete() {
     let checked = |text: &str| checked(&files::VEHICLE, text);

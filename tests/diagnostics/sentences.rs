@@ -1,11 +1,10 @@
-//! A sentence of a message that no bad file shows fails here.
+//! Fails if no bad file shows a sentence of a message.
 //!
-//! The source is read as text: in every module that makes problems of a user's file, each text literal with a blank in it that is an argument
-//! of a maker of messages (`complain`, `Complaint::new`, `Problem { .. }`, `Err(..)`, ...), or is assigned to a name such as `message`
-//! or `hint`, must be in one of the expected texts, with anything in place of its `{..}`. A new module with a maker is read without an entry here.
-//!
-//! Limits: a sentence that a function returns under another name, or that is joined from single words, is not seen; two makers with
-//! the same words count as one; a sentence of two branches must be shown in both, but not with every value that it may hold.
+//! The source is scanned as text: in every module that makes problems of a user's file, each string literal with a blank that is an argument
+//! of a constructor of messages (`complain`, `Complaint::new`, `Problem { .. }`, `Err(..)`, ...), or is assigned to a name such as `message`
+//! or `hint`, must occur in an expected text, with anything in place of its `{..}`. New modules with a constructor are found without an entry here.
+//! Limits: a sentence that a function returns under another name, or that is joined from single words, is missed. Two constructors with
+//! the same words count as one. A sentence with two branches must occur with both, but not with every value of its placeholders.
 
 use crate::sources::{Source, sources};
 
@@ -20,7 +19,7 @@ const MARKS: [&str; 7] = [
     "Fault {",
 ];
 
-/// Modules (with their submodules) whose problems are not of a user's input file, with the reason.
+/// Modules (with submodules) whose problems are not about input files of users, with the reason.
 const OUTSIDE: &[(&str, &str)] = &[
     ("config::cycle::find", "names given to options"),
     (
@@ -28,32 +27,31 @@ const OUTSIDE: &[(&str, &str)] = &[
         "names given to options: only this module, see INSIDE",
     ),
     ("cvtcycle", "options, words of the command line, output"),
-    ("live", "pages that the program wrote: tools/browser"),
     ("output::file", "output"),
     ("output::files", "output"),
     ("python", "arguments of Python: crates/python/tests"),
     ("report::compare", "directories that the program wrote"),
     (
-        "report::live",
+        "report::whatif",
         "pages and records that the program wrote: tools/browser",
     ),
     ("report::problems", "directories that the program wrote"),
     ("report::results", "directories that the program wrote"),
     (
-        "study::check::judge",
+        "validate::judge",
         "found by computing only: tests/results/validate.rs",
     ),
-    ("study::explain", "words given to options: tests/cli"),
     (
         "study::family",
         "arguments of a call: crates/python/tests/test_family.py",
     ),
     (
-        "study::levers::combine",
+        "analysis::levers::combine",
         "names given to options: tests/studies/levers.rs",
     ),
-    ("study::levers::answer", "tables that the program wrote"),
+    ("analysis::levers::answer", "tables that the program wrote"),
     ("study::store", "files that the program wrote"),
+    ("whatif", "pages that the program wrote: tools/browser"),
 ];
 
 /// Submodules of those above that read input files.
@@ -63,11 +61,11 @@ const INSIDE: &[&str] = &[
     "config::setup::twin",
 ];
 
-/// Modules that make sentences and no problems: a reader passes their sentences on.
+/// Modules that return sentences for the problems of a reader.
 const PASSED_ON: [&str; 4] = [
     "model::math::curve",
     "model::math::grid",
-    "model::fluid::viscosity",
+    "model::lubricant::viscosity",
     "model::maps::bsfc",
 ];
 
@@ -189,7 +187,7 @@ const EXCUSED: &[(&str, &str)] = &[
     ),
 ];
 
-/// What makes a complaint of the texts within its brackets.
+/// Constructors of complaints from the texts within their brackets.
 const MAKERS: [&str; 28] = [
     "allowed",
     "hint",
@@ -221,7 +219,7 @@ const MAKERS: [&str; 28] = [
     "add",
 ];
 
-/// Names whose texts are parts of a complaint.
+/// Names of variables and fields with texts of complaints.
 const NAMES: [&str; 10] = [
     "message",
     "allowed",
@@ -235,14 +233,14 @@ const NAMES: [&str; 10] = [
     "twice",
 ];
 
-/// A text literal that is part of a complaint.
+/// String literal that is part of a complaint.
 #[derive(Debug)]
 struct Sentence {
     line: usize,
     text: String,
 }
 
-/// Whether a source is the module or one of its submodules.
+/// True if the source is the module or one of its submodules.
 fn is_in_module(source: &Source, module: &str) -> bool {
     let rest = source.module.strip_prefix(module);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
@@ -296,7 +294,7 @@ pub fn check(messages: &[String]) {
     assert!(count > 300, "only {count} sentences");
 }
 
-/// Whether a text holds the fixed parts of a sentence, one after the other.
+/// True if a text contains the fixed parts of a sentence in order.
 fn is_in(sentence: &str, text: &str) -> bool {
     let mut rest = text;
     parts(sentence)
@@ -310,7 +308,7 @@ fn is_in(sentence: &str, text: &str) -> bool {
         })
 }
 
-/// The fixed parts of a format text.
+/// Fixed parts of a format string.
 fn parts(sentence: &str) -> Vec<String> {
     let mut parts = vec![String::new()];
     let mut letters = sentence.chars().peekable();
@@ -331,18 +329,18 @@ fn parts(sentence: &str) -> Vec<String> {
     parts
 }
 
-/// An open bracket.
+/// Open bracket.
 #[derive(Debug, Default)]
 struct Bracket {
-    /// The name before it.
+    /// Name before it.
     name: String,
-    /// Whether the statement under way in it gives a value to one of [`NAMES`].
+    /// True while the statement assigns to one of [`NAMES`].
     says: bool,
-    /// Whether a pattern is being read.
+    /// True within a pattern.
     pattern: bool,
 }
 
-/// The sentences of complaints in a source.
+/// Sentences of complaints in a source.
 fn sentences(code: &str) -> Vec<Sentence> {
     let text: Vec<char> = code.chars().collect();
     let mut found = Vec::new();
@@ -393,7 +391,7 @@ fn sentences(code: &str) -> Vec<Sentence> {
     found
 }
 
-/// Takes a sign after a word.
+/// Processes a character after a word.
 fn take(open: &mut Vec<Bracket>, word: &mut String, sign: char, next: char) {
     let here = open.last_mut().unwrap();
     let last = word.rsplit("::").next().unwrap_or_default();
@@ -405,7 +403,7 @@ fn take(open: &mut Vec<Bracket>, word: &mut String, sign: char, next: char) {
     }
     match sign {
         '(' | '[' | '{' => {
-            // Brackets of a pattern belong to it.
+            // Brackets within a pattern belong to it.
             let pattern = here.pattern;
             let name = std::mem::take(word);
             open.push(Bracket {
@@ -430,14 +428,14 @@ fn take(open: &mut Vec<Bracket>, word: &mut String, sign: char, next: char) {
             word.push(':');
             return;
         }
-        // A blank separates the name of a struct from its bracket.
+        // A blank separates the name of a struct from its brace.
         ' ' if next == '{' => return,
         _ => {}
     }
     word.clear();
 }
 
-/// Length of a letter in quotes; 1 for the mark of a lifetime.
+/// Length of a character literal; 1 for a lifetime.
 fn quoted_letter(text: &[char]) -> usize {
     match (text.get(1), text.get(2)) {
         (Some('\\'), _) => text
@@ -450,7 +448,7 @@ fn quoted_letter(text: &[char]) -> usize {
     }
 }
 
-/// Length of a literal, its text, and the line ends in it.
+/// Length of a literal, its text, and the number of line ends in it.
 fn literal(text: &[char]) -> (usize, String, usize) {
     let (mut at, mut lines) = (1, 0);
     let mut content = String::new();

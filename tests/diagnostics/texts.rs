@@ -1,10 +1,10 @@
-//! The texts of a problem are for people: code decides by its kind, its key and its suggested names.
+//! Texts of problems are for users: code decides by kind, key and suggested names.
 
 use crate::sources::sources;
 
 /// Texts of a problem.
 const FIELDS: [&str; 3] = ["message", "hint", "allowed"];
-/// Methods that look into a text.
+/// Methods that inspect a text.
 const METHODS: [&str; 10] = [
     "contains",
     "ends_with",
@@ -17,10 +17,10 @@ const METHODS: [&str; 10] = [
     "strip_prefix",
     "strip_suffix",
 ];
-/// `allowed` is a range of numbers in some places.
+/// `allowed` is also the name of a numeric range.
 const RANGE: &str = ".allowed.contains(";
 
-/// What a source does with the texts of problems, outside comments.
+/// Inspections of problem texts in a source, outside comments.
 fn looks_into(source: &str) -> Vec<String> {
     let code: String = source
         .lines()
@@ -52,13 +52,13 @@ fn no_code_looks_into_the_text_of_a_problem() {
 }
 
 #[test]
-fn looking_into_a_text_is_seen() {
+fn inspections_of_a_text_are_detected() {
     let bad = "if problem\n    .message\n    .contains(\"stopped\") {}";
     assert_eq!(looks_into(bad), [".message.contains("]);
     assert!(looks_into("// problem.message.contains(x)\nself.allowed.contains(1.0)").is_empty());
 }
 
-/// An option of the command line in a text, outside comments.
+/// True if a text names a command-line option, outside comments.
 fn names_an_option(line: &&str) -> bool {
     let mut rest = line.split("--").skip(1);
     let is_text = line.contains('"') && !line.trim_start().starts_with("//");
@@ -69,7 +69,7 @@ fn names_an_option(line: &&str) -> bool {
 fn no_text_of_the_library_names_an_option() {
     // The command that a page offers to copy is a result.
     let of_library =
-        |module: &str| !module.starts_with("cvtcycle") && module != "report::live::command";
+        |module: &str| !module.starts_with("cvtcycle") && module != "report::whatif::command";
     let mut wrong = Vec::new();
     for source in sources().iter().filter(|source| of_library(&source.module)) {
         let lines = source.code.lines().filter(names_an_option);

@@ -1,4 +1,4 @@
-//! Which baselines are like for like. The truth is what each override changes, one at a time.
+//! Comparability of baselines. Truth: the effect of each override, one at a time.
 
 use cvtcycle::config::Override;
 use cvtcycle::config::setup::{NamedBy, Options, Setup, TWIN, baseline_of, load};
@@ -33,7 +33,7 @@ fn a_twin_is_like_for_like_and_the_shipped_pair_too() {
     }
 }
 
-/// Every number of road load, engine and engine oil that a file gives, moved by a thousandth, is named, and nothing else.
+/// Every number of road load, engine and engine oil in a file, changed by a thousandth, is named, and nothing else.
 #[test]
 fn each_value_that_differs_is_named() {
     let subject = car("rover_216_cvt", &[]);
@@ -58,7 +58,7 @@ fn each_value_that_differs_is_named() {
         let Ok(of) = Override::parse_all(&[&set]) else {
             continue;
         };
-        // At the end of its range, or together with another value, it may not be moved.
+        // Some values cannot change: at the end of a range, or tied to another value.
         let Ok(baseline) = load(
             "rover_216_cvt",
             &Options {
@@ -81,7 +81,7 @@ fn each_value_that_differs_is_named() {
 }
 
 #[test]
-fn the_transmission_makes_no_difference_and_a_tyre_of_nearly_the_same_size_none() {
+fn transmission_and_similar_tyres_do_not_count_as_differences() {
     let subject = car("rover_216_cvt", &[]);
     let set = |text: &str| vec![text.to_owned()];
     for same in [
@@ -97,7 +97,7 @@ fn the_transmission_makes_no_difference_and_a_tyre_of_nearly_the_same_size_none(
     }
     let other = car("rover_216_cvt", &set("road_load.wheel_radius_m=0.29"));
     assert_eq!(keys(&subject, &other), ["road_load.wheel_radius_m"]);
-    // Another form of the road load: keys that only one has.
+    // Another form of the road load has keys that the other car lacks.
     let body = [
         "road_load.form.body.drag_coefficient=0.3",
         "road_load.form.body.frontal_area_m2=2",

@@ -1,6 +1,6 @@
-//! Hostile inputs again (docs/attacks.md): those that no other test repeats, and whether the tests that the page names are there.
+//! Hostile inputs again (docs/attacks.md): those without another test, and a check that the tests named on the page exist.
 //!
-//! Truth: a number is refused at its range or the car is driven; what is driven has closed ledgers and finite numbers, or fails with its check.
+//! Truth: a number out of range is refused, otherwise the car is driven. A drive has closed energy balances and finite numbers, or fails a check.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::common::range::range;
 
 const PAGE: &str = include_str!("../../docs/attacks.md");
 
-/// Adds the text of every Rust source below a folder.
+/// Appends the text of every Rust source below a folder.
 fn read_code(folder: &Path, code: &mut String) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -43,7 +43,7 @@ fn driven(setup: &Setup, cycle: &Cycle, max_dt_s: f64) -> RunSummary {
     run_summary(cycle, "subject", &Settings::default(), &driven)
 }
 
-/// Checks a run: closed ledgers and finite energies, or a check that failed.
+/// Checks a run: closed balances and finite energies, or a failed check.
 fn is_sound(run: &RunSummary) -> bool {
     let ledgers = [run.ledger_error, run.run_ledger_error];
     let closed = ledgers
@@ -61,7 +61,7 @@ fn car(name: &str, set: Vec<Override>) -> Result<Setup, Vec<ProblemKind>> {
     load(name, &options).map_err(|problems| problems.iter().map(|p| p.kind).collect())
 }
 
-/// Numbers just outside of what a key allows, in the words of its range.
+/// Numbers just outside an allowed range.
 fn beyond(allowed: &str) -> Option<[f64; 2]> {
     let words: Vec<&str> = allowed.split(' ').collect();
     let number = |at: usize| words.get(at).and_then(|word| word.parse::<f64>().ok());
@@ -87,7 +87,7 @@ fn numbers_at_the_ends_of_their_ranges_are_driven_and_those_beyond_refused() {
             };
             for end in [low, high] {
                 ends += 1;
-                // Two numbers that are possible by themselves may make no possible car together.
+                // Two numbers that are valid alone may be invalid together.
                 if let Ok(setup) = car(name, vec![Override::number(&info.key, end)]) {
                     runs += 1;
                     let run = driven(&setup, &cycle, 1.0);
@@ -104,7 +104,7 @@ fn numbers_at_the_ends_of_their_ranges_are_driven_and_those_beyond_refused() {
     assert!(ends > 700 && runs > 600, "{runs} of {ends}");
 }
 
-/// Cycles of odd times and speeds. One is refused at a row, or driven.
+/// Cycles with unusual times and speeds are refused at a row, or driven.
 #[test]
 fn cycles_made_by_hand_are_driven_or_refused() {
     let setup = car("rover_216_5mt", Vec::new()).unwrap();
@@ -128,7 +128,7 @@ fn cycles_made_by_hand_are_driven_or_refused() {
         let run = driven(&setup, &cycle, 1.0);
         let head = &text[..60.min(text.len())];
         assert!(is_sound(&run), "{head}: {run:?}");
-        // Where there is no distance there is no fuel per distance.
+        // Without distance there is no fuel per distance.
         let fuel = run.fuel_l_per_100km;
         assert!(fuel.is_none_or(|fuel| fuel < 1e4), "{head}: {fuel:?}");
     }
@@ -151,7 +151,7 @@ fn cycles_made_by_hand_are_driven_or_refused() {
     }
 }
 
-/// Any gear or note in any row; a generator of its own, so that it can be repeated.
+/// Any gear or note in any row, from a seeded generator so that failures are reproducible.
 #[test]
 fn random_gears_and_notes_are_driven_or_refused() {
     let words = [
@@ -186,9 +186,9 @@ fn random_gears_and_notes_are_driven_or_refused() {
     assert!(count[0] > 100 && count[1] > 50, "{count:?}");
 }
 
-/// 1 000 000 steps; of 100 000 000 the page has what the program printed.
+/// 1 000 000 steps. For 100 000 000 the page has the printed output.
 #[test]
-fn a_million_steps_close_their_books() {
+fn the_energy_balance_of_a_million_steps_is_closed() {
     let points: Vec<String> = (0..10)
         .map(|k| format!("{},{}", k * 1000, 50 * (k % 2)))
         .collect();
@@ -201,7 +201,7 @@ fn a_million_steps_close_their_books() {
     assert!(error.is_some_and(|error| error < 1e-9), "{error:?}");
 }
 
-/// Every row of the page names tests that are there, or says why the input is not repeated.
+/// Every row of the page names existing tests, or a reason for having none.
 #[test]
 fn every_input_of_the_page_is_repeated_or_has_its_reason() {
     let mut rows = 0;
@@ -222,7 +222,7 @@ fn every_input_of_the_page_is_repeated_or_has_its_reason() {
         let mut named = 0;
         let is_letter = |b: u8| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_';
         let is_name = |word: &&str| word.contains('_') && word.bytes().all(is_letter);
-        // Names behind the word "target" are those of fuzzing targets.
+        // Names after the word "target" are fuzzing targets.
         let tests = by.split("target").next().unwrap_or(by);
         for test in tests.split('`').skip(1).step_by(2).filter(is_name) {
             assert!(code.contains(&format!("fn {test}(")), "{test}");

@@ -1,4 +1,4 @@
-//! The checks that a run can fail: rows that no car can have driven, ledgers, numbers that are none.
+//! Failing checks of a run: impossible rows, energy balances, NaN.
 
 use cvtcycle::config::cycle::{Cycle, read_csv};
 use cvtcycle::config::setup::{Options, Setup, load};
@@ -15,7 +15,7 @@ fn car() -> Setup {
     load("rover_216_5mt", &Options::default()).unwrap()
 }
 
-/// What a car's drive through the town gives, after a change.
+/// Summary of a drive through the town after a change.
 fn changed(strict: bool, change: impl FnOnce(&mut Outcome)) -> RunSummary {
     let (setup, cycle) = (car(), town());
     let conditions = Conditions {
@@ -38,7 +38,7 @@ fn changed(strict: bool, change: impl FnOnce(&mut Outcome)) -> RunSummary {
     run_summary(&cycle, "subject", &settings, &driven)
 }
 
-/// The same with further rows of a second at their times.
+/// The same with additional rows of one second.
 fn with_rows(rows: &[Row]) -> RunSummary {
     changed(false, |outcome| {
         for row in rows {
@@ -64,18 +64,18 @@ fn texts(run: &RunSummary) -> Vec<String> {
 }
 
 #[test]
-fn a_sane_run_fails_nothing() {
+fn a_valid_run_fails_no_check() {
     assert!(changed(true, |_| {}).failures.is_empty());
 }
 
 #[test]
-fn rows_that_cannot_be_are_failures_with_the_worst_or_the_first_of_them() {
+fn impossible_rows_are_failures_with_the_worst_or_the_first_row() {
     let rpm = |rpm: f64| rpm * std::f64::consts::PI / 30.0;
     let fast = |time_s, speed| Row {
         engine_speed_rad_s: rpm(speed),
         ..row(time_s, Flags::OVERSPEED)
     };
-    // The line ends at 6500 rpm, the highest speed is 6500 rpm: 1 % above is slip of a belt.
+    // The operating line and the maximum speed end at 6500 rpm; 1 % above is belt slip.
     assert_eq!(texts(&with_rows(&[fast(5.0, 6560.0)])), [""; 0]);
     assert_eq!(
         texts(&with_rows(&[
@@ -126,7 +126,7 @@ fn rows_that_cannot_be_are_failures_with_the_worst_or_the_first_of_them() {
 }
 
 #[test]
-fn a_number_that_is_none_is_a_failure_of_its_own() {
+fn nan_is_a_failure_of_its_own() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let normal = row(7.0, Flags::default());
         for found in [
@@ -193,9 +193,9 @@ fn a_flag_is_a_failure_of_a_strict_run() {
     );
 }
 
-/// A plain sum of n terms is known to n epsilon: 1e8 rows to 2.2e-8.
+/// A plain sum of n terms has a relative error up to n epsilon: 2.2e-8 for 1e8 rows.
 #[test]
-fn the_ledger_of_a_run_may_be_open_by_the_rounding_of_its_sums() {
+fn the_energy_balance_may_be_open_by_rounding() {
     let open = |share: f64, rows: u64| {
         let found = changed(false, |outcome| {
             let totals = &mut outcome.totals;
@@ -208,7 +208,7 @@ fn the_ledger_of_a_run_may_be_open_by_the_rounding_of_its_sums() {
     assert_eq!(open(2e-8, 30), 1);
     assert_eq!(open(2e-8, 100_000_000), 0);
     assert_eq!(open(1e-6, 100_000_000), 1);
-    // A row rounds little, whatever their number.
+    // The error of one row does not grow with their number.
     let row = changed(false, |outcome| {
         (outcome.totals.rows, outcome.totals.ledger_error) = (100_000_000, 1e-8);
     });

@@ -1,4 +1,4 @@
-//! Traces read back: the same numbers, and all that is wrong with a bad one.
+//! Traces read back: equal numbers, and all problems of a bad file.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::fs;
@@ -14,7 +14,7 @@ use cvtcycle::study::store::{read_trace_parquet, write_trace_parquet};
 use crate::common;
 use crate::common::{CARS, car, cycle, soak_rows};
 
-/// Every bit of a history: names and numbers of its columns, phases, flags.
+/// Bits of a history: names and numbers of its columns, phases, flags.
 #[derive(Debug, PartialEq)]
 struct Bits {
     columns: Vec<(&'static str, Vec<u64>)>,
@@ -42,7 +42,7 @@ fn csv(rows: &[Row], cvt: bool, parts: &[Component], phases: &[String]) -> Vec<u
     bytes
 }
 
-/// A shipped car on a cycle: its rows, whether it has a belt, its parts.
+/// Drives a shipped car on a cycle: its rows, whether it has a belt, its components.
 fn driven(name: &str, cycle: &Cycle) -> (Vec<Row>, bool, Vec<Component>) {
     let setup = car(name, &[]);
     let rows = soak_rows(&setup, cycle, 20.0).rows;
@@ -54,7 +54,7 @@ fn driven(name: &str, cycle: &Cycle) -> (Vec<Row>, bool, Vec<Component>) {
 }
 
 #[test]
-fn what_is_written_is_read_bit_by_bit() {
+fn a_trace_reads_back_bit_by_bit() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("trace.parquet");
     for name in CARS {
@@ -67,7 +67,7 @@ fn what_is_written_is_read_bit_by_bit() {
                 &cycle.phases
             };
             let columns = columns_for(cvt, &parts);
-            let history = History::of(&rows, &columns, phases);
+            let history = History::from_rows(&rows, &columns, phases);
             assert_eq!(
                 (history.len(), history.is_cvt(), history.components()),
                 (rows.len(), cvt, parts.clone())
@@ -87,7 +87,7 @@ fn what_is_written_is_read_bit_by_bit() {
                 bits(&history),
                 "{name}"
             );
-            // The rows themselves are the truth.
+            // Truth: the rows themselves.
             for (i, row) in rows.iter().enumerate() {
                 assert_eq!(
                     history.phases()[history.phase(i)],
@@ -115,7 +115,7 @@ fn what_is_written_is_read_bit_by_bit() {
     }
 }
 
-/// A short trace as lines of text.
+/// Short trace as lines of text.
 fn lines() -> Vec<String> {
     let cycle = cycle("ece15");
     let (rows, cvt, parts) = driven("rover_216_cvt", &cycle);
@@ -129,7 +129,7 @@ fn problems(lines: &[String]) -> Problems {
         .unwrap_err()
 }
 
-/// Replaces the cell of a column in a line, counted from 1 as editors do.
+/// Replaces the cell of a column in a line, counted from 1.
 fn replace(lines: &mut [String], line: usize, column: &str, cell: &str) {
     let at = lines[0].split(',').position(|name| name == column).unwrap();
     let mut cells: Vec<&str> = lines[line - 1].split(',').collect();
@@ -185,7 +185,7 @@ fn everything_that_is_wrong_is_reported_at_once_with_its_place() {
             && found[2].hint.contains("fuel_cut")
             && found[3].allowed.contains("above 4")
     );
-    // The column counts characters: the bad value is there.
+    // The column counts characters, so that it points to the bad value.
     assert_eq!(
         bad[2]
             .chars()
@@ -197,7 +197,7 @@ fn everything_that_is_wrong_is_reported_at_once_with_its_place() {
 }
 
 #[test]
-fn the_list_of_problems_ends_somewhere() {
+fn the_list_of_problems_is_bounded() {
     let mut bad = lines();
     for line in 2..=31 {
         for column in ["speed_kmh", "throttle", "fuel_g_s"] {
@@ -220,7 +220,7 @@ fn every_column_that_a_trace_must_have_is_missed() {
             cells.join(",")
         });
         let text = less.collect::<Vec<_>>().join("\n");
-        // A car may lack any one of the components.
+        // A car may lack any one component.
         match History::read_csv("t.csv", text.as_bytes()) {
             Ok(history) => assert!(name.ends_with("_loss_w") && !history.has(name), "{name}"),
             Err(found) => assert!(
@@ -243,7 +243,7 @@ fn every_column_that_a_trace_must_have_is_missed() {
 }
 
 #[test]
-fn columns_of_a_newer_version_are_passed_over() {
+fn columns_of_a_newer_version_are_ignored() {
     let good = lines();
     let more: Vec<String> = good
         .iter()
@@ -256,7 +256,7 @@ fn columns_of_a_newer_version_are_passed_over() {
 }
 
 #[test]
-fn what_is_no_trace_is_refused_in_one_line() {
+fn a_file_without_a_trace_is_refused_in_one_line() {
     for (bytes, word) in [
         (&b""[..], "empty"),
         (b"PK\x03\x04\0\0", "not text"),

@@ -263,7 +263,7 @@ fn a_failing_commit_puts_the_earlier_run_back() {
     }
 }
 
-/// Of two that write into one directory the second is refused and removes nothing; when the first has ended it is free.
+/// The second writer of a directory is refused and removes nothing. After the first has ended, the directory is free.
 #[test]
 fn one_at_a_time_writes_into_a_directory() {
     let home = tempfile::tempdir().unwrap();
@@ -281,9 +281,9 @@ fn one_at_a_time_writes_into_a_directory() {
     assert_eq!(names_in(&path), ["summary.json"]);
 }
 
-/// What a killed process left half written goes with the next run, but for what another process still writes, and links.
+/// The next run removes partial files of a killed process, but not those of a running one, and not links.
 #[test]
-fn what_was_left_half_written_goes_with_the_next_run() {
+fn the_next_run_removes_half_written_files() {
     let home = tempfile::tempdir().unwrap();
     let old = home.path().join(".cvtcycle-old.tmp");
     fs::write(&old, "half").unwrap();
@@ -305,7 +305,7 @@ fn what_was_left_half_written_goes_with_the_next_run() {
     assert_eq!(names_in(home.path()), ["points.csv"]);
 }
 
-/// A file that appears while another one of that name is written is not replaced without being asked.
+/// A file that appears while another one of that name is written is not replaced without --force.
 #[test]
 fn a_file_that_appeared_meanwhile_is_not_replaced() {
     let home = tempfile::tempdir().unwrap();
@@ -392,7 +392,7 @@ fn names_are_unique_and_end_in_their_unit() {
 }
 
 #[test]
-fn numbers_for_people() {
+fn numbers_are_formatted_for_display() {
     assert_eq!(fixed(-0.04, 1), "0.0");
     assert_eq!(fixed(-10.04, 1), "-10.0");
     assert_eq!(fixed(f64::NAN, 1), "-");

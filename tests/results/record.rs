@@ -1,4 +1,4 @@
-//! The record of a run: files with their hashes, changes against a shipped vehicle, lines of the variogram.
+//! Record of a run: files with hashes, changes against a shipped vehicle, lines of the variogram.
 
 use cvtcycle::config::Override;
 use cvtcycle::config::setup::{Options, embedded_vehicles, load};
@@ -18,7 +18,7 @@ fn record_of(word: &str, set: &[&str], lubricant: Option<&str>) -> CarRecord {
 }
 
 #[test]
-fn a_shipped_car_differs_from_itself_in_nothing() {
+fn a_shipped_car_does_not_differ_from_itself() {
     for (name, text) in embedded_vehicles() {
         let record = record_of(name, &[], None);
         assert_eq!(
@@ -31,7 +31,7 @@ fn a_shipped_car_differs_from_itself_in_nothing() {
 }
 
 #[test]
-fn what_was_set_comes_first_and_another_oil_in_full() {
+fn changed_values_come_first_and_another_oil_in_full() {
     let key = "transmission.cvt.belt.band_offset_mm";
     let record = record_of(
         "rover_216_cvt",
@@ -59,7 +59,7 @@ fn what_was_set_comes_first_and_another_oil_in_full() {
     assert!(record.lubricant.file.contains("dexron_ii"));
 }
 
-/// The hash of a car follows its values and the contents of its maps, and neither the form of a value nor names.
+/// The hash of a car depends on its values and the contents of its maps, but not on number formats or names.
 #[test]
 fn the_hash_of_a_car_is_that_of_its_values() {
     let hash_of = |word: &str, set: &[&str]| record_of(word, set, None).resolved_sha256;
@@ -88,7 +88,7 @@ fn the_hash_of_a_car_is_that_of_its_values() {
     assert_eq!(found.len(), count, "{found:?}");
 }
 
-/// Lines from rest, each as steep as its ratio: between both limits lies the span of the file's belt ratios.
+/// Lines from rest, with the slopes of their ratios. The range of the file's belt ratios lies between both limits.
 #[test]
 fn lines_of_the_variogram_are_those_of_the_ratios() {
     let record = record_of("rover_216_cvt", &[], None);

@@ -1,11 +1,11 @@
-//! Columns and maps of the losses command against the bench: powers and efficiency, units, flags, the torque that each map takes.
+//! Columns and maps of `losses` against the bench: powers and efficiency, units, flags, the torque axis of each map.
 use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
-use cvtcycle::model::bench::{Bench, BenchPoint, Parts};
+use cvtcycle::model::rig::{Bench, BenchPoint, Parts};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::Component;
 use cvtcycle::output::losses::{Axis, LossRow};
 
-/// Equal to rounding: two ways of one sum.
+/// Asserts equality up to rounding.
 #[track_caller]
 fn same(got: f64, want: f64) {
     assert!(
@@ -14,7 +14,7 @@ fn same(got: f64, want: f64) {
     );
 }
 
-/// Powers, efficiency, slip and safety of a row, in drive, overrun, without load, and where both shafts drive.
+/// Powers, efficiency, slip and safety of a row: in drive, in overrun, without load, and with power into both shafts.
 #[test]
 fn val_rows_of_the_bench() {
     let bench = rover_bench();
@@ -73,7 +73,7 @@ fn val_rows_of_the_bench() {
     assert!(seen.iter().all(|n| *n > 1), "{seen:?}");
 }
 
-/// The belt's map takes its own torques: the pulley's at the pulley, the shaft's at the shaft; the box's at its input.
+/// Torque axes: at the pulley for the belt, at the shaft for the shaft, at the input for the whole box.
 #[test]
 fn val_map_parts_take_their_own_torque() {
     use cvtcycle::output::loss_table::MapPart;
@@ -145,7 +145,7 @@ fn val_map_parts_take_their_own_torque() {
     }
 }
 
-/// Columns whose unit is not the model's.
+/// Columns in other units than the model's.
 #[test]
 fn val_columns_of_the_bench() {
     use cvtcycle::output::losses::columns;
@@ -162,7 +162,7 @@ fn val_columns_of_the_bench() {
         asked[axis as usize] = value;
     }
     let row = LossRow::new(&bench, asked);
-    let of = |name: &str| match columns(&bench.car().transmission)
+    let column_value = |name: &str| match columns(&bench.car().transmission)
         .iter()
         .find(|c| c.name == name)
         .unwrap()
@@ -171,16 +171,22 @@ fn val_columns_of_the_bench() {
         Cell::Number(x) => x,
         _ => panic!("{name}"),
     };
-    same(of("secondary_pressure_bar"), row.answer.secondary_pa / 1e5);
     same(
-        of("slip_percent"),
+        column_value("secondary_pressure_bar"),
+        row.answer.secondary_pa / 1e5,
+    );
+    same(
+        column_value("slip_percent"),
         100.0 * row.answer.belt.unwrap().losses.slip_total,
     );
-    same(of("output_speed_rpm"), row.answer.output_rad_s / RPM);
-    same(of("belt_spray_degc"), row.answer.belt_k - 273.15);
+    same(
+        column_value("output_speed_rpm"),
+        row.answer.output_rad_s / RPM,
+    );
+    same(column_value("belt_spray_degc"), row.answer.belt_k - 273.15);
 }
 
-/// Equal but for `share`.
+/// Asserts equality up to a relative difference `share`.
 #[track_caller]
 fn near(got: f64, want: f64, share: f64) {
     assert!(

@@ -1,8 +1,8 @@
-//! `losses --input-torque` and maps of a whole box in the forms of other programs, held against the bench.
+//! `losses --input-torque` and maps of a whole box in the forms of other programs, compared with the bench.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use crate::common::{RPM, ZERO, car};
-use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use serde_json::Value;
 
 fn good(words: &[&str]) -> String {
@@ -25,7 +25,7 @@ fn close(a: f64, b: f64, near: f64) {
     assert!((a - b).abs() <= near, "{a} {b}");
 }
 
-/// A point by its input torque is the point with the output torque that it gives: the bench's own answer the other way round.
+/// A point by input torque equals the point with the resulting output torque.
 #[test]
 fn a_point_by_input_torque() {
     let words = ["--ratio", "0.8", "--temp", "60", "--json"];
@@ -49,7 +49,7 @@ fn a_point_by_input_torque() {
     }
 }
 
-/// VECTO: three columns, every point of the grid, losses of the bench at the input torque, overrun included.
+/// VECTO: three columns, every point of the grid, the bench's losses at the input torque, including overrun.
 #[test]
 fn a_loss_map_of_vecto() {
     let text = good(&[
@@ -139,7 +139,7 @@ fn the_table_of_the_cfr() {
         });
         let input_w = torque * speed * RPM;
         let output_w = output_nm * answer.output_rad_s;
-        // Two digits of the torque and one of the speed are left.
+        // Torque is written with two digits, speed with one.
         close(
             (input_w - output_w) / 1e3,
             loss_kw,
@@ -148,7 +148,7 @@ fn the_table_of_the_cfr() {
     }
 }
 
-/// Modelica: `#1`, tables with the size that they say, both axes ascending, the viscosity that of the oil.
+/// Modelica: `#1`, tables with their declared sizes, ascending axes, the viscosity of the oil.
 #[test]
 fn tables_of_modelica() {
     let text = good(&[
@@ -201,9 +201,9 @@ fn tables_of_modelica() {
     }
 }
 
-/// What does not go together is named, with what to do.
+/// Conflicting options are reported with advice.
 #[test]
-fn bad_input() {
+fn conflicting_options_are_reported() {
     for (words, says) in [
         (vec!["--map-form", "vtlm"], "add --as-map box"),
         (

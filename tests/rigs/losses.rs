@@ -1,4 +1,4 @@
-//! `losses` and the bench behind it: the same losses as in driving, hand calculations, files, and what is refused.
+//! `losses` and the bench behind it: the same losses as in driving, hand calculations, files, refused options.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod maps;
@@ -7,10 +7,10 @@ use std::path::Path;
 use std::process::Output;
 
 use crate::common::{RPM, ZERO, car};
-use crate::titles::{is, title_of_file, written};
+use crate::titles::{assert_number, title_of_file, written};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
-use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::loss_table::{MapPart, write_map};
 use cvtcycle::output::losses::{Axis, LossGrid, columns};
@@ -26,7 +26,7 @@ fn good(words: &[&str]) -> String {
     crate::printed(&["losses"], words)
 }
 
-/// A refusal: exit code 2, nothing on standard output.
+/// Runs a refused command: exit code 2, empty standard output.
 fn refused(words: &[&str]) -> String {
     let output = run(words);
     assert_eq!(output.status.code(), Some(2), "{words:?}");
@@ -41,9 +41,9 @@ fn close(a: f64, b: f64, relative: f64, what: &str) {
     );
 }
 
-/// The grid's order: ratio outermost, speed fastest; each combination once.
+/// Order of the grid: ratio in the outermost loop, speed in the innermost; each combination once.
 #[test]
-fn grid_order() {
+fn the_grid_has_ratio_outermost_and_speed_innermost() {
     let mut grid = LossGrid::default();
     for (axis, values) in [
         (Axis::Ratio, vec![2.0, 1.0]),
@@ -55,13 +55,13 @@ fn grid_order() {
     }
     assert_eq!((grid.len(), grid.size() as usize), (12, 12));
     assert_eq!(grid.varied(), [Axis::Ratio, Axis::Torque, Axis::Speed]);
-    let of = |k: usize| {
+    let indices = |k: usize| {
         [Axis::Ratio, Axis::Torque, Axis::Speed].map(|axis| grid.at(k)[axis as usize] as i32)
     };
-    assert_eq!(of(0), [2, 0, 3]);
-    assert_eq!(of(1), [2, 0, 1]);
-    assert_eq!(of(3), [2, 10, 3]);
-    assert_eq!(of(11), [1, 10, 2]);
+    assert_eq!(indices(0), [2, 0, 3]);
+    assert_eq!(indices(1), [2, 0, 1]);
+    assert_eq!(indices(3), [2, 10, 3]);
+    assert_eq!(indices(11), [1, 10, 2]);
     assert!(grid.at(0)[Axis::Pressure as usize].is_nan());
 }
 
@@ -74,7 +74,7 @@ const GRID: [&str; 6] = [
     "-20,0,60",
 ];
 
-/// CSV, JSON and the library say the same, number for number.
+/// CSV, JSON and the library have equal numbers.
 #[test]
 fn csv_json_and_library_agree() {
     let (names, json) = crate::same_points(&["losses"], &GRID);
@@ -119,9 +119,9 @@ fn csv_json_and_library_agree() {
     }
 }
 
-/// The tables carry the numbers of the library, and no colours in a pipe.
+/// The tables have the library's numbers, and no colours in a pipe.
 #[test]
-fn tables() {
+fn tables_have_the_numbers_of_the_library() {
     let one = good(&["--ratio", "0.5", "--temp", "95"]);
     for word in [
         "Pump",
@@ -158,9 +158,9 @@ fn tables() {
     assert!(good(&["--speed", "1000..2000:10"]).contains("1 more points"));
 }
 
-/// What a user can get wrong: every problem at once, each with its option, value and range.
+/// Bad options are reported all at once, each with option, value and range.
 #[test]
-fn refusals() {
+fn bad_options_are_reported_at_once() {
     let all = refused(&[
         "--speed",
         "0,nan",
@@ -267,7 +267,7 @@ fn files(dir: &Path) -> Vec<String> {
     names
 }
 
-/// Files of a map, of a stack, and that an earlier run is not overwritten unasked.
+/// Files of a map and of a grid; an earlier run is not overwritten without --force.
 #[test]
 fn output_directory() {
     let folder = tempfile::tempdir().unwrap();
@@ -320,7 +320,7 @@ fn output_directory() {
     titles_are_those_of_the_table(&b, "losses_stacked.svg", &["total_loss_nm"]);
 }
 
-/// The least and the largest sum of some columns are those of the title, and the picture is as wide as a page.
+/// The minimum and maximum sum of some columns appear in the title, and the picture has the width of a page.
 fn titles_are_those_of_the_table(folder: &Path, picture: &str, columns: &[impl AsRef<str>]) {
     let mut reader = csv::Reader::from_path(folder.join("losses.csv")).unwrap();
     let heads = reader.headers().unwrap().clone();
@@ -340,7 +340,7 @@ fn titles_are_those_of_the_table(folder: &Path, picture: &str, columns: &[impl A
     let high = sums.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let title = title_of_file(folder, picture);
     for (said, wanted) in written(&title).iter().zip([low, high]) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
     let svg = std::fs::read_to_string(folder.join(picture)).unwrap();
     let svg = roxmltree::Document::parse(&svg).unwrap();
@@ -357,7 +357,7 @@ fn titles_are_those_of_the_table(folder: &Path, picture: &str, columns: &[impl A
     );
 }
 
-/// What is varied is named below the picture and has a column.
+/// A varied axis is named below the picture and has a column.
 #[test]
 fn every_axis_can_be_drawn() {
     let axes = [
@@ -440,10 +440,10 @@ fn every_axis_can_be_drawn() {
     }
 }
 
-/// The printed forms: the golden tables' own rows through the bench's belt. At 2000 rpm, 30 bar, low, the two printed forms differ from each
-/// other by what physics.md lists, and the pure form has whole active segments.
+/// Printed forms: rows of the golden tables on the bench. At 2000 rpm, 30 bar, low, the two printed forms differ by the items that physics.md lists, and the
+/// pure form has whole active segments.
 #[test]
-fn printed_forms() {
+fn printed_forms_agree_with_the_golden_tables() {
     let at = |formulation: Formulation| {
         let options = Options {
             formulation,
@@ -466,7 +466,7 @@ fn printed_forms() {
         Formulation::Chapter8,
     ]
     .map(at);
-    let segments = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().slip.active_segments;
+    let segments = |a: &cvtcycle::model::rig::BenchAnswer| a.belt.unwrap().slip.active_segments;
     assert!(segments(&smooth).fract() > 1e-9);
     for printed in [&appendix, &chapter] {
         assert!(segments(printed).fract().abs() < 1e-15 && segments(printed) >= 1.0);
@@ -476,14 +476,14 @@ fn printed_forms() {
     // Eq. 49 unscaled, both wedge arcs: the chapter loses more in bands.
     assert!(chapter.part_nm(Component::BeltBand) > appendix.part_nm(Component::BeltBand) + 0.3);
     // 0.02 % slip rms against integer k (physics.md 1).
-    let slip = |a: &cvtcycle::model::bench::BenchAnswer| a.belt.unwrap().losses.slip_total;
+    let slip = |a: &cvtcycle::model::rig::BenchAnswer| a.belt.unwrap().losses.slip_total;
     assert!(
         (slip(&smooth) - slip(&appendix)).abs() < 2e-3,
         "{} {}",
         slip(&smooth),
         slip(&appendix)
     );
-    // Far beyond capacity the printed forms have no meaning: flagged, and nothing else is carried away.
+    // Far beyond capacity the printed forms are meaningless: flagged, and other columns stay finite.
     let text = good(&[
         "--formulation",
         "appendix_c",
@@ -509,7 +509,7 @@ fn printed_forms() {
     assert!((point["belt_spray_degc"].as_f64().unwrap() - 80.0).abs() < 1e-9);
 }
 
-/// Property: no loss is below zero. Where slip leaves nothing that turns there are no losses, and the command fails.
+/// Property: no loss is negative. If slip leaves nothing turning, there are no losses and the command fails.
 #[test]
 fn no_loss_is_below_zero_over_a_wide_grid() {
     let mut unsolved = 0;

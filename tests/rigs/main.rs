@@ -1,4 +1,4 @@
-//! The test benches, the belt command and tables of losses, through the library and the program.
+//! Test benches, the belt command and tables of losses, through library and program.
 
 #![allow(
     clippy::unwrap_used,
@@ -23,7 +23,7 @@ use std::process::Output;
 use assert_cmd::Command;
 use serde_json::Value;
 
-/// What the program answers to a command and its words.
+/// Runs a command with options.
 fn run(command: &[&str], words: &[&str]) -> Output {
     Command::cargo_bin("cvtcycle")
         .unwrap()
@@ -33,7 +33,7 @@ fn run(command: &[&str], words: &[&str]) -> Output {
         .unwrap()
 }
 
-/// What a command prints that must succeed.
+/// Standard output of a command that must succeed.
 fn printed(command: &[&str], words: &[&str]) -> String {
     let output = run(command, words);
     assert_eq!(
@@ -45,7 +45,7 @@ fn printed(command: &[&str], words: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Names of the columns, and the JSON, of a command whose CSV and JSON carry the same points, number for number.
+/// Checks that CSV and JSON of a command have equal points; returns the columns and the JSON.
 fn same_points(command: &[&str], words: &[&str]) -> (Vec<String>, Value) {
     let csv = printed(command, &[words, &["--format", "csv"]].concat());
     let json: Value =
@@ -66,7 +66,7 @@ fn same_points(command: &[&str], words: &[&str]) -> (Vec<String>, Value) {
     for (record, point) in records.iter().zip(points) {
         for (name, cell) in names.iter().zip(record) {
             match &point[name] {
-                // The reader of JSON rounds the last bit its own way.
+                // The JSON reader may differ in the last bit.
                 Value::Number(x) => {
                     let (a, b) = (cell.parse::<f64>().unwrap(), x.as_f64().unwrap());
                     assert!((a - b).abs() <= 4e-16 * a.abs(), "{name}: {a} {b}");

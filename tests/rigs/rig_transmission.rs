@@ -1,4 +1,4 @@
-//! The transmission rig of thesis chapters 4 and 5: what it must give by construction, what the thesis prints (`val_`), the command.
+//! Transmission rig of thesis chapters 4 and 5: properties by construction, printed values (`val_`), the command.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stdout,
@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::common::{RPM, car};
 use crate::titles::title_of_file;
 use assert_cmd::Command;
-use cvtcycle::model::bench::{Bench, BenchPoint};
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use serde_json::Value;
 
 const CAR: &str = "rover_216_cvt";
@@ -68,7 +68,7 @@ fn the_command_prints_every_test() {
 }
 
 #[test]
-fn json_is_one_object_with_the_points_asked_for() {
+fn json_is_one_object_with_the_requested_points() {
     let (code, out, err) = run(&[
         "--json",
         "--ratio",
@@ -101,7 +101,7 @@ fn json_is_one_object_with_the_points_asked_for() {
         ),
         (Some(1000.0), Some(-10.0))
     );
-    // What the command says is what the library says.
+    // Truth: the library.
     let set = BenchPoint {
         ratio: 2.417,
         input_rad_s: 1000.0 * RPM,
@@ -185,7 +185,7 @@ fn everything_wrong_is_reported_at_once_and_nothing_is_written() {
     assert!(!out.exists());
 }
 
-/// A belt that cannot run at a ratio is bad input, not a table of nothing.
+/// A belt that does not fit at a ratio is bad input, instead of an empty table.
 #[test]
 fn a_belt_that_does_not_fit_is_refused() {
     let mut arguments = vec!["--test", "steady", "--ratio", "1,3"];
@@ -204,9 +204,9 @@ fn a_belt_that_does_not_fit_is_refused() {
 }
 
 /// A point outside the models' validity is computed and flagged, in the tables and in the files.
-/// Thesis 5.3.1 prints the range of 25 to 95 degC: colder points are not compared with it.
+/// Thesis 5.3.1 prints the range of 25 to 95 degC, so colder points are not compared with it.
 #[test]
-fn val_printed_totals_are_held_against_their_own_temperatures() {
+fn val_printed_totals_are_compared_at_their_own_temperatures() {
     let here = |temps: &str| {
         let (code, table, _) = run(&["--test", "steady", "--ratio", "low", "--temp", temps]);
         assert_eq!(code, 0);
@@ -247,7 +247,7 @@ fn points_outside_validity_are_flagged() {
     assert!(!run(&["--test", "steady"]).1.contains("outside_validity"));
 }
 
-/// Ran, but a check failed.
+/// Runs with a failed check.
 #[test]
 fn an_open_loop_is_exit_code_one() {
     let words = [
@@ -319,7 +319,7 @@ fn files_are_sound_and_named_after_their_tests() {
         assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{kind}");
     }
     titles_are_those_of_the_tables(&out);
-    // Again: only with --force.
+    // Again requires --force.
     assert_eq!(
         run(&["--test", "steady", "--out", out.to_str().unwrap()]).0,
         2
@@ -337,7 +337,7 @@ fn files_are_sound_and_named_after_their_tests() {
     );
 }
 
-/// A column of a file where the ratio is that of low.
+/// Column of a file, for the rows at low ratio.
 fn low(out: &Path, file: &str, column: &str) -> Vec<f64> {
     let mut reader = csv::Reader::from_path(out.join(file)).unwrap();
     let heads = reader.headers().unwrap().clone();
@@ -348,14 +348,14 @@ fn low(out: &Path, file: &str, column: &str) -> Vec<f64> {
     rows.map(|row| row[own].parse().unwrap()).collect()
 }
 
-/// Numbers of titles against the files of the same run, and of the thesis against the rows of `validate`.
+/// Compares the numbers in titles with the files of the run, and those of the thesis with the rows of `validate`.
 fn titles_are_those_of_the_tables(out: &Path) {
     let ends = |values: &[f64]| {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         (least, values.iter().copied().fold(0.0, f64::max))
     };
     let (least, most) = ends(&low(out, "steady.csv", "torque_loss_nm"));
-    let rows = cvtcycle::study::check::with_ids(&["5.04a", "5.04b"]);
+    let rows = cvtcycle::validate::with_ids(&["5.04a", "5.04b"]);
     let printed: Vec<&str> = rows.iter().map(|row| row.printed_text.as_str()).collect();
     assert_eq!(printed, ["8.5 Nm", "13 Nm"]);
     let said = format!(
@@ -394,9 +394,9 @@ fn titles_are_those_of_the_tables(out: &Path) {
     }
 }
 
-/// A custom ratio and a lone speed still give pictures.
+/// A custom ratio and a single speed still give pictures.
 #[test]
-fn odd_plans_give_pictures() {
+fn unusual_plans_give_pictures() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("one");
     let (code, _, err) = run(&[

@@ -1,11 +1,11 @@
-//! The variator rig: the thesis's breakpoints, slips and signs, the zero of the reading, limits, files, and what is refused.
+//! Variator rig: the thesis's breakpoints, slips and signs, the offset of the reading, limits, files, refused options.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::Output;
 
-use crate::titles::{is, title_of_file, written};
+use crate::titles::{assert_number, title_of_file, written};
 use serde_json::Value;
 
 fn run(words: &[&str]) -> Output {
@@ -44,9 +44,9 @@ fn val_counting_resolution() {
     assert!((x(0, "input_speed_rpm") - 2000.0).abs() < 1e-9);
 }
 
-/// CSV and JSON carry the same points; files, pictures and their breakpoints; the table.
+/// CSV and JSON have equal points; files, pictures with breakpoints, and the table.
 #[test]
-fn outputs() {
+fn csv_json_and_files_have_equal_points() {
     let words = [
         "--ratio",
         "low",
@@ -99,13 +99,13 @@ fn outputs() {
     assert_eq!(good(&["--quiet", "--ratio", "low"]), "");
 }
 
-/// Rows of a file, by the names of its columns.
+/// Rows of a file by column name.
 fn rows(file: &Path) -> Vec<HashMap<String, String>> {
     let mut reader = csv::Reader::from_path(file).unwrap();
     reader.deserialize().map(Result::unwrap).collect()
 }
 
-/// Numbers of titles against the files of the same run: breakpoints and slip speeds of the curves in low, and the radius at the last point up
+/// Compares the numbers in titles with the files of the run: breakpoints and slip speeds of the curves in low, and the radius at the last point up
 /// to 5 % slip.
 fn titles_are_those_of_the_files(out: &Path) {
     let curves = rows(&out.join("curves.csv"));
@@ -118,7 +118,7 @@ fn titles_are_those_of_the_files(out: &Path) {
     let ends = [low[0], low[low.len() - 1]];
     let wanted = ends.map(|row| [x(row, "breakpoint_nm"), x(row, "secondary_pressure_bar")]);
     for (said, wanted) in written(&title).iter().zip(wanted.concat()) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
     let title = title_of_file(out, "slip_speed.svg");
     let at_30 = low
@@ -127,12 +127,12 @@ fn titles_are_those_of_the_files(out: &Path) {
         .unwrap();
     let said = written(&title);
     assert_eq!(said[..2], ["30", "3"], "{title}");
-    // The curve is found to a hundredth of its step, the title between two points: 0.005 m/s is its last digit.
+    // The curve is found to a hundredth of its step, the title is between two points: 0.005 m/s is its last digit.
     for (said, name) in said[2..].iter().zip([
         "three_percent_primary_slip_m_s",
         "three_percent_secondary_slip_m_s",
     ]) {
-        is(said, x(at_30, name), &title);
+        assert_number(said, x(at_30, name), &title);
     }
     let middle = low[low.len() / 2];
     let points = rows(&out.join("points.csv"));
@@ -152,12 +152,12 @@ fn titles_are_those_of_the_files(out: &Path) {
         .iter()
         .zip([x(last, "output_torque_nm"), change])
     {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
 }
 
 #[test]
-fn refusals() {
+fn bad_options_are_reported_at_once() {
     let refused = |words: &[&str]| {
         let output = run(words);
         assert_eq!(output.status.code(), Some(2), "{words:?}");

@@ -1,12 +1,12 @@
 //! Prices of losses: differences of runs, sums, signs with their causes, threads.
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::config::Override;
 use cvtcycle::config::cycle::{Cycle, embedded};
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::output::Component;
 use cvtcycle::output::summary::{Driven, PriceSummary, RunSummary, Settings, run_summary};
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 
 const CVT: &str = "rover_216_cvt";
 const MANUAL: &str = "rover_216_5mt";
@@ -46,7 +46,7 @@ fn priced(
     factor: f64,
     depth: Depth,
 ) -> PriceSummary {
-    let of = Attribution {
+    let attribution = Attribution {
         setup,
         cycle,
         conditions,
@@ -54,7 +54,7 @@ fn priced(
         factor,
         depth,
     };
-    attribute(&of, &driven(setup, cycle, conditions))
+    attribute(&attribution, &driven(setup, cycle, conditions))
 }
 
 const ALONE: Depth = Depth {
@@ -63,7 +63,7 @@ const ALONE: Depth = Depth {
     shapley: false,
 };
 
-/// AT-1 to AT-5 by hand: each number is a difference of runs of cars whose files say so.
+/// AT-1 to AT-5 by hand: each number is a difference of runs of cars with the factor in their files.
 #[test]
 fn every_number_is_a_difference_of_runs() {
     let conditions = at(-10.0, Start::Soak);
@@ -128,7 +128,7 @@ fn every_number_is_a_difference_of_runs() {
     }
 }
 
-/// AT-6: shares add up to the price of all, and those of a group without partners are near its own price.
+/// AT-6: shares add up to the price of all losses, and those of a group without partners are near its own price.
 #[test]
 fn shares_of_groups_add_up() {
     let cycle = embedded("ece15_eudc").unwrap();
@@ -146,16 +146,16 @@ fn shares_of_groups_add_up() {
             .sum();
         assert!((sum - price.together.l_per_100km.unwrap()).abs() < 1e-12);
         for (k, (phase, all)) in price.together.phases.iter().enumerate() {
-            let of =
+            let attribution =
                 |share: &cvtcycle::output::summary::Saving| share.phases.iter().nth(k).unwrap().1;
-            let sum: f64 = price.groups.values().filter_map(of).sum();
+            let sum: f64 = price.groups.values().filter_map(attribution).sum();
             assert!((sum - all.unwrap()).abs() < 1e-12, "{phase}");
         }
         assert!(price.pairs.is_empty() && price.losses.values().all(|loss| loss.alone.is_none()));
     }
 }
 
-/// The engine's fuel line is nearly straight: half of a loss costs half of it.
+/// The engine's fuel line is nearly straight, so half of a loss costs half of its price.
 #[test]
 fn half_removal_is_half() {
     let cycle = embedded("ece15_eudc").unwrap();
@@ -174,8 +174,8 @@ fn half_removal_is_half() {
     assert!(pump(2.0) < 0.0, "more of a loss costs fuel");
 }
 
-/// A loss costs fuel, in the car as it is and alone, in any climate. A film between the bands carries load in the cold: with the other losses
-/// gone it may take over friction that is cheaper, so that it alone is asked to cost no more than a thousandth below nothing.
+/// A loss costs fuel in any climate, in the unchanged car and as the only loss. In the cold a film between the bands carries load: with the other losses
+/// removed it may replace friction that is cheaper, so its price alone has a lower bound of minus a thousandth.
 #[test]
 fn a_price_is_positive() {
     for name in [CVT, MANUAL, "mondeo_20_5mt"] {
@@ -209,7 +209,7 @@ fn a_price_is_positive() {
     }
 }
 
-/// J > 0 comes of heat: it is gone where the oils are held at a temperature. What is left is J <= 0: less load lowers the clamping pressure.
+/// J > 0 is caused by heat, and vanishes with constant oil temperatures. The rest is J <= 0: less load lowers the clamping pressure.
 #[test]
 fn the_interaction_has_the_sign_of_its_cause() {
     let cycle = embedded("ece15_eudc").unwrap();
@@ -217,7 +217,7 @@ fn the_interaction_has_the_sign_of_its_cause() {
         let price = priced(&car(CVT, sets), &cycle, conditions, 0.0, Depth::default());
         price.interaction.percent.unwrap()
     };
-    // Heat capacities as large as a file may have them, and all oil in one with them.
+    // Maximum heat capacities, with all oil coupled to them.
     let held = [
         "thermal.transmission.metal_kj_k=1000",
         "thermal.transmission.belt_kj_k=1000",
@@ -252,7 +252,7 @@ fn same_numbers_on_one_and_four_threads() {
     assert_eq!(text(on(1)), text(on(4)));
 }
 
-/// Without distance there is no fuel per distance, and the reader learns why.
+/// Without distance there is no fuel per distance, and the message gives the reason.
 #[test]
 fn a_car_at_rest_has_no_price() {
     let text = "time_s,speed_kmh\n0,0\n60,0\n";

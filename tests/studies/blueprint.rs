@@ -1,7 +1,6 @@
-//! A car built from a blueprint is the car that the ordinary load makes of the same overrides, and is refused in the same words.
-//!
-//! Truth of all comparisons: `setup::load` with `--set KEY=NUMBER`; what is compared is the Debug text of the whole car, in which every
-//! number is written with all its digits.
+//! Cars built from a template equal those of an ordinary load with the same overrides, and give the same problems.
+//! Truth of all comparisons: `setup::load` with `--set KEY=NUMBER`, compared by the Debug text of the whole car, which contains every
+//! number with all digits.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod refused;
@@ -36,7 +35,7 @@ fn slot(blueprint: &VehicleTemplate, key: &str) -> ParameterRef {
         .unwrap_or_else(|problem| panic!("{key}: {}", problem.message))
 }
 
-/// The whole car with its names, all digits.
+/// Debug text of the whole car with its names.
 fn text(setup: Setup) -> String {
     let names = format!(
         "{} {} {:?} {:?}",
@@ -45,7 +44,7 @@ fn text(setup: Setup) -> String {
     format!("{names} {:?}", setup.vehicle.into_car(AMBIENT_K))
 }
 
-/// What the ordinary load computes from numbers given in addition to the options.
+/// Loads ordinarily, with numbers in addition to the options.
 fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<String, Problems> {
     let mut options = options.clone();
     let number = |(key, number): &(&str, f64)| {
@@ -56,7 +55,7 @@ fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<St
     load(word, &options).map(text)
 }
 
-/// What a bench makes of its numbers; that it counts problems if and only if there are any is checked here.
+/// Builds the car from the current numbers. Asserts that problems are counted exactly if there are any.
 fn built(bench: &mut Variant) -> Result<String, Problems> {
     let problems = bench.problems();
     match bench.build() {
@@ -77,7 +76,7 @@ fn built(bench: &mut Variant) -> Result<String, Problems> {
     }
 }
 
-/// Sets numbers on a bench and compares with the ordinary load; whether the car was accepted.
+/// Sets numbers and compares with the ordinary load. Returns whether the car is valid.
 fn same(
     word: &str,
     options: &Options,
@@ -97,7 +96,7 @@ fn same(
     quick.is_ok()
 }
 
-/// A little more than the value, as the key allows.
+/// Value increased slightly, if the key allows it.
 fn changed(info: &KeyInfo, base: f64) -> f64 {
     match base {
         _ if info.allowed.starts_with("integer") => base + 1.0,
@@ -106,7 +105,7 @@ fn changed(info: &KeyInfo, base: f64) -> f64 {
     }
 }
 
-/// Compares every numeric key of a car; how many there are, and how many changes were accepted.
+/// Compares every numeric key of a car. Returns the numbers of keys and of valid changes.
 fn every_number(word: &str, options: &Options) -> (usize, usize) {
     let (blueprint, setup) = blueprint(word, options);
     let mut bench = blueprint.bench();
@@ -144,7 +143,7 @@ fn every_number_of_every_shipped_car() {
         let (count, accepted) = every_number(word, &Options::default());
         println!("{word}: {accepted} of {count} changes accepted");
         assert!(count >= least, "{word}: only {count} numbers");
-        // A hundredth more leaves few ranges: efficiencies near 1, the ends of a ratio.
+        // Few ranges exclude an increase by a hundredth: efficiencies near 1, the ends of a ratio.
         assert!(
             accepted * 100 >= count * 95,
             "{word}: only {accepted} of {count}"
@@ -152,7 +151,7 @@ fn every_number_of_every_shipped_car() {
     }
 }
 
-/// Words of a car that bring other keys, other fluids, measured maps and a list of thrust ratios.
+/// Options with other keys, other fluids, measured maps and a list of thrust ratios.
 #[test]
 fn every_number_of_other_options() {
     let fluid = Options {
@@ -176,7 +175,7 @@ fn every_number_of_other_options() {
     assert!(accepted * 100 >= count * 95);
 }
 
-/// Keys of the shipped CVT that have a default in the program.
+/// Keys of the shipped CVT with a default in the program.
 const WITH_DEFAULT: [&str; 22] = [
     "payload_kg",
     "rotating_factor",
@@ -202,7 +201,7 @@ const WITH_DEFAULT: [&str; 22] = [
     "fall_per_1000_rpm",
 ];
 
-/// The shipped CVT with some lines changed or left out, as a file of its own.
+/// Shipped CVT with some lines changed or removed, as a file.
 fn edited(folder: &tempfile::TempDir, edit: impl Fn(&str) -> Option<String>) -> String {
     let shipped = std::fs::read_to_string(format!(
         "{}/vehicles/{}.toml",
@@ -239,9 +238,9 @@ fn numbers_that_the_file_leaves_out() {
     every_number(&word, &Options::default());
 }
 
-/// A table for an option may be missing, or a word may replace it; a number of the option then makes the table.
+/// A table for an option may be missing, or replaced by a word; a number of the option then creates the table.
 #[test]
-fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
+fn numbers_of_options_given_as_a_word_or_missing() {
     let folder = tempfile::tempdir().unwrap();
     let launch = ["engage_rpm", "gain_nm_per_rpm2", "creep_nm", "release_rpm"];
     let word = edited(&folder, |line| match line {
@@ -288,7 +287,7 @@ fn numbers_of_options_that_stand_as_a_word_or_not_at_all() {
     assert_eq!(built(&mut bench), base);
 }
 
-/// A number chooses the option to which it belongs, as on the command line, and leaves no unread key behind.
+/// A number selects the option to which it belongs, as on the command line, and leaves no unread key.
 #[test]
 fn numbers_of_options_that_the_file_does_not_choose() {
     let (blueprint, setup) = blueprint(CARS[0], &Options::default());
@@ -335,7 +334,7 @@ fn numbers_of_options_that_the_file_does_not_choose() {
             &numbers.iter().rev().copied().collect::<Vec<_>>()
         ));
     }
-    // Parts of an option are missing; mass_kg is left over; two options at once.
+    // Missing parts of an option; mass_kg unused; two options at once.
     let bad: [&[(&str, f64)]; 4] = [
         &[(cd, 0.3)],
         &[("road_load.form.r83.reference_mass_kg", 1100.0)],
@@ -350,7 +349,7 @@ fn numbers_of_options_that_the_file_does_not_choose() {
             !same(CARS[0], &none, &blueprint, &mut bench, numbers),
             "{numbers:?}"
         );
-        // Again, and twice the same car: what has been learnt of one car must not help another.
+        // Repeated, and the same car twice: cached results of one car must not affect another.
         bench.set(&share, 0.6);
         assert!(
             bench.build().is_err() && bench.build().is_err(),
@@ -361,7 +360,7 @@ fn numbers_of_options_that_the_file_does_not_choose() {
     assert_eq!(built(&mut bench), Ok(text(setup)));
 }
 
-/// Measured maps are read once: the cars stay the same when the file is gone.
+/// Measured maps are read once: cars stay the same after the file is deleted.
 #[test]
 fn maps_are_read_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -391,7 +390,7 @@ fn is_shared<T: Send + Sync>(_: &T) {}
 
 fn is_sent<T: Send>(_: &T) {}
 
-/// Two threads, each with its own bench, drive the same cars to the last bit, as one after the other.
+/// Two threads, each with its own variant, drive the same cars with the same bits as one thread.
 #[test]
 fn threads_agree() {
     let (blueprint, _) = blueprint(CARS[0], &Options::default());
@@ -452,7 +451,7 @@ fn threads_agree() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
 
-    /// Property: whatever was set before, and how often, only what is set last counts.
+    /// Property: only the last set values count, whatever was set before.
     #[test]
     fn any_order_of_setting_and_taking_back(steps in prop::collection::vec((0..9_usize, 0.2..1.8_f64, any::<bool>()), 1..24)) {
         const KEYS: [&str; 9] = [

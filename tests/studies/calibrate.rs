@@ -1,20 +1,20 @@
-//! Calibrations: truth put in comes out within its intervals, what the data do not identify is reported so, and the shipped values are what the shipped
-//! plans give.
+//! Calibrations: known parameters are recovered within their intervals, unidentified ones are reported, and the shipped values are the results of the shipped
+//! plans.
 
 use std::collections::BTreeSet;
 
+use cvtcycle::calibrate::model::Model;
+use cvtcycle::calibrate::outcome::Outcome;
+use cvtcycle::calibrate::plan::{CalibrationPlan, Measured, load, read};
+use cvtcycle::calibrate::solve::Residuals;
+use cvtcycle::calibrate::{calibrate, embedded_calibrations, fitted};
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::study::NoProgress;
-use cvtcycle::study::fit::model::Model;
-use cvtcycle::study::fit::outcome::Outcome;
-use cvtcycle::study::fit::plan::{CalibrationPlan, Measured, load, read};
-use cvtcycle::study::fit::solve::Residuals;
-use cvtcycle::study::fit::{calibrate, embedded_calibrations, fitted};
+use cvtcycle::output::progress::NoProgress;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// A plan over a data file in the same folder.
+/// Plan with a data file in the same folder.
 fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> CalibrationPlan {
     std::fs::write(folder.path().join("data.csv"), data).expect("written");
     let file = folder.path().join("plan.toml");
@@ -22,7 +22,7 @@ fn plan_with(folder: &tempfile::TempDir, data: &str, text: &str) -> CalibrationP
         .unwrap_or_else(|problems| panic!("{}", cvtcycle::config::render(&problems, false)))
 }
 
-/// Puts what the program computes at `truth` in the place of what was measured, with errors of the plan's own standard deviations.
+/// Replaces the measurements by computed values at `truth`, with errors of the plan's standard deviations.
 fn measure(plan: &mut CalibrationPlan, truth: &[f64], seed: u64) {
     let computed = Model::new(plan)
         .expect("a sound plan")
@@ -82,8 +82,8 @@ points = "data.csv"
 sd = 0.1
 "#;
 
-/// Property: of the intervals of one and of 1.96 standard errors, as many hold the truth as should, parameter by parameter. 3.3 standard
-/// deviations of the binomial on either side: one false alarm in some 170 sets of six numbers; the seeds are fixed.
+/// Property: intervals of 1 and 1.96 standard errors contain the truth as often as they should, for each parameter. Limits of 3.3 standard
+/// deviations of the binomial: one false alarm in some 170 sets of six numbers; the seeds are fixed.
 #[test]
 fn intervals_hold_the_truth_as_often_as_they_say() {
     const SEEDS: u64 = 160;
@@ -113,7 +113,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     }
 }
 
-/// Property: without noise the truth itself comes out, wherever the search begins.
+/// Property: without noise the exact parameters are found from any start.
 #[test]
 fn truth_without_noise_is_found_from_every_start() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -150,7 +150,7 @@ fn truth_without_noise_is_found_from_every_start() {
 
 /// A warm-up trace and two totals of the same run.
 #[test]
-fn a_warm_up_trace_tells_its_heat_capacity() {
+fn a_warm_up_trace_identifies_the_heat_capacity() {
     let folder = tempfile::tempdir().expect("a folder");
     let rows: String = (1..=39).map(|k| format!("{},0\n", 30 * k)).collect();
     std::fs::write(
@@ -195,7 +195,7 @@ source = "cold"
         text,
     );
     assert_eq!(plan.observations.len(), 41);
-    // Every 30 s is as often as values are independent: 39 values over 1140 s count as 39.
+    // Values are independent every 30 s: 39 values over 1140 s count as 39.
     assert!((plan.observations[0].weight_sd / 0.3 - 1.0).abs() < 1e-12);
     let truth = [30.0, 16.0];
     let mut misses = Vec::new();
@@ -213,14 +213,14 @@ source = "cold"
             .expect("a fold");
         assert!(fold.predicted_rms_sd.expect("predicted") < 4.0, "{fold:?}");
     }
-    // Twelve deviations, two by two independent: their root mean square is 1 within 3 standard deviations of 1/sqrt(24).
+    // Twelve deviations, independent in pairs: their root mean square is 1 within 3 standard deviations of 1/sqrt(24).
     let rms = (misses.iter().map(|x| x * x).sum::<f64>() / misses.len() as f64).sqrt();
     assert!((0.4..1.65).contains(&rms), "{misses:?}");
 }
 
-/// Values four times as dense in time do not say four times as much (CM-2).
+/// Sampling four times as densely in time does not add four times the information (CM-2).
 #[test]
-fn a_denser_trace_says_no_more() {
+fn a_denser_trace_adds_no_information() {
     let folder = tempfile::tempdir().expect("a folder");
     let text = "[calibration]\n[sources.cold]\nsource = \"run\"\n[[parameter]]\nkey = \"thermal.transmission.metal_kj_k\"\nlow = 8\nhigh = 60\n\
                 [[data]]\nfrom = \"made up\"\ntrace = \"data.csv\"\nsource = \"cold\"\nsd = 0.3\n";
@@ -242,8 +242,8 @@ fn a_denser_trace_says_no_more() {
     assert!((dense / sparse - 1.0).abs() < 0.4, "{sparse} and {dense}");
 }
 
-/// Outside truth: pump torque is displacement times pressure (PU-1), so at one speed, with the clamp law's pressure and without what else
-/// depends on it, only their product is identified.
+/// Independent truth: pump torque is displacement times pressure (PU-1). At one speed, with the clamp law's pressure and without other effects of
+/// pressure, only their product is identified.
 #[test]
 fn pump_displacement_and_pressure_are_identified_as_a_product() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -290,7 +290,7 @@ without = ["belt", "final_drive", "reverse_clutch"]
     assert!((product / (9.0 * 36.5) - 1.0).abs() < 0.05, "{product}");
 }
 
-/// A parameter that moves nothing is named, and the outcome is no success.
+/// A parameter without effect is named, and the fit fails.
 #[test]
 fn a_parameter_without_effect_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -310,7 +310,7 @@ fn a_parameter_without_effect_is_named() {
     );
 }
 
-/// Property: an error that all data have in common is found as such, and widens what depends on their level.
+/// Property: an error common to all data is estimated as such, and widens the intervals that depend on the level.
 #[test]
 fn a_common_error_is_separated() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -322,7 +322,7 @@ fn a_common_error_is_separated() {
     let (narrow, wide) = (solved(&plain), solved(&plan));
     assert_eq!(wide.parameters.len(), 4);
     let error = |outcome: &Outcome, k: usize| outcome.parameters[k].standard_error.expect("known");
-    // The constant of the input shaft is the level of all: its error takes in the common one.
+    // The constant of the input shaft is the level of all data, so its error includes the common one.
     assert!(
         error(&wide, 1) > 0.45 && error(&narrow, 1) < 0.2,
         "{} {}",
@@ -332,7 +332,7 @@ fn a_common_error_is_separated() {
     assert!((error(&wide, 0) / error(&narrow, 0) - 1.0).abs() < 0.2);
 }
 
-/// The fitted files are read again as what was fitted: they compute the numbers of the outcome.
+/// The fitted files reproduce the numbers of the outcome.
 #[test]
 fn fitted_files_hold_what_was_fitted() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -390,8 +390,8 @@ fn fitted_files_hold_what_was_fitted() {
     );
 }
 
-/// Every fitted value of the Rover and of its fluid is what a shipped plan finds, to a quarter of its standard error: the files have them rounded, and
-/// statements that are printed as orders make the valley flat and its walls kinked: starts end within a per cent of the least sum of squares. The plans hold what the others fit at the shipped values.
+/// Every fitted value of the Rover and its fluid is the result of a shipped plan, to a quarter of its standard error. The files have rounded values, and
+/// statements printed as orders of magnitude make a flat valley with kinked walls: starts end within a per cent of the minimum sum of squares. Each plan fixes the parameters of the others at the shipped values.
 #[test]
 fn shipped_plans_give_the_shipped_values() {
     let mut free = BTreeSet::new();
@@ -426,15 +426,15 @@ fn shipped_plans_give_the_shipped_values() {
     );
 }
 
-/// A row that a shipped plan uses names the parameters that were fitted to it, and only keys that are free in a plan or given by a source.
+/// A row used by a shipped plan names the parameters fitted to it, and only keys that are free in a plan or have a source.
 #[test]
 fn rows_and_plans_agree_on_what_was_fitted() {
-    let texts: Vec<(String, String)> = cvtcycle::study::check::embedded_rows()
+    let texts: Vec<(String, String)> = cvtcycle::validate::embedded_rows()
         .iter()
         .map(|(n, t)| ((*n).to_owned(), (*t).to_owned()))
         .collect();
-    let files = cvtcycle::study::check::read(cvtcycle::study::check::COMMON, &texts)
-        .expect("the shipped rows");
+    let files =
+        cvtcycle::validate::read(cvtcycle::validate::COMMON, &texts).expect("the shipped rows");
     for (name, _) in embedded_calibrations() {
         let plan = load(name).expect("a shipped plan");
         for id in &plan.rows {

@@ -1,11 +1,11 @@
-//! `cvtcycle calibrate` from plan to files, on the synthetic example and on what docs/calibration.md shows.
+//! `cvtcycle calibrate` from plan to files, with the synthetic example and the examples of docs/calibration.md.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
-use cvtcycle::study::fit::plan;
+use cvtcycle::calibrate::plan;
 use serde_json::Value;
 
 const PAGE: &str = include_str!("../../docs/calibration.md");
@@ -26,7 +26,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// The truth is that of docs/calibration_example/make, which made the data.
+/// Truth: the values in docs/calibration_example/make, which made the data.
 #[test]
 fn val_the_example_finds_the_values_that_made_its_data_and_writes_every_file() {
     let dir = tempfile::tempdir().unwrap();
@@ -78,7 +78,7 @@ fn val_the_example_finds_the_values_that_made_its_data_and_writes_every_file() {
         .arg(out.join("rover_216_cvt_fitted.toml"))
         .assert()
         .success();
-    // The same again gives the same bytes; without --force nothing is touched.
+    // Repeating gives the same bytes. Without --force nothing is changed.
     let again = cvtcycle()
         .arg(example())
         .arg("--quiet")
@@ -126,8 +126,8 @@ fn without_folds_nothing_is_predicted_and_starts_and_seed_are_obeyed() {
     assert_ne!(printed["run"], other["run"]);
 }
 
-/// What the plan sets is in the fitted files, and files in the folder of the vehicle are found from wherever they lie: the bench loses with the
-/// fitted car what it loses with the plan's own car, overrides and fitted values.
+/// The fitted files contain the overrides of the plan, and files in the folder of the vehicle are found from anywhere: the fitted car has the same losses on
+/// the bench as the plan's own car with overrides and fitted values.
 #[test]
 fn fitted_files_hold_what_the_plan_sets() {
     let dir = tempfile::tempdir().unwrap();
@@ -237,7 +237,7 @@ fn a_parameter_that_moves_nothing_ends_with_code_1_and_everything_is_written() {
         dir.path().join("spin_loss.csv"),
     )
     .unwrap();
-    // No car drives on the bench.
+    // The bench does not use the mass of the car.
     let dead = "\n[[parameter]]\nkey = \"road_load.mass_kg\"\nlow = 1000\nhigh = 1300\n";
     fs::write(
         dir.path().join("plan.toml"),
@@ -300,7 +300,7 @@ fn bad_input_is_reported_at_once_and_leaves_no_directory() {
     assert!(String::from_utf8_lossy(&unknown.get_output().stderr).contains("rover_216_warm_up"));
 }
 
-/// Fenced blocks of the page in that language.
+/// Fenced blocks of the page in a language.
 fn blocks(language: &str) -> Vec<&'static str> {
     let fence = format!("```{language}\n");
     PAGE.split(fence.as_str())

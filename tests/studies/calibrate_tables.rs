@@ -1,15 +1,15 @@
-//! Tables of made-up outcomes of a calibration.
+//! Tables of artificial outcomes of a calibration.
 
 use std::collections::HashMap;
 
-use cvtcycle::study::fit::outcome::tables;
-use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
+use cvtcycle::calibrate::outcome::tables;
+use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 #[path = "../fixtures/outcome.rs"]
 mod outcomes;
 use outcomes::{named, noise};
 
-/// Rows of a CSV file by the names of its columns.
+/// Rows of a CSV file by column name.
 fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
     let mut reader = csv::Reader::from_reader(bytes);
     reader
@@ -22,7 +22,7 @@ fn rows(bytes: &[u8]) -> Vec<HashMap<String, String>> {
 fn tables_hold_every_number_unrounded() {
     let outcome = named("mixed");
     let written = tables(&outcome);
-    let of = |name: &str| {
+    let rows_of = |name: &str| {
         written
             .iter()
             .find(|(own, _)| own == name)
@@ -37,7 +37,7 @@ fn tables_hold_every_number_unrounded() {
             "{text}"
         )
     };
-    let residuals = of("residuals.csv");
+    let residuals = rows_of("residuals.csv");
     assert_eq!(residuals.len(), outcome.residuals.len());
     for (row, r) in residuals.iter().zip(&outcome.residuals) {
         assert_eq!(
@@ -67,7 +67,7 @@ fn tables_hold_every_number_unrounded() {
             .chain(in_sd)
             .for_each(|(name, x)| same(&row[name], x));
     }
-    for (row, p) in of("parameters.csv").iter().zip(&outcome.parameters) {
+    for (row, p) in rows_of("parameters.csv").iter().zip(&outcome.parameters) {
         assert_eq!(
             (&row["parameter"], &row["unit"], &row["source"]),
             (&p.name, &p.unit, &p.source)
@@ -88,7 +88,7 @@ fn tables_hold_every_number_unrounded() {
             .chain([("low", Some(p.low)), ("high", Some(p.high))])
             .for_each(|(name, x)| same(&row[name], x));
     }
-    for (row, line) in of("correlation.csv").iter().zip(&outcome.correlation) {
+    for (row, line) in rows_of("correlation.csv").iter().zip(&outcome.correlation) {
         outcome
             .parameters
             .iter()

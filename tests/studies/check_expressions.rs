@@ -1,39 +1,39 @@
-//! Expressions of the validation rows, over a small table; the rule from numbers to a verdict.
+//! Expressions of validation rows over a small table; verdicts of computed numbers.
 
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::bounded::SOURCE_ROWS;
 use cvtcycle::config::setup::catalogue;
-use cvtcycle::study::check::expr::{
+use cvtcycle::validate::expr::{
     Computed, FUNCTIONS, Fault, Gives, MAX_EVALUATIONS, MAX_TOKENS, REDUCTIONS, compute, parse,
 };
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{
+use cvtcycle::validate::keys::VALIDATION;
+use cvtcycle::validate::{
     COMMON, CandidateVehicle, Printed, Verdict, embedded_rows, judge, read, rule,
 };
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
 
 use crate::small_tables::SmallTables;
 
-/// Two groups of y = 2 x + g, and one row at gross slip.
+/// Two groups with y = 2 x + g, and one row at gross slip.
 fn fixed() -> SmallTables {
     let x = [1.0, 2.0, 4.0, 1.0, 2.0, 9.0];
     SmallTables::new(x, [2.0, 4.0, 8.0, 3.0, 5.0, 99.0], 1_000_000)
 }
 
-fn of(text: &str) -> Result<Computed, String> {
+fn evaluate(text: &str) -> Result<Computed, String> {
     let names = fixed();
     let expr = parse(text, &names).map_err(|faults| format!("{faults:?}"))?;
     compute(&expr, &names)
 }
 
 fn number(text: &str) -> f64 {
-    match of(text) {
+    match evaluate(text) {
         Ok(Computed::Number(x)) => x,
         other => panic!("{text}: {other:?}"),
     }
 }
 
 fn truth(text: &str) -> bool {
-    match of(text) {
+    match evaluate(text) {
         Ok(Computed::Truth(holds, _)) => holds,
         other => panic!("{text}: {other:?}"),
     }
@@ -100,13 +100,13 @@ fn truths_ranges_and_loops() {
         truth("each(t in 0, 1: min(low: y where g == t) >= 2)")
             && !truth("each(t in 0, 1: min(low: y where g == t) > 2)")
     );
-    assert_eq!(of("range(low: y)"), Ok(Computed::Range(2.0, 8.0)));
+    assert_eq!(evaluate("range(low: y)"), Ok(Computed::Range(2.0, 8.0)));
     assert_eq!(
-        of("span(t in 0, 1: min(low: y where g == t))"),
+        evaluate("span(t in 0, 1: min(low: y where g == t))"),
         Ok(Computed::Range(2.0, 3.0))
     );
     assert_eq!(
-        of("max(low: y) > 7"),
+        evaluate("max(low: y) > 7"),
         Ok(Computed::Truth(true, "8 > 7".to_owned()))
     );
 }
@@ -126,7 +126,7 @@ fn rows_at_gross_slip_are_left_out_and_counted_once() {
 }
 
 #[test]
-fn what_cannot_be_computed_says_why() {
+fn an_expression_without_a_value_gives_the_reason() {
     for (text, why) in [
         ("one(low: y)", "5 rows where one was expected"),
         ("max(low: y where x > 5)", "no row is left"),
@@ -140,7 +140,7 @@ fn what_cannot_be_computed_says_why() {
         ("slope(low: y over x where x == 4)", "two different places"),
         ("ln(-1) > 0", "does not exist"),
     ] {
-        let said = of(text).expect_err(text);
+        let said = evaluate(text).expect_err(text);
         assert!(said.contains(why), "{text}: {said}");
     }
 }
@@ -183,7 +183,7 @@ fn faults_have_their_place_and_a_hint() {
     assert!(parse(&"-".repeat(500), &fixed()).is_err());
 }
 
-/// What everything that walks through an expression says of it, on a stack of 1 MiB.
+/// Runs all recursive walks over an expression on a stack of 1 MiB.
 fn walked(text: String) -> Result<f64, String> {
     let walk = move || {
         let names = fixed();
@@ -214,7 +214,7 @@ fn an_expression_of_a_thousand_tokens_is_the_longest() {
         assert_eq!(walked(longest.clone()), Ok(want), "{sign}");
         let why = walked(longest.clone() + sign + "1").expect_err(sign);
         assert!(why.contains("more than 1000 words"), "{sign}: {why}");
-        // However long it is, only the first token that is too many is looked at.
+        // However long it is, only the first excess token is examined.
         let longer = parse(&longest.repeat(100), &fixed()).expect_err(sign);
         assert!(
             longer.len() == 1 && longer[0].at == longest.len(),
@@ -243,13 +243,13 @@ fn nested_loops_and_reductions_end_with_the_evaluations() {
         format!("min(low: {})", nested("each", 30, "y > 0")),
     ] {
         assert_eq!(
-            of(&text),
+            evaluate(&text),
             Err("no evaluations are left".to_owned()),
             "{text}"
         );
     }
-    // Three deep they are cheap, but not all of their numbers are listed.
-    match of(&nested("each", 3, "a0 + a1 + a2 < 100")) {
+    // Three levels are cheap, but not all of their numbers are listed.
+    match evaluate(&nested("each", 3, "a0 + a1 + a2 < 100")) {
         Ok(Computed::Truth(true, behind)) => assert!(
             behind.starts_with("0: 0: 0: 0 < 100; 1: 1 < 100")
                 && behind.ends_with("...")
@@ -260,7 +260,7 @@ fn nested_loops_and_reductions_end_with_the_evaluations() {
     }
 }
 
-/// Evaluations that an expression takes.
+/// Number of evaluations of an expression.
 fn spent(text: &str) -> u64 {
     let names = fixed();
     let before = names.left.get();
@@ -269,14 +269,14 @@ fn spent(text: &str) -> u64 {
     before - names.left.get()
 }
 
-/// By hand: a part is one evaluation, a row one, looking for a table or a key eight, sorting n rows n log2 n, rounded down.
+/// By hand: a part counts one evaluation, a row one, finding a table or a key eight, sorting n rows n log2 n, rounded down.
 #[test]
 fn evaluations_count_the_work() {
     for (text, evaluations) in [
         ("1", 1),
         ("1 + 2 * 3", 5),
         ("key(belt.offset_mm)", 1 + 8),
-        // Six rows, of which five have a value: the last is at gross slip.
+        // Five of six rows have a value: the last is at gross slip.
         ("max(low: 1)", 1 + 8 + 6 + 5),
         ("max(low: y where g == 0)", 1 + 8 + 6 + 6 * 3 + 3),
         ("slope(low: y over x)", 1 + 8 + 6 + 5 * 2 + 5 * 2),
@@ -284,7 +284,7 @@ fn evaluations_count_the_work() {
             "interp(low: y over x at 3 where g == 0)",
             1 + 8 + 6 + 6 * 3 + 3 * 2 + 1 + 3,
         ),
-        // Twice: once for the truth, and once for the numbers behind it.
+        // Twice: for the truth value, and for the listed numbers.
         ("1 < 2", 3 + 2),
         ("all(low: y > 0)", (1 + 8 + 6 + 5 * 3) + (8 + 6 + 5 * 3)),
     ] {
@@ -292,14 +292,14 @@ fn evaluations_count_the_work() {
     }
 }
 
-/// The numbers behind a truth have room for less than 500 of `a: n < 100`; the others are not computed again.
+/// The list of numbers has room for less than 500 of `a: n < 100`; the others are not computed again.
 #[test]
 fn numbers_that_are_not_listed_are_not_computed() {
     let digits = "0,1,2,3,4,5,6,7,8,9";
     let body = (0..4).fold("a0 + a1 < 100".to_owned(), |body, k| {
         format!("each(a{k} in {digits}: {body})")
     });
-    // A loop is one evaluation, each of its ten numbers one more than the body; the innermost body has five.
+    // A loop counts one evaluation, and each of its ten numbers one more than the body; the innermost body has five.
     let truth = (0..4).fold(5, |inner, _| 1 + 10 * (1 + inner));
     let all = spent(&body);
     assert!(
@@ -308,7 +308,7 @@ fn numbers_that_are_not_listed_are_not_computed() {
     );
 }
 
-/// 500 000 rows are the limit.
+/// The limit is 500 000 rows.
 #[test]
 fn the_sources_of_a_shipped_file_have_less_than_half_of_the_rows_that_are_allowed() {
     let owned = |(name, text): &(&str, &str)| ((*name).to_owned(), (*text).to_owned());

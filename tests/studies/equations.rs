@@ -1,7 +1,7 @@
 //! Labels of the equations of model and statistics.
 
 use cvtcycle::config::setup::catalogue::known_keys;
-use cvtcycle::study::equations::{by_label, equations};
+use cvtcycle::equations::{by_label, equations};
 
 #[test]
 fn labels_are_unique() {
@@ -12,7 +12,7 @@ fn labels_are_unique() {
     assert_eq!(labels.len(), count);
 }
 
-/// Property: every label of a row of the keys is that of an equation.
+/// Property: labels in rows of keys belong to equations.
 #[test]
 fn labels_of_keys_are_those_of_equations() {
     let labels = known_keys().iter().flat_map(|info| info.labels);

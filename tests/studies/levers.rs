@@ -1,28 +1,29 @@
-//! Changes of a design next to the car as it is. Truth: single cars read and driven by hand with the values of a draw, the plan itself, and
-//! the same study put together in another way.
+//! Design changes compared with the unchanged car. Truth: single cars loaded and driven with the values of a draw, the plan itself, and
+//! the same study composed in another way.
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use cvtcycle::analysis::levers::{
+    Combine, Lever, LeverAnswer, LeverFile, LeverRequest, LeverRow, csv, lever_answer, prepare,
+};
 use cvtcycle::config::setup::{self, Kind, Options};
 use cvtcycle::config::{Override, Problem, Problems};
 use cvtcycle::model::drive::{Start, drive, litres_per_100km};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::output::table::Head;
 use cvtcycle::study::execute::relative;
-use cvtcycle::study::levers::{
-    Combine, Lever, LeverAnswer, LeverFile, LeverRequest, LeverRow, csv, lever_answer, prepare,
-};
 use cvtcycle::study::plan::{Factor, Level, Plan};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::store::{Rows, Values};
-use cvtcycle::study::{NoProgress, Study, StudyManifest, StudyTable, TableSource};
+use cvtcycle::study::{Study, StudyManifest, StudyTable, TableSource};
 
 use crate::common::{at, cycle};
-use crate::parts::Shelf;
+use crate::parts::MemorySink;
 
 const CVT: &str = "rover_216_cvt";
 const FUEL: &str = "headline_fuel_l_per_100km";
 
-/// The table of a study in memory.
+/// In-memory table of a study.
 struct Table {
     columns: Vec<Head>,
     parts: BTreeMap<u64, Rows>,
@@ -44,16 +45,16 @@ impl TableSource for Table {
     }
 }
 
-/// A study with its table and its answer.
-struct Done {
+/// Finished study with table and answer.
+struct FinishedStudy {
     study: Study,
     table: Table,
     answer: LeverAnswer,
 }
 
-impl Done {
-    /// Numbers of a column of the table, by car and point.
-    fn of(&self, name: &str) -> Vec<Vec<f64>> {
+impl FinishedStudy {
+    /// Column of the table, by car and point.
+    fn column(&self, name: &str) -> Vec<Vec<f64>> {
         let manifest = StudyManifest::of(&self.study);
         let frame = StudyTable::new(&manifest, &self.table).unwrap();
         frame.by_car(&[name]).unwrap().remove(0)
@@ -71,10 +72,10 @@ impl Done {
     }
 }
 
-fn run(request: &LeverRequest, threads: usize) -> Done {
+fn run(request: &LeverRequest, threads: usize) -> FinishedStudy {
     let study = prepare(request).unwrap_or_else(|problems| panic!("{problems:?}"));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-    let shelf = Shelf::default();
+    let shelf = MemorySink::default();
     let execute = || study.execute(&BTreeSet::new(), &shelf, &NoProgress);
     pool.build().unwrap().install(execute).unwrap();
     let table = Table {
@@ -87,7 +88,7 @@ fn run(request: &LeverRequest, threads: usize) -> Done {
         Confidence::default(),
     )
     .unwrap();
-    Done {
+    FinishedStudy {
         study,
         table,
         answer,
@@ -111,7 +112,7 @@ fn uncertainty() -> Plan {
     Plan::open("uncertainty_rover").unwrap()
 }
 
-/// Some draws of the Rover through ECE15.
+/// Request with a number of draws of the Rover on ECE15.
 fn request(text: &str, draws: u64) -> LeverRequest {
     LeverRequest {
         levers: levers(text),
@@ -133,7 +134,7 @@ fn problems(text: &str, change: impl Fn(&mut LeverRequest)) -> Problems {
     prepare(&request).map(drop).unwrap_err()
 }
 
-/// The plan of the Rover is relative for any car, and for the Rover itself it stays what it is. Truth: the values of the plan.
+/// The Rover's plan becomes relative for any car, without effect for the Rover itself. Truth: the values of the plan.
 #[test]
 fn the_rovers_draws_are_those_of_its_plan() {
     let plan = uncertainty();
@@ -174,7 +175,7 @@ fn the_rovers_draws_are_those_of_its_plan() {
     assert!(changed > 70, "{changed}");
 }
 
-/// What no draw moves is named: of a car of a class, whose engine has no enrichment and whose clamp is another, and of its twin with six gears, where
+/// Factors without effect are named: for a car of a class, whose engine has no enrichment and whose clamp law differs, and for its twin with six gears, where
 /// the plan has lists of five.
 #[test]
 fn a_study_names_the_factors_that_do_not_act() {
@@ -205,7 +206,7 @@ fn a_study_names_the_factors_that_do_not_act() {
     ] {
         assert!(parts.iter().all(|part| note.contains(part)), "{note}");
     }
-    // Their draws are those of a car without the factor: no value of theirs is in the table.
+    // The draws equal those of a car without the factor, and the table has no values for it.
     let gears = study
         .plan
         .factors
@@ -213,17 +214,17 @@ fn a_study_names_the_factors_that_do_not_act() {
         .position(|f| f.name == "gear set")
         .unwrap();
     assert!(study.cars[1].idle.contains(&gears) && !study.cars[0].idle.contains(&gears));
-    // The shipped study has nothing to name.
+    // The shipped study has no such factors.
     assert!(Study::prepare(uncertainty()).unwrap().notes.is_empty());
 }
 
-/// Truth: the car read by `setup::load` with the draw's values and the lever's words as overrides, and driven.
+/// Truth: the car loaded by `setup::load` with the draw's values and the lever's words as overrides, and driven.
 #[test]
 fn a_draw_is_the_car_with_its_values() {
     let text = lever("pump", &["transmission.cvt.pump.kind=variable"])
         + &lever("line", &["transmission.cvt.ratio.gentle_rpm=1500"]);
     let done = run(&request(&text, 6), 2);
-    let fuel = done.of(FUEL);
+    let fuel = done.column(FUEL);
     for (end, words) in [
         ("/reference", vec![]),
         ("/pump", vec!["transmission.cvt.pump.kind=variable"]),
@@ -233,8 +234,8 @@ fn a_draw_is_the_car_with_its_values() {
         let point = 4;
         let mut set: Vec<Override> = words.iter().map(|text| text.parse().unwrap()).collect();
         for factor in &done.study.plan.factors {
-            let value = done.of(&factor.key)[car][point];
-            // Words are of the baselines alone.
+            let value = done.column(&factor.key)[car][point];
+            // Words apply to the baselines only.
             let is_number = factor.values.are_numbers();
             if is_number && value.is_finite() {
                 set.push(Override::number(&factor.key, value));
@@ -265,10 +266,10 @@ fn a_draw_is_the_car_with_its_values() {
     assert!(done.answer.enough.median && !done.answer.enough.ends);
 }
 
-/// Property: a value that a lever gives leaves its factor out, in its reference as well, and moves no other factor; a relative one acts
-/// on what was drawn.
+/// Property: an absolute lever removes its factor, in the reference too, and changes no other factor. A relative one modifies
+/// the drawn value.
 #[test]
-fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
+fn a_lever_replaces_its_factor_or_scales_the_draw() {
     let (line, pump) = (
         "transmission.cvt.ratio.gentle_rpm",
         "transmission.cvt.pump.displacement_cc_rev",
@@ -279,10 +280,10 @@ fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
     let done = run(&request(&text, 4), 1);
     let (reference, second) = (done.car("/reference"), done.car("/reference_2"));
     let own = done.car("/line");
-    let drawn = done.of(line);
+    let drawn = done.column(line);
     assert!(drawn[reference].iter().all(|x| x.is_finite()));
     assert!(drawn[own].iter().chain(&drawn[second]).all(|x| x.is_nan()));
-    let drawn = done.of(pump);
+    let drawn = done.column(pump);
     assert!(drawn[own].iter().eq(&drawn[reference]) && drawn[second].iter().eq(&drawn[own]));
     let of = |end: &str| drawn[done.car(end)].iter();
     let draws = of("/reference").zip(of("/smaller").zip(of("/less")));
@@ -298,7 +299,7 @@ fn a_lever_fixes_its_factor_or_acts_on_the_draw() {
     );
 }
 
-/// Property: order, other levers and threads do not change what a lever saves, and a combination of one lever is that lever.
+/// Property: order, other levers and threads do not change the saving of a lever, and a combination of one lever equals it.
 #[test]
 fn a_lever_does_not_depend_on_others() {
     let pump = lever("pump", &["transmission.cvt.pump.kind=variable"]);
@@ -335,7 +336,7 @@ fn a_lever_does_not_depend_on_others() {
     assert!((together.fuel_percent.value - sum).abs() < 0.3);
 }
 
-/// Every built-in lever changes each car that it is for, and says where its size is from.
+/// Every built-in lever changes each applicable car, and has a source for its size.
 #[test]
 fn built_in_levers_change_something() {
     let mut count = 0;
@@ -389,9 +390,9 @@ fn built_in_levers_change_something() {
     assert_eq!(count, 29);
 }
 
-/// A file serves any car: what it cannot have of a built-in file is left out and named.
+/// A file applies to any car: levers of a built-in file that the car cannot have are left out and named.
 #[test]
-fn another_car_has_the_levers_that_it_can() {
+fn another_car_gets_the_applicable_levers() {
     let (name, text) = Kind::Levers.embedded()[0];
     let request = LeverRequest {
         levers: LeverFile::read(name, text).unwrap().levers,
@@ -416,7 +417,7 @@ fn another_car_has_the_levers_that_it_can() {
 }
 
 #[test]
-fn what_is_no_lever_is_refused() {
+fn bad_lever_files_are_refused() {
     let message = |text: &str| problems(text, |_| {})[0].message.clone();
     let none = message(&lever("a", &["road_load.mass_kg=1130"]));
     assert_eq!(
@@ -463,14 +464,14 @@ fn combinations_that_do_not_go_together_are_refused() {
         );
         assert_eq!(problems[0].key, "combine");
     }
-    // Two factors on one value go together in any order.
+    // Two factors on one value combine in any order.
     let mut both = request(&text, 0);
     both.combine = Combine::Lists(vec![vec!["cut".to_owned(), "cut_more".to_owned()]]);
     let done = run(&both, 1);
     let together = done.answer.blocks[0].rows.last().unwrap();
     let single = done.row("cut_more");
     assert!(together.fuel_percent.value < single.fuel_percent.value);
-    // And the automatic one takes the better of two that do not.
+    // The automatic combination takes the better of two incompatible levers.
     let automatic = LeverRequest {
         combine: Combine::Automatic,
         ..both
@@ -484,7 +485,7 @@ fn combinations_that_do_not_go_together_are_refused() {
     );
 }
 
-/// Property: a plan leaves out what a car does not have, and holds a draw in the range of its key, only where it says so.
+/// Property: only an explicit option makes a plan skip keys that a car lacks, or clamp a draw to the range of its key.
 #[test]
 fn missing_keys_and_bounds_of_a_plan() {
     let text = |head: &str, key: &str, low: f64, high: f64| {
@@ -501,7 +502,7 @@ fn missing_keys_and_bounds_of_a_plan() {
     let offset = "transmission.cvt.belt.band_offset_mm";
     assert!(study(text("", offset, 0.5, 20.0)).is_err());
     let clipped = study(text("bounds = \"clip\"", offset, 0.5, 20.0)).unwrap();
-    let shelf = Shelf::default();
+    let shelf = MemorySink::default();
     clipped
         .execute(&BTreeSet::new(), &shelf, &NoProgress)
         .unwrap();
@@ -541,7 +542,7 @@ fn a_factor_does_not_replace_what_a_plan_sets() {
     assert!(read(text("road_load.mass_kg=1000", mass, "scale")).is_ok());
 }
 
-/// The example of the page is a lever file, and a car can have it.
+/// The example of the page is a valid lever file for a car.
 #[test]
 fn the_example_of_the_page_is_a_lever_file() {
     let page = include_str!("../../docs/book/src/levers.md");

@@ -1,5 +1,8 @@
-//! The least fuel on a cycle: against every controller that drives, against brute force with the model's own steps, and its line.
+//! Minimum fuel of a cycle: compared with every controller, with brute force over the model's own steps, and with its line.
 
+use cvtcycle::analysis::optimum::{
+    Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line,
+};
 use cvtcycle::config::Override;
 use cvtcycle::config::cycle::{Cycle, embedded};
 use cvtcycle::config::setup::{Options, load};
@@ -10,7 +13,6 @@ use cvtcycle::model::keys::rad_s;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::coupling::Coupling;
 use cvtcycle::model::transmission::cvt::Hold;
-use cvtcycle::study::optimum::{Bound, Clamp, LimitName, Limits, Line, Task, bound, cvt, fit_line};
 
 const DEGC: f64 = 273.15;
 
@@ -58,7 +60,7 @@ fn steps(cycle: &Cycle, dt_s: f64) -> (Trace, Vec<Step>) {
     (trace.clone(), trace.steps(dt_s).collect())
 }
 
-/// Fuel of a car by its own controller, kg.
+/// Fuel with the car's own controller, kg.
 fn own_kg(car: &Car, task: &Task) -> f64 {
     let mut drive = Drive::along(car, task.trace, task.start);
     let rows = task.steps.iter().map(|step| drive.step(step).0);
@@ -69,27 +71,27 @@ fn least(task: &Task) -> Bound {
     bound(task).unwrap_or_else(|why| panic!("{why:?}"))
 }
 
-/// Truth: cars that drive. Shipped control, constant lines, and the best path with its ratios disturbed, all at 1100 rpm or more where it counts.
+/// Truth: driven cars. Shipped control, constant lines, and the best path with perturbed ratios, all at 1100 rpm or more where the limit applies.
 #[test]
 fn bound_is_below_every_car_that_drives() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 1.0);
-    let of = task(&own, &steps, 80.0);
-    let found = least(&of);
+    let problem = task(&own, &steps, 80.0);
+    let found = least(&problem);
     assert!(found.gap() < 5e-3, "{}", found.gap());
     assert!(found.tolerance_kg < 5e-3 * found.fuel_kg);
-    assert!(own_kg(&own, &of) > found.least_kg());
+    assert!(own_kg(&own, &problem) > found.least_kg());
     for rpm in [1112.0, 1150.0, 1250.0, 1400.0, 1700.0] {
         let line = Line {
             drive: vec![(0.0, rpm)],
             overrun: vec![(0.0, rpm)],
         };
-        let kg = own_kg(&line.on(&own), &of);
+        let kg = own_kg(&line.on(&own), &problem);
         assert!(kg > found.least_kg(), "{rpm}: {kg} {}", found.least_kg());
     }
     for (number, size) in [(1_usize, 0.01), (2, 0.03), (3, 0.1)] {
-        let mut drive = Drive::new(&own, of.start);
-        let rows = of
+        let mut drive = Drive::new(&own, problem.start);
+        let rows = problem
             .steps
             .iter()
             .zip(&found.holds)
@@ -109,7 +111,7 @@ fn bound_is_below_every_car_that_drives() {
     }
 }
 
-/// Six seconds, each 0.3 m/s faster than the one before.
+/// Six seconds, accelerating by 0.3 m/s each.
 fn rising(from_m_s: f64) -> Cycle {
     let interval = |k: u32| Interval {
         start_s: f64::from(k),
@@ -123,16 +125,16 @@ fn rising(from_m_s: f64) -> Cycle {
     Cycle::from_intervals("rising", (0..6).map(interval).collect()).unwrap()
 }
 
-/// Least fuel, kg, of all paths over nine ratios a step in the five steps after the first, each path driven by the model's own steps; `change` is
-/// that of ln I at a share of the nine, `may` says which rows are within the limits.
+/// Minimum fuel, kg, of all paths over nine ratios in each of the five steps after the first, driven by the model's own steps. `change` is
+/// the change of ln I for a share of the nine, `may` selects rows within the limits.
 fn by_brute_force(
-    of: &Task,
+    problem: &Task,
     mut start: Drive<'_>,
     change: impl Fn(f64) -> f64,
     mut may: impl FnMut(&Row) -> bool,
 ) -> f64 {
-    let control = &of.cvt.ratio;
-    let first = start.step(&of.steps[0]).0;
+    let control = &problem.cvt.ratio;
+    let first = start.step(&problem.steps[0]).0;
     let mut best = f64::INFINITY;
     for number in 0..9_u32.pow(5) {
         let (mut drive, mut ratio, mut kg) = (start.clone(), first.belt_ratio, 0.0);
@@ -144,7 +146,7 @@ fn by_brute_force(
                 clamp: None,
                 paced: false,
             };
-            let row = drive.step_held(&of.steps[k as usize + 1], &hold).0;
+            let row = drive.step_held(&problem.steps[k as usize + 1], &hold).0;
             kg += row.fuel_kg_s * row.dt_s;
             if !may(&row) {
                 kg = f64::INFINITY;
@@ -160,16 +162,16 @@ fn by_brute_force(
 fn bound_is_that_of_brute_force_over_driven_paths() {
     let own = car(&[], 25.0);
     let steps = steps(&rising(12.0), 1.0);
-    let mut of = task(&own, &steps, 90.0);
-    of.grid = 97;
-    of.limits.reserve = 0.0;
-    let found = least(&of);
+    let mut problem = task(&own, &steps, 90.0);
+    problem.grid = 97;
+    problem.limits.reserve = 0.0;
+    let found = least(&problem);
     let change = |share: f64| (share - 0.75) * 0.46; // -0.345 to 0.115 in ln I
-    let best = by_brute_force(&of, Drive::new(&own, of.start), change, |row| {
-        row.engine_speed_rad_s >= of.limits.least_rad_s
+    let best = by_brute_force(&problem, Drive::new(&own, problem.start), change, |row| {
+        row.engine_speed_rad_s >= problem.limits.least_rad_s
     });
     assert!(found.least_kg() <= best, "{} {best}", found.least_kg());
-    // Nine changes a step are a coarse set, so that the least of them is a little above.
+    // Nine changes per step are a coarse set, so their minimum is slightly higher.
     assert!(best < 1.01 * found.fuel_kg, "{} {best}", found.fuel_kg);
 }
 
@@ -178,12 +180,12 @@ fn looser_limits_never_cost_fuel() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 1.0);
     let speeds = [1000.0, 1100.0, 1200.0, 1400.0].map(rad_s);
-    let of = Task {
+    let problem = Task {
         least_speeds_rad_s: &speeds,
         prices: &LimitName::ALL,
         ..task(&own, &steps, 80.0)
     };
-    let found = least(&of);
+    let found = least(&problem);
     let fuel: Vec<f64> = found
         .least_speeds
         .iter()
@@ -202,11 +204,11 @@ fn looser_limits_never_cost_fuel() {
 fn a_finer_grid_moves_the_bound_less_and_less() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 1.0);
-    let of = Task {
+    let problem = Task {
         grid: 97,
         ..task(&own, &steps, 80.0)
     };
-    let found = least(&of);
+    let found = least(&problem);
     let [a, b] = [0, 1].map(|k| found.coarser[k].1);
     assert_eq!([0, 1].map(|k| found.coarser[k].0), [25, 49]);
     let (first, second) = ((a - b).abs(), (b - found.fuel_kg).abs());
@@ -216,33 +218,36 @@ fn a_finer_grid_moves_the_bound_less_and_less() {
     );
 }
 
-/// A grid whose distances are longer than a step's shift leaves no ratio from which the box cannot go on.
+/// On a grid coarser than a step's shift, the box can still continue from every ratio.
 #[test]
 fn a_coarse_grid_with_short_steps_is_no_limit() {
     for sets in [&[][..], &["transmission.cvt.clamp=torque_following"]] {
         let own = car(sets, 25.0);
         let steps = steps(&embedded("ece15").unwrap(), 0.25);
-        let of = Task {
+        let problem = Task {
             grid: 13,
             ..task(&own, &steps, 80.0)
         };
-        let found = least(&of);
-        let fine = least(&Task { grid: 49, ..of });
+        let found = least(&problem);
+        let fine = least(&Task {
+            grid: 49,
+            ..problem
+        });
         assert!((found.fuel_kg / fine.fuel_kg - 1.0).abs() < 0.05);
     }
 }
 
-/// The best line is within 0.3 % of the bound on ECE15+EUDC, holds the least speed, and burns less than the car as it is.
+/// The best line is within 0.3 % of the bound on ECE15+EUDC, keeps the minimum speed, and burns less than the unchanged car.
 #[test]
 fn the_line_is_near_the_bound() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15_eudc").unwrap(), 0.25);
-    let of = Task {
+    let problem = Task {
         grid: 97,
         ..task(&own, &steps, 25.0)
     };
-    let found = least(&of);
-    let fit = fit_line(&of, &found);
+    let found = least(&problem);
+    let fit = fit_line(&problem, &found);
     assert!(fit.fuel_kg >= found.least_kg());
     assert!(
         fit.fuel_kg < 1.003 * found.least_kg(),
@@ -250,20 +255,20 @@ fn the_line_is_near_the_bound() {
         fit.fuel_kg,
         found.least_kg()
     );
-    assert!(fit.fuel_kg < own_kg(&own, &of));
-    assert!(fit.slowest_rad_s > 0.99 * of.limits.least_rad_s);
+    assert!(fit.fuel_kg < own_kg(&own, &problem));
+    assert!(fit.slowest_rad_s > 0.99 * problem.limits.least_rad_s);
     let rows = fit.line.drive.iter().chain(&fit.line.overrun);
     let below = rows.filter(|(_, rpm)| *rpm < 1100.0).count();
     assert_eq!(below, 0, "{:?}", fit.line);
 }
 
 #[test]
-fn a_limit_that_cannot_be_held_is_named_with_what_can() {
+fn an_infeasible_limit_is_named_with_its_feasible_value() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15_eudc").unwrap(), 1.0);
-    let mut of = task(&own, &steps, 80.0);
-    of.limits.reserve = 0.7;
-    let why = bound(&of).expect_err("seven tenths of full load are too much");
+    let mut problem = task(&own, &steps, 80.0);
+    problem.limits.reserve = 0.7;
+    let why = bound(&problem).expect_err("seven tenths of full load are too much");
     let [limit] = &why.unheld[..] else {
         panic!("{why:?}")
     };
@@ -271,35 +276,35 @@ fn a_limit_that_cannot_be_held_is_named_with_what_can() {
     assert_eq!(limit.name, LimitName::Reserve);
     assert!((0.1..0.7).contains(&most), "{most}");
     assert!(limit.row.wheel_power_w > 10e3);
-    // What is said to be possible is.
-    of.limits.reserve = most;
-    least(&of);
+    // The reported feasible value is feasible.
+    problem.limits.reserve = most;
+    least(&problem);
 }
 
-/// Two limits that cannot be held are both named, each with its own place and with what can be held of it.
+/// Two infeasible limits are both named, each with its own place and its feasible value.
 #[test]
-fn each_limit_that_cannot_be_held_has_its_place() {
+fn each_infeasible_limit_has_its_place() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 0.25);
-    let mut of = task(&own, &steps, 80.0);
-    of.limits.reserve = 0.85;
-    of.limits.least_rad_s = rad_s(5500.0);
-    let why = bound(&of).expect_err("no car does this");
+    let mut problem = task(&own, &steps, 80.0);
+    problem.limits.reserve = 0.85;
+    problem.limits.least_rad_s = rad_s(5500.0);
+    let why = bound(&problem).expect_err("no car does this");
     let names: Vec<_> = why.unheld.iter().map(|limit| limit.name).collect();
     assert_eq!(names, [LimitName::LeastSpeed, LimitName::Reserve]);
     let [speed, reserve] = [0, 1].map(|k| why.unheld[k].most.expect("a number"));
     assert!(speed < rad_s(5500.0) && reserve < 0.85, "{why:?}");
-    // Each alone can be held as far as it says.
-    (of.limits.least_rad_s, of.limits.reserve) = (speed, 0.0);
-    least(&of);
-    (of.limits.least_rad_s, of.limits.reserve) = (0.0, reserve);
-    least(&of);
+    // Each alone is feasible at its reported value.
+    (problem.limits.least_rad_s, problem.limits.reserve) = (speed, 0.0);
+    least(&problem);
+    (problem.limits.least_rad_s, problem.limits.reserve) = (0.0, reserve);
+    least(&problem);
 }
 
 /// A car of the modern classes with a torque converter.
 const CONVERTER: &str = "civic_20_cvt";
 
-/// A converter car on its trace, from a soak at a temperature.
+/// Converter car with its trace, from a soak at a temperature.
 fn converter(sets: &[&str], degc: f64, cycle: &str) -> (Car, (Trace, Vec<Step>)) {
     let own = shipped(CONVERTER, sets, degc);
     let trace = own_trace(&own, embedded(cycle).unwrap().trace_for(true)).into_owned();
@@ -307,31 +312,31 @@ fn converter(sets: &[&str], degc: f64, cycle: &str) -> (Car, (Trace, Vec<Step>))
     (own, (trace, steps))
 }
 
-/// Fuel of a line that holds a speed, kg.
-fn line_kg(rpm: f64, of: &Task) -> f64 {
+/// Fuel of a line of constant speed, kg.
+fn line_kg(rpm: f64, problem: &Task) -> f64 {
     let line = Line {
         drive: vec![(0.0, rpm), (15.0, rpm), (100.0, 6000.0)],
         overrun: vec![(0.0, rpm)],
     };
-    own_kg(&line.on(of.car), of)
+    own_kg(&line.on(problem.car), problem)
 }
 
-/// Truth: cars that drive, whose lock-up clutch goes by its own law: in the cold it is open for minutes, warm it closes at every launch.
+/// Truth: driven cars, with the lock-up clutch under its own law: in the cold it is open for minutes, warm it closes at every launch.
 #[test]
 fn bound_of_a_converter_car_is_below_every_drive_and_is_driven() {
     for (degc, start_degc) in [(25.0, 60.0), (-10.0, 12.0), (-10.0, -10.0)] {
         let (own, steps) = converter(&[], degc, "ece15");
-        let of = task(&own, &steps, start_degc);
-        let found = least(&of);
+        let problem = task(&own, &steps, start_degc);
+        let found = least(&problem);
         assert!(
             (0.0..5e-3).contains(&found.gap()),
             "{degc}: {}",
             found.gap()
         );
         assert!(found.tolerance_kg < 5e-3 * found.fuel_kg);
-        assert!(own_kg(&own, &of) > found.least_kg());
+        assert!(own_kg(&own, &problem) > found.least_kg());
         for rpm in [1115.0, 1150.0, 1250.0, 1400.0, 1700.0] {
-            let kg = line_kg(rpm, &of);
+            let kg = line_kg(rpm, &problem);
             assert!(
                 kg > found.least_kg(),
                 "{degc} {rpm}: {kg} {}",
@@ -343,7 +348,7 @@ fn bound_of_a_converter_car_is_below_every_drive_and_is_driven() {
             .iter()
             .filter(|row| row.flags.contains(Flags::LOCKUP_OPEN));
         let open_s: f64 = open.map(|row| row.dt_s).sum();
-        // Below 20 degC of the sump the lock-up clutch does not close (TC-7).
+        // The lock-up clutch does not close below a sump temperature of 20 degC (TC-7).
         assert!(
             if start_degc < 0.0 {
                 open_s > 120.0
@@ -355,18 +360,19 @@ fn bound_of_a_converter_car_is_below_every_drive_and_is_driven() {
     }
 }
 
-/// Truth: paths that drive. The best path with its ratios moved at random burns more, lock-up by its own law in each.
+/// Truth: driven paths. Random changes of the ratios of the best path burn more, with the lock-up under its own law.
 #[test]
 fn random_paths_of_a_converter_car_are_above_its_bound() {
     let (own, steps) = converter(&[], 25.0, "ece15");
-    let of = task(&own, &steps, 60.0);
-    let found = least(&of);
+    let problem = task(&own, &steps, 60.0);
+    let found = least(&problem);
     let ratio = &cvt(&own).unwrap().ratio;
     let mut seed = 12_345_u64;
     for number in 0..60 {
         let size = 0.005 * f64::from(1 + number % 20);
-        let (mut drive, mut kg, mut more) = (Drive::along(&own, of.trace, of.start), 0.0, 0.0);
-        for (k, (step, hold)) in of.steps.iter().zip(&found.holds).enumerate() {
+        let (mut drive, mut kg, mut more) =
+            (Drive::along(&own, problem.trace, problem.start), 0.0, 0.0);
+        for (k, (step, hold)) in problem.steps.iter().zip(&found.holds).enumerate() {
             if k % 7 == 0 {
                 seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                 let any = (seed >> 33) as f64 / f64::from(1_u32 << 31);
@@ -380,26 +386,26 @@ fn random_paths_of_a_converter_car_are_above_its_bound() {
     }
 }
 
-/// Truth: every path over nine ratios in five steps through the speeds at which the lock-up clutch closes, each driven by the model's own steps
-/// from the same state (59 049 drives), with the lock-up by its law.
+/// Truth: every path over nine ratios in five steps, across the speeds at which the lock-up clutch closes, each driven by the model's own steps
+/// from the same state (59 049 drives), with the lock-up under its law.
 #[test]
 fn bound_of_a_converter_car_is_that_of_brute_force() {
     let own = shipped(CONVERTER, &[], 25.0);
     let steps = steps(&rising(3.6), 1.0);
-    let mut of = task(&own, &steps, 90.0);
-    of.grid = 97;
-    of.limits.reserve = 0.0;
-    let found = least(&of);
+    let mut problem = task(&own, &steps, 90.0);
+    problem.grid = 97;
+    problem.limits.reserve = 0.0;
+    let found = least(&problem);
     let mut locked = 0;
-    let start = Drive::along(&own, of.trace, of.start);
+    let start = Drive::along(&own, problem.trace, problem.start);
     let best = by_brute_force(
-        &of,
+        &problem,
         start,
         |share| 0.3 * (share - 0.5),
         |row| {
             let open = row.flags.contains(Flags::LOCKUP_OPEN);
             locked += u32::from(!open);
-            open || row.engine_speed_rad_s >= of.limits.least_rad_s
+            open || row.engine_speed_rad_s >= problem.limits.least_rad_s
         },
     );
     assert!(locked > 0, "the lock-up clutch never closes");
@@ -407,7 +413,7 @@ fn bound_of_a_converter_car_is_that_of_brute_force() {
     assert!(best < 1.02 * found.fuel_kg, "{} {best}", found.fuel_kg);
 }
 
-/// Truth: the drive of the same car. Stops, restarts and the store go by their own law along the best path, which saves the fuel of idling.
+/// Truth: the drive of the same car. Stops, restarts and battery follow their own law along the best path, which saves the fuel of idling.
 #[test]
 fn bound_of_a_car_with_start_stop_is_driven() {
     let sets = [
@@ -416,12 +422,12 @@ fn bound_of_a_car_with_start_stop_is_driven() {
     ];
     let with = |sets: &[&str]| {
         let (own, steps) = converter(sets, 25.0, "ece15");
-        let of = task(&own, &steps, 80.0);
-        let found = least(&of);
+        let problem = task(&own, &steps, 80.0);
+        let found = least(&problem);
         assert!((0.0..5e-3).contains(&found.gap()), "{}", found.gap());
-        assert!(own_kg(&own, &of) > found.least_kg());
+        assert!(own_kg(&own, &problem) > found.least_kg());
         for rpm in [1115.0, 1250.0, 1700.0] {
-            assert!(line_kg(rpm, &of) > found.least_kg(), "{rpm}");
+            assert!(line_kg(rpm, &problem) > found.least_kg(), "{rpm}");
         }
         let off = found
             .rows
@@ -435,7 +441,7 @@ fn bound_of_a_car_with_start_stop_is_driven() {
     assert!(stopping_kg < running_kg, "{stopping_kg} {running_kg}");
 }
 
-/// LC-7 and LC-1: a launch at a higher engine speed burns more, one at idle less, and the bounds keep that order.
+/// LC-7 and LC-1: a launch at a higher engine speed burns more, one at idle less, and the bounds have the same order.
 #[test]
 fn a_launch_at_least_speed_burns_least() {
     let at = |sets: &[&str], idle: bool| {
@@ -456,33 +462,36 @@ fn a_launch_at_least_speed_burns_least() {
     assert!(fuel.windows(2).all(|pair| pair[0] < pair[1]), "{fuel:?}");
 }
 
-/// Every car of a drive that begins warm is warmed up by itself.
+/// Each car is warmed up separately for a warm start.
 #[test]
 fn a_warm_path_begins_as_warm_as_it_leaves_its_car() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 0.25);
-    let of = Task {
+    let problem = Task {
         warm: true,
         grid: 49,
         ..task(&own, &steps, 25.0)
     };
-    let found = least(&of);
+    let found = least(&problem);
     let first = found.rows[0];
     assert!(first.coolant_k > 40.0 + DEGC, "{}", first.coolant_k - DEGC);
-    let cold = least(&Task { warm: false, ..of });
+    let cold = least(&Task {
+        warm: false,
+        ..problem
+    });
     assert!(found.fuel_kg < cold.fuel_kg);
     assert!((0.0..5e-3).contains(&found.gap()), "{}", found.gap());
 }
 
-/// The same bytes on any number of threads.
+/// Any number of threads gives the same bytes.
 #[test]
 fn threads_change_no_bit() {
     let own = car(&[], 25.0);
     let steps = steps(&embedded("ece15").unwrap(), 1.0);
-    let of = task(&own, &steps, 20.0);
+    let problem = task(&own, &steps, 20.0);
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let found = pool.unwrap().install(|| least(&of));
+        let found = pool.unwrap().install(|| least(&problem));
         (found.fuel_kg.to_bits(), found.driven_kg.to_bits())
     };
     assert_eq!(on(1), on(4));

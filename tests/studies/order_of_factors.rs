@@ -1,17 +1,18 @@
-//! The order of factors and of their values is no physics: a grid in another order has the same rows.
+//! The order of factors and values has no effect: a grid in another order has the same rows.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use cvtcycle::config::{Problems, render};
+use cvtcycle::output::progress::NoProgress;
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::Values;
-use cvtcycle::study::{End, NoProgress, Study};
+use cvtcycle::study::{End, Study};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, RngSeed, TestRunner};
 
-use crate::parts::Shelf;
+use crate::parts::MemorySink;
 
-/// Keys that the CVT has, with values that are accepted in any combination.
+/// Keys of the CVT with values that are valid in any combination.
 const KEYS: [(&str, &str, [f64; 2]); 9] = [
     ("road_load.mass_kg", "all", [900.0, 1500.0]),
     (
@@ -71,7 +72,7 @@ fn grids() -> impl Strategy<Value = (Vec<Factor>, Vec<Factor>)> {
     })
 }
 
-/// Shuffles what a list of strategies gives.
+/// Shuffles the list of a strategy.
 trait Shuffled {
     fn prop_shuffle_of(self) -> BoxedStrategy<Vec<Factor>>;
 }
@@ -115,13 +116,13 @@ fn cell(values: &Values, at: usize) -> String {
     }
 }
 
-/// Every row as text with its heads, without the number of its point, and how often it is there: a baseline does not feel what is varied of
-/// the subject.
+/// Counts every row as text with its heads, without the number of its point. Rows repeat, since factors of the subject do not affect
+/// a baseline.
 fn rows(factors: &[Factor]) -> BTreeMap<String, u64> {
     let fail = |problems: Problems| -> String { panic!("{}", render(&problems, false)) };
     let plan = Plan::read("p.toml", &plan(factors)).map_err(fail).unwrap();
     let study = Study::prepare(plan).map_err(fail).unwrap();
-    let shelf = Shelf::default();
+    let shelf = MemorySink::default();
     assert_eq!(
         study
             .execute(&BTreeSet::new(), &shelf, &NoProgress)
@@ -146,7 +147,7 @@ fn rows(factors: &[Factor]) -> BTreeMap<String, u64> {
     found
 }
 
-/// The same points in another order give the same rows, to the last bit.
+/// The same points in another order give the same rows bit by bit.
 #[test]
 fn the_order_of_factors_does_not_matter() {
     let config = Config {

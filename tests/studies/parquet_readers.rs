@@ -1,7 +1,7 @@
-//! An independent reader, pyarrow, finds in the Parquet files the values of the CSV.
+//! An independent reader, pyarrow, reads the values of the CSV from the Parquet files.
 //!
-//! It runs where `target/parquet-venv` is there, as `.ci/run` makes it, or where CVTCYCLE_PYTHON names a Python with pyarrow; elsewhere it
-//! says so and checks nothing, unless CVTCYCLE_REQUIRE_PARQUET_READER is set.
+//! Runs if `target/parquet-venv` exists, as made by `.ci/run`, or if CVTCYCLE_PYTHON names a Python with pyarrow. Otherwise it prints
+//! a note and checks nothing, unless CVTCYCLE_REQUIRE_PARQUET_READER is set.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
 use std::env;
@@ -70,7 +70,7 @@ for k, column in enumerate(wanted["columns"]):
 print(json.dumps({"cells": cells, "nulls": nulls}))
 "#;
 
-/// A Python with pyarrow, if there is one; a panic where there must be.
+/// Python with pyarrow, if there is one. Panics if it is required.
 fn python() -> Option<PathBuf> {
     let installed = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/parquet-venv/bin/python");
     let named = env::var_os("CVTCYCLE_PYTHON").map(PathBuf::from);
@@ -88,7 +88,7 @@ fn python() -> Option<PathBuf> {
     found
 }
 
-/// Lets the reader compare the files of a name; what it counted, or what it said.
+/// Compares the files of a name with the reader; returns its counts, or its message.
 fn compare(python: &Path, base: &Path) -> Result<serde_json::Value, String> {
     let output: Output = Command::new(python)
         .args(["-c", COMPARE])
@@ -102,7 +102,7 @@ fn compare(python: &Path, base: &Path) -> Result<serde_json::Value, String> {
     }
 }
 
-/// What the reader must find in addition to the cells.
+/// Expectations in addition to the cells.
 struct Wanted<'a> {
     columns: &'a [Head],
     rows: u64,
@@ -147,7 +147,7 @@ fn columns() -> Vec<Head> {
     ]
 }
 
-/// Rows with everything that goes wrong elsewhere.
+/// Rows with all special values.
 fn rows() -> Rows {
     let odd = [
         0.0,
@@ -227,12 +227,12 @@ fn val_pyarrow_finds_the_cells_of_the_csv() {
     }
     .write(&base);
     let counted = compare(&python, &base).unwrap();
-    // NaN and infinities, and the empty text.
+    // NaN, infinities, and the empty text.
     let nulls = 3
         + (0..5000).filter(|k| matches!(k % 13, 2..=4)).count()
         + (0..5000).filter(|k| k % 9 == 0).count();
     assert_eq!(counted, json!({ "cells": 25_000, "nulls": nulls }));
-    // The comparison can fail: one digit, one letter, one null.
+    // Checks that the comparison can fail: one digit, one letter, one null.
     let text = fs::read_to_string(base.with_extension("csv")).unwrap();
     for (from, to) in [
         ("0.30000000000000004", "0.3"),

@@ -1,4 +1,4 @@
-//! Parts of a study for tests: kept in memory, or on disk with a table of runs alone.
+//! Parts of a study for tests: in memory, or on disk with the table of runs only.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -8,18 +8,18 @@ use cvtcycle::output::table::Head;
 use cvtcycle::study::PartWriter;
 use cvtcycle::study::store::{PartTable, Rows, StudyDir};
 
-/// Keeps the table of runs of each part.
+/// Collects the table of runs of each part.
 #[derive(Default)]
-pub struct Shelf(pub Mutex<BTreeMap<u64, Rows>>);
+pub struct MemorySink(pub Mutex<BTreeMap<u64, Rows>>);
 
-impl PartWriter for Shelf {
+impl PartWriter for MemorySink {
     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         self.0.lock().unwrap().insert(part, runs.clone());
         Ok(())
     }
 }
 
-/// Writes a part that has a table of runs alone.
+/// Writes a part with the table of runs only.
 pub fn write_runs(study: &StudyDir, part: usize, columns: &[Head], rows: &Rows) {
     let table = PartTable {
         name: "runs",

@@ -1,11 +1,11 @@
-//! Effect of every single value on the fuel.
+//! Sensitivity of the fuel to each value.
 
+use cvtcycle::analysis::sensitivity::{Named, sensitivity};
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::setup::Options;
 use cvtcycle::model::drive::{Conditions, Start};
-use cvtcycle::study::sensitivity::{Named, sensitivity};
 
-/// Property: more of a loss costs fuel, less saves it, and the answer does not depend on the number of threads.
+/// Property: a larger loss costs fuel, a smaller one saves it, and the answer does not depend on the number of threads.
 #[test]
 fn a_larger_pump_costs_fuel_whatever_the_number_of_threads() {
     let cars = [Named {
@@ -42,6 +42,6 @@ fn a_larger_pump_costs_fuel_whatever_the_number_of_threads() {
         less < 0.0 && more > 0.0 && (less + more).abs() < 0.5 * more,
         "{less} {more}"
     );
-    // The unchanged car is at zero: a value that nothing in this cycle looks at moves nothing.
+    // The unchanged car has zero effect: a value unused in this cycle changes nothing.
     assert!(one.effects.iter().any(|e| e.size_percent() < 1e-12));
 }

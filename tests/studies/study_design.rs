@@ -1,4 +1,4 @@
-//! Points of the designs: order, balance, independence, and that a point is a function of its index alone.
+//! Points of the designs: order, balance, independence, and dependence on the index only.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 use std::collections::BTreeSet;
@@ -10,7 +10,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 const DRAWN: &str = "status = \"assumed\"\ndistribution.uniform = { low = 0, high = 1 }\n";
 
-/// Factors as a plan gives them: lists of that many entries, distributions for 0.
+/// Factors as in a plan: lists of a number of entries, distributions for 0.
 fn factors(entries: &[usize]) -> Vec<Factor> {
     let factor = |(k, &n): (usize, &usize)| {
         let list: Vec<String> = (0..n).map(|k| k.to_string()).collect();
@@ -50,7 +50,7 @@ fn shares(design: Design, count: usize, factor: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Designs that draw, of about `samples` points.
+/// Random designs of about `samples` points.
 fn drawn(samples: u64, seed: u64) -> [Design; 4] {
     [
         Design::LatinHypercube { samples, seed },
@@ -73,7 +73,7 @@ fn correlation(x: &[f64], y: &[f64]) -> f64 {
     sum(&|a, b| a * b) / (sum(&|a, _| a * a) * sum(&|_, b| b * b)).sqrt()
 }
 
-/// Probability that a chi-squared as large comes by chance, for counts in equal classes.
+/// p-value of chi-squared for counts in equal classes.
 fn chance(counts: &[u64]) -> f64 {
     let expected = counts.iter().sum::<u64>() as f64 / counts.len() as f64;
     let chi2: f64 = counts
@@ -83,7 +83,7 @@ fn chance(counts: &[u64]) -> f64 {
     ChiSquared::new(counts.len() as f64 - 1.0).unwrap().sf(chi2)
 }
 
-/// Hand calculation: 2 x 3 values, the last factor fastest.
+/// By hand: 2 x 3 values, the last factor fastest.
 #[test]
 fn val_order_of_a_grid() {
     let f = factors(&[2, 3]);
@@ -99,7 +99,7 @@ fn val_order_of_a_grid() {
     );
 }
 
-/// Hand calculation: the base, two entries, two quantiles, one entry.
+/// By hand: the base, two entries, two quantiles, one entry.
 #[test]
 fn val_order_of_one_at_a_time() {
     let f = factors(&[2, 0, 1]);
@@ -118,7 +118,7 @@ fn val_order_of_one_at_a_time() {
     assert_eq!(order, expected.map(|levels| levels.to_vec()));
 }
 
-/// Hand calculation: two factors, so blocks of four: A, B, A with the first of B, A with the second of B.
+/// By hand: two factors, so blocks of four: A, B, A with the first of B, A with the second of B.
 #[test]
 fn val_blocks_of_saltelli() {
     let f = factors(&[0, 0]);
@@ -241,7 +241,7 @@ fn val_monte_carlo_is_uniform_and_independent() {
                 .iter()
                 .enumerate()
                 .for_each(|(k, u)| largest = largest.max((u - (k as f64 + 0.5) / 50_000.0).abs()));
-            // Kolmogorov and Smirnov: 1.95 / sqrt(n) is passed by one in a thousand.
+            // Kolmogorov and Smirnov: 1.95 / sqrt(n) is exceeded by one in a thousand.
             assert!(largest < 1.95 / 50_000_f64.sqrt(), "seed {seed}: {largest}");
         }
         let other = shares(
@@ -332,7 +332,7 @@ fn val_sobol_integrates_better_than_monte_carlo() {
     assert!(sobol < monte_carlo / 8.0, "{sobol}, {monte_carlo}");
 }
 
-/// Truth: independent seeds give uncorrelated sequences; and the last dimensions of the largest design are still even.
+/// Truth: independent seeds give uncorrelated sequences; the last dimensions of the largest design are still uniform.
 #[test]
 fn sobol_seeds_and_high_dimensions() {
     let column = |seed, factor| {
@@ -354,9 +354,9 @@ fn sobol_seeds_and_high_dimensions() {
     }
 }
 
-/// Written down on the first run: a study that is resumed by a later version must meet the same points.
+/// Recorded on the first run: a study resumed by a later version must get the same points.
 #[test]
-fn points_stay_what_they_are() {
+fn points_are_stable_between_versions() {
     let f = factors(&[0, 0, 0]);
     let found: Vec<u64> = drawn(1000, 42)
         .map(|design| share(design, &f, 617, 1).to_bits())
@@ -427,7 +427,7 @@ fn lists_are_drawn_evenly() {
     );
 }
 
-/// Truth: published quantiles of the normal distribution, here those of statrs; no share of any design leads to an infinite value.
+/// Truth: published quantiles of the normal distribution, from statrs. Every share of a design gives a finite value.
 #[test]
 fn shares_lead_to_finite_values() {
     let normal = Normal::standard();
@@ -444,7 +444,7 @@ fn shares_lead_to_finite_values() {
 }
 
 proptest! {
-    /// A point does not depend on which others were asked for, and its parts do not depend on how they are asked for.
+    /// A point does not depend on which others are requested, nor its parts on the order of requests.
     #[test]
     fn a_point_is_a_function_of_its_index(seed: u64, entries in proptest::collection::vec(0_usize..5, 1..6), samples in 2_u64..5000, at in 0.0..1.0) {
         let f = factors(&entries);
@@ -465,7 +465,7 @@ proptest! {
         }
     }
 
-    /// All combinations come once.
+    /// All combinations occur once.
     #[test]
     fn a_grid_is_complete(entries in proptest::collection::vec(1_usize..5, 1..5)) {
         let f = factors(&entries);

@@ -27,7 +27,7 @@ fn near(found: f64, expected: f64, tolerance: f64) {
     );
 }
 
-/// Value by value against an inverse, and moments against a distribution of statrs.
+/// Compares values with an inverse, and moments with a distribution of statrs.
 fn against<D: ContinuousCDF<f64, f64> + Moments<f64>>(own: Distribution, truth: &D) {
     for u in SHARES {
         let x = own.inverse_cdf(u);
@@ -37,7 +37,7 @@ fn against<D: ContinuousCDF<f64, f64> + Moments<f64>>(own: Distribution, truth: 
     near(own.sd(), truth.std_dev().unwrap(), 1e-12);
 }
 
-/// Truth: the distribution functions and moments of statrs, which has no hand in the closed forms here.
+/// Truth: distribution functions and moments of statrs, independent of the closed forms here.
 #[test]
 fn val_against_statrs() {
     against(
@@ -82,7 +82,7 @@ fn val_quantiles_of_the_normal_distribution() {
     ] {
         near(own.inverse_cdf(u), z, 1e-9);
     }
-    // One mirrors the other to the last digit, so that designs are symmetric.
+    // Mirrored values are equal to the last digit, so that designs are symmetric.
     assert_eq!(
         own.inverse_cdf(0.25).to_bits(),
         (-own.inverse_cdf(0.75)).to_bits()
@@ -107,18 +107,18 @@ fn val_moments_of_the_truncated_normal() {
     near(cut(0.0, 60.0).sd(), (1.0 - 2.0 / pi).sqrt(), 1e-9);
     near(cut(-1.0, 1.0).sd(), 0.291_125_f64.sqrt(), 1e-6);
     near(cut(-30.0, 30.0).sd(), 1.0, 1e-9);
-    // Far out in the tail the excess over the cut is nearly exponential: mean 1/a - 2/a^3 + 10/a^5 (continued fraction of Mills' ratio).
+    // Far in the tail the excess over the cut is nearly exponential: mean 1/a - 2/a^3 + 10/a^5 (continued fraction of Mills' ratio).
     let a = 30.0_f64;
     near(
         (cut(a, 1e3).mean() - a) * a,
         1.0 - 2.0 / a.powi(2) + 10.0 / a.powi(4),
         1e-3,
     );
-    // Cut narrowly it is uniform.
+    // With a narrow cut it is uniform.
     near(cut(1.0, 1.0 + 1e-6).sd() * 12.0_f64.sqrt() * 1e6, 1.0, 1e-6);
 }
 
-/// Truth: Simpson's rule over the density from the lower end, also where the distribution function of statrs has run out of digits.
+/// Truth: Simpson's rule over the density from the lower end, also where statrs' distribution function has lost all digits.
 #[test]
 fn val_quantiles_of_the_truncated_normal() {
     for (low, high) in [
@@ -213,8 +213,8 @@ fn any_distribution() -> impl Strategy<Value = Distribution> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
-    /// Rising, within the ends, and with mean and standard deviation those of 40 000 evenly spread draws (midpoint rule; what it loses
-    /// in the tails of unbounded distributions is the tolerance).
+    /// Monotone, within the ends, and with mean and standard deviation of 40 000 equidistant draws (midpoint rule; the tolerance is its error
+    /// in the tails of unbounded distributions).
     #[test]
     fn quantiles_agree_with_the_moments(own in any_distribution()) {
         let n = 40_000;

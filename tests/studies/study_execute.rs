@@ -1,4 +1,4 @@
-//! Execution of a study: parts come whole on any number of threads, and a sink that fails or is slow is not in the way.
+//! Execution of a study: complete parts with any number of threads, failing and slow sinks.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,11 +7,12 @@ use std::sync::{Condvar, Mutex};
 use std::time::Duration;
 
 use cvtcycle::config::Problem;
+use cvtcycle::output::progress::{NoProgress, Progress};
 use cvtcycle::study::plan::Plan;
 use cvtcycle::study::store::{Rows, Values};
-use cvtcycle::study::{End, NoProgress, PartWriter, Progress, Study};
+use cvtcycle::study::{End, PartWriter, Study};
 
-/// 70 points of two cars through a short cycle: 24 parts, the last one with a point, the others with three.
+/// 70 points of two cars on a short cycle: 24 parts, the last one with one point, the others with three.
 fn study(keep: &str) -> Study {
     let text = format!(
         "[study]\ntitle = \"t\"\nbaselines = [\"rover_216_5mt\"]\ncycle = \"ece15\"\nkeep = {keep}\n[study.design.monte_carlo]\nsamples = 70\n\
@@ -33,11 +34,11 @@ fn execute(
     pool.install(|| study.execute(&BTreeSet::from([5]), sink, watcher))
 }
 
-/// Keeps every part.
+/// Collects every part.
 #[derive(Default)]
-struct Shelf(Mutex<BTreeMap<u64, (Rows, Option<Rows>)>>);
+struct MemorySink(Mutex<BTreeMap<u64, (Rows, Option<Rows>)>>);
 
-impl PartWriter for Shelf {
+impl PartWriter for MemorySink {
     fn write(&self, part: u64, runs: &Rows, trace: Option<&Rows>) -> Result<(), Problem> {
         let before = self
             .0
@@ -56,7 +57,7 @@ fn points(rows: &Rows) -> Vec<i64> {
     }
 }
 
-/// Property: every part that was not done comes once, with its points in order and the same cells, on one thread and on many.
+/// Property: every missing part is computed once, with its points in order and the same cells, with one and with many threads.
 #[test]
 fn parts_are_whole_and_the_same_on_any_number_of_threads() {
     for keep in [
@@ -65,7 +66,7 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
     ] {
         let study = study(keep);
         let parts = |threads| {
-            let shelf = Shelf::default();
+            let shelf = MemorySink::default();
             assert_eq!(
                 execute(&study, threads, &shelf, &NoProgress).unwrap(),
                 End::Complete
@@ -78,7 +79,7 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
             let of_part = study.part_points(*part).flat_map(|point| [point as i64; 2]);
             assert!(points(runs).into_iter().eq(of_part), "part {part}");
             assert_eq!(trace.is_some(), keep != "\"summary\"");
-            // 195 rows a run, one a second.
+            // 195 rows per run, one per second.
             assert!(
                 trace.as_ref().is_none_or(
                     |trace| trace.len() == 195 * runs.len() && points(trace).is_sorted()
@@ -86,15 +87,15 @@ fn parts_are_whole_and_the_same_on_any_number_of_threads() {
                 "part {part}"
             );
         }
-        // As text, since what is no number is unlike itself.
+        // Compared as text, since NaN differs from itself.
         assert_eq!(format!("{:?}", parts(5)), format!("{alone:?}"));
     }
 }
 
 /// Refuses one part.
-struct Full(u64);
+struct FailingSink(u64);
 
-impl PartWriter for Full {
+impl PartWriter for FailingSink {
     fn write(&self, part: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         let problem = || Problem::invalid("no room");
         if part == self.0 {
@@ -105,14 +106,14 @@ impl PartWriter for Full {
     }
 }
 
-/// Property: the sink's problem ends the study, early or late.
+/// Property: the sink's problem ends the study.
 #[test]
 fn a_sink_that_fails_ends_the_study_with_its_problem() {
     let study = study("\"summary\"");
     for part in [0, 11, 23] {
         for threads in [1, 4] {
             assert_eq!(
-                execute(&study, threads, &Full(part), &NoProgress)
+                execute(&study, threads, &FailingSink(part), &NoProgress)
                     .unwrap_err()
                     .message,
                 "no room"
@@ -121,15 +122,15 @@ fn a_sink_that_fails_ends_the_study_with_its_problem() {
     }
 }
 
-/// The writer does not end a part before a thread that drives has written one.
+/// The writer waits until a driving thread has written a part.
 #[derive(Default)]
-struct Slow {
+struct SlowSink {
     parts: AtomicU64,
     by_drivers: Mutex<u32>,
     changed: Condvar,
 }
 
-impl PartWriter for Slow {
+impl PartWriter for SlowSink {
     fn write(&self, _: u64, _: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         self.parts.fetch_add(1, Ordering::Relaxed);
         let mut by_drivers = self.by_drivers.lock().unwrap();
@@ -146,10 +147,10 @@ impl PartWriter for Slow {
     }
 }
 
-/// Property: where writing takes longer than driving, the threads that drive write too.
+/// Property: if writing takes longer than driving, the driving threads write too.
 #[test]
-fn who_drives_writes_when_the_writer_is_behind() {
-    let slow = Slow::default();
+fn driving_threads_write_when_the_writer_is_behind() {
+    let slow = SlowSink::default();
     assert_eq!(
         execute(&study("\"summary\""), 1, &slow, &NoProgress).unwrap(),
         End::Complete
@@ -158,9 +159,9 @@ fn who_drives_writes_when_the_writer_is_behind() {
 }
 
 /// Stops after some runs.
-struct Enough(Mutex<u64>);
+struct StopAfter(Mutex<u64>);
 
-impl Progress for Enough {
+impl Progress for StopAfter {
     fn advance(&self, runs: u64) {
         *self.0.lock().unwrap() += runs;
     }
@@ -170,14 +171,14 @@ impl Progress for Enough {
     }
 }
 
-/// Property: a study that is stopped says so, and gives away whole parts only.
+/// Property: a stopped study reports it, and outputs complete parts only.
 #[test]
 fn a_stopped_study_leaves_whole_parts() {
     let study = study("\"summary\"");
     for threads in [1, 3] {
-        let shelf = Shelf::default();
+        let shelf = MemorySink::default();
         assert_eq!(
-            execute(&study, threads, &shelf, &Enough(Mutex::new(0))).unwrap(),
+            execute(&study, threads, &shelf, &StopAfter(Mutex::new(0))).unwrap(),
             End::Stopped
         );
         let parts = shelf.0.into_inner().unwrap();

@@ -1,4 +1,4 @@
-//! Plans of studies: every rule with a bad plan, the examples of the documentation, the plans that the program carries.
+//! Plans of studies: every rule with a bad plan, the examples of the documentation, the shipped plans.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 use crate::announced::{differences, expectations};
@@ -51,7 +51,7 @@ fn every_problem_of_a_bad_plan_is_reported_at_its_place() {
     assert!(plans.len() > 20);
     let mut wrong = String::new();
     for text in plans {
-        // Announcements are comments, so that lines keep their numbers.
+        // Announcements are comments, so that line numbers are unchanged.
         let problems = bad(text);
         let shown = render(&problems, false);
         assert!(
@@ -77,7 +77,7 @@ fn every_problem_of_a_bad_plan_is_reported_at_its_place() {
     assert!(wrong.is_empty(), "\n{wrong}");
 }
 
-/// A plan with a number of factors of `values` entries each.
+/// Plan with a number of factors of `values` entries each.
 fn many(design: &str, factors: usize, values: usize) -> String {
     let list: Vec<String> = (0..values).map(|k| k.to_string()).collect();
     let factor = |k: usize| {
@@ -145,7 +145,7 @@ fn limits_of_the_designs() {
     assert_eq!(plan.design.points(&plan.factors), Some(1));
 }
 
-/// A thread holds the traces of a point: its rows and numbers are counted before anything starts, with the shortest step that a factor reaches.
+/// A thread keeps the traces of a point in memory, so their size is computed before the start, with the shortest step of the factors.
 #[test]
 fn the_traces_of_a_point_are_counted_before_anything_runs() {
     let cars = ["\"rover_216_5mt\""; 9].join(", ");
@@ -194,7 +194,7 @@ fn the_traces_of_a_point_are_counted_before_anything_runs() {
 }
 
 #[test]
-fn what_is_no_toml_or_has_no_study() {
+fn plans_without_toml_or_study_table_are_refused() {
     assert_eq!(bad("[study\n")[0].place.line, 1);
     let problems = bad("");
     assert!(
@@ -387,7 +387,7 @@ fn the_same_key_for_subject_and_baselines_has_two_names() {
     );
 }
 
-/// The examples of docs/plan_format.md are plans, and the complete one says what it seems to say.
+/// The examples of docs/plan_format.md are valid plans, and the complete one is read as it appears.
 #[test]
 fn examples_of_the_documentation() {
     let page = include_str!("../../docs/plan_format.md");
@@ -477,7 +477,7 @@ fn examples_of_the_documentation() {
     }
 }
 
-/// Whether the cars take the ends of every factor that is a key of theirs.
+/// Checks that the cars accept the ends of every factor that is one of their keys.
 fn in_the_cars(plan: &Plan) {
     let baselines = plan.base.baselines.clone().unwrap_or_default();
     for (k, factor) in plan
@@ -521,7 +521,7 @@ fn in_the_cars(plan: &Plan) {
 }
 
 #[test]
-fn plans_that_the_program_carries() {
+fn shipped_plans_are_valid() {
     for (name, text) in embedded_plans() {
         let plan =
             Plan::open(name).unwrap_or_else(|problems| panic!("{}", render(&problems, false)));
@@ -547,7 +547,7 @@ fn plans_that_the_program_carries() {
 }
 
 #[test]
-fn words_that_name_no_plan() {
+fn unknown_plans_are_reported() {
     let problems = Plan::open("pump_and_ofset").unwrap_err();
     assert!(
         problems[0].place.is_argument(Argument::Plan)
@@ -572,7 +572,7 @@ fn words_that_name_no_plan() {
 }
 
 proptest! {
-    /// Whatever is cut out of a plan or put into it, there is a plan or there are problems, with places within the text.
+    /// Any deletion from or insertion into a plan gives a plan or problems with places within the text.
     #[test]
     fn no_text_makes_it_panic(from in 0_usize..900, length in 0_usize..40, put in "[a-z0-9=\\[\\]\"\n .{}-]{0,12}") {
         let page = include_str!("../../docs/plan_format.md");

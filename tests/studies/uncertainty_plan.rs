@@ -1,7 +1,6 @@
-//! The shipped plan `plans/uncertainty_rover.toml` and its page `docs/uncertainty.md` against the cars: every doubtful value is a factor or
-//! left out with its effect, every range is possible, and the numbers on the page are today's.
-//!
-//! Truth here is the program's registry of keys with their status, and the program itself driven again.
+//! Shipped plan `plans/uncertainty_rover.toml` and its page `docs/uncertainty.md` against the cars: every uncertain value is a factor or
+//! left out with its effect, and every range is valid. `tools/tables` makes the effects on the page.
+//! Truth: the program's registry of keys with their status, and new drives.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -17,7 +16,7 @@ const PAGE: &str = include_str!("../../docs/uncertainty.md");
 const CVT: &str = "rover_216_cvt";
 const MANUAL: &str = "rover_216_5mt";
 
-/// A factor of the plan.
+/// Factor of the plan.
 struct Factor {
     key: String,
     name: String,
@@ -25,15 +24,15 @@ struct Factor {
     scale: bool,
     status: String,
     source: String,
-    /// As the page writes it.
+    /// Values as on the page.
     values: String,
-    /// Least and largest value, or every entry of a list, as `--set` takes them; of a lognormal two geometric standard deviations.
+    /// Minimum and maximum, or every entry of a list, as `--set` takes them; two geometric standard deviations of a lognormal.
     ends: Vec<String>,
     /// Most likely value.
     middle: String,
 }
 
-/// A row of a table of the page.
+/// Row of a table on the page.
 struct Row {
     cells: Vec<String>,
 }
@@ -170,7 +169,7 @@ fn rows(heading: &str) -> Vec<Row> {
         .collect()
 }
 
-/// The shipped cars that a word of `cars` means.
+/// Shipped cars selected by a word of `cars`.
 fn meant(cars: &str) -> &'static [&'static str] {
     match cars {
         "all" => &[CVT, MANUAL],
@@ -189,7 +188,7 @@ fn keys(car: &str) -> BTreeMap<String, KeyInfo> {
         .collect()
 }
 
-/// The override that gives a car this value of a factor.
+/// Override that sets a factor of a car.
 fn set(factor: &Factor, value: &str, keys: &BTreeMap<String, KeyInfo>) -> String {
     let scaled = || value.parse::<f64>().unwrap() * keys[&factor.key].value.parse::<f64>().unwrap();
     let value = if factor.scale {
@@ -200,7 +199,7 @@ fn set(factor: &Factor, value: &str, keys: &BTreeMap<String, KeyInfo>) -> String
     format!("{}={value}", factor.key)
 }
 
-/// L/100 km after a soak at -10 degC, and seconds in which a check of the run fails.
+/// Fuel in L/100 km after a soak at -10 degC, and seconds with a failing check.
 fn litres(car: &str, sets: &[String], cycle: &Cycle) -> (f64, f64) {
     let setup = try_car(car, sets).unwrap_or_else(|problems| panic!("{car} {sets:?}: {problems}"));
     let density = setup
@@ -229,7 +228,7 @@ fn litres(car: &str, sets: &[String], cycle: &Cycle) -> (f64, f64) {
     )
 }
 
-/// The plan: cold soak, both Rovers, at least 10 000 pairs, few enough runs to start without `--yes`.
+/// Plan: cold soak, both Rovers, at least 10 000 pairs, few enough runs to start without `--yes`.
 #[test]
 fn the_design_has_its_ten_thousand_pairs() {
     let plan = plan();
@@ -283,7 +282,7 @@ fn every_factor_says_how_its_range_is_known() {
     }
 }
 
-/// Both ends of each range are possible by themselves, and what is most likely is the value of the file.
+/// Both ends of each range are valid alone, and the most likely value is that of the file.
 #[test]
 fn ranges_are_possible_and_lie_about_the_shipped_values() {
     let shipped: BTreeMap<&str, _> = [CVT, MANUAL]
@@ -330,7 +329,7 @@ fn ranges_are_possible_and_lie_about_the_shipped_values() {
     }
 }
 
-/// Ends drawn together: every factor at one of its ends by a fixed sequence of bits. Such corners are far rarer than any draw of the plan.
+/// Combined ends: every factor at one of its ends by a fixed sequence of bits. Such corners are far rarer than any draw of the plan.
 #[test]
 fn corners_of_the_ranges_go_together() {
     let (factors, cycle) = (factors(), cycle("ece15_eudc"));
@@ -365,9 +364,9 @@ fn corners_of_the_ranges_go_together() {
     }
 }
 
-/// Every assumed or fitted number of the two cars and their fluids is a factor or has a row with its effect.
+/// Every assumed or fitted number of the two cars and their fluids is a factor, or has a row with its effect.
 #[test]
-fn no_doubtful_value_is_forgotten() {
+fn every_uncertain_value_is_a_factor_or_listed() {
     let left = rows("Left out");
     let factors = factors();
     for car in [CVT, MANUAL] {
@@ -411,9 +410,9 @@ fn the_page_lists_the_factors_of_the_plan() {
     }
 }
 
-/// What is left out though it moves something says which factor carries it, or why it does not count.
+/// A value left out despite an effect names the factor that carries it, or a reason.
 #[test]
-fn what_is_left_out_has_its_reason() {
+fn omitted_values_have_a_reason() {
     let factors: BTreeSet<String> = factors().into_iter().map(|f| f.key).collect();
     for row in rows("Left out") {
         let largest = |cell: &str| {
@@ -448,85 +447,4 @@ fn numbers(cell: &str) -> Vec<f64> {
                 .unwrap_or_else(|_| panic!("`{cell}` is no pair of numbers"))
         })
         .collect()
-}
-
-/// Fuel of both cars as shipped, and the effects of overrides on it: difference in points, each car in per cent.
-struct Screen {
-    cycle: Cycle,
-    shipped: [f64; 2],
-}
-
-impl Screen {
-    fn effect(&self, cars: &str, set: &str) -> [f64; 3] {
-        let fuel = |k: usize, car: &str| {
-            if meant(cars).contains(&car) {
-                litres(car, &[set.to_owned()], &self.cycle).0
-            } else {
-                self.shipped[k]
-            }
-        };
-        let (cvt, manual) = (fuel(0, CVT), fuel(1, MANUAL));
-        let points = |cvt: f64, manual: f64| 100.0 * (cvt / manual - 1.0);
-        [
-            points(cvt, manual) - points(self.shipped[0], self.shipped[1]),
-            points(cvt, self.shipped[0]),
-            points(manual, self.shipped[1]),
-        ]
-    }
-
-    /// Whether the three cells from `at` say what the two effects are.
-    fn check(&self, row: &Row, at: usize, effects: [[f64; 3]; 2]) {
-        for k in 0..3 {
-            let now = effects.map(|effect| effect[k]);
-            let said = numbers(&row.cells[at + k]);
-            let same = said.len() == 2
-                && said
-                    .iter()
-                    .zip(now)
-                    .all(|(said, now)| (said - now).abs() < 0.015);
-            assert!(
-                same,
-                "{} ({}): docs/uncertainty.md says {}, today {:+.2} / {:+.2}",
-                row.key(),
-                row.cars(),
-                row.cells[at + k],
-                now[0],
-                now[1]
-            );
-        }
-    }
-}
-
-#[test]
-fn the_numbers_of_the_page_are_todays() {
-    let cycle = cycle("ece15_eudc");
-    let screen = Screen {
-        shipped: [CVT, MANUAL].map(|car| litres(car, &[], &cycle).0),
-        cycle,
-    };
-    let shipped = 100.0 * (screen.shipped[0] / screen.shipped[1] - 1.0);
-    assert!(
-        PAGE.contains(&format!("the answer is {shipped:+.2} %")),
-        "today {shipped:+.2} %"
-    );
-    for (row, f) in rows("Factors").iter().zip(&factors()) {
-        let keys = keys(meant(&f.cars)[0]);
-        let mut effects: Vec<[f64; 3]> = f
-            .ends
-            .iter()
-            .map(|end| screen.effect(&f.cars, &set(f, end, &keys)))
-            .collect();
-        if f.values.starts_with("list") {
-            effects.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        }
-        screen.check(row, 3, [effects[0], *effects.last().unwrap()]);
-    }
-    for row in rows("Left out") {
-        let (low, high) = row.cells[2].split_once(" to ").unwrap();
-        screen.check(
-            &row,
-            3,
-            [low, high].map(|end| screen.effect(row.cars(), &format!("{}={end}", row.key()))),
-        );
-    }
 }

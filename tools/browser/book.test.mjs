@@ -1,5 +1,5 @@
 // The book in a real browser. Usage: node --test book.test.mjs, with BOOK=/path/to/docs/book/book and CHROMIUM=/path/to/chromium.
-// Truth: what a reader sees - requests as sent, boxes as laid out, colours as painted, answers of the search.
+// Truth: the browser: requests sent, boxes laid out, colours painted, search results.
 import assert from "node:assert/strict";
 import { mkdirSync, readdirSync } from "node:fs";
 import { basename, resolve } from "node:path";
@@ -10,7 +10,7 @@ import { chromium } from "playwright-core";
 const book = resolve(process.env.BOOK ?? "../../docs/book/book");
 const shots = process.env.SHOTS;
 const home = pathToFileURL(`${book}/`).href;
-// print.html is all pages once more, toc.html the list of pages that others show in a frame.
+// print.html has all pages in one, toc.html the list of pages that others show in a frame.
 const pages = readdirSync(book).filter((name) => name.endsWith(".html") && !["print.html", "toc.html", "404.html"].includes(name));
 const switches = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 const desktop = { viewport: { width: 1280, height: 900 } };
@@ -21,7 +21,7 @@ let browser;
 before(async () => { browser = await chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: switches }); });
 after(async () => { await browser?.close(); });
 
-// Opens a theme's page and gives what it says on the console and what it loads.
+// Opens a page in a theme; returns console messages and requests.
 async function open(options, theme) {
   const context = await browser.newContext(options);
   await context.addInitScript((name) => localStorage.setItem("mdbook-theme", name), theme);
@@ -39,7 +39,7 @@ async function open(options, theme) {
   return { context, page, heard, visit, shot };
 }
 
-// What is wrong with the drawings of a page: texts on one another or outside, texts too small to read, light grounds and dark texts at night.
+// Defects of the drawings of a page: overlapping or outlying texts, texts too small to read, light backgrounds and dark texts in dark themes.
 const faults = (dark) => {
   const found = [];
   const light = (colour) => colour.match(/[\d.]+/g).slice(0, 3).reduce((sum, x) => sum + Number(x), 0);
@@ -49,7 +49,7 @@ const faults = (dark) => {
     const frame = svg.getBoundingClientRect();
     const boxes = [...svg.querySelectorAll("text")].filter((text) => text.textContent.trim()).map((text) => {
       const box = text.getBoundingClientRect();
-      // The box has the height of the font's line; what is above and below the letters is air.
+      // The box has the line height of the font, with empty space above and below the letters.
       const air = box.height > box.width ? [box.width * 0.2, 0.5] : [0.5, box.height * 0.24];
       return { text, words: text.textContent, left: box.left + air[0], right: box.right - air[0], top: box.top + air[1], bottom: box.bottom - air[1] };
     });

@@ -15,7 +15,7 @@ const pages = (process.env.LIVE ?? "").split(":").filter(Boolean).map((file) => 
 const program = resolve(process.env.CVTCYCLE ?? "../../target/release/cvtcycle");
 const shots = process.env.SHOTS;
 const switches = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
-// A page may be so large.
+// Maximum size of a page.
 const PAGE_BYTES = 3_000_000;
 
 assert.ok(pages.length > 0, "LIVE names no page");
@@ -37,7 +37,7 @@ async function open(file, { hash = "", wait = true, ...options } = {}) {
 
 const drawn = (page) => page.waitForFunction(() => /of \d+ runs/.test(document.querySelector("#live-answer .lead")?.textContent ?? "") && !/Drawing|follows/.test(document.getElementById("live-said").textContent), null, { timeout: 60_000 });
 const lead = (page) => page.locator("#live-answer .lead").innerText();
-// Moves a lever as a hand does.
+// Moves a lever with the mouse.
 const move = (page, id, value) => page.$eval(`[id="${id}"]`, (input, to) => { input.value = to; input.dispatchEvent(new Event("input", { bubbles: true })); }, String(value));
 const frames = (page) => page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
 const numbers = (text) => text.replaceAll("\u2212", "-").replace(/\s+/g, " ").match(/[-+]?\d+(\.\d+)?(?= ?(%|L\/100|runs|to|;|\)))/g);
@@ -92,7 +92,7 @@ for (const file of pages) {
       assert.equal(said[1], said[0], "the committed simulator is of another state of the sources: tools/live makes it again");
     });
 
-    // The aim is a picture within 50 ms; how long it takes is printed and not held, since a busy machine would fail it.
+    // The aim is a picture within 50 ms. The time is printed and not asserted, because a busy machine would fail.
     test("a lever is in the picture at once", async () => {
       const { context, page } = await open(file);
       const id = await page.$eval("input.known", (input) => input.id);
@@ -118,7 +118,7 @@ for (const file of pages) {
       const again = await open(file, { hash });
       assert.equal((await lead(again.page)).split("(")[0], said);
       assert.equal(await again.page.$eval(`[id="${id}"]`, (input) => input.value), max);
-      // Beyond what is known: in red, with its reason.
+      // Out of range: in red, with the reason.
       assert.match(await again.page.locator("#live-answer .alert").allInnerTexts().then((all) => all.join(" ")), /outside .* the range of/);
       assert.equal(await again.page.locator(`output[for="${id}"].beyond`).count(), 1);
       await again.page.click("#live-reset");

@@ -14,7 +14,7 @@ const page = await browser.newPage();
 await page.goto(pathToFileURL(resolve(report)).href);
 const pdf = await page.pdf({ preferCSSPageSize: true, printBackground: true, pageRanges: "1" });
 
-// pdf.js draws the page in the browser; modules cannot be loaded from files, so a server on this machine holds them.
+// pdf.js draws the page in the browser. Modules cannot be loaded from files, so a local server provides them.
 const server = createServer((request, response) => {
   const name = request.url.slice(1);
   if (name === "") return response.setHeader("content-type", "text/html").end("<canvas></canvas>");

@@ -15,10 +15,10 @@ const reports = (process.env.REPORTS ?? "").split(":").filter(Boolean).map((file
 const shots = process.env.SHOTS;
 const switches = ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
 const desktop = { width: 1280, height: 900 };
-// A4 less the margins of the style sheet, in CSS pixels.
+// A4 without the margins of the style sheet, in CSS pixels.
 const paper = { width: Math.round((210 - 26) / 25.4 * 96), height: Math.round((297 - 32) / 25.4 * 96) };
 
-// Pages of other kinds, and folders of pictures that are no part of a page.
+// Pages of other kinds, and folders of pictures without a page.
 const listed = (name) => (process.env[name] ?? "").split(":").filter(Boolean).map((file) => resolve(file));
 const [pages, folders] = [listed("PAGES"), listed("PICTURES")];
 assert.ok(reports.length > 0, "REPORTS names no report");
@@ -37,7 +37,7 @@ async function open(file, options = {}) {
   return { context, page, heard };
 }
 
-// Texts of every drawing that overlap another text of it or leave the drawing.
+// Texts of every drawing that overlap another text or leave the drawing.
 const badTexts = () => {
   const bad = [];
   for (const figure of document.querySelectorAll("figure.figure")) {
@@ -45,7 +45,7 @@ const badTexts = () => {
     const svg = figure.querySelector(".drawing svg");
     const frame = svg.getBoundingClientRect();
     const scale = frame.width / svg.viewBox.baseVal.width;
-    // The box of a text has the height of its font's line; half of the letters' height on either side is air.
+    // The box has the line height of the font, with empty space of half the letter height on either side.
     const boxes = [...svg.querySelectorAll("text")].filter((text) => text.textContent.trim() && text.checkVisibility()).map((text) => {
       const box = text.getBoundingClientRect();
       const upright = box.height > box.width && text.textContent.length > 1;
@@ -67,7 +67,7 @@ const badTexts = () => {
   return bad;
 };
 
-// Words of the page that are broken between two letters or digits, as they are laid out: a break may be only at a space, after the joint of
+// Words of the page that are broken between two letters or digits in the layout. A break is allowed at a space, after the joint of
 // a key, or at a hyphen.
 const cutWords = () => {
   const cut = [];
@@ -107,7 +107,7 @@ for (const file of reports) {
         const sizes = await page.$$eval(".drawing svg", (all) => all.filter((svg) => svg.checkVisibility()).map((svg) => { const box = svg.getBoundingClientRect(); return Math.min(box.width, box.height); }));
         assert.ok(sizes.length > 0 && sizes.every((size) => size > 60), `${sizes}`);
         assert.deepEqual(await page.evaluate(badTexts), []);
-        // Another machine's sans-serif may be a wider face.
+        // The sans-serif font of another machine may be wider.
         const wide = await page.addStyleTag({ content: 'svg text { font-family: "DejaVu Sans" }' });
         assert.deepEqual(await page.evaluate(badTexts), [], "in a wide face");
         await wide.evaluate((style) => style.remove());
@@ -136,7 +136,7 @@ for (const file of reports) {
     test("text on A4 is large enough to read", async () => {
       const { context, page } = await open(file, { viewport: paper });
       await page.emulateMedia({ media: "print" });
-      // 6 pt are 8 px; what is smaller cannot be read on paper.
+      // 6 pt are 8 px; smaller text cannot be read on paper.
       const small = await page.$$eval(".drawing svg", (all) => all.filter((svg) => svg.checkVisibility()).flatMap((svg) => {
         const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
         return [...svg.querySelectorAll("text")].map((text) => [parseFloat(getComputedStyle(text).fontSize) * scale, text.textContent]).filter(([size]) => size < 8);
@@ -176,7 +176,7 @@ for (const file of reports) {
         });
         assert.ok(target, `${id}: nothing to point at`);
         await page.mouse.move(target.x, target.y);
-        // A mark may be a line or hollow in its middle; the keyboard reaches every row all the same.
+        // A mark may be a line or hollow in its middle. The keyboard reaches every row nevertheless.
         if (target.panel) assert.ok(await tip.isVisible(), `${id}: no numbers under the pointer`);
         await page.mouse.move(1, 1);
         await figure.$eval(".drawing", (d) => d.focus({ preventScroll: true }));
@@ -289,9 +289,9 @@ for (const file of reports) {
 
     test("no figure is broken across printed pages", async () => {
       const { context, page } = await open(file);
-      // A mark at the upper and at the lower end of each figure, to be found again in the printed pages.
+      // A mark at the upper and at the lower end of each figure, to find it in the printed pages.
       const count = await page.evaluate(() => {
-        // Of several views paper has the one that is shown, and of a full report all.
+        // On paper, one of several views appears, and all of a full report.
         const figures = [...document.querySelectorAll("figure.figure")].filter((figure) => !figure.hidden || "paper" in figure.dataset);
         figures.forEach((figure, k) => {
           const mark = (word) => { const p = document.createElement("div"); p.textContent = word; p.style.cssText = "font-size:6px;line-height:6px"; return p; };
@@ -316,7 +316,7 @@ for (const file of reports) {
 
     test("printed pages are full, and the body is short", async () => {
       const { context, page } = await open(file);
-      // Marks at the beginning of each section and at the end of the first one, to be found again in the printed pages.
+      // Marks at the beginning of each section and at the end of the first one, to find them in the printed pages.
       await page.evaluate(() => {
         const mark = (word) => { const p = document.createElement("div"); p.textContent = word; p.style.cssText = "font-size:2px;line-height:2px"; return p; };
         [...document.querySelectorAll("main > section")].forEach((section, k) => {
@@ -338,7 +338,7 @@ for (const file of reports) {
         pages.push({ words, blank: (lowest - bottom) / (high - top - bottom), begins: /^section\d+begins/.test(words) });
       }
       const empty = pages.map((own, k) => [k + 1, own.blank.toFixed(2)]).filter(([k, blank]) => blank > 1 / 3 && k < pages.length && !pages[k].begins);
-      // Held of the example: in the body of other runs a figure may be one too few to fill a page, and tall figures of a full report are alone on theirs.
+      // Asserted for the example only: in other runs a figure may be missing to fill a page, and tall figures of a full report have pages of their own.
       if (/example/.test(basename(file))) assert.deepEqual(empty, [], "pages with more than a third blank");
       assert.ok(pages[0].words.includes("page1ends") || /full|levers|offset|pump/.test(basename(file)), "the answer is one page");
       if (!/full/.test(basename(file))) assert.ok(pages.length <= 12, `${pages.length} pages`);
@@ -357,7 +357,7 @@ for (const file of reports) {
   });
 }
 
-// No word is cut and no table clipped in a page at any of the widths; what is wrong, with the place.
+// Checks a page at any of the widths for cut words and clipped tables; reports the places.
 async function cutAtAnyWidth(file) {
   for (const [viewport, media] of [[{ width: 1400, height: 900 }, "screen"], [{ width: 1200, height: 900 }, "screen"], [{ width: 390, height: 844 }, "screen"], [paper, "print"]]) {
     const { context, page, heard } = await open(file, { viewport });

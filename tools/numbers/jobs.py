@@ -194,7 +194,6 @@ def together():
             (f"{name}/summary", "out/summary.json", "json"),
             (f"{name}/inputs", "out/inputs.json", "json"),
             (f"{name}/printed", "out_2", "json"),
-            (f"bytes/{name}", "out/*.parquet", "bytes"),
         ]
         commands = [
             [*run, "--format", "parquet", "--out", "out", "--quiet"],
@@ -361,16 +360,12 @@ def studies():
             (f"{name}/runs", "runs.csv", "csv"),
             (f"{name}/statistics", "out/statistics.json", "json"),
             (f"{name}/statistics_table", "out/statistics.csv", "csv"),
-            (f"bytes/{name}", "out/parts/*.parquet", "bytes"),
         ]
         if plan == "sobol_4000":
             items.append((f"{name}/study", "out/study.json", "json"))
         if plan in ("latin_hypercube", "one_at_a_time", "ambient"):
             commands.append(["study", "export", "out", "--table", "traces", "--out", "traces.csv", "--quiet"])
             items.append((f"{name}/traces", "traces.csv", "csv"))
-        if plan in ("pump_and_offset", "ambient", "one_at_a_time"):
-            commands.append(["study", "export", "out", "--out", "runs.xlsx", "--quiet"])
-            items.append((f"{name}/workbook", "runs.xlsx", "xlsx"))
         if plan in ("saltelli", "uncertainty_rover"):
             items.append((f"{name}/sobol_indices", "out/sobol_indices.csv", "csv"))
         if plan in ("pump_and_offset", "ambient"):

@@ -46,11 +46,11 @@ pub use setup::rig;
 /// A value in the unit of the key, converted to SI (temperatures to kelvin).
 #[must_use]
 pub fn to_si(key: &str, value: f64) -> f64 {
-    Quantity::of(key).to_si(value)
+    Quantity::from_key(key).to_si(value)
 }
 
 /// The unit of a key as people write it, `-` for a dimensionless one.
 #[must_use]
 pub fn unit_of(key: &str) -> &'static str {
-    Quantity::of(key).unit()
+    Quantity::from_key(key).unit()
 }

@@ -201,7 +201,8 @@ fn value(kind: &Kind<'_>) -> Value {
         Kind::Rows(columns) => {
             let cell = |(name, range): &(&str, Bound)| {
                 let mut schema = number(range);
-                schema["description"] = json!(format!("{name} [{}]", Quantity::of(name).unit()));
+                schema["description"] =
+                    json!(format!("{name} [{}]", Quantity::from_key(name).unit()));
                 schema
             };
             let cells: Vec<Value> = columns.iter().map(cell).collect();

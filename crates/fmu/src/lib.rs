@@ -1,15 +1,23 @@
-//! The C functions of FMI 2.0 and 3.0 for co-simulation, over `cvtcycle-cosim`. One library has both: a master calls those of the version that
-//! it reads in modelDescription.xml.
+//! Cars as units of a co-simulation: the contents of an FMU without its C interface.
 //!
 //! | module | contents |
 //! |---|---|
-//! | `slave` | an instance as C sees it: a pointer; no panic passes it, every refusal has a status and a message for the master's logger |
-//! | `fmi2`, `fmi3` | the functions |
-//! | `both` | macros: functions of one shape in both versions |
+//! | `variables` | variables of each kind of unit in one table, from which values, modelDescription.xml and the docs are generated |
+//! | `unit` | an instantiated unit: inputs, steps, outputs, saved states |
+//! | `state` | saved states as bytes: the steps since the start, repeated on reading |
+//! | `description`, `package` | modelDescription.xml and the FMU file (feature `package`) |
 
-mod both;
-#[allow(non_snake_case, reason = "names of the standard")]
-mod fmi2;
-#[allow(non_snake_case, reason = "names of the standard")]
-mod fmi3;
-mod slave;
+#[cfg(feature = "package")]
+pub mod description;
+#[cfg(feature = "package")]
+pub mod package;
+mod state;
+pub mod unit;
+pub mod variables;
+
+pub use cvtcycle_config::ProblemKind;
+pub use unit::{Refusal, Unit};
+pub use variables::{Causality, Kind, Variable};
+
+/// Resource file of an FMU with the kind of unit and the token of its description.
+pub const UNIT_FILE: &str = "unit.txt";

@@ -1,9 +1,9 @@
 //! Keys of whole files: vehicle, lubricant, rig.
 
-use crate::bench::transmission::RigKeys;
 use crate::engine::EngineKeys;
-use crate::fluid::FluidKeys;
 use crate::keys::{Choice, Kind, Presence, Table, keys};
+use crate::lubricant::FluidKeys;
+use crate::rig::transmission::RigKeys;
 use crate::road::RoadLoadKeys;
 use crate::thermal::ThermalKeys;
 use crate::transmission::cvt::CvtKeys;
@@ -47,4 +47,4 @@ pub const VEHICLE: Table = VehicleKeys::TABLE;
 /// A lubricant file.
 pub const LUBRICANT: Table = FluidKeys::TABLE;
 /// A rig file.
-pub const RIG: Table = Table::of(&[RigKeys::TABLE]);
+pub const RIG: Table = Table::from_tables(&[RigKeys::TABLE]);

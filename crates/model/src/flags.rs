@@ -69,7 +69,7 @@ flags! {
 }
 
 impl Flags {
-    /// What no car can do, as far as its engine, its oil and its cycle go.
+    /// Flags that no car can set, given its engine, its oil and its cycle.
     pub const IMPOSSIBLE: Flags =
         Flags(Flags::OVERSPEED.0 | Flags::TOO_HOT.0 | Flags::WRONG_GEAR.0);
 }

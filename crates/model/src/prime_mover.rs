@@ -1,4 +1,4 @@
-//! What a transmission knows of the machine that drives it.
+//! Interface of the machine that drives a transmission.
 
 /// Share of full load above which a prime mover is asked for more than it can give, with a margin for what a solve leaves: an engine
 /// that cannot turn its own pump and accessories in the cold. Such rows are flagged outside validity.

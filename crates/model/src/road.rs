@@ -19,7 +19,7 @@ pub use keys::{ROAD_LOAD, RoadLoadKeys};
 pub use tyre::Tyre;
 
 use crate::cycle::{Step, mean_powers};
-use crate::math::{Left, Mask, Operand, Real, exp, gather, ln};
+use crate::math::{Gather, Mask, Operand, Real, exp, ln, physics};
 
 /// Gravity, m/s2.
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -29,7 +29,7 @@ pub const REFERENCE_K: f64 = 293.15;
 const CHARGE_REFERENCE_K: f64 = 298.15;
 
 /// The checked road load, coefficients in force for one ambient.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct RoadLoad<R: Real = f64> {
     /// f0, N.
     pub f0_n: R,
@@ -44,15 +44,6 @@ pub struct RoadLoad<R: Real = f64> {
     /// Dynamic tyre radius, m.
     pub wheel_radius_m: R,
 }
-
-gather!(RoadLoad {
-    f0_n,
-    f1_n_per_m_s,
-    f2_n_per_m_s2,
-    mass_kg,
-    inertia_kg,
-    wheel_radius_m
-});
 
 /// How the coefficients depend on ambient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -117,34 +108,29 @@ fn along_the_road(grade: f64) -> f64 {
     (1.0 + grade * grade).sqrt()
 }
 
-impl<R: Real> RoadLoad<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> RoadLoad<R> {
     /// Mean power, W, with a constant part of force `c` and the means of speed, its square and its cube.
-    #[inline(always)]
     fn power_w(&self, c: R, [speed, square, cube]: [impl Operand<R>; 3]) -> R {
-        let [speed, square, cube] = [speed.lifted(c), square.lifted(c), cube.lifted(c)];
+        let [speed, square, cube] = [speed.broadcast(c), square.broadcast(c), cube.broadcast(c)];
         c * speed + self.f1_n_per_m_s * square + self.f2_n_per_m_s2 * cube // RL-5
     }
 
     /// Speeds at which the force is zero, m/s, the lower first; NaN where there is none. Only a negative f1 has two.
-    #[inline(always)]
     fn zero_force_speeds(&self, c: R) -> [R; 2] {
         let (f1, f2) = (self.f1_n_per_m_s, self.f2_n_per_m_s2);
-        let (straight, falls) = (f2.at_most(0.0), f1.below(0.0));
+        let (straight, falls) = (f2.le(0.0), f1.lt(0.0));
         let root = (f1 * f1 - 4.0 * f2 * c).sqrt();
-        let lower = R::pick(falls & !straight, 2.0 * c / (root - f1), c.filled(f64::NAN));
-        let upper = R::pick(falls, (root - f1) / (2.0 * f2), -2.0 * c / (f1 + root));
-        [lower, R::pick(straight, -c / f1, upper)]
+        let lower = (falls & !straight).select(2.0 * c / (root - f1), c.splat(f64::NAN));
+        let upper = falls.select((root - f1) / (2.0 * f2), -2.0 * c / (f1 + root));
+        [lower, straight.select(-c / f1, upper)]
     }
 
-    /// What a step demands of the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
-    #[inline(always)]
+    /// Computes the demand of a step at the wheels, with a force that is no part of the coefficients, N (RL-1, RL-5).
     pub fn wheel(&self, step: &Step, extra_n: R) -> WheelDemand<R> {
         let motion = &step.motion;
         if motion.speed_m_s <= 0.0 {
-            let zero = extra_n.filled(0.0);
+            let zero = extra_n.splat(0.0);
             return WheelDemand {
                 speed_m_s: 0.0,
                 accel_m_s2: 0.0,
@@ -172,39 +158,38 @@ where
     }
 
     /// Work in the drive parts and in the braking parts of a step, of its whole work, J (RL-5).
-    #[inline(always)]
     fn split_j(&self, c: R, step: &Step, whole_j: R) -> (R, R) {
         let (v0, v1) = (step.start_speed_m_s, step.end_speed_m_s);
-        let (mut drive_j, mut brake_j) = (c.filled(0.0), c.filled(0.0));
+        let (mut drive_j, mut brake_j) = (c.splat(0.0), c.splat(0.0));
         let mut rest_j = whole_j;
         // With no part of the force negative there is nothing to split: most steps need no root.
-        let splits = c.below(0.0) | self.f1_n_per_m_s.below(0.0);
+        let splits = c.lt(0.0) | self.f1_n_per_m_s.lt(0.0);
         if splits.any() {
             let [lower, upper] = self.zero_force_speeds(c);
             let rising = v0 < v1;
             let (low, high) = if rising { (v0, v1) } else { (v1, v0) };
-            let mut from = c.filled(v0);
+            let mut from = c.splat(v0);
             for zero in if rising {
                 [lower, upper]
             } else {
                 [upper, lower]
             } {
-                let inside = splits & zero.above(low) & zero.below(high);
+                let inside = splits & zero.gt(low) & zero.lt(high);
                 if inside.any() {
                     let time_s = (zero - from) / step.motion.accel_m_s2;
                     let work_j = self.power_w(c, mean_powers(from, zero)) * time_s;
-                    let drives = work_j.reaches(0.0);
-                    drive_j = R::pick(inside & drives, drive_j + work_j, drive_j);
-                    brake_j = R::pick(inside & !drives, brake_j + work_j, brake_j);
-                    rest_j = R::pick(inside, rest_j - work_j, rest_j);
-                    from = R::pick(inside, zero, from);
+                    let drives = work_j.ge(0.0);
+                    drive_j = (inside & drives).select(drive_j + work_j, drive_j);
+                    brake_j = (inside & !drives).select(brake_j + work_j, brake_j);
+                    rest_j = inside.select(rest_j - work_j, rest_j);
+                    from = inside.select(zero, from);
                 }
             }
         }
-        let drives = rest_j.reaches(0.0);
+        let drives = rest_j.ge(0.0);
         (
-            R::pick(drives, drive_j + rest_j, drive_j),
-            R::pick(drives, brake_j, brake_j + rest_j),
+            drives.select(drive_j + rest_j, drive_j),
+            drives.select(brake_j, brake_j + rest_j),
         )
     }
 }

@@ -1,6 +1,6 @@
-//! What a build of the program computes with, as one hash: its sources, the data that it carries and the versions of its libraries.
+//! Hash that identifies a build: the program's sources, its embedded data and the versions of its libraries.
 //!
-//! Two programs of one version may differ in a line of the model; their numbers are not to be mixed.
+//! Programs of one version may differ in a line of the model, and their numbers must not be mixed.
 
 use std::fs;
 use std::io;
@@ -8,11 +8,15 @@ use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-/// What counts, below the root of the workspace: a file, or a folder with all files in it.
-pub const INPUTS: [&str; 22] = [
+/// Hashed paths below the root of the workspace: a file, or a folder with all files in it.
+pub const INPUTS: [&str; 28] = [
     "Cargo.lock",
     "calibrations",
     "classes",
+    "crates/analysis/Cargo.toml",
+    "crates/analysis/src",
+    "crates/calibrate/Cargo.toml",
+    "crates/calibrate/src",
     "crates/config/Cargo.toml",
     "crates/config/src",
     "crates/model/Cargo.toml",
@@ -24,6 +28,8 @@ pub const INPUTS: [&str; 22] = [
     "crates/output/src",
     "crates/study/Cargo.toml",
     "crates/study/src",
+    "crates/validate/Cargo.toml",
+    "crates/validate/src",
     "cycles",
     "intervals",
     "levers",
@@ -34,8 +40,8 @@ pub const INPUTS: [&str; 22] = [
     "vehicles",
 ];
 
-/// The first 16 hexadecimal digits of the SHA-256 over names and bytes of all `inputs` below a folder that are there. Names are relative and
-/// sorted, and line ends are those of Unix, so that every checkout of one commit has one identity.
+/// Returns the first 16 hexadecimal digits of the SHA-256 over names and bytes of all existing `inputs` below a folder. Names are relative and
+/// sorted, and line ends are those of Unix, so that every checkout of one commit has the same identity.
 ///
 /// # Errors
 /// A file or folder cannot be read.
@@ -48,7 +54,7 @@ pub fn identity(root: &Path, inputs: &[&str]) -> io::Result<String> {
     let mut hash = Sha256::new();
     for (name, path) in files {
         let bytes = unix_lines(&fs::read(path)?);
-        // With the length before the bytes no two sets of files are one text.
+        // The length before the bytes keeps two different sets of files from hashing the same text.
         hash.update(format!("{name}\n{}\n", bytes.len()));
         hash.update(bytes);
     }

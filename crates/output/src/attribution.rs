@@ -1,4 +1,4 @@
-//! Prices of losses as tables: of each loss, of pairs, of groups.
+//! Tables of the prices of losses: single losses, pairs and groups.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -10,7 +10,7 @@ use crate::table::{Column, write_csv};
 /// A car at an ambient temperature.
 #[derive(Clone, Copy, Debug)]
 pub struct PricedCar<'a> {
-    /// Its numbers, with prices.
+    /// Summary with prices.
     pub run: &'a RunSummary,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
@@ -19,7 +19,7 @@ pub struct PricedCar<'a> {
 /// A price in the whole cycle, or in a group of its phases.
 struct PriceRow<'a> {
     at: PricedCar<'a>,
-    /// Index of the group of phases; none for the whole cycle.
+    /// Index of the group of phases; `None` for the whole cycle.
     phase: Option<usize>,
     name: &'a str,
     loss: Option<&'a LossPrice>,
@@ -27,7 +27,7 @@ struct PriceRow<'a> {
 }
 
 impl PriceRow<'_> {
-    /// Fuel of a saving in the part of the cycle that the row is about.
+    /// Fuel of a saving in the part of the cycle that the row covers, L/100 km.
     fn litres(&self, saving: Option<&Saving>) -> f64 {
         let litres = saving.and_then(|saving| match self.phase {
             None => saving.l_per_100km,
@@ -44,8 +44,8 @@ impl PriceRow<'_> {
         100.0 * self.litres(Some(self.saved)) / fuel.unwrap_or(f64::NAN)
     }
 
-    /// A number of the loss over the whole cycle.
-    fn of_cycle(&self, number: fn(&LossPrice) -> Option<f64>) -> f64 {
+    /// Evaluates a number of the loss; NaN in rows of a group of phases.
+    fn cycle_number(&self, number: fn(&LossPrice) -> Option<f64>) -> f64 {
         let loss = self.loss.filter(|_| self.phase.is_none());
         loss.and_then(number).unwrap_or(f64::NAN)
     }
@@ -55,15 +55,15 @@ fn text(text: &str) -> Cow<'static, str> {
     text.to_owned().into()
 }
 
-fn attribution<'a>() -> Vec<Column<PriceRow<'a>>> {
+fn price_columns<'a>() -> Vec<Column<PriceRow<'a>>> {
     columns! { PriceRow<'a>;
         text "vehicle", "", "name of the vehicle", r => text(&r.at.run.vehicle);
         number "ambient_degc", "degC", "ambient temperature", r => r.at.ambient_degc;
         text "phase", "", "part of the cycle, or total", r => text(r.phase.map_or("total", |k| &r.at.run.phases[k].name));
         text "component", "", "component, together, or interaction", r => text(r.name);
         text "group", "", "group with which the loss is shared out", r => text(r.loss.map_or("", |loss| &loss.group));
-        number "loss_kj", "kJ", "energy of the loss over the whole cycle", r => r.of_cycle(|loss| loss.loss_kj);
-        number "energy_percent", "%", "that energy over the fuel's", r => r.of_cycle(|loss| loss.energy_percent);
+        number "loss_kj", "kJ", "energy of the loss over the whole cycle", r => r.cycle_number(|loss| loss.loss_kj);
+        number "energy_percent", "%", "that energy over the fuel's", r => r.cycle_number(|loss| loss.energy_percent);
         number "saved_l_per_100km", "L/100 km", "fuel saved with the factor on this loss", r => r.litres(Some(r.saved));
         number "saved_percent", "%", "that fuel over the fuel of the car", r => r.percent();
         number "alone_l_per_100km", "L/100 km", "fuel that the loss adds to a car with the factor on all", r => r.litres(r.loss.and_then(|loss| loss.alone.as_ref()));
@@ -72,7 +72,7 @@ fn attribution<'a>() -> Vec<Column<PriceRow<'a>>> {
 
 type PairRow<'a> = (PricedCar<'a>, &'a PairPrice);
 
-fn of_pairs<'a>() -> Vec<Column<PairRow<'a>>> {
+fn pair_columns<'a>() -> Vec<Column<PairRow<'a>>> {
     let or_nan = |x: Option<f64>| x.unwrap_or(f64::NAN);
     columns! { PairRow<'a>;
         text "vehicle", "", "name of the vehicle", (at, _) => text(&at.run.vehicle);
@@ -89,7 +89,7 @@ fn of_pairs<'a>() -> Vec<Column<PairRow<'a>>> {
 
 type ShareRow<'a> = (PricedCar<'a>, &'a str, &'a Saving);
 
-fn of_shares<'a>() -> Vec<Column<ShareRow<'a>>> {
+fn share_columns<'a>() -> Vec<Column<ShareRow<'a>>> {
     columns! { ShareRow<'a>;
         text "vehicle", "", "name of the vehicle", (at, _, _) => text(&at.run.vehicle);
         number "ambient_degc", "degC", "ambient temperature", (at, _, _) => at.ambient_degc;
@@ -123,7 +123,7 @@ fn rows(at: PricedCar<'_>, phase: Option<usize>) -> Vec<PriceRow<'_>> {
 /// Writes the price of each loss, of all together and the interaction; for the whole cycle, then for each group of its phases.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_prices(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
     let priced = cars.iter().flat_map(|at| {
         // The only group of a cycle is its total.
@@ -132,29 +132,29 @@ pub fn write_prices(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
         let parts = [None].into_iter().chain(phases);
         parts.flat_map(|phase| rows(*at, phase))
     });
-    write_csv(out, &attribution(), priced, &[])
+    write_csv(out, &price_columns(), priced, &[])
 }
 
 /// Writes pairs of losses.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_pairs(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
     let pairs = cars.iter().flat_map(|at| {
         let pairs = at.run.price.iter().flat_map(|price| &price.pairs);
         pairs.map(|pair| (*at, pair))
     });
-    write_csv(out, &of_pairs(), pairs, &[])
+    write_csv(out, &pair_columns(), pairs, &[])
 }
 
 /// Writes the shares of groups.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_shares(out: impl Write, cars: &[PricedCar]) -> io::Result<()> {
     let shares = cars.iter().flat_map(|at| {
         let groups = at.run.price.iter().flat_map(|price| &price.groups);
         groups.map(|(name, share)| (*at, name.as_str(), share))
     });
-    write_csv(out, &of_shares(), shares, &[])
+    write_csv(out, &share_columns(), shares, &[])
 }

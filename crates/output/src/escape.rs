@@ -1,11 +1,11 @@
-//! Text of files in other forms: what the form would take for markup is escaped, and hidden characters are shown as U+FFFD.
+//! Escapes text for files in other forms: markup is escaped, and hidden characters become U+FFFD.
 
 use std::fmt::Write;
 
 use cvtcycle_config::{Problem, Problems, is_hidden, visible};
 use serde::Serialize;
 
-/// Text that Markdown and the HTML in it take as it is: one line, nothing that ends a cell of a table or begins markup.
+/// Escapes text for Markdown and the HTML in it: one line, without characters that end a table cell or begin markup.
 ///
 /// ```
 /// # use cvtcycle_output::escape::markdown;
@@ -22,7 +22,7 @@ pub fn markdown(text: &str) -> String {
     })
 }
 
-/// Text that an element or an attribute of XML can hold, as one line.
+/// Escapes text for an element or an attribute of XML, as one line.
 ///
 /// ```
 /// # use cvtcycle_output::escape::xml;
@@ -35,13 +35,13 @@ pub fn xml(text: &str) -> String {
         '<' => out.push_str("&lt;"),
         '>' => out.push_str("&gt;"),
         '"' => out.push_str("&quot;"),
-        // XML 1.0 has no way to write these.
+        // XML 1.0 cannot represent these.
         '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
         c => out.push(c),
     })
 }
 
-/// A path as part of an address: every byte but letters, digits, `-._~` and `/` by its number.
+/// Percent-encodes a path as part of an address: every byte except letters, digits, `-._~` and `/`.
 ///
 /// ```
 /// # use cvtcycle_output::escape::url_path;
@@ -61,10 +61,10 @@ pub fn url_path(path: &[u8]) -> String {
     out
 }
 
-/// A value as indented JSON with a line end, hidden characters as `\uXXXX`.
+/// Formats a value as indented JSON with a line end, hidden characters as `\uXXXX`.
 ///
 /// # Errors
-/// A map whose keys are no text; no value of this program is one.
+/// A map has keys that are not text; no value of this program has.
 pub fn json_text(value: &impl Serialize) -> Result<String, Problems> {
     let json =
         serde_json::to_string_pretty(value).map_err(|error| Problem::invalid(error.to_string()))?;

@@ -1,4 +1,4 @@
-//! One file of a command: it appears under its name when it is complete, or not at all.
+//! A single output file that appears under its name when complete, or not at all.
 
 use std::fs;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -9,7 +9,7 @@ use tempfile::NamedTempFile;
 use super::files::{DirLock, failed, problem, sync_directory, temporary_in};
 use cvtcycle_config::{Problem, Setting};
 
-/// A file that is written under a temporary name in its own directory; dropped before [`OutputFile::commit`], it goes again.
+/// File written under a temporary name in its own directory. Dropping it before [`OutputFile::commit`] removes it.
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,
@@ -21,7 +21,7 @@ impl OutputFile {
     /// Begins a file. Fails at once if it cannot be written in its directory, or if a file of that name exists and `force` is not set.
     ///
     /// # Errors
-    /// A problem of `--out` that says what is in the way.
+    /// A problem of `--out` that names the obstacle.
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         if path.file_name().is_none() {
@@ -36,7 +36,7 @@ impl OutputFile {
         }
         let what = format!("cannot write in {}", folder.display());
         let out = temporary_in(&folder).map_err(|error| failed(&path, &what, &error))?;
-        // So that no other process takes it for one that was left half written; where there are no locks none looks for those.
+        // The lock keeps other processes from removing the file as a leftover. Without file locks no process looks for leftovers.
         drop(out.as_file().try_lock());
         Ok(OutputFile {
             path,
@@ -53,10 +53,10 @@ impl OutputFile {
     /// Gives the file its name.
     ///
     /// # Errors
-    /// A problem of `--out`; no file of that name has then appeared or changed.
+    /// A problem of `--out`; a file of that name has then neither appeared nor changed.
     pub fn commit(self) -> Result<PathBuf, Problem> {
         let OutputFile { path, out, force } = self;
-        // Another process may have written it meanwhile.
+        // Another process may have created the file meanwhile.
         check_target(&path, force)?;
         let file = out.into_inner().map_err(io::IntoInnerError::into_error);
         let written = file.and_then(|file| {
@@ -74,7 +74,7 @@ impl OutputFile {
         Ok(path)
     }
 
-    /// The problem of an error in writing.
+    /// Converts a write error into a problem.
     pub fn cannot_write(&self, error: &io::Error) -> Problem {
         cannot_write(&self.path, error)
     }
@@ -90,7 +90,7 @@ impl Write for OutputFile {
     }
 }
 
-/// Gives a file its name; without `force` in one step with the look whether that is free, where the file system has such a step.
+/// Renames a file. Without `force`, checks that the name is free in the same step where the file system supports it.
 fn place(file: NamedTempFile, path: &Path, force: bool) -> io::Result<()> {
     let placed = match force {
         true => file.persist(path),

@@ -1,6 +1,6 @@
-//! The trace of a car by column: what plots and reports read, whether the run has just been driven or lies on disk.
+//! Trace of a car by column, from a run in memory or a file on disk, for plots and reports.
 //!
-//! Numbers are in the units of [`trace`](super::trace). A history that was written and read again has the same numbers, bit by bit.
+//! Numbers are in the units of [`trace`](super::trace). Writing and reading a history preserves every bit.
 
 mod read;
 
@@ -10,12 +10,12 @@ use super::table::{Kind, Scope};
 use super::trace::{COLUMNS, TraceColumn, loss_column};
 use super::{Component, Flags, Row};
 
-/// Most phases, as of a cycle.
+/// Maximum number of phases, as for a cycle.
 const MAX_PHASES: usize = 200;
-/// What helps with a trace that is too long.
+/// Hint for a trace that is too long.
 pub const SHORTER: &str = "run it again with a larger time step, or a part of the cycle";
 
-/// The steps of one car through one cycle, by column.
+/// Steps of one car through one cycle, by column.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     columns: Vec<(&'static TraceColumn, Vec<f64>)>,
@@ -25,8 +25,9 @@ pub struct History {
 }
 
 impl History {
-    /// Rows of a run as columns. `phases` are the names that belong to [`Row::phase`]; only those that occur are kept, in their order.
-    pub fn of(rows: &[Row], columns: &[&'static TraceColumn], phases: &[String]) -> Self {
+    /// Converts the rows of a run to columns. `phases` are the names that [`Row::phase`] indexes; only those that occur are kept, in their
+    /// order.
+    pub fn from_rows(rows: &[Row], columns: &[&'static TraceColumn], phases: &[String]) -> Self {
         let numbers = |column: &&'static TraceColumn| {
             let mut numbers = Vec::with_capacity(rows.len());
             column.numbers(rows, &mut numbers);
@@ -50,7 +51,7 @@ impl History {
         history
     }
 
-    /// A history of these columns without steps yet.
+    /// Creates a history with these columns and no steps.
     pub fn empty(columns: &[&'static TraceColumn]) -> Self {
         History {
             columns: columns.iter().map(|column| (*column, Vec::new())).collect(),
@@ -58,7 +59,7 @@ impl History {
         }
     }
 
-    /// Puts the numbers of a column in place.
+    /// Replaces the numbers of a column.
     pub fn put(&mut self, name: &str, numbers: Vec<f64>) {
         if let Some((_, own)) = self
             .columns
@@ -71,7 +72,7 @@ impl History {
 
     /// Appends phase and flags of a step.
     pub fn step(&mut self, phase: &str, flags: Flags) {
-        // A phase mostly is that of the step before.
+        // Most steps have the phase of the step before.
         let known = |at: &usize| self.phases.get(*at).is_some_and(|name| name == phase);
         let before = self.phase.last().copied().filter(known);
         let index = before
@@ -84,27 +85,26 @@ impl History {
         self.flags.push(flags);
     }
 
-    /// The numbers of a column, one a step, in the unit of the column; NaN where there is none. Empty for a column that is not there
-    /// or that holds words.
+    /// Numbers of a column, one a step, in the unit of the column; NaN for missing values. Empty for an unknown column or one of words.
     pub fn column(&self, name: &str) -> &[f64] {
         let mut columns = self.columns.iter();
         let own = columns.find(|(column, _)| column.name == name);
         own.map_or(&[], |(_, numbers)| numbers)
     }
 
-    /// All columns of numbers, in the order of the table.
+    /// Iterates over the columns of numbers, in the order of the table.
     pub fn columns(&self) -> impl Iterator<Item = (&'static TraceColumn, &[f64])> {
         self.columns
             .iter()
             .map(|(column, numbers)| (*column, numbers.as_slice()))
     }
 
-    /// Whether there is a column of numbers of that name.
+    /// Tests for a column of numbers of that name.
     pub fn has(&self, name: &str) -> bool {
         self.columns.iter().any(|(column, _)| column.name == name)
     }
 
-    /// Whether the car has a belt; otherwise it has gears.
+    /// True for a car with a belt, false for one with gears.
     pub fn is_cvt(&self) -> bool {
         self.has("belt_ratio")
     }
@@ -124,7 +124,7 @@ impl History {
         self.flags.len()
     }
 
-    /// Whether there is no step.
+    /// True if there are no steps.
     pub fn is_empty(&self) -> bool {
         self.flags.is_empty()
     }
@@ -134,17 +134,17 @@ impl History {
         &self.phases
     }
 
-    /// The phase of a step, as index into [`History::phases`]; 0 beyond the last step.
+    /// Phase of a step, as index into [`History::phases`]; 0 beyond the last step.
     pub fn phase(&self, step: usize) -> usize {
         self.phase.get(step).copied().unwrap_or(0)
     }
 
-    /// Flags of a step; none beyond the last one.
+    /// Flags of a step; empty beyond the last one.
     pub fn flags(&self, step: usize) -> Flags {
         self.flags.get(step).copied().unwrap_or_default()
     }
 
-    /// The loss components that have a column, in the order of the power flow.
+    /// Loss components that have a column, in the order of the power flow.
     pub fn components(&self) -> Vec<Component> {
         Component::ALL
             .into_iter()
@@ -160,7 +160,7 @@ impl History {
     }
 }
 
-/// A number as the files keep it: NaN where it is not finite, zero without a sign.
+/// Normalises a number as the files do: not finite becomes NaN, and zero loses its sign.
 fn plain(number: f64) -> f64 {
     if number.is_finite() {
         number + 0.0
@@ -174,7 +174,7 @@ pub fn is_number(column: &TraceColumn) -> bool {
     column.kind != Kind::Text
 }
 
-/// The flags of a cell; the first word that is no flag, where there is one.
+/// Parses the flags of a cell.
 pub fn flags_of(cell: &str) -> Result<Flags, &str> {
     let mut flags = Flags::default();
     for word in cell.split('|').filter(|_| !cell.is_empty()) {
@@ -185,7 +185,7 @@ pub fn flags_of(cell: &str) -> Result<Flags, &str> {
     Ok(flags)
 }
 
-/// The columns that a trace with the columns `there` has to have besides: those of every trace, and of one with a belt or with gears.
+/// Columns that a trace with the columns `there` must have and lacks: those of every trace, and those of a belt or of gears.
 pub fn missing(there: &[&'static TraceColumn]) -> Vec<&'static TraceColumn> {
     let cvt = there.iter().any(|column| column.scope == Scope::Cvt);
     let kind = if cvt { Scope::Cvt } else { Scope::Manual };
@@ -198,7 +198,7 @@ pub fn missing(there: &[&'static TraceColumn]) -> Vec<&'static TraceColumn> {
         .collect()
 }
 
-/// The columns of these names that this program knows, in the order of the table.
+/// Looks up columns by name, in the order of the table; unknown names are skipped.
 pub fn known<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'static TraceColumn> {
     let names: Vec<&str> = names.collect();
     COLUMNS

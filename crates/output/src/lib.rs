@@ -1,4 +1,4 @@
-//! Result files: columns, traces, summaries, records of what a run was made from, and files that are whole or absent.
+//! Result files: columns, traces, summaries, records of a run's inputs, and files that are whole or absent.
 
 pub mod attribution;
 pub mod escape;
@@ -9,6 +9,7 @@ pub mod loss_forms;
 pub mod loss_table;
 pub mod losses;
 pub mod number;
+pub mod progress;
 pub mod provenance;
 pub mod record;
 pub mod rig;
@@ -22,8 +23,8 @@ pub use cvtcycle_model::flags::Flags;
 pub use cvtcycle_model::transmission::component::{ByComponent, Component};
 pub use history::History;
 
-/// Name and version of the program, as the result files cite it.
+/// Name and version of the program, as cited in the result files.
 pub const PROGRAM: &str = concat!("cvtcycle ", env!("CARGO_PKG_VERSION"));
-/// Which build of the program this is: a hash of its sources, its data and its libraries' versions. Programs of one version that may compute
-/// other numbers have other builds.
+/// Identifies the build of the program: a hash of its sources, its data and its libraries' versions. Programs of one version that may compute
+/// different numbers have different builds.
 pub const BUILD: &str = env!("CVTCYCLE_BUILD");

@@ -1,4 +1,4 @@
-//! Maps of a whole box by its input torque in the forms of other programs.
+//! Loss maps of a whole box by input torque, in the formats of other programs.
 //!
 //! | form | what it is | source |
 //! |---|---|---|
@@ -8,15 +8,15 @@
 
 use std::io::{self, Write};
 
-use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::keys::rpm;
+use cvtcycle_model::rig::{Bench, BenchPoint};
 
 use crate::losses::{Axis, LossGrid, bench_point};
 
 /// Form of a map of a whole box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapForm {
-    /// As a vehicle file can name it.
+    /// Format of the maps named in a vehicle file.
     Csv,
     /// Transmission loss map of VECTO.
     Vtlm,
@@ -35,7 +35,7 @@ impl MapForm {
         ("modelica", MapForm::Modelica),
     ];
 
-    /// Ending of its files.
+    /// File extension.
     #[must_use]
     pub fn ending(self) -> &'static str {
         match self {
@@ -45,7 +45,7 @@ impl MapForm {
         }
     }
 
-    /// Axes of which it has one value only.
+    /// Axes limited to a single value in this format.
     #[must_use]
     pub fn single(self) -> &'static [Axis] {
         match self {
@@ -56,9 +56,9 @@ impl MapForm {
     }
 }
 
-/// Lowest speed of 40 CFR 1037.565(d)(1), rpm, and what intermediate speeds are rounded to.
+/// Lowest speed and rounding step of intermediate speeds by 40 CFR 1037.565(d)(1), rpm.
 const GEM_SPEED_RPM: (f64, f64) = (600.0, 50.0);
-/// Oil of 40 CFR 1037.565(b)(7), degC: middle of the ranges for automatic transmissions and for others.
+/// Oil temperatures of 40 CFR 1037.565(b)(7), degC: middle of the ranges for automatic transmissions and for others.
 const GEM_OIL_DEGC: [f64; 2] = [90.0, 80.0];
 
 /// Speeds (rpm), input torques (Nm) and oil (degC) of 40 CFR 1037.565(d): 600 rpm, the engine's highest speed and three between them to the nearest
@@ -78,27 +78,27 @@ pub fn gem_grid(bench: &Bench) -> [(Axis, Vec<f64>); 3] {
         let share = f64::from(k) / 400.0;
         engine.full_load.at(engine.highest_rad_s * share)
     });
-    let most = torques.fold(0.0, f64::max);
+    let max_nm = torques.fold(0.0, f64::max);
     let oil = GEM_OIL_DEGC[usize::from(!bench.car().transmission.is_cvt())];
     [
         (Axis::Speed, (0..=4).map(speed).collect()),
-        (Axis::Torque, vec![0.0, most]),
+        (Axis::Torque, vec![0.0, max_nm]),
         (Axis::Sump, vec![oil]),
     ]
 }
 
-/// Torque loss at a point of the grid whose torque is that at the input shaft, Nm, and that torque.
+/// Axis values and torque loss, Nm, at a point of a grid over torque at the input shaft.
 fn loss_nm(bench: &Bench, grid: &LossGrid, index: usize) -> ([f64; Axis::COUNT], f64) {
-    let asked = grid.at(index);
-    let point = bench_point(&asked);
+    let requested = grid.at(index);
+    let point = bench_point(&requested);
     let at_input = bench.at_input_torque(&point, point.output_nm);
-    (asked, bench.solve(&at_input).total_nm())
+    (requested, bench.solve(&at_input).total_nm())
 }
 
-/// Writes the map of a whole box over a grid, whose torques are those at the input shaft, in a form that is not [`MapForm::Csv`].
+/// Writes the map of a whole box over a grid of input torques, in a format other than [`MapForm::Csv`].
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_form(
     out: &mut dyn Write,
     form: MapForm,
@@ -116,8 +116,11 @@ pub fn write_form(
 fn vtlm(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
     writeln!(out, "Input Speed [rpm],Input Torque [Nm],Torque Loss [Nm]")?;
     (0..grid.len()).try_for_each(|index| {
-        let (asked, loss) = loss_nm(bench, grid, index);
-        let (speed, torque) = (asked[Axis::Speed as usize], asked[Axis::Torque as usize]);
+        let (requested, loss) = loss_nm(bench, grid, index);
+        let (speed, torque) = (
+            requested[Axis::Speed as usize],
+            requested[Axis::Torque as usize],
+        );
         writeln!(out, "{speed:.2},{torque:.2},{loss:.4}")
     })
 }
@@ -133,9 +136,9 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
         "{ratio},Input speed [r/min],Input torque [N.m],Power loss [kW]"
     )?;
     (0..grid.len()).try_for_each(|index| {
-        let asked = grid.at(index);
-        let point = bench_point(&asked);
-        // Without load the output shaft turns freely, and the input torque is the loss (1037.565(e)(4), (f)(1)).
+        let requested = grid.at(index);
+        let point = bench_point(&requested);
+        // An unloaded output shaft turns freely, and the input torque is the loss (1037.565(e)(4), (f)(1)).
         let unloaded = point.output_nm.abs() <= 0.0;
         let point = match unloaded {
             true => point,
@@ -143,7 +146,10 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
         };
         let answer = bench.solve(&point);
         let loss_kw = answer.total_nm() * point.input_rad_s / 1e3;
-        let (ratio, speed) = (asked[Axis::Ratio as usize], asked[Axis::Speed as usize]);
+        let (ratio, speed) = (
+            requested[Axis::Ratio as usize],
+            requested[Axis::Speed as usize],
+        );
         writeln!(
             out,
             "{ratio:.3},{speed:.1},{:.2},{loss_kw:.4}",
@@ -153,15 +159,15 @@ fn gem(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
 }
 
 fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<()> {
-    // Ascending in viscosity: descending in temperature.
-    let mut oil: Vec<f64> = grid.of(Axis::Sump).to_vec();
+    // Viscosity ascends as temperature descends.
+    let mut oil: Vec<f64> = grid.axis_values(Axis::Sump).to_vec();
     oil.sort_by(|a, b| b.total_cmp(a));
     oil.dedup();
-    let mut speeds: Vec<f64> = grid.of(Axis::Speed).to_vec();
+    let mut speeds: Vec<f64> = grid.axis_values(Axis::Speed).to_vec();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup();
     let point = |ratio: f64, torque: f64, oil: f64, speed: f64| -> BenchPoint {
-        let mut asked = [f64::NAN; Axis::COUNT];
+        let mut requested = [f64::NAN; Axis::COUNT];
         for (axis, value) in [
             (Axis::Ratio, ratio),
             (Axis::Torque, torque),
@@ -169,9 +175,9 @@ fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<(
             (Axis::Speed, speed),
             (Axis::Throttle, 0.0),
         ] {
-            asked[axis as usize] = value;
+            requested[axis as usize] = value;
         }
-        bench_point(&asked)
+        bench_point(&requested)
     };
     writeln!(out, "#1")?;
     let name = &bench.car().oil.name;
@@ -179,9 +185,9 @@ fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<(
         out,
         "# torque loss at the input shaft, Nm, over input speed, rad/s (rows), and kinematic viscosity of the oil in the sump, m2/s (columns); computed with {name}"
     )?;
-    let ratios = (1..).zip(grid.of(Axis::Ratio));
+    let ratios = (1..).zip(grid.axis_values(Axis::Ratio));
     for (i, ratio) in ratios {
-        for (k, torque) in (1..).zip(grid.of(Axis::Torque)) {
+        for (k, torque) in (1..).zip(grid.axis_values(Axis::Torque)) {
             writeln!(out, "# ratio or gear {ratio}, input torque {torque} Nm")?;
             let (rows, columns) = (speeds.len() + 1, oil.len() + 1);
             write!(out, "double loss_{i}_{k}({rows},{columns})\n0")?;
@@ -191,8 +197,8 @@ fn modelica(out: &mut dyn Write, bench: &Bench, grid: &LossGrid) -> io::Result<(
             }
             for speed in &speeds {
                 let row = |degc: &f64| {
-                    let asked = point(*ratio, *torque, *degc, *speed);
-                    let at_input = bench.at_input_torque(&asked, *torque);
+                    let requested = point(*ratio, *torque, *degc, *speed);
+                    let at_input = bench.at_input_torque(&requested, *torque);
                     bench.solve(&at_input).total_nm()
                 };
                 write!(

@@ -1,16 +1,16 @@
-//! Our losses in the form of the measured maps that a vehicle file can name: `[transmission.cvt.maps]`, `[transmission.manual.maps]`.
+//! Losses of the model in the format of the measured maps of a vehicle file: `[transmission.cvt.maps]`, `[transmission.manual.maps]`.
 //!
-//! The torque axis of such a map is the component's own: at the secondary pulley for the belt, behind it without the final drive's loss
-//! for the final drive, at the input shaft for a whole box. The other components of a CVT do not depend on torque.
+//! The torque axis depends on the component: torque at the secondary pulley for the belt, behind it without the final drive's loss for the final
+//! drive, at the input shaft for a whole box. Other components of a CVT do not depend on torque.
 
 use std::io::{self, Write};
 
 use super::losses::{Axis, LossGrid, bench_point};
 use crate::Component;
 use crate::table::{Column, write_csv};
-use cvtcycle_model::bench::{Bench, BenchPoint, Parts};
+use cvtcycle_model::rig::{Bench, BenchPoint, Parts};
 
-/// A component that a map can replace, named like its key in the vehicle file.
+/// Component that a map can replace, named like its key in the vehicle file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapPart {
     /// Whole belt.
@@ -41,12 +41,12 @@ impl MapPart {
         ("box", MapPart::Box),
     ];
 
-    /// Whether it is a part of a CVT alone.
-    pub fn of_cvt(self) -> bool {
+    /// True for a part that only a CVT has.
+    pub fn is_cvt_only(self) -> bool {
         self != MapPart::Box
     }
 
-    /// The torque column of its map, if its loss depends on torque.
+    /// Name of the map's torque column, if the loss depends on torque.
     pub fn torque_column(self) -> Option<&'static str> {
         match self {
             MapPart::Belt | MapPart::FinalDrive => Some("output_torque_nm"),
@@ -55,7 +55,7 @@ impl MapPart {
         }
     }
 
-    /// Loss at a point whose torque is the map's own, Nm at the input shaft.
+    /// Loss at a point whose torque is that of the map's axis, Nm at the input shaft.
     pub fn loss_nm(self, bench: &Bench, point: &BenchPoint) -> f64 {
         let part = |component: Component, point: &BenchPoint| bench.solve(point).part_nm(component);
         let at_output = BenchPoint {
@@ -69,7 +69,7 @@ impl MapPart {
             MapPart::SealRing => part(Component::SealRing, point),
             MapPart::FinalDrive => part(Component::FinalDrive, &at_output),
             MapPart::Belt => {
-                // Without the final drive and rings the torque of the belt with its bearings is what was asked for.
+                // Without the losses of final drive and rings, the rig's torque is that of the belt with its bearings.
                 let parts = Parts {
                     final_drive: false,
                     seal_rings: false,
@@ -87,13 +87,13 @@ impl MapPart {
     }
 }
 
-/// A point of a map: its axes and the loss.
+/// Axes of a map and the loss.
 type MapPoint = ([f64; Axis::COUNT], f64);
 
-/// Columns of the map over a grid: its axes, then the loss.
+/// Columns of the map over a grid: axes, then the loss.
 fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPoint>> {
     let ratio = if is_cvt { "ratio" } else { "gear" };
-    let pressure = !grid.of(Axis::Pressure).is_empty() && part.of_cvt();
+    let pressure = !grid.axis_values(Axis::Pressure).is_empty() && part.is_cvt_only();
     let axes = [
         (Some(ratio), Axis::Ratio),
         (Some("input_speed_rpm"), Axis::Speed),
@@ -102,7 +102,7 @@ fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPo
         (Some("oil_temp_degc"), Axis::Sump),
     ];
     let axes = axes.into_iter().filter_map(|(name, axis)| {
-        let get = move |(asked, _): &MapPoint| asked[axis as usize];
+        let get = move |(requested, _): &MapPoint| requested[axis as usize];
         Some(Column::number(name?, "", "", get))
     });
     let loss = Column::number("torque_loss_nm", "", "", |(_, loss)| *loss);
@@ -112,7 +112,7 @@ fn map_columns(part: MapPart, is_cvt: bool, grid: &LossGrid) -> Vec<Column<MapPo
 /// Writes the map of a component over a grid as CSV, one line a point.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_map(
     out: &mut dyn Write,
     bench: &Bench,
@@ -120,8 +120,8 @@ pub fn write_map(
     grid: &LossGrid,
 ) -> io::Result<()> {
     let rows = (0..grid.len()).map(|index| {
-        let asked = grid.at(index);
-        (asked, part.loss_nm(bench, &bench_point(&asked)))
+        let requested = grid.at(index);
+        (requested, part.loss_nm(bench, &bench_point(&requested)))
     });
     let is_cvt = bench.car().transmission.is_cvt();
     write_csv(out, &map_columns(part, is_cvt, grid), rows, &[])

@@ -1,6 +1,6 @@
 //! Component losses at one operating point or over a grid of points, as rows with named columns.
 //!
-//! The values of a grid stay in the units of their columns: what the user wrote is written back unchanged.
+//! Values of a grid stay in the units of their columns, so that the user's numbers are written back unchanged.
 
 mod grid;
 
@@ -10,7 +10,7 @@ use std::io::{self, Write};
 
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::to_si;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
 use serde_json::{Value, json};
 
@@ -27,17 +27,17 @@ const SCHEMA: u32 = 1;
 /// One solved point.
 #[derive(Clone, Copy, Debug)]
 pub struct LossRow {
-    /// What was asked for, by [`Axis`] in the units of the columns; NaN where not given.
-    pub asked: [f64; Axis::COUNT],
-    /// The same in SI units.
+    /// Requested values, by [`Axis`] in the units of the columns; NaN where not given.
+    pub requested: [f64; Axis::COUNT],
+    /// Operating point in SI units.
     pub point: BenchPoint,
-    /// The bench's answer.
+    /// Answer of the rig.
     pub answer: BenchAnswer,
 }
 
-/// The point that values in the units of the columns mean.
-pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
-    let value = |axis: Axis| asked[axis as usize];
+/// Converts requested values from the units of the columns to SI.
+pub fn bench_point(requested: &[f64; Axis::COUNT]) -> BenchPoint {
+    let value = |axis: Axis| requested[axis as usize];
     let given =
         |axis: Axis, suffix: &str| Some(to_si(suffix, value(axis))).filter(|x| x.is_finite());
     BenchPoint {
@@ -53,7 +53,7 @@ pub fn bench_point(asked: &[f64; Axis::COUNT]) -> BenchPoint {
 }
 
 impl LossGrid {
-    /// Solves all points one after the other.
+    /// Solves the points one after the other.
     pub fn rows<'a>(&'a self, bench: &'a Bench) -> impl Iterator<Item = LossRow> + 'a {
         (0..self.len()).map(|index| LossRow::new(bench, self.at(index)))
     }
@@ -61,13 +61,13 @@ impl LossGrid {
 
 impl LossRow {
     /// Solves a point.
-    pub fn new(bench: &Bench, asked: [f64; Axis::COUNT]) -> Self {
-        let point = match asked[Axis::InputTorque as usize] {
-            wanted_nm if wanted_nm.is_nan() => bench_point(&asked),
-            wanted_nm => bench.at_input_torque(&bench_point(&asked), wanted_nm),
+    pub fn new(bench: &Bench, requested: [f64; Axis::COUNT]) -> Self {
+        let point = match requested[Axis::InputTorque as usize] {
+            wanted_nm if wanted_nm.is_nan() => bench_point(&requested),
+            wanted_nm => bench.at_input_torque(&bench_point(&requested), wanted_nm),
         };
         LossRow {
-            asked,
+            requested,
             point,
             answer: bench.solve(&point),
         }
@@ -83,7 +83,7 @@ impl LossRow {
         self.point.output_nm * self.answer.output_rad_s
     }
 
-    /// Power out over power in, whichever way it flows; NaN where both shafts drive.
+    /// Power out over power in, in either direction of power flow; NaN where both shafts drive.
     pub fn efficiency(&self) -> f64 {
         let (input, output) = (self.input_w(), self.output_w());
         if input > 0.0 && output >= 0.0 {
@@ -111,7 +111,7 @@ impl LossRow {
         })
     }
 
-    /// How the belt's solution ended, as in the `belt` command; empty without a belt model.
+    /// Status of the belt's solution, as in the `belt` command; empty without a belt model.
     pub fn belt_status(&self) -> &'static str {
         match self.answer.belt {
             None => "",
@@ -121,31 +121,35 @@ impl LossRow {
         }
     }
 
-    fn asked_or(&self, axis: Axis, answered: f64) -> f64 {
-        let asked = self.asked[axis as usize];
-        if asked.is_nan() { answered } else { asked }
+    fn requested_or(&self, axis: Axis, answered: f64) -> f64 {
+        let requested = self.requested[axis as usize];
+        if requested.is_nan() {
+            answered
+        } else {
+            requested
+        }
     }
 }
 
-/// Components that a bench knows: all but the launch clutch, which is locked.
+/// Components that the rig covers: all but the launch clutch, which is locked.
 fn bench_components(transmission: &Transmission) -> Vec<Component> {
     let mut components = transmission.components();
     components.retain(|c| *c != Component::LaunchClutch);
     components
 }
 
-/// Columns for a transmission, in the order in which they are written.
+/// Columns for a transmission, in output order.
 pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     let components = bench_components(transmission);
     let mut list = columns! { LossRow;
-        number "input_speed_rpm", "rpm", "speed of the input shaft", r => r.asked[Axis::Speed as usize];
-        number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.asked[Axis::Ratio as usize], Scope::Cvt;
-        count "gear", "", "gear", r => r.asked[Axis::Ratio as usize] as u64, Scope::Manual;
+        number "input_speed_rpm", "rpm", "speed of the input shaft", r => r.requested[Axis::Speed as usize];
+        number "belt_ratio", "-", "belt ratio, secondary over primary running radius", r => r.requested[Axis::Ratio as usize], Scope::Cvt;
+        count "gear", "", "gear", r => r.requested[Axis::Ratio as usize] as u64, Scope::Manual;
         number "output_torque_nm", "Nm", "torque taken from the output shaft, after the final drive", r => r.point.output_nm;
-        number "transmission_sump_degc", "degC", "transmission oil in the sump", r => r.asked[Axis::Sump as usize];
-        number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them", r => r.asked_or(Axis::Belt, degc(r.answer.belt_k)), Scope::Cvt;
+        number "transmission_sump_degc", "degC", "transmission oil in the sump", r => r.requested[Axis::Sump as usize];
+        number "belt_spray_degc", "degC", "belt, pulleys and the oil sprayed off them", r => r.requested_or(Axis::Belt, degc(r.answer.belt_k)), Scope::Cvt;
         number "throttle", "-", "throttle that the clamp law sees", r => r.point.throttle, Scope::Cvt;
-        number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => r.asked_or(Axis::Pressure, bar(r.answer.secondary_pa)), Scope::Cvt;
+        number "secondary_pressure_bar", "bar", "secondary pulley pressure", r => r.requested_or(Axis::Pressure, bar(r.answer.secondary_pa)), Scope::Cvt;
         number "slip_percent", "%", "belt slip", r => 100.0 * r.slip(), Scope::Cvt;
         number "active_segments", "-", "segments that carry; whole numbers in the printed forms, 0 where there are none", r => r.answer.belt.map_or(f64::NAN, |belt| belt.slip.active_segments), Scope::Cvt;
         text "belt_status", "", "ok, gross_slip, or no_active_arc: no number of segments carries the load (printed forms only)", r => r.belt_status(), Scope::Cvt;
@@ -171,14 +175,14 @@ pub fn columns(transmission: &Transmission) -> Vec<Column<LossRow>> {
     list
 }
 
-/// The losses of a transmission over a grid of points, and what they were computed from.
+/// Losses of a transmission over a grid of points, with their inputs.
 #[derive(Debug)]
 pub struct LossTable {
     /// Checked vehicle.
     pub setup: Setup,
-    /// Its bench.
+    /// Rig with the vehicle's transmission.
     pub bench: Bench,
-    /// The points.
+    /// Operating points.
     pub grid: LossGrid,
     /// Name of the belt model.
     pub formulation: String,
@@ -192,12 +196,12 @@ impl LossTable {
         self.setup.transmission().is_cvt()
     }
 
-    /// Solves all points one after the other.
+    /// Solves the points one after the other.
     pub fn rows(&self) -> impl Iterator<Item = LossRow> + '_ {
         self.grid.rows(&self.bench)
     }
 
-    /// Components that have a loss on the bench.
+    /// Components that have a loss on the rig.
     pub fn components(&self) -> Vec<Component> {
         bench_components(self.setup.transmission())
     }
@@ -219,13 +223,14 @@ impl LossTable {
         list
     }
 
-    /// The values of some axes at a point, in words.
-    pub fn held(&self, asked: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
+    /// Formats the values of some axes at a point in words.
+    pub fn values_in_words(&self, requested: &[f64; Axis::COUNT], axes: &[Axis]) -> String {
         let cvt = self.is_cvt();
-        let given =
-            |axis: &&Axis| !asked[**axis as usize].is_nan() && (cvt || **axis != Axis::Throttle);
+        let given = |axis: &&Axis| {
+            !requested[**axis as usize].is_nan() && (cvt || **axis != Axis::Throttle)
+        };
         let axes = axes.iter().filter(given);
-        let words = axes.map(|axis| axis.words(cvt, asked[*axis as usize]));
+        let words = axes.map(|axis| axis.words(cvt, requested[*axis as usize]));
         words.collect::<Vec<_>>().join(", ")
     }
 
@@ -233,7 +238,7 @@ impl LossTable {
         columns(self.setup.transmission())
     }
 
-    /// Everything of the JSON object but its points, which go on as the map of a component where one is named.
+    /// Builds the JSON object without its points; `map` names the component if they continue as its map.
     pub fn json_head(&self, map: Option<&str>) -> Value {
         let rest = json!({
             "settings": {
@@ -246,15 +251,15 @@ impl LossTable {
             "columns": json_columns(&self.columns()),
             "count": self.grid.len(),
         });
-        // What the points follow from: they are computed while they are written.
-        let of = (&rest, car_sha256(&self.setup), &self.grid.values, map);
-        Manifest::new(SCHEMA).of_run(&of).with(&rest)
+        // The run is named by its inputs: the points are computed while they are written.
+        let inputs = (&rest, car_sha256(&self.setup), &self.grid.values, map);
+        Manifest::new(SCHEMA).for_run(&inputs).with(&rest)
     }
 
     /// Writes rows as CSV.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_csv(
         &self,
         out: &mut dyn Write,
@@ -266,7 +271,7 @@ impl LossTable {
     /// Writes the JSON object with rows as its points, one a line.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_json(
         &self,
         out: &mut dyn Write,

@@ -1,20 +1,20 @@
-//! Numbers as text: exact for files, rounded for people.
+//! Formats numbers: exactly for files, rounded for people.
 
 use std::fmt::Write as _;
 
-/// Text in place of a missing number in tables for people.
+/// Placeholder for a missing number in tables for people.
 pub const NONE: &str = "-";
 
-/// An exact number is given with an exponent below this one ...
+/// Exact numbers below this have an exponent.
 const SMALL: f64 = 1e-5;
-/// ... and from this one on.
+/// Exact numbers from this on have an exponent.
 const LARGE: f64 = 1e16;
 
-/// A rounded number from here on is given with an exponent.
+/// Rounded numbers from this on have an exponent.
 const MANY_FIGURES: f64 = 1e15;
 
-/// Appends the shortest decimal that reads back to the same number, with an exponent below 1e-5 and from 1e16 on; `NaN`, `inf` and
-/// `-inf` for what is not finite, zero without a sign.
+/// Appends the shortest decimal that reads back to the same number, with an exponent below 1e-5 and from 1e16 on. Values that are not finite
+/// become `NaN`, `inf` and `-inf`; zero has no sign.
 pub fn push_exact(text: &mut String, x: f64) {
     let x = x + 0.0;
     let size = x.abs();
@@ -34,7 +34,7 @@ pub fn push_exact(text: &mut String, x: f64) {
     debug_assert!(done.is_ok());
 }
 
-/// Appends what `{x}` gives: the shortest decimal that reads back to the same number, without an exponent.
+/// Appends the text of `{x}`: the shortest decimal that reads back to the same number, without an exponent.
 pub fn push_plain(text: &mut String, x: f64) {
     if let Some(whole) = whole(x) {
         push_whole(text, whole);
@@ -48,7 +48,7 @@ pub fn push_plain(text: &mut String, x: f64) {
     debug_assert!(done.is_ok());
 }
 
-/// Appends what `{x:?}` gives: as [`push_plain`], with a point in whole numbers, and with an exponent below 1e-4 and from 1e16 on.
+/// Appends the text of `{x:?}`: as [`push_plain`], with a point in whole numbers, and with an exponent below 1e-4 and from 1e16 on.
 pub fn push_debug(text: &mut String, x: f64) {
     let size = x.abs();
     if let Some(whole) = whole(x) {
@@ -63,7 +63,7 @@ pub fn push_debug(text: &mut String, x: f64) {
     }
 }
 
-/// A number that is whole, not negative and not too large; none for a zero with a sign.
+/// Converts a whole, non-negative number that fits; `None` for negative zero.
 fn whole(x: f64) -> Option<u32> {
     let whole = x as u32;
     (f64::from(whole).to_bits() == x.to_bits()).then_some(whole)
@@ -83,22 +83,22 @@ fn push_whole(text: &mut String, mut whole: u32) {
     text.extend(digits[at..].iter().map(|digit| char::from(*digit)));
 }
 
-/// Whether no two shortest decimals can be equally near to a number: of these `zmij` takes the even one and the standard library the larger. A number that
-/// lies half-way between two decimals of k - 1 places is a multiple of 2^-k. Decimals of k - 2 places are too coarse for its last bit 2^-m, those
-/// of k - 1 are not: (m - k) >= 0.69 m - 2, which below 2^40, where m >= 12, are six bits of zero at its end.
+/// Tests that no two shortest decimals can be equally near to a number; on such ties `zmij` takes the even one and the standard library the
+/// larger. A number half-way between two decimals of k - 1 places is a multiple of 2^-k. Decimals of k - 2 places are too coarse for its last
+/// bit 2^-m, those of k - 1 are not: (m - k) >= 0.69 m - 2, which below 2^40, where m >= 12, are six bits of zero at its end.
 fn has_one_nearest(x: f64) -> bool {
     const LAST_BITS: u64 = 0x3f;
     x.to_bits() & LAST_BITS != 0 && x.abs() < (1_u64 << 40) as f64
 }
 
-/// Appends a number that has one nearest shortest decimal, with an exponent below [`SMALL`]: the digits of `{x}` in a third of its time.
+/// Appends a number with a unique nearest shortest decimal, with an exponent below [`SMALL`]: the digits of `{x}` in a third of the time.
 fn push_digits(text: &mut String, x: f64) {
     let mut digits = zmij::Buffer::new();
     let digits = digits.format_finite(x);
     text.push_str(digits.strip_suffix(".0").unwrap_or(digits));
 }
 
-/// The text of [`push_exact`]; empty for a number that is not finite.
+/// Text of [`push_exact`]; empty for a number that is not finite.
 pub fn exact(x: f64) -> String {
     let mut text = String::new();
     if x.is_finite() {
@@ -107,13 +107,13 @@ pub fn exact(x: f64) -> String {
     text
 }
 
-/// A number, or none where it is not finite; zero without a sign.
+/// `None` unless finite; zero without a sign.
 pub fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x + 0.0)
 }
 
-/// A number with fixed decimals, without the sign of a rounded zero; [`NONE`] where there is none. From 1e15 on, where the figures
-/// before the point are more than a number has, with an exponent.
+/// Formats with fixed decimals, without the sign of a rounded zero; [`NONE`] for a missing number. From 1e15 on, beyond the precision of an
+/// `f64`, with an exponent.
 ///
 /// ```
 /// use cvtcycle_output::number::fixed;
@@ -134,7 +134,7 @@ pub fn fixed(x: impl Into<Option<f64>>, decimals: usize) -> String {
     }
 }
 
-/// A number with fixed decimals and its sign.
+/// Formats with fixed decimals and sign.
 pub fn signed(x: impl Into<Option<f64>>, decimals: usize) -> String {
     let x = x.into();
     let text = fixed(x, decimals);
@@ -145,22 +145,22 @@ pub fn signed(x: impl Into<Option<f64>>, decimals: usize) -> String {
     }
 }
 
-/// Whether a text has a digit other than zero.
+/// Tests for a digit other than zero.
 fn has_digits(text: &str) -> bool {
     text.bytes().any(|b| (b'1'..=b'9').contains(&b))
 }
 
-/// A part as per cent of a whole.
+/// Formats a part as per cent of a whole.
 pub fn percent(part: impl Into<Option<f64>>, whole: f64, decimals: usize) -> String {
     fixed(part.into().map(|part| part / whole * 100.0), decimals)
 }
 
-/// The shortest text of a number that the user gave.
+/// Formats a user's number as the shortest text.
 pub fn plain(x: f64) -> String {
     format!("{}", if x.abs() > 0.0 { x } else { 0.0 })
 }
 
-/// A small error such as `3e-15`.
+/// Formats a small error such as `3e-15`.
 pub fn tiny(x: Option<f64>) -> String {
     match x {
         Some(x) if x.abs() > 0.0 => format!("{x:.0e}"),
@@ -173,9 +173,9 @@ pub fn tiny(x: Option<f64>) -> String {
 mod tests {
     use super::*;
 
-    /// Truth: the standard library's own digits. The numbers are all bit patterns in turn, then those of tables: few decimals, any size.
+    /// Truth: the standard library's digits. Covers bit patterns of all kinds, then numbers of tables: few decimals, any size.
     #[test]
-    fn the_digits_are_those_of_the_standard_library() {
+    fn digits_equal_those_of_the_standard_library() {
         let ends = [
             0.0,
             -0.0,
@@ -195,7 +195,7 @@ mod tests {
         let bits = |k: u64| k.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let any = (0..200_000).map(|k| f64::from_bits(bits(k)));
         let sized = |k: u64| (bits(k) >> 40) as f64 * 10_f64.powi((k % 40) as i32 - 24);
-        // Few bits: half-way between two decimals, where the two differ.
+        // Few bits give numbers half-way between two decimals, where the two differ.
         let halved = |k: u64| (bits(k) >> (24 + k % 20)) as f64 / (1_u64 << (k % 24)) as f64;
         let numbers = ends.chain(any).chain((0..200_000).map(sized));
         for x in numbers.chain((0..400_000).map(halved)) {

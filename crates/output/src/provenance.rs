@@ -1,4 +1,4 @@
-//! What a car was made from: its files with their hashes, what differs from the shipped vehicle most like it, every value.
+//! Origin of a car: its files with their hashes, the differences from the most similar shipped vehicle, and every value.
 
 use crate::files::{hex, sha256};
 use crate::number::{finite, push_debug, push_plain};
@@ -17,9 +17,9 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::RatioDemand;
 
-/// Speed up to which lines of the variogram are drawn, km/h.
+/// Maximum speed of the drawn lines of the variogram, km/h.
 const FASTEST_KMH: f64 = 200.0;
-/// Shares of rated power of the listed targets of a ratio control, with their names.
+/// Listed targets of a ratio control, as shares of rated power with their names.
 const TARGETS: [(f64, &str); 4] = [
     (-0.05, "target in overrun"),
     (0.10, "target, 10 % of rated power"),
@@ -32,7 +32,7 @@ pub fn hash(bytes: &[u8]) -> String {
     hex(&sha256(bytes))
 }
 
-/// A cycle's name and hash.
+/// Records a cycle's name and hash.
 pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
     CycleRecord {
         name: cycle.name.clone(),
@@ -41,13 +41,13 @@ pub fn cycle_record(cycle: &Cycle) -> CycleRecord {
     }
 }
 
-/// Hash of what a cycle prescribes: of the text of its phases, intervals and gears.
+/// Hashes the text of a cycle's phases, intervals and gears.
 pub fn cycle_sha256(cycle: &Cycle) -> String {
     hash(cycle_text(cycle).as_bytes())
 }
 
-/// A cycle as lines: weighting and phases, then for each trace a row an interval and the columns of its gears. Speeds are in m/s. Name and
-/// title are left out.
+/// Text of a cycle: weighting and phases, then for each trace one row an interval and the columns of its gears. Speeds are in m/s. Omits name
+/// and title.
 fn cycle_text(cycle: &Cycle) -> String {
     let mut text = match cycle.weighting {
         Weighting::None => "weighting = none\n".to_owned(),
@@ -88,7 +88,7 @@ fn cycle_text(cycle: &Cycle) -> String {
     text
 }
 
-/// Appends a command as its `Display` has it, without the cost of formatting for the commonest.
+/// Appends a command as its `Display` does, without the cost of formatting for the most common one.
 fn push_command(text: &mut String, command: GearCommand) {
     match command {
         GearCommand::InGear(gear @ 0..=9) => text.push(char::from(b'0' + gear)),
@@ -97,13 +97,13 @@ fn push_command(text: &mut String, command: GearCommand) {
     }
 }
 
-/// Hash of a whole checked car: of the text of its values and maps.
+/// Hashes the text of a checked car's values and maps.
 pub fn car_sha256(setup: &Setup) -> String {
     hash(car_text(setup).as_bytes())
 }
 
-/// A checked car as lines `key = value`, sorted by key and in SI units, with the formulation of its belt and the points of the maps that its
-/// files name. What only names or describes a file (`[vehicle]`, titles), statuses and notes are left out.
+/// Text of a checked car: lines `key = value`, sorted by key and in SI units, with the formulation of its belt and the points of the maps that
+/// its files name. Omits names and descriptions of files (`[vehicle]`, titles), statuses and notes.
 fn car_text(setup: &Setup) -> String {
     let is_value = |info: &&KeyInfo| {
         let names = info.key.starts_with("vehicle.") || info.key.ends_with(".title");
@@ -143,10 +143,10 @@ fn car_text(setup: &Setup) -> String {
     lines.concat()
 }
 
-/// What is known of a car. `name` is its name within the run, `word` what the user calls it.
+/// Builds the record of a car. `name` is its name within the run, `word` the user's name for it.
 ///
 /// # Errors
-/// Problems of files, none where the car has just been loaded from them.
+/// Problems of files; cannot occur if the car has just been loaded from them.
 pub fn car_record(
     name: &str,
     word: &str,
@@ -154,21 +154,21 @@ pub fn car_record(
     setup: &Setup,
 ) -> Result<CarRecord, Problems> {
     let (file, text, _) = text_of(word, Kind::Vehicle, options.named_by)?;
-    let of = |file: String, text: &str| FileRecord {
+    let file_record = |file: String, text: &str| FileRecord {
         file,
         sha256: hash(text.as_bytes()),
     };
     let fluid = |word: &str| {
         let (file, text, _) = text_of(word, Kind::Lubricant, options.named_by)?;
-        Ok::<_, Problems>(of(file, &text))
+        Ok::<_, Problems>(file_record(file, &text))
     };
     let [oil, engine_oil] = &setup.origin.fluids;
     let parents = setup.origin.parents.iter();
-    let inherited = parents.map(|(file, text)| of(file.clone(), text));
+    let inherited = parents.map(|(file, text)| file_record(file.clone(), text));
     let reference = reference(setup, word, options)?;
     Ok(CarRecord {
         name: name.to_owned(),
-        vehicle: of(file, &text),
+        vehicle: file_record(file, &text),
         inherited: inherited.collect(),
         lubricant: fluid(oil)?,
         engine_oil: fluid(engine_oil)?,
@@ -182,13 +182,14 @@ pub fn car_record(
     })
 }
 
-/// The shipped vehicle most like a car.
+/// Most similar shipped vehicle.
 struct Reference {
     setup: Setup,
     same: usize,
 }
 
-/// A shipped vehicle is held against itself, a file of the user, or a twin, against the shipped one with which it shares most values.
+/// Finds the reference: a shipped vehicle is its own, a user's file or a twin has the shipped one with which it shares the largest number of
+/// values.
 fn reference(setup: &Setup, word: &str, options: &Options) -> Result<Reference, Problems> {
     let plain = Options {
         formulation: options.formulation,
@@ -229,7 +230,7 @@ fn equal(a: &KeyInfo, b: &KeyInfo) -> bool {
     }
 }
 
-/// Values that differ, or that only one of both has; values set by the user first.
+/// Lists values that differ, or that only one of both has; values set by the user come first.
 fn changes(shipped: &[KeyInfo], here: &[KeyInfo]) -> Vec<Change> {
     let find = |list: &'_ [KeyInfo], key: &str| list.iter().find(|info| info.key == key).cloned();
     let mut list: Vec<(bool, Change)> = Vec::new();
@@ -286,7 +287,7 @@ fn fuel_map_record(setup: &Setup) -> FuelMapRecord {
     }
 }
 
-/// Engine speed over road speed, wheels and belt without slip: gears, or limits and targets of a ratio control.
+/// Engine speed over road speed, for rigid wheels and no belt slip: gears, or limits and targets of a ratio control.
 fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
     let radius_m = setup.road_load.base.wheel_radius_m;
     let highest_rpm = setup.engine().highest_rad_s * RAD_S;
@@ -324,7 +325,7 @@ fn speed_lines(setup: &Setup) -> Vec<SpeedLine> {
     }
 }
 
-/// Speed that the control ends at for a steady share of rated power at the wheels, rad/s.
+/// Speed at which the control settles for a steady share of rated power at the wheels, rad/s.
 fn target_rad_s(cvt: &Cvt, rated_w: f64, share: f64) -> f64 {
     cvt.ratio.target_rad_s(&RatioDemand {
         secondary_rad_s: 0.0,

@@ -1,6 +1,6 @@
-//! What a run was made from: command, files with their hashes, every value with its status, and how much each of them matters.
+//! Inputs of a run: command, files with their hashes, every value with its status, and the sensitivity to each.
 //!
-//! Written as `inputs.json` next to the summary, so that a report needs nothing but the directory.
+//! Written as `inputs.json` next to the summary, so that a report needs only the directory.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -13,26 +13,26 @@ pub const SCHEMA: u32 = 1;
 /// Name of the file.
 pub const FILE: &str = "inputs.json";
 
-/// What made a result: the first entries of every JSON file of results.
+/// Origin of a result: the first entries of every JSON file of results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// Version of the file's form; a new number when a name goes or changes its meaning.
     pub schema: u32,
-    /// What the directory of the file is, where this is known by the file.
+    /// Kind of the file's directory, where the file records it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kind: Option<String>,
     /// Name and version of the program.
     pub program: String,
-    /// Which build of the program: [`BUILD`]. Empty in files of versions that had none.
+    /// Build of the program: [`BUILD`]. Empty in files of versions without builds.
     #[serde(default)]
     pub build: String,
-    /// Which run the file is of: equal inputs and numbers have one [`run_word`]. Empty in files of versions that had none.
+    /// Run that the file belongs to: equal inputs and numbers have one [`run_word`]. Empty in files of versions without it.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub run: String,
 }
 
 impl Manifest {
-    /// Of this program, for a file in this version of its form.
+    /// Creates the manifest of this program for this version of a file's form.
     pub fn new(schema: u32) -> Self {
         Manifest {
             schema,
@@ -43,14 +43,14 @@ impl Manifest {
         }
     }
 
-    /// Of a run that `of` says everything about, besides what the manifest says itself.
+    /// Names the run by a hash of `inputs`, which must hold everything besides the manifest that identifies it.
     #[must_use]
-    pub fn of_run(self, of: &impl Serialize) -> Self {
-        let run = run_word(&(&self, of));
+    pub fn for_run(self, inputs: &impl Serialize) -> Self {
+        let run = run_word(&(&self, inputs));
         Manifest { run, ..self }
     }
 
-    /// One JSON object: these entries, then those of `rest`.
+    /// Builds one JSON object: these entries, then those of `rest`.
     pub fn with(&self, rest: &impl Serialize) -> Value {
         #[derive(Serialize)]
         struct Whole<'a, T> {
@@ -70,15 +70,15 @@ impl Manifest {
 /// Length of the word that names a run.
 const RUN_DIGITS: usize = 16;
 
-/// The word that names a run in all its files: a hash of what it was made from, or of what it found.
-pub fn run_word(of: &impl Serialize) -> String {
-    let text = serde_json::to_vec(of).unwrap_or_default();
+/// Name of a run in all its files: a hash of its inputs or results.
+pub fn run_word(inputs: &impl Serialize) -> String {
+    let text = serde_json::to_vec(inputs).unwrap_or_default();
     let mut word = hex(&sha256(&text));
     word.truncate(RUN_DIGITS);
     word
 }
 
-/// Everything that a run was made from.
+/// All inputs of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Version [`SCHEMA`] of this object, and the program.
@@ -90,7 +90,7 @@ pub struct Record {
     pub cycle: CycleRecord,
     /// The cars, the subject first.
     pub cars: Vec<CarRecord>,
-    /// How much each value matters; none where it was not asked for.
+    /// Sensitivity to each value; `None` unless requested.
     pub sensitivity: Option<Sensitivity>,
     /// SHA-256 of the other files that were written with it, by their names.
     #[serde(default, skip_serializing_if = "Sums::is_empty")]
@@ -98,7 +98,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Whether a file of that name is of this run; of a record of an early version, which lists none, any file is.
+    /// Tests that a file of that name belongs to this run. Records of early versions list no files and accept any name.
     pub fn has_file(&self, name: &str) -> bool {
         self.files.is_empty() || self.files.contains_key(name)
     }
@@ -140,11 +140,11 @@ pub struct CarRecord {
     pub engine_oil: FileRecord,
     /// SHA-256 of the whole checked car, with what its files name in turn.
     pub resolved_sha256: String,
-    /// The shipped vehicle that it is held against.
+    /// Shipped vehicle for comparison.
     pub reference: String,
-    /// Values of that vehicle, and how many of them are the same here.
+    /// Number of values of that vehicle, and of those equal here.
     pub reference_values: (usize, usize),
-    /// What differs from it.
+    /// Differences from it.
     pub changes: Vec<Change>,
     /// Every value.
     pub values: Vec<ValueRecord>,
@@ -154,7 +154,7 @@ pub struct CarRecord {
     pub speed_lines: Vec<SpeedLine>,
 }
 
-/// A value that is another one than in the shipped vehicle.
+/// A value that differs from the shipped vehicle's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// Dotted key.
@@ -200,13 +200,13 @@ pub struct FuelMapRecord {
 /// Engine speed over road speed at some state of the transmission.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpeedLine {
-    /// What it is.
+    /// Name of the state.
     pub name: String,
     /// Road speed in km/h and engine speed in rpm.
     pub points: Vec<(f64, f64)>,
 }
 
-/// How much single values matter.
+/// Sensitivity of the fuel to single values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// Change of each value, up and down, per cent of it.
@@ -215,21 +215,21 @@ pub struct Sensitivity {
     pub effects: Vec<Effect>,
 }
 
-/// What a change of one value of one car does to that car's fuel.
+/// Effect of a change of one value of one car on that car's fuel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effect {
     /// Car.
     pub car: String,
     /// Dotted key.
     pub key: String,
-    /// Change of the fuel with the value lowered, per cent; null where the car cannot be so.
+    /// Change of the fuel with the value lowered, per cent; null where the lowered value is invalid.
     pub lowered_percent: Option<f64>,
     /// Change of the fuel with the value raised, per cent.
     pub raised_percent: Option<f64>,
 }
 
 impl Effect {
-    /// The larger of both changes in magnitude, per cent; NaN if there is none.
+    /// Larger magnitude of both changes, per cent; NaN if both are missing.
     pub fn size_percent(&self) -> f64 {
         let both = [self.lowered_percent, self.raised_percent];
         let sizes = both.into_iter().flatten().map(f64::abs);

@@ -1,12 +1,12 @@
-//! The tables of the transmission rig's tests.
+//! Tables of the transmission rig's tests.
 
-use cvtcycle_model::bench::transmission::{
+use cvtcycle_model::keys::RAD_S;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::rig::transmission::{
     self as rig, Branch, Conditions, Loop, Moment, Piece, Plan, Stage, SteadyPoint, StripDown,
     TwoBoxes,
 };
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys::RAD_S;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint};
 use serde_json::{Map, Value, json};
 
 use crate::number::fixed;
@@ -14,12 +14,12 @@ use crate::table::{Cell, Column, csv_bytes, json_rows};
 use crate::trace::bar;
 use crate::{Component, Flags, columns};
 
-/// Branches closer than this have met, Nm: well within the error of the torque transducer.
+/// Distance below which branches count as met, Nm: well within the error of the torque transducer.
 pub const MEETING_NM: f64 = 0.1;
-/// Largest relative error of the energy balance of a transient.
+/// Maximum relative error of the energy balance of a transient.
 const MAX_ENERGY_ERROR: f64 = 1e-9;
 
-/// A number that the user gave, without what converting it there and back has added.
+/// Rounds off the error of converting a user's number to SI and back.
 pub fn given(x: f64) -> f64 {
     (x * 1e9).round() / 1e9 + 0.0
 }
@@ -34,7 +34,7 @@ pub fn oil_degc(set: &BenchPoint) -> f64 {
     given(set.sump_k - ZERO_DEGC_K)
 }
 
-/// From the smallest to the largest of some numbers.
+/// Minimum and maximum of some numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Range {
     /// Smallest.
@@ -44,8 +44,8 @@ pub struct Range {
 }
 
 impl Range {
-    /// The range of the finite ones; infinite ends the wrong way round if there are none.
-    pub fn of(values: impl Iterator<Item = f64>) -> Self {
+    /// Range of the finite values; inverted with infinite ends if there are none.
+    pub fn over(values: impl Iterator<Item = f64>) -> Self {
         let finite = values.filter(|x| x.is_finite());
         let empty = Range {
             low: f64::INFINITY,
@@ -57,7 +57,7 @@ impl Range {
         })
     }
 
-    /// Both ends with fixed decimals.
+    /// Formats both ends with fixed decimals.
     pub fn text(self, decimals: usize) -> String {
         if self.low > self.high {
             return crate::number::NONE.to_owned();
@@ -81,7 +81,7 @@ pub fn ranges(points: &[SteadyPoint], ratio: f64) -> (Range, Range) {
     let on = || points.iter().filter(|p| is_near(p.set.ratio, ratio));
     let losses = on().map(|p| p.answer.total_nm());
     let pressures = on().map(|p| bar(p.answer.secondary_pa));
-    (Range::of(losses), Range::of(pressures))
+    (Range::over(losses), Range::over(pressures))
 }
 
 /// A test of the rig.
@@ -147,7 +147,7 @@ impl RigResults {
         found
     }
 
-    /// Every operating point that was solved.
+    /// Iterates over all solved operating points.
     pub fn answers(&self) -> impl Iterator<Item = &BenchAnswer> {
         let steady = self.steady.iter().chain(&self.loaded).map(|p| &p.answer);
         let boxes = self.second_box.iter();
@@ -167,8 +167,8 @@ impl RigResults {
 
     /// Largest remainder of the strip-down after true loss and interaction, Nm.
     pub fn largest_remainder_nm(&self) -> f64 {
-        let of = |s: &StripDown| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs());
-        let pieces = self.strip_down.iter().flat_map(of);
+        let remainders = |s: &StripDown| Piece::ALL.map(|p| s.piece(p).remainder_nm().abs());
+        let pieces = self.strip_down.iter().flat_map(remainders);
         pieces.fold(0.0, |a, b| if b > a { b } else { a })
     }
 
@@ -221,11 +221,11 @@ impl RigResults {
 
     /// All results as entries of a JSON object; transients every 5 K, while the CSV file has every second.
     pub fn json(&self, points: &Plan) -> Map<String, Value> {
-        let of = |ratio: &f64| {
+        let ranges_json = |ratio: &f64| {
             let (loss, pressure) = ranges(&self.steady, *ratio);
             json!({ "ratio": ratio, "torque_loss_nm": loss.json(), "secondary_pressure_bar": pressure.json() })
         };
-        let ranges: Vec<Value> = points.ratios.iter().map(of).collect();
+        let ranges: Vec<Value> = points.ratios.iter().map(ranges_json).collect();
         let sum: f64 = self.second_box.iter().map(TwoBoxes::difference_nm).sum();
         let mean = sum / self.second_box.len() as f64;
         let steady = json_rows(&steady_columns(), &self.steady);
@@ -277,7 +277,7 @@ fn loop_json(l: &Loop) -> Value {
     })
 }
 
-/// What applies to any of some answers.
+/// Combines the flags of some answers.
 fn union<'a>(answers: impl IntoIterator<Item = &'a BenchAnswer>) -> Flags {
     let flags = answers.into_iter().map(|answer| answer.flags.0);
     Flags(flags.fold(0, |all, flags| all | flags))
@@ -328,7 +328,7 @@ fn steady_columns() -> Vec<Column<SteadyPoint>> {
     columns
 }
 
-/// Output over input power, %; NaN where nothing is delivered.
+/// Output over input power, %; NaN without output power.
 fn efficiency_percent(p: &SteadyPoint) -> f64 {
     let out = p.set.output_nm * p.answer.output_rad_s;
     if out > 0.0 {

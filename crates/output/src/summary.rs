@@ -1,7 +1,7 @@
-//! The numbers of a run as one object: `run --json`, `summary.json`, and what the tables print.
+//! Numbers of a run as one object: `run --json`, `summary.json`, and the source of the printed tables.
 //!
-//! Names are a contract with users' scripts. A number that was not computed, or is none, is null. Outside
-//! units (degC, kJ, L/100 km) begin here.
+//! Names are a contract with users' scripts. A number that was not computed, or is not finite, is null. Units for people (degC, kJ, L/100 km)
+//! begin here.
 
 mod alike;
 mod failure;
@@ -27,7 +27,7 @@ use crate::number::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::Outcome;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -39,14 +39,14 @@ pub struct Summary {
     pub manifest: Manifest,
     /// Name of the cycle.
     pub cycle: String,
-    /// How the cycle's file was read, where it was not written as the program's own are.
+    /// Interpretation of the cycle's file, if it is not in the program's own form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub read_as: Option<String>,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
     /// `soak`, `warm`, or the temperature of all nodes in degC.
     pub start: StartWord,
-    /// What else was asked for.
+    /// Other settings.
     pub settings: Settings,
     /// The subject, then the baselines.
     pub runs: Vec<RunSummary>,
@@ -68,7 +68,7 @@ pub enum StartWord {
 }
 
 impl StartWord {
-    /// As an option has it: the word, or the number.
+    /// Formats as an option: the word, or the number.
     #[must_use]
     pub fn text(&self) -> String {
         match self {
@@ -89,7 +89,7 @@ pub struct Settings {
     pub set: Vec<String>,
     /// Overrides of all cars.
     pub set_all: Vec<String>,
-    /// Whether departures from validity fail the run.
+    /// True if departures from validity fail the run.
     pub strict: bool,
 }
 
@@ -102,13 +102,13 @@ pub struct Comparison {
     pub fuel_percent: Option<f64>,
     /// Difference by group of phases, per cent.
     pub phases_percent: Named,
-    /// "like for like", or what makes that it is not; empty in results of earlier versions.
+    /// "like for like", or a summary of the differences; empty in results of earlier versions.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub likeness: String,
-    /// What differs besides the transmission and its oil: nothing where the comparison is like for like.
+    /// Differences other than the transmission and its oil: empty if the comparison is like for like.
     #[serde(default)]
     pub differences: Vec<Difference>,
-    /// The difference over the draws of a plan of uncertainty; none of a case that was not drawn.
+    /// Difference over the draws of a plan of uncertainty; `None` for a case that was not drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval: Option<DrawnDifference>,
 }
@@ -118,13 +118,13 @@ pub struct Comparison {
 pub struct Driven<'a> {
     /// Name, unique within the run.
     pub name: &'a str,
-    /// Its input.
+    /// Input.
     pub setup: &'a Setup,
-    /// What came out.
+    /// Result.
     pub outcome: &'a Outcome,
 }
 
-/// Puts the numbers of a run together; the first car is the subject.
+/// Summarises a run; the first car is the subject.
 ///
 /// ```
 /// use cvtcycle_config::Problems;
@@ -163,7 +163,7 @@ pub fn summarise(
             ..run_summary(cycle, role, &settings, car)
         })
         .collect();
-    // Two cars of one short name would be one in a table.
+    // Equal short names would be ambiguous in a table.
     let shorts: Vec<String> = runs.iter().map(|run| run.short.clone()).collect();
     for run in &mut runs {
         if shorts.iter().filter(|short| **short == run.short).count() > 1 {
@@ -172,11 +172,11 @@ pub fn summarise(
     }
     let baselines = runs.iter().zip(driven).skip(1);
     let comparison = baselines
-        .map(|(baseline, of)| {
+        .map(|(baseline, driven_baseline)| {
             let subject = driven[0].setup;
-            let differences = differences(subject, of.setup);
+            let differences = differences(subject, driven_baseline.setup);
             Comparison {
-                likeness: likeness(subject, of.setup, &differences),
+                likeness: likeness(subject, driven_baseline.setup, &differences),
                 differences,
                 ..compare(&runs[0], baseline)
             }
@@ -196,10 +196,10 @@ pub fn summarise(
 }
 
 impl Summary {
-    /// The same with the cars under their names in tables and figures, for words on it.
+    /// Copy with the cars under their names in tables and figures.
     #[must_use]
     pub fn labelled(&self) -> Self {
-        let mut of = self.clone();
+        let mut labelled = self.clone();
         let names: Vec<_> = self
             .runs
             .iter()
@@ -210,19 +210,23 @@ impl Summary {
                 *name = (*label).to_owned();
             }
         };
-        of.runs.iter_mut().for_each(|run| label(&mut run.vehicle));
-        of.comparison
+        labelled
+            .runs
             .iter_mut()
-            .for_each(|of| label(&mut of.baseline));
-        let contradicted = of.contradicted.iter_mut();
+            .for_each(|run| label(&mut run.vehicle));
+        labelled
+            .comparison
+            .iter_mut()
+            .for_each(|comparison| label(&mut comparison.baseline));
+        let contradicted = labelled.contradicted.iter_mut();
         contradicted
-            .filter_map(|of| of.baseline.as_mut())
+            .filter_map(|row| row.baseline.as_mut())
             .for_each(label);
-        of
+        labelled
     }
 }
 
-/// What a reader of a car's numbers should know, with the first of its doubts; what is doubted of the subject is not said again.
+/// Notes for readers of a car's numbers, its doubts first. Doubts of the subject are not repeated.
 fn notes(setup: &Setup, subject: &Setup, ambient_degc: f64) -> Vec<String> {
     let mut doubts = setup.doubts();
     if !std::ptr::eq(setup, subject) {
@@ -246,7 +250,7 @@ fn notes(setup: &Setup, subject: &Setup, ambient_degc: f64) -> Vec<String> {
     notes
 }
 
-/// Names the run of a summary and its record in both: by a hash of what they say, but for the words of the command line.
+/// Names the run in a summary and its record, by a hash of both without the command line.
 pub fn name_run(summary: &mut Summary, record: &mut Record) {
     let bare = Record {
         command: String::new(),
@@ -273,13 +277,13 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
     }
 }
 
-/// Numbers by name, in the order in which they were put in; none is a number that was not computed.
+/// Numbers by name, in insertion order; `None` for a number that was not computed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Named(IndexMap<String, Option<f64>>);
 
 impl Named {
-    /// The number of that name, if it is there and was computed.
+    /// Number of that name, if present and computed.
     pub fn get(&self, name: &str) -> Option<f64> {
         *self.0.get(name)?
     }

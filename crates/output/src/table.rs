@@ -1,7 +1,7 @@
 //! Tables: rows of any type under named columns, written as CSV, JSON, aligned text and Markdown.
 //!
-//! A table of a file is a list of [`Column`]s, mostly made with [`columns!`](crate::columns); it carries numbers unrounded. A table for
-//! people has [`TextColumns`], which round.
+//! A table of a file is a list of [`Column`]s, usually made with [`columns!`](crate::columns); its numbers are unrounded. A table for people has
+//! [`TextColumns`], which round.
 //!
 //! ```
 //! use cvtcycle_output::columns;
@@ -37,13 +37,13 @@ use crate::{Component, Flags};
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// A real number; a number that is not finite is missing.
+    /// Real number; missing unless finite.
     Number(f64),
     /// A whole number.
     Count(u64),
     /// Words.
     Text(Cow<'static, str>),
-    /// Index into the phase names of the cycle, which the row does not hold.
+    /// Index into the phase names of the cycle, which are passed separately.
     Phase(u16),
     /// A set of flags, written as names joined by `|`.
     Flags(Flags),
@@ -63,7 +63,7 @@ impl Cell {
         }
     }
 
-    /// Appends the text of the cell in a CSV file: empty for a missing number or phase.
+    /// Appends the cell as CSV: empty for a missing number or phase.
     pub fn push(&self, text: &mut String, phases: &[String]) {
         match self {
             Cell::Number(x) if !x.is_finite() => {}
@@ -78,7 +78,7 @@ impl Cell {
         }
     }
 
-    /// The cell in a JSON object: `null` for a missing number, a list for flags.
+    /// Converts the cell to JSON: `null` for a missing number, a list for flags.
     pub fn json(&self) -> Json {
         match self {
             Cell::Number(x) => finite(*x).into(),
@@ -100,7 +100,7 @@ fn push_names(text: &mut String, names: impl Iterator<Item = &'static str>) {
     }
 }
 
-/// Each value once, in the order in which they first occur.
+/// Keeps the first occurrence of each value, in order.
 pub fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut list = Vec::new();
     for value in values {
@@ -111,11 +111,11 @@ pub fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     list
 }
 
-/// What the cells of a column are.
+/// Kind of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// Real numbers; one that is not finite is missing.
+    /// Real numbers; missing unless finite.
     Number,
     /// Whole numbers.
     Count,
@@ -132,11 +132,11 @@ pub struct Head {
     pub unit: String,
     /// Meaning, one phrase.
     pub doc: String,
-    /// What its cells are.
+    /// Kind of the cells.
     pub kind: Kind,
 }
 
-/// The transmissions whose table has a column.
+/// Transmissions whose table has a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// All.
@@ -169,14 +169,14 @@ pub struct Column<R> {
     pub unit: &'static str,
     /// Meaning, one phrase.
     pub doc: Cow<'static, str>,
-    /// What its cells are.
+    /// Kind of the cells.
     pub kind: Kind,
-    /// The transmissions that have it.
+    /// Transmissions that have the column.
     pub scope: Scope,
     get: Arc<dyn Get<R>>,
 }
 
-/// A function from a row to its cell, and from many rows to their numbers in one call.
+/// Reads a cell from a row, or the numbers of many rows in one call.
 trait Get<R>: Send + Sync {
     fn cell(&self, row: &R) -> Cell;
     fn numbers(&self, rows: &[R], into: &mut Vec<f64>);
@@ -274,7 +274,7 @@ impl<R> Column<R> {
         self.get.cell(row)
     }
 
-    /// The number of a row; NaN where the cell is none.
+    /// Number of a row; NaN where the cell is not a number.
     pub fn number_of(&self, row: &R) -> f64 {
         self.cell(row).number()
     }

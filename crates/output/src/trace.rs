@@ -24,7 +24,7 @@ pub(crate) fn degc(temperature_k: f64) -> f64 {
     temperature_k - ZERO_DEGC_K
 }
 
-/// Every column that a trace can have, in the order in which they are written.
+/// All columns of a trace, in output order.
 pub static COLUMNS: LazyLock<Vec<TraceColumn>> = LazyLock::new(|| {
     let mut list = columns! { Row;
         number "time_s", "s", "end of the step, from the start of the cycle; every other column is the mean over the step that ends here, temperatures are those at its end", r => r.time_s;
@@ -83,13 +83,13 @@ fn loss(component: Component) -> TraceColumn {
     .only(Scope::Has(component))
 }
 
-/// The columns of a run, in the order of the table.
+/// Columns of a run, in the order of the table.
 pub fn columns_for(cvt: bool, components: &[Component]) -> Vec<&'static TraceColumn> {
     let has = |column: &&TraceColumn| column.scope.includes(cvt, components);
     COLUMNS.iter().filter(has).collect()
 }
 
-/// The column of that name.
+/// Looks up a column by name.
 pub fn column(name: &str) -> Option<&'static TraceColumn> {
     COLUMNS.iter().find(|column| column.name == name)
 }
@@ -117,7 +117,7 @@ pub fn loss_column(component: Component) -> Option<&'static TraceColumn> {
 /// ```
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_trace<W: Write>(
     out: W,
     columns: &[&TraceColumn],

@@ -1,8 +1,8 @@
-//! The tables of the variator rig: a row a point, and a row a curve.
+//! Tables of the variator rig: one row a point, and one row a curve.
 
 use std::io::{self, Write};
 
-use cvtcycle_model::bench::variator::{CurveSummary, Held, Resolution, VariatorRig, VariatorRow};
+use cvtcycle_model::rig::variator::{CurveSummary, Held, Resolution, VariatorRig, VariatorRow};
 use serde_json::json;
 
 use crate::columns;
@@ -16,7 +16,7 @@ use cvtcycle_model::keys::rpm;
 
 /// Version of the JSON object.
 const SCHEMA: u32 = 1;
-/// Largest default torque over the torque capacity.
+/// Maximum default torque over the torque capacity.
 const MAX_TORQUE: f64 = 1.1;
 
 /// One curve with its points.
@@ -31,7 +31,7 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// Solves a curve, by default from no torque to beyond the torque capacity. `pulses` are those of the speed sensors a turn.
+    /// Solves a curve, by default from zero torque to beyond the torque capacity. `pulses` is the number of pulses of the speed sensors a turn.
     pub fn solve(rig: &VariatorRig, held: &Held, torque_nm: Option<&[f64]>, pulses: f64) -> Self {
         let summary = rig.summary(held);
         let rows = match torque_nm {
@@ -73,14 +73,14 @@ impl Curve {
     }
 }
 
-/// From zero to beyond the torque capacity.
+/// Default torques, from zero to beyond the torque capacity, Nm.
 fn default_torques(held: &Held, capacity_nm: f64) -> Vec<f64> {
     let step = if held.ratio > 1.0 { 5.0 } else { 2.0 };
     let count = (MAX_TORQUE * capacity_nm / step).ceil().clamp(1.0, 1000.0) as u32;
     (0..=count).map(|i| step * f64::from(i)).collect()
 }
 
-/// Curves of the rig, and what they were computed from.
+/// Curves of the rig, and their inputs.
 #[derive(Debug)]
 pub struct VariatorCurves {
     /// Name of the vehicle.
@@ -112,7 +112,7 @@ impl VariatorCurves {
     /// Writes every point of every curve as CSV.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_points(&self, out: &mut dyn Write) -> io::Result<()> {
         write_csv(out, &point_columns(), self.points(), &[])
     }
@@ -120,7 +120,7 @@ impl VariatorCurves {
     /// Writes a line for each curve as CSV.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_curves(&self, out: &mut dyn Write) -> io::Result<()> {
         write_csv(out, &curve_columns(), self.numbers(), &[])
     }
@@ -128,7 +128,7 @@ impl VariatorCurves {
     /// Writes one JSON object, its points one a line.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn write_json(&self, out: &mut dyn Write) -> io::Result<()> {
         let columns = point_columns();
         let mut points = Summing::new(io::sink());
@@ -145,12 +145,12 @@ impl VariatorCurves {
             "columns": json_columns(&columns),
             "count": self.points().count(),
         });
-        let head = Manifest::new(SCHEMA).of_run(&(&rest, points.finish()));
+        let head = Manifest::new(SCHEMA).for_run(&(&rest, points.finish()));
         write_json(out, &head.with(&rest), &columns, self.points())
     }
 }
 
-/// Columns of the points, in the order in which they are written.
+/// Columns of the points, in output order.
 fn point_columns() -> Vec<Column<VariatorRow>> {
     columns! { VariatorRow;
         number "belt_ratio", "-", "geometric belt ratio, held", r => r.held.ratio;
@@ -182,7 +182,7 @@ fn point_columns() -> Vec<Column<VariatorRow>> {
     }
 }
 
-/// Columns of the curves, in the order in which they are written.
+/// Columns of the curves, in output order.
 fn curve_columns() -> Vec<Column<(CurveSummary, Resolution)>> {
     columns! { (CurveSummary, Resolution);
         number "belt_ratio", "", "", (s, _) => s.held.ratio;

@@ -1,9 +1,9 @@
-//! The Arrow C data interface: a table of owned columns goes to any reader as one record batch, without a copy.
+//! Arrow C data interface: hands a table of owned columns to any reader as one record batch, without a copy.
 //!
-//! The structs, their fields and what a producer and a consumer may do are those of the specification
-//! (<https://arrow.apache.org/docs/format/CDataInterface.html>, CStreamInterface.html). What a struct points to is kept by the box behind
-//! its `private` field: that of a column holds a reference to the column's cells, so that they live as long as any reader has the struct.
-//! `release` drops the box, once: it sets itself to none. A consumer may move a struct; nothing points to the struct itself.
+//! Structs, fields, and the duties of producer and consumer are those of the specification
+//! (<https://arrow.apache.org/docs/format/CDataInterface.html>, CStreamInterface.html). The box behind the `private` field owns the
+//! data of a struct: that of a column holds a reference to its cells, so that they live as long as any reader has the struct.
+//! `release` drops the box once and clears itself. A consumer may move a struct, since nothing points to the struct itself.
 #![expect(
     unsafe_code,
     reason = "the interface is one of C: raw pointers, callbacks"
@@ -19,7 +19,7 @@ use crate::table::{Cells, TableColumn};
 pub const STREAM: &CStr = c"arrow_array_stream";
 /// Name of the capsule of a schema.
 pub const SCHEMA: &CStr = c"arrow_schema";
-/// Flag of a field that may be missing.
+/// Flag of a nullable field.
 const NULLABLE: i64 = 2;
 
 /// `struct ArrowSchema`.
@@ -61,36 +61,36 @@ pub struct Stream {
     private: *mut c_void,
 }
 
-// SAFETY: all that the pointers of these structs lead to is owned by their boxes, which hold only what can be sent.
+// SAFETY: all pointers of these structs lead to data owned by their boxes, which hold `Send` data only.
 unsafe impl Send for Schema {}
 // SAFETY: as above.
 unsafe impl Send for Array {}
 // SAFETY: as above.
 unsafe impl Send for Stream {}
 
-/// What a schema points to.
+/// Data owned by a schema.
 struct SchemaOwner {
     format: CString,
     name: CString,
     metadata: Vec<u8>,
-    /// Each a box of its own, as a consumer may take one.
+    /// One box per child, as a consumer may take a single one.
     children: Box<[*mut Schema]>,
 }
 
-/// What an array points to.
+/// Data owned by an array.
 struct ArrayOwner {
     _cells: Option<Cells>,
     buffers: Box<[*const c_void]>,
     children: Box<[*mut Array]>,
 }
 
-/// What a stream points to.
+/// Data owned by a stream.
 struct StreamOwner {
     columns: Arc<Vec<TableColumn>>,
     is_done: bool,
 }
 
-/// Key and value pairs in the form of the interface: counts and lengths as native int32, then bytes.
+/// Key and value pairs in the encoding of the interface: counts and lengths as native int32, then bytes.
 fn metadata(pairs: &[(&str, &str)]) -> Vec<u8> {
     let count = |n: usize| i32::try_from(n).unwrap_or(i32::MAX).to_ne_bytes();
     let mut out = count(pairs.len()).to_vec();
@@ -133,7 +133,7 @@ fn schema(format: &CStr, name: &str, pairs: &[(&str, &str)], children: Vec<Schem
 }
 
 fn array(length: usize, cells: Option<Cells>, children: Vec<Array>) -> Array {
-    // The first buffer would mark missing cells; there are none.
+    // The first buffer would be the validity bitmap; no cell is missing.
     let buffers: Vec<*const c_void> = match &cells {
         None => vec![null()],
         Some(Cells::Number(cells)) => vec![null(), cells.as_ptr().cast()],
@@ -163,7 +163,7 @@ fn array(length: usize, cells: Option<Cells>, children: Vec<Array>) -> Array {
     }
 }
 
-/// Schema of a table: a struct of its columns, each with unit and meaning.
+/// Schema of a table: a struct of its columns, with unit and meaning of each.
 pub fn table_schema(columns: &[TableColumn]) -> Schema {
     let child = |column: &TableColumn| {
         let format = match column.cells {
@@ -177,7 +177,7 @@ pub fn table_schema(columns: &[TableColumn]) -> Schema {
     schema(c"+s", "", &[], columns.iter().map(child).collect())
 }
 
-/// A stream of a table: one record batch.
+/// Stream of a table as one record batch.
 pub fn table_stream(columns: Arc<Vec<TableColumn>>) -> Stream {
     let owner = StreamOwner {
         columns,
@@ -229,7 +229,7 @@ unsafe extern "C" fn get_next(stream: *mut Stream, out: *mut Array) -> c_int {
     unsafe {
         let owner = &mut *(*stream).private.cast::<StreamOwner>();
         if std::mem::replace(&mut owner.is_done, true) {
-            // The end is an array without `release`.
+            // An array without `release` marks the end.
             (&raw mut (*out).release).write(None);
             return 0;
         }
@@ -245,7 +245,7 @@ unsafe extern "C" fn get_next(stream: *mut Stream, out: *mut Array) -> c_int {
 }
 
 unsafe extern "C" fn get_last_error(_: *mut Stream) -> *const c_char {
-    // Nothing can fail.
+    // No call can fail.
     null()
 }
 
@@ -262,7 +262,7 @@ macro_rules! released {
         $(impl Drop for $of {
             fn drop(&mut self) {
                 if let Some(release) = self.release {
-                    // SAFETY: a struct with `release` has not been released, and this is the last that is done with it.
+                    // SAFETY: a struct with `release` has not been released, and nothing uses it after this.
                     unsafe { release(self) }
                 }
             }
@@ -270,5 +270,5 @@ macro_rules! released {
     };
 }
 
-// A capsule that no consumer has emptied; a child that none has taken.
+// Covers capsules without a consumer and children that no consumer has taken.
 released!(Schema, Array, Stream);

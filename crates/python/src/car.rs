@@ -1,4 +1,4 @@
-//! Cars: a vehicle file with its fluids and changes, checked.
+//! Cars: a vehicle file with its fluids and changes, validated.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -6,14 +6,14 @@ use std::sync::Arc;
 use cvtcycle::config::setup::template::VehicleTemplate;
 use cvtcycle::config::setup::{self, Disk, NamedBy, Options, Setup, baseline_of};
 use cvtcycle::config::{Override, Problem, Problems};
+use cvtcycle::explain::key_json;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::study::explain::key_json;
 use pyo3::prelude::*;
 use serde_json::Value;
 
 use crate::errors::{bad, refused};
 
-/// The text of a vehicle that is in no file.
+/// Text of a vehicle without a file.
 #[derive(Clone, Debug)]
 struct Source {
     text: String,
@@ -21,18 +21,17 @@ struct Source {
     is_twin: bool,
 }
 
-/// A checked car.
+/// Validated car.
 #[pyclass(frozen)]
 pub struct Car {
     pub setup: Arc<Setup>,
-    /// Name or path of its file, or the name that problems call its text.
+    /// Name or path of its file, or the name of its text in problems.
     pub word: String,
     pub options: Options,
     source: Option<Source>,
 }
 
-/// The belt model of that name.
-///
+/// Looks up a belt model.
 /// # Errors
 /// The exception of the argument.
 pub fn formulation(name: &str) -> PyResult<Formulation> {
@@ -76,31 +75,30 @@ impl Car {
         })
     }
 
-    /// Its files, ready to be changed again and again.
-    ///
+    /// Builds a template for repeated changes.
     /// # Errors
-    /// Files that changed since they were read; a twin of a text.
+    /// Files that changed since they were read; the twin of a text.
     pub fn template(&self) -> Result<(VehicleTemplate, Setup), Problems> {
         match &self.source {
             None => VehicleTemplate::load(&self.word, &self.options),
-            Some(source) if source.is_twin => {
-                Err(self.no_file("the twin of a text is no template").into())
-            }
+            Some(source) if source.is_twin => Err(self
+                .needs_file_problem("the twin of a text is no template")
+                .into()),
             Some(source) => {
                 VehicleTemplate::read(&self.word, &source.text, source.files(), &self.options)
             }
         }
     }
 
-    /// The problem of something that needs a car with a file.
-    pub fn no_file(&self, message: &str) -> Problem {
+    /// Problem of an operation that needs a car with a file.
+    pub fn needs_file_problem(&self, message: &str) -> Problem {
         let hint = "write the text into a file, and name that";
         Problem::invalid(message)
             .in_file(self.word.as_str())
             .hint(hint)
     }
 
-    /// Whether it has no file.
+    /// True for a car read from a text.
     pub fn is_text(&self) -> bool {
         self.source.is_some()
     }
@@ -132,11 +130,11 @@ impl Car {
             .map_err(refused)
     }
 
-    /// From the text of a vehicle file that problems call `name`; maps that it names are in `folder`.
+    /// Reads the text of a vehicle file. Problems cite it as `name`; its maps are in `folder`.
     #[staticmethod]
     #[pyo3(signature = (name, text, folder, set, lubricant=None, engine_oil=None, formulation="smooth"))]
     #[expect(clippy::too_many_arguments, reason = "they are named in Python")]
-    fn of_text(
+    fn from_text(
         py: Python<'_>,
         name: String,
         text: String,
@@ -156,9 +154,9 @@ impl Car {
             .map_err(refused)
     }
 
-    /// The TOML of a JSON object.
+    /// Converts a JSON object to TOML.
     #[staticmethod]
-    fn toml_of(json: &str) -> PyResult<String> {
+    fn json_to_toml(json: &str) -> PyResult<String> {
         let no_table = |message: String| {
             bad(
                 "data",
@@ -172,7 +170,7 @@ impl Car {
         toml::to_string(&value).map_err(|error| no_table(error.to_string()))
     }
 
-    /// The same car with a manual box.
+    /// Same car with a manual box.
     fn twin(&self, py: Python<'_>) -> PyResult<Self> {
         let options = self.options.of_twin(NamedBy::Caller);
         let (word, source) = match &self.source {

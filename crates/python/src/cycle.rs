@@ -10,11 +10,11 @@ use pyo3::prelude::*;
 use crate::car::Car;
 use crate::errors::refused;
 
-/// A checked cycle.
+/// Validated cycle.
 #[pyclass(frozen)]
 pub struct Cycle {
     pub cycle: Arc<CoreCycle>,
-    /// The word by which it was found; none for one of bytes.
+    /// Name or path of the cycle; None for a table of bytes.
     word: Option<String>,
 }
 
@@ -26,8 +26,8 @@ fn columns(text: Option<&str>) -> PyResult<Columns> {
 }
 
 impl Cycle {
-    /// The cycle for a car, whose class chooses among the WLTC.
-    pub fn of(&self, car: &Car) -> Arc<CoreCycle> {
+    /// Cycle for a car: its class selects the WLTC.
+    pub fn for_car(&self, car: &Car) -> Arc<CoreCycle> {
         match &self.word {
             Some(word) if self.cycle.is_wltc => {
                 let own = cycle::for_car(word, (*self.cycle).clone(), &car.setup);
@@ -53,10 +53,15 @@ impl Cycle {
         })
     }
 
-    /// From the bytes of a table that problems call `name`.
+    /// Reads the bytes of a table. Problems cite it as `name`.
     #[staticmethod]
     #[pyo3(signature = (name, text, columns=None))]
-    fn of_bytes(py: Python<'_>, name: &str, text: &[u8], columns: Option<&str>) -> PyResult<Self> {
+    fn from_bytes(
+        py: Python<'_>,
+        name: &str,
+        text: &[u8],
+        columns: Option<&str>,
+    ) -> PyResult<Self> {
         let columns = self::columns(columns)?;
         let found = py
             .detach(|| cycle::read_columns(name, text, &columns))

@@ -1,4 +1,4 @@
-//! Problems of the library as the exception `InputError` of Python, with one dict for each.
+//! Converts problems of the library to the Python exception `InputError`, with one dict for each.
 
 use cvtcycle::config::{Bound as Range, Input, Problem, Problems, render};
 use pyo3::import_exception;
@@ -7,7 +7,7 @@ use pyo3::types::{PyDict, PyList};
 
 import_exception!(cvtcycle._errors, InputError);
 
-/// The exception of some problems.
+/// Exception for problems.
 pub fn refused(problems: impl Into<Problems>) -> PyErr {
     let problems = problems.into();
     let text = render(&problems, false);
@@ -17,14 +17,13 @@ pub fn refused(problems: impl Into<Problems>) -> PyErr {
     })
 }
 
-/// The exception of an argument of Python.
+/// Exception for a Python argument.
 pub fn bad(argument: &str, value: &str, allowed: &str, message: &str) -> PyErr {
     let problem = Problem::invalid(message).key(argument).value(value);
     refused(problem.allowed(allowed))
 }
 
-/// A finite number of an argument in its range.
-///
+/// Checks that an argument is finite and in its range.
 /// # Errors
 /// The exception of the argument.
 pub fn number(argument: &str, x: f64, range: Range, unit: &str) -> PyResult<f64> {

@@ -1,9 +1,9 @@
-//! One car with other numbers, as a function of them.
+//! A car with varied numbers, as a function of them.
 
 use std::sync::Arc;
 
-use cvtcycle::model::drive::MOST_TOGETHER;
-use cvtcycle::study::Progress;
+use cvtcycle::model::drive::MAX_TOGETHER;
+use cvtcycle::output::progress::Progress;
 use cvtcycle::study::family::{Family as CoreFamily, FamilyPoint};
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -12,17 +12,16 @@ use crate::car::Car;
 use crate::cycle::Cycle;
 use crate::errors::{bad, refused};
 use crate::job::{Interrupted, job};
-use crate::run::Asked;
+use crate::run::RunArguments;
 use crate::table::{Cells, Table, TableColumn};
 
-/// A car, a cycle, and the keys that are the arguments.
+/// Car, cycle, and the keys that are arguments.
 #[pyclass(frozen)]
 pub struct Family(Arc<CoreFamily>);
 
-/// The doubles of bytes in the order of this machine.
-///
+/// Converts bytes to doubles in native byte order.
 /// # Errors
-/// The exception of an argument whose bytes are no whole doubles.
+/// The exception of an argument whose length is not a multiple of 8.
 pub fn doubles(argument: &str, bytes: &[u8]) -> PyResult<Vec<f64>> {
     let (whole, rest) = bytes.as_chunks::<8>();
     match rest.is_empty() {
@@ -51,16 +50,16 @@ impl Family {
         start: &Bound<'_, PyAny>,
         dt_s: f64,
     ) -> PyResult<Self> {
-        let asked = Asked::new(ambient_degc, start, dt_s, false)?;
-        let cycle = cycle.of(car);
+        let arguments = RunArguments::new(ambient_degc, start, dt_s, false)?;
+        let cycle = cycle.for_car(car);
         let made = py.detach(|| {
             let template = car.template()?;
-            CoreFamily::new(template, (*cycle).clone(), asked.conditions, &keys)
+            CoreFamily::new(template, (*cycle).clone(), arguments.conditions, &keys)
         });
         made.map(|family| Family(Arc::new(family))).map_err(refused)
     }
 
-    /// Key, unit and value of each argument in the car as it is.
+    /// Key, unit and unchanged value of each argument.
     #[getter]
     fn arguments(&self) -> Vec<(String, &'static str, f64)> {
         let arguments = self.0.arguments().into_iter().zip(self.0.base());
@@ -76,7 +75,7 @@ impl Family {
         self.0.outputs().into_iter().map(head).collect()
     }
 
-    /// Drives the car at points, rows of doubles: a table of the outputs, with the column `reason`.
+    /// Drives the car at points, rows of doubles. Returns a table of the outputs, with the column `reason`.
     fn points(
         &self,
         py: Python<'_>,
@@ -94,17 +93,17 @@ impl Family {
         let (family, places) = (Arc::clone(&self.0), wanted.clone());
         let drive = move |stop: &crate::job::Stop| -> Vec<FamilyPoint> {
             let some = |worker: &mut _, numbers: &[f64]| match stop.stopped() {
-                // Their results are not looked at any more.
+                // After an interruption the results are dropped.
                 true => Vec::new(),
                 false => family.points(worker, numbers.chunks(width), &places),
             };
             numbers
-                .par_chunks(width * MOST_TOGETHER)
+                .par_chunks(width * MAX_TOGETHER)
                 .map_init(|| family.worker(), some)
                 .flatten_iter()
                 .collect()
         };
-        let points = job(py, threads, Interrupted::Ends, drive)?;
+        let points = job(py, threads, Interrupted::Stops, drive)?;
         let heads = self.0.outputs();
         let columns = wanted.iter().enumerate().map(|(k, place)| {
             let cells = points.iter().map(|point| point.numbers[k]).collect();

@@ -1,4 +1,4 @@
-//! Work without the lock of the interpreter: on threads of this process, ended by Ctrl-C.
+//! Work without the lock of the interpreter: on threads of this process, stopped by Ctrl-C.
 
 use std::mem::forget;
 use std::panic::resume_unwind;
@@ -9,19 +9,19 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 use std::{process, thread};
 
-use cvtcycle::study::Progress;
+use cvtcycle::output::progress::Progress;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::errors::bad;
 
-/// Most threads.
-const MOST_THREADS: usize = 1024;
-/// How often signals are looked at.
-const LOOK: Duration = Duration::from_millis(50);
+/// Maximum number of threads.
+const MAX_THREADS: usize = 1024;
+/// Interval at which signals are checked.
+const SIGNAL_INTERVAL: Duration = Duration::from_millis(50);
 
-/// Says that the work is to stop.
+/// Flag that stops the work.
 #[derive(Clone, Debug, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
@@ -33,20 +33,19 @@ impl Progress for Stop {
     }
 }
 
-/// What Ctrl-C does with work.
+/// Effect of Ctrl-C on work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interrupted {
-    /// It looks at [`Stop`]; the call returns when it has stopped.
-    Ends,
-    /// It cannot be stopped: the call returns at once, and its result is dropped when it is there.
-    IsLeft,
+    /// The work polls [`Stop`]; the call returns after it has stopped.
+    Stops,
+    /// The work cannot be stopped: the call returns at once, and the result is dropped later.
+    Detaches,
 }
 
-/// Does some work on a thread of its own, whose parallel parts use a pool of `threads` (one a core without a number), and looks at the
-/// signals of Python meanwhile.
-///
+/// Runs work on a separate thread, with a pool of `threads` for its parallel parts (one per core by default), and checks Python's
+/// signals meanwhile.
 /// # Errors
-/// The exception of a signal, or of threads that cannot start. A panic of the work goes on in the caller.
+/// The exception of a signal, or of threads that cannot start. A panic of the work continues in the caller.
 pub fn job<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
@@ -58,7 +57,7 @@ pub fn job<T: Send + 'static>(
     let (send, receive) = channel();
     let own = stop.clone();
     let run = move || {
-        // No call waits for work that has been left.
+        // The receiver is gone after an interruption.
         drop(send.send(pool.install(|| work(&own))));
     };
     let worker = thread::Builder::new().name("cvtcycle".into()).spawn(run);
@@ -67,7 +66,7 @@ pub fn job<T: Send + 'static>(
     let mut worker = Some(worker);
     py.detach(move || {
         loop {
-            match receive.recv_timeout(LOOK) {
+            match receive.recv_timeout(SIGNAL_INTERVAL) {
                 Ok(done) => return Ok(done),
                 Err(RecvTimeoutError::Disconnected) => {
                     if let Some(Err(panic)) = worker.take().map(JoinHandle::join) {
@@ -79,7 +78,7 @@ pub fn job<T: Send + 'static>(
             }
             if let Err(signal) = Python::attach(|py| py.check_signals()) {
                 stop.0.store(true, Ordering::Relaxed);
-                if how == Interrupted::Ends {
+                if how == Interrupted::Stops {
                     drop(receive.recv());
                 }
                 return Err(signal);
@@ -88,17 +87,17 @@ pub fn job<T: Send + 'static>(
     })
 }
 
-/// The pools of this process, by number of threads. A child made by fork has none of its parent's threads, and gets pools of its own.
+/// Pools of this process by number of threads. A forked child has none of its parent's threads and makes its own pools.
 static POOLS: Mutex<(u32, Pools)> = Mutex::new((0, Vec::new()));
 
-/// Pools by their number of threads.
+/// Pools with their number of threads.
 type Pools = Vec<(usize, Arc<ThreadPool>)>;
 
 fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let cores = || thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.unwrap_or_else(|| cores().min(MOST_THREADS));
-    if !(1..=MOST_THREADS).contains(&threads) {
-        let allowed = format!("1 to {MOST_THREADS}");
+    let threads = threads.unwrap_or_else(|| cores().min(MAX_THREADS));
+    if !(1..=MAX_THREADS).contains(&threads) {
+        let allowed = format!("1 to {MAX_THREADS}");
         let message = format!("{threads} threads are out of range");
         return Err(bad("threads", &threads.to_string(), &allowed, &message));
     }
@@ -106,7 +105,7 @@ fn pool(threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let (owner, list) = &mut *pools;
     if *owner != process::id() {
         *owner = process::id();
-        // Their threads are the parent's: there is nothing to end.
+        // Leaks them, since their threads exist in the parent only and cannot be joined.
         forget(std::mem::take(list));
     }
     if let Some((_, pool)) = list.iter().find(|(n, _)| *n == threads) {

@@ -1,6 +1,6 @@
-//! The Python package `cvtcycle`: what Python gives, checked and in the types of the library; what the library gives, as objects of Python.
+//! The Python package `cvtcycle`: converts and checks arguments from Python, and converts results to Python objects.
 //!
-//! No physics and no reader of its own. What a user sees is `python/cvtcycle`, a layer of Python over this module.
+//! No physics and no reader of its own. Users see `python/cvtcycle`, a Python layer over this module.
 //!
 //! | module | contents |
 //! |---|---|
@@ -26,13 +26,13 @@ use std::ffi::OsString;
 
 use pyo3::prelude::*;
 
-/// Runs the program with the words of a command line, the first of which is its own name, and gives its exit code.
+/// Runs the program with the words of a command line, starting with the program's name, and returns its exit code.
 #[pyfunction]
 fn program(py: Python<'_>, words: Vec<OsString>) -> u8 {
     py.detach(|| cvtcycle::program(words))
 }
 
-/// The library below `cvtcycle`.
+/// Native part of the package `cvtcycle`.
 #[pymodule]
 mod _native {
     #[pymodule_export]

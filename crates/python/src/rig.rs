@@ -1,11 +1,11 @@
-//! A transmission on the bench: losses of its parts, and the belt by itself, at given points.
+//! Transmissions on the bench: losses of components, and the belt alone, at given points.
 
 use cvtcycle::config::{Problem, Problems, unit_of};
-use cvtcycle::model::bench::Bench;
+use cvtcycle::model::rig::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::losses::{Axis, LossRow, MAX_POINTS, columns};
-use cvtcycle::study::Progress;
-use cvtcycle::study::points::{self, Job, Model, Point, Solved, Take, output_columns};
+use cvtcycle::output::progress::Progress;
+use cvtcycle::validate::belt::{Job, Model, Point, Solved, Take, output_columns};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -15,10 +15,10 @@ use crate::family::doubles;
 use crate::job::{Interrupted, Stop, job};
 use crate::table::{Table, TableColumn};
 
-/// Problems of a column that are described.
+/// Maximum number of problems reported for a column.
 const MAX_DESCRIBED: usize = 20;
 
-/// Name of the column of an axis in the table of losses.
+/// Column of an axis in the table of losses.
 fn column_of(axis: Axis, is_cvt: bool) -> &'static str {
     match axis {
         Axis::Ratio if is_cvt => "belt_ratio",
@@ -33,11 +33,11 @@ fn column_of(axis: Axis, is_cvt: bool) -> &'static str {
     }
 }
 
-/// Points of a bench, by axis: NaN where the axis is not given.
+/// Points of a bench by axis: NaN for an axis without values.
 type Points = [Vec<f64>; Axis::COUNT];
 
-/// The points of columns of doubles, all of one length, or of length 1 for all points.
-fn points_of(transmission: &Transmission, given: &[(String, Vec<u8>)]) -> PyResult<Points> {
+/// Builds points from columns of doubles, all of one length, or of length 1 for a value shared by all points.
+fn build_points(transmission: &Transmission, given: &[(String, Vec<u8>)]) -> PyResult<Points> {
     let is_cvt = transmission.is_cvt();
     let has = |axis: &Axis| {
         let of_all = [
@@ -86,7 +86,7 @@ fn points_of(transmission: &Transmission, given: &[(String, Vec<u8>)]) -> PyResu
     Ok(axes)
 }
 
-/// Reports the first values of an axis that are out of range.
+/// Reports the first out-of-range values of an axis.
 fn check(transmission: &Transmission, axis: Axis, values: &[f64], problems: &mut Problems) {
     let is_cvt = transmission.is_cvt();
     let (range, suffix) = axis.range_in(transmission);
@@ -101,7 +101,7 @@ fn check(transmission: &Transmission, axis: Axis, values: &[f64], problems: &mut
     }
 }
 
-/// Losses of each part at points: doubles by the name of their column.
+/// Losses of each component at points, given as doubles by column name.
 #[pyfunction]
 pub fn losses(
     py: Python<'_>,
@@ -110,7 +110,7 @@ pub fn losses(
     threads: Option<usize>,
 ) -> PyResult<Table> {
     let transmission = car.setup.transmission();
-    let axes = points_of(transmission, &given)?;
+    let axes = build_points(transmission, &given)?;
     let bench = Bench::as_printed(&car.setup);
     let solve = move |stop: &Stop| -> Vec<LossRow> {
         let row = |k: usize| {
@@ -120,20 +120,20 @@ pub fn losses(
         let count = axes[0].len();
         (0..count).into_par_iter().filter_map(row).collect()
     };
-    let rows = job(py, threads, Interrupted::Ends, solve)?;
-    let column = |column: &_| TableColumn::of(column, &rows, &[]);
+    let rows = job(py, threads, Interrupted::Stops, solve)?;
+    let column = |column: &_| TableColumn::from_rows(column, &rows, &[]);
     let columns = columns(transmission);
     Ok(Table::new(columns.iter().map(column).collect()))
 }
 
-/// Keeps solved points.
+/// Collects solved points.
 #[derive(Default)]
-struct Kept {
+struct SolvedPoints {
     with_case: bool,
     points: Vec<Point>,
 }
 
-impl Take for Kept {
+impl Take for SolvedPoints {
     fn begin(&mut self, with_case: bool) -> Result<(), Problems> {
         self.with_case = with_case;
         Ok(())
@@ -145,7 +145,7 @@ impl Take for Kept {
     }
 }
 
-/// The belt model at the points of a table, the text of a CSV file that problems call `name`.
+/// Evaluates the belt model at the points of a table, the text of a CSV file cited as `name`.
 #[pyfunction]
 pub fn belt(
     py: Python<'_>,
@@ -165,16 +165,16 @@ pub fn belt(
         ));
     };
     let solve = move |_: &Stop| {
-        let mut kept = Kept::default();
+        let mut kept = SolvedPoints::default();
         let job = Job {
             model: Some(model),
             formulation,
             rows: &mut kept,
         };
-        points::read(&name, text.as_slice(), job).map(|_| kept)
+        cvtcycle::validate::belt::read(&name, text.as_slice(), job).map(|_| kept)
     };
-    let kept = job(py, Some(1), Interrupted::IsLeft, solve)?.map_err(refused)?;
+    let kept = job(py, Some(1), Interrupted::Detaches, solve)?.map_err(refused)?;
     let columns = output_columns(kept.with_case);
-    let column = |column: &_| TableColumn::of(column, &kept.points, &[]);
+    let column = |column: &_| TableColumn::from_rows(column, &kept.points, &[]);
     Ok(Table::new(columns.iter().map(column).collect()))
 }

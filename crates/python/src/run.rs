@@ -1,14 +1,16 @@
-//! Cars through one cycle: summary, traces, plots, report.
+//! Drives of cars through a cycle: summary, traces, plots, report.
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use cvtcycle::analysis::run::{RunQuestion, summary};
+use cvtcycle::analysis::sensitivity::Named;
 use cvtcycle::config::bounded::kept_steps;
 use cvtcycle::config::cycle::Cycle as CoreCycle;
 use cvtcycle::config::setup::{AMBIENT, Options, START, STEP, Setup};
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::model::drive::{Conditions, Outcome, Start, drive, fuel_map, litres_per_100km};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::History;
 use cvtcycle::output::escape::json_text;
 use cvtcycle::output::files::OutputDir;
@@ -19,8 +21,6 @@ use cvtcycle::report::charts::{self, PlotRun};
 use cvtcycle::report::report;
 use cvtcycle::report::run_files::{self, TraceFormat};
 use cvtcycle::report::write::{Form, Target};
-use cvtcycle::study::run::{RunQuestion, summary};
-use cvtcycle::study::sensitivity::Named;
 use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
 
@@ -30,22 +30,21 @@ use crate::errors::{bad, number, refused};
 use crate::job::{Interrupted, job};
 use crate::table::{Table, TableColumn};
 
-/// Steps of a cycle from which on a drive is a job of its own, some ten milliseconds: before that the thread would cost more than it is worth.
-const LONG: usize = 20_000;
+/// Number of steps, some ten milliseconds, from which a drive gets a thread of its own; below, starting one would cost more than it gains.
+const MIN_STEPS_FOR_THREAD: usize = 20_000;
 
-/// What a run is asked for.
+/// Arguments of a run.
 #[derive(Clone, Debug)]
-pub struct Asked {
+pub struct RunArguments {
     pub ambient_degc: f64,
     pub start: StartWord,
     pub conditions: Conditions,
 }
 
-impl Asked {
-    /// The checked arguments of a run. `start` is `soak`, `warm` or a temperature.
-    ///
+impl RunArguments {
+    /// Checks the arguments of a run. `start` is `soak`, `warm` or a temperature in degC.
     /// # Errors
-    /// The exception of an argument.
+    /// The exception of the argument.
     pub fn new(
         ambient_degc: f64,
         start: &Bound<'_, PyAny>,
@@ -60,7 +59,7 @@ impl Asked {
             max_dt_s: number("dt_s", dt_s, STEP, "s")?,
             keep_rows,
         };
-        Ok(Asked {
+        Ok(RunArguments {
             ambient_degc,
             start,
             conditions,
@@ -87,7 +86,7 @@ fn start(given: &Bound<'_, PyAny>) -> PyResult<(Start, StartWord)> {
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
 
-/// A car that has been driven.
+/// Car with its drive.
 #[derive(Debug)]
 struct DrivenCar {
     name: String,
@@ -98,18 +97,18 @@ struct DrivenCar {
     outcome: Outcome,
 }
 
-/// All that a run has.
+/// Data of a run.
 #[derive(Debug)]
-struct Whole {
-    asked: Asked,
+struct RunData {
+    arguments: RunArguments,
     cycle: Arc<CoreCycle>,
     price: bool,
     cars: Vec<DrivenCar>,
 }
 
-/// Cars that have been driven; the first is the subject.
+/// Run of cars through a cycle; the first is the subject.
 #[pyclass(frozen)]
-pub struct Run(Arc<Whole>);
+pub struct Run(Arc<RunData>);
 
 /// Drives cars through a cycle.
 #[pyfunction]
@@ -124,11 +123,11 @@ pub fn run(
     keep_rows: bool,
     price: bool,
 ) -> PyResult<Run> {
-    let asked = Asked::new(ambient_degc, start, dt_s, keep_rows)?;
+    let arguments = RunArguments::new(ambient_degc, start, dt_s, keep_rows)?;
     let Some(subject) = cars.first() else {
         return Err(bad("cars", "", "one car or more", "there is no car"));
     };
-    let cycle = cycle.of(subject.get());
+    let cycle = cycle.for_car(subject.get());
     let steps = |car: &Py<Car>| {
         let is_cvt = car.get().setup.transmission().is_cvt();
         cycle.trace_for(is_cvt).step_count(dt_s)
@@ -142,14 +141,14 @@ pub fn run(
         .iter()
         .map(|car| Arc::clone(&car.get().setup))
         .collect();
-    let (own, conditions) = (Arc::clone(&cycle), asked.conditions);
+    let (own, conditions) = (Arc::clone(&cycle), arguments.conditions);
     let drive_all = move || -> Vec<Outcome> {
         let one = |setup: &Arc<Setup>| drive(setup, &own, &conditions);
         setups.iter().map(one).collect()
     };
-    let outcomes = match steps < LONG {
+    let outcomes = match steps < MIN_STEPS_FOR_THREAD {
         true => py.detach(drive_all),
-        false => job(py, Some(1), Interrupted::IsLeft, move |_| drive_all())?,
+        false => job(py, Some(1), Interrupted::Detaches, move |_| drive_all())?,
     };
     let mut driven: Vec<DrivenCar> = Vec::with_capacity(cars.len());
     for (car, outcome) in cars.iter().zip(outcomes) {
@@ -163,15 +162,15 @@ pub fn run(
             outcome,
         });
     }
-    Ok(Run(Arc::new(Whole {
-        asked,
+    Ok(Run(Arc::new(RunData {
+        arguments,
         cycle,
         price,
         cars: driven,
     })))
 }
 
-/// A name that no car before has.
+/// Makes a name unique among those before.
 fn unique(name: &str, before: &[DrivenCar]) -> String {
     let taken = |name: &String| before.iter().any(|car| car.name.eq_ignore_ascii_case(name));
     let numbered = (2..).map(|n| format!("{name}_{n}"));
@@ -179,7 +178,7 @@ fn unique(name: &str, before: &[DrivenCar]) -> String {
     names.find(|name| !taken(name)).unwrap_or_default()
 }
 
-impl Whole {
+impl RunData {
     fn driven(&self) -> Vec<Driven<'_>> {
         let mut driven = Vec::with_capacity(self.cars.len());
         for car in &self.cars {
@@ -196,11 +195,11 @@ impl Whole {
         let subject = &self.cars[0].options;
         let question = RunQuestion {
             cycle: &self.cycle,
-            conditions: self.asked.conditions,
-            ambient_degc: self.asked.ambient_degc,
-            start: self.asked.start.clone(),
+            conditions: self.arguments.conditions,
+            ambient_degc: self.arguments.ambient_degc,
+            start: self.arguments.start.clone(),
             settings: Settings {
-                dt_s: self.asked.conditions.max_dt_s,
+                dt_s: self.arguments.conditions.max_dt_s,
                 formulation: subject.formulation.name().to_owned(),
                 set: subject.set.iter().map(ToString::to_string).collect(),
                 set_all: Vec::new(),
@@ -222,14 +221,14 @@ impl Whole {
     fn history(&self, car: &DrivenCar) -> History {
         let transmission = car.setup.transmission();
         let columns = columns_for(transmission.is_cvt(), &transmission.components());
-        History::of(&car.outcome.rows, &columns, self.phases())
+        History::from_rows(&car.outcome.rows, &columns, self.phases())
     }
 
-    /// A picture of one car, or of all.
+    /// Picture of one car, or of all.
     fn picture(&self, kind: &str, car: usize) -> Option<String> {
         let summary = self.summary();
         let histories: Vec<History> = self.cars.iter().map(|car| self.history(car)).collect();
-        let of = |k: usize| PlotRun {
+        let plot_run = |k: usize| PlotRun {
             name: &self.cars[k].name,
             history: &histories[k],
             fuel_map: Some(fuel_map(&self.cars[k].setup)),
@@ -237,12 +236,12 @@ impl Whole {
             published: charts::published_drive(&self.cars[k].name, &summary),
         };
         let picture = match kind {
-            "driveline" => charts::driveline(&of(car)),
-            "pressure" if histories[car].is_cvt() => charts::pressure(&of(car)),
-            "temperatures" => charts::temperatures(&[of(car)]),
-            "losses" => charts::losses(&[of(car)]),
-            "operating_points" => charts::operating_points(&[of(car)]),
-            "fuel" => charts::fuel_bars(&(0..self.cars.len()).map(of).collect::<Vec<_>>()),
+            "driveline" => charts::driveline(&plot_run(car)),
+            "pressure" if histories[car].is_cvt() => charts::pressure(&plot_run(car)),
+            "temperatures" => charts::temperatures(&[plot_run(car)]),
+            "losses" => charts::losses(&[plot_run(car)]),
+            "operating_points" => charts::operating_points(&[plot_run(car)]),
+            "fuel" => charts::fuel_bars(&(0..self.cars.len()).map(plot_run).collect::<Vec<_>>()),
             _ => return None,
         };
         Some(picture.svg)
@@ -276,7 +275,7 @@ impl Whole {
             .collect();
         let mut dir = OutputDir::create(folder, force)?;
         let mut summary = self.summary();
-        let conditions = &self.asked.conditions;
+        let conditions = &self.arguments.conditions;
         let mut record = run_files::record(command, &cars, &self.cycle, conditions, false)?;
         name_run(&mut summary, &mut record);
         run_files::write(&mut dir, format, &summary, &self.cycle, &self.driven())?;
@@ -289,7 +288,7 @@ impl Whole {
 
 #[pymethods]
 impl Run {
-    /// Names of the cars, the subject first.
+    /// Names of the cars, subject first.
     #[getter]
     fn cars(&self) -> Vec<String> {
         self.0.cars.iter().map(|car| car.name.clone()).collect()
@@ -297,10 +296,10 @@ impl Run {
 
     #[getter]
     fn has_trace(&self) -> bool {
-        self.0.asked.conditions.keep_rows
+        self.0.arguments.conditions.keep_rows
     }
 
-    /// Fuel of the subject over the whole cycle, L/100 km; NaN for less than a metre.
+    /// Fuel of the subject over the whole cycle, L/100 km; NaN below a distance of one metre.
     #[getter]
     fn fuel_l_per_100km(&self) -> f64 {
         let car = &self.0.cars[0];
@@ -312,11 +311,11 @@ impl Run {
         )
     }
 
-    /// The object of `run --json`.
+    /// JSON of `run --json`.
     fn summary(&self, py: Python<'_>) -> PyResult<String> {
         let whole = Arc::clone(&self.0);
         let text = match whole.price {
-            true => job(py, None, Interrupted::IsLeft, move |_| {
+            true => job(py, None, Interrupted::Detaches, move |_| {
                 json_text(&whole.summary())
             })?,
             false => py.detach(|| json_text(&whole.summary())),
@@ -324,7 +323,7 @@ impl Run {
         text.map_err(refused)
     }
 
-    /// The trace of a car.
+    /// Trace of a car.
     fn trace(&self, py: Python<'_>, car: usize) -> PyResult<Table> {
         let whole = &self.0;
         let one = whole
@@ -334,12 +333,12 @@ impl Run {
         Ok(py.detach(|| {
             let transmission = one.setup.transmission();
             let columns = columns_for(transmission.is_cvt(), &transmission.components());
-            let column = |column| TableColumn::of(column, &one.outcome.rows, whole.phases());
+            let column = |column| TableColumn::from_rows(column, &one.outcome.rows, whole.phases());
             Table::new(columns.into_iter().map(column).collect())
         }))
     }
 
-    /// A picture as SVG.
+    /// Picture as SVG.
     fn picture(&self, py: Python<'_>, kind: &str, car: usize) -> PyResult<String> {
         if car >= self.0.cars.len() {
             return Err(PyIndexError::new_err(car));
@@ -351,7 +350,7 @@ impl Run {
         })
     }
 
-    /// Writes the files of a run into a folder, and gives their paths.
+    /// Writes the files of a run into a folder, and returns their paths.
     fn write(
         &self,
         py: Python<'_>,
@@ -371,10 +370,10 @@ impl Run {
         })?;
         let (whole, format) = (Arc::clone(&self.0), *format);
         let write = move |_: &_| whole.write(&folder, format, force, command);
-        job(py, None, Interrupted::Ends, write)?.map_err(refused)
+        job(py, None, Interrupted::Stops, write)?.map_err(refused)
     }
 
-    /// Writes a report, and gives the paths of its files, the document first.
+    /// Writes a report, and returns the paths of its files, the document first.
     fn report(
         &self,
         py: Python<'_>,
@@ -385,7 +384,7 @@ impl Run {
     ) -> PyResult<Vec<PathBuf>> {
         let whole = Arc::clone(&self.0);
         let make = move |_: &_| -> Result<Vec<PathBuf>, Problems> {
-            let form = Form::of(&file).unwrap_or(Form::Html);
+            let form = Form::from_path(&file).unwrap_or(Form::Html);
             let target = Target::new(&file, form, force)?;
             let no_folder = |error: std::io::Error| {
                 Problem::invalid(format!("cannot make a temporary folder: {error}"))
@@ -396,6 +395,6 @@ impl Run {
             let document = report(&[run], &[], cover.as_deref())?;
             Ok(target.write(&document)?)
         };
-        job(py, None, Interrupted::Ends, make)?.map_err(refused)
+        job(py, None, Interrupted::Stops, make)?.map_err(refused)
     }
 }

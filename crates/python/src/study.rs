@@ -1,4 +1,4 @@
-//! Studies: their points in whole parts, on disk or in memory, and their answer.
+//! Studies: points computed in whole parts, on disk or in memory, and their results.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -19,15 +19,15 @@ use crate::errors::{bad, number, refused};
 use crate::job::{Interrupted, Stop, job};
 use crate::table::{Table, TableColumn};
 
-/// A plan with its cars loaded and every value tried.
+/// Plan with its cars loaded and every value tried.
 #[pyclass(frozen)]
 pub struct Study(Arc<CoreStudy>);
 
-/// Keeps parts in memory.
+/// Collects parts in memory.
 #[derive(Default)]
-struct Shelf(Mutex<BTreeMap<u64, Rows>>);
+struct MemorySink(Mutex<BTreeMap<u64, Rows>>);
 
-impl PartWriter for Shelf {
+impl PartWriter for MemorySink {
     fn write(&self, part: u64, runs: &Rows, _: Option<&Rows>) -> Result<(), Problem> {
         let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         parts.insert(part, runs.clone());
@@ -36,8 +36,8 @@ impl PartWriter for Shelf {
 }
 
 impl Study {
-    /// The parts of a range that is in the study.
-    fn parts_of(&self, (from, to): (u64, u64)) -> PyResult<BTreeSet<u64>> {
+    /// Checks a range of parts and returns it.
+    fn part_range(&self, (from, to): (u64, u64)) -> PyResult<BTreeSet<u64>> {
         let all = self.0.parts();
         if from <= to && to <= all {
             return Ok((from..to).collect());
@@ -54,7 +54,7 @@ impl Study {
 
 #[pymethods]
 impl Study {
-    /// From the name or path of a plan, or from a text that problems call `word`.
+    /// Reads the name or path of a plan, or a text cited as `word`.
     #[new]
     fn new(
         py: Python<'_>,
@@ -72,7 +72,7 @@ impl Study {
             plan.design = plan.design.changed(samples, seed)?;
             CoreStudy::prepare(plan)
         };
-        let study = job(py, None, Interrupted::IsLeft, prepare)?.map_err(refused)?;
+        let study = job(py, None, Interrupted::Detaches, prepare)?.map_err(refused)?;
         Ok(Study(Arc::new(study)))
     }
 
@@ -101,25 +101,25 @@ impl Study {
         self.0.points_per_part()
     }
 
-    /// Drives the points of some parts and gives their runs.
+    /// Drives the points of some parts and returns their runs.
     fn run(&self, py: Python<'_>, parts: (u64, u64), threads: Option<usize>) -> PyResult<Table> {
-        let (study, wanted) = (Arc::clone(&self.0), self.parts_of(parts)?);
+        let (study, wanted) = (Arc::clone(&self.0), self.part_range(parts)?);
         let drive = move |stop: &Stop| -> Result<Rows, Problem> {
             let done = (0..study.parts())
                 .filter(|part| !wanted.contains(part))
                 .collect();
-            let shelf = Shelf::default();
+            let shelf = MemorySink::default();
             study.execute(&done, &shelf, stop)?;
             let parts = shelf.0.into_inner().unwrap_or_else(PoisonError::into_inner);
             let mut all = Rows::with_capacity(&study.columns, 0);
             parts.into_values().for_each(|rows| all.append(rows));
             Ok(all)
         };
-        let rows = job(py, threads, Interrupted::Ends, drive)?.map_err(refused)?;
-        Ok(Table::new(TableColumn::of_study(&self.0.columns, rows)))
+        let rows = job(py, threads, Interrupted::Stops, drive)?.map_err(refused)?;
+        Ok(Table::new(TableColumn::from_study(&self.0.columns, rows)))
     }
 
-    /// Drives the points of some parts that are not there, and writes these parts into a folder; gives the number of parts that are there.
+    /// Drives the points of missing parts, writes these parts into a folder, and returns the number of parts there.
     fn write_parts(
         &self,
         py: Python<'_>,
@@ -127,7 +127,7 @@ impl Study {
         folder: PathBuf,
         threads: Option<usize>,
     ) -> PyResult<u64> {
-        let (study, wanted) = (Arc::clone(&self.0), self.parts_of(parts)?);
+        let (study, wanted) = (Arc::clone(&self.0), self.part_range(parts)?);
         let write = move |stop: &Stop| -> Result<u64, Problem> {
             let (manifest, plan) = (study.manifest(false), study.plan.text.as_bytes());
             let dir = match folder.join("study.json").exists() {
@@ -141,11 +141,11 @@ impl Study {
             study.execute(&done, &DirWriter::new(&study, &dir), stop)?;
             Ok(study.parts() - dir.missing().len() as u64)
         };
-        job(py, threads, Interrupted::Ends, write)?.map_err(refused)
+        job(py, threads, Interrupted::Stops, write)?.map_err(refused)
     }
 }
 
-/// A study in a folder, finished or not.
+/// Study in a folder, finished or not.
 #[pyclass(frozen)]
 pub struct StoredStudy(PathBuf);
 
@@ -158,7 +158,7 @@ impl StoredStudy {
         Ok(StoredStudy(folder))
     }
 
-    /// Number of parts that are there, and that there will be.
+    /// Number of parts present, and in total.
     #[getter]
     fn parts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
         let store = py.detach(|| Store::open(&self.0)).map_err(refused)?;
@@ -166,7 +166,7 @@ impl StoredStudy {
         Ok((status.present, status.expected))
     }
 
-    /// Puts the parts of shards into a new folder, with the results over all of them.
+    /// Merges the parts of shards into a new folder, with the results over all of them.
     #[staticmethod]
     fn merge(py: Python<'_>, folder: PathBuf, shards: Vec<PathBuf>, force: bool) -> PyResult<Self> {
         let whole = folder.clone();
@@ -176,11 +176,11 @@ impl StoredStudy {
             dir.finish(&study_files(&found)?)?;
             Ok(())
         };
-        job(py, None, Interrupted::Ends, merge)?.map_err(refused)?;
+        job(py, None, Interrupted::Stops, merge)?.map_err(refused)?;
         Ok(StoredStudy(folder))
     }
 
-    /// What the study says, as the JSON of `study show --json`.
+    /// Results of the study, as the JSON of `study show --json`.
     fn answer(&self, py: Python<'_>, confidence: Option<f64>) -> PyResult<String> {
         let confidence = match confidence {
             None => Confidence::default(),
@@ -193,10 +193,10 @@ impl StoredStudy {
             let found = StudyResults::open(&folder, confidence)?;
             json_text(&found.answer)
         };
-        job(py, None, Interrupted::IsLeft, answer)?.map_err(refused)
+        job(py, None, Interrupted::Detaches, answer)?.map_err(refused)
     }
 
-    /// The runs of the parts that are there; some columns, or all.
+    /// Runs of the parts present; some columns, or all.
     fn table(&self, py: Python<'_>, columns: Vec<String>) -> PyResult<Table> {
         let folder = self.0.clone();
         let read = move |_: &Stop| -> Result<_, Problem> {
@@ -212,7 +212,7 @@ impl StoredStudy {
             let wanted: Vec<_> = wanted.cloned().collect();
             Ok((store.read(RUNS, &names)?, wanted))
         };
-        let (rows, heads) = job(py, Some(1), Interrupted::IsLeft, read)?.map_err(refused)?;
-        Ok(Table::new(TableColumn::of_study(&heads, rows)))
+        let (rows, heads) = job(py, Some(1), Interrupted::Detaches, read)?.map_err(refused)?;
+        Ok(Table::new(TableColumn::from_study(&heads, rows)))
     }
 }

@@ -10,15 +10,15 @@ use pyo3::types::{PyCapsule, PyDict, PyList};
 
 use crate::arrow;
 
-/// Words one after the other.
+/// Concatenated words.
 #[derive(Debug, Default)]
 pub struct Words {
-    /// Where each word begins, and the end of the last one.
+    /// Offsets of the words, followed by the total length.
     pub ends: Vec<i64>,
     pub bytes: Vec<u8>,
 }
 
-/// Cells of a column; they live as long as any copy of this.
+/// Cells of a column, shared by reference counting.
 #[derive(Clone, Debug)]
 pub enum Cells {
     Number(Arc<Vec<f64>>),
@@ -66,7 +66,7 @@ impl Cells {
     }
 }
 
-/// A column with its name, unit and meaning.
+/// Column with name, unit and meaning.
 #[derive(Clone, Debug)]
 pub struct TableColumn {
     pub name: String,
@@ -85,8 +85,8 @@ impl TableColumn {
         }
     }
 
-    /// A column of rows. A number that is not finite is missing, NaN.
-    pub fn of<R>(column: &Column<R>, rows: &[R], phases: &[String]) -> Self {
+    /// Evaluates a column over rows. Non-finite numbers become NaN, which marks missing values.
+    pub fn from_rows<R>(column: &Column<R>, rows: &[R], phases: &[String]) -> Self {
         let cells = match column.kind {
             Kind::Number => {
                 let mut numbers = Vec::with_capacity(rows.len());
@@ -111,8 +111,8 @@ impl TableColumn {
         TableColumn::new(column.head(), cells)
     }
 
-    /// Columns of a study.
-    pub fn of_study(heads: &[Head], rows: Rows) -> Vec<Self> {
+    /// Converts the columns of a study.
+    pub fn from_study(heads: &[Head], rows: Rows) -> Vec<Self> {
         let column = |(head, values): (&Head, Values)| {
             let cells = match values {
                 Values::Number(cells) => Cells::numbers(cells),
@@ -125,7 +125,7 @@ impl TableColumn {
     }
 }
 
-/// Columns of one length.
+/// Columns of equal length.
 #[pyclass(frozen)]
 pub struct Table {
     columns: Arc<Vec<TableColumn>>,
@@ -139,7 +139,7 @@ impl Table {
     }
 }
 
-/// The numbers of a column, for `numpy.asarray`: a view of them, which cannot be written to.
+/// Numbers of a column for `numpy.asarray`: a read-only view.
 #[pyclass(frozen)]
 pub struct Numbers {
     cells: Cells,
@@ -147,7 +147,7 @@ pub struct Numbers {
 
 #[pymethods]
 impl Numbers {
-    /// The array interface of NumPy, version 3. The view that is made of it holds this object, and with it the cells.
+    /// Array interface of NumPy, version 3. The view keeps this object and its cells alive.
     #[getter]
     fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (at, kind) = match &self.cells {
@@ -189,7 +189,7 @@ impl Table {
         self.columns.first().map_or(0, |column| column.cells.len())
     }
 
-    /// The numbers of a column, or its words as a list.
+    /// Numbers of a column, or its words as a list.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.columns.iter().find(|column| column.name == name);
         let column = column.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
@@ -208,7 +208,7 @@ impl Table {
         py: Python<'py>,
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
-        // A producer may leave it aside, and gives its own types then.
+        // A producer may ignore the request and keep its own types.
         drop(requested_schema);
         let stream = arrow::table_stream(Arc::clone(&self.columns));
         PyCapsule::new_with_value(py, stream, arrow::STREAM)

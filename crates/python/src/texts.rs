@@ -1,19 +1,19 @@
-//! Validation, calibration, explanations and schemas: the JSON that the program prints.
+//! Validation, calibration, explanations and schemas, as the JSON of the program.
 
+use cvtcycle::analysis::levers::keys::LEVER_FILE;
+use cvtcycle::calibrate::MAX_STARTS;
+use cvtcycle::calibrate::plan::keys::CALIBRATION;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{
-    Argument, Override, Problem, Problems, bounded, cycle, decode, schema as of,
+    Argument, Override, Problem, Problems, bounded, cycle, decode, schema as json_schema,
 };
+use cvtcycle::explain::Meanings;
 use cvtcycle::model::files;
 use cvtcycle::output::BUILD;
 use cvtcycle::output::escape::json_text as text;
-use cvtcycle::study::check::keys::VALIDATION;
-use cvtcycle::study::check::{self, CandidateVehicle, ValidationRow, json};
-use cvtcycle::study::explain::Meanings;
-use cvtcycle::study::fit::plan::keys::CALIBRATION;
-use cvtcycle::study::fit::{self, MAX_STARTS};
-use cvtcycle::study::levers::keys::LEVER_FILE;
 use cvtcycle::study::plan::PLAN;
+use cvtcycle::validate::keys::VALIDATION;
+use cvtcycle::validate::{CandidateVehicle, ValidationRow, json};
 use pyo3::prelude::*;
 
 use crate::errors::{bad, refused};
@@ -25,7 +25,7 @@ pub fn version() -> (&'static str, &'static str) {
     (env!("CARGO_PKG_VERSION"), BUILD)
 }
 
-/// Names of what the library carries: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`.
+/// Names of embedded inputs of a kind: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`.
 #[pyfunction]
 pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     let kinds = [
@@ -47,7 +47,7 @@ pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     }
 }
 
-/// The meaning of a word.
+/// Explains a word.
 #[pyfunction]
 pub fn explain(py: Python<'_>, word: &str) -> PyResult<String> {
     let found = py.detach(|| Meanings::of(word));
@@ -68,7 +68,7 @@ pub fn schema(kind: &str) -> PyResult<String> {
         ("levers", LEVER_FILE),
     ];
     match kinds.iter().find(|(name, _)| *name == kind) {
-        Some((name, keys)) => text(&of::of(name, keys)).map_err(refused),
+        Some((name, keys)) => text(&json_schema::of(name, keys)).map_err(refused),
         None => {
             let allowed = kinds.map(|(name, _)| name).join(", ");
             Err(bad("kind", kind, &allowed, "there is no such kind"))
@@ -76,7 +76,7 @@ pub fn schema(kind: &str) -> PyResult<String> {
     }
 }
 
-/// Compares with published values, and with rows of the user's own files.
+/// Compares with published values, and with the user's own files of rows.
 #[pyfunction]
 pub fn validate(
     py: Python<'_>,
@@ -94,7 +94,7 @@ pub fn validate(
             Ok((path.clone(), decode(path, &bytes)?))
         };
         let own: Vec<_> = rows.iter().map(own).collect::<Result<_, _>>()?;
-        let files = check::files(&own, embedded)?;
+        let files = cvtcycle::validate::files(&own, embedded)?;
         let is_wanted = |row: &ValidationRow| {
             let is_it = |chapter: &String| chapter.eq_ignore_ascii_case(&row.chapter);
             chapter.as_ref().is_none_or(is_it)
@@ -110,9 +110,11 @@ pub fn validate(
             set,
             ..CandidateVehicle::default()
         };
-        text(&json(&check::judge(&files, &candidate, is_wanted)?))
+        text(&json(&cvtcycle::validate::judge(
+            &files, &candidate, is_wanted,
+        )?))
     };
-    job(py, None, Interrupted::IsLeft, compare)?.map_err(refused)
+    job(py, None, Interrupted::Detaches, compare)?.map_err(refused)
 }
 
 /// Fits parameters to measurements.
@@ -135,11 +137,11 @@ pub fn calibrate(
         ));
     }
     let search = move |stop: &Stop| -> Result<String, Problems> {
-        let mut plan = fit::open(&plan)?;
+        let mut plan = cvtcycle::calibrate::open(&plan)?;
         plan.search.starts = starts.map_or(plan.search.starts, |n| n as usize);
         plan.search.seed = seed.unwrap_or(plan.search.seed);
         plan.leave_out &= folds;
-        text(&fit::calibrate(&plan, stop)?)
+        text(&cvtcycle::calibrate::calibrate(&plan, stop)?)
     };
-    job(py, threads, Interrupted::Ends, search)?.map_err(refused)
+    job(py, threads, Interrupted::Stops, search)?.map_err(refused)
 }

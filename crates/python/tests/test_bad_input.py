@@ -1,4 +1,4 @@
-"""Bad input: an exception with the place of the problem, never the end of the process."""
+"""Bad input raises an exception with the place of the problem, and never ends the process."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ CALLS = {
 
 
 def junk() -> list[tuple[str, object]]:
-    # numpy arrays have no truth value of a comparison; those calls that compare leave them out.
+    # Comparisons of numpy arrays have no truth value, so calls that compare are skipped.
     comparing = {"ambient", "start", "dt", "losses", "samples"}
     return [(name, x) for name in CALLS for x in JUNK if not (name in comparing and isinstance(x, numpy.ndarray))]
 
@@ -116,7 +116,7 @@ def interrupted(call) -> float:
     try:
         with pytest.raises(KeyboardInterrupt):
             call()
-            # What is done before the signal comes would pass without it.
+            # Work that ends before the signal would pass untested.
             raise AssertionError(f"done after {time.monotonic() - begun:.1f} s")
     finally:
         timer.cancel()
@@ -150,7 +150,7 @@ def test_an_interrupted_study_goes_on(tmp_path) -> None:
 
 
 def test_the_lock_of_the_interpreter_is_free() -> None:
-    """Another thread of Python counts on while one drives."""
+    """Another Python thread keeps counting during a drive."""
     family = cc.Family("rover_216_cvt", "ece15_eudc", ["road_load.mass_kg"], threads=1)
     counted, done = [0], threading.Event()
 

@@ -1,4 +1,4 @@
-"""Shards: whatever happens to those that drive them, the merged study is that of one machine, byte for byte."""
+"""Shards: the merged study equals that of one machine byte for byte, even if workers are killed."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_shards_of_the_program(plan: Path, tmp_path) -> None:
 
 
 def test_workers_that_are_killed(plan: Path, tmp_path) -> None:
-    """Kill -9 at many moments of each shard, then again; then a worker that is let be."""
+    """Kills each shard repeatedly with -9 at many moments, then lets a worker finish."""
     random.seed(1)
     for k in range(2):
         words = ["study", str(plan), "--out", str(tmp_path / f"s_{k}"), "--shard", f"{k}/2", "--quiet", "--threads", "1"]
@@ -106,7 +106,7 @@ def test_bad_shards_are_named(plan: Path, tmp_path) -> None:
     kinds = [p["kind"] for p in refused(*shards, tmp_path / "c")]
     assert kinds == ["damaged", "missing"]
     file.write_bytes(good)
-    # A part that two shards have is taken once, if it is the same.
+    # A part in two shards is taken once if its bytes are equal.
     shutil.copytree(tmp_path / "c", tmp_path / "d")
     cc.Study.merge(tmp_path / "m", [*shards, tmp_path / "c", tmp_path / "d"])
     same(plan, tmp_path / "m")

@@ -1,4 +1,4 @@
-"""Families: against single runs, and with the tools that they are for."""
+"""Families against single runs, and under optimisers and sensitivity analyses."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_points_are_runs(family: cc.Family) -> None:
 
 @pytest.mark.parametrize("vehicle", ["rover_216_cvt", "civic_20_cvt", "rover_216_5mt"])
 def test_groups_are_single_points(vehicle: str) -> None:
-    """Property: points that are driven side by side, some refused between them, are those of calls with one point, bit by bit."""
+    """Property: points driven side by side, with refused ones in between, equal calls with one point bit by bit."""
     keys = ["road_load.mass_kg", "engine.accessory_nm", "ambient_degc"]
     family = cc.Family(vehicle, "ece15", keys, threads=2)
     X = numpy.array([[1000.0 + 17 * k, 0.1 * (k % 7), -20.0 + 3 * k] for k in range(19)])
@@ -92,7 +92,7 @@ def test_scipy_finds_an_optimum() -> None:
 
 
 def test_salib_ranks() -> None:
-    """Property: the ambient temperature is nearly all of the spread. With the seed left out, 16 points gave 0.67 once."""
+    """Property: the ambient temperature explains nearly all of the spread. Seeded, because 16 random points gave 0.67 once."""
     from SALib.analyze import sobol
     from SALib.sample import sobol as sample
 

@@ -1,4 +1,4 @@
-"""Runs: against the program, and within themselves."""
+"""Runs against the program, and their internal consistency."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ use cvtcycle_config::bounded::{self, ReadError};
 use cvtcycle_config::{Argument, Document as Toml, ProblemKind, Problems, Reader, decode};
 use cvtcycle_model::keys::{Key, spec};
 
-/// Sections that a report may have, in their order.
+/// Sections of a report, in order.
 pub const SECTIONS: [&str; 13] = [
     "answer",
     "conditions",
@@ -43,13 +43,13 @@ pub const SECTIONS: [&str; 13] = [
 /// The cover, and remarks on sections.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cover {
-    /// Title in place of the report's own.
+    /// Title that replaces the report's own.
     pub title: Option<String>,
-    /// A line below it.
+    /// Line below the title.
     pub subtitle: Option<String>,
     /// Author, organisation, date.
     pub byline: Vec<String>,
-    /// Logo as a data URI, with its words.
+    /// Logo as a data URI, with its alternative text.
     pub logo: Option<(String, String)>,
     /// Section and remark.
     pub remarks: Vec<(&'static str, String)>,
@@ -65,7 +65,7 @@ impl Cover {
         Self::parse(path, &decode(path, &bytes)?)
     }
 
-    /// Reads the text of a cover; `path` is the name that problems cite, in whose folder the logo is.
+    /// Parses a cover; `path` is the name that problems cite, and its folder holds the logo.
     ///
     /// # Errors
     /// As [`Cover::read`].
@@ -111,7 +111,7 @@ impl Cover {
         Ok(cover)
     }
 
-    /// Puts the cover on a report. Remarks on sections that it does not have become warnings.
+    /// Applies the cover to a report. Remarks on missing sections become warnings.
     pub fn apply(&self, document: &mut Document) {
         if let Some(title) = &self.title {
             document.title.clone_from(title);
@@ -133,7 +133,7 @@ impl Cover {
     }
 }
 
-/// A logo as a data URI, or what is wrong with it and what helps.
+/// Reads a logo as a data URI; the error is the problem and its hint.
 fn logo_data(cover: &str, name: &str) -> Result<String, (String, String)> {
     let folder = Path::new(cover).parent().unwrap_or(Path::new(""));
     let path = folder.join(name);

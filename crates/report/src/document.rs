@@ -1,4 +1,4 @@
-//! What a report consists of, without its form.
+//! Content of a report, independent of its form.
 
 use std::collections::BTreeSet;
 
@@ -10,19 +10,19 @@ use crate::live_section::LiveSection;
 pub struct Document {
     /// Title.
     pub title: String,
-    /// What it is about, one line.
+    /// Subject, one line.
     pub subtitle: String,
-    /// Cycle and conditions in a few words, for the head of each page.
+    /// Cycle and conditions in a few words, for the header of each page.
     pub running: String,
     /// Author, organisation, date, as the user wrote them.
     pub byline: Vec<String>,
-    /// The user's logo as a data URI, with its words.
+    /// The user's logo as a data URI, with its alternative text.
     pub logo: Option<(String, String)>,
     /// Sections.
     pub sections: Vec<Section>,
-    /// The section that can be driven again, if there is one.
+    /// Interactive section, if there is one.
     pub live: Option<LiveSection>,
-    /// What is incomplete, for standard error.
+    /// Descriptions of missing parts, for standard error.
     pub warnings: Vec<String>,
 }
 
@@ -33,24 +33,24 @@ pub struct Section {
     pub id: String,
     /// Title.
     pub title: String,
-    /// Its parts.
+    /// Parts.
     pub blocks: Vec<Block>,
-    /// What only a full report has besides.
+    /// Additional parts of a full report.
     pub more: Vec<Block>,
 }
 
 /// A part of a section.
 #[derive(Clone, Debug)]
 pub enum Block {
-    /// The question that the document answers.
+    /// Question that the document answers.
     Question(String),
-    /// A sentence that says what matters.
+    /// Key sentence.
     Lead(String),
-    /// Boxes side by side, each with a head and its lines.
+    /// Boxes in a row, each with a head and its lines.
     Boxes(Vec<(String, Vec<String>)>),
     /// A paragraph.
     Text(String),
-    /// A paragraph that must not be missed.
+    /// A prominent paragraph.
     Alert(String),
     /// The user's own words.
     Remark(String),
@@ -62,7 +62,7 @@ pub enum Block {
     Facts(Vec<(String, String)>),
     /// A table.
     Table(ReportTable),
-    /// A table that is folded away.
+    /// A collapsed table.
     Folded(ReportTable),
     /// A figure.
     Figure(Figure),
@@ -71,13 +71,13 @@ pub enum Block {
 /// A table. The first column names the row.
 #[derive(Clone, Debug, Default)]
 pub struct ReportTable {
-    /// What it holds.
+    /// Caption.
     pub caption: String,
     /// Columns.
     pub columns: Vec<ReportColumn>,
     /// Cells, row by row.
     pub rows: Vec<ReportRow>,
-    /// What has to be known of it; may be empty.
+    /// Note on the contents; may be empty.
     pub note: String,
 }
 
@@ -88,7 +88,7 @@ pub struct ReportColumn {
     pub name: String,
     /// Unit; may be empty.
     pub unit: String,
-    /// Whether it holds numbers.
+    /// True for a column of numbers.
     pub number: bool,
 }
 
@@ -97,33 +97,33 @@ pub struct ReportColumn {
 pub struct ReportRow {
     /// Cells.
     pub cells: Vec<String>,
-    /// Whether it is emphasised, for example as a sum.
+    /// True for an emphasised row, such as a sum.
     pub strong: bool,
 }
 
 /// A figure.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// Name, from which that of its file is made.
+    /// Name, the stem of its file name.
     pub name: String,
-    /// What is to be seen.
+    /// Caption.
     pub caption: String,
     /// Drawing and numbers.
     pub picture: Picture,
-    /// Which of several views it is; none for a figure of its own.
+    /// View that the figure belongs to; `None` for a separate figure.
     pub view: Option<View>,
 }
 
-/// One of several figures of which the page shows one at a time: the same of another car.
+/// One of several figures of which the page shows one at a time: the same quantity for another car.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// Name of the views, the same for all of them.
+    /// Name of the group of views.
     pub group: String,
-    /// What distinguishes this one: the car.
+    /// Label of this view: the car.
     pub label: String,
-    /// Whether it is the one that is shown first, and that paper has.
+    /// True for the view shown first, and printed.
     pub first: bool,
-    /// Whether paper has the others too.
+    /// True if the other views are printed too.
     pub paper: bool,
 }
 
@@ -143,7 +143,7 @@ impl Section {
         self.blocks.push(Block::Text(text.into()));
     }
 
-    /// Adds a paragraph that must not be missed.
+    /// Adds a prominent paragraph.
     pub fn alert(&mut self, text: impl Into<String>) {
         self.blocks.push(Block::Alert(text.into()));
     }
@@ -158,18 +158,23 @@ impl Section {
         self.blocks.push(Block::Facts(facts));
     }
 
-    /// Adds a figure under the name of its file, with what is to be seen.
-    pub fn figure(&mut self, name: impl Into<String>, caption: impl Into<String>, of: Picture) {
+    /// Adds a figure with its file name and caption.
+    pub fn figure(
+        &mut self,
+        name: impl Into<String>,
+        caption: impl Into<String>,
+        picture: Picture,
+    ) {
         self.blocks.push(Block::Figure(Figure {
             name: name.into(),
             caption: caption.into(),
-            picture: of,
+            picture,
             view: None,
         }));
     }
 
-    /// Adds the same figure of several cars, of which the page shows one at a time: the car, the name of the file, what is to be seen, and the
-    /// figure. The first one is shown first.
+    /// Adds the same figure of several cars, of which the page shows one at a time: car, file name, caption and figure. The first one is shown
+    /// first.
     pub fn views(
         &mut self,
         group: &str,
@@ -198,18 +203,18 @@ impl Section {
         self.blocks.push(Block::Table(table));
     }
 
-    /// Adds a table that is folded away.
+    /// Adds a collapsed table.
     pub fn folded(&mut self, table: ReportTable) {
         self.blocks.push(Block::Folded(table));
     }
 }
 
-/// Columns that a phone has room for.
+/// Maximum number of columns that fit on a phone.
 const WIDE: usize = 3;
 
 impl ReportTable {
     /// A table of a column of names and columns of numbers with their units.
-    pub fn of_numbers(
+    pub fn numeric(
         caption: &str,
         first: &str,
         columns: impl IntoIterator<Item = (impl Into<String>, impl Into<String>)>,
@@ -219,13 +224,13 @@ impl ReportTable {
             unit: unit.into(),
             number: true,
         });
-        let mut table = Self::of_words(caption, &[first]);
+        let mut table = Self::textual(caption, &[first]);
         table.columns.extend(rest);
         table
     }
 
     /// A table of words.
-    pub fn of_words(caption: &str, columns: &[&str]) -> Self {
+    pub fn textual(caption: &str, columns: &[&str]) -> Self {
         let column = |name: &&str| ReportColumn {
             name: (*name).to_owned(),
             ..ReportColumn::default()
@@ -237,26 +242,26 @@ impl ReportTable {
         }
     }
 
-    /// Whether it is too wide for a phone: there each row is a card, and each cell has the head of its column.
+    /// True for a table too wide for a phone, where each row becomes a card, and each cell repeats the head of its column.
     pub fn is_wide(&self) -> bool {
         self.columns.len() > WIDE
     }
 
     /// Name and unit of a column, for a cell of a card.
     pub fn head(&self, column: &usize) -> String {
-        let of = self.columns.get(*column);
-        of.map_or_else(String::new, |of| match of.unit.as_str() {
-            "" => of.name.clone(),
-            unit => format!("{} [{unit}]", of.name),
+        let column_head = self.columns.get(*column);
+        column_head.map_or_else(String::new, |column_head| match column_head.unit.as_str() {
+            "" => column_head.name.clone(),
+            unit => format!("{} [{unit}]", column_head.name),
         })
     }
 
-    /// Whether every column but the first holds numbers.
+    /// True if all columns but the first hold numbers.
     pub fn all_numbers(&self) -> bool {
         self.columns.iter().skip(1).all(|column| column.number)
     }
 
-    /// Whether the cells of a column have to be marked as numbers, since not all columns hold some.
+    /// True if cells of a column need a mark as numbers, since other columns hold words.
     pub fn marked(&self, column: &usize) -> bool {
         let own = self.columns.get(*column);
         !self.all_numbers() && own.is_some_and(|column| column.number)
@@ -288,26 +293,29 @@ impl ReportTable {
 }
 
 impl Figure {
-    /// The numbers of the picture as a table, for the figure of that number.
+    /// Numbers of the picture as a table, for the figure with that number.
     pub fn numbers(&self, number: &str) -> ReportTable {
         let table = &self.picture.table;
         let caption = format!("Numbers of figure {number}");
-        let mut of = ReportTable::of_words(&caption, &[]);
+        let mut listed = ReportTable::textual(&caption, &[]);
         for (k, (name, unit)) in table.columns.iter().enumerate() {
-            of.columns.push(ReportColumn {
+            listed.columns.push(ReportColumn {
                 name: name.clone(),
                 unit: (*unit).to_owned(),
                 number: table.numbers(k).is_some(),
             });
         }
-        table.rows.iter().for_each(|cells| of.row(cells.clone()));
-        of.note.clone_from(&table.note);
-        of
+        table
+            .rows
+            .iter()
+            .for_each(|cells| listed.row(cells.clone()));
+        listed.note.clone_from(&table.note);
+        listed
     }
 }
 
 impl Document {
-    /// The body alone, or all of it: sections without anything to show are left out.
+    /// Selects the body, or the full report; drops empty sections.
     #[must_use]
     pub fn shown(mut self, full: bool) -> Self {
         for section in &mut self.sections {
@@ -326,7 +334,7 @@ impl Document {
         self
     }
 
-    /// The figures, each with the name of its file, which is plain and no other figure has.
+    /// Iterates over the figures with their file names, which are safe and unique.
     pub fn figures(&self) -> impl Iterator<Item = (String, &Figure)> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
         let figures = blocks.filter_map(|block| match block {
@@ -340,7 +348,7 @@ impl Document {
                 1 => name.clone(),
                 k => format!("{name}_{k}"),
             };
-            // Not all file systems tell upper from lower case.
+            // Some file systems ignore case.
             let is_free = |name: &String| taken.insert(name.to_lowercase());
             let name = (1..).map(numbered).find(is_free).unwrap_or_default();
             (format!("{name}.svg"), figure)
@@ -348,7 +356,7 @@ impl Document {
     }
 }
 
-/// A name without anything that leads elsewhere.
+/// Makes a name safe as a file name, without path components.
 pub(crate) fn plain(name: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_.".contains(c);
     name.chars()

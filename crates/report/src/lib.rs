@@ -10,8 +10,8 @@
 //! | `study::levers` | the sections on a study of levers |
 //! | `study_answers` | the results of a study in sentences |
 //! | `study_pictures` | the pictures of a study |
-//! | `live` | a page that can be driven again |
-//! | `live_section` | what such a page shows: levers, states, answers |
+//! | `whatif` | interactive page |
+//! | `live_section` | content of an interactive page: levers, states, answers |
 //! | `run_files` | the files of a run, of which a report is made |
 //! | `write` | the files of a report |
 //! | `render` | the document as HTML or Markdown (templates in `reports/`) |
@@ -22,7 +22,7 @@ pub mod charts;
 pub mod compare;
 pub mod cover;
 pub mod document;
-pub mod live;
+pub mod whatif;
 mod live_section;
 pub mod results;
 pub mod number;
@@ -44,7 +44,7 @@ use document::Document;
 use problems::problem;
 use results::{ResultDir, find};
 
-/// The report of one directory, or of two runs against each other.
+/// Builds the report of one directory, or of two runs against each other.
 ///
 /// `with` names studies and validations in other directories, `cover` the user's title page.
 ///

@@ -1,4 +1,4 @@
-//! What a live page shows: its section with levers, states and answers. `live` makes it, `render` puts it into a page.
+//! Content of a live page: its section with levers, states and answers. `live` makes it, `render` puts it into a page.
 
 use std::collections::BTreeMap;
 
@@ -12,34 +12,34 @@ use crate::number::sign;
 /// The live section of a page.
 #[derive(Clone, Debug)]
 pub struct LiveSection {
-    /// How it begins.
+    /// Initial state.
     pub state: State,
-    /// The levers.
+    /// Levers.
     pub controls: Vec<Control>,
-    /// Words of the cars that the figures can hold the subject against, with their names.
+    /// Words of the cars available for comparison in the figures, with their names.
     pub cars: Vec<(String, String)>,
     /// Names of the cycles.
     pub cycles: Vec<String>,
     /// Names of transmission oils.
     pub oils: Vec<String>,
-    /// The first answer.
+    /// First answer.
     pub answer: Answer,
-    /// Its interval, once drawn.
+    /// Intervals of the answer, once drawn.
     pub(crate) drawn: Option<Vec<DrawnDifference>>,
-    /// The scene as JSON, for the page's script.
+    /// Scene as JSON, for the page's script.
     pub(crate) scene: String,
 }
 
-/// The answer to a state.
+/// Answer to a state.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Answer {
     /// Sentences and figures as HTML.
     pub html: String,
-    /// The command that prints the same numbers.
+    /// Command that prints the same numbers.
     pub command: String,
-    /// Whether there is a difference whose interval can be drawn.
+    /// True if there is a difference whose interval can be drawn.
     pub can_draw: bool,
-    /// Whether no such car can be built or driven; the sentences then say why.
+    /// True if the car cannot be built or driven; the sentences then give the reason.
     pub failed: bool,
 }
 
@@ -50,12 +50,12 @@ pub struct State {
     pub cycle: String,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
-    /// Transmission oil; that of the car's file if none.
+    /// Transmission oil; by default that of the car's file.
     pub lubricant: Option<String>,
-    /// What each moved lever is at: a number, or the name of a change.
+    /// Position of each moved lever: a number, or the name of a change.
     #[serde(default)]
     pub levers: BTreeMap<String, String>,
-    /// The word of the car that the figures hold the subject against; the first one if it is none of them.
+    /// Word of the car for comparison in the figures; the first one if unknown.
     #[serde(default)]
     pub against: String,
 }
@@ -67,20 +67,20 @@ pub struct Control {
     pub name: String,
     /// Name for people.
     pub title: &'static str,
-    /// What it is.
-    pub kind: Kind,
+    /// Kind and range.
+    pub kind: ControlKind,
 }
 
 /// Kinds of lever.
 #[derive(Clone, Debug)]
-pub enum Kind {
+pub enum ControlKind {
     /// A number.
     Slider(Slider),
-    /// One of some changes, or none.
-    Choice(Vec<Change>),
+    /// A choice of at most one change.
+    Choice(Vec<ControlChange>),
 }
 
-/// A number that can be moved, all in the unit of its key.
+/// An adjustable number, in the unit of its key.
 #[derive(Clone, Debug)]
 pub struct Slider {
     /// Dotted key.
@@ -93,33 +93,33 @@ pub struct Slider {
     pub ends: [f64; 2],
     /// Distance of two positions.
     pub step: f64,
-    /// The range of the car's value, of the shipped levers and of the plan of uncertainty; beyond it nothing is known.
+    /// Combined range of the car's value, of the shipped levers and of the plan of uncertainty; nothing is known outside it.
     pub known: [f64; 2],
-    /// What the key means.
+    /// Meaning of the key.
     pub meaning: &'static str,
 }
 
 /// A change of a car.
 #[derive(Clone, Debug)]
-pub struct Change {
+pub struct ControlChange {
     /// Name.
     pub name: String,
     /// Name for people.
     pub title: String,
-    /// What it takes; may be empty.
+    /// Requirement; may be empty.
     pub needs: String,
     /// Overrides.
     pub set: Vec<Override>,
 }
 
 impl Slider {
-    /// Decimals of its positions.
+    /// Number of decimals of its positions.
     #[must_use]
     pub fn decimals(&self) -> usize {
         (-self.step.log10().floor()).clamp(0.0, 6.0) as usize
     }
 
-    /// The known range on the track, from 0 to 1.
+    /// Known range on the track, from 0 to 1.
     #[must_use]
     pub fn band(&self) -> [f64; 2] {
         let [from, to] = self.ends;
@@ -127,7 +127,7 @@ impl Slider {
             .map(|x| ((x - from) / (to - from)).clamp(0.0, 1.0))
     }
 
-    /// Whether a value is one that something is known of; a position may be rounded.
+    /// Tests that a value lies in the known range; a position may be rounded.
     #[must_use]
     pub fn knows(&self, value: f64) -> bool {
         let half = 0.5 * self.step;
@@ -136,35 +136,35 @@ impl Slider {
 }
 
 impl Slider {
-    /// A value with its unit.
+    /// Formats a value with its unit.
     pub fn with_unit(&self, value: f64) -> String {
         let number = fixed(Some(value), self.decimals());
         format!("{number} {}", self.unit).trim_end().to_owned()
     }
 
-    /// The car's value with its unit.
+    /// Formats the car's value with its unit.
     pub fn base_text(&self) -> String {
         self.with_unit(self.base)
     }
 
-    /// The known range in words.
+    /// Formats the known range in words.
     pub fn known_text(&self) -> String {
         let [low, high] = self.known.map(|x| fixed(Some(x), self.decimals()));
         let text = format!("{low} to {high} {}", self.unit);
         text.trim_end().to_owned()
     }
 
-    /// Its unit as people write it.
+    /// Unit as printed.
     pub fn unit_sign(&self) -> &'static str {
         sign(self.unit)
     }
 
-    /// Where the known range begins and ends on the track, per cent.
+    /// Ends of the known range on the track, per cent.
     pub fn band_percent(&self) -> [String; 2] {
         self.band().map(|share| format!("{:.1}", 100.0 * share))
     }
 
-    /// A number of it, as an attribute has it.
+    /// Formats a number as an attribute.
     pub fn attribute(&self, value: &f64) -> String {
         format!("{value:.*}", self.decimals())
     }

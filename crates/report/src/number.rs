@@ -1,15 +1,15 @@
-//! Numbers to text: each kind of quantity has its decimals and its unit here and nowhere else.
+//! Formats numbers for the report: decimals and unit of each kind of quantity are defined here only.
 
 use cvtcycle_output::number;
 
-/// Between a number and its unit: they stay on one line.
+/// Separator of a number and its unit, which keeps them on one line.
 const SPACE: char = '\u{a0}';
 /// A minus sign as wide as the digits.
 const MINUS: char = '\u{2212}';
-/// Where there is no number.
+/// Placeholder for a missing number.
 pub const NONE: &str = "\u{2013}";
 
-/// Energies from here on, kJ, are written in whole kJ.
+/// Energy from which on whole kJ are written, kJ.
 const GROUPED: f64 = 999.95;
 
 /// A kind of quantity.
@@ -65,7 +65,7 @@ impl Quantity {
         }
     }
 
-    /// The number alone, for a cell whose column has the unit.
+    /// Formats the number alone, for a cell whose column has the unit.
     #[must_use]
     pub fn bare(self, x: impl Into<Option<f64>>) -> String {
         let x = x.into().unwrap_or(f64::NAN);
@@ -73,20 +73,20 @@ impl Quantity {
         grouped(x, if whole { 0 } else { self.decimals() })
     }
 
-    /// The number alone, with its sign.
+    /// Formats the number alone, with its sign.
     #[must_use]
     pub fn bare_signed(self, x: impl Into<Option<f64>>) -> String {
         let x = x.into();
         signed(self.bare(x), x.unwrap_or(f64::NAN))
     }
 
-    /// The number with its unit.
+    /// Formats the number with its unit.
     #[must_use]
     pub fn text(self, x: impl Into<Option<f64>>) -> String {
         self.with_unit(self.bare(x))
     }
 
-    /// The number with sign and unit.
+    /// Formats the number with sign and unit.
     #[must_use]
     pub fn signed(self, x: impl Into<Option<f64>>) -> String {
         self.with_unit(self.bare_signed(x))
@@ -101,8 +101,8 @@ impl Quantity {
     }
 }
 
-/// A number with decimals and a true minus; with five digits and more before the point, groups of three are set apart. [`NONE`] where it is
-/// not finite.
+/// Formats a number with decimals and a true minus; with five digits and more before the point, groups of three are separated. [`NONE`] if not
+/// finite.
 pub fn grouped(x: f64, decimals: usize) -> String {
     if !x.is_finite() {
         return NONE.to_owned();
@@ -119,7 +119,7 @@ pub fn grouped(x: f64, decimals: usize) -> String {
     minus(&out)
 }
 
-/// The text of a number, with a plus sign where it is positive and not rounded to zero.
+/// Adds a plus sign to the text of a number that is positive and not rounded to zero.
 pub(crate) fn signed(text: String, x: f64) -> String {
     let plus = x > 0.0 && has_digits(&text);
     if plus { format!("+{text}") } else { text }
@@ -130,7 +130,7 @@ fn has_digits(text: &str) -> bool {
     text.bytes().any(|b| (b'1'..=b'9').contains(&b))
 }
 
-/// The text of a number with a true minus, and with none before a zero.
+/// Gives the text of a number a true minus, and zero no sign.
 pub(crate) fn minus(text: &str) -> String {
     match text.strip_prefix('-') {
         Some(rest) if has_digits(rest) => format!("{MINUS}{rest}"),
@@ -139,7 +139,7 @@ pub(crate) fn minus(text: &str) -> String {
     }
 }
 
-/// A unit as it is written.
+/// Unit as printed.
 pub(crate) fn sign(unit: &str) -> &str {
     match unit {
         "degC" => "\u{b0}C",
@@ -150,13 +150,13 @@ pub(crate) fn sign(unit: &str) -> &str {
     }
 }
 
-/// Units that stay on the line of their number.
+/// Units kept on the line of their number.
 const UNITS: [&str; 12] = [
     "%", "kJ", "MJ", "km", "s", "K", "W", "rpm", "bar", "mm", "g/km", "kJ/km",
 ];
 
-/// A text of the program as print has it: units as `sign` writes them and on the line of their number, true minus signs, \u{b1}. What is typed
-/// into a terminal stays as it is: words in backticks, options with their value, settings.
+/// Typesets a text of the program: units as `sign` writes them and on the line of their number, true minus signs, \u{b1}. Terminal input stays
+/// unchanged: words in backticks, options with their value, settings.
 pub fn typeset(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 8);
     let (mut code, mut option) = (false, false);
@@ -202,17 +202,17 @@ pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// A temperature as the user gave it, without decimals that he did not write.
+/// Formats a temperature as the user gave it, without extra decimals.
 pub fn degc(x: f64) -> String {
     format!("{}{SPACE}\u{b0}C", minus(&format!("{}", x + 0.0)))
 }
 
-/// A part of a whole, per cent.
+/// Formats a part of a whole, per cent.
 pub fn percent(part: impl Into<Option<f64>>, whole: f64) -> String {
     Quantity::Percent.bare(part.into().map(|part| 100.0 * part / whole))
 }
 
-/// A small error such as 3e-15.
+/// Formats a small error such as 3e-15.
 pub fn tiny(x: Option<f64>) -> String {
     let text = |_| number::tiny(x).replace('-', &MINUS.to_string());
     x.map_or_else(|| NONE.to_owned(), text)
@@ -226,12 +226,12 @@ pub(crate) fn list_of(words: &[String]) -> String {
     }
 }
 
-/// A word of the program as people read it.
+/// Formats a name of the program for people.
 pub fn words(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// A phase as people write it: `ECE15`, `EUDC`, but `cold transient`.
+/// Formats the name of a phase for people: `ECE15`, `EUDC`, but `cold transient`.
 pub fn phase(name: &str) -> String {
     let code = name.chars().any(|c| c.is_ascii_digit()) || name.eq_ignore_ascii_case("eudc");
     if code {
@@ -241,12 +241,12 @@ pub fn phase(name: &str) -> String {
     }
 }
 
-/// The same, as the beginning of a line.
+/// Formats the name of a phase as the beginning of a line.
 pub fn capital(name: &str) -> String {
     capital_first(&words(name))
 }
 
-/// A text with a capital first letter.
+/// Capitalises the first letter of a text.
 pub fn capital_first(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().into_iter().flat_map(char::to_uppercase);

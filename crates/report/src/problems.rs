@@ -1,4 +1,4 @@
-//! Problems of files of results: they cannot be read, or do not belong together.
+//! Problems of result files: unreadable, or not of one run.
 
 use std::path::Path;
 
@@ -33,21 +33,21 @@ pub(crate) fn unreadable(path: &Path, error: &ReadError) -> Problem {
     .allowed(allowed)
 }
 
-/// Relative difference that rounding in sums over a whole trace may leave.
+/// Maximum relative rounding difference of sums over a whole trace.
 const ROUNDING: f64 = 1e-6;
 
 fn near(a: f64, b: f64, scale: f64) -> bool {
     (a - b).abs() <= ROUNDING * scale.abs() + 1e-9
 }
 
-/// Whether the numbers of a car agree with each other: fuel with distance, and the terms of the ledger with the fuel.
+/// Checks that the numbers of a car agree: fuel with distance, and the terms of the ledger with the fuel.
 pub(crate) fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
     let term = |name: &str| run.term_kj(name).unwrap_or(0.0);
     let terms: f64 = TERMS.iter().map(|(name, ..)| term(name)).sum();
     let litres = |fuel: f64| fuel * run.distance_km / 100.0;
     let fuel = run.fuel_l_per_100km;
     let fuel = fuel.is_none_or(|fuel| near(litres(fuel), run.fuel_l, run.fuel_l));
-    // A run whose ledger did not close has said so itself.
+    // A run with an open ledger has already reported it.
     let mut failed = run.failed_checks.iter();
     let open = failed.any(|check| ["ledger_error", "not_finite"].contains(&check.as_str()));
     let closes = |kj: f64| near(kj, run.fuel_energy_kj, run.fuel_energy_kj);
@@ -62,7 +62,7 @@ pub(crate) fn consistent(file: &Path, run: &RunSummary) -> Result<(), Problem> {
     Err(problem(file, &message, hint))
 }
 
-/// Whether a trace is that of the summary: as long, with the same fuel and the same losses.
+/// Checks that a trace matches the summary: same duration, fuel and losses.
 pub(crate) fn belongs(path: &Path, run: &RunSummary, history: &History) -> Result<(), Problem> {
     let dt = history.dt_s();
     let sum = |name: &str| -> f64 {

@@ -1,4 +1,4 @@
-//! A document in its form: HTML or Markdown, by the templates in `reports/`.
+//! Renders a document as HTML or Markdown, by the templates in `reports/`.
 
 use std::fmt;
 
@@ -6,12 +6,12 @@ use askama::Template;
 use askama::filters::Escaper;
 
 use super::document::{Block, Document, ReportTable, Section};
-use super::live_section::Kind;
+use super::live_section::ControlKind;
 use super::number::typeset;
 use cvtcycle_config::visible;
 use cvtcycle_output::{Component, PROGRAM};
 
-/// The answer of a live section.
+/// Answer of a live section.
 #[derive(Template)]
 #[template(path = "live_answer.html")]
 struct LiveAnswer<'a> {
@@ -37,23 +37,23 @@ struct Text<'a> {
 }
 
 struct ShownSection<'a> {
-    /// Whether it is the first, a page of its own on paper.
+    /// True for the first section, a separate page on paper.
     first: bool,
     id: &'a str,
     title: &'a str,
     blocks: Vec<ShownBlock<'a>>,
 }
 
-/// A block with its number among the tables or the figures of the document, which other blocks have no use for.
+/// A block with its number among the tables or the figures of the document; empty for other blocks.
 struct ShownBlock<'a> {
     block: &'a Block,
-    /// Number of a figure or a table; other views of a figure have its number and a letter, so that no number is missing on paper.
+    /// Number of a figure or a table. Other views of a figure share its number and add a letter, so that no number is missing on paper.
     number: String,
-    /// Name of the file of a figure.
+    /// File name of a figure.
     file: String,
 }
 
-/// Text of files in HTML: escaped, with hidden characters as U+FFFD.
+/// Escapes text for HTML, with hidden characters as U+FFFD.
 #[derive(Clone, Copy)]
 pub(crate) struct Html;
 
@@ -63,7 +63,7 @@ impl Escaper for Html {
     }
 }
 
-/// The document as one HTML page that loads nothing.
+/// Renders the document as one self-contained HTML page.
 ///
 /// # Errors
 /// Never for the templates of this program.
@@ -77,18 +77,18 @@ pub fn html(document: &Document) -> Result<String, String> {
     .map_err(|error| error.to_string())
 }
 
-/// The blocks of a live section as HTML; its first figure has this number.
+/// Renders the blocks of a live section as HTML, with figures numbered from `first_figure`.
 pub(crate) fn live(section: &Section, first_figure: usize) -> String {
     let mut numbering = Numbering {
         figures: first_figure.saturating_sub(1),
         ..Numbering::default()
     };
     let section = numbering.section(false, section, &mut std::iter::empty());
-    // Never fails for the templates of this program.
+    // Templates of this program cannot fail.
     LiveAnswer { section }.render().unwrap_or_default()
 }
 
-/// The document as Markdown; its figures are the SVG files in the folder with the address `figures`.
+/// Renders the document as Markdown; its figures are the SVG files in the folder with the address `figures`.
 ///
 /// # Errors
 /// Never for the templates of this program.
@@ -100,7 +100,7 @@ pub fn markdown(document: &Document, figures: &str) -> Result<String, String> {
         figures,
     };
     let text = text.render().map_err(|error| error.to_string())?;
-    // What the template leaves between blocks.
+    // Collapses the blank lines that the template leaves between blocks.
     let mut out = String::with_capacity(text.len());
     let mut empty = 0;
     for line in text.lines().map(str::trim_end) {
@@ -175,7 +175,7 @@ impl Numbering {
     }
 }
 
-/// Names of the components as cells have them, in small letters.
+/// Names of the components as in cells, in small letters.
 fn component_names() -> String {
     let names = Component::ALL.map(|component| component.name().replace('_', " "));
     names.join(",").to_lowercase()
@@ -186,10 +186,10 @@ fn paragraphs(text: &str) -> impl Iterator<Item = &str> {
     text.lines().map(str::trim).filter(|line| !line.is_empty())
 }
 
-/// Height of a drawing up to which two of them fill a page of A4, pixels.
+/// Maximum height of a drawing at which two fit on a page of A4, pixels.
 const TWO_A_PAGE: f64 = 580.0;
 
-/// Whether a drawing is too tall for two on a page: made smaller its text could not be read.
+/// True for a drawing too tall for two on a page: scaled down its text would be illegible.
 fn is_tall(svg: &str) -> bool {
     let height = svg.split(" height=\"").nth(1);
     let height = height.and_then(|rest| rest.split('"').next());
@@ -198,18 +198,18 @@ fn is_tall(svg: &str) -> bool {
         .is_some_and(|height: f64| height > TWO_A_PAGE)
 }
 
-/// A drawing whose ids no other drawing of the page has.
+/// Makes the ids of a drawing unique within the page.
 fn with_own_ids(svg: &str, number: &str) -> String {
     svg.replace(" id=\"", &format!(" id=\"f{number}-"))
         .replace("url(#", &format!("url(#f{number}-"))
 }
 
-/// Letters from which on a key or a path may be broken at its joints.
+/// Length from which on a key or a path may break at its joints.
 const LONG_KEY: usize = 12;
-/// Digits of a folded hash, and of a whole one.
+/// Number of digits of a shortened hash, and of a whole one.
 const HASH: (usize, usize) = (12, 64);
 
-/// Text of the program in HTML: typeset, escaped, broken between words and at the joints of keys only; hashes are folded or whole.
+/// Formats text in HTML: typeset, escaped, with breaks only between words and at the joints of keys; `fold` shortens hashes.
 fn flowing(text: &str, fold: bool) -> String {
     let text = typeset(text);
     let words = text.split(' ').map(|word| match is_hash(word) {
@@ -223,7 +223,7 @@ fn flowing(text: &str, fold: bool) -> String {
     coded(&words.collect::<Vec<_>>().join(" "))
 }
 
-/// What is typed into a terminal, marked in HTML: the text between each pair of backticks.
+/// Marks terminal input in HTML: the text between each pair of backticks.
 fn coded(html: &str) -> String {
     let mut out = String::with_capacity(html.len());
     let mut rest = html;
@@ -243,12 +243,12 @@ fn is_hash(word: &str) -> bool {
 
 fn escaped(text: &str) -> String {
     let mut out = String::new();
-    // A string takes every text.
+    // Writing to a string cannot fail.
     let _ = Html.write_escaped_str(&mut out, text);
     out
 }
 
-/// A key with places to break after its points, lines and strokes; any other word as it is.
+/// Adds places to break to a key, after its points, lines and strokes; other words are unchanged.
 fn jointed(word: &str) -> String {
     let joint = |c: char| "_./:=".contains(c);
     let is_key = word.chars().count() >= LONG_KEY
@@ -269,13 +269,13 @@ fn jointed(word: &str) -> String {
     out + "</span>"
 }
 
-/// Whether a table has hashes, which are folded in it.
+/// True for a table with hashes, which are then shortened.
 fn has_hashes(table: &ReportTable) -> bool {
     let mut cells = table.rows.iter().flat_map(|row| &row.cells);
     cells.any(|cell| is_hash(cell))
 }
 
-/// The hashes among facts.
+/// Hashes among facts.
 fn hashes_of(facts: &[(String, String)]) -> Vec<&(String, String)> {
     facts.iter().filter(|(_, value)| is_hash(value)).collect()
 }
@@ -286,37 +286,37 @@ mod filters {
 
     use cvtcycle_output::escape;
 
-    /// Text that Markdown and HTML take as it is.
+    /// Escapes text for Markdown and the HTML in it.
     #[askama::filter_fn]
     pub fn md(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         Ok(escape::markdown(&super::typeset(&text.to_string())))
     }
 
-    /// Text as print has it, to be escaped.
+    /// Typesets text, before escaping.
     #[askama::filter_fn]
     pub fn typeset(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         Ok(super::typeset(&text.to_string()))
     }
 
-    /// Text as HTML with places to break keys, hashes folded.
+    /// Formats text as HTML with places to break keys, and shortened hashes.
     #[askama::filter_fn]
     pub fn flow(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         Ok(super::flowing(&text.to_string(), true))
     }
 
-    /// The same with whole hashes.
+    /// As [`flow`], with whole hashes.
     #[askama::filter_fn]
     pub fn whole(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         Ok(super::flowing(&text.to_string(), false))
     }
 
-    /// A unit as it is written.
+    /// Unit as printed.
     #[askama::filter_fn]
     pub fn unit(unit: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         Ok(crate::number::sign(&unit.to_string()).to_owned())
     }
 
-    /// Text within the quotes of a style sheet.
+    /// Escapes text for the quotes of a style sheet.
     #[askama::filter_fn]
     pub fn css(text: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         let text = super::typeset(&text.to_string());
@@ -327,7 +327,7 @@ mod filters {
         Ok(super::visible(&text).chars().map(code).collect())
     }
 
-    /// The name of a file as part of an address.
+    /// Encodes a file name for an address.
     #[askama::filter_fn]
     pub fn url(name: impl Display, _: &dyn askama::Values) -> askama::Result<String> {
         Ok(escape::url_path(name.to_string().as_bytes()))

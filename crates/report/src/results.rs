@@ -20,12 +20,12 @@ use cvtcycle_study::statistics::Confidence;
 use cvtcycle_study::store::{self, is_study, read_trace_parquet};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable, answer};
 
-/// The file of numbers of a run or a validation.
+/// Summary of a run or a validation.
 const SUMMARY: &str = "summary.json";
-/// The manifest of a study.
+/// Manifest of a study.
 const STUDY: &str = "study.json";
 
-/// The results in a directory.
+/// Results in a directory.
 #[derive(Debug)]
 pub enum ResultDir {
     /// A run.
@@ -37,53 +37,53 @@ pub enum ResultDir {
 /// A run, with the studies and the validation in its directory.
 #[derive(Debug)]
 pub struct RunResults {
-    /// The directory.
+    /// Directory.
     pub path: PathBuf,
-    /// Its numbers.
+    /// Summary.
     pub summary: Summary,
-    /// Its inputs; none of a directory of an early version.
+    /// Inputs; `None` for a directory of an early version.
     pub record: Option<Record>,
-    /// The trace of each car.
+    /// Trace of each car.
     pub histories: Vec<Option<History>>,
     /// Studies of the run.
     pub studies: Vec<StudyResults>,
-    /// A validation of its model.
+    /// Validation of the model.
     pub validation: Option<Value>,
-    /// Sentences on what is missing.
+    /// Sentences on missing parts.
     pub missing: Vec<String>,
 }
 
 /// A study, finished or not.
 #[derive(Debug)]
 pub struct StudyResults {
-    /// The directory.
+    /// Directory.
     pub path: PathBuf,
-    /// Its plan, design and cars.
+    /// Plan, design and cars.
     pub outline: StudyManifest,
-    /// Its manifest.
+    /// Manifest.
     pub manifest: Value,
-    /// Its parts.
+    /// Parts.
     pub store: store::Study,
-    /// Its statistics.
+    /// Statistics.
     pub answer: Answer,
-    /// Warm-up of each run, where it is a matrix with traces.
+    /// Warm-up of each run, for a matrix with traces.
     pub warm_ups: Vec<WarmUp>,
 }
 
 impl StudyResults {
-    /// Opens and answers.
+    /// Opens a study, and computes its statistics.
     ///
     /// # Errors
-    /// A directory that is no study, a manifest or a part that cannot be read.
+    /// The directory holds no study, or a manifest or a part cannot be read.
     pub fn open(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
         let (outline, store) = Self::stored(path)?;
-        Self::of(outline, store, confidence)
+        Self::from_store(outline, store, confidence)
     }
 
-    /// As [`StudyResults::open`], with the names of cars that tables and figures of a report have.
+    /// As [`StudyResults::open`], with the cars named as in tables and figures of a report.
     ///
     /// # Errors
-    /// As there.
+    /// As of [`StudyResults::open`].
     pub fn open_for_report(path: &Path, confidence: Confidence) -> Result<Self, Problem> {
         let (mut outline, store) = Self::stored(path)?;
         let names = outline.cars.clone();
@@ -93,15 +93,15 @@ impl StudyResults {
         Self::traced(outline, store, confidence, &names)
     }
 
-    /// The name in tables and figures of a car.
+    /// Name of a car in tables and figures.
     pub fn label(&self, vehicle: &str) -> String {
         label(&self.manifest, vehicle)
     }
 
-    /// Opens without an answer.
+    /// Opens a study without its statistics.
     ///
     /// # Errors
-    /// A directory that is no study, or a manifest that cannot be read.
+    /// The directory holds no study, or the manifest cannot be read.
     pub fn stored(path: &Path) -> Result<(StudyManifest, store::Study), Problem> {
         let store = store::Study::open(path)?;
         let text = String::from_utf8_lossy(&store.plan()?).into_owned();
@@ -117,11 +117,11 @@ impl StudyResults {
         Ok((outline, store))
     }
 
-    /// Answers from the parts that are there.
+    /// Computes the statistics of the existing parts.
     ///
     /// # Errors
-    /// A part that cannot be read.
-    pub fn of(
+    /// A part cannot be read.
+    pub fn from_store(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
@@ -130,7 +130,7 @@ impl StudyResults {
         Self::traced(outline, store, confidence, &names)
     }
 
-    /// The same where the cars have other names in the outline than in the traces, `names`.
+    /// As above, for cars whose names in the traces, `names`, differ from those in the outline.
     fn traced(
         outline: StudyManifest,
         store: store::Study,
@@ -156,15 +156,15 @@ impl StudyResults {
         })
     }
 
-    /// Its table.
+    /// Table of the runs.
     ///
     /// # Errors
-    /// A part that cannot be read.
+    /// A part cannot be read.
     pub fn frame(&self) -> Result<StudyTable<'_>, Problem> {
         StudyTable::new(&self.outline, &self.store)
     }
 
-    /// A sentence on the parts that are missing, if the study is not finished.
+    /// Sentence on the missing parts, if the study is not finished.
     pub fn unfinished(&self) -> Option<String> {
         let (there, all) = self.parts();
         let path = self.path.display();
@@ -172,15 +172,15 @@ impl StudyResults {
         (there < all).then_some(text)
     }
 
-    /// Parts that are there, and that there will be.
+    /// Number of existing and of planned parts.
     pub fn parts(&self) -> (usize, usize) {
         let status = self.store.status();
         (status.present, status.expected)
     }
 }
 
-/// The name in tables and figures of a car of a study's manifest: its short one, unless two cars have that. Names of columns of levers begin
-/// with that of their car.
+/// Name of a car of a study's manifest in tables and figures: the short name, unless two cars share it. Column names of levers begin with the
+/// name of their car.
 fn label(manifest: &Value, vehicle: &str) -> String {
     let cars = manifest["cars"].as_array().into_iter().flatten();
     let named = |car: &Value| {
@@ -188,18 +188,18 @@ fn label(manifest: &Value, vehicle: &str) -> String {
         Some((name, car["short"].as_str()?.to_owned()))
     };
     let cars: BTreeSet<(String, String)> = cars.filter_map(named).collect();
-    let alone = |short: &&String| cars.iter().filter(|of| of.1 == **short).count() == 1;
+    let alone = |short: &&String| cars.iter().filter(|other| other.1 == **short).count() == 1;
     let own = cars.iter().find(|(name, _)| name == vehicle);
     let short = own.map(|(_, short)| short).filter(alone);
     let short = short.filter(|short| !short.is_empty());
     short.map_or(vehicle, String::as_str).to_owned()
 }
 
-/// Looks into a directory: a study, or a run with studies (`DIR/*/study.json`) and a validation (`DIR/*/summary.json` of `validate`)
-/// in subdirectories. `extra` names more such directories.
+/// Reads a directory: a study, or a run with studies (`DIR/*/study.json`) and a validation (`DIR/*/summary.json` of `validate`) in
+/// subdirectories. `extra` names more such directories.
 ///
 /// # Errors
-/// All problems: no such directory, nothing of this program in it, a newer schema, damaged files.
+/// All problems: a missing directory, one without results of this program, a newer schema, damaged files.
 pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     let entries = fs::read_dir(path).map_err(|error| unreadable(path, &error.into()))?;
     settle(path)?;
@@ -237,7 +237,7 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     let mut seen = BTreeSet::new();
     let required = extra.iter().map(|dir| (dir, true));
     for (dir, required) in required.chain(subdirectories.iter().map(|dir| (dir, false))) {
-        // One study may be named twice, and lie in the directory of the run as well.
+        // A study may be named twice, and also lie in the directory of the run.
         if seen.insert(dir.canonicalize().unwrap_or_else(|_| dir.clone())) {
             problems.extend(add(&mut found, dir, required).err());
         }
@@ -249,7 +249,7 @@ pub fn find(path: &Path, extra: &[PathBuf]) -> Result<ResultDir, Problems> {
     }
 }
 
-/// Adds the study or the validation of a directory; one that is not required may hold something else.
+/// Adds the study or the validation of a directory; unless required, the directory may hold something else.
 fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem> {
     if is_study(dir) {
         found
@@ -278,7 +278,7 @@ fn add(found: &mut RunResults, dir: &Path, required: bool) -> Result<(), Problem
     Ok(())
 }
 
-/// Completes what an interrupted command was putting into place.
+/// Completes an interrupted commit.
 fn settle(dir: &Path) -> Result<(), Problem> {
     let settled = files::settle(dir);
     settled.map_err(|problem| problem.in_file(dir.display().to_string()))
@@ -355,7 +355,7 @@ fn run(path: &Path, file: &Path, value: Value, sum: &str) -> Result<RunResults, 
     })
 }
 
-/// Whether a file is the one that the record lists.
+/// Checks that a file is the one that the record lists.
 fn same(path: &Path, name: &str, sum: &str, record: Option<&Record>) -> Result<(), Problem> {
     let listed = record.and_then(|record| record.files.get(name));
     match listed.is_none_or(|listed| listed == sum) {
@@ -375,20 +375,20 @@ fn mixed(path: &Path, name: &str, what: &str) -> Problem {
     problem(&path.join(name), &message, hint)
 }
 
-/// A trace, and the file that it is from.
+/// A trace, and its file.
 struct TraceFile {
     history: History,
     name: String,
     sum: String,
 }
 
-/// The trace of a car, from whichever file of the run there is.
+/// Reads the trace of a car from one of the files of the run.
 fn history(
     path: &Path,
     vehicle: &str,
     record: Option<&Record>,
 ) -> Result<Option<TraceFile>, Problems> {
-    // A name is the middle of a file name and must not lead anywhere else.
+    // The name is part of a file name and must not contain path separators.
     if vehicle.is_empty() || vehicle.contains(['/', '\\', ':']) {
         let message =
             format!("`{vehicle}` cannot be the name of a vehicle: no file can be named after it");
@@ -418,7 +418,7 @@ fn history(
     Ok(Some(TraceFile { history, name, sum }))
 }
 
-/// The value of a JSON file, and its checksum.
+/// Reads the value of a JSON file, and its checksum.
 fn json(path: &Path) -> Result<(Value, String), Problem> {
     let bytes =
         bounded::read_file(path, bounded::RECORD).map_err(|error| unreadable(path, &error))?;
@@ -435,15 +435,15 @@ fn value(path: &Path, bytes: &[u8]) -> Result<Value, Problem> {
     })
 }
 
-/// Reads the text of a `summary.json`; `name` is the one that problems cite.
+/// Parses the text of a `summary.json`; `name` is used in problems.
 ///
 /// # Errors
-/// It is no JSON of this program, or too large.
+/// The text is not JSON of this program, or too large.
 pub fn parse_summary(name: &str, bytes: &[u8]) -> Result<Summary, Problem> {
     typed(Path::new(name), value(Path::new(name), bytes)?, SCHEMA)
 }
 
-/// Reads the text of an `inputs.json`, likewise.
+/// Parses the text of an `inputs.json`, as [`parse_summary`] does.
 ///
 /// # Errors
 /// As [`parse_summary`].

@@ -1,10 +1,11 @@
-//! The files of a run: traces, plots, and the inputs that it was made from. A report is made of them.
+//! Files of a run: traces, plots, and its inputs, from which a report is made.
 
 use std::io::Write;
 use std::slice::from_ref;
 
 use rayon::prelude::*;
 
+use cvtcycle_analysis::sensitivity::{Named, sensitivity};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::{Problem, Problems};
@@ -15,7 +16,6 @@ use cvtcycle_output::provenance::{car_record, cycle_record};
 use cvtcycle_output::record::{Manifest, Record, SCHEMA};
 use cvtcycle_output::summary::{Driven, Summary};
 use cvtcycle_output::trace::{columns_for, write_trace};
-use cvtcycle_study::sensitivity::{Named, sensitivity};
 use cvtcycle_study::store::write_trace_parquet;
 
 use crate::charts::{self, Picture, PlotRun};
@@ -27,7 +27,7 @@ pub enum TraceFormat {
     Csv,
     /// Parquet.
     Parquet,
-    /// Both of them.
+    /// Both.
     Both,
 }
 
@@ -58,7 +58,7 @@ pub fn write(
     let histories = driven.par_iter().map(|car| {
         let transmission = car.setup.transmission();
         let columns = columns_for(transmission.is_cvt(), &transmission.components());
-        let history = History::of(&car.outcome.rows, &columns, phases);
+        let history = History::from_rows(&car.outcome.rows, &columns, phases);
         (columns, history, fuel_map(car.setup))
     });
     let histories: Vec<_> = histories.collect();
@@ -103,7 +103,7 @@ pub fn write(
 /// Makes the picture of a run.
 type Plot = fn(&PlotRun) -> Picture;
 
-/// The pictures of a run; that of the pressure of a CVT alone.
+/// Pictures of a run; that of the pressure applies to a CVT only.
 const PLOTS: [(&str, Plot); 5] = [
     ("driveline", charts::driveline),
     ("pressure", charts::pressure),
@@ -114,12 +114,12 @@ const PLOTS: [(&str, Plot); 5] = [
     }),
 ];
 
-/// Writes a picture that is made when its file is.
+/// Writes a picture that is drawn only when its file is written.
 fn svg<'a>(picture: impl FnOnce() -> Picture + Send + 'a) -> FileWriter<'a> {
     Box::new(move |out| out.write_all(picture().svg.as_bytes()))
 }
 
-/// Inputs of a run: the words that made it, its cars, and with `sensitive` the effect of each value of each car.
+/// Records the inputs of a run: command, cars, and with `sensitive` the effect of each value of each car.
 ///
 /// # Errors
 /// Problems of files that changed since they were read.

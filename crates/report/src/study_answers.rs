@@ -1,16 +1,16 @@
-//! The results of a study in sentences.
+//! Results of a study in sentences.
 
 use serde_json::Value;
 
 use super::number::degc;
 use super::results::StudyResults;
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, answer_in_words, lever_answer};
+use cvtcycle_analysis::words::study::sentences;
 use cvtcycle_output::summary::Summary;
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, answer_in_words, lever_answer};
-use cvtcycle_study::words::study::sentences;
 
-/// Differences between the cases of a study and of a run; none if they are the same.
+/// Differences between the cases of a study and of a run; `None` if they are equal.
 ///
-/// Ambient and start count only where no factor sets them.
+/// Ambient and start count only if no factor sets them.
 pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
     let (plan, base) = (&study.outline.plan, &study.manifest["base"]);
     let free = |key: &str| plan.factors.iter().all(|factor| factor.key != key);
@@ -26,7 +26,7 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
         differ("cycle", &cycles.join(", "), &run.cycle);
     }
     let subject = run.runs.first().map_or("", |run| run.vehicle.as_str());
-    // Levers are driven in several cars and at several temperatures: one of each has to be that of the run.
+    // Levers are driven in several cars and at several temperatures: one of each must match the run.
     let columns = study
         .outline
         .levers
@@ -68,13 +68,13 @@ pub fn other_case(study: &StudyResults, run: &Summary) -> Option<String> {
     (!list.is_empty()).then(|| list.join(", "))
 }
 
-/// The answer of a study in sentences.
+/// Formats the answer of a study in sentences.
 pub fn answers(study: &StudyResults) -> Vec<String> {
     sentences(&study.answer, &study.outline)
 }
 
-/// The levers of the car and the ambient temperature of a run, under its name in tables and figures; none of any other study, and where a
-/// part cannot be read, which the section of the study reports.
+/// Levers for the car and the ambient temperature of a run, under its name in tables and figures. `None` for other studies, and if a part cannot
+/// be read, which the section of the study reports.
 pub fn levers_of_run(study: &StudyResults, run: &Summary) -> Option<(LeverAnswer, LeverBlock)> {
     study.outline.levers.as_ref()?;
     if other_case(study, run).is_some() {
@@ -91,7 +91,7 @@ pub fn levers_of_run(study: &StudyResults, run: &Summary) -> Option<(LeverAnswer
     Some((answer, block))
 }
 
-/// The answer of a study of the case of a run in sentences; of levers that of its car and ambient temperature.
+/// Formats the answer of a study on the case of a run; for levers that of its car and ambient temperature.
 pub fn answers_of_run(study: &StudyResults, run: &Summary) -> Vec<String> {
     if study.outline.levers.is_none() {
         return answers(study);

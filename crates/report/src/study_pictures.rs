@@ -1,4 +1,4 @@
-//! The answer of a study as pictures.
+//! Pictures of the answer of a study.
 
 use crate::charts::Picture;
 use crate::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
@@ -9,21 +9,21 @@ use crate::charts::study::{
 };
 use crate::document::plain;
 use crate::results::StudyResults;
+use cvtcycle_analysis::levers::LeverAnswer;
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_output::escape::json_text;
 use cvtcycle_study::answer::ambient::{Matrix, WarmUp};
 use cvtcycle_study::answer::{Column, OutputAnswer, described, tables};
 use cvtcycle_study::execute::outputs::{EXCESS, FUEL};
-use cvtcycle_study::levers::LeverAnswer;
 use cvtcycle_study::statistics::{Confidence, Groups};
 use cvtcycle_study::{Answer, StudyManifest, StudyTable};
 
-/// Every picture that the answer has something for, each under a name that can be a file's: of a matrix of ambient temperatures fuel,
-/// excess and, where traces were kept, warm-up; else of the outputs that the plan names, or of fuel and excess. `known` are numbers of the
-/// excess over baselines by their names.
+/// Draws every picture that the answer has data for, with names that are valid file names: for a matrix of ambient temperatures fuel, excess
+/// and, where traces were kept, warm-up; else for the outputs named in the plan, or for fuel and excess. `known` are numbers of the excess over
+/// baselines by their names.
 ///
 /// # Errors
-/// A part of the study that cannot be read.
+/// A part of the study cannot be read.
 pub fn study_pictures(
     answer: &Answer,
     frame: &StudyTable,
@@ -31,15 +31,15 @@ pub fn study_pictures(
     known: &[(String, KnownValue)],
 ) -> Result<Vec<(String, Picture)>, Problem> {
     match &answer.matrix {
-        Some(matrix) => Ok(of_matrix(matrix, warm_ups, &frame.outline.title)),
-        None => of_outputs(answer, frame, known),
+        Some(matrix) => Ok(matrix_pictures(matrix, warm_ups, &frame.outline.title)),
+        None => output_pictures(answer, frame, known),
     }
 }
 
-/// Numbers and figures of a study, by the names of their files.
+/// Numbers and figures of a study, by file name.
 ///
 /// # Errors
-/// A part of the study that cannot be read.
+/// A part of the study cannot be read.
 pub fn study_files(found: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Problems> {
     let statistics = json_text(&found.answer)?.into_bytes();
     let mut files = vec![("statistics.json".to_owned(), statistics)];
@@ -52,7 +52,7 @@ pub fn study_files(found: &StudyResults) -> Result<Vec<(String, Vec<u8>)>, Probl
     Ok(files)
 }
 
-/// What the levers save, for each car at each ambient temperature, under names that can be a file's.
+/// Pictures of the levers' savings, for each car at each ambient temperature, with names that are valid file names.
 pub fn lever_pictures(answer: &LeverAnswer) -> impl Iterator<Item = (String, Picture)> {
     answer.blocks.iter().map(|block| {
         let name = format!("levers_{}_{}", block.vehicle, block.ambient_degc);
@@ -60,7 +60,7 @@ pub fn lever_pictures(answer: &LeverAnswer) -> impl Iterator<Item = (String, Pic
     })
 }
 
-fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
+fn matrix_pictures(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, Picture)> {
     let mut list = vec![("ambient_fuel".to_owned(), ambient_fuel(matrix, title))];
     let penalty = ambient_penalty(matrix, title);
     list.extend(penalty.map(|picture| ("ambient_penalty".to_owned(), picture)));
@@ -74,7 +74,7 @@ fn of_matrix(matrix: &Matrix, warm_ups: &[WarmUp], title: &str) -> Vec<(String, 
     list
 }
 
-fn of_outputs(
+fn output_pictures(
     answer: &Answer,
     frame: &StudyTable,
     known: &[(String, KnownValue)],
@@ -87,8 +87,9 @@ fn of_outputs(
         .collect();
     for (k, output) in pictured.iter().enumerate() {
         let same = |other: &&&OutputAnswer| other.output == output.output;
-        // Of pairs the difference is what counts: fuel side by side would hide that both vary together.
-        let is_paired = output.output == FUEL && pictured.iter().any(|of| of.output == EXCESS);
+        // For pairs the difference matters: two fuel distributions would hide that both vary together.
+        let is_paired =
+            output.output == FUEL && pictured.iter().any(|other| other.output == EXCESS);
         let is_first = !pictured[..k].iter().any(|other| same(&other));
         if outline.plan.design.is_sampled() && is_first && !is_paired {
             let same: Vec<&&OutputAnswer> = pictured.iter().filter(same).collect();
@@ -96,7 +97,7 @@ fn of_outputs(
             list.push((format!("distribution_{}", output.output), picture));
         }
         let name = |kind: &str| format!("{kind}_{}_{}", output.output, output.car);
-        let own = of_output(output, outline, answer.confidence).into_iter();
+        let own = pictures_of_output(output, outline, answer.confidence).into_iter();
         list.extend(own.map(|(kind, picture)| (name(kind), picture)));
     }
     Ok(list)
@@ -106,7 +107,7 @@ fn is_pictured(output: &str, outline: &StudyManifest) -> bool {
     !outline.plan.analyse.is_empty() || [FUEL, EXCESS].contains(&output)
 }
 
-/// Name of an output as people say it.
+/// Name of an output for people.
 fn named(output: &OutputAnswer, outline: &StudyManifest) -> String {
     let subject = outline.cars.first().map_or("", String::as_str);
     let stem = output.output.trim_end_matches("_percent");
@@ -165,7 +166,7 @@ fn distribution(
     distribution_plot(&shown, &series, excess)
 }
 
-/// The phase of an excess, if it is of one.
+/// Phase of an excess over a phase, as a suffix.
 fn tail(output: &str) -> String {
     let phase = output
         .strip_prefix("subject_excess_")
@@ -175,7 +176,7 @@ fn tail(output: &str) -> String {
     })
 }
 
-fn of_output(
+fn pictures_of_output(
     output: &OutputAnswer,
     outline: &StudyManifest,
     confidence: Confidence,
@@ -214,7 +215,7 @@ fn of_output(
     list
 }
 
-/// A factor's levels: at their numbers, or side by side where they are words.
+/// Levels of a factor: at their numbers, or evenly spaced for words.
 fn effect<'a>(name: &'a str, groups: &'a Groups, outline: &'a StudyManifest) -> EffectFactor<'a> {
     let mut factors = outline.plan.factors.iter();
     let factor = factors.find(|factor| factor.name == name);

@@ -1,5 +1,4 @@
-//! The results of `validate`: as a section of a report, and as an HTML page of their own: one file, readable without scripts, on paper
-//! and in the dark.
+//! Results of `validate`: as a section of a report, and as a separate HTML page: one file, readable without scripts, on paper and in dark mode.
 
 use askama::Template;
 use serde_json::Value;
@@ -8,12 +7,12 @@ use super::charts::decision::{CheckedNumber, agreement};
 use super::document::{ReportTable, Section};
 use cvtcycle_config::Override;
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::check::expr::short;
-use cvtcycle_study::check::judge::{Judged, Report};
-use cvtcycle_study::check::report::{Counts, computed_text, notes, unit_text};
-use cvtcycle_study::check::rule::{Group, Verdict};
+use cvtcycle_validate::expr::short;
+use cvtcycle_validate::judge::{Judged, Report};
+use cvtcycle_validate::report::{Counts, computed_text, notes, unit_text};
+use cvtcycle_validate::rule::{Group, Verdict};
 
-/// Counts of the verdicts in words.
+/// Formats the counts of the verdicts in words.
 fn counts_in_words(counts: &Value) -> String {
     let verdicts = [
         "agrees",
@@ -35,7 +34,7 @@ fn counts_in_words(counts: &Value) -> String {
     )
 }
 
-/// Groups of rows with their counts in words: "thesis: of 300 printed numbers ...".
+/// Formats groups of rows with their counts: "thesis: of 300 printed numbers ...".
 fn groups_in_words(value: &Value) -> String {
     let groups = value["groups"].as_object().into_iter().flatten();
     let groups =
@@ -43,7 +42,7 @@ fn groups_in_words(value: &Value) -> String {
     groups.collect::<Vec<_>>().join("; ")
 }
 
-/// The verdicts in one line.
+/// Formats the verdicts in one line.
 pub fn doubt(value: &Value) -> String {
     format!(
         "Held against published numbers, {}.",
@@ -51,7 +50,7 @@ pub fn doubt(value: &Value) -> String {
     )
 }
 
-/// The rows of a validation: those that differ first, all others folded away.
+/// Lists the rows of a validation: differing ones first, all others collapsed.
 pub fn section(value: &Value) -> Section {
     let mut section = Section::new("validation", "Validation");
     let text = |key: &str| value[key].as_str().unwrap_or_default().to_owned();
@@ -72,7 +71,7 @@ pub fn section(value: &Value) -> Section {
     section.figure("agreement", caption, agreement(&subject, &numbers));
     let differs = |row: &&Value| row["verdict"].as_str() == Some("differs");
     let (differing, others): (Vec<&Value>, Vec<&Value>) = rows.partition(differs);
-    // First those on whole cars: what a report is about.
+    // Rows on whole cars come first, as the subject of the report.
     let (cars, parts): (Vec<&Value>, Vec<&Value>) = differing
         .into_iter()
         .partition(|row| row["mechanism"] == CAR);
@@ -89,11 +88,11 @@ pub fn section(value: &Value) -> Section {
     section
 }
 
-/// Rows of a table in the body at most; the mechanism of rows on whole cars.
+/// Maximum number of rows of a table in the body; mechanism of rows on whole cars.
 const SHOWN: usize = 8;
 const CAR: &str = "vehicle";
 
-/// A number that nothing was fitted to, with its distance from what is published.
+/// Number that nothing was fitted to, with its distance from the published one.
 fn checked(row: &Value) -> Option<CheckedNumber> {
     let number = |key: &str| row[key].as_f64();
     let [low, high] = [number("printed_low")?, number("printed_high")?];
@@ -115,7 +114,7 @@ fn checked(row: &Value) -> Option<CheckedNumber> {
     })
 }
 
-/// How many of the published numbers that can be compared differ, in a sentence.
+/// Sentence on the number of comparable published numbers that differ.
 pub fn differing(value: &Value) -> String {
     let count = |verdict: &str| value["counts"][verdict].as_u64().unwrap_or(0);
     let all: u64 = ["agrees", "fit", "differs"].map(count).iter().sum();
@@ -125,10 +124,10 @@ pub fn differing(value: &Value) -> String {
     )
 }
 
-/// Rows with a last column, under the key of its name in small letters.
+/// Table of rows; `last` is the heading of the last column and, in lower case, its key.
 fn table(caption: &str, rows: &[&Value], last: &str) -> ReportTable {
     let columns = ["Row", "What", "Printed", "Computed", "Unit", last];
-    let mut table = ReportTable::of_words(caption, &columns);
+    let mut table = ReportTable::textual(caption, &columns);
     for row in rows {
         let text = |key: &str| row[key].as_str().unwrap_or_default().to_owned();
         let what = match text("condition").as_str() {
@@ -178,7 +177,7 @@ struct Line {
     notes: Vec<String>,
 }
 
-/// A report as an HTML page.
+/// Renders a report as an HTML page.
 ///
 /// # Errors
 /// Never for the templates of this program.
@@ -199,7 +198,7 @@ pub fn page(report: &Report) -> Result<String, String> {
     page.render().map_err(|e| e.to_string())
 }
 
-/// Rows by chapter, chapters in the order of their first rows.
+/// Groups rows by chapter, in the order of their first rows.
 fn chapters(report: &Report) -> Vec<Chapter> {
     let names = distinct(report.rows.iter().map(|judged| judged.row.chapter.as_str()));
     let chapter = |(k, name): (usize, &&str)| {
@@ -224,7 +223,7 @@ pub fn chapter_title(name: &str) -> String {
     }
 }
 
-/// Widths on both sides of what is printed; empty where there are none, or next to none.
+/// Tolerance on both sides of the printed number; empty if absent or negligible.
 fn tolerance(judged: &Judged) -> String {
     let [below, above] = judged.row.tolerance_widths;
     let widest = if below > above { below } else { above };

@@ -1,4 +1,4 @@
-//! The files of a report: the document, and its figures in a folder next to it. All of them appear, or none.
+//! Files of a report: the document, and its figures in a folder next to it, all or none.
 
 use std::ffi::OsString;
 use std::fs;
@@ -24,7 +24,7 @@ impl Form {
     /// Words of the command line.
     pub const NAMES: [(&'static str, Form); 2] = [("html", Form::Html), ("md", Form::Markdown)];
 
-    /// Endings of its file, the usual one first.
+    /// File extensions, the usual one first.
     #[must_use]
     pub fn endings(self) -> &'static [&'static str] {
         match self {
@@ -33,8 +33,8 @@ impl Form {
         }
     }
 
-    /// The form of a file by its ending.
-    pub fn of(file: &Path) -> Option<Form> {
+    /// Detects the form of a file by its extension.
+    pub fn from_path(file: &Path) -> Option<Form> {
         let mut forms = [Form::Html, Form::Markdown].into_iter();
         forms.find(|form| form.endings().contains(&ending(file).as_str()))
     }
@@ -45,7 +45,7 @@ fn ending(file: &Path) -> String {
     ending.to_string_lossy().to_lowercase()
 }
 
-/// Whether a file is a report that this program has written.
+/// Tests that a file is a report of this program.
 fn is_report(file: &Path) -> bool {
     let ends = || -> io::Result<(Vec<u8>, Vec<u8>)> {
         let mut file = fs::File::open(file)?;
@@ -60,14 +60,14 @@ fn is_report(file: &Path) -> bool {
         || String::from_utf8_lossy(&tail).contains(MADE_BY)
 }
 
-/// By these words a page and a Markdown text are known as reports.
+/// Markers of HTML and Markdown reports.
 const GENERATOR: &str = "name=\"generator\" content=\"cvtcycle ";
 const MADE_BY: &str = "Made by cvtcycle ";
-/// Bytes at the beginning and at the end of a file in which these words are looked for.
+/// Number of bytes at the beginning and at the end of a file that are searched for the markers.
 const HEAD: u64 = 2000;
 const TAIL: u64 = 200;
 
-/// Where a report goes, checked before anything is computed.
+/// Destination of a report, checked before any computation.
 #[derive(Debug)]
 pub struct Target {
     file: PathBuf,
@@ -79,11 +79,11 @@ pub struct Target {
 }
 
 impl Target {
-    /// A target at a path. An earlier report of that name is replaced with `force` only; its folder of figures, which a report in the other
-    /// form may have left, if it holds nothing but drawings.
+    /// Creates a target at a path. With `force`, an earlier report of that name is replaced; its folder of figures, possibly of a report in the
+    /// other form, only if it holds nothing but drawings.
     ///
     /// # Errors
-    /// A problem of `--out` that says what is in the way.
+    /// A problem of `--out` that names the obstacle.
     pub fn new(file: &Path, form: Form, force: bool) -> Result<Self, Problem> {
         let stem = file.file_stem().unwrap_or_default();
         if stem.is_empty() {
@@ -106,7 +106,7 @@ impl Target {
         target.check_place(&parent)?;
         target.check_earlier()?;
         target.check_figures()?;
-        // Before the work, not after it.
+        // Fails before the computation instead of after it.
         let shown = parent.display();
         temporary_in(&parent)
             .map_err(|error| failed(file, &format!("cannot write in {shown}"), &error))?;
@@ -134,7 +134,7 @@ impl Target {
         Err(problem(file, &message, &hint))
     }
 
-    /// Only an earlier report is replaced, and only with `force`.
+    /// Checks that only an earlier report is replaced, and only with `force`.
     fn check_earlier(&self) -> Result<(), Problem> {
         let (file, shown) = (&self.file, self.file.display());
         match fs::symlink_metadata(file) {
@@ -152,7 +152,7 @@ impl Target {
         }
     }
 
-    /// Names of the figures of an earlier report.
+    /// Lists the figures of an earlier report.
     fn check_figures(&self) -> Result<Vec<String>, Problem> {
         let shown = self.figures.display();
         let other =
@@ -181,7 +181,7 @@ impl Target {
     /// Writes the report. Returns the document's path and those of the figures.
     ///
     /// # Errors
-    /// A problem of `--out` with the words of the operating system; what was there before is then still there.
+    /// A problem of `--out` with the words of the operating system; earlier files are then unchanged.
     pub fn write(&self, document: &Document) -> Result<Vec<PathBuf>, Problem> {
         let text = match self.form {
             Form::Html => html(document),
@@ -197,7 +197,7 @@ impl Target {
     fn put(&self, document: &Document, text: &str) -> Result<Vec<PathBuf>, Problem> {
         let parent = self.figures.parent().unwrap_or(Path::new("."));
         let mut set = FileSet::begin(DirLock::wait(parent)?)?;
-        // Once more: another process may have written a report meanwhile.
+        // Checked again: another process may have written a report meanwhile.
         self.check_earlier()?;
         let earlier = self.check_figures()?;
         set.sweep();

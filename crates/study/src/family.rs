@@ -7,7 +7,7 @@ use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
 use cvtcycle_config::setup::{AMBIENT, Setup};
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::drive::{self, Conditions, Outcome, drive_each};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Settings, run_summary};
 use cvtcycle_output::table::{Column, Head};
 
@@ -154,7 +154,7 @@ impl Family {
     }
 
     /// Drives the car at points, rows of values of the arguments in the units of their keys: side by side,
-    /// [`MOST_TOGETHER`](cvtcycle_model::drive::MOST_TOGETHER) at a time, each with the numbers that it has alone.
+    /// [`MAX_TOGETHER`](cvtcycle_model::drive::MAX_TOGETHER) at a time, each with the numbers that it has alone.
     pub fn points<'n>(
         &self,
         worker: &mut FamilyWorker,

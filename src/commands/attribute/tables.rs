@@ -1,16 +1,16 @@
 //! The prices as tables.
 
+use cvtcycle::analysis::attribute::answer;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::summary::{PriceSummary, RunSummary, Saving, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, wrapped};
-use cvtcycle::study::attribute::answer;
 
 use super::AttributionSummary;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// All prices for people.
+/// Prints all prices.
 pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint: Paint) -> String {
     let mut text = format!("{}  {}\n", paint.heading(&cycle.name), cycle.title);
     text.extend(
@@ -27,7 +27,7 @@ pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint
     };
     for conditions in &summary.conditions {
         for run in &conditions.runs {
-            text += &of_run(conditions, run, by_phase, paint);
+            text += &run_tables(conditions, run, by_phase, paint);
         }
     }
     let count = summary.conditions.first().map_or(0, |c| c.runs.len());
@@ -43,7 +43,7 @@ pub fn tables(summary: &AttributionSummary, cycle: &Cycle, by_phase: bool, paint
     text + &sections(by_ambient.collect::<Vec<_>>(), paint)
 }
 
-fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> String {
+fn run_tables(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> String {
     let Some(price) = &run.price else {
         return String::new();
     };
@@ -76,7 +76,7 @@ fn of_run(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint) -> 
     sections(parts, paint) + &notes.collect::<String>()
 }
 
-/// A name as people write it.
+/// Name of a loss in words.
 fn words(name: &str) -> String {
     name.replace('_', " ")
 }
@@ -116,7 +116,7 @@ fn losses(price: &PriceSummary, run: &RunSummary) -> String {
     table.text()
 }
 
-/// Both orders of each pair.
+/// Tabulates each pair in both orders.
 fn pairs(price: &PriceSummary, run: &RunSummary) -> String {
     let mut table = TextTable::new("llrrrrr");
     if !price.pairs.is_empty() {

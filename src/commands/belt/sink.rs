@@ -1,4 +1,4 @@
-//! Rows as CSV and JSON, buffered until all of them are good.
+//! Rows as CSV and JSON, buffered until the last one is checked.
 
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 
@@ -6,16 +6,16 @@ use cvtcycle::config::{Problem, Problems};
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::number::push_exact;
 use cvtcycle::output::table::{Cell, Column, json_row};
-use cvtcycle::study::points::{OUTPUTS, Point, Solved, Take, output_columns};
+use cvtcycle::validate::belt::{OUTPUTS, Point, Solved, Take, output_columns};
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use crate::args::problems::problem;
 use crate::print::{Form, Paint, to_stdout};
 
-/// Bytes for standard output that are buffered in memory; more are buffered on disk.
+/// Buffer size in memory for standard output; the rest is buffered on disk.
 const MAX_IN_MEMORY: usize = 1 << 20;
 
-/// Where a table is buffered.
+/// Buffer of a table.
 #[derive(Debug)]
 enum Buffer {
     File(Box<OutputFile>),
@@ -41,12 +41,12 @@ impl Buffer {
     }
 }
 
-/// Rows of a table of points: CSV to the file if there is one, else to standard output unless JSON goes there.
+/// Rows of a table of points. CSV goes to the file if there is one, else to standard output unless JSON goes there.
 #[derive(Debug)]
 pub struct RowSink {
     csv: Option<Buffer>,
     json: Option<Buffer>,
-    /// Known when the header of the input is read.
+    /// Columns, set when the header of the input is read.
     columns: Vec<Column<Point>>,
     rows: u64,
     line: String,
@@ -77,7 +77,7 @@ impl Take for RowSink {
 }
 
 impl RowSink {
-    /// Without rows yet.
+    /// Creates an empty sink.
     pub fn new(file: Option<OutputFile>, json: bool) -> Self {
         let file = file.map(|file| Buffer::File(Box::new(file)));
         RowSink {
@@ -89,7 +89,7 @@ impl RowSink {
         }
     }
 
-    /// Gives the file its name and sends the rest to standard output, JSON after its `head` (an object without rows).
+    /// Commits the file and sends the rest to standard output: JSON after its `head` (an object without rows).
     pub fn finish(self, head: &serde_json::Value) -> Result<(), Problems> {
         match self.csv {
             Some(Buffer::File(file)) => drop(file.commit()?),
@@ -105,7 +105,7 @@ impl RowSink {
     }
 }
 
-/// A row as CSV: `;` between flags, and `NaN` where a point has no solution.
+/// Formats a row as CSV, with `;` between flags and `NaN` for a point without solution.
 fn csv_line(line: &mut String, columns: &[Column<Point>], row: &Point) {
     let given = columns.len() - OUTPUTS.len();
     for (k, column) in columns.iter().enumerate() {

@@ -1,24 +1,24 @@
-//! A calibration as tables: errors first, then the numbers behind them.
+//! A calibration as tables: errors first, then the underlying numbers.
 
+use cvtcycle::calibrate::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 use cvtcycle::output::number::{NONE, fixed, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, cut, distinct, paragraphs, wrapped};
-use cvtcycle::study::fit::outcome::{Fold, Outcome, Parameter, Residual, Start, rms};
 
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// Number of residuals that are listed.
+/// Maximum number of residuals listed.
 const MAX_RESIDUALS: usize = 5;
-/// Number of combinations of parameters that are listed.
+/// Maximum number of parameter combinations listed.
 const MAX_COMBINATIONS: usize = 12;
-/// Longest key in a table; of longer ones the end is shown, which is unique.
+/// Maximum length of a key in a table. Longer ones are cut at the front, since their ends are unique.
 const MAX_KEY_LEN: usize = 30;
-/// Longest name in a table.
+/// Maximum length of a name in a table.
 const MAX_NAME_LEN: usize = 40;
-/// A start within this share of the smallest sum of squares found the same minimum.
+/// Relative distance from the smallest sum of squares within which a start counts as having found the same minimum.
 const SAME_COST: f64 = 1e-3;
 
-/// All results of a calibration for people.
+/// Prints all results of a calibration.
 pub fn tables(outcome: &Outcome, paint: Paint) -> String {
     let warnings = outcome.warnings.iter().map(|text| wrapped(text, "  ! "));
     let data = "Data, root mean square of the residuals in standard deviations";
@@ -54,17 +54,17 @@ fn head(o: &Outcome, paint: Paint) -> String {
     text
 }
 
-/// Root mean square of the known numbers, and how many they are.
-fn rms_of(list: impl Iterator<Item = Option<f64>>) -> (Option<f64>, usize) {
+/// Root mean square of the known numbers, and their count.
+fn rms_and_count(list: impl Iterator<Item = Option<f64>>) -> (Option<f64>, usize) {
     let known: Vec<f64> = list.flatten().collect();
     (rms(known.iter().copied()), known.len())
 }
 
 fn quality(o: &Outcome) -> String {
     let all = o.residuals.len();
-    let (before, _) = rms_of(o.residuals.iter().map(|r| r.before_sd));
-    let (after, _) = rms_of(o.residuals.iter().map(|r| Some(r.after_sd)));
-    let (left_out, predicted) = rms_of(o.residuals.iter().map(|r| r.left_out_sd));
+    let (before, _) = rms_and_count(o.residuals.iter().map(|r| r.before_sd));
+    let (after, _) = rms_and_count(o.residuals.iter().map(|r| Some(r.after_sd)));
+    let (left_out, predicted) = rms_and_count(o.residuals.iter().map(|r| r.left_out_sd));
     let how = match predicted {
         0 => "no fold was left out".to_owned(),
         n if n < all => format!("of {n} observations; the others could not be predicted"),
@@ -95,13 +95,13 @@ fn quality(o: &Outcome) -> String {
     table.text() + &wrapped(&sums, "  ") + &wrapped(note, "  ")
 }
 
-/// A sum of squares: small ones with more decimals.
+/// Formats a sum of squares, with more decimals for small ones.
 fn sum(x: Option<f64>) -> String {
     let small = x.is_some_and(|x| x.abs() < 10.0);
     fixed(x, if small { 3 } else { 1 })
 }
 
-/// A number with the decimals that its error leaves meaningful: two digits of the error.
+/// Formats a number to two significant digits of its standard error.
 pub(super) fn to_error(x: f64, error: Option<f64>) -> String {
     let error = error.filter(|e| *e > 0.0 && e.is_finite());
     let scale = error.unwrap_or(x.abs() / 100.0);
@@ -119,7 +119,7 @@ pub(super) fn to_error(x: f64, error: Option<f64>) -> String {
     }
 }
 
-/// The end of a key, from a dot on.
+/// Shortens a key to its end, from a dot on.
 fn short(key: &str) -> String {
     if key.chars().count() <= MAX_KEY_LEN || !key.contains('.') {
         return key.to_owned();
@@ -164,7 +164,7 @@ fn parameters(o: &Outcome) -> String {
         .left("prior", prior)
         .right("share", share)
         .left("bound", |p| p.at_bound.unwrap_or_default())
-        // The last column would be wrapped: an empty one.
+        // An empty last column keeps comfy-table from wrapping the one before.
         .left("", |_| "")
         .text(&o.parameters);
     if table.is_empty() {
@@ -183,11 +183,11 @@ fn parameters(o: &Outcome) -> String {
 
 fn groups(o: &Outcome) -> String {
     let names = distinct(o.residuals.iter().map(|r| r.group.as_str()));
-    let of = |get: fn(&Residual) -> Option<f64>| {
-        move |name: &&str| rms_of(o.residuals.iter().filter(|r| r.group == *name).map(get))
+    let group_rms = |get: fn(&Residual) -> Option<f64>| {
+        move |name: &&str| rms_and_count(o.residuals.iter().filter(|r| r.group == *name).map(get))
     };
-    let (before, after) = (of(|r| r.before_sd), of(|r| Some(r.after_sd)));
-    let left_out = of(|r| r.left_out_sd);
+    let (before, after) = (group_rms(|r| r.before_sd), group_rms(|r| Some(r.after_sd)));
+    let left_out = group_rms(|r| r.left_out_sd);
     TextColumns::new()
         .left("group", |name: &&str| cut(name, MAX_NAME_LEN))
         .right("n", |name| after(name).1.to_string())
@@ -197,7 +197,7 @@ fn groups(o: &Outcome) -> String {
         .text(&names)
 }
 
-/// The folds, if they are not the groups or one of them failed.
+/// Table of folds; empty if they equal the groups and none failed.
 fn folds(o: &Outcome) -> String {
     let is_group = |fold: &Fold| {
         let own = |r: &&Residual| r.fold == fold.name || r.group == fold.name;

@@ -1,10 +1,10 @@
-//! `check --physics`: each vehicle on a cycle, its forces, torques and heat held against laws worked out in another way.
+//! `check --physics`: drives each vehicle and checks forces, torques and heat by laws derived independently of the model.
 
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::{self, AMBIENT, Options, Setup};
 use cvtcycle::model::drive::{Finding, check_physics};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::table::TextColumns;
 use serde_json::{Value, json};
 
@@ -12,12 +12,12 @@ use crate::args::problems::cite;
 use crate::args::{JsonArgs, number};
 use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text, sections};
 
-/// Step of the drive, s.
+/// Time step of the drive, s.
 const STEP_S: f64 = 1.0;
 
 /// Checked input of `check --physics`.
 pub struct PhysicsPlan {
-    /// Vehicles with the names by which the user has them.
+    /// Vehicles with their names on the command line.
     vehicles: Vec<(String, Setup)>,
     cycle: Cycle,
     cycle_name: String,
@@ -45,7 +45,7 @@ pub fn plan(
     })
 }
 
-/// Drives the vehicles and prints what each law found.
+/// Drives the vehicles and prints the result of each law.
 pub fn run(plan: &PhysicsPlan, form: JsonArgs, terminal: Terminal) -> CommandResult {
     let ambient_k = plan.ambient_degc + ZERO_DEGC_K;
     let vehicles = plan.vehicles.iter();
@@ -70,11 +70,11 @@ pub fn run(plan: &PhysicsPlan, form: JsonArgs, terminal: Terminal) -> CommandRes
         let (cycle, ambient_degc) = (&plan.cycle_name, plan.ambient_degc);
         json_text(&json!({ "cycle": cycle, "ambient_degc": ambient_degc, "vehicles": vehicles }))?
     } else {
-        let of =
+        let heading =
             |word: &String| format!("{word} on {}, {} degC", plan.cycle_name, plan.ambient_degc);
         let tables = found
             .iter()
-            .map(|(word, findings)| (of(word), table(findings)));
+            .map(|(word, findings)| (heading(word), table(findings)));
         sections(tables, terminal.stdout)
     };
     Ok(CommandOutput {
@@ -86,7 +86,7 @@ pub fn run(plan: &PhysicsPlan, form: JsonArgs, terminal: Terminal) -> CommandRes
 
 const FAILS: &str = "fails";
 
-/// `holds`, `fails`, or `no row` where the law applies to none.
+/// `holds`, `fails`, or `no row` if the law applies to none.
 fn verdict(finding: &Finding) -> &'static str {
     match finding.rows {
         0 => "no row",
@@ -95,7 +95,7 @@ fn verdict(finding: &Finding) -> &'static str {
     }
 }
 
-/// One line a check.
+/// Table with one line for each check.
 fn table(findings: &[Finding]) -> String {
     let of_worst = |finding: &Finding, text: String| match finding.rows {
         0 => String::new(),

@@ -2,7 +2,7 @@
 
 use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problem, Problems};
-use cvtcycle::model::bench::Bench;
+use cvtcycle::model::rig::Bench;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::output::files::OutputDir;
@@ -15,8 +15,8 @@ use crate::args::one_of;
 use crate::args::problems::{bad_value, problem};
 use crate::args::ranges::{values, values_or_words};
 
-/// Option of an axis.
-fn option_of(axis: Axis) -> &'static str {
+/// Name of the option of an axis.
+fn axis_option(axis: Axis) -> &'static str {
     match axis {
         Axis::Ratio => "--ratio or --gear",
         Axis::Sump => "--temp",
@@ -80,7 +80,7 @@ pub fn plan(args: &LossesArgs, problems: &mut Problems) -> Option<LossesPlan> {
     })
 }
 
-/// Ratios of a CVT or gears, and the options that go with neither.
+/// Ratios of a CVT or gears of a manual box; rejects options of the other kind.
 fn ratios(
     args: &LossesArgs,
     setup: &Setup,
@@ -105,10 +105,10 @@ fn ratios(
     }
 }
 
-/// Axes that every transmission has.
+/// Fills the axes common to all transmissions.
 fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
     let mut fill = |axis: Axis, text: Option<&str>| {
-        let (option, (range, suffix)) = (option_of(axis), axis.range());
+        let (option, (range, suffix)) = (axis_option(axis), axis.range());
         let found = text.and_then(|text| problems.take(values(option, text, range, suffix)));
         grid.values[axis as usize] = found.unwrap_or_default();
     };
@@ -122,7 +122,7 @@ fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
         Axis::Throttle,
         throttle.filter(|_| args.input_torque.is_none()),
     );
-    // With no --belt-temp the belt is in steady state, and with no --pressure the clamping law is used: no values on that axis.
+    // Leaves two axes empty by default: belt in steady state without --belt-temp, clamping law without --pressure.
     fill(Axis::Belt, args.belt_temp.as_deref());
     fill(Axis::Pressure, args.pressure.as_deref());
     if args.input_torque.is_some() && args.throttle.is_some() {
@@ -135,7 +135,7 @@ fn fill_axes(args: &LossesArgs, grid: &mut LossGrid, problems: &mut Problems) {
     }
 }
 
-/// Options that a CVT does not have, and ratios at which the printed formulations are not defined.
+/// Rejects options that a CVT lacks, and ratios at which the printed formulations are undefined.
 fn check_cvt(args: &LossesArgs, formulation: Formulation, ratios: &[f64], problems: &mut Problems) {
     if args.gear.is_some() {
         let message = format!("{} has a CVT, which has no gears", args.car.vehicle);
@@ -149,7 +149,7 @@ fn check_cvt(args: &LossesArgs, formulation: Formulation, ratios: &[f64], proble
     }
 }
 
-/// Options that a manual gearbox does not have.
+/// Rejects options that a manual gearbox lacks.
 fn check_manual(args: &LossesArgs, formulation: Formulation, problems: &mut Problems) {
     let law = "clamping law that depends on the throttle";
     let is_printed = formulation != Formulation::Smooth;
@@ -172,10 +172,10 @@ fn check_manual(args: &LossesArgs, formulation: Formulation, problems: &mut Prob
     }
 }
 
-/// Gears; all if none is given.
+/// Parses gears; the default is all of them.
 fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     let all = format!("1..{count}");
-    // The step of a range of gears is 1.
+    // A range of gears has step 1.
     let by_ones = |part: &str| match part.contains("..") && !part.contains(':') {
         true => format!("{part}:1"),
         false => part.to_owned(),
@@ -193,7 +193,7 @@ fn gears(text: Option<&str>, count: usize) -> Result<Vec<f64>, Problems> {
     problems.finish().map(|()| found)
 }
 
-/// What a form of a map cannot have.
+/// Rejects options that a form of a map excludes.
 fn check_form(
     args: &LossesArgs,
     map: Option<MapPart>,
@@ -209,16 +209,16 @@ fn check_form(
         problems.add(problem("--map-form", message, "add --as-map box"));
     }
     for axis in form.single() {
-        let count = grid.of(*axis).len();
+        let count = grid.axis_values(*axis).len();
         if count > 1 {
             let message = format!("{count} values, but `{}` has one", args.map_form);
             let hint = "give one value; another map has the next";
-            problems.add(problem(option_of(*axis), &message, hint));
+            problems.add(problem(axis_option(*axis), &message, hint));
         }
     }
 }
 
-/// The grid of 40 CFR 1037.565 for what is not given.
+/// Fills axes without options by the grid of 40 CFR 1037.565.
 fn fill_gem(args: &LossesArgs, bench: &Bench, grid: &mut LossGrid) {
     for (axis, values) in gem_grid(bench) {
         let given = match axis {
@@ -232,7 +232,7 @@ fn fill_gem(args: &LossesArgs, bench: &Bench, grid: &mut LossGrid) {
     }
 }
 
-/// Options that a map of the component cannot have.
+/// Rejects options that a map of the component excludes.
 fn check_map(
     args: &LossesArgs,
     part: MapPart,
@@ -241,7 +241,7 @@ fn check_map(
     problems: &mut Problems,
 ) {
     let word = args.as_map.as_deref().unwrap_or_default();
-    if part.of_cvt() && !cvt {
+    if part.is_cvt_only() && !cvt {
         let hint = "a manual gearbox has one map: --as-map box";
         let message = format!("{} has no component `{word}`", args.car.vehicle);
         problems.add(problem("--as-map", &message, hint));
@@ -257,10 +257,10 @@ fn check_map(
         problems.add(problem("--input-torque", message, "use --torque"));
     }
     let mut single = |axis: Axis, hint: &str| {
-        let count = grid.of(axis).len();
+        let count = grid.axis_values(axis).len();
         if count > 1 {
             let message = format!("{count} values, but a map of `{word}` has no such axis");
-            problems.add(problem(option_of(axis), &message, hint));
+            problems.add(problem(axis_option(axis), &message, hint));
         }
     };
     let pressures = "give the pressures instead: --pressure 10..40:5";
@@ -279,7 +279,7 @@ fn check_map(
 }
 
 fn too_many(grid: &LossGrid) -> Problem {
-    let count = |axis: Axis| format!("{} {}", option_of(axis), grid.of(axis).len());
+    let count = |axis: Axis| format!("{} {}", axis_option(axis), grid.axis_values(axis).len());
     let counts: Vec<String> = grid.varied().into_iter().map(count).collect();
     let counts = counts.join(", ");
     let hint = format!("use larger steps or several runs; values given: {counts}");

@@ -1,16 +1,16 @@
 //! Losses as tables.
 
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::losses::{Axis, LossRow, LossTable};
 use cvtcycle::output::number::{NONE, fixed, percent};
 use cvtcycle::output::table::{TextColumns, TextTable, wrapped};
 
 use crate::print::colour::Paint;
 
-/// Largest number of rows of a table; CSV and JSON have all.
+/// Maximum number of rows of a table; CSV and JSON have all.
 const MAX_ROWS: usize = 100;
 
-/// One point in detail, or one row for each point.
+/// Details of a single point, or one row for each point.
 pub fn table(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>, paint: Paint) -> String {
     let heading = paint.heading(&losses.setup.name);
     let body = match losses.grid.len() {
@@ -32,7 +32,7 @@ fn one(losses: &LossTable, row: &LossRow) -> String {
         .number("Nm at input", 3, |(_, nm)| *nm)
         .number("W", 1, |(_, nm)| nm * w)
         .right("% of loss", |(_, nm)| percent(*nm, total, 1));
-    let held = losses.held(&row.asked, &Axis::ALL);
+    let held = losses.values_in_words(&row.requested, &Axis::ALL);
     let (held, table) = (wrapped(&held, ""), columns.text(&parts));
     format!("{held}\n{table}\n{}", state(losses, row))
 }
@@ -45,10 +45,11 @@ fn state(losses: &LossTable, row: &LossRow) -> String {
     table.row(["Output power", &fixed(row.output_w(), 1), "W"]);
     table.row(["Efficiency", &percent(row.efficiency(), 1.0, 2), "%"]);
     if losses.is_cvt() {
-        let given = |axis: Axis, otherwise: &'static str| match row.asked[axis as usize].is_nan() {
-            true => otherwise,
-            false => "as given",
-        };
+        let given =
+            |axis: Axis, otherwise: &'static str| match row.requested[axis as usize].is_nan() {
+                true => otherwise,
+                false => "as given",
+            };
         let pressure = fixed(a.secondary_pa / 1e5, 2);
         let belt = fixed(a.belt_k - ZERO_DEGC_K, 1);
         let law = format!("bar, {}", given(Axis::Pressure, "from the clamping law"));
@@ -73,7 +74,7 @@ fn several(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>) -> Strin
     let mut columns: TextColumns<LossRow> = TextColumns::new();
     for &axis in &varied {
         columns = columns.right(axis.short(cvt), move |row| {
-            axis.text(row.asked[axis as usize])
+            axis.text(row.requested[axis as usize])
         });
     }
     if cvt && !varied.contains(&Axis::Pressure) {
@@ -94,11 +95,11 @@ fn several(losses: &LossTable, mut rows: impl Iterator<Item = LossRow>) -> Strin
         .right("eff %", |row| percent(row.efficiency(), 1.0, 1))
         .left("flags", flags);
     let shown: Vec<LossRow> = rows.by_ref().take(MAX_ROWS).collect();
-    // The rest is solved as well, because its flags are counted.
+    // Solves the remaining rows too, so that their flags are counted.
     let more = rows.count();
     let fixed = Axis::ALL.into_iter().filter(|axis| !varied.contains(axis));
     let fixed: Vec<Axis> = fixed.collect();
-    let held = losses.held(&losses.grid.at(0), &fixed);
+    let held = losses.values_in_words(&losses.grid.at(0), &fixed);
     let table = columns.text(&shown);
     let head = wrapped(&format!("{held}; losses in Nm at the input shaft"), "");
     let mut text = format!("{head}\n{table}");

@@ -1,4 +1,4 @@
-//! Questions for catalogue numbers, one by one.
+//! Interactive questions for catalogue numbers.
 
 use std::io::{self, BufRead, Write};
 
@@ -8,11 +8,10 @@ use cvtcycle::config::{Problem, Problems};
 
 use crate::args::problems::{did_you_mean, problem};
 
-/// Reads class and box, then each number that is not given, a question before each. An empty line takes what is in brackets; the end of the input
-/// leaves the rest as it is.
-///
+/// Prompts for class and box, then for each missing number. An empty line accepts the default in brackets; the end of the
+/// input leaves the remaining numbers unset.
 /// # Errors
-/// A class or car that is none, or an input or output that fails.
+/// Unknown class or car, failing input or output.
 pub fn ask(
     answers: &mut Answers,
     in_terminal: bool,
@@ -68,7 +67,7 @@ pub fn ask(
     Ok(())
 }
 
-/// The answer to a question; none for an empty line, or at the end of the input.
+/// Prompts once. None for an empty line, or at the end of the input.
 fn answer(
     prompt: &str,
     may_be_empty: bool,
@@ -81,9 +80,9 @@ fn answer(
         write!(output, "{prompt}: ")?;
         output.flush()?;
         let mut line = String::new();
-        // A longer line is no number.
+        // Limits the length, since a longer line cannot be a number.
         let length = io::Read::take(&mut *input, 1000).read_line(&mut line)?;
-        // In a terminal the person ends the line.
+        // In a terminal the user's Enter ends the prompt's line.
         if length == 0 || !in_terminal {
             writeln!(output)?;
         }

@@ -1,28 +1,28 @@
-//! Limits within which the least fuel is sought: their options, and the message where they cannot be held.
+//! Limits of the search for minimum fuel: their options, and the message for infeasible ones.
 
 use super::OptimumArgs;
 use crate::args::problems::bad_value;
 use crate::args::{count, number};
+use cvtcycle::analysis::optimum::{Infeasible, LimitName, Unheld};
 use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problems};
 use cvtcycle::model::keys::rpm;
 use cvtcycle::output::Row;
 use cvtcycle::output::number::fixed;
-use cvtcycle::study::optimum::{Infeasible, LimitName, Unheld};
 use serde::Serialize;
 
-/// Allowed least engine speed, rpm.
-pub(super) const LEAST_RPM: Bound = Bound::closed(300.0, 8000.0);
-/// Allowed share of full load that is kept, per cent.
+/// Allowed minimum engine speed, rpm.
+pub(super) const MIN_RPM: Bound = Bound::closed(300.0, 8000.0);
+/// Allowed torque reserve, per cent of full load.
 const RESERVE: Bound = Bound::closed(0.0, 90.0);
-/// Allowed least safety factor.
+/// Allowed minimum safety factor.
 const SAFETY: Bound = Bound::closed(1.0, 10.0);
-/// Allowed largest slip, per cent.
+/// Allowed maximum slip, per cent.
 const SLIP: Bound = Bound::closed(0.1, 20.0);
-/// Fewest and most ratios of the grid.
+/// Allowed numbers of ratios of the grid.
 const GRID: std::ops::RangeInclusive<u64> = 49..=769;
 
-/// Numbers of the question.
+/// Parsed limits.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct Numbers {
     pub(super) ambient_degc: f64,
@@ -65,7 +65,7 @@ impl OptimumArgs {
         })
     }
 
-    pub(super) fn check_least(
+    pub(super) fn check_min_speed(
         &self,
         setup: &Setup,
         least_rpm: Option<f64>,
@@ -88,18 +88,18 @@ impl OptimumArgs {
     }
 }
 
-/// The limits that cannot be held, where, and how much of each can be.
-pub(super) fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
+/// Reports each infeasible limit with its place and its feasible value.
+pub(super) fn infeasible(why: &Infeasible, args: &OptimumArgs) -> Problems {
     if why.unheld.is_empty() {
         let message = format!("no ratio lets the car follow the cycle {}", place(&why.row));
         let hint = "another cycle, or a car that can follow it";
-        return bad_value("--cycle", &of.cycle.word, "", &message, hint).into();
+        return bad_value("--cycle", &args.cycle.word, "", &message, hint).into();
     }
     let problem = |limit: &Unheld| {
         let (option, value) = match limit.name {
-            LimitName::LeastSpeed => ("--least-rpm", &of.least_rpm),
-            LimitName::Reserve => ("--reserve", &of.reserve),
-            LimitName::ShiftRate => ("--vehicle", &of.car.vehicle),
+            LimitName::LeastSpeed => ("--least-rpm", &args.least_rpm),
+            LimitName::Reserve => ("--reserve", &args.reserve),
+            LimitName::ShiftRate => ("--vehicle", &args.car.vehicle),
         };
         let allowed = match (limit.name, limit.most) {
             (LimitName::LeastSpeed, Some(w)) => format!("at most {} rpm", fixed(rpm(w).floor(), 0)),
@@ -122,7 +122,7 @@ pub(super) fn infeasible(why: &Infeasible, of: &OptimumArgs) -> Problems {
     why.unheld.iter().map(problem).collect()
 }
 
-/// A number with one decimal, rounded down.
+/// Formats with one decimal, rounded down, so that the printed limit is feasible.
 fn floored(x: f64) -> String {
     fixed((10.0 * x).floor() / 10.0, 1)
 }

@@ -1,59 +1,64 @@
-//! The answer as text and files.
+//! Text and files of `optimum`.
 
 use std::borrow::Cow;
 
+use cvtcycle::analysis::optimum::LawBound;
 use cvtcycle::config::Problem;
-use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::model::keys::rpm;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::summary::StartWord;
 use cvtcycle::output::table::{Column, TextTable, wrapped, write_csv};
 use cvtcycle::output::{Row, columns};
-use cvtcycle::study::optimum::LawBound;
 
 use super::OptimumSummary;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// Everything for people.
-pub fn text(of: &OptimumSummary, paint: Paint) -> String {
-    let n = &of.numbers;
+/// Prints all results.
+pub fn text(summary: &OptimumSummary, paint: Paint) -> String {
+    let n = &summary.numbers;
     let head = format!(
         "{}  {} at {} degC\n{}",
-        paint.heading(&of.vehicle),
-        of.cycle,
+        paint.heading(&summary.vehicle),
+        summary.cycle,
         plain(n.ambient_degc),
-        wrapped(&sentence(of), "")
+        wrapped(&sentence(summary), "")
     );
     let parts = [
-        ("Fuel by clamp law, L/100 km", bounds(of)),
-        ("Least fuel by least engine speed", speeds(of)),
-        ("What the limits cost", limits(of)),
-        ("How sure the bound is", certainty(of)),
-        ("Operating line", line(of)),
-        ("The line on other cycles, L/100 km", elsewhere(of)),
+        ("Fuel by clamp law, L/100 km", bounds(summary)),
+        ("Least fuel by least engine speed", speeds(summary)),
+        ("What the limits cost", limits(summary)),
+        ("How sure the bound is", certainty(summary)),
+        ("Operating line", line(summary)),
+        ("The line on other cycles, L/100 km", elsewhere(summary)),
     ];
     head + &sections(parts, paint)
 }
 
-/// The answer in words.
-fn sentence(of: &OptimumSummary) -> String {
-    let own = &of.answer.bounds[0];
+/// One-sentence answer.
+fn sentence(summary: &OptimumSummary) -> String {
+    let own = &summary.answer.bounds[0];
     let least = own.bound_l_per_100km;
     let mut text = format!(
         "No controller of the ratio with the engine at {} rpm or more burns less than {} L/100 km with the clamp `{}`",
-        plain(of.numbers.least_rpm),
+        plain(summary.numbers.least_rpm),
         fixed(least, 3),
         own.clamp
     );
-    if let Some(free) = of.answer.bounds.iter().find(|bound| bound.clamp == "free") {
+    if let Some(free) = summary
+        .answer
+        .bounds
+        .iter()
+        .find(|bound| bound.clamp == "free")
+    {
         let least = free.bound_l_per_100km;
         text += &format!(
             ", {} with any clamp of a safety factor of {} and {} % slip",
             fixed(least, 3),
-            plain(of.numbers.safety),
-            plain(of.numbers.max_slip_percent)
+            plain(summary.numbers.safety),
+            plain(summary.numbers.max_slip_percent)
         );
     }
     let above = |litres: f64| signed(100.0 * (litres / least - 1.0), 2);
@@ -69,7 +74,7 @@ fn sentence(of: &OptimumSummary) -> String {
             kept(own.own_outside_s)
         );
     }
-    if let Some(line) = &of.answer.line {
+    if let Some(line) = &summary.answer.line {
         text += &format!(
             "; with its best line {}: {} %{}",
             fixed(line.l_per_100km, 3),
@@ -83,10 +88,10 @@ fn sentence(of: &OptimumSummary) -> String {
     text + "."
 }
 
-fn bounds(of: &OptimumSummary) -> String {
+fn bounds(summary: &OptimumSummary) -> String {
     let mut table = TextTable::new("lrrrrrr");
     table.row(["clamp", "as it is", "%", "line", "%", "least", "tolerance"]);
-    for bound in &of.answer.bounds {
+    for bound in &summary.answer.bounds {
         let above = |litres: Option<f64>| {
             litres.map(|litres| 100.0 * (litres / bound.least_l_per_100km - 1.0))
         };
@@ -100,10 +105,14 @@ fn bounds(of: &OptimumSummary) -> String {
             fixed(bound.tolerance_l_per_100km, 3),
         ]);
     }
-    table.text() + &weaker(of) + &idle(of) + &outside(of) + &warm(of)
+    table.text()
+        + &weaker_laws_note(summary)
+        + &idle_launch_note(summary)
+        + &violations_note(summary)
+        + &warm_start_note(summary)
 }
 
-/// Name of a bound: its clamp law, and its launch where it is another one.
+/// Name of a bound: its clamp law, and its launch if it differs from the car's.
 fn name(bound: &LawBound) -> String {
     let clamp = bound.clamp.replace('_', " ");
     match bound.launch {
@@ -112,9 +121,14 @@ fn name(bound: &LawBound) -> String {
     }
 }
 
-/// What an idle launch is.
-fn idle(of: &OptimumSummary) -> String {
-    match of.answer.bounds.iter().any(|bound| bound.launch == "idle") {
+/// Note that defines an idle launch.
+fn idle_launch_note(summary: &OptimumSummary) -> String {
+    match summary
+        .answer
+        .bounds
+        .iter()
+        .any(|bound| bound.launch == "idle")
+    {
         true => wrapped(
             "`idle launch`: a clutch that carries any torque with the engine at idle speed (LC-7); that of the car needs its speed (LC-1).",
             "",
@@ -123,9 +137,9 @@ fn idle(of: &OptimumSummary) -> String {
     }
 }
 
-/// How warm drives begin.
-fn warm(of: &OptimumSummary) -> String {
-    match &of.start {
+/// Note on the start of warm drives.
+fn warm_start_note(summary: &OptimumSummary) -> String {
+    match &summary.start {
         StartWord::Word(word) if word == "warm" => wrapped(
             "Each car begins as warm as its own drive from a soak leaves it, as with `run --start warm`, and so do the paths of the bounds.",
             "",
@@ -134,13 +148,13 @@ fn warm(of: &OptimumSummary) -> String {
     }
 }
 
-/// Cars that do not keep the limits all the time, so that they may burn less than the bound.
-fn outside(of: &OptimumSummary) -> String {
+/// Note on cars that violate the limits at times and may therefore burn less than the bound.
+fn violations_note(summary: &OptimumSummary) -> String {
     let seconds = |b: &LawBound, what: &str, time_s: Option<f64>| {
         let time_s = time_s.filter(|time_s| *time_s > 0.0)?;
         Some(format!("{} {what} {} s", name(b), fixed(time_s, 1)))
     };
-    let bounds = of.answer.bounds.iter();
+    let bounds = summary.answer.bounds.iter();
     let each = bounds.flat_map(|b| {
         [
             seconds(b, "as it is", b.own_outside_s),
@@ -157,9 +171,9 @@ fn outside(of: &OptimumSummary) -> String {
     }
 }
 
-/// Laws with which less can be burnt than with a free clamp, which has more safety.
-fn weaker(of: &OptimumSummary) -> String {
-    let bounds = &of.answer.bounds;
+/// Note on laws that burn less than a free clamp, because their safety is lower.
+fn weaker_laws_note(summary: &OptimumSummary) -> String {
+    let bounds = &summary.answer.bounds;
     let Some(free) = bounds.iter().find(|bound| bound.clamp == "free") else {
         return String::new();
     };
@@ -172,29 +186,32 @@ fn weaker(of: &OptimumSummary) -> String {
             name(law),
             fixed(law.least_safety, 2),
             fixed(law.most_slip_percent, 2),
-            plain(of.numbers.safety),
-            plain(of.numbers.max_slip_percent)
+            plain(summary.numbers.safety),
+            plain(summary.numbers.max_slip_percent)
         );
         wrapped(&text, "")
     });
     laws.collect()
 }
 
-fn speeds(of: &OptimumSummary) -> String {
+fn speeds(summary: &OptimumSummary) -> String {
     let mut table = TextTable::new("rrr");
     table.row(["rpm", "L/100 km", "%"]);
-    let own = of.answer.bounds[0].least_l_per_100km;
-    for (least_rpm, litres) in &of.answer.least_speeds {
+    let own = summary.answer.bounds[0].least_l_per_100km;
+    for (least_rpm, litres) in &summary.answer.least_speeds {
         let change = litres.map(|litres| 100.0 * (litres / own - 1.0));
         let litres = litres.map_or("cannot be held".to_owned(), |litres| fixed(litres, 3));
         table.row([fixed(*least_rpm, 0), litres, signed(change, 2)]);
     }
-    table.text() + &floor(of)
+    table.text() + &coupling_note(summary)
 }
 
-/// Where the coupling decides the least speed and not the limit.
-fn floor(of: &OptimumSummary) -> String {
-    let floor = of.answer.lock_floor.filter(|floor| floor.above_s > 0.0);
+/// Note on minimum speeds set by the coupling instead of the limit.
+fn coupling_note(summary: &OptimumSummary) -> String {
+    let floor = summary
+        .answer
+        .lock_floor
+        .filter(|floor| floor.above_s > 0.0);
     let Some(floor) = floor else {
         return String::new();
     };
@@ -207,25 +224,25 @@ fn floor(of: &OptimumSummary) -> String {
     wrapped(&text, "")
 }
 
-fn limits(of: &OptimumSummary) -> String {
+fn limits(summary: &OptimumSummary) -> String {
     let mut table = TextTable::new("lr");
-    if !of.answer.limits.is_empty() {
+    if !summary.answer.limits.is_empty() {
         table.row(["", "% of the fuel"]);
     }
-    for limit in &of.answer.limits {
+    for limit in &summary.answer.limits {
         table.row([limit.limit.replace('_', " "), fixed(limit.percent, 2)]);
     }
     table.text()
 }
 
-fn certainty(of: &OptimumSummary) -> String {
-    let own = &of.answer.bounds[0];
+fn certainty(summary: &OptimumSummary) -> String {
+    let own = &summary.answer.bounds[0];
     let mut table = TextTable::new("lr");
     table.row(["", "L/100 km"]);
     for (ratios, litres) in &own.grid {
         table.row([format!("{ratios} ratios"), fixed(*litres, 4)]);
     }
-    let ratios = of.numbers.ratios;
+    let ratios = summary.numbers.ratios;
     table.row([format!("{ratios} ratios"), fixed(own.least_l_per_100km, 4)]);
     for (k, litres) in own.temperatures.iter().enumerate() {
         table.row([
@@ -240,8 +257,8 @@ fn certainty(of: &OptimumSummary) -> String {
     table.text()
 }
 
-fn line(of: &OptimumSummary) -> String {
-    let Some(line) = &of.answer.line else {
+fn line(summary: &OptimumSummary) -> String {
+    let Some(line) = &summary.answer.line else {
         return String::new();
     };
     let mut table = TextTable::new("rrrr");
@@ -266,8 +283,8 @@ fn line(of: &OptimumSummary) -> String {
     table.text() + &again
 }
 
-fn elsewhere(of: &OptimumSummary) -> String {
-    let cycles = of.answer.line.iter().flat_map(|line| &line.elsewhere);
+fn elsewhere(summary: &OptimumSummary) -> String {
+    let cycles = summary.answer.line.iter().flat_map(|line| &line.elsewhere);
     let mut table = TextTable::new("lrrrr");
     let slow = cycles.clone().any(|other| other.line_below_s > 0.0);
     for (number, other) in cycles.enumerate() {
@@ -336,8 +353,8 @@ fn path_columns() -> Vec<Column<Row>> {
 ///
 /// # Errors
 /// Problems of the directory.
-pub fn write(dir: &mut OutputDir, of: &OptimumSummary) -> Result<(), Problem> {
-    let answer = &of.answer;
+pub fn write(dir: &mut OutputDir, summary: &OptimumSummary) -> Result<(), Problem> {
+    let answer = &summary.answer;
     dir.write("bound.csv", |out| {
         write_csv(out, &bound_columns(), &answer.bounds, &[])
     })?;
@@ -348,7 +365,7 @@ pub fn write(dir: &mut OutputDir, of: &OptimumSummary) -> Result<(), Problem> {
         write_csv(out, &path_columns(), &answer.path, &[])
     })?;
     if let Some(line) = &answer.line {
-        dir.put(&format!("{}_line.toml", of.vehicle), &line.file)?;
+        dir.put(&format!("{}_line.toml", summary.vehicle), &line.file)?;
     }
     Ok(())
 }

@@ -6,8 +6,8 @@ use clap::Args;
 use cvtcycle::config::rig::{OIL, TORQUE};
 use cvtcycle::config::setup::{self, Setup};
 use cvtcycle::config::{Bound, Override, Problems, Target, to_si};
-use cvtcycle::model::bench::transmission::{Conditions, Plan as TestPoints};
-use cvtcycle::model::bench::{Bench, solvable_ratios};
+use cvtcycle::model::rig::transmission::{Conditions, Plan as TestPoints};
+use cvtcycle::model::rig::{Bench, solvable_ratios};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::record::Manifest;
@@ -17,15 +17,15 @@ use serde_json::{Value, json};
 
 use crate::args::problems::bad_value;
 use crate::args::ranges::{values, values_or_words};
-use crate::args::{FormulationArgs, Names, ResultArgs, VehicleArgs, names_of, one_of};
+use crate::args::{FormulationArgs, Names, ResultArgs, VehicleArgs, choice_names, one_of};
 use crate::commands::Execute;
 use crate::print::{CommandResult, Results, Terminal, WrittenFiles, json_text};
 
-/// Version of the JSON object.
+/// Schema version of the JSON object.
 const SCHEMA: u32 = 1;
-/// Ratios that can be tested.
+/// Allowed belt ratios.
 const RATIO: Bound = Bound::closed(0.3, 3.0);
-/// Input speeds that can be tested, rpm.
+/// Allowed input speeds, rpm.
 const SPEED: Bound = Bound::closed(100.0, 8000.0);
 
 /// Arguments of `rig transmission`.
@@ -46,7 +46,7 @@ the keys of the rig."
 )]
 pub struct RigTransmissionArgs {
     /// Test: all, steady, loaded, strip_down, transient or second_box
-    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(|| [vec!["all"], names_of(&RigTest::NAMES)].concat()), hide_possible_values = true)]
+    #[arg(long, value_name = "TEST", default_value = "all", value_parser = Names(|| [vec!["all"], choice_names(&RigTest::NAMES)].concat()), hide_possible_values = true)]
     test: String,
     #[command(flatten)]
     car: VehicleArgs,
@@ -70,7 +70,7 @@ pub struct RigTransmissionArgs {
 
 /// Checked input of the tests.
 pub struct RigPlan {
-    /// None for all.
+    /// Chosen test, or None for all.
     test: Option<RigTest>,
     setup: Setup,
     conditions: Conditions,
@@ -139,7 +139,7 @@ impl Execute for RigTransmissionArgs {
 }
 
 impl RigTransmissionArgs {
-    /// Test points of the rig with those of the options; none if the conditions of the rig could not be read.
+    /// Merges the rig's test points with those of the options. None if the rig's conditions have problems.
     fn points(
         &self,
         conditions: Option<&Conditions>,
@@ -153,14 +153,14 @@ impl RigTransmissionArgs {
         let speeds_rad_s = list("--speed", &self.speed, SPEED, "_rpm");
         let oil_k = list("--temp", &self.temp, OIL, "_degc");
         let torques_nm = list("--torque", &self.torque, TORQUE, "_nm");
-        // The words for ratios are those of the conditions.
+        // `low` and `high` are defined by the conditions.
         let conditions = conditions?;
         let (low, high) = (conditions.low_ratio, conditions.high_ratio);
         let words = [("low", low), ("high", high)];
         let read =
             |text: &String| problems.take(values_or_words("--ratio", text, RATIO, "", &words));
         let ratios = self.ratio.as_ref().and_then(read);
-        let own = TestPoints::of(conditions);
+        let own = TestPoints::from_conditions(conditions);
         Some(TestPoints {
             ratios: ratios.unwrap_or(own.ratios),
             speeds_rad_s,
@@ -202,7 +202,7 @@ impl RigPlan {
             entries.extend(found.json(&self.points));
             entries.insert("failed_checks".to_owned(), json!(failures));
         }
-        Manifest::new(SCHEMA).of_run(&all).with(&all)
+        Manifest::new(SCHEMA).for_run(&all).with(&all)
     }
 
     fn pictures(&self, found: &RigResults) -> impl Iterator<Item = (String, String)> {

@@ -4,7 +4,7 @@ mod plan;
 
 use clap::Args;
 use cvtcycle::config::Problems;
-use cvtcycle::model::bench::variator::RigFlags;
+use cvtcycle::model::rig::variator::RigFlags;
 use cvtcycle::output::number::{fixed, percent, plain};
 use cvtcycle::output::table::{TextColumns, wrapped};
 use cvtcycle::output::variator::{Curve, VariatorCurves};
@@ -20,7 +20,7 @@ use plan::VariatorPlan;
 #[derive(Args, Clone, Debug)]
 #[command(
     mut_arg("out", |out| out.help("Write curves.csv, points.csv, summary.json and plots (SVG) into this directory")),
-    mut_arg("format", |format| format.help("What to print: a line for each curve, or CSV with all points")),
+    mut_arg("format", |format| format.help("Print a line for each curve, or CSV with all points")),
     after_help = "\
 Examples:
   cvtcycle rig variator
@@ -99,7 +99,7 @@ impl Execute for RigVariatorArgs {
     }
 }
 
-/// A line for each curve, and the resolution of the speed sensors.
+/// Table with a line for each curve, and the resolution of the speed sensors.
 fn tables(found: &VariatorCurves, paint: Paint) -> String {
     let (vehicle, belt) = (paint.heading(&found.vehicle), &found.formulation);
     let mut text = format!("{vehicle}  variator alone, {belt}\n");
@@ -159,6 +159,6 @@ fn flags(test: &[Curve]) -> String {
         .iter()
         .map(|(flag, name)| (name, count(*flag)));
     let named = named.filter(|(_, n)| *n > 0);
-    let of = |(name, n)| format!("{name} {n} of {}", rows().count());
-    named.map(of).collect::<Vec<_>>().join(", ")
+    let flag_text = |(name, n)| format!("{name} {n} of {}", rows().count());
+    named.map(flag_text).collect::<Vec<_>>().join(", ")
 }

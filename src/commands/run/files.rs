@@ -1,28 +1,28 @@
-//! When a run computes what drives its cycle again, and its inputs.
+//! Optional computations of a run that repeat its cycle, and the record of its inputs.
 
 use std::ffi::OsString;
 
+use cvtcycle::analysis::sensitivity::Named;
 use cvtcycle::config::Problems;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::model::drive::Conditions;
 use cvtcycle::output::record::Record;
 use cvtcycle::report::run_files;
-use cvtcycle::study::sensitivity::Named;
 
 use crate::commands::program::words;
 use crate::commands::vehicles::RunVehicle;
 
-/// Steps of a cycle up to which `auto` drives it again and again: fourteen times for prices, some seven hundred times for sensitivities.
+/// Maximum number of steps for `auto`. Prices drive the cycle fourteen times, sensitivities some seven hundred times.
 const MAX_STEPS: usize = 20_000;
 
-/// When something is computed that drives the cycle again.
+/// Choice for a computation that repeats the cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
-    /// Unless the cycle is long.
+    /// Computed unless the cycle is long.
     Auto,
-    /// Always.
+    /// Always computed.
     Always,
-    /// Never.
+    /// Never computed.
     Never,
 }
 
@@ -34,7 +34,7 @@ impl When {
         ("never", When::Never),
     ];
 
-    /// Whether it is computed on a cycle with steps of a length, s.
+    /// Decides for a cycle and a time step, s.
     pub fn wanted(self, cycle: &Cycle, dt_s: f64) -> bool {
         match self {
             When::Auto => cycle.trace_for(true).step_count(dt_s) <= MAX_STEPS,
@@ -44,10 +44,9 @@ impl When {
     }
 }
 
-/// Inputs of a run.
-///
+/// Record of the inputs of a run.
 /// # Errors
-/// Problems of files that changed since they were read.
+/// Files that changed since they were read.
 pub fn record(
     vehicles: &[RunVehicle],
     cycle: &Cycle,
@@ -69,7 +68,7 @@ pub fn record(
     run_files::record(command, &cars, cycle, conditions, wanted)
 }
 
-/// The command line, quoted for a shell.
+/// Command line, quoted for a shell.
 fn command_line(words: impl Iterator<Item = String>) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
     let quoted = |word: String| match !word.is_empty() && word.chars().all(plain) {

@@ -5,10 +5,10 @@ use cvtcycle::output::number::{fixed, percent, signed};
 use cvtcycle::output::summary::{RunSummary, Saving, Summary};
 use cvtcycle::output::table::TextTable;
 
-/// Role of the first car of a run.
+/// Role of the first car.
 const SUBJECT: &str = "subject";
 
-/// Cells of a row of prices: of the subject energy and fuel that would be saved, of baselines the share of the fuel alone.
+/// Cells of a row of prices: energy and fuel saved for the subject, share of the fuel for baselines.
 fn priced(run: &RunSummary, kj: Option<f64>, saved: Option<&Saving>) -> Vec<String> {
     let percent_of_fuel = fixed(saved.and_then(|saved| saved.percent), 2);
     if run.role != SUBJECT {
@@ -22,7 +22,7 @@ fn priced(run: &RunSummary, kj: Option<f64>, saved: Option<&Saving>) -> Vec<Stri
     ]
 }
 
-/// Cells of a row that has energy alone, for the subject.
+/// Cells of a row with energy only, for the subject.
 fn energy(run: &RunSummary, kj: Option<f64>) -> Vec<String> {
     let blank = String::new;
     match run.role == SUBJECT {
@@ -36,7 +36,7 @@ fn energy(run: &RunSummary, kj: Option<f64>) -> Vec<String> {
     }
 }
 
-/// What the losses add up to, and what the parts do not.
+/// Cells of the price of all losses together and of the interaction, the part not explained by single losses.
 fn interaction(run: &RunSummary) -> Vec<String> {
     let saved = run.price.as_ref().map(|price| &price.interaction);
     let points = signed(saved.and_then(|saved| saved.percent), 2);
@@ -47,7 +47,7 @@ fn interaction(run: &RunSummary) -> Vec<String> {
     }
 }
 
-/// Heading and table of the losses with the price of each.
+/// Heading and table of losses with prices.
 pub(super) fn priced_losses(summary: &Summary) -> (String, String) {
     let runs = &summary.runs;
     let subject = runs.first().map_or("", |run| &run.vehicle);
@@ -99,7 +99,7 @@ fn price_notes(summary: &Summary) -> String {
     priced.collect()
 }
 
-/// A loss as people write it; by the devices of all cars.
+/// Name of a loss in words, which depends on the devices of all cars.
 pub(super) fn loss_words(summary: &Summary, component: &str) -> String {
     let mut names: Vec<String> = Vec::new();
     for run in &summary.runs {

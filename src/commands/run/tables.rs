@@ -1,11 +1,11 @@
 //! The summary of a run as tables.
 
+use cvtcycle::analysis::words::run::sentences;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
 use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, paragraphs, wrapped};
-use cvtcycle::study::words::run::sentences;
 
 use super::losses::{loss_words, priced_losses};
 use crate::print::colour::Paint;
@@ -14,7 +14,7 @@ use crate::print::{bold, sections};
 /// Widths of the two leading columns, which align the tables.
 const LEAD: [usize; 2] = [22, 8];
 
-/// All results for people.
+/// Prints all results.
 pub fn tables(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     let comparisons = summary.comparison.iter().map(compared);
     let text = |title: &str, body: String| (title.to_owned(), body);
@@ -64,7 +64,7 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
     text + "\n" + &table.text()
 }
 
-/// What the run says of the subject, in sentences; the first is the answer.
+/// Sentences about the subject; the first is the answer.
 fn answers(summary: &Summary, paint: Paint) -> String {
     let sentences = sentences(summary);
     let paragraphs = sentences.iter().enumerate().map(|(k, sentence)| match k {
@@ -98,7 +98,7 @@ impl<'a> ByVehicle<'a> {
         self.table.row(head.chain(self.runs.iter().map(cell)));
     }
 
-    /// A row of numbers; none where no vehicle has the number.
+    /// Adds a row of numbers, unless no vehicle has one.
     fn number(
         &mut self,
         name: &str,
@@ -140,7 +140,7 @@ fn fuel(summary: &Summary) -> String {
     table.text(&LEAD)
 }
 
-/// Difference to a baseline by phase, and whether the two cars are alike.
+/// Difference to a baseline by phase, and a note if the cars are not like for like.
 fn compared(comparison: &Comparison) -> String {
     let Some(difference) = comparison.fuel_percent else {
         return String::new();
@@ -163,7 +163,7 @@ fn compared(comparison: &Comparison) -> String {
     wrapped(&line, &format!("over {}: ", comparison.baseline))
 }
 
-/// Energy in kJ and as per cent of the fuel energy.
+/// Energy in kJ and in per cent of the fuel energy.
 fn kj_and_share(kj: Option<f64>, run: &RunSummary) -> String {
     let share = percent(kj, run.fuel_energy_kj, 1);
     kj.map_or(NONE.to_owned(), |kj| {
@@ -216,7 +216,7 @@ fn balance(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
     for (term, name) in BALANCE {
         let share = |run: &RunSummary| percent(run.term_kj(term), run.fuel_energy_kj, 1);
-        // A row of zeros is left out; the JSON has the unrounded numbers.
+        // Leaves out rows of zeros; the JSON has the unrounded values.
         let may_be_left_out = ["kinetic", "electric"].contains(&term);
         if !may_be_left_out
             || summary
@@ -274,11 +274,15 @@ fn notes(summary: &Summary) -> String {
             text += &format!("{name}: smallest clamp safety factor {safety}\n");
         }
     }
-    if summary.comparison.iter().any(|of| of.interval.is_none()) {
+    if summary
+        .comparison
+        .iter()
+        .any(|difference| difference.interval.is_none())
+    {
         text += "a difference without an interval gets one from --draws 256\n";
     }
-    let worst = |of: fn(&RunSummary) -> Option<f64>| {
-        let all: Option<Vec<f64>> = summary.runs.iter().map(of).collect();
+    let worst = |value: fn(&RunSummary) -> Option<f64>| {
+        let all: Option<Vec<f64>> = summary.runs.iter().map(value).collect();
         tiny(all.and_then(|all| all.into_iter().reduce(|a, b| if b > a { b } else { a })))
     };
     let step = worst(|run| run.ledger_error);
@@ -291,12 +295,12 @@ fn notes(summary: &Summary) -> String {
 
 /// One line for each failed check.
 pub fn failures(summary: &Summary) -> Vec<String> {
-    let of = |run: &RunSummary| {
+    let failed_checks = |run: &RunSummary| {
         let line = |failure| {
             let text = run.failure_text(failure);
             format!("check failed: {} {text}", run.vehicle)
         };
         run.failures.iter().map(line).collect::<Vec<_>>()
     };
-    summary.runs.iter().flat_map(of).collect()
+    summary.runs.iter().flat_map(failed_checks).collect()
 }

@@ -40,7 +40,7 @@ pub struct StudyAmbientArgs {
 const DEGC: &str = "-10,0,10,25,40";
 /// Default starts.
 const STARTS: &str = "soak,warm";
-/// Columns of the traces that the warm-up figures need.
+/// Trace columns for the figures of the warm-up.
 const TRACES: [&str; 6] = [
     "time_s",
     "speed_kmh",
@@ -49,7 +49,7 @@ const TRACES: [&str; 6] = [
     "engine_oil_degc",
     "coolant_degc",
 ];
-/// Keys of the plan with the options that give them.
+/// Options by the key of the plan that they set.
 const OPTIONS: [(&str, &str); 7] = [
     ("vehicle", "--vehicle"),
     ("baselines", "--baseline"),
@@ -68,9 +68,9 @@ impl Execute for StudyAmbientArgs {
         self.run.begin(&mut own);
         let plan = self.matrix(&mut own);
         let study = plan.and_then(|plan| self.run.prepare(plan, &mut own));
-        self.run.look(&mut own);
+        self.run.check_directory(&mut own);
         own.into_iter()
-            .for_each(|problem| problems.add(of_option(problem)));
+            .for_each(|problem| problems.add(cite_option(problem)));
         study
     }
 
@@ -79,8 +79,8 @@ impl Execute for StudyAmbientArgs {
     }
 }
 
-/// A problem of a key of the plan is one of the option.
-fn of_option(problem: Problem) -> Problem {
+/// Cites the option that set a key of the plan.
+fn cite_option(problem: Problem) -> Problem {
     let option = problem.place.file_name().unwrap_or_default().to_owned();
     let is_option = ["--ambient", "--start"].contains(&option.as_str())
         || OPTIONS.iter().any(|(_, name)| *name == option);
@@ -92,7 +92,7 @@ fn of_option(problem: Problem) -> Problem {
 }
 
 impl StudyAmbientArgs {
-    /// The plan of these options; none after a problem with one of them.
+    /// Builds the plan from the options. None after a problem.
     fn matrix(&self, problems: &mut Problems) -> Option<Plan> {
         let (car, comparison) = (&self.car, &self.comparison);
         let before = problems.len();

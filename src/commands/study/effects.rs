@@ -11,14 +11,14 @@ use cvtcycle::study::statistics::{
 };
 use cvtcycle::study::{Answer, StudyManifest};
 
-/// Number of factors that are listed for an output.
+/// Maximum number of factors listed for an output.
 const MAX_FACTORS: usize = 10;
-/// Number of factors above chance that are listed.
+/// Maximum number of factors above chance listed.
 const MAX_CAUSES: usize = 5;
-/// Rows and columns of a matrix that fit on a page.
+/// Maximum rows and columns of a printed matrix.
 const MATRIX: [usize; 2] = [40, 10];
 
-/// Factors of the first output of the subject, and of the difference to each baseline.
+/// Tables of factors for the first output of the subject, and for the difference to each baseline.
 pub(super) fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) -> String {
     let Some(first) = answer.outputs.first() else {
         return String::new();
@@ -34,17 +34,19 @@ pub(super) fn factors(answer: &Answer, outline: &StudyManifest, paint: Paint) ->
 
 fn effects(output: &OutputAnswer, outline: &StudyManifest, confidence: Confidence) -> String {
     let known = output.information.as_ref();
-    let known = known.map_or_else(String::new, |of| information(of, confidence, &output.unit));
+    let known = known.map_or_else(String::new, |indices| {
+        information(indices, confidence, &output.unit)
+    });
     match (output.sobol.last(), &output.tornado) {
         (Some(indices), _) => sobol(outline, indices, confidence) + &known,
-        (None, Some(of)) => tornado(of),
-        // A matrix has all that the means of its rows and columns have.
+        (None, Some(found)) => tornado(found),
+        // The matrix contains the means of its rows and columns.
         (None, None) if output.matrix.is_some() => grid(output),
         (None, None) => known + &rank(output) + &levels(output),
     }
 }
 
-/// The matrix of a grid of two factors, its smallest numbers marked.
+/// Matrix of a grid of two factors, with a mark at the minimum of all cells, of each row or of each column.
 fn grid(output: &OutputAnswer) -> String {
     let Some(matrix) = &output.matrix else {
         return String::new();
@@ -73,15 +75,15 @@ fn grid(output: &OutputAnswer) -> String {
         let cells = row.iter().enumerate().map(cell);
         table.row([name.clone()].into_iter().chain(cells));
     }
-    let of = match matrix.least_of {
+    let scope = match matrix.least_of {
         LeastOf::All => "",
         LeastOf::Row => " of its row",
         LeastOf::Column => " of its column",
     };
-    format!("{}  * least{of}\n", table.text())
+    format!("{}  * least{scope}\n", table.text())
 }
 
-/// Every level of each factor, the widest swing first.
+/// Every level of each factor, ordered by the width of the bar.
 fn tornado(tornado: &Tornado) -> String {
     let mut table = TextTable::new("llrrr").indented();
     table.row(["factor", "level", "value", "effect", "swing"]);
@@ -99,12 +101,12 @@ fn tornado(tornado: &Tornado) -> String {
     format!("  base {base}\n{}", table.text())
 }
 
-/// What knowing a factor would leave of the spread: the factors above chance, and how many are not.
-fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
+/// Spread that remains after learning a factor, for the factors above chance, and the number of others.
+fn information(found: &Information, confidence: Confidence, unit: &str) -> String {
     let mut table = TextTable::new("lrrl").indented();
     let left = format!("sd left, {unit}");
     table.row(["if this were known", "% of variance", &left, "next test"]);
-    let causes: Vec<_> = of.causes().take(MAX_CAUSES).collect();
+    let causes: Vec<_> = found.causes().take(MAX_CAUSES).collect();
     for factor in &causes {
         let (share, left) = (
             fixed(100.0 * factor.share.value, 0),
@@ -112,12 +114,12 @@ fn information(of: &Information, confidence: Confidence, unit: &str) -> String {
         );
         table.row([factor.name.clone(), share, left, factor.test.clone()]);
     }
-    let rest = of.factors.len() - causes.len();
-    let (percent, level) = (fixed(100.0 * of.noise, 1), confidence.percent());
+    let rest = found.factors.len() - causes.len();
+    let (percent, level) = (fixed(100.0 * found.noise, 1), confidence.percent());
     let noise = format!(
         "by groups of draws the largest of as many idle factors stays below {percent} % of the variance in {level} of 100 cases"
     );
-    let [sd, head] = [fixed(of.sd, 3), wrapped(&noise, "  ")];
+    let [sd, head] = [fixed(found.sd, 3), wrapped(&noise, "  ")];
     let more = match (causes.len(), rest) {
         (_, 0) => String::new(),
         (0, n) => format!("  none of {n} factors is above chance\n"),
@@ -168,9 +170,9 @@ fn levels(output: &OutputAnswer) -> String {
 fn sobol(outline: &StudyManifest, indices: &SobolIndices, confidence: Confidence) -> String {
     let head = format!("{} % interval", confidence.percent());
     let factors = outline.plan.factors.iter().zip(&indices.factors);
-    let known = factors.filter(|(_, of)| of.total.value.is_finite());
+    let known = factors.filter(|(_, indices)| indices.total.value.is_finite());
     let mut ranked: Vec<(String, &FactorIndices)> = known
-        .map(|(factor, of)| (factor.name.clone(), of))
+        .map(|(factor, indices)| (factor.name.clone(), indices))
         .collect();
     ranked.sort_by(|a, b| b.1.total.value.abs().total_cmp(&a.1.total.value.abs()));
     if ranked.is_empty() {

@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use super::super::threads;
 use super::share::{self, ShareArgs};
 use super::tables;
-use crate::args::problems::{bad_value, in_options, problem};
+use crate::args::problems::{bad_value, cite_options, problem};
 use crate::args::{ConfidenceArgs, OutArgs, OutputArgs, ThreadArgs};
 use crate::print::colour::Paint;
 use crate::print::progress::{Progress, handle_interrupts};
@@ -25,7 +25,7 @@ use crate::print::{
     CommandOutput, CommandResult, Ending, Results, Terminal, WrittenFiles, json_text,
 };
 
-/// Options of every study that runs.
+/// Options of all studies that run.
 #[derive(Args, Clone, Debug)]
 #[command(mut_arg("out", |out| out.help("Keep tables, statistics and plots in this directory; without it they are deleted after the results are printed")))]
 pub struct StudyRunArgs {
@@ -66,7 +66,7 @@ pub enum PartFormat {
 }
 
 impl StudyRunArgs {
-    /// Checks the options that need no plan, and begins the threads.
+    /// Checks the options that do not depend on the plan, and starts the threads.
     pub fn begin(&self, problems: &mut Problems) {
         handle_interrupts();
         self.out.path(problems);
@@ -75,22 +75,22 @@ impl StudyRunArgs {
         problems.take(threads::begin(threads));
     }
 
-    /// Looks at the directory as well where there are problems, so that all are reported at once.
-    pub fn look(&self, problems: &mut Problems) {
+    /// Checks the directory even after other problems, so that all are reported at once.
+    pub fn check_directory(&self, problems: &mut Problems) {
         let begins = !self.resume && !self.share.dry_run && !problems.is_empty();
         if let Some(path) = self.out.out.as_deref().filter(|_| begins) {
             let found = StudyDir::check_free(path, self.out.force);
-            problems.take(found.map_err(in_options));
+            problems.take(found.map_err(cite_options));
         }
     }
 
     /// Reads the vehicles of a plan, and checks the number of runs.
     pub fn prepare(&self, plan: Plan, problems: &mut Problems) -> Option<Study> {
-        self.confirmed(problems.take(Study::prepare(plan))?, problems)
+        self.check_run_count(problems.take(Study::prepare(plan))?, problems)
     }
 
     /// Checks the number of runs of a study.
-    pub fn confirmed(&self, study: Study, problems: &mut Problems) -> Option<Study> {
+    pub fn check_run_count(&self, study: Study, problems: &mut Problems) -> Option<Study> {
         self.share.parts(&study, problems);
         let (runs, max) = (study.runs(), study.plan.most_runs);
         if runs > max && !self.yes && !self.share.dry_run {
@@ -106,20 +106,20 @@ impl StudyRunArgs {
         Some(study)
     }
 
-    /// Runs a study, writes its files and returns what it says.
-    pub fn run<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
+    /// Runs a study, writes its files and returns the text to print.
+    pub fn run<S: StudyOutput>(&self, study: &Study, terminal: Terminal) -> CommandResult {
         let results = self.results::<S>(study, terminal);
         results.map_err(|problems| match self.out.out {
             Some(_) => problems,
-            None => problems.map(of_nothing_kept),
+            None => problems.map(without_resume_hint),
         })
     }
 
-    fn results<S: Says>(&self, study: &Study, terminal: Terminal) -> CommandResult {
+    fn results<S: StudyOutput>(&self, study: &Study, terminal: Terminal) -> CommandResult {
         if self.share.dry_run {
             return share::estimate(study, &self.output);
         }
-        // Without --out the parts are written to a directory that is deleted afterwards.
+        // Without --out the parts go to a temporary directory.
         let temporary = match &self.out.out {
             Some(_) => None,
             None => Some(temporary_dir()?),
@@ -133,9 +133,9 @@ impl StudyRunArgs {
         if self.share.is_given() && !dir.is_complete() {
             return share::driven(study, &dir, &self.output);
         }
-        // Checked when the study began.
+        // Already checked when the study began.
         let confidence = self.confidence.get(&mut Problems::default());
-        let found = S::of(StudyManifest::of(study), dir.study()?, confidence)?;
+        let found = S::evaluate(StudyManifest::of(study), dir.study()?, confidence)?;
         let list = match &self.out.out {
             Some(_) => tables::written(dir.path(), &dir.finish(&found.files()?)?),
             None => String::new(),
@@ -153,10 +153,10 @@ impl StudyRunArgs {
         }
     }
 
-    /// Runs the parts that are missing in the directory.
+    /// Runs the parts missing in the directory.
     fn compute(&self, study: &Study, dir: &StudyDir) -> Result<End, Problems> {
         let missing = dir.missing().into_iter().map(|part| part as u64);
-        // Checked when the study began.
+        // Already checked when the study began.
         let wanted = self.share.parts(study, &mut Problems::default());
         let missing: BTreeSet<u64> = missing.filter(|part| wanted.contains(part)).collect();
         let done = (0..study.parts())
@@ -189,32 +189,32 @@ impl StudyRunArgs {
     }
 }
 
-/// What a study says, from the parts that are there.
-pub trait Says: Sized {
-    /// Answers.
-    fn of(
+/// Results of a study, evaluated from its finished parts.
+pub trait StudyOutput: Sized {
+    /// Evaluates the finished parts.
+    fn evaluate(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
     ) -> Result<Self, Problem>;
 
-    /// For other programs, with a line for failed runs.
+    /// JSON object, with one line for failed runs.
     fn results(&self) -> Result<Results, Problems>;
 
-    /// Files of a finished study: numbers and figures.
+    /// Files of a finished study: tables and figures.
     fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Problems>;
 
-    /// For people.
+    /// Tables for the terminal.
     fn tables(&self, paint: Paint) -> String;
 }
 
-impl Says for StudyResults {
-    fn of(
+impl StudyOutput for StudyResults {
+    fn evaluate(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
     ) -> Result<Self, Problem> {
-        StudyResults::of(outline, store, confidence)
+        StudyResults::from_store(outline, store, confidence)
     }
 
     fn results(&self) -> Result<Results, Problems> {
@@ -232,8 +232,8 @@ impl Says for StudyResults {
     }
 }
 
-/// A problem of a directory that is deleted: nothing in it can be continued or replaced.
-fn of_nothing_kept(problem: Problem) -> Problem {
+/// Replaces the hint for a temporary directory, which can be neither resumed nor replaced.
+fn without_resume_hint(problem: Problem) -> Problem {
     if problem.settings.is_empty() {
         return problem;
     }

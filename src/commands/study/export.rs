@@ -16,14 +16,14 @@ use cvtcycle::config::Problems;
 /// Arguments of `study export`.
 #[derive(Args, Clone, Debug)]
 #[command(
-    mut_arg("out", |out| out.required(true).value_name("FILE").help("File to write; its extension gives the format: .csv, .parquet or .xlsx")),
+    mut_arg("out", |out| out.required(true).value_name("FILE").help("File to write; its extension gives the format: .csv or .parquet")),
     after_help = "\
 Examples:
   cvtcycle study export my_study --out my_study.csv
-  cvtcycle study export my_study --out my_study.xlsx
+  cvtcycle study export my_study --out my_study.parquet
   cvtcycle study export ambient_study --table traces --out traces.parquet
 
-Units are in the header (CSV, Excel) or in the metadata (Parquet)."
+Units are in the header (CSV) or in the metadata (Parquet)."
 )]
 pub struct StudyExportArgs {
     /// Directory written by `study --out`
@@ -54,7 +54,7 @@ impl Execute for StudyExportArgs {
         let path = self.out.path(problems)?;
         let format = problems.take(Format::of(path));
         let study = problems.take(Study::open(&self.dir));
-        // Of a name with a wrong ending nothing else is said.
+        // Without a valid format, other problems of the file name are not reported.
         let format = format?;
         let out = problems.take(OutputFile::create(path, self.out.force));
         Some((format, study?, out?))

@@ -1,26 +1,26 @@
-//! What a study of levers says: for `levers`, and for `study show`.
+//! Results of a study of levers, for `levers` and `study show`.
 
 mod tables;
 
+use cvtcycle::analysis::levers::{LeverAnswer, csv, lever_answer};
 use cvtcycle::config::{Problem, Problems};
 use cvtcycle::report::study_pictures::lever_pictures;
-use cvtcycle::study::levers::{LeverAnswer, csv, lever_answer};
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::{StudyManifest, StudyTable, store};
 
-use super::execution::Says;
+use super::execution::StudyOutput;
 use super::tables::failures;
 use crate::print::colour::Paint;
 use crate::print::{Results, WrittenFiles, json_text};
 
-/// What a study of levers says.
+/// Evaluated study of levers.
 pub struct LeverResults {
     answer: LeverAnswer,
     parts: (usize, usize),
 }
 
-impl Says for LeverResults {
-    fn of(
+impl StudyOutput for LeverResults {
+    fn evaluate(
         outline: StudyManifest,
         store: store::Study,
         confidence: Confidence,
@@ -35,7 +35,7 @@ impl Says for LeverResults {
     }
 
     fn results(&self) -> Result<Results, Problems> {
-        // A draw that fails is a result; a car that fails in most of them is none to draw conclusions from.
+        // Single failing draws are results. A car that fails in most of its draws is a failed check.
         let failures = match self.answer.is_failed() {
             true => failures(&self.answer.runs),
             false => Vec::new(),

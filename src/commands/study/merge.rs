@@ -1,4 +1,4 @@
-//! `study merge`: shards of a study, driven by other processes or machines, as one.
+//! `study merge`: merges the shards of a study.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use cvtcycle::study::StudyManifest;
 use cvtcycle::study::statistics::Confidence;
 use cvtcycle::study::store::{self, StudyDir};
 
-use super::execution::Says;
+use super::execution::StudyOutput;
 use super::levers::LeverResults;
 use super::tables::written;
 use crate::args::{ConfidenceArgs, OutputArgs};
@@ -60,13 +60,13 @@ impl Execute for StudyMergeArgs {
 }
 
 impl StudyMergeArgs {
-    fn finish<S: Says>(
+    fn finish<S: StudyOutput>(
         &self,
         dir: &StudyDir,
         (outline, store, confidence): (StudyManifest, store::Study, Confidence),
         terminal: Terminal,
     ) -> CommandResult {
-        let found = S::of(outline, store, confidence)?;
+        let found = S::evaluate(outline, store, confidence)?;
         let list = written(dir.path(), &dir.finish(&found.files()?)?);
         let tables = || found.tables(terminal.stdout) + &list;
         Ok(found.results()?.output(&self.output, tables))

@@ -1,4 +1,4 @@
-//! A share of a study: which parts one process drives, and what all of them take.
+//! Shares of a study: the parts that one process drives, and an estimate of the whole.
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use crate::args::OutputArgs;
 use crate::args::problems::bad_value;
 use crate::print::{CommandResult, Results, WrittenFiles, json_text};
 
-/// Which parts are driven.
+/// Selection of parts.
 #[derive(Args, Clone, Debug)]
 pub struct ShareArgs {
     /// Drive only share K of N of the parts, K from 0: one of N processes or machines
@@ -39,19 +39,19 @@ pub struct ShareArgs {
     pub dry_run: bool,
 }
 
-/// Two numbers with a sign between them.
+/// Parses two numbers with a separator.
 fn pair(text: &str, sign: &str) -> Option<(u64, u64)> {
     let (a, b) = text.split_once(sign)?;
     Some((a.trim().parse().ok()?, b.trim().parse().ok()?))
 }
 
 impl ShareArgs {
-    /// Whether some parts are left to others.
+    /// True if some parts are left to other processes.
     pub fn is_given(&self) -> bool {
         self.shard.is_some() || self.parts.is_some()
     }
 
-    /// The parts that are driven: all, unless an option says which.
+    /// Selected parts; all without an option.
     pub fn parts(&self, study: &Study, problems: &mut Problems) -> Range<u64> {
         let all = study.parts();
         if let Some(text) = &self.shard {
@@ -80,7 +80,7 @@ impl ShareArgs {
     }
 }
 
-/// What a process with a share of the study prints.
+/// Output of a process that drives a share of the study.
 pub fn driven(study: &Study, dir: &StudyDir, output: &OutputArgs) -> CommandResult {
     let (parts, path) = (study.parts(), dir.path().display());
     let there = parts - dir.missing().len() as u64;
@@ -92,7 +92,7 @@ pub fn driven(study: &Study, dir: &StudyDir, output: &OutputArgs) -> CommandResu
     Ok(results.output(output, || text))
 }
 
-/// What a study takes.
+/// Estimates time and size of a study.
 pub fn estimate(study: &Study, output: &OutputArgs) -> CommandResult {
     let pilot = study.pilot();
     let (points, runs, parts) = (study.points, study.runs(), study.parts());
@@ -111,8 +111,8 @@ pub fn estimate(study: &Study, output: &OutputArgs) -> CommandResult {
         table.row(["runs", &runs.to_string(), ""]);
         table.row(["parts", &parts.to_string(), ""]);
         table.row(["size", &fixed(pilot.bytes as f64 / 1e6, 2), "MB, estimated"]);
-        let of = format!("s of one thread, from {} points", pilot.pilot_points);
-        table.row(["time", &fixed(pilot.cpu_s, 1), &of]);
+        let basis = format!("s of one thread, from {} points", pilot.pilot_points);
+        table.row(["time", &fixed(pilot.cpu_s, 1), &basis]);
         table.row([
             "time of a part",
             &fixed(pilot.cpu_s_per_part, 2),

@@ -1,13 +1,13 @@
-//! Results of a study as tables: the comparison first, then the numbers behind it.
+//! Results of a study as tables: the comparison first, then the underlying numbers.
 
 use std::path::{Path, PathBuf};
 
+use cvtcycle::analysis::words::study::sentences;
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::ambient::Matrix;
 use cvtcycle::study::answer::{Ended, OutputAnswer};
 use cvtcycle::study::plan::Design;
 use cvtcycle::study::statistics::{Summary, of_hundred};
-use cvtcycle::study::words::study::sentences;
 use cvtcycle::study::{Answer, StudyManifest};
 
 use super::effects::factors;
@@ -16,10 +16,10 @@ use crate::print::{bold, sections};
 use cvtcycle::output::number::{fixed, plain, signed};
 use cvtcycle::output::table::{TextColumns, TextTable, paragraphs, wrapped};
 
-/// Number of reasons of failed runs that are listed.
+/// Maximum number of reasons of failed runs listed.
 pub const MAX_REASONS: usize = 5;
 
-/// All results of a study for people.
+/// Prints all results of a study.
 pub fn tables(study: &StudyResults, paint: Paint) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let said: String = sentences(answer, outline)
@@ -32,7 +32,7 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
     }
     let outputs = sections([("Outputs", outputs(answer))], paint);
     let factors = factors(answer, outline, paint);
-    // Where the points are no sample, what the levels give is the answer.
+    // Without a sample, the levels are the answer.
     match outline.plan.design.is_sampled() {
         true => text + &outputs + &factors,
         false => text + &factors + &outputs,
@@ -42,7 +42,7 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
 /// Start and ambient temperature of a row, by index.
 type MatrixRow = (usize, usize);
 
-/// Fuel of each part of the cycle with the difference to the baselines, and the end temperature of the transmission oil.
+/// Fuel of each part of the cycle with the difference to the baselines, and the final temperature of the transmission oil.
 fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
     let rows = |columns: &TextColumns<MatrixRow>| {
         let ambients = matrix.ambient_degc.len();
@@ -65,7 +65,7 @@ fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
         let title = format!("Fuel, {name}, L/100 km, and difference of the subject, %");
         (title, rows(&columns))
     });
-    // The oil of the transmission is what the losses depend on; the files and the JSON object have the other temperatures.
+    // Prints the sump only, on which the losses depend; files and JSON have the other temperatures.
     let sump = matrix.ends.iter().take(1).map(|part| {
         let mut columns = lead(matrix);
         for (car, numbers) in matrix.cars.iter().zip(&part.degc) {
@@ -143,7 +143,7 @@ fn design(outline: &StudyManifest) -> String {
 }
 
 fn outputs(answer: &Answer) -> String {
-    // Name and unit are shown once for all vehicles.
+    // Names and units appear once for all vehicles.
     let first = |o: &OutputAnswer, text: &str| {
         let mut all = answer.outputs.iter();
         let first = all.find(|other| other.output == o.output);
@@ -155,7 +155,8 @@ fn outputs(answer: &Answer) -> String {
     if answer.outputs.iter().any(|o| o.range.is_some()) {
         return ranges(answer, first);
     }
-    let of = |o: &OutputAnswer, number: &dyn Fn(&Summary) -> f64| o.summary.as_ref().map(number);
+    let statistic =
+        |o: &OutputAnswer, number: &dyn Fn(&Summary) -> f64| o.summary.as_ref().map(number);
     let [low, high] = answer.confidence.ends();
     let [low_head, high_head] = [low, high].map(|p| format!("{} %", of_hundred(p)));
     TextColumns::new()
@@ -163,16 +164,16 @@ fn outputs(answer: &Answer) -> String {
         .left("unit", |o| first(o, &o.unit))
         .left("car", |o| o.car.clone())
         .right("n", |o| o.counts()[0].to_string())
-        .number("mean", 3, |o| of(o, &|s| s.mean))
-        .number("sd", 3, |o| of(o, &|s| s.sd))
-        .number(low_head, 3, |o| of(o, &|s| s.quantile(low)))
-        .number(high_head, 3, |o| of(o, &|s| s.quantile(high)))
+        .number("mean", 3, |o| statistic(o, &|s| s.mean))
+        .number("sd", 3, |o| statistic(o, &|s| s.sd))
+        .number(low_head, 3, |o| statistic(o, &|s| s.quantile(low)))
+        .number(high_head, 3, |o| statistic(o, &|s| s.quantile(high)))
         .table(&answer.outputs)
         .indented()
         .text()
 }
 
-/// The ends of each output with the levels there, a line each.
+/// Minimum and maximum of each output with their levels, one line each.
 fn ranges(answer: &Answer, first: impl Fn(&OutputAnswer, &str) -> String) -> String {
     let mut table = TextTable::new("llrlrl").indented();
     table.row(["output", "car", "n", "", "value", "at"]);
@@ -196,7 +197,7 @@ fn ranges(answer: &Answer, first: impl Fn(&OutputAnswer, &str) -> String) -> Str
     table.text()
 }
 
-/// Failed runs with their reasons, as one message; none if all are good.
+/// One message about failed runs with their reasons; empty if all are good.
 pub fn failures(runs: &Ended) -> Vec<String> {
     let bad = runs.failed + runs.not_run;
     if bad == 0 {

@@ -2,7 +2,7 @@
 
 use cvtcycle::output::table::{TextColumns, TextTable, distinct, wrapped};
 use cvtcycle::report::validation::chapter_title;
-use cvtcycle::study::check::{
+use cvtcycle::validate::{
     Group, Judged, PowerReport, Report, RowPower, Strength, Verdict, computed_text, notes_line,
     unit_text,
 };
@@ -10,7 +10,7 @@ use cvtcycle::study::check::{
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// Rows that the tables have.
+/// Selection of rows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     /// Every row.
@@ -60,7 +60,7 @@ pub fn tables(report: &Report, shown: Shown, paint: Paint) -> String {
     text + &counts + &rest + &rows
 }
 
-/// The verdicts of a table in their colours.
+/// Colours the verdicts of a table.
 fn painted(table: &str, paint: Paint) -> String {
     let at = table.lines().next().and_then(|heads| heads.find(VERDICT));
     let line = |line: &str| {
@@ -129,12 +129,12 @@ fn list(lines: impl IntoIterator<Item = (&'static str, String)>) -> String {
 }
 
 fn counts(report: &Report, group: Group) -> String {
-    let of = |verdict: Verdict| {
+    let count_of = |verdict: Verdict| {
         let rows = report.of_group(group).filter(|j| j.verdict == verdict);
         (verdict.word(), rows.count().to_string())
     };
     let total = ("total", report.of_group(group).count().to_string());
-    list(Verdict::ALL.into_iter().map(of).chain([total]))
+    list(Verdict::ALL.into_iter().map(count_of).chain([total]))
 }
 
 fn held_out(report: &Report, group: Group) -> String {
@@ -152,10 +152,10 @@ fn held_out(report: &Report, group: Group) -> String {
     list(lines.chain(median))
 }
 
-/// Changes shown of those that flip a row.
+/// Maximum number of changes listed for a row.
 const MAX_FLIPS: usize = 3;
 
-/// A table of the rows with what flips them, counts, and the rows that nothing flips.
+/// Table of the rows with the changes that flip them, counts, and the rows that no change flips.
 pub fn power(report: &Report, power: &PowerReport, paint: Paint) -> String {
     let candidate = &report.candidate;
     let heading = paint.heading("Changes of the cars that flip a verdict");
@@ -191,7 +191,7 @@ pub fn power(report: &Report, power: &PowerReport, paint: Paint) -> String {
     text + &sections(parts, paint)
 }
 
-/// One line for each row whose verdict is not the recorded one.
+/// One line for each row with another verdict than the recorded one.
 pub fn changed_verdicts(report: &Report) -> Vec<String> {
     let line = |judged: &Judged| {
         let row = &judged.row;

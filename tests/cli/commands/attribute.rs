@@ -1,8 +1,8 @@
-//! `attribute`, and the prices of `run`.
+//! `attribute`, and the prices printed by `run`.
 
 use super::*;
 
-/// The number at a path of names and indices.
+/// Number at a path of names and indices.
 fn at(value: &Value, path: &str) -> f64 {
     let found = value.pointer(path);
     found
@@ -73,7 +73,7 @@ fn tables_and_files_of_an_attribution() {
     let file = |name: &str| fs::read_to_string(dir.path().join("prices").join(name)).unwrap();
     let prices = file("attribution.csv");
     assert!(prices.starts_with("vehicle,ambient_degc,phase,component,group,loss_kj,energy_percent,saved_l_per_100km,saved_percent,alone_l_per_100km\n"));
-    // Of each car and ambient: its losses, together, interaction; for the whole and both parts of the cycle.
+    // For each car and ambient: its losses, all together, interaction; for the whole and both parts of the cycle.
     assert_eq!(prices.lines().count(), 1 + 2 * 3 * (12 + 2 + 5 + 2));
     assert_eq!(file("pairs.csv").lines().count(), 1 + 2 * (66 + 10));
     assert_eq!(file("shapley.csv").lines().count(), 1 + 2 * (5 + 4));
@@ -83,7 +83,7 @@ fn tables_and_files_of_an_attribution() {
 }
 
 #[test]
-fn a_run_says_what_its_losses_cost() {
+fn a_run_prints_the_price_of_its_losses() {
     let text = stdout(&run(&["run", "--ambient", "-10"]));
     for part in [
         "The transmission losses cost",
@@ -98,7 +98,7 @@ fn a_run_says_what_its_losses_cost() {
 }
 
 #[test]
-fn a_factor_of_a_file_is_no_secret() {
+fn a_loss_factor_in_a_file_is_reported() {
     let dir = tempfile::tempdir().unwrap();
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("vehicles/rover_216_cvt.toml");
     let text =

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Runs into directories; the words of each are those after its name.
+/// Writes runs into directories; each is a name with its options.
 fn runs(dir: &Path, list: &[(&str, &[&str])]) {
     for (name, words) in list {
         let own = [
@@ -26,7 +26,7 @@ fn runs(dir: &Path, list: &[(&str, &[&str])]) {
 
 const OFFSET: &str = "transmission.cvt.belt.band_offset_mm=";
 
-/// Truth: the numbers of the runs' own summaries.
+/// Truth: the summaries of the runs.
 #[test]
 fn three_runs_are_compared_by_their_own_numbers() {
     let dir = tempfile::tempdir().unwrap();
@@ -129,7 +129,7 @@ fn runs_that_are_not_alike_are_refused() {
     );
 }
 
-/// Conservation: with start-stop fuel also goes to the battery and the starter, so a report that leaves these out calls the files changed.
+/// Conservation: with start-stop, fuel energy also goes to the battery and the starter, so a report without them rejects the files as changed.
 #[test]
 fn runs_with_start_stop_are_reported_and_compared() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Cycles of other programs, their conversion, and the cycle that is a car's own. Truth: the same cycle by the program's own name.
+//! Cycles of other programs, their conversion, and cycles that depend on the car. Truth: the same cycle by the program's own name.
 
 use super::{json, run, run_in, stderr, stdout};
 use serde_json::Value;
@@ -33,7 +33,7 @@ fn a_logger_s_table_is_driven_by_its_named_columns() {
         summary["read_as"],
         "semicolons, decimal commas, \"Time_ADC\" as time_s, \"VehSpd\" as speed_mph, 2 of 3 columns"
     );
-    // 13.5 mph are 6.035 m/s: ten seconds up, ten at it, ten down.
+    // 13.5 mph are 6.035 m/s: ten seconds accelerating, ten at constant speed, ten decelerating.
     let km = summary["runs"][0]["distance_km"].as_f64().unwrap();
     assert!((km - 0.120_700_8).abs() < 1e-9, "{km}");
     let text = stdout(&run_in(dir.path(), &words[..words.len() - 1]));
@@ -71,7 +71,7 @@ fn a_logger_s_table_is_driven_by_its_named_columns() {
 }
 
 #[test]
-fn convert_says_what_it_read_and_what_it_leaves_out() {
+fn convert_lists_the_columns_it_read_and_dropped() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(
         dir.path().join("lap.vdri"),
@@ -140,7 +140,7 @@ fn convert_says_what_it_read_and_what_it_leaves_out() {
 }
 
 #[test]
-fn the_wltc_and_its_gears_are_the_car_s() {
+fn the_wltc_and_its_gears_depend_on_the_car() {
     let words = [
         "run",
         "--cycle",

@@ -1,11 +1,11 @@
-//! `fmu`: the file that it writes, and what it refuses. tools/fmu runs what is in the file.
+//! `fmu`: the written file and refused options. tools/fmu runs the contents of the file.
 
 use std::fs::{self, File};
 use std::io::Read;
 
 use super::{run_in, stderr};
 
-/// The first bytes of a shared library for Linux on x86-64, which is all that the program looks at.
+/// First bytes of a shared library for Linux on x86-64. The program checks no others.
 fn library() -> Vec<u8> {
     let mut bytes = b"\x7fELF\x02\x01\x01".to_vec();
     bytes.resize(18, 0);
@@ -14,7 +14,7 @@ fn library() -> Vec<u8> {
     bytes
 }
 
-/// The description and the files of the car are in it, the library under the name that the description gives, and the same input gives the same bytes.
+/// The FMU contains the description, the files of the car, and the library under the name in the description. Equal input gives equal bytes.
 #[test]
 fn an_fmu_has_all_that_it_needs() {
     let folder = tempfile::tempdir().unwrap();
@@ -53,9 +53,9 @@ fn an_fmu_has_all_that_it_needs() {
     }
 }
 
-/// All problems at once, each with its option; no file is left.
+/// All problems are reported at once, each with its option, and no file is left.
 #[test]
-fn what_it_refuses() {
+fn fmu_reports_all_problems_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path();
     fs::write(dir.join("own.so"), library()).unwrap();
@@ -65,7 +65,7 @@ fn what_it_refuses() {
         (vec!["--fmi", "1"], "one of 2, 3"),
         (
             vec!["--library", "none.so"],
-            "cargo build --release -p cvtcycle-fmu",
+            "cargo build --release -p cvtcycle-fmu-library",
         ),
         (vec!["--library", "text.so"], "no such library"),
         (

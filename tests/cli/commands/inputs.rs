@@ -1,9 +1,9 @@
-//! `list`, `show`, `explain` and `check`: what the program knows, and input files without a run.
+//! `list`, `show`, `explain` and `check`: built-in inputs, and input files without a run.
 
 use super::*;
 
 #[test]
-fn lists_name_what_can_be_driven() {
+fn list_prints_cycles_and_plans() {
     let cycles = json(&["list", "cycles", "--json"]);
     let nedc = cycles["cycles"]
         .as_array()
@@ -91,7 +91,7 @@ fn explain_knows_keys_columns_flags_and_equations() {
     assert_eq!(stdout(&run(&["explain", "band_offset_mm"])), whole);
     let oil = json(&["explain", "engine_oil.kv40_mm2_s", "--json"]);
     assert_eq!(oil["keys"][0]["values"].as_array().unwrap().len(), 7);
-    // An option that no embedded vehicle chooses.
+    // Option not chosen by any embedded vehicle.
     assert!(
         stdout(&run(&["explain", "dual_cavity"])).contains("share")
             || run(&["explain", "kind.dual_cavity.share"]).status.success()
@@ -113,7 +113,7 @@ fn explain_knows_keys_columns_flags_and_equations() {
     assert!(refused(&["explain", "gros_slip"]).contains("gross_slip"));
 }
 
-/// Terms of the field are found under any spelling, with every name that belongs to them; so are columns of the summary.
+/// Terms of the field are found in any spelling, with all names that belong to them. Columns of the summary are found too.
 #[test]
 fn explain_knows_the_terms_of_the_field_and_the_summary() {
     for (term, name) in [
@@ -136,8 +136,8 @@ fn explain_knows_the_terms_of_the_field_and_the_summary() {
             "{name} is not in the explanation of {term}:\n{text}"
         );
     }
-    // Every name of the table is explained.
-    let table = include_str!("../../../crates/study/src/explain/terms.txt");
+    // The table's terms are all explained.
+    let table = include_str!("../../../src/explain/terms.txt");
     for line in table.lines() {
         let (terms, names) = line.split_once(':').unwrap();
         let term = terms.split(',').next().unwrap();
@@ -217,7 +217,7 @@ fn check_reports_every_file() {
 }
 
 #[test]
-fn check_holds_a_car_against_physics() {
+fn check_physics_drives_a_car_and_reports_each_law() {
     let words = ["check", "--physics", "--cycle", "ece15", "--ambient", "-10"];
     let cars = ["rover_216_cvt", "rover_216_5mt"];
     let good = run(&[&words[..], &cars[..]].concat());
@@ -254,7 +254,7 @@ fn check_knows_the_plan_of_a_calibration() {
             "ok  rover_216_warm_up (calibration)\nok  rover_216_5mt (vehicle)\n"
         )
     );
-    // By its other tables, though the first is misspelt and a vehicle is named below it.
+    // Detected by its other tables, though the first is misspelt and a vehicle is named below it.
     let folder = tempfile::tempdir().unwrap();
     let plan = folder.path().join("plan.toml");
     let text =
@@ -280,7 +280,7 @@ fn check_knows_the_plan_of_a_study() {
             "ok  plans/uncertainty_rover.toml (study)\nok  pump_and_offset (study)\n"
         )
     );
-    // The first by its other tables, though a vehicle is named; a key that no car has shows only where the cars are read.
+    // The first is detected by its other tables, though a vehicle is named. An unknown key shows only when the cars are read.
     let dir = tempfile::tempdir().unwrap();
     let text = fs::read_to_string("plans/pump_and_offset.toml").unwrap();
     fs::write(
@@ -309,7 +309,7 @@ fn check_knows_the_plan_of_a_study() {
 }
 
 #[test]
-fn check_tells_what_cannot_be_read_before_what_is_not_known() {
+fn check_reports_syntax_errors_before_unknown_kinds() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(
         dir.path().join("deep.toml"),

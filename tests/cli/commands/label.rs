@@ -1,11 +1,11 @@
-//! `label`: the tests of a fuel label and what is made of them.
+//! `label`: its drives, and the figures computed from them.
 //!
-//! Truth: each test driven by `run`; the sums of LB-1 are tested with the formulas.
+//! Truth: each test driven by `run`. The sums of LB-1 are tested with the formulas.
 
 use super::{json, refused, run, stdout};
 use serde_json::Value;
 
-/// Every test is the run that its description says, and both tables and notes are printed.
+/// Every test equals the run in its description, and both tables and notes are printed.
 #[test]
 fn tests_of_a_label_are_runs() {
     let label = json(&[

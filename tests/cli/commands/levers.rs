@@ -2,9 +2,9 @@
 
 use super::*;
 
-const FEW: &str = "levers --only variable_pump,offset_2mm --cycle ece15 --samples 8";
+const SHORT_STUDY: &str = "levers --only variable_pump,offset_2mm --cycle ece15 --samples 8";
 
-/// Bytes of the files of a folder, by name.
+/// Files of a folder by name.
 fn files(dir: &Path) -> Vec<(String, Vec<u8>)> {
     let name = |entry: fs::DirEntry| entry.file_name().to_string_lossy().into_owned();
     let entries = fs::read_dir(dir).unwrap().map(Result::unwrap);
@@ -22,7 +22,7 @@ fn files(dir: &Path) -> Vec<(String, Vec<u8>)> {
 #[test]
 fn tables_and_files_of_levers() {
     let dir = tempfile::tempdir().unwrap();
-    let line = format!("{FEW} --ambient -10,25 --out found");
+    let line = format!("{SHORT_STUDY} --ambient -10,25 --out found");
     let output = run_in(dir.path(), &words(&line));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = stdout(&output);
@@ -56,22 +56,22 @@ fn tables_and_files_of_levers() {
             .len(),
         2
     );
-    // The folder is a study, which `study show` reads as levers.
+    // The folder is a study, which `study show` recognises as levers.
     let shown = run_in(dir.path(), &["study", "show", "found"]);
     let head = |text: &str| text.lines().take(12).map(str::to_owned).collect::<Vec<_>>();
     assert_eq!(head(&stdout(&shown)), head(&text));
 }
 
-/// Truth: the numbers of `levers.json`. A report of levers, and one of a run that has them, say what they save.
+/// Truth: the numbers of `levers.json`. Reports of levers, and of a run with levers, print the savings.
 #[test]
-fn a_report_of_levers_says_what_they_save() {
+fn a_report_of_levers_prints_their_savings() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let done = |line: &str| {
         let output = run_in(dir, &words(line));
         assert_eq!(output.status.code(), Some(0), "{line}: {}", stderr(&output));
     };
-    done(&format!("{FEW} --ambient -10,25 --out found"));
+    done(&format!("{SHORT_STUDY} --ambient -10,25 --out found"));
     done("run --cycle ece15 --baseline none --price never --out car");
     done("report found --format md --out levers.md");
     done("report car --with found --format md --out car.md");
@@ -92,7 +92,7 @@ fn a_report_of_levers_says_what_they_save() {
                     let cell = line.strip_prefix(&format!("| {title} | \u{2212}"))?;
                     Some(cell.split(' ').next()?.to_owned())
                 });
-                // To the first digit of its interval.
+                // Equal to the first digit of its interval.
                 let is_median = |cell: String| {
                     let decimals = cell.split_once('.').map_or(0, |(_, after)| after.len());
                     format!("{:.decimals$}", -median) == cell
@@ -120,12 +120,12 @@ fn a_report_of_levers_says_what_they_save() {
     }
 }
 
-/// Property: an interrupted study of levers resumes to the same bytes, on another number of threads.
+/// Property: an interrupted study of levers resumes to the same bytes with another number of threads.
 #[test]
 fn interrupted_levers_resume_to_the_same_bytes() {
     let dir = tempfile::tempdir().unwrap();
     let at = |rest: &str| {
-        words(&format!("{FEW} {rest}"))
+        words(&format!("{SHORT_STUDY} {rest}"))
             .iter()
             .map(ToString::to_string)
             .collect::<Vec<_>>()
@@ -141,7 +141,7 @@ fn interrupted_levers_resume_to_the_same_bytes() {
     go("--threads 4 --out half");
     let (whole, half) = (dir.path().join("whole"), dir.path().join("half"));
     assert_eq!(files(&whole), files(&half));
-    // As after an interruption: some parts are gone, and no result is there.
+    // Simulates an interruption: some parts and all results are missing.
     for (name, _) in files(&half.join("parts")) {
         if name.contains("3") || name.contains("5") {
             fs::remove_file(half.join("parts").join(name)).unwrap();
@@ -156,7 +156,7 @@ fn interrupted_levers_resume_to_the_same_bytes() {
     assert_eq!(files(&whole.join("parts")), files(&half.join("parts")));
     let other = run_in(
         dir.path(),
-        &words(&format!("{FEW} --seed 2 --out half --resume")),
+        &words(&format!("{SHORT_STUDY} --seed 2 --out half --resume")),
     );
     assert_eq!(other.status.code(), Some(2));
     assert!(
@@ -239,7 +239,7 @@ fn a_lever_file_is_checked_and_has_a_schema() {
     assert!(text.contains("a file of levers"), "{text}");
 }
 
-/// The plan of the Rover serves another car, and its twin. Truth: the words of the manual box of the plan reach no twin, whose gears follow
+/// The Rover's plan also works for another car and its twin. Truth: no choice for the manual box of the plan reaches the twin, whose gears follow
 /// from its car, and no draw is refused.
 #[test]
 fn a_plan_serves_another_car() {
@@ -256,10 +256,10 @@ fn a_plan_serves_another_car() {
     assert_eq!(json["runs"]["not_run"], 0);
 }
 
-/// A cap of 3 bar holds no belt: by the flag of each draw the lever does not work, and that is a result, not a failed command. Without draws, and
-/// of a car that fails itself, it is exit code 1.
+/// A pressure cap of 3 bar cannot clamp the belt. Failing draws are a result and not a failed command. Without draws, or for a car that fails by itself, the
+/// exit code is 1.
 #[test]
-fn a_lever_that_fails_is_no_lever_that_saves() {
+fn a_failing_lever_saves_nothing() {
     let dir = tempfile::tempdir().unwrap();
     let file = "[[lever]]\nname = \"soft\"\nset = [\"transmission.cvt.pressure.cap_bar=6\"]\n";
     fs::write(dir.path().join("own.toml"), file).unwrap();

@@ -1,4 +1,4 @@
-//! The real program in a directory of its own: exit codes, streams, files.
+//! Runs the program in a temporary directory: exit codes, streams, files.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod attribute;
@@ -41,7 +41,7 @@ fn run_in(dir: &Path, words: &[&str]) -> Output {
     program().current_dir(dir).args(words).output().unwrap()
 }
 
-/// A text without its line ends, as it was before it was wrapped.
+/// Undoes the line wrapping of a text.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -58,7 +58,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// The one JSON object on standard output of a command that ends well.
+/// Runs a successful command and parses the single JSON object on standard output.
 fn json(words: &[&str]) -> Value {
     let output = run(words);
     assert_eq!(
@@ -73,7 +73,7 @@ fn json(words: &[&str]) -> Value {
     value
 }
 
-/// A command that must refuse its input: exit code 2, nothing on standard output.
+/// Runs a command with bad input: exit code 2, empty standard output.
 fn refused(words: &[&str]) -> String {
     let output = run(words);
     assert_eq!(output.status.code(), Some(2), "{words:?}");
@@ -128,7 +128,7 @@ fn packagers_get_completions_and_manual_pages() {
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
         let script = stdout(&run(&["completions", shell]));
         assert!(script.contains("ambient"), "{shell}");
-        // The generators for the other two leave values out.
+        // The generators for the other shells leave values out.
         let values = ["bash", "zsh", "fish"].contains(&shell);
         assert_eq!(
             script.contains("ece15_eudc") && script.contains("rover_216_cvt"),
@@ -156,7 +156,7 @@ fn assumptions_has_every_value_of_the_shipped_files() {
     }
 }
 
-/// Every command's help ends with examples, and each of them runs as printed.
+/// Every command's help ends with examples, which run as printed.
 #[test]
 fn the_examples_of_the_help_work() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,9 +1,9 @@
-//! The word of a run: the same in all files of equal runs, another one where an input differs.
+//! Identifying word of a run: the same in all files of equal runs, another one if an input differs.
 
 use super::*;
 
-/// Commands with JSON of results, and an option of each that makes another run; the other files of a run and of a study have tests of their own
-/// (tests/results/report, tests/studies).
+/// Commands with JSON results, and for each an option that changes the run. tests/results/report and tests/studies cover the other files of
+/// runs and studies.
 const COMMANDS: [(&str, &str); 5] = [
     ("losses --ratio low --speed 2000", "--temp 81"),
     (
@@ -52,12 +52,12 @@ fn equal_runs_have_one_word_and_other_runs_another() {
     assert_eq!(different.len(), all.len(), "{all:?}");
 }
 
-/// Two cars of one name whose files differ in one value, which nothing else in the object says.
+/// Two cars with the same name whose files differ in one value that no other part of the object contains.
 #[test]
 fn a_value_of_the_car_makes_another_word() {
     let dir = tempfile::tempdir().unwrap();
     let shipped = include_str!("../../../vehicles/rover_216_5mt.toml");
-    let of = |own: &str| {
+    let word_with = |own: &str| {
         let text = shipped.replace(
             "neutral_share = { value = 0.5",
             &format!("neutral_share = {{ {own}"),
@@ -70,7 +70,7 @@ fn a_value_of_the_car_makes_another_word() {
         assert!(output.status.success(), "{}", stderr(&output));
         word(&serde_json::from_slice(&output.stdout).unwrap())
     };
-    let share = of("value = 0.5");
-    assert_eq!(share, of("value = 0.50"));
-    assert_ne!(share, of("value = 0.6"));
+    let share = word_with("value = 0.5");
+    assert_eq!(share, word_with("value = 0.50"));
+    assert_ne!(share, word_with("value = 0.6"));
 }

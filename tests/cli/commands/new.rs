@@ -1,4 +1,4 @@
-//! `new`: options, a file of answers and questions make the same file; every mistake at once.
+//! `new`: options, a file of answers and interactive questions make the same file; all mistakes are reported at once.
 //! Truth: the three ways against each other, and the ordinary reader of vehicles.
 
 use std::fs;
@@ -17,8 +17,8 @@ const NUMBERS: [(&str, &str); 9] = [
     ("torque", "172@4000"),
     ("ratio-low", "2.6"),
 ];
-/// The least that makes a car.
-const LEAST: [&str; 6] = [
+/// Minimum input for a car.
+const MINIMUM: [&str; 6] = [
     "new",
     "a",
     "--displacement",
@@ -26,7 +26,7 @@ const LEAST: [&str; 6] = [
     "--power",
     "132hp@6000",
 ];
-/// The catalogue numbers as answers, in the order of the questions; before them class and box.
+/// Catalogue numbers as answers, in the order of the questions; class and box come first.
 const ANSWERS: &str =
     "\n\n3000lb\n105\n0.55\n0.0305\n215/55 R16\n1.8l\n104kW@6400\n172@4000\n\n\n\n2.6\n";
 
@@ -70,7 +70,7 @@ fn options_answers_and_questions_make_the_same_car() {
     ] {
         assert!(by_options.contains(part), "{part}\n{by_options}");
     }
-    // Keys of a file may have the sign of TOML.
+    // Keys of a file may use TOML's underscore.
     let lines = NUMBERS.map(|(name, value)| format!("{} = \"{value}\"\n", name.replace('-', "_")));
     fs::write(
         dir.join("answers.toml"),
@@ -87,7 +87,7 @@ fn options_answers_and_questions_make_the_same_car() {
     for part in [
         "class: compact_1995, compact_2020,",
         "mass: test mass, the driver with it: kg, lb or t [1364 kg, class compact_2020]: ",
-        // Of a pipe no person ends the lines.
+        // Without a terminal no Enter ends the prompt's line.
         "\ndisplacement: displacement of the engine: cm3 or l [needed]: \n",
     ] {
         assert!(questions.contains(part), "{part}\n{questions}");
@@ -101,7 +101,7 @@ fn options_answers_and_questions_make_the_same_car() {
     }
 }
 
-/// RL-9: the drag of a CVT inside a coast-down in neutral is taken off, that of a manual box is not, and there has to be a coast-down.
+/// RL-9: the drag of a CVT is subtracted from a coast-down in neutral, that of a manual box is not, and a coast-down is required.
 #[test]
 fn a_coast_down_in_neutral_has_the_box_in_it() {
     let dir = tempfile::tempdir().unwrap();
@@ -138,9 +138,9 @@ fn a_coast_down_in_neutral_has_the_box_in_it() {
     assert!(stderr(&output).contains("no coast-down to take the drag of the box from"));
 }
 
-/// A wrong answer is explained and the question comes again; an answer that contradicts one before it too.
+/// A wrong answer is explained and the question repeated, also if it contradicts an earlier answer.
 #[test]
-fn a_wrong_answer_is_asked_for_again() {
+fn a_wrong_answer_repeats_the_question() {
     let dir = tempfile::tempdir().unwrap();
     let wrong = ANSWERS
         .replacen("\n\n", "compactt\n\n\n", 1)
@@ -211,7 +211,7 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
             &["new", "a", "--like", "mondeo"],
             "did you mean `mondeo_20_5mt`",
         ),
-        // Under the option, with the unit that is meant, and nothing of the stroke that follows from it.
+        // Cites the option with its unit, and omits the stroke, which depends on it.
         (
             &["new", "a", "--displacement", "1.8", "--power", "132hp@6000"],
             "--displacement: `engine.displacement_cc` is out of range\n |\n = note: 1.8; allowed: 200 to 10000 cm³\n = help: did you mean 1.8l?\n\n1 problem in",
@@ -232,7 +232,7 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
         assert_eq!(output.status.code(), Some(2), "{words:?}");
         assert!(stderr(&output).contains(part), "{}", stderr(&output));
     }
-    // A file that exists is kept.
+    // An existing file is kept.
     fs::write(dir.path().join("kept.toml"), "mine").unwrap();
     let output = run_in(dir.path(), &["new", "kept", "--like", "rover_216_cvt"]);
     assert_eq!(output.status.code(), Some(2));
@@ -245,7 +245,7 @@ fn all_mistakes_are_reported_at_once_and_nothing_is_written() {
 
 /// US coefficients without their unit: 33.21 - 0.0887 80 + 0.02124 80^2 = 162 N at 80 km/h.
 #[test]
-fn a_doubt_of_new_is_one_of_check_and_of_run() {
+fn a_warning_of_new_is_one_of_check_and_run() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let words = "new mycar --displacement 1.8l --power 132hp@6000 --f0 33.21 --f1 -0.0887 --f2 0.02124 --mass 3125";
@@ -284,7 +284,7 @@ fn a_doubt_of_new_is_one_of_check_and_of_run() {
         doubts[0]
     );
     assert_eq!(driven.status.code(), Some(0), "{}", stderr(&driven));
-    // Once, though its twin has the same mass and road load.
+    // Printed once, though the twin has the same mass and road load.
     assert!(
         one_line(&stdout(&driven)).contains(&line),
         "{}",
@@ -293,9 +293,9 @@ fn a_doubt_of_new_is_one_of_check_and_of_run() {
     assert_eq!(stdout(&driven).matches("doubt:").count(), 1);
 }
 
-/// A pump map from 8 bar on, where gentle driving needs 2 to 8: the headline says where the map was left, by the trace of the run.
+/// The map of a pump starts at 8 bar, and gentle driving needs 2 to 8: a headline from the trace names the places outside the map.
 #[test]
-fn a_map_that_is_left_for_long_is_a_headline() {
+fn a_drive_outside_a_map_is_a_headline() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     let mut map = "input_speed_rpm,secondary_pressure_bar,torque_loss_nm\n".to_owned();
@@ -342,7 +342,7 @@ fn a_map_that_is_left_for_long_is_a_headline() {
         below_s > 0.2 * all_s && text.contains(&line),
         "{line}\n{text}"
     );
-    // The same without rows, and nothing of a map that covers the drive.
+    // The same from a run without rows. No headline for a map that covers the drive.
     let again = run_in(dir, &words[..7]);
     assert!(
         stdout(&again).replace('\n', " ").contains(&line),
@@ -361,22 +361,22 @@ fn a_map_that_is_left_for_long_is_a_headline() {
     );
 }
 
-/// The box that is taken where none is named; where one is, nothing is said of it.
+/// The default box is named in a note, unless a box is given.
 #[test]
-fn the_usual_box_is_named() {
+fn the_default_box_is_named() {
     let dir = tempfile::tempdir().unwrap();
-    let usual = stdout(&run_in(dir.path(), &LEAST));
+    let usual = stdout(&run_in(dir.path(), &MINIMUM));
     let line = "box: box_cvt_clutch, with a wet launch clutch; most CVTs from 2010 on have a torque converter: --box box_cvt_converter\n";
     assert!(usual.contains(line), "{usual}");
-    let named = [&LEAST[..], &["--box", "box_cvt_clutch", "--force"]].concat();
+    let named = [&MINIMUM[..], &["--box", "box_cvt_clutch", "--force"]].concat();
     assert!(!stdout(&run_in(dir.path(), &named)).contains("box:"));
 }
 
-/// What people try with the name of a file has the right option as its hint.
+/// A file name in place of another argument gets a hint with the right option.
 #[test]
-fn a_file_in_the_wrong_place_is_known() {
+fn a_misplaced_file_gets_a_hint() {
     let dir = tempfile::tempdir().unwrap();
-    assert_eq!(run_in(dir.path(), &LEAST).status.code(), Some(0));
+    assert_eq!(run_in(dir.path(), &MINIMUM).status.code(), Some(0));
     let map = "# a map\ninput_speed_rpm,torque_loss_nm\n600,1\n3000,2\n";
     fs::write(dir.path().join("pump.csv"), map).unwrap();
     for (words, part) in [

@@ -1,4 +1,4 @@
-//! `optimum`: its text, its files, the line as a vehicle, and what it refuses.
+//! `optimum`: text, files, the line as a vehicle, and refused options.
 
 use super::*;
 
@@ -6,9 +6,9 @@ const QUICK: [&str; 8] = [
     "optimum", "--cycle", "ece15", "--grid", "49", "--dt", "0.25", "--start",
 ];
 
-/// Truth: `run` with the vehicle file that `optimum` wrote burns what it says, and nothing driven is below the bound.
+/// Truth: `run` with the written vehicle file burns the printed fuel, and no drive is below the bound.
 #[test]
-fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
+fn the_line_is_a_vehicle_file_with_the_printed_fuel() {
     let dir = tempfile::tempdir().unwrap();
     let words = [&QUICK[..], &["80", "--out", "best", "--prove", "10-15"]].concat();
     let output = run_in(dir.path(), &words);
@@ -63,13 +63,13 @@ fn the_line_is_a_vehicle_file_that_burns_what_is_said() {
         }
         assert!(number("gap_percent").unwrap() < 0.5);
     }
-    // The note is there where a law does with less safety what a free clamp may not.
+    // The note appears if a law burns less than a free clamp, at lower safety.
     let least = |k: usize| bounds[k]["bound_l_per_100km"].as_f64().unwrap();
     assert_eq!(
         text.contains("`slip limited` clamps with a safety factor down to"),
         least(2) < least(3)
     );
-    // Torque following with a factor of 1.3 is one of the free clamps; a launch at idle burns less than one by LC-1.
+    // Torque following with a factor of 1.3 is one of the free clamps. A launch at idle burns less than one by LC-1.
     assert!(least(3) <= least(1), "{bounds:?}");
     assert!(least(4) < least(0), "{bounds:?}");
     for part in ["idle launch", "launch law", "s below the least speed"] {
@@ -103,10 +103,10 @@ fn driven(dir: &Path, vehicle: &str, start: &str) -> f64 {
     run["runs"][0]["fuel_l_per_100km"].as_f64().unwrap()
 }
 
-/// Truth: `run` with the written file alone, which has what `--set` changed and is like a file of its own by a path that can be moved; from
-/// the warm start of `run`.
+/// Truth: `run` with nothing but the written file, which contains the changes of `--set` and inherits from a file by a relative path that may be
+/// moved; from the warm start of `run`.
 #[test]
-fn the_written_car_is_the_one_that_was_claimed() {
+fn the_written_car_burns_the_printed_fuel() {
     let dir = tempfile::tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);
     fs::create_dir_all(at("all/cars")).unwrap();
@@ -146,7 +146,7 @@ fn the_written_car_is_the_one_that_was_claimed() {
     assert!(message.contains("`cvtcycle optimum`"), "{message}");
 }
 
-/// A car with a torque converter and start-stop has its bound, and its line is a file; columns are those of a file of `--prove` too.
+/// A car with a torque converter and start-stop has a bound and a line file. Columns apply to a file of `--prove` too.
 #[test]
 fn a_converter_car_has_its_bound() {
     let dir = tempfile::tempdir().unwrap();
@@ -212,7 +212,7 @@ fn all_problems_of_the_limits_at_once() {
 }
 
 #[test]
-fn a_limit_that_cannot_be_held_is_named_with_its_place() {
+fn an_infeasible_limit_is_named_with_its_place() {
     let words = [
         &QUICK[..],
         &["80", "--reserve", "85", "--own-clamp", "--no-line"],
@@ -229,7 +229,7 @@ fn a_limit_that_cannot_be_held_is_named_with_its_place() {
     );
 }
 
-/// Two limits that cannot be held, each with its own place; a warm start, whose line begins where the car as it is begins.
+/// Two infeasible limits are named, each with its own place. With a warm start the line begins at the temperatures of the unchanged car.
 #[test]
 fn both_limits_are_named_and_a_warm_start_is_proven() {
     let words = [

@@ -1,14 +1,14 @@
-//! `--out` of every command: what is wrong with it is reported with the other mistakes, and nothing is written.
+//! `--out` of every command: its problems are reported with all others, and nothing is written.
 
 use std::fs;
 
 use super::{one_line, run_in, stderr};
 
-/// Words of a command with another mistake than that of `--out`, and what the program says about it.
+/// Words of a command with a second mistake besides `--out`, and the message about it.
 type Case<'a> = (&'a [&'a str], &'a str);
 
-/// Commands that write into a directory.
-const OF_DIRECTORY: [Case; 11] = [
+/// Commands that write a directory.
+const DIRECTORY_COMMANDS: [Case; 11] = [
     (&["run", "--ambient", "900"], "--ambient"),
     (&["losses", "--as-map", "box", "--temp", "900"], "--temp"),
     (&["losses", "--as-map", "boxes"], "--as-map"),
@@ -22,8 +22,8 @@ const OF_DIRECTORY: [Case; 11] = [
     (&["levers", "--ambient", "900"], "--ambient"),
 ];
 
-/// Commands that write a file, and the name that it cannot have.
-const OF_FILE: [(Case, &str); 7] = [
+/// Commands that write a file, with a refused name.
+const FILE_COMMANDS: [(Case, &str); 7] = [
     (
         (&["fmu", "rover_216_cvt", "--kind", "cars"], "--kind"),
         "x.zip",
@@ -43,12 +43,12 @@ const OF_FILE: [(Case, &str); 7] = [
 ];
 
 /// Commands that write a file of any name.
-const OF_ANY_NAME: [Case; 2] = [
+const ANY_FILE_COMMANDS: [Case; 2] = [
     (&["convert", "cycle", "none.csv"], "none.csv"),
     (&["belt", "--points", "none.csv"], "none.csv"),
 ];
 
-/// All lines of the problems of a command, each of which has to have a part.
+/// Runs a command that must be refused, and checks that each part occurs in the problems.
 fn refused(words: &[&str], out: &str, parts: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let dir = folder.path();
@@ -72,7 +72,7 @@ fn refused(words: &[&str], out: &str, parts: &[&str]) {
 
 #[test]
 fn a_bad_directory_is_reported_with_other_mistakes() {
-    for (words, other) in OF_DIRECTORY {
+    for (words, other) in DIRECTORY_COMMANDS {
         refused(words, "file.txt", &[other, "exists and is not a directory"]);
         refused(
             words,
@@ -84,7 +84,7 @@ fn a_bad_directory_is_reported_with_other_mistakes() {
 
 #[test]
 fn a_wrong_ending_is_reported_with_other_mistakes() {
-    for ((words, other), name) in OF_FILE {
+    for ((words, other), name) in FILE_COMMANDS {
         refused(words, name, &[other, "--out", name, "ending"]);
         let says = if words[0] == "study" {
             "ending"
@@ -93,15 +93,15 @@ fn a_wrong_ending_is_reported_with_other_mistakes() {
         };
         refused(words, "full", &[other, "--out", says]);
     }
-    for (words, other) in OF_ANY_NAME {
+    for (words, other) in ANY_FILE_COMMANDS {
         refused(words, "full", &[other, "--out", "is a directory"]);
         refused(words, "file.txt", &[other, "--out", "file.txt exists"]);
     }
 }
 
-/// A form that is none has no ending: nothing is said about the name of the file. And levers that a form cannot have are named with it.
+/// An unknown form requires no extension, so the name of the file is not reported. Levers in a form without them are reported too.
 #[test]
-fn a_form_that_is_none_has_no_ending() {
+fn an_unknown_form_requires_no_extension() {
     let folder = tempfile::tempdir().unwrap();
     let words = [
         "report", "none", "--format", "pdf", "--live", "--out", "x.md",

@@ -1,4 +1,4 @@
-//! `run`: its summary, its table, its overrides.
+//! `run`: summary, table, overrides.
 
 use super::*;
 
@@ -71,7 +71,7 @@ fn json_of_a_run_has_every_key_of_the_contract() {
 #[test]
 fn numbers_of_the_summary_belong_together() {
     for formulation in ["smooth", "appendix_c", "chapter_8"] {
-        // Whether the solve converges everywhere in a verification formulation is not asked here.
+        // Convergence of the solve in verification formulations is not tested here.
         let output = run(&[
             "run",
             "--json",
@@ -214,7 +214,7 @@ fn all_bad_inputs_are_reported_at_once() {
     }
 }
 
-/// Numbers of options are no other kind of mistake: all are reported with the rest, with what is allowed and the nearest of it.
+/// Bad numbers of options are reported with all other problems, with the allowed range and the nearest allowed value.
 #[test]
 fn numbers_of_options_are_reported_with_the_rest() {
     let message = refused(&[
@@ -308,8 +308,8 @@ fn overrides_and_fluids_reach_the_cars_they_are_meant_for() {
             ]
             .concat(),
         );
-        let of = |k: usize| all["runs"][k]["fuel_kg"].clone();
-        (of(0), of(1))
+        let fuel_of_car = |k: usize| all["runs"][k]["fuel_kg"].clone();
+        (fuel_of_car(0), fuel_of_car(1))
     };
     let plain = fuel(&[]);
     let subject = |changed: (Value, Value)| changed.0 != plain.0 && changed.1 == plain.1;
@@ -319,7 +319,7 @@ fn overrides_and_fluids_reach_the_cars_they_are_meant_for() {
     assert!(subject(fuel(&["--lubricant", "dexron_ii"])));
     assert!(both(fuel(&["--engine-oil", "engine_5w30"])));
     assert!(both(fuel(&["--start", "60"])));
-    // What is set for the subject alone goes before what is set for all.
+    // `--set` for the subject takes precedence over `--set-all`.
     let mixed = fuel(&[
         "--set-all",
         "road_load.mass_kg=1250",
@@ -368,9 +368,9 @@ fn a_missed_trace_is_exit_code_1() {
     assert!(stderr(&output).contains("misses the trace"));
 }
 
-/// An oil in place of the vehicle's that has its friction is said to; one with a friction of its own, and the vehicle's own oil, are not.
+/// A note names an oil that replaces the vehicle's own and takes over its friction. An oil with its own friction, and the vehicle's oil, give no note.
 #[test]
-fn a_comparison_of_oils_says_what_it_moves() {
+fn a_comparison_of_oils_notes_the_friction_it_changes() {
     let dir = tempfile::tempdir().unwrap();
     let sheet = "kv40_mm2_s = 35\nkv100_mm2_s = 7.2\ndensity15_kg_m3 = 865\n";
     fs::write(dir.path().join("sheet.toml"), sheet).unwrap();
@@ -407,9 +407,9 @@ fn a_comparison_of_oils_says_what_it_moves() {
     assert!(!stdout(&output).contains(note));
 }
 
-/// Cars and cycles that cannot be end with code 1, the place and the time, without `--strict`.
+/// Impossible cars and cycles end with code 1, place and time, even without `--strict`.
 #[test]
-fn what_no_car_can_do_is_exit_code_1() {
+fn an_impossible_drive_exits_with_code_1() {
     let dir = tempfile::tempdir().unwrap();
     for (name, text) in [
         (
@@ -506,7 +506,7 @@ fn what_no_car_can_do_is_exit_code_1() {
     }
 }
 
-/// Twenty thousand options, words of 100 kB, lists and ranges without end: an answer, no panic.
+/// Twenty thousand options, words of 100 kB, unbounded lists and ranges give an error without a panic.
 #[test]
 fn command_lines_without_end_are_refused_in_a_moment() {
     let long = "x".repeat(100_000);
@@ -547,7 +547,7 @@ fn command_lines_without_end_are_refused_in_a_moment() {
     }
 }
 
-/// A run against its twin is written with its inputs: it was refused without a word where the car is a shipped one. Truth: the names of the cars.
+/// Files of a run against the twin of a shipped car are written; earlier versions refused them. Truth: the names of the cars.
 #[test]
 fn files_of_a_run_against_the_twin_of_a_shipped_car() {
     let dir = tempfile::tempdir().unwrap();

@@ -116,7 +116,7 @@ fn a_reader_that_goes_away_is_no_error() {
 }
 
 #[test]
-fn colours_are_for_terminals_and_for_those_who_ask() {
+fn colours_are_on_for_terminals_or_by_option() {
     let coloured = |words: &[&str], no_color: bool| {
         let mut command = program();
         if no_color {
@@ -151,8 +151,8 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
     assert!(!coloured(&["run", "--json", "--color=always"], false));
 }
 
-/// Every kind of hidden character in the texts of a car and a study, and in words of the command line: nothing of them reaches a stream but
-/// the program's own styles, and JSON holds the same text.
+/// Hidden characters of every kind in files and on the command line. Streams contain no escape codes except the program's own styles, and JSON
+/// preserves the text.
 #[test]
 fn hidden_characters_reach_no_stream() {
     let hidden = "\u{1b}]0;x\u{7}\u{1b}[8m\u{7f}\u{9b}\u{85}\u{202e}\u{2066}\u{2028}\u{feff}\u{fdd1}\u{fdd2}end";
@@ -209,7 +209,7 @@ fn hidden_characters_reach_no_stream() {
             for text in [stdout(&output), stderr(&output)] {
                 let mut plain = text.clone();
                 if more.len() == 2 {
-                    // Styles of the program and of the renderers of help and complaints: codes of `m`, and none that hides.
+                    // Allows the escape codes `m` of the program's styles and of the renderers of help and problems.
                     let mut pieces = text.split("\u{1b}[");
                     plain = pieces.next().unwrap().to_owned();
                     for piece in pieces {

@@ -1,8 +1,8 @@
-//! `study`: what it prints of a design.
+//! `study`: printed results of each design.
 
 use super::*;
 
-/// Truth: the run of one cell by hand.
+/// Truth: one cell driven by `run`.
 #[test]
 fn a_grid_of_two_factors_prints_its_matrix() {
     let dir = tempfile::tempdir().unwrap();
@@ -56,8 +56,8 @@ fn a_grid_of_two_factors_prints_its_matrix() {
     assert_eq!((file.lines().count() - 1) % 35, 0);
 }
 
-/// Truth: two runs by hand at one temperature. The answer of the shipped plan is one matrix, with the least of each temperature marked, and it
-/// says that no friction of the oils was known.
+/// Truth: two runs at one temperature. The shipped plan prints one matrix with the minimum of each temperature marked, and notes that no friction
+/// is known for the oils.
 #[test]
 fn the_plan_of_three_fluids_is_one_matrix() {
     let output = run(&["study", "fluids_by_ambient", "--json"]);
@@ -98,7 +98,7 @@ fn the_plan_of_three_fluids_is_one_matrix() {
     let by_hand = 100.0 * (fuel(&["--lubricant", "dexron_iii"]) / fuel(&[]) - 1.0);
     let cell = matrix["cells"][1][2].as_f64().unwrap();
     assert!((cell - by_hand).abs() < 1e-9, "{cell} {by_hand}");
-    // Its own oil against itself.
+    // The car's own oil as the replacement.
     assert!(
         matrix["cells"]
             .as_array()
@@ -118,12 +118,12 @@ fn the_plan_of_three_fluids_is_one_matrix() {
     );
 }
 
-/// A plan of 64 points.
+/// Plan of 64 points.
 const SHARED: &str = "[study]\ncycle = \"ece15\"\nbaselines = []\ndesign = \"grid\"\n[[factor]]\nkey = \"ambient_degc\"\n\
     range = { from = -10, to = 53, step = 1 }\n";
 
-/// Property: shards put together are the study of one process, byte for byte; what is missing, doubled, foreign or damaged is named, and
-/// nothing is written then.
+/// Property: merged shards equal the study of one process byte for byte. Missing, duplicate, foreign or damaged parts are named, and
+/// nothing is written.
 #[test]
 fn shards_make_the_study_of_one_process() {
     let dir = tempfile::tempdir().unwrap();

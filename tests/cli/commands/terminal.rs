@@ -1,4 +1,4 @@
-//! Tables and sentences in the width of a terminal.
+//! Wrapping of tables and sentences to the width of the terminal.
 
 use std::collections::HashSet;
 use std::fs::File;
@@ -11,7 +11,7 @@ use rustix::termios::{Winsize, tcsetwinsize};
 
 use super::*;
 
-/// What a command prints on a terminal of so many columns, with the styles of the terminal.
+/// Output of a command on a terminal with a number of columns, including escape codes.
 fn on_terminal(columns: u16, words: &[&str]) -> String {
     let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
     grantpt(&ours).unwrap();
@@ -29,7 +29,7 @@ fn on_terminal(columns: u16, words: &[&str]) -> String {
         .spawn()
         .unwrap();
     let mut bytes = Vec::new();
-    // The end of a terminal whose other side is closed is an error on Linux, the end of a file elsewhere.
+    // Reading from a terminal whose other side is closed is an error on Linux, and the end of the file elsewhere.
     drop(File::from(ours).read_to_end(&mut bytes));
     assert_eq!(child.wait().unwrap().code(), Some(0), "{words:?}");
     String::from_utf8(bytes).unwrap().replace('\r', "")
@@ -45,7 +45,7 @@ fn resize(terminal: &OwnedFd, columns: u16) {
     tcsetwinsize(terminal.as_fd(), size).unwrap();
 }
 
-/// A text without the styles of a terminal.
+/// Removes escape codes.
 fn plain(text: &str) -> String {
     let mut parts = text.split("\u{1b}[");
     let first = parts.next().unwrap_or_default().to_owned();
@@ -53,10 +53,10 @@ fn plain(text: &str) -> String {
     first + &rest.collect::<String>()
 }
 
-/// Ends of the parts in which a long word may be parted.
+/// Characters after which a long word may be broken.
 const JOINTS: [char; 5] = ['/', '_', ':', '.', ','];
 
-/// Words of a text, or parts of them between two joints, that a wider one has not.
+/// Words of a text, or parts of words between joints, that the wider text does not contain.
 fn cut_words(text: &str, wider: &str) -> Vec<String> {
     let parts = |text: &str| -> HashSet<String> {
         let words = text.split_whitespace();
@@ -66,7 +66,7 @@ fn cut_words(text: &str, wider: &str) -> Vec<String> {
     parts(text).difference(&parts(wider)).cloned().collect()
 }
 
-/// Property: no line is wider than the terminal, whose width is kept within 60 to 140 columns, and no word is cut; a pipe has 100.
+/// Property: no line exceeds the width of the terminal, clamped to 60 to 140 columns, and no word is cut. A pipe has 100 columns.
 #[test]
 fn lines_fit_the_terminal() {
     let commands = [
@@ -104,7 +104,7 @@ fn lines_fit_the_terminal() {
         let words: Vec<&str> = command.split(' ').collect();
         let widest = plain(&on_terminal(200, &words));
         for (columns, most) in [(40, 60), (80, 80), (120, 120), (200, 140)] {
-            // Of what takes its time three widths are enough.
+            // Three widths suffice for slow commands.
             let slow = ["validate", "levers", "study", "calibrate", "optimum"];
             if columns == 120 && slow.contains(&words[0]) {
                 continue;
@@ -128,7 +128,7 @@ fn lines_fit_the_terminal() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// The answer comes first, bold; verdicts have their colour on a terminal and none in a pipe.
+/// The answer comes first, in bold. Verdicts are coloured on a terminal and plain in a pipe.
 #[test]
 fn the_answer_is_first_and_verdicts_have_colours() {
     let text = on_terminal(80, &["run", "--ambient", "-10"]);

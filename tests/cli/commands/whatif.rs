@@ -1,13 +1,12 @@
-//! `whatif` and `report --live`: the page, what it has with it, and what is refused.
+//! `whatif` and `report --live`: the page, its embedded files, and refused input.
 //!
-//! Truth: the files themselves, and `run`, which prints the answer that the page begins with. What the page does in a browser is in
-//! `tools/browser/live.test.mjs`.
+//! Truth: the files themselves, and `run`, which prints the first answer of the page. `tools/browser/live.test.mjs` tests the page in a browser.
 
 use super::{one_line, run_in, stderr, stdout};
 use std::fs;
 use std::path::Path;
 
-/// A text of HTML without its tags, with the signs of the terminal.
+/// Removes tags from HTML, and converts signs to those of the terminal.
 fn plain(html: &str) -> String {
     let mut text = String::new();
     let mut inside = false;
@@ -24,9 +23,9 @@ fn plain(html: &str) -> String {
     text
 }
 
-/// The page begins with the sentence of the run, and carries what its car is made of: a measured map, by the path that names it.
+/// The page begins with the sentence of the run, and embeds the files of its car: a measured map, by the path in the vehicle file.
 #[test]
-fn a_page_of_an_own_car_has_its_files_and_begins_with_the_run() {
+fn a_page_of_a_users_car_has_its_files_and_begins_with_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/own_tables");
     for file in ["box.toml", "box_loss.csv"] {
@@ -70,7 +69,7 @@ fn a_page_of_an_own_car_has_its_files_and_begins_with_the_run() {
     assert_eq!(numbers(&lead), numbers(printed), "{lead}\n{printed}");
 }
 
-/// As `report`: unknown names with near ones, nothing replaced without --force, and no page but another page of this program.
+/// As `report`: similar names for unknown ones, no replacement without --force, and only pages of this program are replaced.
 #[test]
 fn bad_input_leaves_no_page() {
     let dir = tempfile::tempdir().unwrap();
@@ -104,7 +103,7 @@ fn bad_input_leaves_no_page() {
     );
 }
 
-/// A run's report has the run's own car and conditions; one whose file has changed since is refused.
+/// The live section of a report has the run's own car and conditions. A car file changed since the run is refused.
 #[test]
 fn a_report_is_driven_again_with_the_cars_of_its_run() {
     let dir = tempfile::tempdir().unwrap();

@@ -1,16 +1,19 @@
-//! The first lines of a run: published numbers that it contradicts, and how sure its differences are.
+//! First lines of a run: contradicted published numbers, and the confidence of differences.
 
 use super::*;
+use cvtcycle::analysis::words::drawn::prepare;
+use cvtcycle::analysis::words::intervals::{CASES, draw, line};
 use cvtcycle::config::Override;
-use cvtcycle::study::check::{
-    COMMON, CandidateVehicle, Computed, Verdict, embedded_rows, judge, read,
-};
 use cvtcycle::study::plan::Plan;
-use cvtcycle::study::words::drawn::prepare;
-use cvtcycle::study::words::intervals::{CASES, draw, line};
+use cvtcycle::validate::{COMMON, CandidateVehicle, Computed, Verdict, embedded_rows, judge, read};
 
-/// The words of a run of a case, without prices.
-fn of_case<'a>(cars: &[&'a str], cycle: &'a str, ambient: &'a str, start: &'a str) -> Vec<&'a str> {
+/// Words of a run of a case, without prices.
+fn case_words<'a>(
+    cars: &[&'a str],
+    cycle: &'a str,
+    ambient: &'a str,
+    start: &'a str,
+) -> Vec<&'a str> {
     let mut words = vec![
         "run",
         "--vehicle",
@@ -26,13 +29,13 @@ fn of_case<'a>(cars: &[&'a str], cycle: &'a str, ambient: &'a str, start: &'a st
     words
 }
 
-/// A text without its line breaks.
+/// Replaces line breaks by spaces.
 fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Truth: `validate`, which computes each row by its own expression. A row that says of which run it is is contradicted by that run with the same
-/// number exactly where it differs, and the text of the run says so.
+/// Truth: `validate`, which computes each row by its own expression. A row that names its run is contradicted by that run, with the same
+/// number, exactly if the row differs, and the text of the run says so.
 #[test]
 fn every_row_that_differs_is_in_the_text_of_its_run() {
     let files: Vec<(String, String)> = embedded_rows()
@@ -54,7 +57,7 @@ fn every_row_that_differs_is_in_the_text_of_its_run() {
             .into_iter()
             .flatten()
             .collect();
-        let words = of_case(&cars, &about.cycle, &ambient, &about.start);
+        let words = case_words(&cars, &about.cycle, &ambient, &about.start);
         let found = json(&[&words[..], &["--json"]].concat());
         let none = Vec::new();
         let said = found["contradicted"].as_array().unwrap_or(&none);
@@ -81,10 +84,10 @@ fn every_row_that_differs_is_in_the_text_of_its_run() {
     assert!(differing >= 4, "{differing}");
 }
 
-/// A changed car is another one than that of the print; a file of the same values under another name is not known to be.
+/// A changed car has no published numbers to contradict, nor does a file with the same values under another name.
 #[test]
 fn a_changed_car_contradicts_nothing() {
-    let words = of_case(
+    let words = case_words(
         &["rover_216_cvt", "mondeo_20_5mt"],
         "ece15_eudc",
         "25",
@@ -102,15 +105,15 @@ fn a_changed_car_contradicts_nothing() {
     ] {
         assert!(said(&more).is_null(), "{more:?}: {}", said(&more));
     }
-    // A value set to what it is anyway changes nothing.
+    // Setting a value to its current one changes nothing.
     let same = said(&["--set", "transmission.cvt.belt.band_offset_mm=3"]);
     assert!(
         same.as_array().is_some_and(|rows| rows.len() == 3),
         "{same}"
     );
-    // 5 K away it still holds, 6 K away no more.
+    // Valid up to 5 K away, and not at 6 K.
     let at = |degc| {
-        of_case(
+        case_words(
             &["rover_216_cvt", "mondeo_20_5mt"],
             "ece15_eudc",
             degc,
@@ -121,9 +124,9 @@ fn a_changed_car_contradicts_nothing() {
     assert!(rows("30").is_array() && rows("31").is_null());
 }
 
-/// Truth: the draws themselves, once more. Every case of the file is one that a run finds.
+/// Truth: the same draws repeated. Every case of the file is found by a run.
 #[test]
-fn intervals_are_those_of_the_draws() {
+fn intervals_equal_those_of_the_draws() {
     let case = CASES[1];
     assert_eq!(draw(case).unwrap(), format!("{}\n", line(case).unwrap()));
     for case in CASES {
@@ -131,7 +134,7 @@ fn intervals_are_those_of_the_draws() {
         let cells: Vec<&str> = line.split(',').collect();
         let (cycle, ambient, start) = case;
         let ambient = ambient.to_string();
-        let words = of_case(&["rover_216_cvt", "rover_216_5mt"], cycle, &ambient, start);
+        let words = case_words(&["rover_216_cvt", "rover_216_5mt"], cycle, &ambient, start);
         let found = json(&[&words[..], &["--json"]].concat());
         let of = &found["comparison"][0]["interval"];
         assert_eq!(of["draws"].to_string(), cells[7], "{case:?}: {found}");
@@ -139,7 +142,7 @@ fn intervals_are_those_of_the_draws() {
             of["percent"][2].as_f64().unwrap().to_string(),
             cells[11].parse::<f64>().unwrap().to_string()
         );
-        // The car of the files is one of those that are possible.
+        // The car of the files lies among the possible ones.
         let own = found["comparison"][0]["fuel_percent"].as_f64().unwrap();
         let [low, high] = [0, 2].map(|k| of["percent"][k].as_f64().unwrap());
         assert!(
@@ -147,7 +150,7 @@ fn intervals_are_those_of_the_draws() {
             "{case:?}: {own} of {low} to {high}"
         );
     }
-    let words = of_case(
+    let words = case_words(
         &["rover_216_cvt", "rover_216_5mt"],
         "ece15_eudc",
         "-10",
@@ -164,11 +167,11 @@ fn intervals_are_those_of_the_draws() {
     assert!(text.contains("gets one from --draws 256"), "{text}");
 }
 
-/// Truth: the intervals that the program carries, whose draws are those of the plan itself: relative ranges of the plan's own cars are the
-/// same values up to rounding.
+/// Truth: the embedded intervals, made from the draws of the same plan. The relative ranges of the plan's own cars give the same values except for
+/// rounding.
 #[test]
 fn draws_of_a_run_give_the_known_interval() {
-    let words = of_case(
+    let words = case_words(
         &["rover_216_cvt", "rover_216_5mt"],
         "ece15_eudc",
         "-10",
@@ -187,7 +190,7 @@ fn draws_of_a_run_give_the_known_interval() {
     }
 }
 
-/// Property: a car is never better than itself; against one with a smaller pump the draws agree.
+/// Property: a car never differs from itself. Against a smaller pump, the draws agree.
 #[test]
 fn two_cvts_have_the_same_draw() {
     let of = |more: &[&str]| {
@@ -209,7 +212,7 @@ fn two_cvts_have_the_same_draw() {
         (0..3).all(|k| same["percent"][k].as_f64().unwrap().abs() < 1e-9),
         "{same}"
     );
-    // Also where a manual car is driven as well: its own uncertain values are not those of the CVTs.
+    // Also with a manual car in the same run, whose uncertain values differ from those of the CVTs.
     let with_manual = of(&["--baseline", "rover_216_5mt"]);
     assert!(
         (0..3).all(|k| with_manual["percent"][k].as_f64().unwrap().abs() < 1e-9),
@@ -220,10 +223,10 @@ fn two_cvts_have_the_same_draw() {
     assert!(-1.5 < low && low < high && high < -0.2, "{smaller}");
 }
 
-/// Property: what the user sets for all cars of a factor is certain, and a list that would replace it too; what is set for the subject alone
-/// leaves the doubt about the others.
+/// Property: values set by the user for all cars of a factor are certain, also if set as a list. Values set for the subject only
+/// leave the others uncertain.
 #[test]
-fn what_is_set_is_certain() {
+fn values_set_by_the_user_are_certain() {
     let factors = |set: &[&str], set_all: &[&str]| -> Vec<String> {
         let mut base = Plan::open("uncertainty_rover").unwrap().base;
         base.set = Override::parse_all(set).unwrap();
@@ -251,7 +254,7 @@ fn what_is_set_is_certain() {
     );
 }
 
-/// Truth: the draws of a car whose clamp is too weak for some of them. Pairs that cannot be driven are left out and counted.
+/// Truth: the draws of a car whose clamp fails in some of them. Pairs that cannot be driven are left out and counted.
 #[test]
 fn draws_that_fail_are_left_out_and_counted() {
     let words = [

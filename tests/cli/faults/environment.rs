@@ -1,4 +1,4 @@
-//! Threads, locales, clocks, and what may be missing around a process.
+//! Threads, locales, clocks, and missing parts of the environment.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -9,7 +9,7 @@ use crate::sources::{Source, sources};
 
 use super::{bin, ends, folder, made, program, same, stderr, words};
 
-/// One thread and sixty-four, by the variable and by the option: the same bytes.
+/// One and sixty-four threads, by variable and by option, give the same bytes.
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
     let dir = folder();
@@ -31,7 +31,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
     }
 }
 
-/// Commands that compute in parallel, each to `OUT`.
+/// Commands that compute in parallel, with output `OUT`.
 const PARALLEL: [&str; 6] = [
     "run --cycle minute.csv --baseline none --sensitivity always --quiet --out OUT",
     "study plan.toml --quiet --out OUT",
@@ -41,9 +41,9 @@ const PARALLEL: [&str; 6] = [
     "calibrate fit.toml --no-folds --quiet --out OUT",
 ];
 
-/// No thread can be started, as where a container bounds processes: one computes, with a warning, and gives the same bytes.
+/// If no thread can be started, as in a container with a process limit, the main thread computes the same bytes, with a warning.
 #[test]
-fn where_no_thread_can_be_started_one_computes() {
+fn without_further_threads_the_main_one_computes() {
     let dir = made();
     let fit = "[calibration]\nvehicle = \"rover_216_cvt\"\n[sources.g]\nsource = \"bench\"\nratio = 1\nspeed_rpm = [1000, 3000]\n\
         temp_degc = 80\n[[parameter]]\nkey = \"transmission.cvt.pump.displacement_cc_rev\"\nlow = 5\nhigh = 20\n[[data]]\n\
@@ -71,7 +71,7 @@ fn where_no_thread_can_be_started_one_computes() {
         return;
     }
     for line in PARALLEL {
-        // The same words in both, as the record of a run has them.
+        // Same command line in both, because the record of a run contains it.
         let line = line.replace("OUT", "made_now");
         let away = |to: &str| {
             for name in ["made_now", "made_now.html", "made_now_figures"] {
@@ -105,7 +105,7 @@ fn where_no_thread_can_be_started_one_computes() {
         assert!(without.stdout == with.stdout, "{line}");
         same(&dir.path().join("with"), &dir.path().join("without"));
     }
-    // What was asked for is not replaced.
+    // An explicit number of threads is not reduced.
     let output = strace("study plan.toml --quiet --threads 2 --out refused").unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(
@@ -116,7 +116,7 @@ fn where_no_thread_can_be_started_one_computes() {
     assert!(!dir.path().join("refused").exists());
 }
 
-/// The variable is bounded as the option is, and refused before anything is started.
+/// The variable has the limits of the option, and is checked before work starts.
 #[test]
 fn the_variable_of_threads_is_bounded() {
     let dir = made();
@@ -154,7 +154,7 @@ const LINES: [&str; 7] = [
     "report made_run --json --force --out r.html",
 ];
 
-/// Nothing set at all; locales with decimal commas; no home, no terminal: the same bytes as ever.
+/// An empty environment, locales with decimal commas, no home and no terminal give the same bytes.
 #[test]
 fn bare_and_foreign_environments_change_nothing() {
     let dir = made();
@@ -208,7 +208,7 @@ fn bare_and_foreign_environments_change_nothing() {
     }
 }
 
-/// A study without --out needs a folder of temporary files; without one it says so.
+/// A study without --out needs a temporary folder, and reports a missing one.
 #[test]
 fn no_folder_for_temporary_files_is_reported() {
     let dir = folder();
@@ -229,7 +229,7 @@ fn no_folder_for_temporary_files_is_reported() {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 }
 
-/// A current folder that is gone is no reason to fail for what needs none.
+/// A deleted current folder is an error only for commands that need it.
 #[test]
 fn a_folder_that_is_gone_is_reported_or_not_needed() {
     for (line, code) in [
@@ -257,7 +257,7 @@ fn a_folder_that_is_gone_is_reported_or_not_needed() {
     }
 }
 
-/// Gives every file below a directory a time of last change.
+/// Sets the modification time of all files below a directory.
 fn dated(dir: &Path, time: SystemTime) {
     for path in super::tree(dir).keys() {
         File::options()
@@ -269,7 +269,7 @@ fn dated(dir: &Path, time: SystemTime) {
     }
 }
 
-/// Files from the future and from 1971, as a clock that was set back leaves them: --resume, --force and report work as ever, and the bytes are
+/// Files from the future and from 1971, as left by a clock that was set back: --resume, --force and report work, and the bytes equal
 /// those of an undisturbed study.
 #[test]
 fn files_from_the_future_are_resumed_and_replaced() {
@@ -299,7 +299,7 @@ fn files_from_the_future_are_resumed_and_replaced() {
     }
 }
 
-/// No other module reads the time of day; a study measures only how long it has run.
+/// No other module reads the time of day. A study measures its duration only.
 #[test]
 fn results_do_not_depend_on_the_time_of_day() {
     let words = ["SystemTime", "UNIX_EPOCH", ".modified("];

@@ -1,8 +1,7 @@
-//! What goes wrong around the program: no room, no right to write, readers that go away, signals, clocks, threads, bare environments, names
-//! that are no text, and names in files that lead elsewhere. Nothing is lost, no half-written file has a final name, the exit code
+//! Faults around the program: full and read-only disks, readers that go away, signals, clocks, threads, bare environments, names
+//! that are not text, and names in files that point elsewhere. Nothing is lost, no partial file has a final name, and the exit code
 //! is right.
-//!
-//! Full and read-only places are small file systems in memory, mounted for the child alone; where that is not allowed those tests say that
+//! Full and read-only places are tmpfs mounts for the child only. Where mounting is not allowed, those tests print that
 //! they are skipped, and fail if CVTCYCLE_REQUIRE_FULL_DISK is set.
 #![cfg(target_os = "linux")]
 #![allow(
@@ -32,13 +31,13 @@ const PLAN: &str = "[study]\ntitle = \"t\"\nbaselines = [\"rover_216_5mt\"]\ncyc
     distribution.uniform = { low = 100, high = 500 }\n";
 const POINTS: &str = "ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm\n2.4,2000,30,60\n0.5,3000,12,40\n";
 
-/// Commands that write, each to the name in place of `OUT`; then directories of a finished run and study.
+/// Commands that write to `OUT`; then directories of a finished run and study.
 const WRITERS: [&str; 12] = [
     "run --cycle minute.csv --sensitivity never --quiet --out OUT",
     "run --cycle minute.csv --sensitivity never --quiet --format both --out OUT",
     "study plan.toml --quiet --out OUT",
     "study export made_study --quiet --out OUT.csv",
-    "study export made_study --quiet --out OUT.xlsx",
+    "study export made_study --quiet --out OUT.parquet",
     "study export made_study --quiet --table traces --out OUT.parquet",
     "report made_run --quiet --out OUT.html",
     "report made_run --quiet --out OUT.md",
@@ -48,7 +47,7 @@ const WRITERS: [&str; 12] = [
     "belt --points many.csv --quiet --out OUT.csv",
 ];
 
-/// The program, as shell scripts start it.
+/// Path of the program, for shell scripts.
 fn bin() -> PathBuf {
     assert_cmd::cargo::cargo_bin("cvtcycle")
 }
@@ -67,7 +66,7 @@ fn stderr(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Runs a command that must end with a code.
+/// Runs a command and checks its exit code.
 fn ends(dir: &Path, line: &str, code: i32) -> Output {
     let output = program(dir, &words(line)).output().unwrap();
     assert_eq!(
@@ -79,7 +78,7 @@ fn ends(dir: &Path, line: &str, code: i32) -> Output {
     output
 }
 
-/// A folder with a cycle, a plan and points.
+/// Creates a folder with a cycle, a plan and points.
 fn folder() -> TempDir {
     let dir = tempfile::tempdir().unwrap();
     for (name, text) in [
@@ -98,7 +97,7 @@ fn folder() -> TempDir {
     dir
 }
 
-/// The same with a finished run and a finished study in it.
+/// Creates the same folder with a finished run and a finished study.
 fn made() -> TempDir {
     let dir = folder();
     ends(
@@ -110,7 +109,7 @@ fn made() -> TempDir {
     dir
 }
 
-/// Runs a script with its own mounts in a folder; false where that is not allowed.
+/// Runs a script with its own mounts in a folder; false if mounting is not allowed.
 fn with_mounts(dir: &Path, script: &str) -> bool {
     let status = Command::new("unshare")
         .args(["-rm", "sh", "-c", script])

@@ -1,4 +1,4 @@
-//! Names: of files that are no text, and in files that lead elsewhere.
+//! Names: files whose names are not text, and names in files that point elsewhere.
 
 use std::ffi::OsString;
 use std::fs;
@@ -8,12 +8,12 @@ use std::process::{Command, Output};
 
 use super::{CYCLE, PLAN, WRITERS, bin, ends, folder, made, stderr, tree};
 
-/// A name that is no UTF-8.
+/// Name that is not UTF-8.
 fn odd(before: &str, after: &str) -> OsString {
     OsString::from_vec([before.as_bytes(), b"\xff\xfe", after.as_bytes()].concat())
 }
 
-/// Runs a line with the odd name in place of `ODD`.
+/// Runs a line with that name in place of `ODD`.
 fn with_odd(dir: &Path, line: &str) -> Output {
     let words = line
         .split_whitespace()
@@ -28,7 +28,7 @@ fn with_odd(dir: &Path, line: &str) -> Output {
         .unwrap()
 }
 
-/// Results may have any name that the system allows: all of --out work, and can be read again.
+/// Output may have any name that the system allows: all of --out work and can be read again.
 #[test]
 fn outputs_may_have_names_that_are_no_text() {
     for line in WRITERS {
@@ -56,7 +56,7 @@ fn outputs_may_have_names_that_are_no_text() {
     }
 }
 
-/// Names of inputs are texts: others are refused with their name, and nothing is written.
+/// Names of inputs must be text: others are refused by name, and nothing is written.
 #[test]
 fn inputs_with_names_that_are_no_text_are_refused() {
     let dir = made();
@@ -92,7 +92,7 @@ fn inputs_with_names_that_are_no_text_are_refused() {
     assert_eq!(tree(dir.path()), before);
 }
 
-/// Below a folder whose name is no text everything works by relative names.
+/// Below a folder whose name is not text, relative names work.
 #[test]
 fn folders_may_have_names_that_are_no_text() {
     let dir = folder();
@@ -118,7 +118,7 @@ const UP: [&str; 5] = [
     "C:\\up",
 ];
 
-/// Titles, phases, factors, baselines and names of studies that look like paths: files appear where --out says, and nowhere else.
+/// Titles, phases, factors, baselines and names of studies that look like paths: all files are written below --out.
 #[test]
 fn names_in_files_lead_nowhere() {
     for up in UP {
@@ -158,7 +158,7 @@ fn names_in_files_lead_nowhere() {
         for line in [
             "run --vehicle car.toml --cycle minute.csv --sensitivity never --quiet --format both --out out/run",
             "study plan.toml --quiet --format both --out out/study",
-            "study export out/study --quiet --out out/runs.xlsx",
+            "study export out/study --quiet --out out/runs.parquet",
             "report out/run --cover cover.toml --quiet --out out/report.html",
             "report out/study --quiet --out out/study.html",
             "losses --vehicle car.toml --quiet --out out/losses",
@@ -182,7 +182,7 @@ fn names_in_files_lead_nowhere() {
     }
 }
 
-/// Names of vehicle files become names of outputs: what could not be one is refused, what can be stays a plain name.
+/// Names of vehicle files become names of outputs: invalid ones are refused, others stay plain names.
 #[test]
 fn names_of_vehicle_files_become_plain_names() {
     let car = concat!(env!("CARGO_MANIFEST_DIR"), "/vehicles/rover_216_5mt.toml");

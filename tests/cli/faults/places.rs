@@ -1,11 +1,11 @@
-//! Places without room and places that may not be written.
+//! Full disks and read-only places.
 
 use std::fs;
 use std::path::Path;
 
 use super::{WRITERS, bin, ends, folder, made, program, stderr, tree, with_mounts};
 
-/// Runs every writing command with its output in `place`; of each: code, what it said, and the files that are left.
+/// Runs every writing command with its output in `place`, and records code, messages, and remaining files.
 fn script(place: &str, options: &str, before: &str) -> String {
     let mut text =
         format!("mkdir {place} && mount -t tmpfs -o {options} none {place} || exit 77\n{before}\n");
@@ -34,7 +34,7 @@ fn refused(dir: &Path, k: usize, reason: &str) {
     assert_eq!(text(dir, "left", k), "", "{line} left something");
 }
 
-/// 8 KiB: a file or two may fit, no command's output does. The words of the system, a hint, code 2, and nothing left.
+/// 8 KiB hold a file or two, but no command's output: the system's message, a hint, code 2, and nothing left.
 #[test]
 fn a_full_disk_leaves_nothing_behind() {
     let dir = made();
@@ -43,8 +43,8 @@ fn a_full_disk_leaves_nothing_behind() {
     }
 }
 
-/// A study that has no room for its second part is the only one that leaves something: what --resume takes up (tests/studies/study). Here: a full
-/// disk in place of an earlier run leaves that run as it was.
+/// Only a study leaves its first parts on a full disk, for --resume (tests/studies/study). Here: a full disk while
+/// replacing an earlier run leaves that run unchanged.
 #[test]
 fn a_full_disk_does_not_cost_the_earlier_run() {
     let dir = made();
@@ -66,7 +66,7 @@ fn a_full_disk_does_not_cost_the_earlier_run() {
     }
 }
 
-/// A file system that is read-only, for any user.
+/// Read-only file system, for any user.
 #[test]
 fn a_read_only_place_is_refused() {
     let dir = made();
@@ -82,7 +82,7 @@ fn a_read_only_place_is_refused() {
     }
 }
 
-/// Without --out nothing is written but to the folder of temporary files; home and the current folder may be read-only.
+/// Without --out only the temporary folder is written; home and the current folder may be read-only.
 #[test]
 fn a_read_only_home_and_folder_are_enough_to_read() {
     let dir = folder();
@@ -98,7 +98,7 @@ fn a_read_only_home_and_folder_are_enough_to_read() {
     }
 }
 
-/// Without --out there is nothing that could be continued.
+/// Without --out the message does not advise --resume.
 #[test]
 fn a_study_that_keeps_nothing_has_no_advice_to_continue() {
     let dir = folder();
@@ -120,7 +120,7 @@ fn a_study_that_keeps_nothing_has_no_advice_to_continue() {
     );
 }
 
-/// A limit to the size of files, as `ulimit -f` sets it: the signal that goes with it is not taken for an end of the program's own.
+/// A file size limit, as set by `ulimit -f`: its signal does not end the program.
 #[test]
 fn a_limit_to_the_size_of_files_leaves_nothing_behind() {
     let dir = made();
@@ -153,7 +153,7 @@ fn a_limit_to_the_size_of_files_leaves_nothing_behind() {
     }
 }
 
-/// A place that cannot be: a file in the way, or no directory.
+/// Impossible places: a file in the way, or no directory.
 #[test]
 fn impossible_places_are_refused_with_code_2() {
     let dir = made();

@@ -1,8 +1,7 @@
-//! Several processes on one folder, in any order, each of which may be killed at any moment: what is there afterwards is one of the whole
-//! results, a reader that ends well has read one, and the next command leaves nothing hidden.
-//!
-//! `cargo test` takes a few interleavings. As a tool: `CVTCYCLE_INTERLEAVINGS=1000 CVTCYCLE_SEED=7 cargo test --test cli processes`. A failed one
-//! is repeated by its number: `CVTCYCLE_SEED=7 CVTCYCLE_FIRST=412 CVTCYCLE_INTERLEAVINGS=1`, but times are those of the machine.
+//! Several processes on one folder in any order, each of which may be killed at any moment. Afterwards the folder has one of the complete
+//! results, a successful reader has read one, and the next command leaves no hidden file.
+//! `cargo test` tries a few interleavings. For more: `CVTCYCLE_INTERLEAVINGS=1000 CVTCYCLE_SEED=7 cargo test --test cli processes`. A failing one
+//! is repeated by its number: `CVTCYCLE_SEED=7 CVTCYCLE_FIRST=412 CVTCYCLE_INTERLEAVINGS=1`, though timing depends on the machine.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -14,24 +13,24 @@ use std::time::Duration;
 
 use super::{bin, ends, folder, program, tree, words};
 
-/// Interleavings of `cargo test`.
-const FEW: u64 = 24;
+/// Number of interleavings of `cargo test`.
+const DEFAULT_INTERLEAVINGS: u64 = 24;
 
 const PLANS: [(&str, &str); 2] = [
     ("p.toml", "1000, 1050, 1100"),
     ("q.toml", "1200, 1300, 1400"),
 ];
-/// Points of a plan, each of which is a part.
+/// Number of points of a plan, each of which is a part.
 const PARTS: usize = 3;
 
-/// What a command does with the folder `it`.
+/// Kinds of commands on the folder `it`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// Writes where nothing is.
+    /// Writes into a new folder.
     Write,
-    /// Writes in place of an earlier result.
+    /// Replaces an earlier result.
     Replace,
-    /// Reads; the answer is in the file `answer`, or on standard output.
+    /// Reads, with its answer in the file `answer` or on standard output.
     Read,
 }
 
@@ -41,7 +40,7 @@ const LOSSES: &str = "losses --ratio low --speed 2000 --temp 80 --quiet --out it
 const P: &str = "study p.toml --quiet --out it";
 const Q: &str = "study q.toml --quiet --out it";
 
-/// The commands: what each does, its line, and its option. A new command that writes or reads a folder of results goes here.
+/// Commands: kind, line, and option. Add here every new command that writes or reads a folder of results.
 const COMMANDS: [(Kind, &str, &str); 13] = [
     (Kind::Write, A, ""),
     (Kind::Write, B, ""),
@@ -66,7 +65,7 @@ const COMMANDS: [(Kind, &str, &str); 13] = [
     ),
 ];
 
-/// Numbers of a seed (splitmix64).
+/// Random numbers from a seed (splitmix64).
 struct Random(u64);
 
 impl Random {
@@ -81,7 +80,7 @@ impl Random {
 
 type Files = BTreeMap<PathBuf, Vec<u8>>;
 
-/// What a folder holds, without the words of the command line, which differ by an option.
+/// Contents of a folder without command lines, which differ by an option.
 fn files(dir: &Path) -> Files {
     let mut files = match dir.exists() {
         true => tree(dir),
@@ -111,7 +110,7 @@ fn put(dir: &Path, files: &Files) {
     }
 }
 
-/// The answer of a reader that has ended: the page, the table, or what it printed.
+/// Answer of a reader that has ended: page, table, or standard output.
 fn answer(dir: &Path, line: &str, printed: Vec<u8>) -> Vec<u8> {
     match line.rsplit_once("--out ") {
         Some((_, file)) => fs::read(dir.join(file)).unwrap_or_default(),
@@ -119,10 +118,10 @@ fn answer(dir: &Path, line: &str, printed: Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// What each command alone makes of an empty folder, and what each reader says of any of these results, whole or begun.
+/// Expected results: each command alone in an empty folder, and the answers of each reader to these results, complete or partial.
 struct Golden {
     dir: tempfile::TempDir,
-    /// Results with the words of their command line, by command; of a study those with each set of its parts.
+    /// Files by command line; for a study those with each set of its parts.
     results: BTreeMap<String, Files>,
     answers: BTreeMap<&'static str, BTreeSet<Vec<u8>>>,
 }
@@ -176,7 +175,7 @@ impl Golden {
         self.dir.path()
     }
 
-    /// Notes what each reader says of the folder now.
+    /// Records the answers of all readers to the current folder.
     fn ask(&mut self) {
         for (_, line, _) in COMMANDS.iter().filter(|(kind, ..)| *kind == Kind::Read) {
             let output = program(self.path(), &words(line)).output().unwrap();
@@ -187,7 +186,7 @@ impl Golden {
         }
     }
 
-    /// The files of a command, without the words of the command line.
+    /// Files of a command, without command lines.
     fn whole(&self, line: &str) -> Files {
         let dir = self.path().join("golden");
         put(&dir, &self.results[line]);
@@ -196,7 +195,7 @@ impl Golden {
 }
 
 impl Golden {
-    /// Whether all files of a result are there, and others only as an earlier one that had more of them left them.
+    /// True if all files of a result are present, and others only as leftovers of an earlier result.
     fn is_whole(&self, shown: &Files) -> bool {
         let all: Vec<Files> = self.results.keys().map(|line| self.whole(line)).collect();
         let has = |result: &Files, name: &PathBuf| result.get(name) == shown.get(name);
@@ -208,8 +207,9 @@ impl Golden {
     }
 }
 
-/// Calls after which a process may be killed: those that change a folder, or make that last.
-const CALLS: &str = "rename,renameat,renameat2,unlink,unlinkat,link,linkat,mkdir,fsync,ftruncate";
+/// System calls after which a process may be killed: those that change a folder or make changes durable.
+const KILLED_CALLS: &str =
+    "rename,renameat,renameat2,unlink,unlinkat,link,linkat,mkdir,fsync,ftruncate";
 
 struct Process {
     name: String,
@@ -220,7 +220,7 @@ struct Process {
     child: Child,
 }
 
-/// Begins a command, perhaps with its end at one of its calls.
+/// Starts a command, which may be killed at one of its calls.
 fn begin(dir: &Path, number: usize, traced: bool, random: &mut Random) -> Process {
     let (kind, line, option) = COMMANDS[random.below(COMMANDS.len() as u64) as usize];
     let place = dir.join(format!("place_{number}"));
@@ -238,10 +238,10 @@ fn begin(dir: &Path, number: usize, traced: bool, random: &mut Random) -> Proces
                     "-o",
                     "/dev/null",
                     "-e",
-                    &format!("trace={CALLS}"),
+                    &format!("trace={KILLED_CALLS}"),
                     "-e",
                 ])
-                .arg(format!("inject={CALLS}:signal=KILL:when={when}"))
+                .arg(format!("inject={KILLED_CALLS}:signal=KILL:when={when}"))
                 .arg(bin());
             command
         }
@@ -270,7 +270,7 @@ fn begin(dir: &Path, number: usize, traced: bool, random: &mut Random) -> Proces
     }
 }
 
-/// One interleaving; the words say what was wrong.
+/// Runs one interleaving; the error describes the violation.
 fn interleaving(golden: &Golden, traced: bool, random: &mut Random) -> Result<(), String> {
     let dir = golden.path();
     let it = dir.join("it");
@@ -294,7 +294,7 @@ fn interleaving(golden: &Golden, traced: bool, random: &mut Random) -> Result<()
     if random.below(3) == 0 {
         let victim = &processes[random.below(count as u64) as usize];
         let signal = ["INT", "KILL", "TERM"][random.below(3) as usize];
-        // One that is traced would go on without its tracer. It may have ended.
+        // A traced process would continue without its tracer. It may have ended.
         if !victim.traced {
             let id = victim.child.id().to_string();
             let mut kill = Command::new("kill");
@@ -309,7 +309,7 @@ fn interleaving(golden: &Golden, traced: bool, random: &mut Random) -> Result<()
         let (code, signal) = (status.code(), status.signal());
         let stderr = fs::read_to_string(process.place.join("stderr")).unwrap();
         said += &format!("\n{}: {code:?} {signal:?} {stderr}", process.name);
-        // 128 + signal: strace ends as what it traces.
+        // 128 + signal: strace ends as its tracee does.
         let allowed = match (code, signal) {
             (Some(code), _) => [0, 1, 2, 130, 137].contains(&code),
             (_, Some(signal)) => [2, 9, 15].contains(&signal),
@@ -333,7 +333,7 @@ fn interleaving(golden: &Golden, traced: bool, random: &mut Random) -> Result<()
     if written > 1 || written == 1 && start.is_some() {
         return Err(format!("{said}\nmore than one wrote where nothing may be"));
     }
-    // A reader completes what was being put into place.
+    // A reader completes a pending commit.
     drop(program(dir, &words("report it --quiet --force --out now.html")).output());
     let shown: Files = files(&it)
         .into_iter()
@@ -358,7 +358,7 @@ fn interleaving(golden: &Golden, traced: bool, random: &mut Random) -> Result<()
         ));
     }
     let (after, expected) = (files(&it), golden.whole(&next));
-    // Another result of a run may have had more files, which --force leaves and says so.
+    // An earlier result of a run may have more files, which --force keeps and reports.
     let differs = |name: &&PathBuf| after.get(*name) != expected.get(*name);
     let mut wrong = expected
         .keys()
@@ -388,7 +388,7 @@ fn processes_on_one_folder_leave_whole_results() {
         number_of("CVTCYCLE_SEED").unwrap_or(23),
         number_of("CVTCYCLE_FIRST").unwrap_or(0),
     );
-    let count = number_of("CVTCYCLE_INTERLEAVINGS").unwrap_or(FEW);
+    let count = number_of("CVTCYCLE_INTERLEAVINGS").unwrap_or(DEFAULT_INTERLEAVINGS);
     let mut failed = Vec::new();
     for number in first..first + count {
         let mut random = Random(seed ^ number.wrapping_mul(0x2545_f491_4f6c_dd1d));

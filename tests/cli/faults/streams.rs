@@ -1,4 +1,4 @@
-//! Standard output that is full, closed, or read for a line only.
+//! Standard output that is full, closed, or read for one line only.
 
 use std::fs::OpenOptions;
 use std::io::{BufRead, BufReader};
@@ -33,7 +33,7 @@ const PRINTERS: [&str; 23] = [
     "assumptions",
 ];
 
-/// Code 2 and a word on standard error; files that were asked for are there all the same.
+/// Code 2 and a message on standard error; requested files are written nevertheless.
 #[test]
 fn a_full_standard_output_is_reported() {
     let dir = made();
@@ -55,9 +55,9 @@ fn a_full_standard_output_is_reported() {
     );
 }
 
-/// `| head -1`, and a reader that is gone before anything comes: no error, nothing said.
+/// `| head -1`, and a reader that is gone before any output: no error, no message.
 #[test]
-fn a_reader_that_has_seen_enough_is_no_error() {
+fn a_reader_that_closes_early_is_no_error() {
     let dir = made();
     for line in PRINTERS {
         for reads in [true, false] {
@@ -83,7 +83,7 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     }
 }
 
-/// No streams at all: only the exit code is left.
+/// Without streams the exit code is all that is left.
 #[test]
 fn closed_streams_are_no_error() {
     let dir = made();

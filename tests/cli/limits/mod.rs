@@ -1,5 +1,5 @@
-//! Files of any size: a file beyond its limit is refused with one message, and what a hostile file makes the program take stays below a
-//! stated bound (docs/limits.md). The bound is held by the operating system: the program runs under a limit of its address space, so that
+//! Files of any size. A file beyond its limit is refused with one message, and the memory for a hostile file stays below a
+//! documented bound (docs/limits.md). The operating system enforces the bound: the program runs under a limit of its address space, so that
 //! one allocation too many ends it.
 #![cfg(target_os = "linux")]
 #![allow(missing_docs, clippy::unwrap_used, reason = "helpers of tests")]
@@ -17,10 +17,10 @@ use tempfile::TempDir;
 
 /// Bytes of one MiB.
 pub const MIB: u64 = 1 << 20;
-/// Address space of the program with its threads, without what it reads, MiB.
+/// Address space of the program with its threads, without input, MiB.
 pub const PROGRAM_MIB: u64 = 160;
 
-/// Two cars' worth of inputs in a folder: a cycle, a plan, a calibration, a vehicle, and a run of it.
+/// Creates a folder with small inputs: a cycle, a plan, a calibration, a vehicle, and a run of it.
 pub fn folder() -> TempDir {
     let dir = tempfile::tempdir().unwrap();
     let cycle = "time_s,speed_kmh\n0,0\n4,0\n14,32\n24,32\n34,0\n";
@@ -32,12 +32,12 @@ pub fn folder() -> TempDir {
     dir
 }
 
-/// A file of that size without content: it takes no room on the disk.
+/// Creates a sparse file of a size, which takes no room on the disk.
 pub fn sparse(path: &Path, bytes: u64) {
     File::create(path).unwrap().set_len(bytes).unwrap();
 }
 
-/// Drives the short cycle of [`folder`] with one car and keeps its results in `made`.
+/// Drives the short cycle of [`folder`] with one car into `made`.
 pub fn short_run(dir: &Path) {
     let made = within(
         dir,
@@ -52,7 +52,7 @@ pub fn short_run(dir: &Path) {
     );
 }
 
-/// Runs the program in a folder with that much memory beyond its own, MiB; a run without an end is ended.
+/// Runs the program in a folder with a limit of memory beyond its own, MiB; a run that takes too long is killed.
 pub fn within(dir: &Path, mib: u64, line: &str) -> Output {
     let script = format!(
         "ulimit -v {}; exec \"$0\" {line}",
@@ -60,7 +60,7 @@ pub fn within(dir: &Path, mib: u64, line: &str) -> Output {
     );
     let program = assert_cmd::cargo::cargo_bin("cvtcycle");
     let mut command = assert_cmd::Command::new("sh");
-    // One thread: each has a stack and an arena of its own in the address space.
+    // One thread, since each has a stack and an arena in the address space.
     command
         .current_dir(dir)
         .env("RAYON_NUM_THREADS", "1")
@@ -74,7 +74,7 @@ pub fn within(dir: &Path, mib: u64, line: &str) -> Output {
         .unwrap()
 }
 
-/// What the program says to bad input, which it must refuse.
+/// Message about bad input, which the program must refuse.
 pub fn refused(dir: &Path, mib: u64, line: &str) -> String {
     let output = within(dir, mib, line);
     let printed = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -88,7 +88,7 @@ pub fn refused(dir: &Path, mib: u64, line: &str) -> String {
     printed
 }
 
-/// The same, with these words and one problem.
+/// As [`refused`], for exactly one problem with these words.
 pub fn refused_once(dir: &Path, mib: u64, line: &str, words: &[&str]) {
     let printed = refused(dir, mib, line);
     for word in words {

@@ -1,11 +1,11 @@
-//! Pipes and devices: what has no size is read up to the limit, and is no file where another file names it.
+//! Pipes and devices: without a size they are read up to the limit. Files may not name them.
 
 use std::fs;
 use std::process::{Child, Command};
 
 use super::{folder, refused_once, within};
 
-/// A pipe in the folder, and a shell that writes into it.
+/// Creates a pipe in the folder, and a shell that writes into it.
 fn pipe(dir: &std::path::Path, name: &str, writer: Option<&str>) -> Option<Child> {
     let made = Command::new("mkfifo").arg(dir.join(name)).status().unwrap();
     assert!(made.success());
@@ -40,7 +40,7 @@ fn devices_and_pipes_without_end_are_read_up_to_the_limit() {
         "run --cycle endless.csv --baseline none",
         &["it has more than 64 MiB"],
     );
-    // It ended when its reader closed the pipe.
+    // It ended when the reader closed the pipe.
     writer.wait().unwrap();
 }
 

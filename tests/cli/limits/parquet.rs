@@ -1,4 +1,4 @@
-//! Parquet files whose footers lie: about their rows, about the place of a column, about their own length.
+//! Parquet files with false footers: wrong numbers of rows, places of columns, footer lengths.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -18,7 +18,7 @@ use super::{folder, refused, short_run, sparse, within};
 const DAMAGED: &str =
     "the file is damaged: it is shorter than it says, or longer than any of this program";
 
-/// A file with one column of that many equal numbers.
+/// Writes a file with one column of equal numbers.
 fn table(dir: &TempDir, rows: usize) -> PathBuf {
     let path = dir.path().join("table.parquet");
     let column = Head {
@@ -34,7 +34,7 @@ fn table(dir: &TempDir, rows: usize) -> PathBuf {
     path
 }
 
-/// Puts another footer behind the old one: the last one counts. The library writes the sum of the groups' rows as those of the file.
+/// Appends another footer, which readers use. The library writes the sum of the groups' rows as those of the file.
 fn forge(path: &Path, group: impl Fn(RowGroupMetaData) -> RowGroupMetaData) {
     let found = SerializedFileReader::new(File::open(path).unwrap()).unwrap();
     let old = found.metadata().file_metadata();
@@ -69,7 +69,7 @@ fn forge(path: &Path, group: impl Fn(RowGroupMetaData) -> RowGroupMetaData) {
         .unwrap();
 }
 
-/// What reading says; the checksum is that of the file as it is.
+/// Reads a file, with its actual checksum.
 fn read(path: &Path) -> Result<Rows, Problem> {
     let file = ParquetFile::open(path, &sha256(&fs::read(path).unwrap()))?;
     file.read(&["time_s"])
@@ -156,7 +156,7 @@ fn a_column_that_says_to_unpack_to_more_than_its_bytes_can_is_not_read() {
     }
 }
 
-/// A part of a stranger's study vouches for itself: its rows are held against the study's points.
+/// A part of another study is consistent by itself, so its rows are compared with the points of this study.
 #[test]
 fn a_part_has_the_rows_of_its_points() {
     let dir = folder();
@@ -206,7 +206,7 @@ fn a_trace_has_a_bounded_number_of_steps() {
             .contains("the file says that it has 2000001 rows"),
         "{printed:?}"
     );
-    // So many are read; what else a trace has is missing.
+    // Reads that many steps; other columns of a trace are missing.
     assert!(
         read_trace_parquet(&table(&dir, 2_000_000))
             .unwrap_err()

@@ -12,7 +12,7 @@ use crate::sources::{Source, sources};
 
 use super::{MIB, folder, refused, refused_once, short_run, sparse, within};
 
-/// What a command says about a file of a gigabyte.
+/// Size of the large test files.
 const GIGABYTE: u64 = 1 << 30;
 const SIZE: &str = "it has 1073741824 bytes";
 
@@ -54,7 +54,7 @@ fn a_file_of_a_gigabyte_is_refused_without_being_read() {
     for (line, limit) in READERS {
         refused_once(dir.path(), 64, line, &[SIZE, &limit.allowed(), limit.hint]);
     }
-    // Read line by line, whatever its size; its first line has nothing but zeros.
+    // Read line by line without a limit of the file; the first line has zeros only.
     refused_once(
         dir.path(),
         64,
@@ -85,7 +85,7 @@ fn results_of_a_gigabyte_are_refused_without_being_read() {
         );
         fs::write(path(name), content).unwrap();
     }
-    // A footer of zeros is none. Without the record any trace is read.
+    // A footer of zeros is invalid. Without the record any trace is read.
     fs::remove_file(path("inputs.json")).unwrap();
     fs::remove_file(path("trace_rover_216_cvt.csv")).unwrap();
     sparse(&path("trace_rover_216_cvt.parquet"), GIGABYTE);
@@ -191,7 +191,7 @@ fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
             (!is_read).then_some("up to 64 MiB")
         );
     }
-    // Results: the bytes alone.
+    // Results: reads the bytes only.
     for limit in [RECORD, LOGO] {
         for (more, is_read) in [(0, true), (1, false)] {
             sparse(Path::new(&path("result")), limit.bytes + more);
@@ -200,7 +200,7 @@ fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
     }
 }
 
-/// A table with blank lines below it.
+/// Pads a table with blank lines.
 fn padded(table: &str, bytes: u64) -> Vec<u8> {
     let mut text = table.as_bytes().to_vec();
     while (text.len() as u64) < bytes {
@@ -213,7 +213,7 @@ fn padded(table: &str, bytes: u64) -> Vec<u8> {
 
 #[test]
 fn a_setup_is_read_under_the_same_bound() {
-    // The bound of the other tests is one that the program can live in.
+    // The memory bound of the other tests suffices for normal input.
     let dir = folder();
     let output = within(
         dir.path(),
@@ -229,8 +229,8 @@ fn a_setup_is_read_under_the_same_bound() {
     assert!(setup::load("rover_216_cvt", &Options::default()).is_ok());
 }
 
-/// Modules that open files by themselves, with the reason.
-const OWN: [(&str, &str); 7] = [
+/// Modules that open files directly, with the reason.
+const DIRECT_READERS: [(&str, &str); 7] = [
     ("config::csv::stream", "the first bytes of a stream"),
     ("config::files::bounded", "has the limits"),
     ("cvtcycle::commands::belt", "reads line by line"),
@@ -257,7 +257,7 @@ fn every_file_is_read_through_its_limit() {
         "read_to_end(",
         "File::open(",
     ];
-    // `LeverFile::open(` is another one.
+    // Excludes longer names such as `LeverFile::open(`.
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     let opens = |source: &Source| {
         let ends = |call: &&str| {
@@ -271,7 +271,7 @@ fn every_file_is_read_through_its_limit() {
     };
     let found = sources().into_iter().filter(opens);
     let found: Vec<String> = found.map(|source| source.module).collect();
-    let own = OWN.map(|(module, _)| module);
+    let own = DIRECT_READERS.map(|(module, _)| module);
     assert_eq!(
         found, own,
         "read files through config::bounded, or give the reason here"

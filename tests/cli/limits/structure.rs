@@ -1,4 +1,4 @@
-//! Files within their size that hold as much as they can: tables, keys, brackets, lists, mistakes.
+//! Files within their size limit that hold as much as possible: tables, keys, brackets, lists, mistakes.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -11,7 +11,7 @@ const TOML_MIB: u64 = 300;
 
 const VEHICLE: &str = "run --vehicle big.toml --cycle short.csv --baseline none";
 
-/// As many repetitions as fit into the largest TOML file, between a head and a tail.
+/// Repeats a piece as often as it fits into the largest TOML file, between a head and a tail.
 fn filled(head: &str, piece: &str, tail: &str) -> String {
     let room = usize::try_from(MIB).unwrap() - head.len() - tail.len();
     format!("{head}{}{tail}", piece.repeat(room / piece.len()))
@@ -134,7 +134,7 @@ fn as_many_keys_values_and_mistakes_as_fit_are_reported_in_bounded_memory() {
 #[test]
 fn lists_of_tables_without_end_are_reported_in_bounded_memory() {
     let dir = folder();
-    // Below the bound for tables, each item with problems of its own.
+    // Below the limit of tables; each item has problems of its own.
     let many = |head: &str, item: &str| {
         format!(
             "{head}{}",
@@ -202,7 +202,7 @@ fn a_table_of_nothing_but_mistakes_is_reported_in_bounded_memory() {
             message
         );
     }
-    // One line of column names, as long as a line may be, and rows of nothing but commas.
+    // One line of column names of the maximum length, and rows of commas only.
     let mut names = String::new();
     while names.len() < (1 << 20) - 20 {
         write!(names, "spede_{},", names.len()).unwrap();
@@ -223,7 +223,7 @@ fn a_table_of_nothing_but_mistakes_is_reported_in_bounded_memory() {
     );
 }
 
-/// A file of one row with an expression.
+/// File of one row with an expression.
 fn row(sources: &str, compute: &str) -> String {
     format!(
         "[tolerances.t]\nshare = 0.1\nunit = \"-\"\nfrom = \"x\"\n{sources}\n[[row]]\nid = \"a\"\nchapter = \"x\"\n\
@@ -282,7 +282,7 @@ fn loops_without_end_are_one_problem() {
     }
 }
 
-/// Cycles and grids of a few bytes that ask for millions of rows.
+/// Cycles and grids of a few bytes that expand to millions of rows.
 #[test]
 fn rows_that_are_kept_are_counted_before_anything_is_computed() {
     let dir = folder();
@@ -406,7 +406,7 @@ fn json_of_more_values_than_any_result_is_one_problem() {
             fs::remove_file(made.join(name)).unwrap();
         }
     }
-    // One text is one value, whatever is in it.
+    // One text counts as one value, whatever it contains.
     let text = filled("{\"schema\": 1, \"x\": \"", "[,", "\"}");
     fs::write(made.join("summary.json"), text).unwrap();
     let printed = refused(dir.path(), 256, "report made --out r.html");

@@ -147,7 +147,7 @@ fn files_of_other_programs_are_known() {
 
 #[test]
 fn a_cycle_over_distance_covers_its_distance() {
-    // Of VECTO's own tests (SimpleDrivingCycles).
+    // From VECTO's own tests (SimpleDrivingCycles).
     let text = "<s>,<v>,<grad>,<stop>\n0,20,0,0\n100,60,0,0\n1000,60,0,0\n1500,40,1,0\n2000,0,0,5\n2001,50,-1,0\n2500,0,0,2\n";
     let cycle = good(text);
     let trace = &cycle.manual;

@@ -94,7 +94,7 @@ fn no_inherited_value_has_the_status_of_its_parent() {
         count += usize::from(status == "like");
     }
     assert!(count > 150, "{count}");
-    // What the parent says about a value is kept as a remark.
+    // The remark of the parent on a value is kept.
     let offset = find(&child, "transmission.cvt.belt.band_offset_mm");
     assert_eq!(offset.note, "there source: thesis App. C");
     assert_eq!(find(&child, "road_load.mass_kg").from, "line 5");
@@ -167,7 +167,7 @@ fn a_car_with_another_box_has_no_key_of_the_former_one() {
     let child = car(&text, &[]).unwrap();
     assert!(!child.transmission().is_cvt());
     assert!(child.keys.iter().all(|info| !info.key.contains("cvt.")));
-    // Of the belt's heat there is nothing left to read, and nothing to complain about.
+    // The belt's heat leaves nothing to read and no problem.
     let belt = "thermal.transmission.belt_kj_k";
     assert!(!find(&shipped("rover_216_cvt"), belt).value.is_empty());
     assert!(child.keys.iter().all(|info| info.key != belt));
@@ -306,7 +306,7 @@ fn every_class_of_body_makes_a_car_with_every_class_of_box() {
 fn classes_say_where_their_values_come_from() {
     let files = cvtcycle_config::setup::catalogue::files();
     for file in files.iter().filter(|file| file.kind == Kind::Class) {
-        // What a class inherits is documented in the class that it is from.
+        // Inherited values are documented in the class that they come from.
         let own = |info: &&KeyInfo| info.status != "class" && info.key != "vehicle.like";
         for info in file.keys.iter().filter(own) {
             let known = ["source", "derived", "assumed", "choice"].contains(&info.status.as_str());

@@ -405,7 +405,7 @@ fn a_torque_in_lb_ft_is_recognised() {
     assert!(refused("20@4200").starts_with("check both"));
 }
 
-/// What other values of a car look like slips, each by one change.
+/// Values of a car that look like slips, each by one change.
 #[test]
 fn slips_across_keys_are_doubted() {
     let doubts = |body: &str, gearbox: &str, numbers: &[(&'static str, &str)]| {

@@ -5,7 +5,7 @@ use cvtcycle_config::setup::assumptions::book;
 use cvtcycle_config::setup::catalogue::{self, ENGINE_OIL, OIL, files, known_keys};
 use cvtcycle_config::setup::{self, Kind, Options};
 use cvtcycle_config::{Override, Target};
-use cvtcycle_model::bench::transmission::Speeds;
+use cvtcycle_model::rig::transmission::Speeds;
 
 #[test]
 fn options_that_no_file_chooses_are_known() {

@@ -116,7 +116,7 @@ fn what_changes_the_car_changes_its_twin() {
     let setup = twin("rover_216_cvt", &set);
     assert!((setup.road_load.base.mass_kg - 1300.0).abs() < 1e-9);
     assert_eq!(find(&setup, "road_load.mass_kg").status, "set");
-    // Its oil is another one.
+    // The oil is another one.
     assert_eq!(
         find(&setup, "lubricant.kv40_mm2_s").status,
         find(&twin("rover_216_cvt", &[]), "lubricant.kv40_mm2_s").status

@@ -4,12 +4,12 @@
 use cvtcycle_config::cycle::embedded;
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
-use cvtcycle_model::bench::{Bench, BenchPoint};
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::keys::file_table::FileRows;
 use cvtcycle_model::keys::rad_s;
 use cvtcycle_model::maps::{LossMap, MapPoint};
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::box_map::scattered::{gridded, leave_one_out};
 use cvtcycle_model::transmission::box_map::{map, points};

@@ -467,7 +467,7 @@ fn least_deficit(
     best
 }
 
-/// What the car lacked in the missed rows of a cycle: seconds missed in all, and seconds in which another ratio would have done.
+/// Missed rows of a cycle: seconds in all, and seconds in which another ratio would have met the demand.
 struct Missed {
     all_s: f64,
     avoidable: Vec<String>,

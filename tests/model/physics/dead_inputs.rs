@@ -345,7 +345,7 @@ fn scenarios() -> Vec<Scenario> {
     ]
 }
 
-/// Whether a key is without effect in this car, and why that is right.
+/// Reason why a key is without effect in this car, if it is.
 fn no_effect(name: &str, key: &str) -> Option<&'static str> {
     let fluid = key.strip_prefix("engine_oil.").is_some();
     if key.contains(".friction.")

@@ -51,7 +51,7 @@ fn driven(own: &Car, cycle_name: &str, dt_s: f64) -> Vec<(Given, Row, Heat)> {
     list
 }
 
-/// What is left of power in less power out, losses and rotating energy, over the sum of all.
+/// Remainder of power in less power out, losses and rotating energy, over the sum of all.
 fn open_share(turned: &Turned) -> f64 {
     let out = &turned.output;
     let in_w = turned.taken_nm * out.engine_rad_s;

@@ -186,7 +186,7 @@ fn a_manual_car_on_a_wltc_drives_these_gears_and_no_other_car_or_cycle_does() {
     let cycle = embedded("wltc_class3b").unwrap();
     let outcome = drive(&rover, &cycle, &conditions);
     assert_eq!(outcome.gear_schedule, "gears by UN GTR 15, Annex 2");
-    // What the box engages is what the procedure has, wherever the car drives in a gear without a change.
+    // The box engages the gear of the procedure wherever the car drives in a gear without a change.
     let expected =
         gears(&trace("wltc_class3b"), &rover.gtr15().unwrap()).commands(&trace("wltc_class3b"));
     for (row, command) in outcome.rows.iter().zip(&expected) {

@@ -13,6 +13,7 @@ mod allocation;
 mod belt_properties;
 mod cold;
 mod box_map;
+mod change_an_equation;
 mod conserve;
 mod cvt_part_properties;
 mod cycles;

@@ -4,8 +4,8 @@
 
 use crate::side_by_side::{Draw, assert_alone, numbers, together, with_lanes};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::fluid::Lubricant;
-use cvtcycle_model::math::{Left, Mask, Real};
+use cvtcycle_model::lubricant::Lubricant;
+use cvtcycle_model::math::{Mask, Real};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::coupling::{Coupling, CouplingLoad, Launch, Reach, Turning};
 use cvtcycle_model::transmission::cvt::Cvt;
@@ -88,10 +88,7 @@ impl Drawn {
     }
 }
 
-fn hold<R: Real>(like: R, of: &Drawn)
-where
-    f64: Left<R>,
-{
+fn hold<R: Real>(like: R, of: &Drawn) {
     let side_by_side = parts(
         &together(like, &of.cvts),
         &together(like, &of.oils),
@@ -101,10 +98,7 @@ where
 }
 
 /// Where the ratio control is at a point.
-fn demand<R: Real>(c: &RatioControl<R>, p: Point<R>) -> RatioDemand<R>
-where
-    f64: Left<R>,
-{
+fn demand<R: Real>(c: &RatioControl<R>, p: Point<R>) -> RatioDemand<R> {
     let [sump_k, speed, w, _, _, _, ratio, power_w] = p;
     let flow = 1.0 + ratio;
     RatioDemand {
@@ -119,18 +113,15 @@ where
         ratio_before: ratio,
         flow_down_per_s: flow,
         flow_up_per_s: 0.2 * flow,
-        coupled: w.above(100.0),
-        last_direction: R::every(|lane| if power_w.lane(lane) > 20e3 { 1 } else { -1 }),
-        free_up_to_rad_s: ratio.filled(100.0),
+        coupled: w.gt(100.0),
+        last_direction: R::per_lane(|lane| if power_w.lane(lane) > 20e3 { 1 } else { -1 }),
+        free_up_to_rad_s: ratio.splat(100.0),
         dt_s: 1.0,
     }
 }
 
-/// What the parts give at a point, by one text.
-fn parts<R: Real>(cvt: &Cvt<R>, oil: &Lubricant<R>, p: Point<R>) -> (Vec<R>, Vec<R::Mask>)
-where
-    f64: Left<R>,
-{
+/// Results of the parts at a point, by one text.
+fn parts<R: Real>(cvt: &Cvt<R>, oil: &Lubricant<R>, p: Point<R>) -> (Vec<R>, Vec<R::Mask>) {
     let [sump_k, speed, w, nm, pa, flow, _, _] = p;
     let state = oil.state(sump_k);
     let train = cvt.final_drive.train.turning(speed, nm, state);
@@ -138,9 +129,9 @@ where
     let now = cvt.pump.at(oil.dynamic_pa_s(sump_k));
     let pump = cvt.pump.state(&now, w + 1.0, pa, flow);
     let coupling = &cvt.coupling;
-    let idle = w.filled(90.0);
-    let locked = w.above(300.0);
-    let load = CouplingLoad::new(nm, speed.most(1.0), idle, locked);
+    let idle = w.splat(90.0);
+    let locked = w.gt(300.0);
+    let load = CouplingLoad::new(nm, speed.max(1.0), idle, locked);
     let reach = Reach {
         from_rad_s: w,
         slowest_rad_s: w - 30.0,
@@ -180,7 +171,11 @@ where
     ];
     (
         numbers,
-        vec![pump.flow_limited, short, short & short.then(short, locked)],
+        vec![
+            pump.flow_limited,
+            short,
+            short & short.select(short, locked),
+        ],
     )
 }
 

@@ -9,12 +9,12 @@ use crate::common::bench_step::{self, Setting};
 use crate::common::{RPM, ZERO, car, larger};
 use cvtcycle_config::Override;
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::transmission::{
+use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::transmission::{
     Branch, Conditions, Loop, Piece, Plan, Stage, StripDown, loaded, on_the_rig, second_box,
     steady, strip_down, transient,
 };
-use cvtcycle_model::bench::{Bench, BenchPoint};
-use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::thermal::{Heat, HeatInput, METAL, SUMP};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, Formulation};
@@ -30,7 +30,11 @@ fn rig(sets: &[&str]) -> Conditions {
 
 fn stripped(vehicle: &[&str], of_rig: &[&str]) -> Vec<StripDown> {
     let c = rig(of_rig);
-    strip_down(&Bench::new(&car(CAR, vehicle)), &c, &Plan::of(&c))
+    strip_down(
+        &Bench::new(&car(CAR, vehicle)),
+        &c,
+        &Plan::from_conditions(&c),
+    )
 }
 
 fn place(s: &StripDown) -> String {
@@ -384,7 +388,7 @@ fn a_weak_cooler_leaves_the_loop_open() {
 #[test]
 fn val_second_box() {
     let c = rig(&[]);
-    for t in second_box(&Bench::new(&car(CAR, &[])), &c, &Plan::of(&c)) {
+    for t in second_box(&Bench::new(&car(CAR, &[])), &c, &Plan::from_conditions(&c)) {
         let ratio = t.second.answer.secondary_pa / t.first.answer.secondary_pa;
         assert!((ratio - 0.925).abs() < 1e-6, "{ratio}");
         assert!(
@@ -400,7 +404,7 @@ fn val_second_box() {
 #[test]
 fn loaded_points_balance() {
     let c = rig(&[]);
-    let points = loaded(&Bench::new(&car(CAR, &[])), &c, &Plan::of(&c));
+    let points = loaded(&Bench::new(&car(CAR, &[])), &c, &Plan::from_conditions(&c));
     assert_eq!(points.len(), 5 * 4 * (13 + 10));
     for p in &points {
         let w = p.set.input_rad_s;

@@ -2,7 +2,7 @@
 
 use crate::common::{RPM, ZERO, car};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::variator::{Held, RigFlags, VariatorRig};
+use cvtcycle_model::rig::variator::{Held, RigFlags, VariatorRig};
 use cvtcycle_model::transmission::cvt::variator::{Formulation, Geometry};
 
 /// The rig's high ratio.

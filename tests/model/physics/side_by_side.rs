@@ -4,8 +4,8 @@
 
 use crate::belt_properties::{ALL, thesis_belt};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::fluid::{BandFriction, Friction};
-use cvtcycle_model::math::{Curve, Gather, Left, Mask, Real, asin, ramp, tanh};
+use cvtcycle_model::lubricant::{BandFriction, Friction};
+use cvtcycle_model::math::{Curve, Gather, Mask, Real, asin, ramp, tanh};
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
 };
@@ -48,10 +48,7 @@ fn solve<R: Real>(
     belt: &Belt<R>,
     friction: &Friction<R>,
     [belt_k, eta, ratio, w, torque, clamp]: State<R>,
-) -> (BeltAtRatio<R>, BandFriction<R>, BeltLoad<R>, BeltState<R>)
-where
-    f64: Left<R>,
-{
+) -> (BeltAtRatio<R>, BandFriction<R>, BeltLoad<R>, BeltState<R>) {
     let at = BeltAtRatio::new(belt, ratio);
     let sliding = belt.sliding_m_s(ratio, w);
     let band = friction.band(belt_k, eta, sliding);
@@ -163,10 +160,7 @@ fn drawn(formulation: Formulation, of: &Friction, draw: &mut Draw) -> Drawn {
 }
 
 /// Solves the belts side by side and one by one.
-fn hold_belts<R: Real>(like: R, of: &Drawn)
-where
-    f64: Left<R>,
-{
+fn hold_belts<R: Real>(like: R, of: &Drawn) {
     let side_by_side = solve(
         &together(like, &of.belts),
         &together(like, &of.frictions),
@@ -186,7 +180,7 @@ fn each_lane_has_the_bits_of_its_run_alone() {
     }
 }
 
-/// What the belt meets at its bounds: at rest, without clamping, at ratio 1, with NaN; one lane's does not spread.
+/// Bounds of the belt: at rest, without clamping, at ratio 1, with NaN. A lane at one of them does not change the others.
 #[test]
 fn bounds_of_one_lane_leave_the_others_alone() {
     let point: [State<f64>; 4] = [
@@ -207,22 +201,19 @@ fn bounds_of_one_lane_leave_the_others_alone() {
 const EDGES: [f64; MOST] = [-1.0, 0.25, 2.0, f64::NAN, -0.0, 0.0, f64::INFINITY, 1e-320];
 
 /// Functions of one number, over any number type.
-fn functions<R: Real>(x: R) -> [R; 10]
-where
-    f64: Left<R>,
-{
+fn functions<R: Real>(x: R) -> [R; 10] {
     let square = x * x;
     [
-        x.most(0.0),
-        x.least(1.0),
-        x.held(0.0, 1.0),
+        x.max(0.0),
+        x.min(1.0),
+        x.clamp(0.0, 1.0),
         Real::abs(x),
         x.exp(),
         square.ln(),
         square.sqrt(),
-        ramp(x, x.filled(0.0), x.filled(1.0)),
-        ramp(x, x.filled(1.0), x.filled(0.0)),
-        ramp(x, x.filled(0.25), x.filled(0.25)),
+        ramp(x, x.splat(0.0), x.splat(1.0)),
+        ramp(x, x.splat(1.0), x.splat(0.0)),
+        ramp(x, x.splat(0.25), x.splat(0.25)),
     ]
 }
 
@@ -230,11 +221,8 @@ fn alone(lane: usize) -> [f64; 10] {
     functions(EDGES[lane])
 }
 
-fn hold_choices<R: Real>(like: R)
-where
-    f64: Left<R>,
-{
-    let x = like.by_lane(|lane| EDGES[lane]);
+fn hold_choices<R: Real>(like: R) {
+    let x = like.map_lanes(|lane| EDGES[lane]);
     for (k, y) in functions(x).into_iter().enumerate() {
         for lane in 0..R::LANES {
             let (y, alone) = (y.lane(lane), alone(lane)[k]);
@@ -245,12 +233,12 @@ where
             );
         }
     }
-    let positive = x.above(0.0);
-    assert!((!positive).any() && !(positive & x.filled(0.0).above(x)).any());
+    let positive = x.gt(0.0);
+    assert!((!positive).any() && !(positive & x.splat(0.0).gt(x)).any());
     assert!((!positive | positive).all() && !positive.all());
     for (lane, edge) in EDGES.into_iter().enumerate().take(R::LANES) {
         assert_eq!(positive.lane(lane), edge > 0.0);
-        let same = x.is_same(x.with_lane(lane, 7.0));
+        let same = x.bits_eq(x.with_lane(lane, 7.0));
         assert!((0..R::LANES).all(|other| same.lane(other) == (other != lane)));
     }
 }
@@ -264,7 +252,9 @@ fn choices_and_bounds_are_those_of_f64() {
 fn hold_curves<R: Real>(like: R, points: &[Vec<(f64, f64)>], x: &[f64; MOST]) {
     let curve = |lane: usize| Curve::new(&points[lane % points.len()]).unwrap();
     let own: Vec<Curve> = (0..R::LANES).map(curve).collect();
-    let y = like.by_lane(|lane| x[lane]).along(&together(like, &own));
+    let y = like
+        .map_lanes(|lane| x[lane])
+        .interpolate(&together(like, &own));
     for (lane, own) in own.iter().enumerate() {
         let (y, alone) = (y.lane(lane), own.at(x[lane]));
         assert!(
@@ -309,7 +299,7 @@ fn curves_are_those_of_f64() {
 
 /// Inner functions whose lanes are worked out together, and one by one where they lie far apart.
 fn hold_angles<R: Real>(like: R, x: &[f64; MOST]) {
-    let lanes = like.by_lane(|lane| x[lane]);
+    let lanes = like.map_lanes(|lane| x[lane]);
     for lane in 0..R::LANES {
         for (y, alone) in [(lanes.asin(), asin(x[lane])), (lanes.tanh(), tanh(x[lane]))] {
             let y = y.lane(lane);

@@ -273,7 +273,7 @@ fn stops_need_a_warm_box() {
     assert!(fuel(&warm) < fuel(&plain));
     let cold = run(&with, &ece, -10.0, 1.0);
     assert_eq!(stops(&cold.rows), 0);
-    // Its steps are cut where it could stop.
+    // The steps of the trace are cut where the engine could stop.
     let plain = run(&without, &ece, -10.0, 1.0);
     assert!((fuel(&cold) / fuel(&plain) - 1.0).abs() < 1e-4);
     // Without the ambient's limit the oil decides.

@@ -6,9 +6,9 @@ use cvtcycle_config::render;
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_model::drive::{Conditions, Outcome, Start, drive};
 use cvtcycle_model::flags::Flags;
-use cvtcycle_model::fluid::FilmPowers;
 use cvtcycle_model::keys::file_table::FileRows;
 use cvtcycle_model::keys::rad_s;
+use cvtcycle_model::lubricant::FilmPowers;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::{

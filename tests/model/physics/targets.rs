@@ -8,10 +8,10 @@
 
 use crate::common::{RPM, ZERO, at, car, consumption, cycle, larger, soak_rows};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::drive::Row;
 use cvtcycle_model::drive::{Start, drive};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint};
 use cvtcycle_model::thermal::{BELT, ENGINE_OIL, SUMP};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;

@@ -14,7 +14,7 @@ use cvtcycle_model::thermal::{COOLANT, Heat, HeatInput, SUMP};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::{StepOutput, Transmission};
 
-/// What must be continuous: losses W, engine speed rad/s, flywheel torque Nm, throttle, pressure bar, slip, output W, brake W, deficit W.
+/// Quantities that must be continuous: losses W, engine speed rad/s, flywheel torque Nm, throttle, pressure bar, slip, output W, brake W, deficit W.
 const EXTRA: [&str; 9] = [
     "engine_speed",
     "flywheel_torque",

@@ -1,11 +1,11 @@
-//! Pictures of a matrix of ambient temperatures: sound, and their titles true.
+//! Pictures of a matrix of ambient temperatures: valid, with correct titles.
 
 use super::svg_checks::check;
-use crate::titles::{is, title, written};
+use crate::titles::{assert_number, title, written};
 use cvtcycle::report::charts::ambient::{ambient_fuel, ambient_penalty, warm_up};
 use cvtcycle::study::answer::ambient::{FuelPart, Matrix, WarmUp};
 
-/// Made-up fuel of two cars from two starts at three temperatures, not in their order.
+/// Artificial fuel of two cars from two starts at three unsorted temperatures.
 fn matrix(excess: [f64; 3]) -> Matrix {
     Matrix {
         cars: vec!["car".to_owned(), "other".to_owned()],
@@ -29,24 +29,24 @@ fn fuel_at_the_ends_is_that_of_the_first_start() {
     check(&picture);
     let title = title(&picture.svg);
     let said = written(title.split(" L/100 km at ").next().unwrap());
-    is(&said[0], 8.456, &title);
+    assert_number(&said[0], 8.456, &title);
     let said = written(title.split(" L/100 km at ").nth(1).unwrap());
     for (said, wanted) in said.iter().zip([-10.0, 6.789, 40.0]) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
 }
 
 #[test]
-fn the_excess_is_from_its_least_to_its_largest_and_only_more_where_it_always_is() {
-    let of = |excess| title(&ambient_penalty(&matrix(excess), "cars").unwrap().svg);
+fn the_excess_ranges_from_minimum_to_maximum_and_is_called_more_only_if_always_positive() {
+    let title_for = |excess| title(&ambient_penalty(&matrix(excess), "cars").unwrap().svg);
     for (excess, wanted, more) in [
         ([6.31, 7.04, 7.82], [6.31, 7.82], true),
         ([1.2, -0.4, 3.1], [-0.4, 3.1], false),
         ([-1.2, -0.4, -3.1], [-3.1, -0.4], false),
     ] {
-        let title = of(excess);
+        let title = title_for(excess);
         for (said, wanted) in written(&title).iter().zip(wanted) {
-            is(said, wanted, &title);
+            assert_number(said, wanted, &title);
         }
         assert_eq!(
             title.contains("more than other at every temperature"),
@@ -77,6 +77,6 @@ fn the_sump_ends_where_the_first_car_ends() {
     check(&picture);
     let title = title(&picture.svg);
     for (said, wanted) in written(&title).iter().zip([31.4, -10.0, 71.6, 40.0]) {
-        is(said, wanted, &title);
+        assert_number(said, wanted, &title);
     }
 }

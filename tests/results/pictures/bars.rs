@@ -54,7 +54,7 @@ fn bars_are_in_proportion_and_shares_are_of_the_own_car() {
 }
 
 #[test]
-fn nothing_or_broken_numbers_are_still_pictures() {
+fn no_data_and_non_finite_numbers_give_valid_pictures() {
     for cars in [
         vec![],
         vec![car("", &[])],
@@ -68,7 +68,7 @@ fn nothing_or_broken_numbers_are_still_pictures() {
 }
 
 #[test]
-fn parts_stand_end_to_end_and_the_label_is_their_sum() {
+fn stacked_parts_join_and_the_label_is_their_sum() {
     let parts = |k: f64| {
         vec![
             (Component::Pump, 40.0 * k),
@@ -80,12 +80,12 @@ fn parts_stand_end_to_end_and_the_label_is_their_sum() {
         ("ece15".to_owned(), vec![parts(4.0), parts(1.0)]),
         ("e<u>dc".to_owned(), vec![parts(2.0), vec![]]),
     ];
-    let of = PhaseLosses {
+    let phase_losses = PhaseLosses {
         subject: "s".to_owned(),
         cars: vec!["a".to_owned(), "very long name of a car & more".repeat(4)],
         groups,
     };
-    let picture = loss_by_phase(&of);
+    let picture = loss_by_phase(&phase_losses);
     check(&picture);
     assert!(picture.svg.contains(">262.0</text>") && picture.svg.contains(">0.0</text>"));
     let all: f64 = picture.table.rows.iter().map(|row| numbers(&row[3])).sum();
@@ -107,7 +107,7 @@ fn parts_stand_end_to_end_and_the_label_is_their_sum() {
 }
 
 #[test]
-fn no_phase_is_still_a_picture() {
+fn a_picture_without_phases_is_valid() {
     check(&loss_by_phase(&PhaseLosses::default()));
     let no_cars = PhaseLosses {
         groups: vec![("g".to_owned(), vec![])],

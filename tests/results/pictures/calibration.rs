@@ -1,13 +1,13 @@
 //! Pictures of calibrations.
 
 use super::svg_checks::{check, numbers};
-use crate::titles::{is, number, title, written};
+use crate::titles::{assert_number, number, title, written};
+use cvtcycle::calibrate::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::calibration::{
     calibration_pictures, correlation_plot, parameters_plot, residuals_plot, scatter_plot,
     trace_plots,
 };
-use cvtcycle::study::fit::outcome::{Direction, Fold, Outcome, Parameter, Residual, SCHEMA, Start};
 
 #[path = "../../fixtures/outcome.rs"]
 mod outcomes;
@@ -57,7 +57,7 @@ fn a_picture_is_there_where_it_has_data() {
     assert!(names("nothing").is_empty());
 }
 
-/// A cell against the number of the outcome, to half of its last digit.
+/// Asserts that a cell equals a number of the outcome, to half a unit in its last digit.
 fn same(cell: &str, wanted: Option<f64>) {
     match wanted {
         None => assert_eq!(cell, ""),
@@ -159,8 +159,8 @@ fn a_trace_has_a_row_for_each_value_up_to_600_and_draws_its_deviation() {
 }
 
 #[test]
-fn marks_stand_where_the_numbers_are() {
-    // A fitted residual of zero is in the middle of the grey band, for the band is as wide on both sides.
+fn marks_are_placed_at_their_numbers() {
+    // A fitted residual of zero is in the middle of the grey band, which is symmetric.
     let mut outcome = named("one");
     (
         outcome.residuals[0].after_sd,
@@ -184,13 +184,13 @@ fn marks_stand_where_the_numbers_are() {
         .expect("a mark");
     let centre = number(&band, "x") + 0.5 * number(&band, "width");
     assert!((number(&mark, "cx") - centre).abs() <= 2.0);
-    // 40 standard deviations are beyond three times the others, and marked as such.
+    // 40 standard deviations are beyond three times the others, and marked so.
     assert!(
         picture.table.note.contains("1 residuals"),
         "{}",
         picture.table.note
     );
-    // With what is computed = measured the mark is on the line of agreement, which goes from corner to corner.
+    // With computed = measured the mark is on the diagonal of agreement.
     outcome.residuals[0].low = Some(outcome.residuals[0].after);
     outcome.residuals[0].high = outcome.residuals[0].low;
     let picture = scatter_plot(&outcome);
@@ -258,14 +258,14 @@ fn unknown_correlations_are_crossed_out_and_strong_ones_written() {
         .filter_map(|n| n.text());
     let written = written
         .map(|text| text.trim_start_matches('\u{2212}'))
-        // Those of the key have one decimal.
+        // Correlations of the colour key have one decimal.
         .filter(|text| text.len() == 4 && text.starts_with("0."))
         .count();
     assert!(strong > 0);
     assert_eq!(written, strong);
 }
 
-/// What a title says up to the subject of the calibration.
+/// Title without the subject of the calibration.
 fn sentence(picture: &Picture, outcome: &Outcome) -> String {
     let title = title(&picture.svg);
     let subject = outcome.title.replace('&', "&amp;");
@@ -283,44 +283,44 @@ fn titles_have_the_numbers_of_the_outcome() {
         if matches!(name, "nothing" | "odd") {
             continue;
         }
-        let of = |picture: &Picture| {
+        let title_and_numbers = |picture: &Picture| {
             (
                 sentence(picture, &outcome),
                 written(&sentence(picture, &outcome)),
             )
         };
-        let (text, said) = of(&scatter_plot(&outcome));
-        let squares = |of: fn(&Residual) -> Option<f64>| {
-            let all: Option<Vec<f64>> = outcome.residuals.iter().map(of).collect();
+        let (text, said) = title_and_numbers(&scatter_plot(&outcome));
+        let squares = |title_and_numbers: fn(&Residual) -> Option<f64>| {
+            let all: Option<Vec<f64>> = outcome.residuals.iter().map(title_and_numbers).collect();
             all.map(|all| (all.iter().map(|x| x * x).sum::<f64>() / all.len() as f64).sqrt())
         };
         if let (Some(before), Some(after)) =
             (squares(|r| r.before_sd), squares(|r| Some(r.after_sd)))
         {
-            is(&said[0], before, &text);
-            is(said.last().unwrap(), after, &text);
+            assert_number(&said[0], before, &text);
+            assert_number(said.last().unwrap(), after, &text);
         }
-        let (text, said) = of(&residuals_plot(&outcome));
-        let within = |of: fn(&Residual) -> Option<f64>| {
-            let all = outcome.residuals.iter().filter_map(of);
+        let (text, said) = title_and_numbers(&residuals_plot(&outcome));
+        let within = |title_and_numbers: fn(&Residual) -> Option<f64>| {
+            let all = outcome.residuals.iter().filter_map(title_and_numbers);
             all.filter(|x| x.abs() <= 2.0).count() as f64
         };
-        is(&said[0], within(|r| Some(r.after_sd)), &text);
-        is(&said[1], outcome.residuals.len() as f64, &text);
+        assert_number(&said[0], within(|r| Some(r.after_sd)), &text);
+        assert_number(&said[1], outcome.residuals.len() as f64, &text);
         if said.len() > 2 {
-            is(&said[2], within(|r| r.left_out_sd), &text);
+            assert_number(&said[2], within(|r| r.left_out_sd), &text);
             let known = outcome.residuals.iter().filter(|r| r.left_out_sd.is_some());
-            is(&said[3], known.count() as f64, &text);
+            assert_number(&said[3], known.count() as f64, &text);
         }
-        let (text, _) = of(&parameters_plot(&outcome));
+        let (text, _) = title_and_numbers(&parameters_plot(&outcome));
         let least = outcome.parameters.iter().filter_map(|p| p.prior_share);
         let least = least.fold(f64::INFINITY, f64::min);
-        is(
+        assert_number(
             &written(text.split(": ").last().unwrap())[0],
             100.0 * least,
             &text,
         );
-        let (text, said) = of(&correlation_plot(&outcome));
+        let (text, said) = title_and_numbers(&correlation_plot(&outcome));
         let known = |(i, j): (usize, usize)| Some((outcome.correlation[i][j]?, i, j));
         let pairs = (0..outcome.parameters.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
         if let Some((r, i, j)) = pairs
@@ -328,7 +328,7 @@ fn titles_have_the_numbers_of_the_outcome() {
             .max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         {
             for (said, wanted) in said.iter().zip([r, j as f64 + 1.0, i as f64 + 1.0]) {
-                is(said, wanted, &text);
+                assert_number(said, wanted, &text);
             }
         }
     }
@@ -345,7 +345,7 @@ fn the_title_of_a_trace_has_its_distance_from_the_measured_one() {
             (rows.iter().map(square).sum::<f64>() / rows.len() as f64).sqrt()
         };
         let said = written(&text);
-        // The cells are rounded.
+        // Cells are rounded.
         assert!(
             (number(&said[0]) - off(3)).abs() < 0.02,
             "{} {}: {text}",

@@ -1,4 +1,4 @@
-//! Figures that a decision is made on: true titles, whole sums, pictures of nothing.
+//! Figures for decisions: correct titles, complete sums, empty pictures.
 
 use super::svg_checks::{check, numbers};
 use cvtcycle::model::transmission::component::LossGroup;
@@ -7,7 +7,7 @@ use cvtcycle::report::charts::decision::{
 };
 use cvtcycle::report::charts::figures::Term;
 
-/// Its title with plain spaces.
+/// Title with plain spaces.
 fn title(svg: &str) -> String {
     let title = svg.split("<title>").nth(1).unwrap();
     title
@@ -18,7 +18,7 @@ fn title(svg: &str) -> String {
 }
 
 #[test]
-fn the_strip_says_whether_the_sign_is_sure() {
+fn the_strip_states_if_the_sign_is_certain() {
     let row = |drawn: Option<[f64; 3]>| Against {
         baseline: "five <gears>".to_owned(),
         title: "a car with <gears> (not like for like)".to_owned(),
@@ -66,12 +66,12 @@ fn the_waterfall_ends_at_the_fuel_of_the_subject() {
     let terms = terms
         .map(|(name, kj)| (name.to_owned(), Term::Other, kj))
         .to_vec();
-    let of = PerKm {
+    let per_km = PerKm {
         names: ["own".to_owned(), "other".to_owned()],
         fuel: [2489.3, 2342.0],
         terms,
     };
-    let picture = waterfall(&of, "somewhere");
+    let picture = waterfall(&per_km, "somewhere");
     check(&picture);
     let after: Vec<f64> = picture
         .table
@@ -97,7 +97,7 @@ fn the_waterfall_ends_at_the_fuel_of_the_subject() {
 }
 
 #[test]
-fn drives_again_and_again_are_summed_and_named() {
+fn repeated_drives_are_summed_and_named() {
     let drive = |oil_degc, pump, belt| Repeat {
         oil_degc,
         losses_kj: vec![(LossGroup::Pump, pump), (LossGroup::Belt, belt)],

@@ -2,21 +2,21 @@
 
 use super::svg_checks::{check, numbers};
 use cvtcycle::output::Component;
-use cvtcycle::report::charts::figures::{Difference, DifferenceTerm, Term, difference_bars};
+use cvtcycle::report::charts::figures::{DifferenceTerm, EnergyDifference, Term, difference_bars};
 
-fn two() -> Difference {
-    let mut two = Difference {
+fn two() -> EnergyDifference {
+    let mut two = EnergyDifference {
         names: ["3 mm & <band>".to_owned(), "2 mm".to_owned()],
         fuel_kj_per_l: [32_000.0, 31_500.0],
         distance_km: [11.0, 10.9],
         terms: vec![
             DifferenceTerm::term("Heat to the engine", Term::EngineHeat, [15_000.0, 14_900.0]),
             DifferenceTerm::term("Rotating parts", Term::Kinetic, [-0.8, 0.0]),
-            DifferenceTerm::of(Component::BeltBand, [390.0, 520.5]),
-            DifferenceTerm::of(Component::BeltWedge, [110.0, 110.0]),
+            DifferenceTerm::component(Component::BeltBand, [390.0, 520.5]),
+            DifferenceTerm::component(Component::BeltWedge, [110.0, 110.0]),
             DifferenceTerm::term("Rolling and air", Term::Wheels, [2300.0, 2310.0]),
         ],
-        ..Difference::default()
+        ..EnergyDifference::default()
     };
     two.fuel_kj = [0, 1].map(|k| two.terms.iter().map(|t| t.kj[k]).sum());
     two
@@ -24,8 +24,8 @@ fn two() -> Difference {
 
 #[test]
 fn terms_add_up_to_the_difference_of_fuel() {
-    let of = two();
-    let picture = difference_bars(&of);
+    let difference = two();
+    let picture = difference_bars(&difference);
     check(&picture);
     let (fuel, terms) = picture.table.rows.split_last().expect("rows");
     for column in 1..7 {
@@ -37,8 +37,8 @@ fn terms_add_up_to_the_difference_of_fuel() {
         );
     }
     let (a, b) = (
-        of.fuel_kj[0] / 32_000.0 / 11.0 * 100.0,
-        of.fuel_kj[1] / 31_500.0 / 10.9 * 100.0,
+        difference.fuel_kj[0] / 32_000.0 / 11.0 * 100.0,
+        difference.fuel_kj[1] / 31_500.0 / 10.9 * 100.0,
     );
     assert!((numbers(&fuel[6]) - (b - a)).abs() < 1e-4);
 }
@@ -76,19 +76,23 @@ fn less_goes_left_of_zero_and_more_goes_right() {
 }
 
 #[test]
-fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
-    let mut of = two();
-    of.fuel_kj[1] += 50.0;
-    assert!(difference_bars(&of).svg.contains("Not accounted for"));
+fn missing_terms_are_named_and_an_empty_picture_is_valid() {
+    let mut difference = two();
+    difference.fuel_kj[1] += 50.0;
+    assert!(
+        difference_bars(&difference)
+            .svg
+            .contains("Not accounted for")
+    );
     assert!(!difference_bars(&two()).svg.contains("Not accounted for"));
-    check(&difference_bars(&Difference::default()));
-    let same = Difference {
-        terms: vec![DifferenceTerm::of(Component::Seal, [5.0, 5.0])],
+    check(&difference_bars(&EnergyDifference::default()));
+    let same = EnergyDifference {
+        terms: vec![DifferenceTerm::component(Component::Seal, [5.0, 5.0])],
         fuel_kj: [5.0, 5.0],
         ..two()
     };
     check(&difference_bars(&same));
-    let broken = Difference {
+    let broken = EnergyDifference {
         terms: vec![DifferenceTerm::term(
             &"n".repeat(99),
             Term::Other,
@@ -98,8 +102,8 @@ fn what_is_missing_is_named_and_nothing_is_still_a_picture() {
         ..two()
     };
     check(&difference_bars(&broken));
-    let falls = Difference {
-        terms: vec![DifferenceTerm::of(Component::Seal, [9.0, 5.0])],
+    let falls = EnergyDifference {
+        terms: vec![DifferenceTerm::component(Component::Seal, [9.0, 5.0])],
         fuel_kj: [9.0, 5.0],
         ..two()
     };

@@ -27,7 +27,7 @@ fn car() -> CarEnergy {
     car
 }
 
-/// Energy of the rows of one way, kJ/km.
+/// Energy of the rows of one direction, kJ/km.
 fn sum(picture: &Picture, way: &str) -> f64 {
     picture
         .table
@@ -38,7 +38,7 @@ fn sum(picture: &Picture, way: &str) -> f64 {
         .sum()
 }
 
-/// Heights of the ribbons at both ends, canvas units, by row of the table.
+/// Widths of the ribbons at both ends, canvas units, by row of the table.
 fn widths(svg: &str) -> Vec<(usize, f64, f64)> {
     let doc = roxmltree::Document::parse(svg).expect("well-formed");
     let ribbons = doc
@@ -63,7 +63,7 @@ fn widths(svg: &str) -> Vec<(usize, f64, f64)> {
 }
 
 #[test]
-fn what_enters_leaves_and_widths_are_in_proportion() {
+fn energy_is_balanced_and_widths_are_proportional() {
     for picture in [energy_flow(&car()), transmission_flow(&car())] {
         check(&picture);
         let (entered, left) = (sum(&picture, "enters"), sum(&picture, "leaves"));
@@ -116,7 +116,7 @@ fn every_flow_has_its_label_however_thin() {
     );
 }
 
-/// Truth: the sum by hand. Parts below half a per cent of the work at the flywheel are one flow with their names.
+/// Truth: the sum by hand. Parts below half a per cent of the work at the flywheel are merged into one flow with their names.
 #[test]
 fn small_parts_are_one_flow() {
     let mut car = car();
@@ -131,7 +131,7 @@ fn small_parts_are_one_flow() {
 }
 
 #[test]
-fn odd_energies_are_still_pictures() {
+fn unusual_energies_give_valid_pictures() {
     let nothing = CarEnergy::default();
     let driven = CarEnergy {
         wheels_kj_km: -900.0,

@@ -10,7 +10,7 @@ fn lone(points: &[(f64, f64)]) -> LinePanel {
     }
 }
 
-fn of(panels: Vec<LinePanel>) -> LineChart {
+fn chart(panels: Vec<LinePanel>) -> LineChart {
     let names = vec![
         (Look::default(), "a".to_owned()),
         (
@@ -45,7 +45,7 @@ fn a_table_has_a_column_for_each_line_and_a_row_for_each_place() {
         heading: "warm".to_owned(),
         ..lone(&[(1000.0, -0.5)])
     };
-    let picture = line_chart(&of(vec![first, second]));
+    let picture = line_chart(&chart(vec![first, second]));
     let columns: Vec<(&str, &str)> = picture
         .table
         .columns
@@ -93,7 +93,7 @@ fn panels_over_other_quantities_have_columns_of_their_own() {
         x_title: "Pressure [bar]",
         ..lone(&[(10.0, 3.0)])
     };
-    let picture = line_chart(&of(vec![lone(&[(1000.0, 1.0)]), own]));
+    let picture = line_chart(&chart(vec![lone(&[(1000.0, 1.0)]), own]));
     assert_eq!(picture.table.columns.len(), 4);
     assert_eq!(
         picture
@@ -113,20 +113,20 @@ fn panels_over_other_quantities_have_columns_of_their_own() {
 #[test]
 fn long_tables_are_thinned_and_say_so() {
     let points: Vec<(f64, f64)> = (0..1300).map(|i| (f64::from(i), 1.0)).collect();
-    let picture = line_chart(&of(vec![lone(&points)]));
+    let picture = line_chart(&chart(vec![lone(&points)]));
     assert_eq!(picture.table.rows.len(), 434);
     assert!(picture.table.note.contains("in 3"));
 }
 
 #[test]
-fn lines_that_turn_back_keep_their_way_and_gaps_stay_gaps() {
-    let back = line_chart(&of(vec![lone(&[(0.0, 0.0), (10.0, 1.0), (5.0, 2.0)])]));
+fn lines_that_turn_back_keep_their_order_and_gaps_stay_gaps() {
+    let back = line_chart(&chart(vec![lone(&[(0.0, 0.0), (10.0, 1.0), (5.0, 2.0)])]));
     assert_eq!(
         back.svg.matches("stroke-width=\"8.8\"").count(),
         2,
         "the line and its entry"
     );
-    let gap = line_chart(&of(vec![lone(&[
+    let gap = line_chart(&chart(vec![lone(&[
         (0.0, 0.0),
         (1.0, 1.0),
         (2.0, f64::NAN),
@@ -144,16 +144,16 @@ fn lines_that_turn_back_keep_their_way_and_gaps_stay_gaps() {
 }
 
 #[test]
-fn nothing_to_draw_is_still_a_picture() {
+fn a_chart_without_lines_is_valid() {
     for empty in [
         LineChart::default(),
-        of(vec![LinePanel::default()]),
-        of(vec![lone(&[(f64::NAN, 1.0)])]),
+        chart(vec![LinePanel::default()]),
+        chart(vec![lone(&[(f64::NAN, 1.0)])]),
     ] {
         let picture = line_chart(&empty);
         assert!(picture.svg.ends_with("</svg>\n") && !picture.svg.contains("inf"));
     }
-    assert!(line_chart(&of(vec![lone(&[])])).svg.contains("no data"));
+    assert!(line_chart(&chart(vec![lone(&[])])).svg.contains("no data"));
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn many_lines_in_words_are_the_span_of_each_quantity() {
         ..LinePanel::default()
     };
     let said = |panels: Vec<LinePanel>| {
-        let svg = line_chart(&of(panels)).svg;
+        let svg = line_chart(&chart(panels)).svg;
         let words = svg.split("<desc>").nth(1).expect("a picture in words");
         words.split("</desc>").next().unwrap_or_default().to_owned()
     };

@@ -1,4 +1,4 @@
-//! Every picture, ordinary and not: sound, readable and true to its numbers.
+//! Pictures, typical and unusual: valid, readable and equal to their numbers.
 #![allow(
     clippy::unwrap_used,
     clippy::expect_used,

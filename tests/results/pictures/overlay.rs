@@ -90,7 +90,7 @@ fn a_value_between_two_steps_is_interpolated() {
 }
 
 #[test]
-fn nothing_is_still_a_picture() {
+fn an_empty_picture_is_valid() {
     check(&overlay(&Overlay::default()));
     check(&overlay(&Overlay {
         panels: vec![OverlayPanel::default(); 4],

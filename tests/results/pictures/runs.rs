@@ -333,7 +333,7 @@ fn stacked_losses_keep_their_energy() {
 }
 
 #[test]
-fn bars_stand_on_zero_and_are_as_high_as_their_values() {
+fn bars_start_at_zero_and_have_the_height_of_their_values() {
     let history = history(true, &rows(10, 1.0, true), &phases());
     let run = run("car", &history);
     let Picture { svg, table } = fuel_bars(std::slice::from_ref(&run));

@@ -1,11 +1,11 @@
-//! What holds for every picture.
+//! Checks for every picture.
 
 use cvtcycle::report::charts::Picture;
 
 /// Canvas units per pixel.
 const UNITS: f64 = 4.0;
 
-/// About how wide a text comes out in a wide sans-serif face.
+/// Approximate width of a text in a wide sans-serif face.
 fn text_width(text: &str, size: f64) -> f64 {
     let ems = text.chars().map(|c| match c {
         c if "ijl.,:;|'!()[] ".contains(c) => 0.4,
@@ -17,7 +17,7 @@ fn text_width(text: &str, size: f64) -> f64 {
     ems.sum::<f64>() * size
 }
 
-/// A number of a table cell.
+/// Parses a table cell.
 pub fn numbers(text: &str) -> f64 {
     text.replace('\u{2212}', "-").parse().unwrap_or(f64::NAN)
 }
@@ -28,7 +28,7 @@ struct Box {
     y: (f64, f64),
 }
 
-/// No broken number, no text over another or outside, no width beyond A4, every marked row in the table and every row as long as its head.
+/// Checks numbers, texts that overlap or leave the canvas, a width within A4, a table row for each mark, and equal lengths of rows.
 pub fn check(picture: &Picture) {
     let svg = &picture.svg;
     let doc = roxmltree::Document::parse(svg).expect("well-formed");
@@ -60,7 +60,7 @@ pub fn check(picture: &Picture) {
             );
         }
         if node.has_tag_name("text") {
-            let found = of(&node);
+            let found = text_box(&node);
             // A frame without numbers on its axis has empty labels.
             boxes.extend((!found.text.is_empty()).then_some(found));
         }
@@ -92,8 +92,8 @@ pub fn check(picture: &Picture) {
     }
 }
 
-/// About the box of a text, pixels.
-fn of(node: &roxmltree::Node) -> Box {
+/// Approximate box of a text, pixels.
+fn text_box(node: &roxmltree::Node) -> Box {
     let number = |name: &str| {
         node.attribute(name)
             .and_then(|x| x.parse::<f64>().ok())

@@ -1,10 +1,10 @@
-//! Titles are sentences, and their numbers those of the table.
+//! Titles are sentences with numbers of their table.
 
 use cvtcycle::output::Component;
 use cvtcycle::report::charts::figures::{
-    CarEnergy, CarLosses, Difference, DifferenceTerm, OverlayPanel, PhaseLosses, TraceDifference,
-    difference_bars, energy_flow, loss_by_component, loss_by_phase, trace_difference,
-    transmission_flow,
+    CarEnergy, CarLosses, DifferenceTerm, EnergyDifference, OverlayPanel, PhaseLosses,
+    TraceDifference, difference_bars, energy_flow, loss_by_component, loss_by_phase,
+    trace_difference, transmission_flow,
 };
 use cvtcycle::report::charts::{
     Picture, fuel_bars, losses, operating_points, pressure, temperatures,
@@ -14,17 +14,17 @@ use super::svg_checks::{check, numbers};
 use crate::fixtures::{history, phases, rows, run};
 use crate::titles::{number, written};
 
-/// The title, without the subject after it where it is asked for.
+/// Title, without the subject on request.
 fn title(picture: &Picture) -> String {
     crate::titles::title(&picture.svg)
 }
 
-/// The numbers of a text.
+/// Numbers of a text.
 fn numbers_in(text: &str) -> Vec<f64> {
     written(text).iter().map(|text| number(text)).collect()
 }
 
-/// The sum of a column over rows.
+/// Sum of a column over rows.
 fn sum<'a>(rows: impl Iterator<Item = &'a Vec<String>>, column: usize) -> f64 {
     rows.map(|row| numbers(&row[column])).sum()
 }
@@ -79,7 +79,7 @@ fn temperatures_pressures_and_fuel_of_a_title_are_those_of_the_table() {
     );
 
     let picture = pressure(&car);
-    // The table lists every second step, the title knows all.
+    // The table lists every second step; the title uses all.
     let finite = |column: &str| {
         let all = history.column(column).iter().copied();
         all.filter(|x| x.is_finite()).collect::<Vec<_>>()
@@ -212,18 +212,18 @@ fn the_largest_losses_of_a_title_have_their_share() {
 
 #[test]
 fn differences_of_a_title_are_those_of_the_table() {
-    let of = Difference {
+    let difference = EnergyDifference {
         names: ["a".to_owned(), "b".to_owned()],
         fuel_kj_per_l: [31_000.0; 2],
         distance_km: [11.0; 2],
         fuel_kj: [27_000.0, 26_900.0],
         terms: vec![
-            DifferenceTerm::of(Component::BeltBand, [500.0, 420.0]),
-            DifferenceTerm::of(Component::Pump, [900.0, 899.9]),
-            DifferenceTerm::of(Component::Seal, [90.0, 90.1]),
+            DifferenceTerm::component(Component::BeltBand, [500.0, 420.0]),
+            DifferenceTerm::component(Component::Pump, [900.0, 899.9]),
+            DifferenceTerm::component(Component::Seal, [90.0, 90.1]),
         ],
     };
-    let picture = difference_bars(&of);
+    let picture = difference_bars(&difference);
     check(&picture);
     let said = title(&picture);
     assert!(
@@ -245,7 +245,7 @@ fn fuel_that_one_run_has_burnt_more_grows_to_that_of_the_title() {
             .map(|t| (f64::from(t), 1.0, g_s))
             .collect::<Vec<_>>()
     };
-    let of = TraceDifference {
+    let difference = TraceDifference {
         names: ["a".to_owned(), "b".to_owned()],
         speed_kmh: vec![(1.0, 0.0), (100.0, 50.0)],
         fuel_g_s: [flow(0.5), flow(0.45)],
@@ -258,7 +258,7 @@ fn fuel_that_one_run_has_burnt_more_grows_to_that_of_the_title() {
             ],
         }],
     };
-    let picture = trace_difference(&of);
+    let picture = trace_difference(&difference);
     check(&picture);
     let said = numbers_in(title(&picture).split(": ").next().unwrap());
     let last = picture.table.rows.last().unwrap();

@@ -21,7 +21,7 @@ fn all_time_is_in_the_table_and_lines_stay_in_the_panel() {
         .map(|v| (v * 100.0).clamp(850.0, 2600.0))
         .collect();
     let (mut speed, mut rpm, mut seconds) = (speed, rpm, vec![0.5; 500]);
-    // A soak with the engine off is no operating point.
+    // A soak with the engine off is not an operating point.
     speed.push(0.0);
     rpm.push(0.0);
     seconds.push(600.0);
@@ -81,7 +81,7 @@ fn the_axis_takes_in_whole_lines_and_says_which_are_outside() {
 }
 
 #[test]
-fn nothing_is_still_a_picture() {
+fn an_empty_picture_is_valid() {
     check(&variogram(&Variogram::default()));
     let broken = [f64::NAN, f64::INFINITY, 3.0];
     let lines = vec![GuideLine {

@@ -1,4 +1,4 @@
-//! Forms of a report: HTML, Markdown, and the cover; numbers in it.
+//! Forms of a report: HTML, Markdown, and the cover; number formats.
 
 use cvtcycle::report::charts::{Picture, PictureTable};
 use cvtcycle::report::cover::Cover;
@@ -46,7 +46,7 @@ fn words_stay_words_and_ids_stay_apart_in_html() {
     assert!(page.contains("Figure 2.") && page.contains("Table of figure 2"));
 }
 
-/// Hidden characters are shown, whatever the form.
+/// Hidden characters are displayed in every form.
 #[test]
 fn hidden_characters_are_seen_in_every_form() {
     let mut document = document();
@@ -161,7 +161,7 @@ fn a_number_keeps_its_unit_and_loses_a_rounded_sign() {
     );
 }
 
-/// ISO 80000-1: a space between number and unit, and between units that are multiplied; a minus is no hyphen.
+/// ISO 80000-1: a space between number and unit, and between multiplied units; a minus sign instead of a hyphen.
 #[test]
 fn texts_have_one_style_of_units_and_signs() {
     for (text, written) in [
@@ -175,7 +175,7 @@ fn texts_have_one_style_of_units_and_signs() {
             "-1 to 3, (-2), a-1, 2-3, x_-4",
             "\u{2212}1 to 3, (\u{2212}2), a-1, 2-3, x_-4",
         ),
-        // What is typed stays what it is.
+        // Input as typed is kept.
         (
             "cvtcycle run --ambient -10 --out x",
             "cvtcycle run --ambient -10 --out x",
@@ -192,7 +192,7 @@ fn texts_have_one_style_of_units_and_signs() {
 fn keys_break_at_their_joints_and_hashes_are_folded() {
     let mut section = Section::new("one", "One");
     let hash = "0123456789abcdef".repeat(4);
-    let mut table = ReportTable::of_words("Files", &["Key", "SHA-256"]);
+    let mut table = ReportTable::textual("Files", &["Key", "SHA-256"]);
     table.row([
         "transmission.cvt.belt.band_offset_mm".to_owned(),
         hash.clone(),

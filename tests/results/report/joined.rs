@@ -1,8 +1,8 @@
-//! Reports of several results: two runs, a run with its studies and validation. Truth: their summaries.
+//! Reports of several results: two runs, a run with studies and validation. Truth: their summaries.
 
 use super::*;
 
-/// Outside truth: the difference of the two summaries.
+/// Independent truth: the difference of the two summaries.
 #[test]
 fn val_two_runs_differ_by_what_their_summaries_differ() {
     let place = Place::new();
@@ -28,7 +28,7 @@ fn val_two_runs_differ_by_what_their_summaries_differ() {
         "{a} {b}"
     );
     assert!(words.contains("transmission.cvt.pump.displacement_cc_rev") && words.contains(" 12 "));
-    // The terms add up to the fuel's difference in kJ: the table under the bars.
+    // The terms in the table below the bars add up to the difference of fuel in kJ.
     let figure = &page[page.find("id=\"fig-difference\"").unwrap()..];
     let table = &figure[figure.find("<tbody>").unwrap()..figure.find("</tbody>").unwrap()];
     assert!(
@@ -74,7 +74,7 @@ fn studies_and_validation_come_into_the_report_of_a_run() {
 
     place.done(&["report", "cold/matrix"]);
     assert!(drawings(&place.text("cold/matrix/report.html")).len() >= 3);
-    // Half a study: reported as far as it is whole.
+    // Half a study is reported with its finished parts.
     let mark = fs::read_dir(place.path().join("cold/matrix/parts"))
         .unwrap()
         .map(|e| e.unwrap().path());

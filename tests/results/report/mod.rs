@@ -1,4 +1,4 @@
-//! `report`: the page says what the results say, and says what is missing. The page in a browser: tools/browser.
+//! `report`: the page has the numbers of the results, and names missing ones. tools/browser tests the page in a browser.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test may stop at once")]
 
 mod forms;
@@ -13,7 +13,7 @@ use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// The program in a directory of its own.
+/// Runs the program in a temporary directory.
 struct Place(TempDir);
 
 impl Place {
@@ -34,7 +34,7 @@ impl Place {
             .unwrap()
     }
 
-    /// Runs, and is content with nothing but success.
+    /// Runs a command that must succeed.
     fn done(&self, words: &[&str]) -> String {
         let out = self.cvtcycle(words);
         assert_eq!(
@@ -46,7 +46,7 @@ impl Place {
         String::from_utf8(out.stdout).unwrap()
     }
 
-    /// Runs, and wants an exit code and words on standard error.
+    /// Runs a command that must fail with an exit code and messages.
     fn refused(&self, words: &[&str], code: i32, said: &[&str]) {
         let out = self.cvtcycle(words);
         let stderr = String::from_utf8_lossy(&out.stderr);
@@ -72,7 +72,7 @@ impl Place {
     }
 }
 
-/// A short run of two cars, quick to make.
+/// Quick run of two cars.
 fn run(place: &Place, dir: &str, more: &[&str]) {
     let words = [
         "run",
@@ -91,7 +91,7 @@ fn run(place: &Place, dir: &str, more: &[&str]) {
     place.done(&[&words[..], more].concat());
 }
 
-/// A cold run with its report.
+/// Run at low temperature with its report.
 fn reported() -> Place {
     let place = Place::new();
     run(&place, "cold", &[]);
@@ -99,16 +99,16 @@ fn reported() -> Place {
     place
 }
 
-/// The ambient matrix of the same cycle.
+/// Ambient matrix of the same cycle.
 fn matrix(place: &Place, dir: &str) {
     place.done(&[
         "study", "ambient", "--cycle", "ece15", "--quiet", "--out", dir,
     ]);
 }
 
-/// The text of a page without its marks.
+/// Text of a page without markup.
 fn words_of(page: &str) -> String {
-    // A place where a key may be broken is no space.
+    // A possible line break within a key is not a space.
     let page = page.replace("<wbr>", "");
     let body = &page[page.find("<main").unwrap()..page.find("</main>").unwrap()];
     let mut text = String::new();
@@ -127,7 +127,7 @@ fn words_of(page: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Every figure's drawing, from its page.
+/// Drawing of each figure, from its page.
 fn drawings(page: &str) -> Vec<&str> {
     page.match_indices("<svg")
         .map(|(at, _)| &page[at..at + page[at..].find("</svg>").unwrap() + 6])
@@ -185,9 +185,9 @@ fn the_page_says_what_the_summary_says() {
     }
 }
 
-/// Two cars of one short name keep the names of their files: a table with two equal heads says nothing.
+/// Cars with equal short names keep the names of their files, since equal table heads are ambiguous.
 #[test]
-fn cars_have_their_short_names_where_these_are_their_own() {
+fn cars_have_short_names_if_these_are_unique() {
     let place = reported();
     let page = place.text("cold/report.html");
     assert!(
@@ -208,7 +208,7 @@ fn cars_have_their_short_names_where_these_are_their_own() {
     assert_eq!(shorts, ["CVT", "rover_216_5mt", "twice"]);
 }
 
-/// Numbers of a sentence: not those of names such as 5-speed or ECE15; the decimals of each.
+/// Numbers of a sentence with their decimals, without those in names such as 5-speed or ECE15.
 fn numbers_of(sentence: &str) -> Vec<(f64, usize)> {
     let words = sentence.split([' ', '\u{a0}', ':', ';', '(', ')', '%', '/']);
     let words = words.map(|word| word.trim_matches([',', '.', '+']).replace('\u{2212}', "-"));
@@ -219,7 +219,7 @@ fn numbers_of(sentence: &str) -> Vec<(f64, usize)> {
     words.filter_map(number).collect()
 }
 
-/// A title says nothing that the numbers under its figure do not: each of its numbers is one of them, rounded.
+/// Every number of a title is one of the numbers of its figure, rounded.
 #[test]
 fn titles_have_the_numbers_of_their_tables() {
     let place = Place::new();
@@ -265,7 +265,7 @@ fn titles_have_the_numbers_of_their_tables() {
     ] {
         let figure = page.split(&format!("id=\"fig-{id}\"")).nth(1).unwrap();
         let figure = &figure[..figure.find("</figure>").unwrap()];
-        // The sentence, without the line below it that has car and condition.
+        // Sentence without the line below it that has car and condition.
         let bold = figure.split("font-weight=\"bold\">").skip(1);
         let lines = bold.map(|rest| rest.split('<').next().unwrap());
         let title = &lines.take(2).collect::<Vec<_>>().join(" ");
@@ -285,7 +285,7 @@ fn titles_have_the_numbers_of_their_tables() {
             );
         }
     }
-    // The body stays short: what is left out is in the full report.
+    // The body is short; the full report has the rest.
     let others = page.matches("<details class=\"view").count();
     let count = drawings(&page).len() - others;
     assert!(others >= 5, "the same figures of other cars: {others}");
@@ -296,7 +296,7 @@ fn titles_have_the_numbers_of_their_tables() {
     );
 }
 
-/// Outside truth: a second reader of XML, and the table under a figure against the trace it was drawn from.
+/// Independent truth: a second XML parser, and the table of a figure against its trace.
 #[test]
 fn val_figures_are_whole_and_their_tables_are_the_trace() {
     let place = Place::new();
@@ -330,7 +330,7 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
         let width: f64 = root.attribute("width").unwrap().parse().unwrap();
         assert!(width <= 880.0, "{width} px is too wide for A4");
     }
-    // One name for one thing: no id is used twice in the page.
+    // Ids are unique in the page.
     let mut ids: Vec<&str> = page
         .match_indices(" id=\"")
         .map(|(at, _)| page[at + 5..].split('"').next().unwrap())
@@ -339,7 +339,7 @@ fn val_figures_are_whole_and_their_tables_are_the_trace() {
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(count, ids.len());
-    // The sump's temperature at the end, from the trace's last row, in the table of the warm-up figure.
+    // Final sump temperature from the trace's last row, in the table of the warm-up figure.
     let trace = place.text("cold/trace_rover_216_cvt.csv");
     let mut reader = csv::Reader::from_reader(trace.as_bytes());
     let column = reader
@@ -378,7 +378,7 @@ fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
         said["figures"].as_array().unwrap().len(),
         drawings(&first).len()
     );
-    // What a killed command was putting into place is completed first, and figures of an earlier report go.
+    // First completes the pending commit of a killed command, then replaces the figures of an earlier report.
     let (page, summary) = (
         place.text("cold/report.html"),
         place.text("cold/summary.json"),
@@ -400,7 +400,7 @@ fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
     ] {
         assert!(!place.has(&format!("cold/{gone}")), "{gone}");
     }
-    // A folder with something of the user's own in it is left alone.
+    // A folder with another file of the user is kept.
     place.write("cold/report_figures/mine.txt", "x");
     place.refused(
         &["report", "cold", "--force"],
@@ -410,7 +410,7 @@ fn the_same_run_gives_the_same_page_and_is_not_in_the_way_of_the_next() {
     assert!(place.has("cold/report_figures/mine.txt"));
 }
 
-/// Names of files and of phases that Markdown, HTML or an address would take for something else.
+/// Names of files and phases that Markdown, HTML or a URL would misinterpret.
 #[test]
 fn every_link_of_a_markdown_report_names_a_file_that_is_there() {
     let place = Place::new();

@@ -1,9 +1,9 @@
-//! What is no report, and what does not belong together.
+//! Directories without a report, and mismatched results.
 
 use super::*;
 
 #[test]
-fn what_is_missing_is_said_and_the_rest_is_there() {
+fn a_report_names_missing_results_and_shows_the_rest() {
     let place = Place::new();
     run(&place, "cold", &[]);
     fs::remove_file(place.path().join("cold/trace_rover_216_cvt.csv")).unwrap();
@@ -32,7 +32,7 @@ fn what_is_missing_is_said_and_the_rest_is_there() {
 }
 
 #[test]
-fn what_is_no_run_is_refused_with_a_hint_and_leaves_nothing() {
+fn a_directory_without_a_run_is_refused_with_a_hint() {
     let place = Place::new();
     run(&place, "cold", &[]);
     fs::create_dir(place.path().join("empty")).unwrap();
@@ -119,7 +119,7 @@ fn nothing_but_a_report_is_replaced() {
         (place.text("cold/summary.json"), place.text("notes.html")),
         (before, "<p>mine</p>".to_owned())
     );
-    // The ending tells the form.
+    // The extension determines the form.
     place.done(&["report", "cold", "--out", "a b.md"]);
     place.done(&["report", "cold", "--out", "a b.md", "--force"]);
     assert!(
@@ -173,13 +173,13 @@ fn a_trace_has_to_be_that_of_the_summary() {
     assert!(!place.has("cold/report.html"));
 }
 
-/// Files of two runs are never taken for one, whichever of them comes from the other.
+/// Files of two runs are never mixed, in either direction.
 #[test]
 fn files_of_two_runs_are_never_one() {
     let place = Place::new();
     run(&place, "one", &["--strict"]);
     run(&place, "two", &[]);
-    // Both have the same numbers and traces: what tells them apart is the setting alone.
+    // Both have equal numbers and traces; only the settings differ.
     let names = ["summary.json", "inputs.json"];
     for name in names {
         let own = place.text(&format!("one/{name}"));
@@ -191,7 +191,7 @@ fn files_of_two_runs_are_never_one() {
         );
         place.write(&format!("one/{name}"), &own);
     }
-    // One figure of one file, of which no sum depends.
+    // A single number of one file that no sum depends on.
     let change = |name: &str, from: &str, to: &str, said: &str| {
         let own = place.text(name);
         assert!(own.contains(from), "{name}: {from}");
@@ -214,11 +214,11 @@ fn files_of_two_runs_are_never_one() {
         "trace_rover_216_5mt.csv in one is not the file that was written with summary.json",
     );
     place.done(&["report", "one"]);
-    // A trace of an earlier run in another format is not in the way.
+    // A trace of an earlier run in another format is ignored.
     run(&place, "two", &["--format", "parquet", "--force"]);
     place.write("two/trace_rover_216_cvt.csv", "of an earlier run");
     place.done(&["report", "two"]);
-    // Files without the word are read, and not vouched for.
+    // Files without the identifying word are read, but not vouched for.
     for name in names {
         let text = place.text(&format!("one/{name}"));
         let lines = text.lines().filter(|line| !line.starts_with("  \"run\":"));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 type Line = BTreeMap<String, String>;
 
-/// Lines of a file of `validation/outside`.
+/// Lines of a file in `validation/outside`.
 fn lines(name: &str) -> Vec<Line> {
     let file = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("validation/outside")
@@ -28,7 +28,7 @@ fn number(line: &Line, name: &str) -> f64 {
     line[name].parse().unwrap()
 }
 
-/// Mean, standard deviation of one, and count.
+/// Mean, standard deviation of a single value, and count.
 fn fleet(numbers: &[f64]) -> [f64; 3] {
     let n = numbers.len() as f64;
     let mean = numbers.iter().sum::<f64>() / n;
@@ -36,7 +36,7 @@ fn fleet(numbers: &[f64]) -> [f64; 3] {
     [mean, (squares / (n - 1.0)).sqrt(), n]
 }
 
-/// First bag over third of a box at an ambient.
+/// First bag over third, for a transmission type at an ambient temperature.
 fn first_over_third(kind: &str, ambient: &str) -> [f64; 3] {
     let tests = lines("us_ftp_bags.csv");
     let own = tests
@@ -49,7 +49,7 @@ fn first_over_third(kind: &str, ambient: &str) -> [f64; 3] {
     )
 }
 
-/// A bag at -6.7 over 24 degC of the engines of a box that were tested at both.
+/// Bag at -6.7 over 24 degC, for the engines of a transmission type tested at both.
 fn cold_over_mild(kind: &str, bag: char) -> [f64; 3] {
     let tests = lines("us_ftp_bags.csv");
     let key = |t: &Line| ["make", "displacement_l", "rated_hp"].map(|name| t[name].clone());
@@ -67,7 +67,7 @@ fn cold_over_mild(kind: &str, bag: char) -> [f64; 3] {
     fleet(&both.collect::<Vec<_>>())
 }
 
-/// A column of the starts at 21 to 32 degC.
+/// Column of the starts at 21 to 32 degC.
 fn starts(column: &str) -> [f64; 3] {
     let starts = lines("engine_starts_driving.csv");
     let is_mild = |s: &&Line| (21.0..=32.0).contains(&number(s, "coolant_at_start_degc"));
@@ -80,7 +80,7 @@ fn starts(column: &str) -> [f64; 3] {
     )
 }
 
-/// A difference of pairs with front drive, of the early years or of those from 2012 with equal stop-start.
+/// Differences of pairs with front drive, of the early years or of those from 2012 with equal stop-start.
 fn pairs(column: &str, is_early: bool) -> [f64; 3] {
     let pairs = lines("cvt_manual_pairs.csv");
     let is_meant = |p: &&Line| {
@@ -102,7 +102,7 @@ fn pairs(column: &str, is_early: bool) -> [f64; 3] {
     )
 }
 
-/// What a row says of where its fleet comes from, computed again.
+/// Recomputes a fleet from the data that a row cites.
 fn truth(data: &str) -> [f64; 3] {
     let word = |after: &str| {
         let rest = data.split_once(after).map(|(_, rest)| rest);
@@ -138,7 +138,7 @@ fn val_fleets_are_those_of_their_data() {
                 row["id"]
             );
         }
-        // One more car against the mean of n.
+        // One more car compared with the mean of n.
         let [mean, sd, n] = found;
         let z = (row["computed_low"].as_f64().unwrap() - mean) / (sd * (1.0 + 1.0 / n).sqrt());
         assert!(
@@ -165,7 +165,7 @@ fn the_verdict_of_a_fleet() {
         ("9.12", "z = 2", "agrees"),
     ] {
         let more = format!("mean = 5\nsd = 2\nn = 16\n{z}\ncompute = \"{x}\"");
-        let output = Own::new(&fleet_row(&more)).run(&["--json"]);
+        let output = UserRows::new(&fleet_row(&more)).run(&["--json"]);
         let all: Value = serde_json::from_slice(&output.stdout)
             .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
         assert_eq!(all["rows"][0]["verdict"], verdict, "{x} {z}");
@@ -182,22 +182,22 @@ fn the_verdict_of_a_fleet() {
             "gives yes or no",
         ),
     ] {
-        let output = Own::new(&fleet_row(more)).run(&[]);
+        let output = UserRows::new(&fleet_row(more)).run(&[]);
         let said = text(&output.stderr);
         assert!(
             output.status.code() == Some(2) && said.contains(message),
             "{said}"
         );
     }
-    let output = Own::new(&row("a", "mean = 5\nsd = 2\nn = 3\ncompute = \"3\"")).run(&[]);
+    let output = UserRows::new(&row("a", "mean = 5\nsd = 2\nn = 3\ncompute = \"3\"")).run(&[]);
     assert!(text(&output.stderr).contains("belong to a fleet"));
 }
 
-/// A row without a value for this vehicle has that verdict, and the others theirs.
+/// A row without a value for this vehicle gets a verdict of its own; the others keep theirs.
 #[test]
-fn one_row_that_cannot_be_computed_is_its_own_verdict() {
+fn one_row_without_a_value_leaves_the_others_unchanged() {
     let missing = "compute = \"key(transmission.manual.neutral_share) > 0\"";
-    let own = Own::new(&(row("a", missing) + &row("b", "compute = \"2 > 1\"")));
+    let own = UserRows::new(&(row("a", missing) + &row("b", "compute = \"2 > 1\"")));
     let output = own.run(&["--json"]);
     let all: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
@@ -210,7 +210,7 @@ fn one_row_that_cannot_be_computed_is_its_own_verdict() {
         "{failed}"
     );
     assert!(text(&own.run(&[]).stdout).contains("has no `transmission"));
-    // A friction at which the cause of one row has no value: all rows have a verdict.
+    // Friction at which the cause of one row has no value: all rows have a verdict.
     let (code, all) = json(&[
         "validate",
         "--json",
@@ -222,13 +222,13 @@ fn one_row_that_cannot_be_computed_is_its_own_verdict() {
     assert_eq!((code, count(&all)), (Some(1), count(&shipped)));
 }
 
-/// A row recorded as an identity is one while it holds, counts apart, and differs where it does not hold.
+/// A row recorded as an identity remains one while it holds, is counted separately, and differs when it fails.
 #[test]
 fn identities_count_apart() {
     let rows = row("a", "compute = \"2 > 1\"\nverdict = \"identity\"")
         + &row("b", "compute = \"2 < 1\"\nverdict = \"identity\"")
         + &row("c", "compute = \"2 > 1\"");
-    let output = Own::new(&rows).run(&["--json"]);
+    let output = UserRows::new(&rows).run(&["--json"]);
     let all: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
     assert_eq!(output.status.code(), Some(1));

@@ -1,4 +1,4 @@
-//! `cvtcycle validate`: the shipped rows, the rule, users' rows, every form of the output. The truths are in the rows themselves.
+//! `cvtcycle validate`: shipped rows, verdicts, users' rows, every form of the output. The rows contain their own truth.
 #![allow(clippy::unwrap_used, reason = "tests say what they found")]
 
 mod fleet;
@@ -31,16 +31,16 @@ fn json(args: &[&str]) -> (Option<i32>, Value) {
     (output.status.code(), value)
 }
 
-/// Rows of a file of our own, as `validate --only-rows --json` has them.
-struct Own {
+/// Rows of a user's file, as in `validate --only-rows --json`.
+struct UserRows {
     dir: tempfile::TempDir,
 }
 
-impl Own {
+impl UserRows {
     fn new(toml: &str) -> Self {
         let dir = tempfile::tempdir().unwrap();
         std::fs::write(dir.path().join("own.toml"), toml).unwrap();
-        Own { dir }
+        UserRows { dir }
     }
 
     fn path(&self) -> String {
@@ -61,7 +61,7 @@ impl Own {
     }
 }
 
-/// A row that is computed without any source; `more` are further keys.
+/// Row without any source; `more` are further keys.
 fn row(id: &str, more: &str) -> String {
     format!(
         "[[row]]\nid = \"{id}\"\nchapter = \"own\"\nmechanism = \"user\"\nwhat = \"a number\"\nprinted = \"3\"\n{more}\n"
@@ -124,10 +124,10 @@ fn the_shipped_rows_keep_their_recorded_verdicts() {
     }
 }
 
-/// Truth: the reason of the tolerance `indicative` itself. A size that the thesis quotes of another car, box or fluid is held as such, whatever its verdict; a bound or an identity
-/// may be held more closely, and two rows compare the project's own cars.
+/// Truth: the definition of the tolerance `indicative`. A size that the thesis quotes of another car, box or fluid has this tolerance, whatever its verdict. A bound or an identity
+/// may have a narrower one, and two rows compare the project's own cars.
 #[test]
-fn quoted_sizes_are_held_as_quoted_sizes() {
+fn quoted_sizes_have_the_indicative_tolerance() {
     let (_, all) = json(&["validate", "--json", "--all"]);
     let mut seen = 0;
     for row in all["rows"].as_array().unwrap() {
@@ -147,33 +147,14 @@ fn quoted_sizes_are_held_as_quoted_sizes() {
 }
 
 #[test]
-fn the_readme_counts_the_verdicts_of_today() {
+fn groups_count_their_verdicts() {
     let (_, all) = json(&["validate", "--json"]);
     let rows = all["rows"].as_array().unwrap();
-    let rows: Vec<&Value> = rows.iter().filter(|row| row["group"] == "thesis").collect();
-    let of = |verdict: &str| {
-        let count = rows.iter().filter(|row| row["verdict"] == verdict).count();
+    for verdict in ["agrees", "fit", "identity", "differs", "not comparable"] {
+        let is_counted = |row: &&Value| row["group"] == "thesis" && row["verdict"] == verdict;
+        let count = rows.iter().filter(is_counted).count();
         let word = verdict.replace(' ', "_");
         assert_eq!(all["groups"]["thesis"]["counts"][&word], count, "{word}");
-        count
-    };
-    let readme = include_str!("../../../README.md").replace('\n', " ");
-    let readme = readme.split_whitespace().collect::<Vec<_>>().join(" ");
-    for words in [
-        format!(
-            "{} in all: {} agree, {} are fits",
-            rows.len(),
-            of("agrees"),
-            of("fit")
-        ),
-        format!(
-            "{} cannot fail, {} differ, each with reason and computed cause, {} cannot be compared",
-            of("identity"),
-            of("differs"),
-            of("not comparable")
-        ),
-    ] {
-        assert!(readme.contains(&words), "README.md should say: {words}");
     }
 }
 
@@ -200,7 +181,7 @@ fn another_parameter_moves_rows_and_fails() {
 #[test]
 fn the_verdict_follows_from_the_rule() {
     let verdicts = |more: &str, verdict: &str| {
-        let own = Own::new(&format!(
+        let own = UserRows::new(&format!(
             "[tolerances.t]\nwidth = 0.5\nfrom = \"test\"\n{}",
             row("a", more)
         ));
@@ -244,7 +225,7 @@ fn the_verdict_follows_from_the_rule() {
 
 #[test]
 fn a_recorded_verdict_that_no_longer_holds_is_exit_1() {
-    let own = Own::new(&row(
+    let own = UserRows::new(&row(
         "a",
         "value = 3\ntolerance = \"exact\"\ncompute = \"3.1\"\nverdict = \"agrees\"",
     ));
@@ -312,7 +293,7 @@ fn csv_json_and_html_have_the_same_rows() {
 #[test]
 fn html_and_markdown_escape_what_users_write() {
     let wild = "value = 3\ntolerance = \"exact\"\ncompute = \"3\"\nremark = \"<script>alert('x')</script> & | *so*\"\ncondition = \"a < b | c\"";
-    let own = Own::new(&row("a", wild).replace("\"own\"", "\"<b>own</b>\""));
+    let own = UserRows::new(&row("a", wild).replace("\"own\"", "\"<b>own</b>\""));
     let html = text(&own.run(&["--format", "html"]).stdout);
     assert!(
         !html.contains("<script") && !html.contains("<b>own"),
@@ -434,9 +415,9 @@ fn the_book_shows_the_rows_of_every_mechanism() {
     assert_eq!(shown, all, "a row is on no page, or on two");
 }
 
-/// One problem, not one for every key that a manual box does not have; own rows may look into it.
+/// One problem instead of one for every key that a manual box lacks. Users' own rows may be about it.
 #[test]
-fn the_programs_rows_need_a_cvt() {
+fn built_in_rows_need_a_cvt() {
     let output = cvtcycle(&["validate", "--vehicle", "rover_216_5mt"]);
     let message = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -446,14 +427,14 @@ fn the_programs_rows_need_a_cvt() {
             && message.contains("1 problem in --vehicle"),
         "{message}"
     );
-    let own = Own::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
+    let own = UserRows::new(&row("own.1", "kind = \"O\"\ncompute = \"2 > 1\""));
     assert_eq!(
         own.run(&["--vehicle", "rover_216_5mt"]).status.code(),
         Some(0)
     );
 }
 
-/// The page says how wide "agrees" is: 3 to 4 within 0.5 on both sides, a share of each end for itself.
+/// The page has the tolerance of "agrees": 3 to 4 within 0.5 on both sides, or a share of each end.
 #[test]
 fn the_page_shows_the_tolerance() {
     let head =
@@ -467,7 +448,7 @@ fn the_page_shows_the_tolerance() {
         "kind = \"N\"\nlow = 2\nhigh = 4\ntolerance = \"b\"\ncompute = \"3\"",
     );
     let page = text(
-        &Own::new(&format!("{head}{one}{two}"))
+        &UserRows::new(&format!("{head}{one}{two}"))
             .run(&["--format", "html"])
             .stdout,
     );

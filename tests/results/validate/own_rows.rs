@@ -1,4 +1,4 @@
-//! Rows of the user.
+//! Users' own rows.
 
 use super::*;
 
@@ -52,7 +52,7 @@ fn users_rows_reach_every_source() {
         .iter()
         .map(|(id, compute)| row(id, &format!("{wide}\"{compute}\"")))
         .collect();
-    let own = Own::new(&(SOURCES.to_owned() + &rows));
+    let own = UserRows::new(&(SOURCES.to_owned() + &rows));
     let output = own.run(&["--json"]);
     let all: Value = serde_json::from_slice(&output.stdout)
         .unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
@@ -80,7 +80,7 @@ fn users_rows_reach_every_source() {
         computed(4)
     );
     assert!((computed(5) - 3.0).abs() < 1e-12);
-    // A vehicle file of the user in the folder of the rows.
+    // User's vehicle file in the folder of the rows.
     let car = include_str!("../../../vehicles/rover_216_cvt.toml").replace(
         "band_offset_mm = { value = 3.0",
         "band_offset_mm = { value = 2.0",
@@ -89,7 +89,7 @@ fn users_rows_reach_every_source() {
         "own",
         &format!("{wide}\"key(mine: transmission.cvt.belt.band_offset_mm)\""),
     );
-    let mine = Own::new(&format!(
+    let mine = UserRows::new(&format!(
         "{SOURCES}\n[sources.mine]\nsource = \"vehicle\"\nvehicle = \"car.toml\"\n{of_car}"
     ));
     std::fs::write(mine.dir.path().join("car.toml"), car).unwrap();
@@ -146,7 +146,7 @@ like = "no_such_form"
             "value = 3\ntolerance = \"totals\"\nunit = \"bar\"\ncompute = \"3\"",
         ),
     ];
-    let own = Own::new(&(bad.to_owned() + &rows.concat()));
+    let own = UserRows::new(&(bad.to_owned() + &rows.concat()));
     let output = own.run(&[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
@@ -179,7 +179,7 @@ like = "no_such_form"
 }
 
 #[test]
-fn what_cannot_be_computed_is_a_verdict_of_its_row() {
+fn a_row_without_a_value_has_its_own_verdict() {
     let wide = "low = 0\ntolerance = \"wide\"\ncompute = ";
     for (compute, why) in [
         ("one(box: total_nm)", "6 rows where one was expected"),
@@ -193,7 +193,7 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
         ),
     ] {
         let rows = row("a", &format!("{wide}\"{compute}\"")) + &row("b", &format!("{wide}\"3\""));
-        let own = Own::new(&(SOURCES.to_owned() + &rows));
+        let own = UserRows::new(&(SOURCES.to_owned() + &rows));
         let output = own.run(&["--json"]);
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{compute}: {said}");
@@ -210,17 +210,17 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
         let page = text(&own.run(&["--format", "html"]).stdout);
         assert!(page.contains("1 cannot be computed for this") && page.contains(why));
     }
-    // A number behind a reason that does not exist leaves the verdict.
+    // A `cause` without a value leaves the verdict unchanged.
     let cause = "verdict = \"differs\"\nreason = \"so.\"\ncause = { what = \"none\", compute = \"one(box: total_nm)\" }";
     let three = "value = 4\ntolerance = \"exact\"\ncompute = \"3\"\n";
-    let own = Own::new(&(SOURCES.to_owned() + &row("a", &format!("{three}{cause}"))));
+    let own = UserRows::new(&(SOURCES.to_owned() + &row("a", &format!("{three}{cause}"))));
     let output = own.run(&["--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     let all: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(all["rows"][0]["verdict"], "differs");
     assert!(all["rows"][0]["cause_failure"].is_string());
     assert!(text(&own.run(&[]).stdout).contains("none cannot be computed: 6 rows"));
-    let own = Own::new(&format!(
+    let own = UserRows::new(&format!(
         "{SOURCES}\n[sources.worse]\nlike = \"box\"\nset = [\"transmission.cvt.belt.band_ofset_mm=3\"]\n"
     ));
     let output = own.run(&[]);
@@ -233,12 +233,12 @@ fn what_cannot_be_computed_is_a_verdict_of_its_row() {
     );
 }
 
-/// A ratio that the box does not have is computed and reported.
+/// A ratio out of range is computed and flagged.
 #[test]
 fn points_outside_validity_are_reported() {
     let source =
         "[sources.b]\nsource = \"bench\"\nratio = [2.4, 2.9]\nspeed_rpm = 2000\ntemp_degc = 80\n";
-    let own = Own::new(
+    let own = UserRows::new(
         &(source.to_owned()
             + &row(
                 "a",

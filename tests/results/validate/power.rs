@@ -1,4 +1,4 @@
-//! `--power`. Truth: which value each row has, and at which factors it leaves its range.
+//! `--power`. Truth: the known value of each row, and the factors at which it leaves its range.
 
 use super::*;
 use std::collections::BTreeMap;
@@ -19,7 +19,7 @@ set = ["transmission.cvt.belt.band_offset_mm=2"]
 
 const OFFSET: &str = "transmission.cvt.belt.band_offset_mm";
 
-/// Rows named after what flips them. The offset is 3 mm, and 0.5 to 10 mm are allowed; the band is 20 mm wide, the wedge has 11 degrees.
+/// Rows named after the change that flips them. The offset is 3 mm with an allowed range of 0.5 to 10 mm, the band is 20 mm wide, the wedge angle is 11 degrees.
 fn rows() -> String {
     let number = |id: &str, range: &str, compute: &str| {
         row(
@@ -45,7 +45,7 @@ fn rows() -> String {
     .concat()
 }
 
-fn power(own: &Own, more: &[&str]) -> (Option<i32>, Value, String) {
+fn power(own: &UserRows, more: &[&str]) -> (Option<i32>, Value, String) {
     let args: Vec<&str> = ["--power", "--json", "--quiet"]
         .into_iter()
         .chain(more.iter().copied())
@@ -58,7 +58,7 @@ fn power(own: &Own, more: &[&str]) -> (Option<i32>, Value, String) {
 
 #[test]
 fn a_row_flips_by_what_it_depends_on() {
-    let own = Own::new(&(SOURCES.to_owned() + &rows()));
+    let own = UserRows::new(&(SOURCES.to_owned() + &rows()));
     let (code, all, errors) = power(&own, &["--threads", "2"]);
     assert_eq!(code, Some(0), "{errors}");
     let found: BTreeMap<&str, &Value> = all["power"]["rows"]
@@ -117,14 +117,14 @@ fn recorded_verdicts_that_changes_contradict_are_exit_1() {
         number("b", "value = 3", &offset, "agrees"),
         number("c", "low = 0\nhigh = 20", &offset, "agrees"),
     ];
-    let good = Own::new(&(SOURCES.to_owned() + &good.concat()));
+    let good = UserRows::new(&(SOURCES.to_owned() + &good.concat()));
     let (code, _, errors) = power(&good, &[]);
     assert_eq!((code, errors.as_str()), (Some(0), ""));
     let bad = [
         number("a", "value = 3", "1 + 2", "agrees"),
         number("b", "value = 3", &offset, "identity"),
     ];
-    let bad = Own::new(&(SOURCES.to_owned() + &bad.concat()));
+    let bad = UserRows::new(&(SOURCES.to_owned() + &bad.concat()));
     let (code, _, errors) = power(&bad, &[]);
     assert_eq!(code, Some(1));
     assert_eq!(
@@ -138,7 +138,7 @@ fn recorded_verdicts_that_changes_contradict_are_exit_1() {
 
 #[test]
 fn table_and_csv_name_the_changes() {
-    let own = Own::new(&(SOURCES.to_owned() + &rows()));
+    let own = UserRows::new(&(SOURCES.to_owned() + &rows()));
     let table = text(&own.run(&["--power", "--quiet"]).stdout);
     assert_eq!(table, "", "--quiet");
     let table = text(&own.run(&["--power"]).stdout);

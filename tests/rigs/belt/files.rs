@@ -1,4 +1,4 @@
-//! What appears in a directory, and what does not.
+//! Files in the output directory.
 
 use std::fs;
 
@@ -61,7 +61,7 @@ fn files_appear_complete_or_not_at_all() {
     assert_eq!(names(), ["out.csv", "points.csv"]);
     let written = fs::read_to_string(&out).unwrap();
     assert_eq!(written, text(&belt(good.as_bytes(), &[]).stdout));
-    // An existing file is replaced on demand only, and a bad table leaves it as it was.
+    // An existing file is replaced with --force only, and a bad table leaves it unchanged.
     assert!(text(&run(&[]).stderr).contains("--force"));
     fs::write(&points, &bad).unwrap();
     assert_eq!(run(&["--force"]).status.code(), Some(2));

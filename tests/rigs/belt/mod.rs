@@ -1,4 +1,4 @@
-//! `belt`: the real program against the golden tables, and what it makes of good and bad tables.
+//! `belt`: the program against the golden tables, and good and bad input tables.
 //!
 //! Truth of the `val_` tests: tables of an independent program that transcribes the thesis's Appendix C statement by statement.
 #![allow(
@@ -40,14 +40,14 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
 
-/// The table that the program makes of a good one.
+/// Output table for a good input.
 fn made(input: &str, more: &[&str]) -> Table {
     let output = belt(input.as_bytes(), more);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
     Table::new(&text(&output.stdout))
 }
 
-/// One row under the four names, after others that are given as `name=value`.
+/// One row under the four names, after further columns given as `name=value`.
 fn one(values: &str, others: &[(&str, &str)], more: &[&str]) -> Table {
     let (mut names, mut row) = (NAMES.to_owned(), values.to_owned());
     for (name, value) in others {
@@ -57,7 +57,7 @@ fn one(values: &str, others: &[(&str, &str)], more: &[&str]) -> Table {
     made(&format!("{names}\n{row}\n"), more)
 }
 
-/// What the program says about a bad table; it must write nothing else.
+/// Message about a bad table; nothing else may be written.
 fn refused(input: &[u8], more: &[&str]) -> String {
     let output = belt(input, more);
     assert_eq!(output.status.code(), Some(2), "{}", text(input));

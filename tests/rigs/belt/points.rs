@@ -1,4 +1,4 @@
-//! A row gives the same result at any place in the table.
+//! A row gives the same result anywhere in the table.
 
 use cvtcycle::model::transmission::cvt::variator::Geometry;
 
@@ -10,7 +10,7 @@ fn a_row_gives_the_same_at_any_place() {
     let lines: Vec<&str> = POINTS.lines().chain(EDGES.lines().skip(1)).collect();
     let plain = text(&belt((lines.join("\n") + "\n").as_bytes(), &["--quiet"]).stdout);
     let plain: Vec<&str> = plain.lines().collect();
-    // 7 has no common divisor with the number of rows: every row once, in another order.
+    // 7 is coprime with the number of rows: every row once, in another order.
     let count = lines.len() - 1;
     let order: Vec<usize> = (0..count).map(|k| 1 + (k * 7 + 3) % count).collect();
     let shuffled = order
@@ -32,9 +32,9 @@ fn a_row_gives_the_same_at_any_place() {
     }
 }
 
-/// A row that overrides everything leaves nothing behind for the next one.
+/// A row that overrides everything does not affect the next one.
 #[test]
-fn a_row_leaves_nothing_behind() {
+fn a_row_does_not_affect_the_next_one() {
     let names = format!(
         "{NAMES},formulation,pulley_half_angle_deg,wedge_half_angle_deg,band_offset_mm,band_friction,segment_friction,band_count,\
         primary_on_stop,belt_temp_degc"
@@ -50,7 +50,7 @@ fn a_row_leaves_nothing_behind() {
     }
 }
 
-/// Numbers are written with every digit: the radii are those of the library, bit by bit.
+/// Numbers are written with all digits: the radii equal the library's bit by bit.
 #[test]
 fn numbers_read_back_to_the_same() {
     for ratio in [0.4137, 0.77, 1.0, 1.9, 2.4169] {
@@ -70,7 +70,7 @@ fn numbers_read_back_to_the_same() {
     }
 }
 
-/// What was written is read again to the same table: every number reads back to the same f64, and the values in force are written.
+/// Output read as input gives the same output: numbers round-trip, and the values in force are written.
 #[test]
 fn the_output_is_an_input_with_the_same_output() {
     let input = format!(
@@ -92,7 +92,7 @@ fn the_output_is_an_input_with_the_same_output() {
 }
 
 #[test]
-fn overriding_columns_go_before_the_vehicle_row_by_row() {
+fn columns_override_the_vehicle_row_by_row() {
     let plain = |name: &str| one("0.5,4000,11,10", &[], &[]).number(0, name);
     let with = |column: &str, value: &str, name: &str| {
         one("0.5,4000,11,10", &[(column, value)], &[]).number(0, name)
@@ -108,7 +108,7 @@ fn overriding_columns_go_before_the_vehicle_row_by_row() {
     assert!(close(with("band_friction", "0", step), 0.0, 1e-12) && plain(step).abs() > 100.0);
     assert!(with("segment_friction", "0.25", "active_segments") < 0.7 * plain("active_segments"));
     assert!(with("band_count", "6", "gap_slip_m_s") > 1.3 * plain("gap_slip_m_s"));
-    // The wedge's angle moves the wedge terms only; the pulley's moves the forces as well.
+    // The wedge's angle changes the wedge terms only; the pulley's changes the forces too.
     let wedge = (9f64.to_radians().tan() / 11f64.to_radians().tan()).recip();
     let ratio =
         with("wedge_half_angle_deg", "9", "wedge_loss_primary_nm") / plain("wedge_loss_primary_nm");
@@ -130,7 +130,7 @@ fn overriding_columns_go_before_the_vehicle_row_by_row() {
         with("pulley_half_angle_deg", "9", "primary_shoulder_force_n")
             < plain("primary_shoulder_force_n") - 100.0
     );
-    // An empty cell is not given.
+    // An empty cell counts as missing.
     for column in [
         "band_offset_mm",
         "band_friction",
@@ -185,7 +185,7 @@ fn the_end_stop_is_the_vehicles_unless_a_row_says() {
         1e-15
     ));
     for formulation in ["smooth", "chapter_8"] {
-        // Half way on the ramp of I 2.30 to 2.417.
+        // Halfway on the ramp of I from 2.30 to 2.417.
         let share = wedge(formulation, "") / wedge(formulation, "0");
         assert!(0.1 < share && share < 0.5, "{formulation} {share}");
     }
@@ -194,7 +194,7 @@ fn the_end_stop_is_the_vehicles_unless_a_row_says() {
 #[test]
 fn temperature_moves_friction_only_where_it_is_given() {
     let loss = |temp: &str, formulation: &str| {
-        // In high all sliding is on the secondary (BT-7); the printed forms share it out.
+        // At high ratio all sliding is on the secondary (BT-7); the printed forms share it.
         let column = match formulation {
             "smooth" => "band_loss_secondary_nm",
             _ => "belt_loss_nm",
@@ -206,7 +206,7 @@ fn temperature_moves_friction_only_where_it_is_given() {
         )
         .number(0, column)
     };
-    // Cold and fast the film lifts the bands in smooth; the printed forms know the boundary part alone.
+    // At low temperature and high speed the film lifts the bands in smooth; the printed forms have the boundary part only.
     let (none, hot, cold) = (
         loss("", "smooth"),
         loss("85", "smooth"),
@@ -324,9 +324,9 @@ fn smooth_is_defined_at_ratio_1_and_at_rest_and_the_printed_forms_are_not() {
     }
 }
 
-/// The fluid's own friction, for which the table has no column: the row as a whole is marked.
+/// The fluid's own friction has no column in the table, so its problem is reported for the row.
 #[test]
-fn friction_that_no_column_gives_is_complained_of_at_its_row() {
+fn bad_friction_of_the_fluid_is_reported_at_its_row() {
     let sets = [
         "--set",
         "lubricant.friction.band=0.4",
@@ -345,7 +345,7 @@ fn friction_that_no_column_gives_is_complained_of_at_its_row() {
     }
 }
 
-/// Travel of Table 8-1's belt with the mean speed (closed form), and where the printed 16 mm would need the band to run.
+/// Travel of Table 8-1's belt with the mean speed (closed form), and the band speed required for the printed 16 mm.
 #[test]
 fn val_band_speed_moves_the_travel_only() {
     let at = |share: &str| {

@@ -1,6 +1,6 @@
 //! CSV tables by column name, for the tests of belt points.
 
-/// A table without quotes.
+/// Table without quotes.
 pub struct Table {
     names: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -40,29 +40,7 @@ impl Table {
     }
 }
 
-/// Equal within a relative tolerance, and as much absolutely.
+/// Tests equality within a relative plus an equal absolute tolerance.
 pub fn close(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance * (1.0 + b.abs())
-}
-
-/// Rows of `appendix_c` that no smoothing touches: |C_x| above three blend widths of 120 N, |ln I| above three widths of 0.015,
-/// no gross slip.
-pub fn away_from_changes(golden: &Table, row: usize) -> bool {
-    golden.cell(row, "formulation") == "appendix_c"
-        && golden.cell(row, "status") == "ok"
-        && golden.number(row, "segment_compression_n").abs() > 360.0
-        && golden.number(row, "ratio").ln().abs() > 0.045
-}
-
-/// Mean, 95th percentile and largest of some numbers.
-pub fn spread(numbers: impl Iterator<Item = f64>) -> [f64; 3] {
-    let mut sorted: Vec<f64> = numbers.collect();
-    sorted.sort_by(f64::total_cmp);
-    let count = sorted.len();
-    let place = (0.95 * count as f64).ceil() as usize - 1;
-    [
-        sorted.iter().sum::<f64>() / count as f64,
-        sorted[place],
-        sorted[count - 1],
-    ]
 }

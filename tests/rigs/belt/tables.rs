@@ -1,4 +1,4 @@
-//! Good and bad tables, on their way through standard input and output.
+//! Good and bad tables through standard input and output.
 
 use serde_json::Value;
 
@@ -60,7 +60,7 @@ fn json_is_one_object_with_counts_and_rows() {
             table.names()
         );
         let number = table.number(row, "belt_loss_nm");
-        // The reader of the tests is off by a last digit at times.
+        // The test's JSON reader may differ in the last digit.
         match object["belt_loss_nm"].as_f64() {
             Some(loss) => assert!(close(loss, number, 1e-15), "{loss} {number}"),
             None => assert!(number.is_nan() && object["belt_loss_nm"].is_null()),
@@ -77,7 +77,7 @@ fn json_is_one_object_with_counts_and_rows() {
 }
 
 #[test]
-fn computed_columns_of_the_input_are_passed_over_with_a_note() {
+fn computed_columns_of_the_input_are_ignored_with_a_note() {
     let input = format!("{NAMES},belt_loss_nm,flags\n0.5,2000,12,10,999,x\n");
     let output = belt(input.as_bytes(), &[]);
     assert!(

@@ -1,10 +1,10 @@
-//! Losses written as a map of a part, and a car that reads it. Truth: the part itself.
+//! Losses written as a map of a component, and a car that reads it. Truth: the component.
 
 use super::*;
 
-/// A bench with a belt map has one column for it, and no status of a belt model that is not asked.
+/// A bench with a belt map has one column for it, and no status of the unused belt model.
 #[test]
-fn a_map_has_its_column() {
+fn a_belt_map_has_one_column() {
     let csv = b"ratio,oil_temp_degc,torque_loss_nm\n0.4,0,6\n0.4,90,6\n2.5,0,6\n2.5,90,6\n";
     let setup = with_map("rover_216_cvt", csv, "transmission.cvt.maps.belt");
     let mut grid = LossGrid::default();
@@ -50,7 +50,7 @@ fn a_map_has_its_column() {
     );
 }
 
-/// A setup whose vehicle file is in a folder with a map.
+/// Setup whose vehicle file is in a folder with a map.
 fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("car.toml");
@@ -68,18 +68,18 @@ fn with_map(vehicle: &str, csv: &[u8], key: &str) -> Setup {
         .unwrap_or_else(|p| panic!("{key}: {}", render(&p, false)))
 }
 
-/// Round trip: a component written as a map and read in place of its model loses the same at every point of the grid.
+/// Round trip: a map written from a component and read in its place has the same losses at every point of the grid.
 #[test]
-fn maps_written_and_read_again() {
+fn maps_round_trip() {
     for (name, part) in MapPart::NAMES {
-        let vehicle = if part.of_cvt() {
+        let vehicle = if part.is_cvt_only() {
             "rover_216_cvt"
         } else {
             "rover_216_5mt"
         };
         let bench = Bench::new(&car(vehicle, &[]));
         let mut grid = LossGrid::default();
-        let ratios = if part.of_cvt() {
+        let ratios = if part.is_cvt_only() {
             vec![0.5, 1.2, 2.3]
         } else {
             vec![1.0, 3.0, 5.0]
@@ -89,7 +89,7 @@ fn maps_written_and_read_again() {
         } else {
             vec![0.0]
         };
-        let pressure = if part.of_cvt() {
+        let pressure = if part.is_cvt_only() {
             vec![15.0, 30.0]
         } else {
             Vec::new()
@@ -106,7 +106,7 @@ fn maps_written_and_read_again() {
         grid.values[Axis::Throttle as usize] = vec![0.0];
         let mut csv = Vec::new();
         write_map(&mut csv, &bench, part, &grid).unwrap();
-        let table = if part.of_cvt() { "cvt" } else { "manual" };
+        let table = if part.is_cvt_only() { "cvt" } else { "manual" };
         let again = Bench::new(&with_map(
             vehicle,
             &csv,
@@ -124,7 +124,7 @@ fn maps_written_and_read_again() {
     }
 }
 
-/// What a bench with a map in place loses in that component.
+/// Loss of the component on a bench with its map.
 fn part_of_map(part: MapPart, bench: &Bench, point: &BenchPoint) -> f64 {
     let loss = part.loss_nm(bench, point);
     if part == MapPart::Belt {
@@ -145,7 +145,7 @@ fn part_of_map(part: MapPart, bench: &Bench, point: &BenchPoint) -> f64 {
     loss
 }
 
-/// The map on the command line is the one of the library.
+/// The command line writes the library's map.
 #[test]
 fn map_on_the_command_line() {
     let text = good(&[

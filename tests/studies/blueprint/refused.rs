@@ -1,9 +1,9 @@
-//! Cars that a template refuses, and keys that it has no place for. Truth: the ordinary reading.
+//! Cars that a template refuses, and keys that cannot be set. Truth: the ordinary reading.
 
 use super::*;
 
 #[test]
-fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
+fn impossible_cars_give_the_messages_of_the_ordinary_load() {
     let (cvt, manual) = (
         blueprint(CARS[0], &Options::default()).0,
         blueprint(CARS[1], &Options::default()).0,
@@ -71,9 +71,9 @@ fn what_is_no_possible_car_is_refused_in_the_words_of_the_ordinary_load() {
     ));
 }
 
-/// Unknown keys get the words of `--set`; keys without a single number say so.
+/// Unknown keys get the messages of `--set`; keys without a single number have a message of their own.
 #[test]
-fn keys_without_a_slot() {
+fn keys_that_cannot_be_set() {
     let unknown = [
         (
             CARS[0],

@@ -1,17 +1,17 @@
-//! Failing regions, several starts, threads, who stops, and groups left out.
+//! Failing regions, several starts, threads, interruption, and groups left out.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cvtcycle::study::fit::solve::{
+use cvtcycle::calibrate::solve::{
     Fit, FitEnd, Options, Residuals, fit, leave_out, not_identified, uncertainty,
 };
-use cvtcycle::study::{NoProgress, Progress};
+use cvtcycle::output::progress::{NoProgress, Progress};
 
 use super::{Model, ONCE, curve, fitted, near, parameter};
 
 const X: [f64; 9] = [0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4, 2.8, 3.2];
 
-/// (sqrt(a - 1) + b x) against a truth, without an answer where a is below 1 or b above `most`.
+/// sqrt(a - 1) + b x against a truth; undefined for a below 1 or b above `most`.
 fn rooted(truth: [f64; 2], most: f64) -> impl Residuals {
     let f = move |a: f64, b: f64, x: f64| (a - 1.0).sqrt() + b * x;
     Model(X.len(), move |v: &[f64]| {
@@ -104,7 +104,7 @@ fn starts_that_fail_say_why_and_the_others_go_on() {
 }
 
 #[test]
-fn answers_that_are_no_numbers_and_parameters_that_are_none() {
+fn bad_residuals_and_bad_parameters_are_reported() {
     let short = Model(3, |_: &[f64]| Ok(vec![1.0; 2]));
     let infinite = Model(2, |_: &[f64]| Ok(vec![1.0, f64::INFINITY]));
     let good = [parameter("a", 1.0, [0.0, 2.0])];
@@ -122,7 +122,7 @@ fn answers_that_are_no_numbers_and_parameters_that_are_none() {
         parameter("a", f64::NAN, [2.0, 1.0]),
         parameter("b", 1.0, [0.0, f64::INFINITY]),
     ];
-    bad[1].prior = Some(cvtcycle::study::fit::solve::Prior { mean: 1.0, sd: 0.0 });
+    bad[1].prior = Some(cvtcycle::calibrate::solve::Prior { mean: 1.0, sd: 0.0 });
     assert_eq!(
         fit(&short, &bad, &ONCE, &NoProgress)
             .expect_err("bad")
@@ -202,7 +202,7 @@ impl Progress for Patience {
     }
 }
 
-/// A start that failed before the stop says nothing of the others.
+/// An earlier failure of a start does not turn an interruption into a failure.
 #[test]
 fn a_stop_after_a_failed_start_is_a_stop() {
     let model = Model(1, |_: &[f64]| Err("no number".to_owned()));
@@ -218,7 +218,7 @@ fn a_stop_after_a_failed_start_is_a_stop() {
 }
 
 #[test]
-fn who_stops_keeps_the_best_so_far_and_limits_hold() {
+fn a_stopped_fit_keeps_its_best_point_and_its_limits() {
     let parameters = [
         parameter("a", 9.0, [0.0, 10.0]),
         parameter("b", 0.1, [0.0, 1.9]),
@@ -244,7 +244,7 @@ fn who_stops_keeps_the_best_so_far_and_limits_hold() {
         whole.cost < stopped.cost && stopped.cost < fitted_cost(&model),
         "{stopped:?}"
     );
-    // Without derivatives nothing is claimed.
+    // Without derivatives no uncertainty is reported.
     let worth = uncertainty(&stopped, &parameters);
     assert!(
         stopped.jacobian.iter().all(|slope| slope.is_nan())
@@ -321,8 +321,12 @@ fn groups_left_out_are_predicted_as_by_a_fit_by_hand() {
     for fold in folds {
         let (kept, left): (Vec<usize>, Vec<usize>) =
             (0..X.len()).partition(|&i| groups[i] != fold.group);
-        let of = |all: &[f64], which: &[usize]| which.iter().map(|&i| all[i]).collect::<Vec<_>>();
-        let by_hand = fitted(&curve(of(&X, &kept), of(&y, &kept), 0.02, f), &parameters);
+        let selected =
+            |all: &[f64], which: &[usize]| which.iter().map(|&i| all[i]).collect::<Vec<_>>();
+        let by_hand = fitted(
+            &curve(selected(&X, &kept), selected(&y, &kept), 0.02, f),
+            &parameters,
+        );
         assert!(
             by_hand
                 .values

@@ -1,14 +1,14 @@
-//! The numeric core of a calibration: against certified fits, closed forms, counting over many seeds, and set-ups that do not identify.
+//! Numeric core of a calibration: certified fits, closed forms, coverage over many seeds, and unidentifiable problems.
 
 mod behaviour;
 mod nist;
 mod unidentified;
 mod worth;
 
-use cvtcycle::study::NoProgress;
-use cvtcycle::study::fit::solve::{Fit, Options, Parameter, Prior, Residuals, fit};
+use cvtcycle::calibrate::solve::{Fit, Options, Parameter, Prior, Residuals, fit};
+use cvtcycle::output::progress::NoProgress;
 
-/// A model that is a function.
+/// Model given by a function.
 struct Model<F>(usize, F);
 
 impl<F: Fn(&[f64]) -> Result<Vec<f64>, String> + Sync> Residuals for Model<F> {
@@ -62,7 +62,7 @@ fn near(got: f64, want: f64, relative: f64) -> bool {
     (got - want).abs() <= relative * want.abs()
 }
 
-/// First values of all starts; the model has a result everywhere and no residual changes.
+/// Initial values of all starts. The model is defined everywhere and its residuals are constant.
 fn starts(parameters: &[Parameter], starts: usize, seed: u64) -> Vec<Vec<f64>> {
     let options = Options {
         starts,

@@ -1,7 +1,7 @@
 //! Statistical Reference Datasets of NIST, nonlinear regression (<https://www.itl.nist.gov/div898/strd/nls/nls_main.shtml>, public domain): data,
 //! starts, certified values and certified standard deviations. These are scaled by the residual standard deviation, so it is the data's here.
 
-use cvtcycle::study::fit::solve::{FitEnd, uncertainty};
+use cvtcycle::calibrate::solve::{FitEnd, uncertainty};
 
 use super::{curve, fitted, near, parameter};
 
@@ -28,7 +28,7 @@ fn holds(truth: &Certified, f: fn(&[f64], f64) -> f64) {
         assert_eq!(found.end, FitEnd::Converged);
         for (k, (value, deviation)) in truth.values.iter().zip(truth.deviations).enumerate() {
             let error = worth.standard_error[k].expect("identified");
-            // Derivatives are differences, so a minimum is met to a small part of what it is known by.
+            // Derivatives are finite differences, so the minimum is found to a small part of its standard deviation.
             assert!(
                 (found.values[k] - value).abs() <= 1e-4 * deviation,
                 "b{} from {starts:?}: {} {value}",

@@ -1,6 +1,6 @@
-//! Set-ups that the data do not identify are called so, with a solver's noise in the model.
+//! Unidentifiable problems are reported as such, with solver noise in the model.
 
-use cvtcycle::study::fit::solve::{FitEnd, Parameter, Residuals, not_identified, uncertainty};
+use cvtcycle::calibrate::solve::{FitEnd, Parameter, Residuals, not_identified, uncertainty};
 
 use super::{Model, fitted, parameter, with_prior};
 
@@ -99,7 +99,7 @@ fn groups_are_separated() {
         found[0],
         "a, b, c and d trade against each other: only 2 combinations of them are known"
     );
-    // b and c are in both terms; d is in one of them only, and acts nearly like them over these x.
+    // b and c are in both terms; d is in one term only, and acts almost as they do at these x.
     assert_eq!(
         found[1],
         "b and c act alike: nearly only their product is known"
@@ -159,7 +159,7 @@ fn weak_and_dead_parameters_are_not_identified() {
 }
 
 #[test]
-fn a_prior_gives_errors_but_the_data_still_say_nothing() {
+fn a_prior_gives_errors_without_information_from_data() {
     let mut two = several(&["pump", "pressure"]);
     let product = |v: &[f64], x: f64| v[0] * v[1] * x;
     let alone = uncertainty(&fitted(&noisy(product, &[2.0, 1.0]), &two), &two);
@@ -170,7 +170,7 @@ fn a_prior_gives_errors_but_the_data_still_say_nothing() {
     two[1] = with_prior(two[1].clone(), 1.25, 0.1);
     let found = fitted(&noisy(product, &[2.0, 1.0]), &two);
     let worth = uncertainty(&found, &two);
-    // Pressure is its prior, the pump what the product leaves: both have a relative error of 0.08.
+    // The pressure is determined by its prior, the pump by the product: both have a relative error of 0.08.
     for k in 0..2 {
         let relative = worth.standard_error[k].expect("by the prior") / found.values[k];
         assert!((relative - 0.08).abs() < 1e-4, "{relative}");
@@ -186,11 +186,11 @@ fn a_prior_gives_errors_but_the_data_still_say_nothing() {
 }
 
 #[test]
-fn noise_is_not_taken_for_knowledge_where_data_are_very_precise() {
+fn noise_is_not_mistaken_for_information_with_precise_data() {
     let two = several(&["pump", "pressure"]);
     let found = fitted(&noisy_at(1e-6, |v, x| v[0] * v[1] * x, &[2.0, 1.0]), &two);
     let worth = uncertainty(&found, &two);
-    // The direction of which nothing is known moves the residuals by more than their standard deviation: noise alone.
+    // The unidentified direction changes the residuals by more than their standard deviation through noise alone.
     assert!(
         worth.directions[1].singular_value > 0.1 && worth.standard_error == [None, None],
         "{:?}",

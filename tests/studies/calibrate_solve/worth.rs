@@ -1,6 +1,6 @@
-//! Bounds, priors and intervals against closed forms and counting.
+//! Bounds, priors and intervals against closed forms and coverage.
 
-use cvtcycle::study::fit::solve::{Bound, FitEnd, uncertainty};
+use cvtcycle::calibrate::solve::{Bound, FitEnd, uncertainty};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use statrs::distribution::{Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, Normal};
@@ -21,7 +21,7 @@ fn val_an_active_bound_leaves_the_linear_fit_of_the_other() {
         ([0.1, 0.5], 0.5, Bound::High),
         ([1.2, 3.0], 1.2, Bound::Low),
     ] {
-        // With the rate held the amplitude is linear: A = sum e y / sum e^2, its variance sd^2 / sum e^2.
+        // With a fixed rate the amplitude is linear: A = sum e y / sum e^2, with variance sd^2 / sum e^2.
         let e: Vec<f64> = TIMES.iter().map(|t| (-held * t).exp()).collect();
         let squares: f64 = e.iter().map(|e| e * e).sum();
         let amplitude = e.iter().zip(&y).map(|(e, y)| e * y).sum::<f64>() / squares;
@@ -127,7 +127,7 @@ fn val_linear_with_priors_is_the_gaussian_posterior() {
         covariance[1] / (covariance[0] * covariance[2]).sqrt(),
         1e-6
     ));
-    // Data say nothing of the third: it is its prior.
+    // The data do not contain the third parameter, which stays at its prior.
     assert!(
         near(found.values[2], 2.0, 1e-6)
             && near(worth.standard_error[2].expect("prior"), 0.7, 1e-9)
@@ -154,7 +154,7 @@ fn val_linear_with_priors_is_the_gaussian_posterior() {
     ));
 }
 
-/// Least and greatest count of `n` that a probability `p` allows, both tails together 1e-4.
+/// Range of counts of `n` allowed by probability `p`, both tails together 1e-4.
 fn allowed(p: f64, n: u64) -> std::ops::RangeInclusive<u64> {
     let binomial = Binomial::new(p, n).expect("a binomial");
     binomial.inverse_cdf(5e-5)..=binomial.inverse_cdf(1.0 - 5e-5)

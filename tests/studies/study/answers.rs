@@ -1,4 +1,4 @@
-//! What a study says of its runs, worked out once more from the exported rows: blocks of Saltelli, one at a time, groups of words.
+//! Statistics of a study, recomputed from the exported rows: Saltelli blocks, one at a time, groups of words.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,12 +28,12 @@ fn plan(design: &str) -> String {
     format!("{HEAD}\n{design}\n{FACTORS}{START}")
 }
 
-/// A text without its line breaks.
+/// Replaces line breaks by spaces.
 fn flat(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Rows of a CSV file by the names of their columns, units cut off.
+/// Rows of a CSV file by column name without unit.
 fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
     let text = fs::read_to_string(file).unwrap();
     let mut reader = csv::Reader::from_reader(text.trim_start_matches('\u{feff}').as_bytes());
@@ -61,7 +61,7 @@ fn number(row: &BTreeMap<String, String>, name: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{name}: `{}`", row[name]))
 }
 
-/// A finished study: what it printed, and the exported rows of the subject.
+/// Runs a study; returns its output and the exported rows of the subject.
 fn studied(dir: &Path, words: &[&str]) -> (String, Vec<BTreeMap<String, String>>) {
     let printed = ends(
         dir,
@@ -82,13 +82,13 @@ fn studied(dir: &Path, words: &[&str]) -> (String, Vec<BTreeMap<String, String>>
     (String::from_utf8(printed.stdout).unwrap(), own)
 }
 
-/// The report of a study, as Markdown.
+/// Report of a study as Markdown.
 fn reported(dir: &Path) -> String {
     ends(dir, &["report", "out", "--out", "report.md", "--quiet"], 0);
     fs::read_to_string(dir.join("report.md")).unwrap()
 }
 
-/// Truth: SO-1 to SO-4 by their definitions, from rows whose factors show which sample and which block they are.
+/// Truth: SO-1 to SO-4 by definition, from rows whose factors identify sample and block.
 #[test]
 fn val_blocks_of_saltelli() {
     let dir = folder(&plan("[study.design.saltelli]\nsamples = 32\nseed = 3\n"));
@@ -153,7 +153,7 @@ fn val_blocks_of_saltelli() {
                 && number(row, "total") <= number(row, "total_high95")
         );
     }
-    // The most important one is named first in the answer; 32 samples leave its share too open to say what knowing it would leave.
+    // The answer names the most important factor first. With 32 samples its share is too uncertain to state the remaining spread.
     assert!(
         flat(&printed).contains("32 samples are too few to say what knowing start would leave"),
         "{printed}"
@@ -184,7 +184,7 @@ fn val_blocks_of_saltelli() {
             && page.contains("Which of them moves the fuel?"),
         "{page}"
     );
-    // Read again later, the answer is the same.
+    // Reading it later gives the same answer.
     let again = ends(dir.path(), &["study", "show", "out"], 0);
     let again = String::from_utf8(again.stdout).unwrap();
     let answer = |text: &str| {
@@ -266,8 +266,8 @@ fn val_one_at_a_time() {
     );
 }
 
-/// Truth: the exported rows. Of seven levels each is printed, in the order of the plan, with its effect; ends are named with their level; there
-/// is neither a mean nor a deviation, for the points are no sample.
+/// Truth: the exported rows. All seven levels are printed with their effects in the order of the plan, and the ends are named with their levels. Mean and
+/// deviation are not printed, because the points are not a sample.
 #[test]
 fn one_at_a_time_prints_every_level_and_no_mean() {
     let factor = "[[factor]]\nkey = \"transmission.cvt.pump.displacement_cc_rev\"\nname = \"pump\"\nrange = { from = 6, to = 12, step = 1 }\n";
@@ -315,7 +315,7 @@ fn one_at_a_time_prints_every_level_and_no_mean() {
         (of_fuel["n"].as_str(), of_fuel["max_at"].as_str()),
         ("8", "pump 12 cm\u{b3}/rev")
     );
-    // The manual box has no pump: its fuel is the same everywhere.
+    // The manual box has no pump, so its fuel is constant.
     let manual = &json["outputs"][1];
     assert_eq!(
         (manual["range"]["least_at"].as_str(), manual["car"].as_str()),
@@ -332,10 +332,10 @@ fn one_at_a_time_prints_every_level_and_no_mean() {
     }
 }
 
-/// Truth: Student's t of 31 degrees of freedom at 0.9 (1.3095, printed in tables) against 0.975 (2.0395): the same numbers with other ends, and
-/// other words.
+/// Truth: Student's t of 31 degrees of freedom at 0.9 (1.3095, printed in tables) against 0.975 (2.0395): equal numbers with other intervals and
+/// texts.
 #[test]
-fn another_confidence_moves_the_ends_alone() {
+fn another_confidence_changes_the_intervals_only() {
     let dir = folder(&plan(
         "[study.design.latin_hypercube]\nsamples = 32\nseed = 3\n",
     ));
@@ -445,9 +445,9 @@ fn val_words_of_a_grid_are_compared_by_group() {
     }
 }
 
-/// `--samples` and `--seed` change what a plan draws, and only what it can draw.
+/// `--samples` and `--seed` change the draws of plans that draw, and are refused for others.
 #[test]
-fn another_draw_than_the_plans() {
+fn samples_and_seed_change_the_draws() {
     let dir = folder(&plan("[study.design.saltelli]\nsamples = 32\nseed = 3\n"));
     let (printed, own) = studied(dir.path(), &["--samples", "4", "--seed", "9"]);
     assert!(
@@ -506,7 +506,7 @@ fn another_draw_than_the_plans() {
     assert!(stderr(&ends(dir.path(), &["study"], 2)).contains("no plan is named"));
 }
 
-/// The finished part of an unfinished study is reported, with how much is missing.
+/// The finished part of an unfinished study is reported, with the missing share.
 #[test]
 fn an_unfinished_study_can_be_shown() {
     let dir = folder(&plan("[study.design.monte_carlo]\nsamples = 400\n"));
@@ -524,7 +524,7 @@ fn an_unfinished_study_can_be_shown() {
         line.contains(&format!("{} of {all} parts", all - 1)) && line.contains("of 400 points"),
         "{line}"
     );
-    // The mean is that of the rows which are there.
+    // The mean is that of the rows present.
     ends(
         dir.path(),
         &["study", "export", "out", "--out", "rows.csv", "--force"],

@@ -1,16 +1,16 @@
-//! Studies that are stopped, run out of disk or are taken up again. Truth: the same study in one go.
+//! Interrupted and resumed studies, and full disks. Truth: the same study without interruption.
 
 use super::*;
 
-/// Waits until so many parts are there, or the process has ended.
+/// Waits for a number of parts, or the end of the process.
 fn wait_for_parts(child: &mut Child, dir: &Path, count: usize) {
     while parts(dir) < count && child.try_wait().unwrap().is_none() {
         sleep(Duration::from_millis(1));
     }
 }
 
-/// The property that resuming rests on: killed again and again, at moments that move through the writing of a part, a study ends with
-/// the bytes of an undisturbed one; and one thread gives the bytes of three.
+/// Property behind resuming: killed repeatedly at moments that sweep over the writing of a part, a study ends with
+/// the bytes of an undisturbed one. One thread gives the bytes of three.
 #[test]
 fn killed_at_many_moments_it_ends_with_the_same_bytes() {
     let dir = folder(&PLAN);
@@ -46,11 +46,11 @@ fn killed_at_many_moments_it_ends_with_the_same_bytes() {
             .spawn()
             .unwrap();
         wait_for_parts(&mut child, &dir.path().join("killed"), before + 1);
-        // Steps of a third of a millisecond: within the writing of a part, between parts, within the computing.
+        // Steps of a third of a millisecond: within the writing of a part, between parts, during computing.
         sleep(Duration::from_micros(333 * (kills as u64 % 40)));
         child.kill().unwrap();
         let status = child.wait().unwrap();
-        // A study that was killed before its manifest was written has to be begun again.
+        // A study killed before its manifest was written has to start again.
         first = !dir.path().join("killed/study.json").exists();
         if status.code() == Some(0) {
             break;
@@ -63,7 +63,7 @@ fn killed_at_many_moments_it_ends_with_the_same_bytes() {
     }
     assert!(kills >= 10, "only {kills} kills");
     same(&dir.path().join("whole"), &dir.path().join("killed"));
-    // What is there and finished is left as it is.
+    // Finished parts are kept.
     ends(
         dir.path(),
         &[
@@ -79,7 +79,7 @@ fn killed_at_many_moments_it_ends_with_the_same_bytes() {
     same(&dir.path().join("whole"), &dir.path().join("killed"));
 }
 
-/// Ctrl-C: code 130, whole parts kept and nothing half written, and the rest can be done later.
+/// Ctrl-C: code 130, complete parts kept, no partial file, and the rest can be computed later.
 #[test]
 fn ctrl_c_stops_with_whole_parts() {
     let dir = folder(&PLAN);
@@ -122,8 +122,8 @@ fn ctrl_c_stops_with_whole_parts() {
     same(&out, &dir.path().join("whole"));
 }
 
-/// A disk that is really full: a small file system in memory. Whole parts stay, the message says what to do, and with room it ends with the
-/// bytes of an undisturbed study.
+/// A disk that is really full: a small tmpfs. Complete parts are kept, the message has advice, and with room the study ends with the
+/// bytes of an undisturbed one.
 #[test]
 fn a_full_disk_loses_nothing() {
     let dir = folder(&PLAN);
@@ -170,9 +170,9 @@ fn a_full_disk_loses_nothing() {
     same(&dir.path().join("copy"), &dir.path().join("whole"));
 }
 
-/// Another plan, another seed, another car: not the study that is in the directory.
+/// Another plan, seed or car is not the study in the directory.
 #[test]
-fn resume_wants_the_same_study() {
+fn resume_requires_the_same_study() {
     let small = PLAN.replace("samples = 5000", "samples = 40");
     let dir = folder(&small);
     ends(

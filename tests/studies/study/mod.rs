@@ -1,4 +1,4 @@
-//! Studies by the real program: the same bytes whatever happens on the way, nothing lost, honest exit codes.
+//! Studies of the program: the same bytes under any disturbance, nothing lost, correct exit codes.
 #![allow(
     clippy::unwrap_used,
     clippy::print_stderr,
@@ -18,9 +18,9 @@ use std::time::Duration;
 use crate::tree::{parts, same, tree};
 use serde_json::Value;
 
-/// A cycle of a minute, so that a run takes little time.
+/// A cycle of one minute, for short runs.
 const CYCLE: &str = "time_s,speed_kmh,phase\n0,0,town\n4,0,town\n14,32,town\n24,32,town\n34,0,town\n36,0,road\n50,70,road\n56,70,road\n60,60,road\n";
-/// A factor of the CVT alone, and one of all cars.
+/// A factor of the CVT only, and one of all cars.
 const FACTORS: &str = r#"
 [[factor]]
 key = "transmission.cvt.pump.displacement_cc_rev"
@@ -94,7 +94,7 @@ fn json(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// Names of the columns of the runs of a study, without units, and its rows.
+/// Columns of the exported runs without units, and the rows.
 fn exported(dir: &Path) -> (Vec<String>, Vec<csv::StringRecord>) {
     let words = ["study", "export", "out", "--out", "runs.csv"];
     ends(dir, &words, 0);
@@ -105,7 +105,7 @@ fn exported(dir: &Path) -> (Vec<String>, Vec<csv::StringRecord>) {
     (heads, reader.records().map(Result::unwrap).collect())
 }
 
-/// Runs that fail are rows with a reason, the study goes on, the code is 1, and the others are described without them.
+/// Failed runs are rows with a reason, the study continues, the code is 1, and statistics exclude them.
 #[test]
 fn failed_runs_are_rows() {
     let plan = r#"
@@ -184,9 +184,9 @@ values = [2.2, 2.417]
     }
 }
 
-/// A run that no car can drive is a failed one: it is in no mean.
+/// An impossible run is a failed one, and excluded from means.
 #[test]
-fn runs_that_cannot_be_are_left_out() {
+fn impossible_runs_are_left_out() {
     let plan = |gains: &str| {
         format!(
             "[study]\ntitle = \"t\"\nvehicle = \"rover_216_cvt\"\nbaselines = []\ncycle = \"ece15\"\n[study.design.grid]\n\
@@ -214,9 +214,9 @@ fn runs_that_cannot_be_are_left_out() {
     assert_eq!(range(&answer), expected);
 }
 
-/// A run of a study is the run of `run`: the same conditions give the same numbers, to the last bit.
+/// A run of a study equals `run` under the same conditions bit by bit.
 #[test]
-fn rows_are_the_numbers_of_run() {
+fn rows_equal_the_numbers_of_run() {
     let plan = r#"
 [study]
 title = "one"
@@ -309,7 +309,7 @@ values = ["dexron_iii"]
     }
 }
 
-/// Everything that is wrong with a plan is said at once, with its line, before anything starts.
+/// All problems of a plan are reported at once, with their lines, before the study starts.
 #[test]
 fn a_bad_plan_is_refused_with_all_its_problems() {
     let plan = r#"
@@ -360,7 +360,7 @@ values = [1]
     assert!(!dir.path().join("out").exists());
 }
 
-/// The matrix of the thesis: 30 runs whose numbers are those of `run`, with its pictures.
+/// Matrix of the thesis: 30 runs with the numbers of `run`, with pictures.
 #[test]
 fn the_ambient_matrix() {
     let dir = folder(&PLAN);

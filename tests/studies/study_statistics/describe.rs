@@ -19,7 +19,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * b.abs()
 }
 
-/// The truth is numpy 2.4 (`mean`, `std(ddof=1)`, `quantile`) and scipy 1.17 (`t.interval`, `binom.ppf`).
+/// Truth: numpy 2.4 (`mean`, `std(ddof=1)`, `quantile`) and scipy 1.17 (`t.interval`, `binom.ppf`).
 #[test]
 fn val_summary_as_in_numpy_and_scipy() {
     let s = Summary::of(&column(), USUAL);
@@ -50,7 +50,7 @@ fn val_summary_as_in_numpy_and_scipy() {
         near(low, 12.497792625654053) && near(high, 14.372560472603165),
         "{low} {high}"
     );
-    // Ranks 24 and 41 of 64 for the median; none far enough out for 0.025 below, rank 5 above.
+    // Ranks 24 and 41 of 64 for the median; for 0.025 no rank below, rank 5 above.
     assert_eq!(
         s.quantiles[3].interval,
         [Some(11.797796580644007), Some(15.173771333753265)]
@@ -60,7 +60,7 @@ fn val_summary_as_in_numpy_and_scipy() {
 }
 
 #[test]
-fn what_is_missing_is_counted_and_changes_nothing_else() {
+fn missing_values_are_counted_and_change_nothing_else() {
     let full = column();
     let mut gaps = full.clone();
     gaps.splice(10..10, [f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
@@ -137,8 +137,8 @@ fn shares_leave_out_what_is_missing() {
     assert!(Share::above_zero(&[], None).share.is_nan());
 }
 
-/// Draws of a lognormal number: the median is 1, the mean exp(1/2 s^2). The standard deviation of a count is 6.9 of 95 %, 12.6 of 80 %. The
-/// intervals of median and share hold it at least, being of whole ranks.
+/// Draws of a lognormal variable: the median is 1, the mean exp(1/2 s^2). The standard deviation of a count is 6.9 of 95 %, 12.6 of 80 %. The
+/// intervals of median and share cover at least that often, because their ends are ranks.
 #[test]
 fn val_intervals_hold_the_truth_as_often_as_they_say() {
     for (confidence, mean, ranks) in [

@@ -1,4 +1,4 @@
-//! Pictures of made-up statistics: few and many factors, long names, tiny and negative values, nothing at all.
+//! Pictures of artificial statistics: few and many factors, long names, tiny and negative values, no data.
 
 use cvtcycle::report::charts::Picture;
 use cvtcycle::report::charts::study::{
@@ -14,7 +14,7 @@ use rand_pcg::Pcg64;
 
 pub const LONG: &str = "transmission.variator.segment_friction_coefficient_between_bands_and_shoulders_at_40_degc & <so on>";
 
-/// Names of factors, some long, some with what XML cannot hold as it is.
+/// Names of factors, some of them long or with characters that XML escapes.
 pub fn names(count: usize) -> Vec<String> {
     let name = |i: usize| match i % 5 {
         0 => format!("ambient_degc {i}"),
@@ -26,7 +26,7 @@ pub fn names(count: usize) -> Vec<String> {
     (0..count).map(name).collect()
 }
 
-/// Numbers evenly between 0 and 1.
+/// Uniform numbers between 0 and 1.
 pub fn draws(seed: u64, count: usize) -> Vec<f64> {
     let mut random = Pcg64::seed_from_u64(seed);
     (0..count).map(|_| random.random::<f64>()).collect()
@@ -50,15 +50,15 @@ fn shown(scale: f64) -> Shown<'static> {
     }
 }
 
-/// Weight of a factor in the made-up output: they fall off, some act negatively.
+/// Decreasing weights of factors in the artificial output, some negative.
 fn weight(i: usize) -> f64 {
     let sign = if i % 3 == 1 { -1.0 } else { 1.0 };
     sign * 0.75_f64.powi(i as i32)
 }
 
-/// Outputs of a Saltelli design of a made-up function, with an interaction of the first two factors.
+/// Outputs of a Saltelli design of an artificial function, with an interaction of the first two factors.
 fn design(factors: usize, samples: usize, scale: f64) -> Vec<Vec<f64>> {
-    let of = |x: &[f64]| {
+    let evaluate_at = |x: &[f64]| {
         let sum: f64 = x
             .iter()
             .enumerate()
@@ -72,12 +72,12 @@ fn design(factors: usize, samples: usize, scale: f64) -> Vec<Vec<f64>> {
             draws(9 + s as u64, factors),
             draws(1_000_000 + s as u64, factors),
         );
-        columns[0].push(of(&a));
-        columns[1].push(of(&b));
+        columns[0].push(evaluate_at(&a));
+        columns[1].push(evaluate_at(&b));
         for i in 0..factors {
             let mut mixed = a.clone();
             mixed[i] = b[i];
-            columns[i + 2].push(of(&mixed));
+            columns[i + 2].push(evaluate_at(&mixed));
         }
     }
     columns
@@ -223,7 +223,7 @@ fn effects(factors: usize, scale: f64) -> (String, Picture) {
     )
 }
 
-/// A skewed sample about a centre.
+/// Skewed sample about a centre.
 pub fn sample(seed: u64, count: usize, centre: f64, width: f64) -> Vec<f64> {
     draws(seed, count)
         .iter()
@@ -276,7 +276,7 @@ fn distributions(scale: f64) -> Vec<(String, Picture)> {
     ]
 }
 
-/// Statistics without numbers, of one number, of constants.
+/// Statistics of no numbers, of one number, of constants.
 fn odd() -> Vec<(String, Picture)> {
     let shown = Shown::default();
     let gap = [f64::NAN; 4];
@@ -364,7 +364,7 @@ fn odd() -> Vec<(String, Picture)> {
     plots
 }
 
-/// All of them, with names.
+/// All pictures by name.
 pub fn every_plot() -> Vec<(String, Picture)> {
     let mut plots = odd();
     for scale in [1.0, -1.0, 1e-7] {

@@ -5,7 +5,7 @@ use cvtcycle::study::statistics::{Estimate, TornadoInput, group_means, rank_sens
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Columns of the golden table to one decimal, which ties many of its values.
+/// Columns of the golden table rounded to one decimal, which ties many values.
 fn columns() -> Vec<Vec<f64>> {
     let table = include_str!("../../golden/sobol_outputs.csv");
     let rows: Vec<Vec<f64>> = table
@@ -22,7 +22,7 @@ fn columns() -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The truth is scipy 1.17 (`spearmanr`) and least squares of numpy 2.4 on `rankdata`, of AB_1 against A, B and AB_3.
+/// Truth: scipy 1.17 (`spearmanr`) and least squares of numpy 2.4 on `rankdata`, of AB_1 against A, B and AB_3.
 #[test]
 fn val_ranks_as_in_scipy() {
     let c = columns();
@@ -67,7 +67,7 @@ fn val_ranks_as_in_scipy() {
 }
 
 #[test]
-fn ranks_see_the_order_alone() {
+fn ranks_depend_on_the_order_only() {
     let x: Vec<f64> = (0..50).map(f64::from).collect();
     let y: Vec<f64> = x.iter().map(|x| (0.3 * x).exp()).collect();
     let flat = vec![1.0; 50];
@@ -121,7 +121,7 @@ fn holds(estimate: &Estimate, truth: f64) -> usize {
     )
 }
 
-/// Two normal numbers of correlation r have the rank correlation 6/pi asin(r/2), a third without relation has 0.
+/// Normal variables with correlation r have the rank correlation 6/pi asin(r/2); a third independent one has 0.
 #[test]
 fn val_intervals_of_rank_correlations_hold_the_truth_in_about_95_of_100() {
     let (r, seeds): (f64, usize) = (0.7, 1000);
@@ -145,7 +145,7 @@ fn val_intervals_of_rank_correlations_hold_the_truth_in_about_95_of_100() {
         hits[2] += holds(&found.factors[1].regression, 0.0);
     }
     println!("rank correlation of 0.68 and of 0, regression of 0: {hits:?} of {seeds}");
-    // Standard deviation of a count 6.9.
+    // The standard deviation of a count is 6.9.
     assert!(hits.iter().all(|hit| (925..=975).contains(hit)), "{hits:?}");
 }
 
@@ -163,13 +163,13 @@ fn means_of_words_and_of_a_grid() {
         (found.groups[0].mean, found.groups[1].mean, found.range),
         (4.0, 1.0, 3.0)
     );
-    // t(1) = 12.706, sd = sqrt 2: 12.706 either way.
+    // t(1) = 12.706, sd = sqrt 2: 12.706 on either side.
     assert!((found.groups[0].mean_interval.unwrap()[1] - 16.7062).abs() < 1e-4);
     assert!(found.groups[1].mean_interval.is_none() && found.groups[2].mean.is_nan());
     // By hand: mean 3, all squares 8, between 2 (4 - 3)^2 + (1 - 3)^2 = 6.
     assert!((found.eta_squared - 0.75).abs() < 1e-12);
 
-    // A grid of y = 2 i + k^2: effects of i are 2 apart, those of k 0, 1, 4; each takes its part of the variance.
+    // Grid of y = 2 i + k^2: effects of i are 2 apart, those of k 0, 1, 4; each takes its part of the variance.
     let grid: Vec<(i32, i32)> = (0..3).flat_map(|i| (0..3).map(move |k| (i, k))).collect();
     let y: Vec<f64> = grid.iter().map(|(i, k)| f64::from(2 * i + k * k)).collect();
     let [first, second] = [0, 1].map(|f| {
@@ -190,7 +190,7 @@ fn means_of_words_and_of_a_grid() {
             && (first.range - 4.0).abs() < 1e-12
     );
     assert!((means(&second)[2] - means(&second)[0] - 4.0).abs() < 1e-12);
-    // No sample: ends, but neither a deviation nor an interval.
+    // Not a sample: ends, without deviation and interval.
     let ends =
         |g: &cvtcycle::study::statistics::Group| (g.min, g.max, g.sd.is_nan(), g.mean_interval);
     assert_eq!(ends(&first.groups[1]), (2.0, 6.0, true, None));
@@ -237,7 +237,7 @@ fn a_tornado_is_sorted_by_what_each_factor_moves() {
     };
     let some = |label: &str, effect: f64| Some((label.to_owned(), effect));
     assert_eq!(ends("list"), (some("b", -0.2), some("d", 0.9), 1));
-    // Every level is kept, in the order of the plan; one of them is no end.
+    // All levels are kept in the order of the plan; one of them is not an end.
     let list = &found.bars[0];
     let levels: Vec<_> = list
         .entries
@@ -248,7 +248,7 @@ fn a_tornado_is_sorted_by_what_each_factor_moves() {
     assert!(levels[2].0 == "c" && levels[2].1.is_nan() && levels[3] == ("d", 7.9));
     let between: Vec<_> = list.between().map(|e| e.label.as_str()).collect();
     assert_eq!(between, ["a"]);
-    // Two values stay low and high, whichever way the output goes.
+    // Two values stay low and high, whatever the sign of the effect.
     assert_eq!(ends("small"), (some("0.1", 0.1), some("0.2", -0.1), 0));
     assert_eq!(ends("one side"), (some("cold", 0.5), some("hot", 0.25), 0));
     assert_eq!(ends("one left"), (None, some("y", -0.5), 1));

@@ -1,11 +1,11 @@
-//! Value of information against functions whose indices are known, and against chance.
+//! Value of information for functions with known indices, and under chance.
 
 use super::{Known, USUAL, additive, ishigami};
 use cvtcycle::study::statistics::{Column, Shares, sd_left, shares};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-/// Independent draws of a function of the first columns, with idle columns after them.
+/// Independent draws of a function of the first columns, with inert columns after them.
 fn drawn(known: &Known, n: usize, idle: usize, seed: u64) -> (Vec<Column>, Vec<f64>) {
     let mut random = Pcg64::seed_from_u64(seed);
     let d = known.first.len();
@@ -13,7 +13,7 @@ fn drawn(known: &Known, n: usize, idle: usize, seed: u64) -> (Vec<Column>, Vec<f
     let mut output = Vec::with_capacity(n);
     for _ in 0..n {
         let x: Vec<f64> = (0..d + idle).map(|_| random.random::<f64>()).collect();
-        output.push((known.of)(&x[..d]));
+        output.push((known.evaluate_at)(&x[..d]));
         columns
             .iter_mut()
             .zip(x)
@@ -36,7 +36,7 @@ fn val_shares_of_known_functions() {
                 known.name
             );
         }
-        // 64 groups of 4096: an idle factor has a deviation of sqrt(128)/4096 = 0.003, the largest of a few of them about twice that.
+        // 64 groups of 4096: an inert factor has a deviation of sqrt(128)/4096 = 0.003, the largest of a few about twice that.
         assert!(
             (0.003..0.012).contains(&found.noise),
             "{}: {}",
@@ -44,18 +44,18 @@ fn val_shares_of_known_functions() {
             found.noise
         );
     }
-    // Half of the variance known leaves 0.707 of the deviation.
+    // Knowing half of the variance leaves 0.707 of the deviation.
     assert!((sd_left(2.0, 0.5) - 2.0 * 0.5_f64.sqrt()).abs() < 1e-12);
     assert!((sd_left(2.0, -0.1) - 2.0 * 1.1_f64.sqrt()).abs() < 1e-12 && sd_left(2.0, 1.2) == 0.0);
 }
 
-/// Truth: idle factors alone. The largest of 30 is above the noise in about 5 of 100 samples (deviation 1.5 of 50 samples), and well above 0 in
-/// nearly all: without the noise limit one of them would be named as a cause.
+/// Truth: inert factors only. The largest of 30 exceeds the noise limit in about 5 of 100 samples (deviation 1.5 of 50 samples), and is well above 0 in
+/// nearly all: without the limit one of them would be named as a cause.
 #[test]
 fn val_chance_names_no_cause() {
     let idle = Known {
         name: "idle",
-        of: Box::new(|x| x[0]),
+        evaluate_at: Box::new(|x| x[0]),
         first: vec![1.0],
         total: vec![1.0],
     };
@@ -71,10 +71,10 @@ fn val_chance_names_no_cause() {
     assert!(above <= 7 && seeming >= 35, "{above} {seeming}");
 }
 
-/// Truth: eta squared by hand, 2 levels of 8 draws each: R2 = 0.8 gives 1 - 0.2 * 15 / 14. Numbers of two values are the same groups.
+/// Truth: eta squared by hand, 2 levels of 8 draws each: R2 = 0.8 gives 1 - 0.2 * 15 / 14. Numbers with two values form the same groups.
 #[test]
 fn levels_are_groups() {
-    // Means 1 and 3, deviations of 0.5 about them: between 16, within 4.
+    // Means 1 and 3, deviations of 0.5 about them: 16 between, 4 within.
     let y: Vec<f64> = (0..16)
         .map(|k| if k < 8 { 1.0 } else { 3.0 } + if k % 2 == 0 { 0.5 } else { -0.5 })
         .collect();
@@ -94,10 +94,10 @@ fn levels_are_groups() {
 }
 
 #[test]
-fn what_says_nothing_has_no_share() {
+fn uninformative_factors_have_no_share() {
     let (columns, mut output) = drawn(&additive(), 40, 1, 3);
     let whole = shares(&columns, &output, USUAL);
-    // The order of the factors and the unit of the output change nothing.
+    // The order of the factors and the unit of the output have no effect.
     let turned: Vec<Column> = columns.iter().rev().cloned().collect();
     let scaled: Vec<f64> = output.iter().map(|y| 1e6 - 250.0 * y).collect();
     let other = shares(&turned, &scaled, USUAL);

@@ -19,19 +19,19 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::PI;
 
-/// The confidence of every table of statistics.
+/// Default confidence of all tables of statistics.
 pub const USUAL: Confidence = Confidence {
     intervals: 0.95,
     draws: 0.9,
 };
 
-/// A function of points of the unit cube.
+/// Function on the unit cube.
 pub type Function = Box<dyn Fn(&[f64]) -> f64>;
 
-/// A function with its indices.
+/// Function with its indices.
 pub struct Known {
     pub name: &'static str,
-    pub of: Function,
+    pub evaluate_at: Function,
     pub first: Vec<f64>,
     pub total: Vec<f64>,
 }
@@ -43,13 +43,13 @@ pub fn ishigami() -> Known {
     let v2 = a * a / 8.0;
     let v13 = b * b * PI.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
     let v = v1 + v2 + v13;
-    let of = move |x: &[f64]| {
+    let evaluate_at = move |x: &[f64]| {
         let z: Vec<f64> = x.iter().map(|u| PI * (2.0 * u - 1.0)).collect();
         z[0].sin() + a * z[1].sin().powi(2) + b * z[2].powi(4) * z[0].sin()
     };
     Known {
         name: "Ishigami",
-        of: Box::new(of),
+        evaluate_at: Box::new(evaluate_at),
         first: vec![v1 / v, v2 / v, 0.0],
         total: vec![(v1 + v13) / v, v2 / v, v13 / v],
     }
@@ -63,7 +63,7 @@ pub fn sobol_g() -> Known {
     let v = all - 1.0;
     Known {
         name: "g",
-        of: Box::new(move |x: &[f64]| {
+        evaluate_at: Box::new(move |x: &[f64]| {
             x.iter()
                 .zip(a)
                 .map(|(x, a)| ((4.0 * x - 2.0).abs() + a) / (1.0 + a))
@@ -74,14 +74,14 @@ pub fn sobol_g() -> Known {
     }
 }
 
-/// 100 + 3 x + 2 y + z + 0 w: far from zero, adds up, the last factor does nothing.
+/// 100 + 3 x + 2 y + z + 0 w: far from zero, additive, the last factor inert.
 pub fn additive() -> Known {
     let c = [3.0, 2.0, 1.0, 0.0];
     let share: Vec<f64> = c.iter().map(|c| c * c / 14.0).collect();
-    let of = move |x: &[f64]| 100.0 + x.iter().zip(c).map(|(x, c)| x * c).sum::<f64>();
+    let evaluate_at = move |x: &[f64]| 100.0 + x.iter().zip(c).map(|(x, c)| x * c).sum::<f64>();
     Known {
         name: "additive",
-        of: Box::new(of),
+        evaluate_at: Box::new(evaluate_at),
         first: share.clone(),
         total: share,
     }
@@ -99,27 +99,27 @@ impl Outputs {
         }
     }
 
-    /// From points of 2 d numbers: those of A, then those of B.
-    pub fn of(known: &Known, points: impl Iterator<Item = Vec<f64>>) -> Self {
+    /// Evaluates points of 2 d numbers: those of A, then those of B.
+    pub fn evaluate(known: &Known, points: impl Iterator<Item = Vec<f64>>) -> Self {
         let d = known.first.len();
         let mut columns = vec![Vec::new(); d + 2];
         for point in points {
             let (a, b) = point.split_at(d);
-            columns[0].push((known.of)(a));
-            columns[1].push((known.of)(b));
+            columns[0].push((known.evaluate_at)(a));
+            columns[1].push((known.evaluate_at)(b));
             for i in 0..d {
                 let mut mixed = a.to_vec();
                 mixed[i] = b[i];
-                columns[i + 2].push((known.of)(&mixed));
+                columns[i + 2].push((known.evaluate_at)(&mixed));
             }
         }
         Outputs(columns)
     }
 
-    /// An Owen-scrambled Sobol sequence.
+    /// Evaluates an Owen-scrambled Sobol sequence.
     pub fn sobol(known: &Known, n: u32, seed: u32) -> Self {
         let d = known.first.len() as u32;
-        Self::of(
+        Self::evaluate(
             known,
             (0..n).map(|i| {
                 (0..2 * d)
@@ -129,11 +129,11 @@ impl Outputs {
         )
     }
 
-    /// Independent draws.
+    /// Evaluates independent draws.
     pub fn random(known: &Known, n: usize, seed: u64) -> Self {
         let mut random = Pcg64::seed_from_u64(seed);
         let d = known.first.len();
-        Self::of(
+        Self::evaluate(
             known,
             (0..n).map(|_| (0..2 * d).map(|_| random.random::<f64>()).collect()),
         )

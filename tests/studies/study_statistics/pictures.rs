@@ -1,4 +1,4 @@
-//! Pictures are sound, readable and true.
+//! Pictures are valid, readable and correct.
 
 use super::drawn::{every_plot, names, sample};
 use cvtcycle::report::charts::Picture;
@@ -20,7 +20,7 @@ fn class<'a>(document: &'a Document, class: &'a str) -> impl Iterator<Item = Nod
         .filter(move |node| node.attribute("class") == Some(class))
 }
 
-/// A shift of the base line in ems.
+/// Shift of the base line, em.
 fn shift(dy: &str) -> f64 {
     let ex = dy
         .strip_suffix("ex")
@@ -28,7 +28,7 @@ fn shift(dy: &str) -> f64 {
     ex.unwrap_or_else(|| dy.trim_end_matches("em").parse().unwrap())
 }
 
-/// Box of a text in canvas units: left, top, right, bottom. Widths of a narrow face, lest texts that only nearly touch count as overlapping.
+/// Box of a text in canvas units: left, top, right, bottom. Uses the widths of a narrow font, so that texts which nearly touch do not count as overlapping.
 fn text_box(node: Node) -> [f64; 4] {
     let text = node.text().unwrap_or("").trim();
     let digits = node
@@ -47,7 +47,7 @@ fn text_box(node: Node) -> [f64; 4] {
     };
     match node.attribute("transform") {
         None => [x + from, y + down - 0.7 * size, x + from + width, y + down],
-        // All turned text is turned by a right angle about its own place.
+        // Rotated text is rotated by a right angle about its position.
         Some(turn) => {
             let about: Vec<f64> = turn
                 .trim_start_matches("rotate(")
@@ -110,7 +110,7 @@ fn every_picture_is_sound_and_its_texts_fit_and_stay_apart() {
                 "{name}: {said}"
             );
         }
-        // At A4 a figure of 880 px has texts of 6.6 points.
+        // On A4 a figure of 880 px has texts of 6.6 points.
         assert!(
             width <= 4.0 * 880.0 && height <= 4.0 * 1250.0,
             "{name}: {width} x {height}"
@@ -204,7 +204,7 @@ fn every_mark_has_its_row_and_every_row_all_its_cells() {
 }
 
 #[test]
-fn what_is_cut_is_still_in_the_file() {
+fn truncated_texts_are_complete_in_the_file() {
     for (name, picture) in every_plot()
         .into_iter()
         .filter(|(name, _)| name.contains(" 30 "))
@@ -220,8 +220,8 @@ fn what_is_cut_is_still_in_the_file() {
             .filter(|n| n.tag_name().name() == "text")
             .filter_map(|n| n.text())
             .collect();
-        // Indices are drawn of the six factors with the largest total index, their convergence of seven, effects of the twelve largest: here the
-        // first ones or so.
+        // Indices are drawn for the six factors with the largest total index, their convergence for seven, effects for the twelve largest: here
+        // approximately the first ones.
         let least = if name.starts_with("sobol") {
             3
         } else if name.starts_with("conv") {
@@ -241,7 +241,7 @@ fn what_is_cut_is_still_in_the_file() {
                     .any(|cell| *cell == full),
                 "{name}: {full} is not in the table"
             );
-            // A factor with one level has no effect, and is drawn after all others.
+            // A factor with one level has no effect, and is drawn last.
             if k >= least || name.starts_with("effects") && k % 4 == 3 {
                 continue;
             }
@@ -367,12 +367,12 @@ fn a_tornado_says_where_low_and_high_lead() {
     let bars: Vec<(f64, f64)> = class(&document, "bar")
         .map(|bar| (number(bar, "x"), number(bar, "width")))
         .collect();
-    // Rising: low ends at the base, high begins there; lengths 0.5 and 0.4.
+    // Increasing: low ends at the base, high begins there; lengths 0.5 and 0.4.
     let base = bars[1].0;
     assert!(
         (bars[0].0 + bars[0].1 - base).abs() < 3.0 && (bars[0].1 / bars[1].1 - 1.25).abs() < 0.01
     );
-    // Falling: the low value leads to the right.
+    // Decreasing: the low value points to the right.
     assert!((bars[2].0 - base).abs() < 3.0 && bars[3].0 < base);
     let heights: Vec<f64> = class(&document, "bar")
         .map(|bar| number(bar, "y"))
@@ -431,7 +431,7 @@ fn dots_are_equal_shares_of_the_values() {
             "{row:?}"
         );
     }
-    // Dots are at their values: none is farther from its value than half of a stack, and none leaves the row.
+    // Dots are within half a stack of their values, and within the row.
     let plot = class(&document, "plot").next().unwrap();
     let (top, bottom) = (
         number(plot, "y"),

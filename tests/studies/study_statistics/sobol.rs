@@ -11,7 +11,7 @@ fn holds(estimate: &Estimate, truth: f64) -> bool {
         .is_some_and(|[low, high]| low <= truth + 1e-12 && truth - 1e-12 <= high)
 }
 
-/// Where the truth comes from: variances by hand, see [`super::functions`].
+/// Truth: variances by hand, see [`super::functions`].
 #[test]
 fn val_known_functions_lie_in_the_intervals_of_a_sobol_sequence() {
     for known in [ishigami(), sobol_g(), additive()] {
@@ -34,7 +34,7 @@ fn val_known_functions_lie_in_the_intervals_of_a_sobol_sequence() {
                     ("S", factor.first, known.first[i]),
                     ("T", factor.total, known.total[i]),
                 ] {
-                    // In few points some projections of the sequence on 16 axes are poor: see the head of `statistics::sobol`.
+                    // With few points some projections of the sequence on 16 axes are poor: see the head of `statistics::sobol`.
                     let poor = known.name == "g" && n < 4096 && truth < 1e-3;
                     assert!(
                         poor || holds(&estimate, truth),
@@ -60,7 +60,7 @@ fn val_known_functions_lie_in_the_intervals_of_a_sobol_sequence() {
     }
 }
 
-/// How often the intervals of independent designs hold the truth, for each index.
+/// Number of times that the intervals of independent designs cover the truth, for each index.
 fn coverage(known: &Known, samples: usize, seeds: u64) -> Vec<(String, usize)> {
     let mut hits = vec![0; 2 * known.first.len()];
     for seed in 0..seeds {
@@ -132,7 +132,7 @@ fn golden() -> (Outputs, Vec<[f64; 2]>) {
     (Outputs(columns), indices.map(pair).collect())
 }
 
-/// The truth is SALib 1.6.0: `sobol.analyze` of the table in the same folder.
+/// Truth: SALib 1.6.0, `sobol.analyze` of the table in the same folder.
 #[test]
 fn val_indices_of_a_table_as_in_salib() {
     let (outputs, truth) = golden();
@@ -156,7 +156,7 @@ fn val_indices_of_a_table_as_in_salib() {
 }
 
 #[test]
-fn indices_do_not_know_the_unit_or_the_zero_of_an_output() {
+fn indices_do_not_depend_on_unit_or_zero_of_an_output() {
     let (outputs, _) = golden();
     let other = Outputs(
         outputs

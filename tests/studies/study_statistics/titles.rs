@@ -1,15 +1,15 @@
-//! Titles of pictures of statistics: their numbers are those of the table under the picture.
+//! Titles of pictures of statistics contain the numbers of the table below the picture.
 
 use super::drawn::{every_plot, sample};
 use super::{Outputs, additive};
-use crate::titles::{is, is_cell, number, title, written};
+use crate::titles::{assert_cell, assert_number, number, title, written};
 use cvtcycle::report::charts::study::{
     DistributionSeries, KnownValue, Shown, distribution_plot, sobol_plot,
 };
 use cvtcycle::report::charts::{Picture, PictureTable};
 use cvtcycle::study::statistics::{Bootstrap, sobol_indices};
 
-/// Pictures of outputs of the size of fuel whose name begins so, with their titles.
+/// Pictures of outputs of the magnitude of fuel whose name has a prefix, with their titles.
 fn named(start: &str) -> Vec<(String, Picture)> {
     let of_fuel = |name: &str| name.ends_with(" x1") || name.ends_with(" x-1");
     let all = every_plot().into_iter();
@@ -21,7 +21,7 @@ fn named(start: &str) -> Vec<(String, Picture)> {
     own
 }
 
-/// Indices of a function that adds up, of which the first factor is 9/14 of the variance.
+/// Indices of an additive function, with the first factor at 9/14 of the variance.
 fn apart() -> (String, Picture) {
     let outputs = Outputs::sobol(&additive(), 1024, 3);
     let names: Vec<String> = ["first", "second", "third", "idle"]
@@ -39,7 +39,7 @@ fn apart() -> (String, Picture) {
     (title(&picture.svg), picture)
 }
 
-/// Rows by a column, the largest number first; rows without one last.
+/// Rows sorted by a column in descending order; rows without a number last.
 fn ordered(table: &PictureTable, column: usize) -> Vec<&Vec<String>> {
     let mut rows: Vec<&Vec<String>> = table.rows.iter().collect();
     let size = |row: &Vec<String>| {
@@ -50,7 +50,7 @@ fn ordered(table: &PictureTable, column: usize) -> Vec<&Vec<String>> {
     rows
 }
 
-/// A name as a title begins with it, and as XML has it.
+/// True if the title begins with the name, as displayed or as escaped for XML.
 fn begins(title: &str, name: &str) -> bool {
     let name = name
         .replace('&', "&amp;")
@@ -78,8 +78,8 @@ fn sobol_titles_have_the_indices_of_the_table_and_name_a_factor_only_where_it_is
             .1
             .split_once("the next has ")
             .unwrap();
-        is_cell(&written(own)[0], &rows[0][4], &title);
-        is_cell(&written(next)[0], &rows[1][4], &title);
+        assert_cell(&written(own)[0], &rows[0][4], &title);
+        assert_cell(&written(next)[0], &rows[1][4], &title);
         decided += 1;
     }
     assert!(decided > 0 && open > 0, "{decided} {open}");
@@ -90,7 +90,7 @@ fn rank_titles_have_the_largest_correlation_of_the_table() {
     for (title, picture) in named("ranks ") {
         let rows = ordered(&picture.table, 1);
         let said = title.split("rank correlation ").nth(1).unwrap();
-        is_cell(&written(said)[0], &rows[0][1], &title);
+        assert_cell(&written(said)[0], &rows[0][1], &title);
     }
 }
 
@@ -103,8 +103,8 @@ fn tornado_titles_have_the_ends_of_the_widest_bar() {
         let ends = [&row[2], &row[4]];
         let first = usize::from(number(ends[1]) < number(ends[0]));
         let said = written(title.split(" most: ").nth(1).unwrap());
-        is_cell(&said[0], ends[first], &title);
-        is_cell(&said[1], ends[1 - first], &title);
+        assert_cell(&said[0], ends[first], &title);
+        assert_cell(&said[1], ends[1 - first], &title);
     }
 }
 
@@ -132,7 +132,7 @@ fn effects_titles_have_the_widest_range_of_means() {
     }
 }
 
-/// Truth: the values themselves, drawn again.
+/// Truth: the values, drawn again.
 #[test]
 fn distribution_titles_have_the_counts_and_ends_of_the_values() {
     let draw = |name, values: &[f64], differences| {
@@ -158,7 +158,7 @@ fn distribution_titles_have_the_counts_and_ends_of_the_values() {
     let text = draw("a - b", &values, true);
     let said = written(&text);
     assert_eq!(said[..2], [above.to_string(), "1000".to_owned()], "{text}");
-    is(&said[2], 0.1 * above as f64, &text);
+    assert_number(&said[2], 0.1 * above as f64, &text);
     let text = draw("a", &values, false);
     let mut sorted = values;
     sorted.sort_by(f64::total_cmp);
@@ -186,11 +186,11 @@ fn convergence_titles_have_the_last_step_of_the_table() {
         };
         let largest = ordered(&table, 5)[0];
         let (start, end) = title.split_once(" the total index of ").unwrap();
-        is_cell(&written(start)[0], last, &title);
+        assert_cell(&written(start)[0], last, &title);
         assert!(begins(end, &largest[1]), "{title}");
         let said = written(end.split(" is ").last().unwrap());
         for (said, cell) in said.iter().zip(&largest[5..8]) {
-            is_cell(said, cell, &title);
+            assert_cell(said, cell, &title);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The identity of a build: one for one set of sources, another one after any change of them.
+//! Identity of a build: equal for equal sources, different after any change of them.
 
 use std::fs;
 use std::path::Path;
@@ -11,7 +11,7 @@ mod build;
 
 use build::{INPUTS, identity};
 
-/// A workspace of one file for each input that counts.
+/// Workspace with one file for each input that counts.
 fn workspace() -> TempDir {
     let dir = TempDir::new().unwrap();
     for input in INPUTS {
@@ -27,7 +27,7 @@ fn workspace() -> TempDir {
     dir
 }
 
-fn of(dir: &TempDir) -> String {
+fn workspace_identity(dir: &TempDir) -> String {
     identity(dir.path(), &INPUTS).unwrap()
 }
 
@@ -43,8 +43,8 @@ fn the_program_has_the_identity_of_its_sources() {
 #[test]
 fn one_byte_or_name_of_any_input_makes_another_build() {
     let dir = workspace();
-    let before = of(&dir);
-    assert_eq!(before, of(&workspace()));
+    let before = workspace_identity(&dir);
+    assert_eq!(before, workspace_identity(&workspace()));
     assert_eq!(before.len(), 16);
     for input in INPUTS {
         let path = dir.path().join(input);
@@ -55,25 +55,25 @@ fn one_byte_or_name_of_any_input_makes_another_build() {
         };
         let text = fs::read(&path).unwrap();
         fs::write(&path, text.to_ascii_uppercase()).unwrap();
-        assert_ne!(of(&dir), before, "{input}");
+        assert_ne!(workspace_identity(&dir), before, "{input}");
         fs::write(&path, &text).unwrap();
-        assert_eq!(of(&dir), before, "{input}");
+        assert_eq!(workspace_identity(&dir), before, "{input}");
     }
     let [old, new] = ["a.csv", "b.csv"].map(|name| dir.path().join("cycles").join(name));
     fs::write(&old, "0,0\n").unwrap();
-    let with = of(&dir);
+    let with = workspace_identity(&dir);
     fs::rename(&old, new).unwrap();
-    assert!(with != before && of(&dir) != with);
+    assert!(with != before && workspace_identity(&dir) != with);
 }
 
 #[test]
 fn line_ends_and_files_that_do_not_count_make_no_other_build() {
     let dir = workspace();
-    let before = of(&dir);
+    let before = workspace_identity(&dir);
     let lock = dir.path().join("Cargo.lock");
     fs::write(&lock, "of Cargo.lock\r\nline two\r\n").unwrap();
     fs::write(dir.path().join("README.md"), "words").unwrap();
-    assert_eq!(of(&dir), before);
+    assert_eq!(workspace_identity(&dir), before);
     fs::write(&lock, "of Cargo.lock\rline two\n").unwrap();
-    assert_ne!(of(&dir), before);
+    assert_ne!(workspace_identity(&dir), before);
 }

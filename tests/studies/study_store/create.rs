@@ -1,4 +1,4 @@
-//! Where a study may begin.
+//! Allowed directories of a new study.
 
 use std::fs;
 
@@ -68,7 +68,7 @@ fn files_of_something_else_and_earlier_studies_are_not_written_over() {
         said.contains("holds a study") && said.contains("continue it, replace it"),
         "{said}"
     );
-    // Nor does a run take the directory of a study, though both have a summary.
+    // A run does not replace the directory of a study either, though both have a summary.
     let problem = OutputDir::create(study.path(), true).unwrap_err();
     assert!(
         problem.message.contains("something else"),
@@ -88,7 +88,7 @@ fn force_removes_parts_and_results_of_the_earlier_study_and_nothing_else() {
     for mine in ["notes.csv", "parts/mine.csv"] {
         fs::write(path.join(mine), "keep").unwrap();
     }
-    // A list that somebody has changed leads out of the directory, and to what must stay.
+    // A manipulated list points outside the directory, and to a file that must stay.
     let list = fs::read_to_string(path.join("results.sha256")).unwrap();
     let sum = &list[..64];
     fs::write(
@@ -107,7 +107,7 @@ fn force_removes_parts_and_results_of_the_earlier_study_and_nothing_else() {
     assert_eq!(files(&path)["study.json"], manifest(2));
 }
 
-/// What is behind a link belongs to something else: it is neither removed nor read nor written.
+/// Targets of links belong to something else: they are not removed, read or written.
 #[cfg(unix)]
 #[test]
 fn nothing_of_a_study_lies_behind_a_link() {
@@ -143,13 +143,13 @@ fn nothing_of_a_study_lies_behind_a_link() {
         }
         assert_eq!(files(other.path()), before, "{name}");
     }
-    // Nor is a folder that waits empty behind a link filled.
+    // An empty folder behind a link is not filled either.
     let dir = TempDir::new().unwrap();
     let empty = TempDir::new().unwrap();
     symlink(empty.path(), dir.path().join("parts")).unwrap();
     let problem = StudyDir::create(dir.path(), &manifest(2), PLAN, false).unwrap_err();
     assert!(problem.message.contains("parts in"), "{}", problem.message);
-    // The directory itself is what the user names.
+    // The directory itself may be a link, since the user names it.
     let link = dir.path().join("link");
     symlink(other.path(), &link).unwrap();
     drop(StudyDir::resume(&link, &manifest(3), PLAN).unwrap());

@@ -1,4 +1,4 @@
-//! Damaged files and disks: an error that names the file, never rows that are wrong, never a panic.
+//! Damaged files and failing disks: an error that names the file, never wrong rows or a panic.
 
 use std::fs;
 use std::path::Path;
@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::{PLAN, files, heads, manifest, rows, whole, write_part};
 
-/// Reads everything of a table.
+/// Reads a complete table.
 fn read(path: &Path) -> Result<usize, cvtcycle::config::Problem> {
     let names: Vec<String> = heads().into_iter().map(|column| column.name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -124,7 +124,7 @@ fn a_part_that_cannot_be_written_leaves_nothing_and_the_others_stay() {
         rows: &rows,
         metadata: &[],
     };
-    // Rows that do not fit represent any error in the middle of a file.
+    // Mismatched rows stand in for any error in the middle of a file.
     let problem = study
         .write_part(1, &[table("trace"), table("runs")])
         .unwrap_err();
@@ -135,7 +135,7 @@ fn a_part_that_cannot_be_written_leaves_nothing_and_the_others_stay() {
     );
     assert_eq!(files(dir.path()), before);
     assert_eq!(study.missing(), [1, 2]);
-    // A folder in the way of the last file: those before it are there, the part is not.
+    // A folder in the way of the last file: earlier files exist, the part does not.
     fs::create_dir(dir.path().join("parts/part_00001.sha256")).unwrap();
     let whole = |name| PartTable {
         columns: &columns,
@@ -158,7 +158,7 @@ fn a_part_that_cannot_be_written_leaves_nothing_and_the_others_stay() {
     );
 }
 
-/// The lists can be checked without this program.
+/// The lists can be checked by sha256sum.
 #[test]
 fn lists_of_checksums_are_those_of_sha256sum() {
     let dir = TempDir::new().unwrap();

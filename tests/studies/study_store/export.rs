@@ -1,14 +1,13 @@
 //! A study as one file.
 
 use std::fs::{self, File};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use cvtcycle::config::ProblemKind;
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::study::store::{Exported, Format, export};
 use cvtcycle::study::store::{Kind, Rows, Values};
-use cvtcycle::study::store::{ParquetFile, PartTable, Study, StudyDir, sha256};
+use cvtcycle::study::store::{ParquetFile, Study, StudyDir, sha256};
 use tempfile::TempDir;
 
 use crate::parts::write_runs;
@@ -129,151 +128,6 @@ fn parquet_has_a_row_group_a_part_and_the_manifest() {
     assert_eq!(table.read(&["run", "reason", "vehicle"]).unwrap(), all);
 }
 
-/// A part of a workbook.
-fn inside(file: &Path, name: &str) -> String {
-    let mut archive = zip::ZipArchive::new(File::open(file).unwrap()).unwrap();
-    let mut text = String::new();
-    archive
-        .by_name(name)
-        .unwrap()
-        .read_to_string(&mut text)
-        .unwrap();
-    text
-}
-
-/// The cells of a sheet: place, whether it is a number, and its text.
-fn sheet(file: &Path, name: &str) -> Vec<(String, bool, String)> {
-    fn text(node: roxmltree::Node) -> String {
-        let texts = node.descendants().filter(roxmltree::Node::is_text);
-        texts.filter_map(|node| node.text()).collect()
-    }
-    let strings = inside(file, "xl/sharedStrings.xml");
-    let strings = roxmltree::Document::parse(&strings).unwrap();
-    let strings = strings
-        .descendants()
-        .filter(|node| node.tag_name().name() == "si");
-    let strings: Vec<String> = strings.map(text).collect();
-    let xml = inside(file, name);
-    let document = roxmltree::Document::parse(&xml).unwrap();
-    let formula = |node: roxmltree::Node| node.tag_name().name() == "f";
-    assert!(!document.descendants().any(formula), "a formula");
-    let cells = document
-        .descendants()
-        .filter(|node| node.tag_name().name() == "c");
-    let cell = |node: roxmltree::Node| {
-        let number = node.attribute("t").is_none();
-        let content = text(node);
-        let place = node.attribute("r").unwrap().to_owned();
-        let content = if number {
-            content
-        } else {
-            strings[content.parse::<usize>().unwrap()].clone()
-        };
-        (place, number, content)
-    };
-    cells.map(cell).collect()
-}
-
-#[test]
-fn a_workbook_has_numbers_as_numbers_and_words_as_words() {
-    let (dir, file) = to("runs.xlsx");
-    let found = sheet(&file, "xl/worksheets/sheet1.xml");
-    let mut wanted: Vec<(String, bool, String)> = Vec::new();
-    wanted.extend(
-        HEADER
-            .iter()
-            .zip("ABCDE".chars())
-            .map(|(name, letter)| (format!("{letter}1"), false, (*name).to_owned())),
-    );
-    for (k, row) in cells().into_iter().enumerate() {
-        for ((cell, letter), head) in row.into_iter().zip("ABCDE".chars()).zip(heads()) {
-            if !cell.is_empty() {
-                wanted.push((format!("{letter}{}", k + 2), head.kind != Kind::Text, cell));
-            }
-        }
-    }
-    assert_eq!(found, wanted);
-    assert!(inside(&file, "xl/worksheets/sheet1.xml").contains(
-        "<pane ySplit=\"1\" topLeftCell=\"A2\" activePane=\"bottomLeft\" state=\"frozen\"/>"
-    ));
-    assert!(inside(&file, "xl/workbook.xml").contains("<sheet name=\"runs\""));
-    let meanings = sheet(&file, "xl/worksheets/sheet2.xml");
-    assert!(
-        meanings.contains(&(
-            "C4".to_owned(),
-            false,
-            "what fuel_l_per_100km is".to_owned()
-        )),
-        "{meanings:?}"
-    );
-    let again = dir.path().join("again.xlsx");
-    exported(&dir.path().join("study"), "runs", &again).unwrap();
-    assert!(
-        fs::read(&file).unwrap() == fs::read(&again).unwrap(),
-        "another workbook of the same study"
-    );
-}
-
-#[test]
-fn what_excel_cannot_hold_is_refused_before_anything_is_written() {
-    let dir = TempDir::new().unwrap();
-    let path = dir.path().join("study");
-    let columns = [head("run", "", Kind::Count)];
-    let study = StudyDir::create(&path, &manifest_of(2, &["runs"], false), PLAN, false).unwrap();
-    for (part, n) in [(0, 1_000_000), (1, 48_576)] {
-        let rows = Rows {
-            values: vec![Values::Count(vec![7; n])],
-        };
-        write_runs(&study, part, &columns, &rows);
-    }
-    let problem = exported(&path, "runs", &dir.path().join("runs.xlsx")).unwrap_err();
-    assert!(
-        problem.message.contains("1048575 rows") && problem.message.contains("1048576 rows"),
-        "{}",
-        problem.message
-    );
-    assert!(
-        problem.hint.contains(".csv or .parquet"),
-        "{}",
-        problem.hint
-    );
-    let few = dir.path().join("few");
-    let columns: Vec<_> = (0..50)
-        .map(|k| head(&format!("n{k}"), "", Kind::Count))
-        .collect();
-    let study = StudyDir::create(&few, &manifest_of(1, &["runs"], false), PLAN, false).unwrap();
-    let rows = Rows {
-        values: vec![Values::Count(vec![7; 100_001]); 50],
-    };
-    let table = PartTable {
-        name: "runs",
-        columns: &columns,
-        rows: &rows,
-        metadata: &[],
-    };
-    study.write_part(0, &[table]).unwrap();
-    let cells = exported(&few, "runs", &dir.path().join("runs.xlsx")).unwrap_err();
-    assert!(
-        cells.message.contains("100001 rows of 50 columns"),
-        "{}",
-        cells.message
-    );
-    assert!(cells.hint.contains(".csv or .parquet"), "{}", cells.hint);
-    fs::remove_dir_all(&few).unwrap();
-    let mut names: Vec<_> = fs::read_dir(dir.path())
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name())
-        .collect();
-    names.sort();
-    assert_eq!(names, ["study"]);
-    assert_eq!(
-        exported(&path, "runs", &dir.path().join("runs.parquet"))
-            .unwrap()
-            .rows,
-        1_048_576
-    );
-}
-
 #[test]
 fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() {
     let dir = TempDir::new().unwrap();
@@ -286,7 +140,7 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
         problem.message
     );
     write_part(&study, 1);
-    for ending in ["csv", "CSV", "parquet", "xlsx"] {
+    for ending in ["csv", "CSV", "parquet"] {
         let exported = exported(&path, "trace", &dir.path().join(format!("a.{ending}"))).unwrap();
         assert_eq!(
             (
@@ -298,13 +152,13 @@ fn the_ending_says_the_format_and_a_partial_study_is_exported_as_far_as_it_is() 
             "{ending}"
         );
     }
-    for name in ["a", "a.xls", "a.csv.gz", "csv"] {
+    for name in ["a", "a.xlsx", "a.csv.gz", "csv"] {
         let problem = Format::of(Path::new(name)).unwrap_err();
         assert!(problem.allowed.contains(".parquet"), "{name}");
     }
     let spoiled = path.join("parts/trace_00001.parquet");
     fs::write(&spoiled, "no").unwrap();
-    for ending in ["csv", "parquet", "xlsx"] {
+    for ending in ["csv", "parquet"] {
         let to = dir.path().join(format!("b.{ending}"));
         let problem = exported(&path, "trace", &to).unwrap_err();
         assert_eq!(problem.kind, ProblemKind::Damaged);

@@ -1,4 +1,4 @@
-//! Tables of a study on disk: what is written is read back, what is damaged is noticed, what was interrupted is finished.
+//! Tables of a study on disk: round trips, detection of damage, resuming.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod create;
@@ -31,7 +31,7 @@ fn head(name: &str, unit: &str, kind: Kind) -> Head {
     }
 }
 
-/// Heads of a small table, with a name with dots and one with letters beyond ASCII.
+/// Heads of a small table, including a name with dots and one with non-ASCII letters.
 fn heads() -> Vec<Head> {
     vec![
         head("run", "", Kind::Count),
@@ -42,7 +42,7 @@ fn heads() -> Vec<Head> {
     ]
 }
 
-/// The rows of a part.
+/// Rows of a part.
 fn rows(part: usize) -> Rows {
     let n = 3 + part;
     let run = |k: usize| i64::try_from(10 * part + k).unwrap();
@@ -83,10 +83,10 @@ fn manifest_of(parts: usize, tables: &[&str], csv: bool) -> Vec<u8> {
         .into_bytes()
 }
 
-/// The word of that study.
+/// Identifying word of that study.
 const RUN: &str = "0123456789abcdef";
 
-/// Manifest of a study with two tables a part, as Parquet and CSV.
+/// Manifest of a study with two tables per part, as Parquet and CSV.
 fn manifest(parts: usize) -> Vec<u8> {
     manifest_of(parts, &["trace", "runs"], true)
 }
@@ -113,14 +113,14 @@ fn results() -> Vec<(String, Vec<u8>)> {
     .to_vec()
 }
 
-/// A whole study in a directory.
+/// Writes a complete study into a directory.
 fn whole(path: &Path, parts: usize) {
     let dir = StudyDir::create(path, &manifest(parts), PLAN, false).unwrap();
     (0..parts).for_each(|part| write_part(&dir, part));
     dir.finish(&results()).unwrap();
 }
 
-/// All files of a directory and its folders, by their names.
+/// All files of a directory and its folders by name.
 fn files(path: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(path).unwrap() {
@@ -139,12 +139,12 @@ fn files(path: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// A disk with room for so many bytes.
-struct Small {
+/// Disk with room for a number of bytes.
+struct SmallDisk {
     room: usize,
 }
 
-impl Write for Small {
+impl Write for SmallDisk {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.room == 0 && !bytes.is_empty() {
             return Err(ErrorKind::StorageFull.into());

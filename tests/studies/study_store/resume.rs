@@ -14,10 +14,10 @@ use super::{PLAN, files, manifest, results, whole, write_part};
 
 const PARTS: usize = 3;
 
-/// Something done to a file.
-type Spoil = fn(&Path);
+/// Damage done to a file.
+type Damage = fn(&Path);
 
-/// The files of a study in the order in which they appear.
+/// Files of a study in order of creation.
 fn order() -> Vec<String> {
     let part = |k: usize| {
         let names = [
@@ -52,9 +52,9 @@ fn finish(path: &Path) -> Vec<usize> {
     missing
 }
 
-/// Files appear one after the other, each whole: a killed process leaves the first few of them, and one half written.
+/// Files are created one after the other, each complete: a killed process leaves the first few, and a partial one.
 #[test]
-fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
+fn a_study_killed_anywhere_is_finished_to_the_same_bytes() {
     let reference = TempDir::new().unwrap();
     whole(reference.path(), PARTS);
     let all = files(reference.path());
@@ -69,7 +69,7 @@ fn wherever_it_was_killed_a_study_is_finished_to_the_same_bytes() {
         for folder in ["", "parts/"] {
             fs::write(dir.path().join(format!("{folder}.cvtcycle-x7.tmp")), "half").unwrap();
         }
-        // The file that earlier versions locked.
+        // Lock file of earlier versions.
         fs::write(dir.path().join(".lock"), "").unwrap();
         let parts = (there.saturating_sub(2) / 5).min(PARTS);
         assert_eq!(
@@ -105,7 +105,7 @@ fn parts_in_any_order_and_from_several_threads_are_the_same() {
 
 #[test]
 fn a_part_that_is_not_whole_is_computed_again() {
-    let spoil: [(&str, Spoil); 5] = [
+    let spoil: [(&str, Damage); 5] = [
         ("part_00001.sha256", |path| fs::write(path, "").unwrap()),
         ("runs_00001.parquet", |path| fs::remove_file(path).unwrap()),
         ("trace_00001.csv", |path| fs::write(path, "run\n").unwrap()),
@@ -137,8 +137,8 @@ fn a_part_that_is_not_whole_is_computed_again() {
 }
 
 #[test]
-fn a_part_that_went_while_the_study_ran_is_in_no_results() {
-    let spoil: [(&str, Spoil); 2] = [
+fn a_part_deleted_while_the_study_ran_is_not_in_the_results() {
+    let spoil: [(&str, Damage); 2] = [
         ("part_00001.sha256", |path| fs::remove_file(path).unwrap()),
         ("runs_00001.parquet", |path| fs::write(path, "x").unwrap()),
     ];
@@ -149,7 +149,7 @@ fn a_part_that_went_while_the_study_ran_is_in_no_results() {
         assert_eq!(study.study().unwrap().present().len(), PARTS);
         spoil(&dir.path().join("parts").join(name));
         let mut problems = vec![study.finish(&results()).unwrap_err()];
-        // A part without its mark would be missing from the answer; one with other bytes is noticed when it is read.
+        // A part without its mark would be missing in the answer; one with changed bytes is detected when read.
         if name.starts_with("part_") {
             problems.push(study.study().unwrap_err());
         }
@@ -170,12 +170,12 @@ fn a_part_that_went_while_the_study_ran_is_in_no_results() {
 }
 
 #[test]
-fn what_is_read_belongs_to_the_manifest_that_was_read_before() {
+fn a_study_replaced_while_it_is_read_is_detected() {
     let dir = TempDir::new().unwrap();
     whole(dir.path(), PARTS);
     let study = Study::open(dir.path()).unwrap();
     study.unchanged().unwrap();
-    // The same study computed anew has the same parts.
+    // The same study computed again has the same parts.
     drop(StudyDir::create(dir.path(), &manifest(PARTS), PLAN, true).unwrap());
     study.unchanged().unwrap();
     drop(StudyDir::create(dir.path(), &manifest(PARTS + 1), PLAN, true).unwrap());
@@ -206,7 +206,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         "{said}"
     );
     assert!(!said.contains("more values"), "{said}");
-    // Another program has another build, which says nothing more.
+    // Another program has another build, which has no further message.
     let said = refused(dir.path(), |m| {
         m["program"] = "cvtcycle 9.9.9".into();
         m["build"] = "0123456789abcdef".into();
@@ -215,7 +215,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`program` is") && !said.contains("more value"),
         "{said}"
     );
-    // Nor does the word of the run, which is another one with every difference.
+    // The identifying word of the run differs with every difference, and has no message either.
     let said = refused(dir.path(), |m| {
         m["build"] = "0123456789abcdef".into();
         m["run"] = "fedcba9876543210".into();
@@ -240,7 +240,7 @@ fn another_study_is_not_resumed_and_the_difference_is_named() {
         said.contains("`seed` is 7 there and 8 now (and 2 more values)"),
         "{said}"
     );
-    // A plan that is another one is reported by its line, not by what follows from it.
+    // A changed plan is reported by its line, without the consequences.
     let mut other: Value = serde_json::from_slice(&manifest(PARTS)).unwrap();
     other["plan_sha256"] = "abc".into();
     let problem = StudyDir::resume(

@@ -1,4 +1,4 @@
-//! `run --format`: traces as CSV, as Parquet, or both.
+//! `run --format`: traces as CSV, Parquet, or both.
 
 use std::fs;
 use std::path::Path;
@@ -27,7 +27,7 @@ fn traces(dir: &Path) -> Vec<String> {
 }
 
 #[test]
-fn traces_are_written_in_the_format_that_was_asked_for() {
+fn traces_are_written_in_the_chosen_format() {
     let dir = TempDir::new().unwrap();
     for (format, wanted) in [
         (None, &["trace_rover_216_cvt.csv"][..]),

@@ -1,4 +1,4 @@
-//! Rows to Parquet and CSV and back.
+//! Round trips of rows through Parquet and CSV.
 
 use std::io::{ErrorKind, Write};
 
@@ -10,26 +10,26 @@ use cvtcycle::study::store::{
 };
 use proptest::prelude::*;
 
-use super::{Small, head, heads, rows};
+use super::{SmallDisk, head, heads, rows};
 
 #[allow(dead_code, reason = "shared with other tests")]
 use crate::fixtures;
 
-/// The bytes of a table as Parquet.
+/// Table as Parquet bytes.
 fn bytes(columns: &[Head], rows: &Rows) -> Vec<u8> {
     let mut out = Vec::new();
     write_parquet(&mut out, columns, rows, &[("cvtcycle.seed", "7")]).unwrap();
     out
 }
 
-/// A file with these bytes, opened.
+/// Opens a file with these bytes.
 fn opened(bytes: &[u8]) -> ParquetFile {
     let mut file = tempfile::NamedTempFile::new().unwrap();
     file.write_all(bytes).unwrap();
     ParquetFile::open(file.path(), &sha256(bytes)).unwrap()
 }
 
-/// A table read back, all columns.
+/// Reads all columns of a table.
 fn read_back(bytes: &[u8]) -> Rows {
     let file = opened(bytes);
     let names: Vec<&str> = file
@@ -40,7 +40,7 @@ fn read_back(bytes: &[u8]) -> Rows {
     file.read(&names).unwrap()
 }
 
-/// What a table says: bits of numbers without the sign of zero, one NaN for all that is no number.
+/// Bits of the numbers of a table, without the sign of zero, and with a single NaN for all of them.
 fn said(rows: &Rows) -> Vec<Vec<String>> {
     let number = |x: &f64| {
         if x.is_finite() {
@@ -57,7 +57,7 @@ fn said(rows: &Rows) -> Vec<Vec<String>> {
     rows.values.iter().map(cells).collect()
 }
 
-/// The same of its CSV.
+/// The same from its CSV.
 fn csv_said(columns: &[Head], rows: &Rows) -> Vec<Vec<String>> {
     let mut out = Vec::new();
     write_csv(&mut out, columns, rows).unwrap();
@@ -148,7 +148,7 @@ proptest! {
         prop_assert_eq!(back.len(), rows.len());
         prop_assert_eq!(said(&back), said(&rows));
         prop_assert_eq!(csv_said(&heads(), &rows), said(&rows));
-        // The sign of zero is gone in the file, not in the comparison only.
+        // The sign of zero is dropped in the file, not only in the comparison.
         let signed = |x: &f64| x.to_bits() == (-0.0_f64).to_bits();
         prop_assert!(back.values.iter().all(|values| !matches!(values, Values::Number(x) if x.iter().any(signed))));
     }
@@ -257,11 +257,11 @@ fn a_full_disk_is_an_error_wherever_it_is_full() {
     let (columns, rows) = (heads(), rows(6));
     let (parquet, mut csv) = (bytes(&columns, &rows).len(), Vec::new());
     write_csv(&mut csv, &columns, &rows).unwrap();
-    // More than the buffers of the writers hold.
+    // Exceeds the buffers of the writers.
     let long = super::rows(2000);
     let full = [
-        write_csv(Small { room: 9000 }, &columns, &long),
-        write_parquet(Small { room: 9000 }, &columns, &long, &[]),
+        write_csv(SmallDisk { room: 9000 }, &columns, &long),
+        write_parquet(SmallDisk { room: 9000 }, &columns, &long, &[]),
     ];
     assert!(
         full.into_iter()
@@ -271,9 +271,14 @@ fn a_full_disk_is_an_error_wherever_it_is_full() {
         let written = [
             (
                 parquet,
-                write_parquet(Small { room }, &columns, &rows, &[("cvtcycle.seed", "7")]),
+                write_parquet(
+                    SmallDisk { room },
+                    &columns,
+                    &rows,
+                    &[("cvtcycle.seed", "7")],
+                ),
             ),
-            (csv.len(), write_csv(Small { room }, &columns, &rows)),
+            (csv.len(), write_csv(SmallDisk { room }, &columns, &rows)),
         ];
         for (needed, result) in written {
             let full = result.err().map(|error| error.kind());

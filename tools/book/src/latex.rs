@@ -1,12 +1,11 @@
-//! Equations of a Markdown page, `$...$` and `$$...$$`, as MathML.
+//! Converts equations of a Markdown page, `$...$` and `$$...$$`, to MathML.
 
 use pulldown_latex::config::DisplayMode;
 use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 
-/// The page with its equations as MathML and an anchor at every labelled equation.
-///
+/// Converts the equations of a page to MathML and adds an anchor at every labelled one.
 /// # Errors
-/// A sentence for each equation that cannot be read, with its text.
+/// A sentence for each equation that cannot be parsed, with its text.
 pub fn page(markdown: &str) -> Result<String, Vec<String>> {
     let mut out = String::with_capacity(2 * markdown.len());
     let mut problems = Vec::new();
@@ -56,7 +55,7 @@ pub fn label(line: &str) -> Option<&str> {
     (known && !digits.is_empty() && rest.lines().next()?.contains(')')).then_some(label)
 }
 
-/// Length of a code span or fenced block that begins here, at least its first back tick.
+/// Length of a code span or fenced block that starts here; at least 1, for the backtick.
 fn code_span(text: &str) -> usize {
     let ticks = text.bytes().take_while(|b| *b == b'`').count();
     let mark = &text[..ticks];
@@ -106,8 +105,8 @@ fn equation(
     (end + mark.len(), plain_for_markdown(&sound(&mathml)))
 }
 
-/// The MathML as XML wants it: the crate (0.8) leaves comparison signs bare, a blank out between attributes, and
-/// writes a blank as an entity that XML does not know.
+/// Makes the MathML well-formed XML: the crate (0.8) leaves comparison signs unescaped, omits a blank between attributes, and
+/// writes a blank as an entity that XML does not define.
 fn sound(mathml: &str) -> String {
     mathml
         .replace("<mo><</mo>", "<mo>&lt;</mo>")
@@ -117,7 +116,7 @@ fn sound(mathml: &str) -> String {
         .replace("&nbsp;", "\u{a0}")
 }
 
-/// The same MathML without any character that Markdown would take for its own.
+/// Escapes characters of the MathML that Markdown would interpret.
 fn plain_for_markdown(mathml: &str) -> String {
     let mut out = String::with_capacity(mathml.len());
     let mut tag = false;

@@ -1,4 +1,4 @@
-//! What the book in `docs/book` takes from the program: figures, tables, and mathematics as MathML.
+//! Generated parts of the book in `docs/book`: figures, tables, and mathematics as MathML.
 
 pub mod figures;
 pub mod latex;

@@ -1,10 +1,9 @@
-//! Drawings inside their page instead of files that it shows, so that its theme gives their colours and its font their symbols.
+//! Inlines drawings into their page, so that its theme colours them and its font draws their symbols.
 
-/// Width up to which a drawing fits a phone as it is, pixels; a wider one is scrolled there.
+/// Maximum width of a drawing that fits a phone, pixels; wider ones are scrolled there.
 const NARROW: f64 = 480.0;
 
-/// The page with its lines `![words](drawing.svg)` replaced by the drawings; neighbouring ones share a row where there is room.
-///
+/// Replaces lines `![words](drawing.svg)` of a page by the drawings. Adjacent ones share a row if there is room.
 /// # Errors
 /// A sentence for each drawing that `read` does not find or that has no width.
 pub fn page(markdown: &str, read: impl Fn(&str) -> Option<String>) -> Result<String, Vec<String>> {
@@ -41,7 +40,7 @@ pub fn page(markdown: &str, read: impl Fn(&str) -> Option<String>) -> Result<Str
     }
 }
 
-/// File that a line shows, if it is a drawing and nothing else.
+/// File of a line that consists of a drawing only.
 fn drawing(line: &str) -> Option<&str> {
     let (_, target) = line.trim_end().strip_prefix("![")?.split_once("](")?;
     target
@@ -49,7 +48,7 @@ fn drawing(line: &str) -> Option<&str> {
         .filter(|name| name.ends_with(".svg"))
 }
 
-/// A drawing on one line, without a blank one that would end it for Markdown.
+/// Puts a drawing on one line, since Markdown would end it at a blank line.
 fn figure(svg: &str) -> Option<String> {
     let (_, rest) = svg.split_once(" width=\"")?;
     let width: f64 = rest.split_once('"')?.0.parse().ok()?;

@@ -1,8 +1,8 @@
-//! A drawing by hand from numbers: lines, areas, and words with symbols as the equations have them.
+//! SVG sketches from numbers: lines, areas, and text with symbols as in the equations.
 
 use std::fmt::Write as _;
 
-/// Colours of the sketches; `theme/equations.css` gives each its value in every theme.
+/// Colours of the sketches; `theme/equations.css` defines each for every theme.
 pub mod colour {
     pub const INK: &str = "#000000";
     pub const QUIET: &str = "#555555";
@@ -13,7 +13,7 @@ pub mod colour {
     pub const METAL: &str = "#e3e3e3";
 }
 
-/// Side of a text that its place is.
+/// Side of a text at its position.
 #[derive(Clone, Copy)]
 pub enum Anchor {
     Start,
@@ -23,14 +23,14 @@ pub enum Anchor {
 
 const MATHS: &str = "font-family=\"Latin Modern Math, serif\"";
 
-/// A drawing that grows.
+/// Sketch under construction.
 pub struct Sketch {
     size: (f64, f64),
     body: String,
 }
 
 impl Sketch {
-    /// An empty one, `width` by `height` pixels; up to 480 wide it fits a phone.
+    /// Creates an empty sketch of `width` by `height` pixels; up to 480 wide it fits a phone.
     pub fn new(width: f64, height: f64) -> Self {
         Sketch {
             size: (width, height),
@@ -38,14 +38,14 @@ impl Sketch {
         }
     }
 
-    /// Words of a size in pixels; what is between dollar signs is a symbol as in `$C_x$`, `$T_{out}$`, `$\mu N_p$`.
+    /// Adds text of a size in pixels; parts between dollar signs are symbols as in `$C_x$`, `$T_{out}$`, `$\mu N_p$`.
     pub fn text(&mut self, at: (f64, f64), anchor: Anchor, size: f64, colour: &str, words: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        // Writing into a String cannot fail, here and below.
+        // Writing to a String is infallible, here and below.
         let _ = writeln!(
             self.body,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\" font-size=\"{size}\" fill=\"{colour}\">{}</text>",
@@ -55,7 +55,7 @@ impl Sketch {
         );
     }
 
-    /// A line along a path in the language of SVG.
+    /// Adds an SVG path.
     pub fn path(&mut self, d: &str, colour: &str, width: f64, dash: &str) {
         let dash = match dash {
             "" => String::new(),
@@ -67,7 +67,7 @@ impl Sketch {
         );
     }
 
-    /// A line through points.
+    /// Adds a line through points.
     pub fn line(&mut self, points: &[(f64, f64)], colour: &str, width: f64, dash: &str) {
         let places: Vec<String> = points
             .iter()
@@ -76,7 +76,7 @@ impl Sketch {
         self.path(&format!("M{}", places.join("L")), colour, width, dash);
     }
 
-    /// An area within points.
+    /// Adds a filled polygon.
     pub fn area(&mut self, points: &[(f64, f64)], colour: &str) {
         let places: Vec<String> = points
             .iter()
@@ -89,7 +89,7 @@ impl Sketch {
         );
     }
 
-    /// A point.
+    /// Adds a dot.
     pub fn dot(&mut self, (x, y): (f64, f64), r: f64, colour: &str) {
         let _ = writeln!(
             self.body,
@@ -97,7 +97,7 @@ impl Sketch {
         );
     }
 
-    /// The drawing with its title and what it shows.
+    /// Returns the SVG with title and description.
     pub fn finish(self, title: &str, shows: &str) -> String {
         let (w, h) = self.size;
         format!(
@@ -108,10 +108,10 @@ impl Sketch {
     }
 }
 
-/// Words as SVG: symbols slanted as in the equations, their indices below the line.
+/// Converts text to SVG: slanted symbols as in the equations, with subscripts.
 fn symbols(words: &str, size: f64) -> String {
     let mut out = String::new();
-    // What is below the line moves what follows it, until that moves back.
+    // A vertical shift applies to all following text until it is undone.
     let mut down = 0.0;
     let mut span = |text: &str, attributes: &str, dy: f64| {
         let shift = match dy - down {
@@ -146,7 +146,7 @@ fn symbols(words: &str, size: f64) -> String {
     out
 }
 
-/// Letters of a symbol as the mathematical ones of Unicode, which the equations show; `\mu ` and its like by name.
+/// Converts a symbol to the mathematical letters of Unicode, as in the equations; `\mu ` and similar ones by name.
 fn slanted(text: &str) -> String {
     let names = [
         ("\\mu ", "\u{3bc}"),

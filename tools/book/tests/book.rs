@@ -1,7 +1,7 @@
 //! The book in docs/book against the program: labels, status words, equations, figures, tables, links.
 //!
-//! Truth is the code itself: the heads of the model files and the registry of keys. Figures and tables are not in git: `tools/docs` writes
-//! them, and these tests make them in memory.
+//! Truth: the heads of the model files and the registry of keys. Figures and tables are not in git; `tools/docs` writes
+//! them, and these tests generate them in memory.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,13 +9,13 @@ use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-use cvtcycle::study::equations::{Equation, by_label, equations};
+use cvtcycle::equations::{Equation, by_label, equations};
 
 use cvtcycle_book::figures::tables::{keys, labelled};
 use cvtcycle_book::figures::{PAGES, files};
 use cvtcycle_book::latex;
 
-/// Figures and tables as `tools/docs` writes them: name below `src`, text.
+/// Figures and tables as written by `tools/docs`: name below `src`, text.
 static MADE: LazyLock<BTreeMap<String, String>> =
     LazyLock::new(|| files(&folder()).unwrap().into_iter().collect());
 
@@ -43,7 +43,7 @@ fn targets(text: &str) -> impl Iterator<Item = &str> {
         .filter_map(|(at, _)| text[at + 2..].split_once(')').map(|(target, _)| target))
 }
 
-/// Files that a text includes.
+/// Files included by a text.
 fn includes(text: &str) -> impl Iterator<Item = &str> {
     text.match_indices("{{#include ").filter_map(|(at, mark)| {
         text[at + mark.len()..]
@@ -52,7 +52,7 @@ fn includes(text: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Words of a status that the book repeats, in their order.
+/// Words of a status that the book repeats, in order.
 fn words(status: &str) -> Vec<&'static str> {
     ["source", "derived", "fitted", "ASSUMED", "contract"]
         .into_iter()
@@ -60,9 +60,9 @@ fn words(status: &str) -> Vec<&'static str> {
         .collect()
 }
 
-/// Equations that have a page: those of the fit are in `docs/calibration.md` in words.
+/// Equations with a page; those of the fit are in `docs/calibration.md` in words.
 fn in_book() -> impl Iterator<Item = Equation> {
-    equations().filter(|equation| !equation.module.starts_with("study::fit"))
+    equations().filter(|equation| !equation.module.starts_with("calibrate"))
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn links_pictures_and_includes_lead_somewhere() {
+fn links_pictures_and_includes_exist() {
     let pages = pages();
     let mut wrong = Vec::new();
     let mut pictures = BTreeSet::new();
@@ -199,7 +199,7 @@ fn links_pictures_and_includes_lead_somewhere() {
             }
             pictures.extend(file.strip_prefix("img/").map(str::to_owned));
         }
-        // tests/results/validate.rs has the tables of validation rows.
+        // tests/results/validate.rs covers the tables of validation rows.
         let tables = includes(text).filter(|file| !file.starts_with("generated/validation_"));
         for file in tables.filter(|file| !pages.contains_key(*file) && !MADE.contains_key(*file)) {
             wrong.push(format!("{name}: include {file} does not exist"));
@@ -233,7 +233,7 @@ fn links_pictures_and_includes_lead_somewhere() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Mechanisms of which no published number is alone: their pages say where they are in.
+/// Mechanisms without published numbers of their own; their pages name the rows that include them.
 const WITHOUT_ROWS: [&str; 3] = ["seal_ring", "pulley_bearing", "gear_train"];
 
 #[test]
@@ -326,7 +326,7 @@ fn every_equation_becomes_sound_mathml() {
                     .all(|node| !node.has_tag_name("merror")),
                 "{name}: {math}"
             );
-            // What Markdown would take for its own must not be bare.
+            // Characters that Markdown would interpret must be escaped.
             let bare = |c: char| {
                 document
                     .descendants()
@@ -351,7 +351,7 @@ fn every_equation_becomes_sound_mathml() {
     assert!(count > 400, "{count}");
 }
 
-/// Hand calculation: a fraction, a root, a subscript, Greek and cases turn into the elements that MathML has for them.
+/// By hand: a fraction, a root, a subscript, Greek letters and cases become the elements of MathML.
 #[test]
 fn val_latex_turns_into_the_elements_of_mathml() {
     let page =

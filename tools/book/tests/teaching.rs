@@ -1,6 +1,6 @@
-//! What the book teaches with: drawings, symbols ahead of equations, the worked operating point.
+//! Teaching parts of the book: drawings, symbols ahead of equations, the worked operating point.
 //!
-//! Truth: the program's own numbers next to those of the printed equations, the values of the vehicle file, the style sheet.
+//! Truth: the program's numbers next to those of the printed equations, the values of the vehicle file, the style sheet.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +18,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book")
 }
 
-/// Files of a folder below the book's with an ending: name, text.
+/// Files with an extension in a folder of the book: name, text.
 fn texts(below: &str, ending: &str) -> BTreeMap<String, String> {
     let entries = std::fs::read_dir(folder().join(below)).unwrap();
     let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -27,7 +27,7 @@ fn texts(below: &str, ending: &str) -> BTreeMap<String, String> {
     names.map(|name| (name.clone(), text(&name))).collect()
 }
 
-/// Drawings by hand and those that the program draws.
+/// Hand-made and generated drawings.
 static DRAWINGS: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
     let made = files(&folder().join("src")).unwrap().into_iter();
     let by_hand = texts("src/drawings", ".svg");
@@ -36,20 +36,20 @@ static DRAWINGS: LazyLock<BTreeMap<String, String>> = LazyLock::new(|| {
         .collect()
 });
 
-/// The equations of the pages, worked out by hand in the generator, give what `cvtcycle belt` gives at the same point.
+/// Truth: the generator evaluates the equations of the pages independently, and gives the results of `cvtcycle belt` at the same point.
 #[test]
 fn val_the_worked_point_is_the_programs() {
     let all = checked().unwrap();
     assert!(all.len() > 20, "{}", all.len());
-    for of in all {
-        let off = (of.worked - of.program).abs();
-        // The program adds a nanometre to the idle arc, lest it divide by zero: 1.4e-8 of the slip.
+    for result in all {
+        let off = (result.worked - result.program).abs();
+        // The program adds a nanometre to the idle arc to avoid a division by zero: 1.4e-8 of the slip.
         assert!(
-            off <= 1e-7 * of.program.abs(),
+            off <= 1e-7 * result.program.abs(),
             "{}: {} by the page, {} by the program",
-            of.name,
-            of.worked,
-            of.program
+            result.name,
+            result.worked,
+            result.program
         );
     }
 }
@@ -99,7 +99,7 @@ fn drawings_by_hand_are_sound_and_have_symbols_for_symbols() {
         assert!(width <= 400.0, "{name} does not fit a phone: {width}");
         for tag in ["title", "desc"] {
             let node = root.children().find(|node| node.has_tag_name(tag));
-            // An element of SVG has its namespace.
+            // SVG elements have a namespace.
             let node = node.or_else(|| root.children().find(|n| n.tag_name().name() == tag));
             let text = node.and_then(|node| node.text()).unwrap_or_default();
             assert!(text.len() > 10, "{name}: {tag}");
@@ -118,9 +118,9 @@ fn drawings_by_hand_are_sound_and_have_symbols_for_symbols() {
     }
 }
 
-/// Where a page has a list of symbols, it comes before the first equation.
+/// A list of symbols comes before the first equation of its page.
 #[test]
-fn symbols_are_said_before_they_are_used() {
+fn symbols_are_listed_before_they_are_used() {
     let mut with_list = 0;
     for (name, text) in texts("src", ".md") {
         let Some(list) = text.find("\n## Symbols") else {
@@ -133,7 +133,7 @@ fn symbols_are_said_before_they_are_used() {
     assert!(with_list > 20, "{with_list}");
 }
 
-/// Every conductance and heat capacity of the vehicle file is on the sketch of the network, as the file has it.
+/// Every conductance and heat capacity of the vehicle file is on the sketch of the network with the same value.
 #[test]
 fn the_thermal_network_has_the_numbers_of_the_car() {
     let svg = &DRAWINGS["img/thermal_network.svg"];
@@ -180,7 +180,7 @@ fn drawings_become_part_of_their_page() {
     );
 }
 
-/// Pages of the belt and of the losses: every symbol of their equations is in their list.
+/// Pages of the belt and of the losses, whose lists contain every symbol of their equations.
 const LISTED: [&str; 17] = [
     "geometry",
     "tension",
@@ -200,7 +200,7 @@ const LISTED: [&str; 17] = [
     "torque_converter",
     "cold",
 ];
-/// Words of LaTeX that are no symbols.
+/// LaTeX commands that are not symbols.
 const WORDS: [&str; 30] = [
     "frac",
     "tfrac",
@@ -233,7 +233,7 @@ const WORDS: [&str; 30] = [
     "dot",
     "pm",
 ];
-/// Indices, the base of the exponential function, the circle's number, differences and differentials.
+/// Indices, the base of the exponential function, pi, differences and differentials.
 const KNOWN: [&str; 7] = ["i", "p", "s", "e", "pi", "Delta", "d"];
 
 /// Symbols of a formula without their indices.
@@ -296,7 +296,7 @@ fn every_symbol_of_an_equation_is_in_the_list_of_its_page() {
         lost.extend(missing.map(|symbol| format!("{page}: {symbol}")));
     }
     assert!(lost.is_empty(), "{lost:?}");
-    // Hand: indices and words are no symbols.
+    // By hand: indices and words are not symbols.
     let by_hand = symbols("T_\\text{cap} = \\frac{2 \\mu_{seg} R_s}{\\cos\\theta} \\text{ in Nm}");
     let expected = ["R", "T", "mu", "theta"].map(str::to_owned);
     assert_eq!(by_hand, BTreeSet::from(expected));

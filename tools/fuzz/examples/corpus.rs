@@ -1,4 +1,4 @@
-//! `corpus unpack` writes every line of `corpus.txt` as a file `corpus/TARGET/NUMBER`, as libFuzzer reads it; `corpus pack` writes
+//! `corpus unpack` writes every line of `corpus.txt` as a file `corpus/TARGET/NUMBER` for libFuzzer. `corpus pack` writes
 //! `corpus.txt` from these folders.
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
 #![no_main]
-//! The target that `CVTCYCLE_FUZZ_TARGET` names: see `targets`.
+//! Target named by `CVTCYCLE_FUZZ_TARGET`: see `targets`.
 
 use std::env::var;
 use std::sync::LazyLock;

@@ -1,10 +1,9 @@
-//! The committed corpus: `corpus.txt`, one input a line after the name of its target, each byte outside printable ASCII (and the backslash)
+//! Committed corpus: `corpus.txt` has one input per line after the name of its target, with each byte outside printable ASCII (and the backslash)
 //! escaped as in Rust.
 
-/// The inputs of a target in the corpus.
-///
+/// Inputs of a target in the corpus.
 /// # Errors
-/// The number of the first line that holds a wrong escape, or bytes that need one.
+/// The number of the first line with an invalid escape, or with bytes that need one.
 pub fn inputs(corpus: &str, target: &str) -> Result<Vec<Vec<u8>>, usize> {
     let own = |line: (usize, &'_ str)| -> Option<Result<Vec<u8>, usize>> {
         let (name, input) = line.1.split_once(' ').unwrap_or((line.1, ""));
@@ -13,7 +12,7 @@ pub fn inputs(corpus: &str, target: &str) -> Result<Vec<Vec<u8>>, usize> {
     corpus.lines().enumerate().filter_map(own).collect()
 }
 
-/// The lines of a target in the corpus: its inputs in order, each once.
+/// Lines of a target in the corpus: its inputs in order, without repetitions.
 #[must_use]
 pub fn lines(target: &str, mut inputs: Vec<Vec<u8>>) -> String {
     inputs.sort();
@@ -22,7 +21,7 @@ pub fn lines(target: &str, mut inputs: Vec<Vec<u8>>) -> String {
     inputs.iter().map(line).collect()
 }
 
-/// The bytes of an escaped line; none after a wrong escape, or where a byte needs one.
+/// Unescapes a line. None for an invalid escape, or for a byte that needs one.
 #[must_use]
 pub fn unescape(line: &[u8]) -> Option<Vec<u8>> {
     let mut bytes = Vec::with_capacity(line.len());

@@ -1,4 +1,4 @@
-//! What the fuzzers run; `tests/fuzz_corpus.rs` of the program runs the same over the committed inputs.
+//! Targets of the fuzzers; `tests/fuzz_corpus.rs` of the program runs them over the committed inputs.
 
 #![forbid(unsafe_code)]
 

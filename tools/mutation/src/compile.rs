@@ -2,37 +2,35 @@
 
 use crate::config::Config;
 use crate::copy::{self, Copy};
+use crate::point::Point;
 use serde_json::Value;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// The package whose code is changed, and the name of its unit tests.
+/// The package whose code is changed.
 const PACKAGE: &str = "cvtcycle-model";
-const UNIT_TESTS: &str = "cvtcycle_model";
 
 /// A test program.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// `cvtcycle_model` for the unit tests of the model, or the name of a file or folder in `tests/`.
+    /// As the configuration names it: `package/program`, or the package for its unit tests.
     pub name: String,
     /// The executable.
     pub path: PathBuf,
+    /// Folder of the package: where Cargo runs its tests.
+    pub folder: PathBuf,
 }
 
-/// Cargo in the copy, with a profile that makes tests fast.
+/// Cargo in the copy, with the profiles of the repository.
 fn cargo(root: &Path, args: &[&str]) -> Result<(bool, Vec<Value>), String> {
     let output = Command::new("cargo")
         .args(args)
         .args(["--locked", "--message-format", "json"])
         .current_dir(root)
-        .env("CARGO_INCREMENTAL", "0")
         .envs([
-            ("CARGO_PROFILE_TEST_OPT_LEVEL", "2"),
+            ("CARGO_INCREMENTAL", "0"),
             ("CARGO_PROFILE_TEST_DEBUG", "0"),
-        ])
-        .envs([
-            ("CARGO_PROFILE_DEV_OPT_LEVEL", "2"),
             ("CARGO_PROFILE_DEV_DEBUG", "0"),
         ])
         .env_remove("CVTCYCLE_MUTANT")
@@ -56,11 +54,11 @@ fn cargo(root: &Path, args: &[&str]) -> Result<(bool, Vec<Value>), String> {
 pub fn compiling(
     root: &Path,
     to: &Path,
-    config: &Config,
+    points: &[Point],
     mut dropped: HashSet<String>,
 ) -> Result<(Copy, HashSet<String>), String> {
     loop {
-        let copy = copy::make(root, to, config, &dropped)?;
+        let copy = copy::make(root, to, points, &dropped)?;
         let (good, messages) = cargo(to, &["check", "--lib", "-p", PACKAGE])?;
         if good {
             return Ok((copy, dropped));
@@ -126,13 +124,11 @@ fn guilty(copy: &Copy, span: &Value, dropped: &HashSet<String>) -> Option<String
 /// # Errors
 /// They do not build.
 pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
-    let mut args = vec![
-        "test", "--no-run", "-p", "cvtcycle", "-p", PACKAGE, "--bin", "cvtcycle",
-    ];
+    let mut args = vec!["test", "--no-run"];
     for test in &config.tests {
-        match test.as_str() {
-            UNIT_TESTS => args.push("--lib"),
-            other => args.extend(["--test", other]),
+        match test.split_once('/') {
+            Some((package, program)) => args.extend(["-p", package, "--test", program]),
+            None => args.extend(["-p", test, "--lib"]),
         }
     }
     let (good, messages) = cargo(&copy.root, &args)?;
@@ -149,20 +145,37 @@ pub fn tests(copy: &Copy, config: &Config) -> Result<Vec<Program>, String> {
     }
     let mut programs = Vec::new();
     for m in messages.iter().filter(|m| m["profile"]["test"] == true) {
-        if let (Some(path), Some(kind), Some(name)) = (
+        let (Some(path), Some(manifest), Some(program)) = (
             m["executable"].as_str(),
-            m["target"]["kind"][0].as_str(),
+            m["manifest_path"].as_str(),
             m["target"]["name"].as_str(),
-        ) && kind != "bin"
-            && config.tests.iter().any(|t| t == name)
-        {
+        ) else {
+            continue;
+        };
+        let folder = Path::new(manifest).parent().unwrap_or(&copy.root);
+        let package = package(Path::new(manifest))?;
+        let name = match m["target"]["kind"][0].as_str() {
+            Some("test") => format!("{package}/{program}"),
+            _ => package,
+        };
+        if config.tests.contains(&name) {
             programs.push(Program {
-                name: name.to_owned(),
+                name,
                 path: path.into(),
+                folder: folder.into(),
             });
         }
     }
     let place = |p: &Program| config.tests.iter().position(|t| *t == p.name);
     programs.sort_by_key(place);
     Ok(programs)
+}
+
+/// Name of the package of a manifest.
+fn package(manifest: &Path) -> Result<String, String> {
+    let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", manifest.display());
+    let text = std::fs::read_to_string(manifest).map_err(|e| failed(&e))?;
+    let table: toml::Table = text.parse().map_err(|e| failed(&e))?;
+    let name = table["package"]["name"].as_str().unwrap_or_default();
+    Ok(name.to_owned())
 }

@@ -2,7 +2,7 @@
 //! `tools/mutation/survivors.toml`.
 
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The file.
@@ -15,7 +15,9 @@ pub struct Config {
     pub leave: Vec<Left>,
     /// Files among them whose operators are changed and whose literals are not.
     pub keep_literals: Vec<String>,
-    /// Test programs that may catch a mutant; `cvtcycle_model` is the unit tests.
+    /// Methods of numbers and masks that are changed.
+    pub methods: Methods,
+    /// Test programs that may catch a mutant: `package/program`, or a package for its unit tests.
     pub tests: Vec<String>,
     /// Tests that take longer are not run, s.
     pub most_seconds: f64,
@@ -23,6 +25,26 @@ pub struct Config {
     pub always: Vec<String>,
     /// Tests that are not run, each with its reason.
     pub skip: Vec<Skipped>,
+}
+
+/// Methods of numbers and masks, by name.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Methods {
+    /// Of one argument: the methods that take its place.
+    pub replace: BTreeMap<String, Vec<String>>,
+    /// Called no longer: the value stays.
+    pub drop: BTreeSet<String>,
+    /// The last two values are exchanged.
+    pub swap: BTreeSet<String>,
+}
+
+impl Methods {
+    /// All names.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let names = self.replace.keys().chain(&self.drop).chain(&self.swap);
+        names.map(String::as_str)
+    }
 }
 
 /// Something left alone.

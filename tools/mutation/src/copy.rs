@@ -16,7 +16,7 @@ const CRATE: &str = "crates/model";
 pub struct Copy {
     /// Where it is.
     pub root: PathBuf,
-    /// Every point of every file, in the order of their numbers.
+    /// The points, in the order of their numbers.
     pub points: Vec<Point>,
     /// Of each point, the bytes that it takes in the written file; empty where it is not written.
     pub ranges: Vec<Range<usize>>,
@@ -110,11 +110,23 @@ pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Poin
             file,
             text,
             constants: &constants,
+            methods: &config.methods,
             keep_literals: config.keeps_literals(file),
         };
         let found = find::points(&source, next)?;
         next += found.iter().map(|p| p.choices.len() as u32).sum::<u32>();
         all.extend(found);
+    }
+    // A name that no source uses was renamed there: the configuration is out of date.
+    for name in config.methods.names() {
+        if !texts
+            .iter()
+            .any(|(_, text)| text.contains(&format!("{name}(")))
+        {
+            return Err(format!(
+                "tools/mutation/mutation.toml: no source calls {name}"
+            ));
+        }
     }
     let mut keys = BTreeSet::new();
     for point in &all {
@@ -128,25 +140,25 @@ pub fn points(root: &Path, config: &Config, files: &[String]) -> Result<Vec<Poin
     Ok(all)
 }
 
-/// Copies the repository and writes the mutants into it, but for the points whose first key is among `dropped`.
+/// Copies the repository and writes `points` into it, but for those whose name is among `dropped`.
 ///
 /// # Errors
 /// A file cannot be read or written.
 pub fn make(
     root: &Path,
     to: &Path,
-    config: &Config,
+    points: &[Point],
     dropped: &HashSet<String>,
 ) -> Result<Copy, String> {
     let files = files(root)?;
-    let points = points(root, config, &files)?;
-    let count = points.iter().map(|p| p.choices.len()).sum::<usize>() + 1;
+    let numbers = points.iter().flat_map(|p| &p.choices).map(|c| c.number);
+    let count = numbers.max().unwrap_or(0) + 1;
     let mut ranges = vec![0..0; points.len()];
     for file in files.iter().filter(|f| !f.starts_with("tools/mutation/")) {
         let bytes = fs::read(root.join(file)).map_err(|e| format!("{file}: {e}"))?;
         let bytes = match file.as_str() {
             _ if points.iter().any(|p| p.file == *file) => {
-                mutated(file, &bytes, &points, dropped, &mut ranges)?
+                mutated(file, &bytes, points, dropped, &mut ranges)?
             }
             name if name == format!("{CRATE}/src/lib.rs") => {
                 [&bytes, "\n/// Mutants.\npub mod mutant;\n".as_bytes()].concat()
@@ -165,7 +177,7 @@ pub fn make(
     }
     Ok(Copy {
         root: to.to_owned(),
-        points,
+        points: points.to_vec(),
         ranges,
     })
 }
@@ -210,7 +222,7 @@ fn without_lints(text: &str) -> String {
     keep.map(|line| format!("{line}\n")).collect()
 }
 
-/// Removes files of a former copy that the repository no longer has.
+/// Removes files and folders of a former copy that the repository no longer has.
 fn remove_others(to: &Path, folder: &Path, files: &[String]) -> Result<(), String> {
     for entry in fs::read_dir(folder)
         .map_err(|e| format!("{}: {e}", folder.display()))?
@@ -224,7 +236,9 @@ fn remove_others(to: &Path, folder: &Path, files: &[String]) -> Result<(), Strin
             .replace('\\', "/");
         if path.is_dir() {
             remove_others(to, &path, files)?;
-        } else if short != "src/mutant.rs" && files.binary_search(&short).is_err() {
+            let _ = fs::remove_dir(&path); // where it is empty: Cargo takes each folder of crates for a package
+        } else if short != format!("{CRATE}/src/mutant.rs") && files.binary_search(&short).is_err()
+        {
             fs::remove_file(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         }
     }

@@ -21,8 +21,6 @@ pub enum End {
 
 /// What a run is given.
 pub struct Run<'a> {
-    /// Folder to run in.
-    pub root: &'a Path,
     /// The test program.
     pub program: &'a Program,
     /// Exact names of its tests.
@@ -44,9 +42,9 @@ pub fn run(run: &Run) -> Result<(End, Duration), String> {
     command
         .args(["--exact", "--test-threads=1", "-q"])
         .args(&run.names)
-        .current_dir(run.root);
+        .current_dir(&run.program.folder);
     command
-        .env("CARGO_MANIFEST_DIR", run.root)
+        .env("CARGO_MANIFEST_DIR", &run.program.folder)
         .env("PROPTEST_MAX_SHRINK_ITERS", "0")
         .env("PROPTEST_FAILURE_PERSISTENCE", "off");
     command
@@ -93,12 +91,12 @@ pub fn run(run: &Run) -> Result<(End, Duration), String> {
 ///
 /// # Errors
 /// It cannot be run.
-pub fn list(root: &Path, program: &Program) -> Result<Vec<String>, String> {
+pub fn list(program: &Program) -> Result<Vec<String>, String> {
     let ask = |more: &[&str]| {
         let output = Command::new(&program.path)
             .args(["--list", "--format", "terse"])
             .args(more)
-            .current_dir(root)
+            .current_dir(&program.folder)
             .output();
         let output = output.map_err(|e| format!("{}: {e}", program.path.display()))?;
         let text = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -1,5 +1,6 @@
 //! Finds the places of one file that can be changed.
 
+use crate::config::Methods;
 use crate::point::{Choice, Point, Shape};
 use proc_macro2::Span;
 use std::collections::{BTreeSet, HashMap};
@@ -16,6 +17,8 @@ pub struct Source<'a> {
     pub text: &'a str,
     /// Names of all constants of type f64.
     pub constants: &'a BTreeSet<String>,
+    /// Methods that are changed.
+    pub methods: &'a Methods,
     /// Whether literals are left alone: in files that read input they are bounds and defaults.
     pub keep_literals: bool,
 }
@@ -151,6 +154,8 @@ impl Finder<'_> {
             BinOp::Ne(_) => &["=="],
             BinOp::And(_) => &["||"],
             BinOp::Or(_) => &["&&"],
+            BinOp::BitAnd(_) => &["|"],
+            BinOp::BitOr(_) => &["&"],
             BinOp::AddAssign(_) => &["-="],
             BinOp::SubAssign(_) => &["+="],
             BinOp::MulAssign(_) => &["/="],
@@ -158,9 +163,13 @@ impl Finder<'_> {
             _ => return,
         };
         let shape = match node.op {
-            BinOp::Add(_) | BinOp::Sub(_) | BinOp::Mul(_) | BinOp::Div(_) | BinOp::Rem(_) => {
-                Shape::Values { op }
-            }
+            BinOp::Add(_)
+            | BinOp::Sub(_)
+            | BinOp::Mul(_)
+            | BinOp::Div(_)
+            | BinOp::Rem(_)
+            | BinOp::BitAnd(_)
+            | BinOp::BitOr(_) => Shape::Values { op },
             BinOp::And(_) | BinOp::Or(_) => Shape::Logic {
                 op,
                 and: matches!(node.op, BinOp::And(_)),
@@ -176,43 +185,74 @@ impl Finder<'_> {
 
     fn method(&mut self, node: &syn::ExprMethodCall, whole: &Expr) {
         let name = node.method.to_string();
-        let end = bytes(whole.span()).end;
-        let value_end = bytes(node.receiver.span()).end;
-        match (name.as_str(), node.args.first()) {
-            ("max" | "min", Some(right)) if node.args.len() == 1 => {
-                let right = bytes(right.span());
-                let shape = Shape::Extreme {
-                    between: value_end..right.start,
+        let value = bytes(node.receiver.span());
+        let arguments: Vec<Range<usize>> = node.args.iter().map(|a| bytes(a.span())).collect();
+        let methods = self.source.methods;
+        match (name.as_str(), arguments.as_slice()) {
+            (_, [right]) if methods.replace.contains_key(&name) => {
+                let shape = Shape::Method {
+                    between: value.end..right.start,
                     right_end: right.end,
                 };
-                self.replace(
-                    whole,
-                    shape,
-                    &name,
-                    &[if name == "max" { "min" } else { "max" }],
-                );
+                let with: Vec<&str> = methods.replace[&name].iter().map(String::as_str).collect();
+                self.replace(whole, shape, &name, &with);
             }
-            ("abs", None) => self.replace(
-                whole,
-                Shape::Unary { value_end },
-                &self.text(&(value_end..end)),
-                &[""],
-            ),
-            ("powi", Some(exponent)) if !self.source.keep_literals => {
-                let span = bytes(exponent.span());
-                let was = self.text(&span);
+            (_, [yes, no]) if methods.swap.contains(&name) => {
+                let values = [value, yes.clone(), no.clone()];
+                let (function, method) = (String::new(), name.clone());
+                self.swapped(whole, function, method, values);
+            }
+            ("powi", [exponent]) if !self.source.keep_literals => {
+                let was = self.text(exponent);
                 let more = format!("{was} + 1");
                 let text = self.text(&bytes(whole.span()));
                 self.add(
-                    span,
+                    exponent.clone(),
                     &text,
                     Shape::Leaf,
                     &was,
                     &[(&more, format!("power {was} -> {more}"))],
                 );
             }
+            _ if methods.drop.contains(&name) => {
+                let value_end = value.end;
+                self.replace(whole, Shape::Dropped { value_end }, &name, &[""]);
+            }
             _ => {}
         }
+    }
+
+    /// `R::select(mask, yes, no)`: the method by its path.
+    fn call(&mut self, node: &syn::ExprCall, whole: &Expr) {
+        let Expr::Path(path) = &*node.func else {
+            return;
+        };
+        let name = path.path.segments.last().map(|s| s.ident.to_string());
+        let values: Vec<Range<usize>> = node.args.iter().map(|a| bytes(a.span())).collect();
+        if let (Some(name), [mask, yes, no]) = (name, values.as_slice())
+            && self.source.methods.swap.contains(&name)
+        {
+            let function = self.text(&(bytes(whole.span()).start..mask.start));
+            let values = [mask.clone(), yes.clone(), no.clone()];
+            self.swapped(whole, function, String::new(), values);
+        }
+    }
+
+    fn swapped(
+        &mut self,
+        whole: &Expr,
+        function: String,
+        method: String,
+        values: [Range<usize>; 3],
+    ) {
+        let span = bytes(whole.span());
+        let text = self.text(&span);
+        let shape = Shape::Swapped {
+            function,
+            method,
+            values,
+        };
+        self.add(span, &text, shape, "", &[("", "values exchanged".into())]);
     }
 
     fn literal(&mut self, node: &syn::ExprLit, whole: &Expr) {
@@ -223,8 +263,7 @@ impl Finder<'_> {
         let was = self.text(&span);
         match &node.lit {
             Lit::Float(value) if value.base10_parse::<f64>().is_ok_and(|v| v > 0.0) => {
-                let with = format!("{was} * 1.05");
-                self.replace(whole, Shape::Leaf, &was, &[&with]);
+                self.larger(whole);
             }
             Lit::Bool(value) => self.replace(
                 whole,
@@ -236,6 +275,15 @@ impl Finder<'_> {
         }
     }
 
+    /// Adds a number that becomes 1.05 times as large. By a function: in generic code the type of the product would have to be guessed.
+    fn larger(&mut self, whole: &Expr) {
+        let span = bytes(whole.span());
+        let was = self.text(&span);
+        let with = format!("crate::mutant::larger({was})");
+        let words = format!("{was} -> {was} * 1.05");
+        self.add(span, &was, Shape::Leaf, &was, &[(&with, words)]);
+    }
+
     fn constant(&mut self, node: &syn::ExprPath, whole: &Expr) {
         let known = node
             .path
@@ -244,9 +292,7 @@ impl Finder<'_> {
             .is_some_and(|s| self.source.constants.contains(&s.ident.to_string()));
         let std = self.text(&bytes(node.span())).contains("consts::");
         if (known || std) && !self.source.keep_literals {
-            let was = self.text(&bytes(node.span()));
-            let with = format!("{was} * 1.05");
-            self.replace(whole, Shape::Leaf, &was, &[&with]);
+            self.larger(whole);
         }
     }
 
@@ -407,6 +453,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
                 );
             }
             Expr::MethodCall(m) => self.method(m, node),
+            Expr::Call(c) => self.call(c, node),
             Expr::Lit(l) => self.literal(l, node),
             Expr::Path(p) => self.constant(p, node),
             Expr::If(i) => self.condition(&i.cond),

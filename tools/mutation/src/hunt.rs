@@ -57,16 +57,12 @@ type Luck = HashMap<String, (u32, u32)>;
 
 /// Everything a hunt needs.
 pub struct Hunt<'a> {
-    /// The copy.
-    pub root: &'a Path,
     /// Folder of the log.
     pub state: &'a Path,
     /// Test programs.
     pub programs: &'a [Program],
     /// Their tests.
     pub tests: &'a [Test],
-    /// Whether these are all tests: only then a mutant that passes them is logged.
-    pub all_tests: bool,
 }
 
 /// Tests that run in one process.
@@ -101,15 +97,12 @@ impl Hunt<'_> {
                 source: *source,
             })
             .map_err(|e| e.to_string())?;
-            if !self.all_tests && !matches!(fate, Fate::Caught | Fate::Hung) {
-                return Ok(());
-            }
             exec::lock(&log)
                 .write_all(format!("{line}\n").as_bytes())
                 .map_err(|e| format!("{}: {e}", path.display()))?;
             let mut done = exec::lock(&done);
             *done += 1;
-            if *done % 100 == 0 {
+            if *done % 20 == 0 {
                 println!("{done} of {} mutants", mutants.len());
             }
             Ok(())
@@ -139,7 +132,6 @@ impl Hunt<'_> {
             let limit = Duration::from_secs_f64(20.0 + 10.0 * batch.seconds);
             let env = Some(("CVTCYCLE_MUTANT", mutant.number.to_string()));
             let (end, _) = exec::run(&Run {
-                root: self.root,
                 program: batch.program,
                 names: batch.names.clone(),
                 env,

@@ -8,14 +8,17 @@ mod copy;
 mod exec;
 mod find;
 mod hunt;
+mod page;
 mod point;
 mod reach;
+mod sample;
 
 use clap::Parser;
 use config::Config;
 use hunt::{Fate, Hunt, Outcome, Quarry};
+use page::{Judged, Made};
 use point::Point;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -38,16 +41,18 @@ struct Arguments {
     /// Only mutants of this file; may be repeated.
     #[arg(long)]
     file: Vec<String>,
+    /// So many mutants, drawn over all files.
+    #[arg(long, value_name = "N")]
+    sample: Option<usize>,
+    /// Seed of the draw.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
     /// Only print the mutants.
     #[arg(long)]
     list: bool,
-    /// Only judge what the log holds, without a build.
-    #[arg(long)]
-    judge: bool,
-    /// Only tests of this program, of the configuration or not, against what is not caught yet; may be repeated. What they do not
-    /// catch is not logged.
-    #[arg(long)]
-    test: Vec<String>,
+    /// Write the page of the run there.
+    #[arg(long, value_name = "FILE")]
+    page: Option<PathBuf>,
     /// Tests that take longer are not run, s; otherwise the configuration says.
     #[arg(long)]
     most_seconds: Option<f64>,
@@ -74,11 +79,16 @@ fn work(arguments: &Arguments) -> Result<bool, String> {
         .map_err(|e| format!("{}: {e}", arguments.root.display()))?;
     let mut config = Config::read(&root)?;
     config.most_seconds = arguments.most_seconds.unwrap_or(config.most_seconds);
-    if !arguments.test.is_empty() {
-        config.tests.clone_from(&arguments.test);
+    let all = copy::points(&root, &config, &copy::files(&root)?)?;
+    let population = all.iter().map(|p| p.choices.len()).sum::<usize>();
+    let known: HashSet<String> = keys(&all).collect();
+    let of_files = |p: &Point| arguments.file.is_empty() || arguments.file.contains(&p.file);
+    let mut points: Vec<Point> = all.into_iter().filter(of_files).collect();
+    if let Some(count) = arguments.sample {
+        points = sample::draw(points, count, arguments.seed);
     }
     if arguments.list {
-        for point in copy::points(&root, &config, &copy::files(&root)?)? {
+        for point in &points {
             for choice in &point.choices {
                 println!("{}:{} {}", point.file, point.line, point.key(choice));
             }
@@ -90,21 +100,44 @@ fn work(arguments: &Arguments) -> Result<bool, String> {
     let state = &state
         .canonicalize()
         .map_err(|e| format!("{}: {e}", state.display()))?;
-    let points = if arguments.judge {
-        let dropped = read_dropped(state);
-        let all = copy::points(&root, &config, &copy::files(&root)?)?;
-        all.into_iter()
-            .filter(|p| !dropped.contains(&copy::name(p)))
-            .collect()
-    } else {
-        hunt(arguments, &root, state, &config)?
-    };
-    let judged = |p: &&Point| arguments.file.is_empty() || arguments.file.contains(&p.file);
-    judge(
-        &root,
-        state,
-        &points.iter().filter(judged).collect::<Vec<_>>(),
-    )
+    let drawn = keys(&points).count();
+    let points = hunt(arguments, &root, state, &config, &points)?;
+    let mutants = judged(&root, state, &points)?;
+    print!("{}", page::table(&mutants));
+    let without = complain(&root, &mutants, &known)?;
+    if let Some(path) = &arguments.page {
+        let made = Made {
+            command: &command(arguments),
+            counts: (population, drawn - mutants.len()),
+            seconds: config.most_seconds,
+            methods: &config.methods,
+        };
+        let text = page::page(&root, &made, &mutants);
+        std::fs::write(path, text).map_err(|e| format!("{}: {e}", path.display()))?;
+    }
+    Ok(without == 0)
+}
+
+/// Names of all mutants of some points.
+fn keys(points: &[Point]) -> impl Iterator<Item = String> {
+    points
+        .iter()
+        .flat_map(|p| p.choices.iter().map(|c| p.key(c)))
+}
+
+/// The command that repeats a run.
+fn command(arguments: &Arguments) -> String {
+    let mut text = "cargo run --release --manifest-path tools/mutation/Cargo.toml --target-dir target/tools --".to_owned();
+    for file in &arguments.file {
+        text += &format!(" --file {file}");
+    }
+    if let Some(count) = arguments.sample {
+        text += &format!(" --sample {count} --seed {}", arguments.seed);
+    }
+    if let Some(seconds) = arguments.most_seconds {
+        text += &format!(" --most-seconds {seconds}");
+    }
+    text + " --page docs/mutation.md"
 }
 
 fn read_dropped(state: &Path) -> HashSet<String> {
@@ -121,9 +154,10 @@ fn hunt(
     root: &Path,
     state: &Path,
     config: &Config,
+    points: &[Point],
 ) -> Result<Vec<Point>, String> {
     let (copy, dropped) =
-        compile::compiling(root, &state.join("copy"), config, read_dropped(state))?;
+        compile::compiling(root, &state.join("copy"), points, read_dropped(state))?;
     let mut names: Vec<&str> = dropped.iter().map(String::as_str).collect();
     names.sort_unstable();
     std::fs::write(state.join("dropped.txt"), names.join("\n"))
@@ -141,7 +175,7 @@ fn hunt(
         dropped.len()
     );
     let programs = compile::tests(&copy, config)?;
-    let tests = reach::measure(&copy.root, state, &programs, config, arguments.jobs)?;
+    let tests = reach::measure(state, &programs, config, arguments.jobs)?;
     println!(
         "{} tests, {:.0} s",
         tests.len(),
@@ -149,10 +183,7 @@ fn hunt(
     );
     let known = hunt::log(state);
     let mut mutants = Vec::new();
-    for point in points
-        .iter()
-        .filter(|p| arguments.file.is_empty() || arguments.file.contains(&p.file))
-    {
+    for point in &points {
         let source = source(root, &point.file)?;
         for choice in &point.choices {
             let key = point.key(choice);
@@ -168,13 +199,10 @@ fn hunt(
         }
     }
     println!("{} mutants to hunt", mutants.len());
-    let all_tests = arguments.test.is_empty();
     Hunt {
-        root: &copy.root,
         state,
         programs: &programs,
         tests: &tests,
-        all_tests,
     }
     .all(&mutants, arguments.jobs)?;
     Ok(points)
@@ -191,76 +219,45 @@ fn source(root: &Path, file: &str) -> Result<u64, String> {
     Ok(hasher.finish())
 }
 
-/// Counts of one file.
-#[derive(Default)]
-struct Counts {
-    mutants: usize,
-    caught: usize,
-    survived: usize,
-    unreached: usize,
-    reasoned: usize,
-}
-
-/// Prints counts, survivors without a reason, and reasons without a survivor. Whether all survivors have a reason.
-fn judge(root: &Path, state: &Path, points: &[&Point]) -> Result<bool, String> {
+/// Each mutant with its fate and its reason.
+fn judged(root: &Path, state: &Path, points: &[Point]) -> Result<Vec<Judged>, String> {
     let reasons = config::survivors(root)?;
     let log = hunt::log(state);
-    let mut files: BTreeMap<&str, Counts> = BTreeMap::new();
-    let (mut without, mut fates) = (Vec::new(), HashMap::new());
-    for point in points {
-        let counts = files.entry(&point.file).or_default();
-        for choice in &point.choices {
-            let key = point.key(choice);
-            let fate = log.get(&key).map(|o| o.fate);
-            counts.mutants += 1;
-            match fate {
-                Some(Fate::Caught | Fate::Hung) => counts.caught += 1,
-                Some(Fate::Survived) => counts.survived += 1,
-                Some(Fate::Unreached) | None => counts.unreached += 1,
-            }
-            if !matches!(fate, Some(Fate::Caught | Fate::Hung)) {
-                match reasons.get(&key) {
-                    Some(_) => counts.reasoned += 1,
-                    None => without.push((fate, point.line, key.clone())),
-                }
-            }
-            fates.insert(key, fate);
-        }
-    }
-    println!(
-        "| file | mutants | caught | survived | not reached | with a reason |\n|---|---|---|---|---|---|"
-    );
-    let mut sum = Counts::default();
-    for (file, c) in &files {
+    let one = |point: &Point, key: String| Judged {
+        file: point.file.clone(),
+        line: point.line,
+        fate: log.get(&key).map(|o| o.fate),
+        reason: reasons.get(&key).cloned(),
+        key,
+    };
+    let all = points
+        .iter()
+        .flat_map(|p| p.choices.iter().map(|c| one(p, p.key(c))));
+    Ok(all.collect())
+}
+
+/// Prints survivors without a reason, and reasons without a survivor. Answers with the number of the former.
+fn complain(root: &Path, mutants: &[Judged], known: &HashSet<String>) -> Result<usize, String> {
+    let caught = |m: &&Judged| matches!(m.fate, Some(Fate::Caught | Fate::Hung));
+    let mut without = 0;
+    for mutant in mutants.iter().filter(|m| !caught(m) && m.reason.is_none()) {
+        let fate = mutant
+            .fate
+            .map_or("not run".to_owned(), |f| format!("{f:?}").to_lowercase());
         println!(
-            "| {file} | {} | {} | {} | {} | {} |",
-            c.mutants, c.caught, c.survived, c.unreached, c.reasoned
+            "no reason, {fate}, {}:{}: {}",
+            mutant.file, mutant.line, mutant.key
         );
-        sum.mutants += c.mutants;
-        sum.caught += c.caught;
-        sum.survived += c.survived;
-        sum.unreached += c.unreached;
-        sum.reasoned += c.reasoned;
+        without += 1;
     }
-    println!(
-        "| all | {} | {} | {} | {} | {} |",
-        sum.mutants, sum.caught, sum.survived, sum.unreached, sum.reasoned
-    );
-    for (fate, line, key) in &without {
-        let fate = fate.map_or("not run".to_owned(), |f| format!("{f:?}").to_lowercase());
-        println!("no reason, {fate}, line {line}: {key}");
+    for mutant in mutants.iter().filter(|m| caught(m) && m.reason.is_some()) {
+        println!("a reason for a mutant that is caught: {}", mutant.key);
     }
-    for key in reasons
+    for key in config::survivors(root)?
         .keys()
-        .filter(|k| files.contains_key(k.split(" | ").next().unwrap_or_default()))
+        .filter(|k| !known.contains(*k))
     {
-        match fates.get(key) {
-            None => println!("a reason for no mutant: {key}"),
-            Some(Some(Fate::Caught | Fate::Hung)) => {
-                println!("a reason for a mutant that is caught: {key}")
-            }
-            Some(_) => {}
-        }
+        println!("a reason for no mutant: {key}");
     }
-    Ok(without.is_empty())
+    Ok(without)
 }

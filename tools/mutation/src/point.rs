@@ -32,17 +32,26 @@ pub enum Shape {
         /// Bytes of the operator.
         op: Range<usize>,
     },
-    /// `left.max(right)` or `left.min(right)`.
-    Extreme {
+    /// `left.max(right)` and other methods of two values.
+    Method {
         /// Bytes from the end of the left value to the start of the right one.
         between: Range<usize>,
         /// End of the right value.
         right_end: usize,
     },
-    /// `value.abs()`.
-    Unary {
+    /// `value.abs()`, `value.clamp(low, high)`: the value alone.
+    Dropped {
         /// End of the value.
         value_end: usize,
+    },
+    /// `select(mask, yes, no)` or `mask.select(yes, no)`: the values exchanged.
+    Swapped {
+        /// The called function with its opening parenthesis; empty for a method.
+        function: String,
+        /// Name of the method; empty for a function.
+        method: String,
+        /// Mask, first and second value.
+        values: [Range<usize>; 3],
     },
     /// A literal or a constant.
     Leaf,
@@ -111,6 +120,22 @@ impl Point {
         out + &format!("{{ {} }}", write(&self.was))
     }
 
+    /// The end of `(match (mask, yes, no`: a call with the values exchanged or as they were.
+    fn exchanged(&self, function: &str, method: &str) -> String {
+        let call = |yes: &str, no: &str| {
+            if method.is_empty() {
+                format!("{function}m_, {yes}, {no})")
+            } else {
+                format!("m_.{method}({yes}, {no})")
+            }
+        };
+        let number = self.choices[0].number;
+        let (swapped, same) = (call("n_", "y_"), call("y_", "n_"));
+        format!(
+            ") {{ (m_, y_, n_) => if crate::mutant::on({number}) {{ {swapped} }} else {{ {same} }} }})"
+        )
+    }
+
     /// The edits that write original and mutants in place of the original.
     #[must_use]
     pub fn edits(&self, source: &str) -> Vec<Edit> {
@@ -167,7 +192,7 @@ impl Point {
                     close(format!(") {{ v_ => {arms} }})")),
                 ]
             }
-            Shape::Extreme { between, right_end } => {
+            Shape::Method { between, right_end } => {
                 let arms = self.chain(|name| format!("l_.{name}(r_)"));
                 vec![
                     open("(match ("),
@@ -175,11 +200,28 @@ impl Point {
                     edit(*right_end..end, format!(") {{ (l_, r_) => {arms} }})")),
                 ]
             }
-            Shape::Unary { value_end } => {
-                let arms = self.chain(|call| format!("v_{call}"));
+            Shape::Dropped { value_end } => {
+                let number = self.choices[0].number;
                 vec![
                     open("(match ("),
-                    edit(*value_end..end, format!(") {{ v_ => {arms} }})")),
+                    edit(
+                        *value_end..*value_end,
+                        format!(") {{ v_ => if crate::mutant::on({number}) {{ v_ }} else {{ v_"),
+                    ),
+                    close(" } })".into()),
+                ]
+            }
+            Shape::Swapped {
+                function,
+                method,
+                values: [mask, yes, no],
+            } => {
+                let close = self.exchanged(function, method);
+                vec![
+                    edit(start..mask.start, "(match (".into()),
+                    edit(mask.end..yes.start, ", ".into()),
+                    edit(yes.end..no.start, ", ".into()),
+                    edit(no.end..end, close),
                 ]
             }
             Shape::Leaf => vec![edit(start..end, format!("({})", self.chain(str::to_owned)))],
@@ -190,19 +232,19 @@ impl Point {
                 )),
                 close(")".into()),
             ],
-            Shape::Body => {
-                let returns = |c: &Choice| {
-                    format!(
-                        " if crate::mutant::on({}) {{ return {}; }}",
-                        c.number, c.with
-                    )
-                };
-                vec![edit(
-                    start..start,
-                    self.choices.iter().map(returns).collect(),
-                )]
-            }
+            Shape::Body => vec![edit(start..start, self.returns())],
         }
+    }
+
+    /// `if on(1) { return a; } if on(2) { return b; }`.
+    fn returns(&self) -> String {
+        let one = |c: &Choice| {
+            format!(
+                " if crate::mutant::on({}) {{ return {}; }}",
+                c.number, c.with
+            )
+        };
+        self.choices.iter().map(one).collect()
     }
 }
 

@@ -48,7 +48,6 @@ fn build(program: &Program) -> Result<String, String> {
 /// # Errors
 /// A program cannot be run, a file not be written.
 pub fn measure(
-    root: &Path,
     state: &Path,
     programs: &[Program],
     config: &Config,
@@ -56,7 +55,7 @@ pub fn measure(
 ) -> Result<Vec<Test>, String> {
     let mut all = Vec::new();
     for program in programs {
-        let kept = state.join(format!("reach_{}.json", program.name));
+        let kept = state.join(format!("reach_{}.json", program.name.replace('/', "_")));
         let build = build(program)?;
         let old: Option<Measured> = fs::read(&kept)
             .ok()
@@ -69,14 +68,14 @@ pub fn measure(
             );
             continue;
         }
-        let names: Vec<String> = exec::list(root, program)?;
+        let names: Vec<String> = exec::list(program)?;
         let names: Vec<String> = names
             .into_iter()
             .filter(|n| config.runs(&format!("{}::{n}", program.name)))
             .collect();
         let done = Mutex::new(Vec::new());
         exec::share(jobs, names.len(), |worker, index| {
-            let test = one(root, state, program, &names[index], worker)?;
+            let test = one(state, program, &names[index], worker)?;
             exec::lock(&done).push(test);
             Ok(())
         })?;
@@ -104,18 +103,11 @@ pub fn measure(
     Ok(all)
 }
 
-fn one(
-    root: &Path,
-    state: &Path,
-    program: &Program,
-    name: &str,
-    worker: usize,
-) -> Result<Test, String> {
+fn one(state: &Path, program: &Program, name: &str, worker: usize) -> Result<Test, String> {
     let reached = state.join(format!("reached_{worker}"));
     let output = state.join(format!("output_{worker}"));
     let _ = fs::remove_file(&reached);
     let run = |env| Run {
-        root,
         program,
         names: vec![name],
         env,

@@ -107,7 +107,7 @@ pub(super) fn is_in(unit: &str, column: &Column) -> bool {
 
 /// The unit of a column as people write it.
 fn unit_of(column: &Column) -> &'static str {
-    Quantity::of(&column.name).unit()
+    Quantity::from_key(&column.name).unit()
 }
 
 impl Columns {

@@ -121,7 +121,7 @@ fn slip(line: &str) -> Option<(Range<usize>, String)> {
         if let Some((figure, unit)) = number_with_unit(number) {
             // The first name of the line, which may be followed by `{ value = …`.
             let key = line.split('=').next().unwrap_or_default().trim();
-            let hint = number_hint(figure, unit, Quantity::of(key).unit());
+            let hint = number_hint(figure, unit, Quantity::from_key(key).unit());
             return Some((at..at + number.len(), hint));
         }
         let bare = value.starts_with(char::is_alphabetic)

@@ -217,7 +217,7 @@ impl<'r> Section<'r> {
         let mut good = true;
         let mut row = Vec::with_capacity(cells.len());
         for (cell, (name, bound)) in cells.iter().zip(columns) {
-            let number = self.check_number(key.name, || Quantity::of(name), cell, *bound);
+            let number = self.check_number(key.name, || Quantity::from_key(name), cell, *bound);
             good &= number.is_some();
             row.extend(number);
         }
@@ -225,7 +225,7 @@ impl<'r> Section<'r> {
     }
 }
 
-/// [`Quantity::of`] by a table: a study reads the columns of each car anew.
+/// [`Quantity::from_key`] by a table: a study reads the columns of each car anew.
 fn quantity_of(name: &str) -> Quantity {
     static BY_SUFFIX: LazyLock<HashMap<&str, Quantity>> =
         LazyLock::new(|| Quantity::ALL.iter().map(|of| (of.suffix(), *of)).collect());
@@ -286,7 +286,7 @@ mod tests {
         for first in Quantity::ALL.iter().chain([&Quantity::NONE]) {
             for last in Quantity::ALL.iter().chain([&Quantity::NONE]) {
                 let name = format!("loss{}{}", first.suffix(), last.suffix());
-                assert_eq!(quantity_of(&name), Quantity::of(&name), "{name}");
+                assert_eq!(quantity_of(&name), Quantity::from_key(&name), "{name}");
             }
         }
         assert_eq!(quantity_of("shaft"), Quantity::NONE);

@@ -183,7 +183,10 @@ pub(crate) fn file_table(
         .iter()
         .map(|k| table.columns[*k].name)
         .collect();
-    let units: Vec<Quantity> = columns.iter().map(|name| Quantity::of(name)).collect();
+    let units: Vec<Quantity> = columns
+        .iter()
+        .map(|name| Quantity::from_key(name))
+        .collect();
     let si = |row: &Vec<f64>| {
         units
             .iter()
@@ -244,7 +247,7 @@ impl MapTable {
         let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
             return Ok(None);
         };
-        let rpm = Quantity::of("speed_rpm");
+        let rpm = Quantity::from_key("speed_rpm");
         let rows: Vec<(f64, f64, f64)> = self
             .rows
             .iter()
@@ -290,7 +293,10 @@ pub(crate) fn loss_map(
     let axes = loss_map_axes(first != "gear").into_iter().zip(ranges);
     let mut columns: Vec<Column> = axes.map(|(name, range)| column(name, range)).collect();
     columns.push(column("torque_loss_nm", (0.0, 1000.0)).required());
-    let quantities: Vec<Quantity> = columns.iter().map(|c| Quantity::of(&c.name)).collect();
+    let quantities: Vec<Quantity> = columns
+        .iter()
+        .map(|c| Quantity::from_key(&c.name))
+        .collect();
     let wanted = Wanted {
         kind: first,
         columns,

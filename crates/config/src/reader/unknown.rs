@@ -110,8 +110,8 @@ impl Log {
             return (problem, None);
         }
         if let Some(known) = self.other_unit(path, span) {
-            let (unit, shown) = (Quantity::of(known).unit(), shown(path, known, span));
-            problem.message = match Quantity::of(last(path)).unit() {
+            let (unit, shown) = (Quantity::from_key(known).unit(), shown(path, known, span));
+            problem.message = match Quantity::from_key(last(path)).unit() {
                 "-" => format!("no unit: `{path}` is not known, `{shown}` is"),
                 _ => format!("wrong unit: `{path}` is not known, `{shown}` is"),
             };

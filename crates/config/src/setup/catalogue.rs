@@ -12,8 +12,8 @@ use crate::files::embedded;
 use crate::setup::rig;
 use crate::{Document, KeyInfo, Reader, Target};
 use cvtcycle_model::drive::Vehicle;
-use cvtcycle_model::fluid::Lubricant;
 use cvtcycle_model::keys::{Key, Table};
+use cvtcycle_model::lubricant::Lubricant;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
 /// Prefix of the keys of the transmission oil.

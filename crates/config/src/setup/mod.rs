@@ -27,7 +27,7 @@ use crate::{
 };
 use cvtcycle_model::drive::Vehicle;
 
-use cvtcycle_model::fluid::Lubricant;
+use cvtcycle_model::lubricant::Lubricant;
 
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 

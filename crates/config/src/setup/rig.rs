@@ -1,7 +1,7 @@
 //! What the transmission rig was set to, as data with a status: `rigs/rig_transmission.toml`.
 
-use cvtcycle_model::bench::transmission::Conditions;
-pub use cvtcycle_model::bench::transmission::{OIL, TORQUE};
+use cvtcycle_model::rig::transmission::Conditions;
+pub use cvtcycle_model::rig::transmission::{OIL, TORQUE};
 
 use crate::files::embedded;
 use crate::{Document, KeyInfo, Override, Problems, Reader, Section, Target};

@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-/// What the driver of a manual car does over one interval.
+/// Action of the driver of a manual car over one interval.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GearCommand {
     /// No gear engaged, clutch engaged.
@@ -157,7 +157,7 @@ impl GearColumns {
 
     /// The columns with one command for each of some intervals, by their numbers.
     #[must_use]
-    pub fn of(&self, intervals: &[usize]) -> Self {
+    pub fn at_intervals(&self, intervals: &[usize]) -> Self {
         let of = |column: &Option<Vec<GearCommand>>| {
             let column = column.as_ref()?;
             Some(intervals.iter().map(|i| column[*i]).collect())

@@ -39,13 +39,13 @@ pub struct Cycle {
     pub phases: Vec<String>,
     /// How the phases are weighted.
     pub weighting: Weighting,
-    /// What a car with a manual box drives.
+    /// Trace of a car with a manual box.
     pub manual: Trace,
-    /// What an automatic or a CVT drives; the manual trace if none.
+    /// Trace of an automatic or a CVT; the manual trace if `None`.
     pub automatic: Option<Trace>,
     /// How its file was read, where it was not written as the program's own are: separators, names and units of other programs.
     pub read_as: Option<String>,
-    /// Whether it is a WLTC with a speed a second, where the gears of a manual car follow UN GTR 15.
+    /// True for a WLTC with a speed a second, where the gears of a manual car follow UN GTR 15.
     pub is_wltc: bool,
 }
 
@@ -123,7 +123,7 @@ impl Cycle {
         }
     }
 
-    /// Whether the manual trace prescribes gears, for any number of gears.
+    /// True if the manual trace prescribes gears, for any number of gears.
     pub fn has_gears(&self) -> bool {
         self.manual.has_gears()
     }

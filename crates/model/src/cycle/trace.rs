@@ -1,7 +1,7 @@
 //! A speed trace: intervals over which speed is linear, and their division into steps.
 
 use super::gears::{GearColumns, GearCommand};
-use crate::math::{Left, Real, exp, larger, ln};
+use crate::math::{Real, exp, larger, ln, physics};
 use std::sync::Arc;
 
 /// One interval of a trace, from one row of its table to the next. Speed is linear within it.
@@ -29,7 +29,7 @@ impl Interval {
         0.5 * (self.start_speed_m_s + self.end_speed_m_s) * (self.end_s - self.start_s)
     }
 
-    /// Whether the car moves in it.
+    /// True if the car moves in it.
     fn moves(&self) -> bool {
         self.start_speed_m_s > 0.0 || self.end_speed_m_s > 0.0
     }
@@ -103,7 +103,7 @@ impl Interval {
     }
 }
 
-/// What follows from the speeds of a step alone: a trace has it once for all cars and drives.
+/// Quantities from the speeds of a step alone: a trace computes them once for all cars and drives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Mean speed, m/s.
@@ -119,11 +119,8 @@ pub struct Motion {
 }
 
 /// Means of a speed that is linear from one value to another, of its square and of its cube.
-#[inline(always)]
-pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn mean_powers<R: Real>(v0: R, v1: R) -> [R; 3] {
     [
         0.5 * (v0 + v1),
         (v0 * v0 + v0 * v1 + v1 * v1) / 3.0,
@@ -161,7 +158,7 @@ pub struct Step {
     pub start_speed_m_s: f64,
     /// Speed at the end, m/s.
     pub end_speed_m_s: f64,
-    /// What follows from these.
+    /// Quantities from these speeds.
     pub motion: Motion,
     /// Index into [`super::Cycle::phases`]; 0 in a cycle without phases.
     pub phase: u16,
@@ -173,20 +170,20 @@ pub struct Step {
     pub interval: usize,
 }
 
+#[physics]
 impl Step {
     /// Distance driven, m.
-    #[inline(always)]
     pub fn distance_m(&self) -> f64 {
         self.motion.speed_m_s * self.dt_s
     }
 }
 
-/// What a car is asked to drive. Copies share its intervals.
+/// Speed trace with grades and commands. Copies share the intervals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
     /// The intervals in time order, each beginning where the one before ends; the first begins at 0 s.
     pub intervals: Arc<Vec<Interval>>,
-    /// Of every interval.
+    /// Quantities of every interval.
     motions: Arc<Vec<Motion>>,
     gears: GearColumns,
     selector_s: f64,
@@ -229,7 +226,7 @@ impl Trace {
         self.gears.columns()
     }
 
-    /// Whether the trace prescribes gears for some gearbox.
+    /// True if the trace prescribes gears for some gearbox.
     pub fn has_gears(&self) -> bool {
         !self.gears.is_empty()
     }
@@ -290,7 +287,7 @@ impl Trace {
             intervals.push(rest);
             from.push(number);
         }
-        Self::with_gears(intervals, self.gears.of(&from)).with_selector_s(self.selector_s)
+        Self::with_gears(intervals, self.gears.at_intervals(&from)).with_selector_s(self.selector_s)
     }
 
     /// Duration, s.
@@ -339,7 +336,7 @@ impl Trace {
     }
 
     /// Gives every step of [`Trace::steps`] to `take`, in order; two plain loops cost a drive less than the iterator.
-    #[inline(always)]
+    #[physics]
     pub fn for_each_step(&self, max_dt_s: f64, mut take: impl FnMut(Step)) {
         for (number, (interval, motion)) in self.intervals.iter().zip(&*self.motions).enumerate() {
             let parts = interval.parts(max_dt_s);

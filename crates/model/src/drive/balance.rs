@@ -6,7 +6,7 @@
 //! | LE-2 | transmission losses + heat to the engine = heat into the nodes = stored + given to the air | derived: first law |
 //! | LE-3 | error = \|in - out\| / sum of absolute terms, 0 for an empty row | contract |
 
-use crate::math::{Left, Real};
+use crate::math::{Mask, Real, physics};
 
 macro_rules! energy_terms {
     ($($term:ident: $doc:literal;)*) => {
@@ -19,21 +19,19 @@ macro_rules! energy_terms {
         /// Names of the terms, in the order of [`EnergyTerms::as_array`].
         pub const TERM_NAMES: [&str; [$($doc),*].len()] = [$(stringify!($term)),*];
 
+        #[physics]
         impl<R: Real> EnergyTerms<R> {
             /// The terms in the order of [`TERM_NAMES`].
-            #[inline(always)]
             pub fn as_array(&self) -> [R; TERM_NAMES.len()] {
                 [$(self.$term),*]
             }
 
             /// Terms from an array in the order of [`TERM_NAMES`].
-            #[inline(always)]
             pub fn from_array([$($term),*]: [R; TERM_NAMES.len()]) -> Self {
                 EnergyTerms { $($term),* }
             }
 
             /// Adds another row's terms, weighted by its length, J.
-            #[inline(always)]
             pub fn add(&mut self, other: &EnergyTerms<R>, dt_s: f64) {
                 $(self.$term = self.$term + other.$term * dt_s;)*
             }
@@ -57,26 +55,21 @@ energy_terms! {
     electric_loss: "Losses of alternator, electric store and starter, those of the alternator's own load apart.";
 }
 
-#[inline(always)]
+#[physics]
 fn error<R: Real>(difference: R, scale: R) -> R {
-    R::pick(
-        scale.above(scale.filled(0.0)),
-        difference / scale,
-        scale.filled(0.0),
-    ) // LE-3
+    scale
+        .gt(scale.splat(0.0))
+        .select(difference / scale, scale.splat(0.0)) // LE-3
 }
 
-impl<R: Real> EnergyTerms<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> EnergyTerms<R> {
     /// Relative error of the power ledger (LE-1).
-    #[inline(always)]
     pub fn power_error(&self) -> R {
-        let zero = self.wheels.filled(0.0);
-        let driven = zero.above(self.wheels);
-        let from = R::pick(driven, -self.wheels, zero);
-        let to = R::pick(driven, zero, self.wheels);
+        let zero = self.wheels.splat(0.0);
+        let driven = zero.gt(self.wheels);
+        let from = driven.select(-self.wheels, zero);
+        let to = driven.select(zero, self.wheels);
         let out = to
             + self.brake
             + self.accessories
@@ -99,11 +92,10 @@ where
     }
 
     /// Relative error of the heat ledger (LE-2).
-    #[inline(always)]
     pub fn heat_error(&self) -> R {
         let scale = self.node_heat.abs() + self.stored.abs() + self.to_air.abs();
         let balance = (self.node_heat - (self.stored + self.to_air)).abs();
         let handed = (self.losses + self.engine_heat - self.node_heat).abs();
-        error(handed.most(balance), scale)
+        error(handed.max(balance), scale)
     }
 }

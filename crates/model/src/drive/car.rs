@@ -1,7 +1,7 @@
 //! A car ready to drive.
 
 use crate::engine::Engine;
-use crate::fluid::Lubricant;
+use crate::lubricant::Lubricant;
 use crate::math::Real;
 use crate::road::{RoadLoad, Tyre};
 use crate::thermal::Network;

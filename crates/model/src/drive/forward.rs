@@ -22,7 +22,7 @@ use crate::transmission::cvt::Hold;
 use crate::transmission::{StepInput, StepOutput, TransmissionState};
 
 /// Slowest wheels, rad/s (FO-3).
-pub const LEAST_WHEEL_RAD_S: f64 = 0.02;
+pub const MIN_WHEEL_RAD_S: f64 = 0.02;
 /// Torque up to which a step is solved, Nm. ASSUMED, numerical: a millionth of what is measured on a rig; less is rounding of the box's own solve.
 const NEAR_NM: f64 = 1e-7;
 /// Tries for a power; a step that needs them all takes the nearest.
@@ -36,7 +36,7 @@ const MARGIN: f64 = 0.05;
 /// ... and how near, W. ASSUMED, numerical: some millionth of a rated power.
 const NEAR_W: f64 = 0.1;
 
-/// What is known of a step.
+/// Input of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Given {
     /// Torque at the flywheel, that of inertia included, Nm.
@@ -53,7 +53,7 @@ pub struct Given {
     pub dt_s: f64,
 }
 
-/// What a step gives.
+/// Result of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Turned {
     /// The driveline.
@@ -241,7 +241,7 @@ impl<'a> Forward<'a> {
         }
     }
 
-    /// Whether a lock-up closes in a step.
+    /// True if a lock-up closes in a step.
     fn closes(&self, output: &StepOutput) -> bool {
         let by_command = self.car.transmission.coupling().by_command();
         by_command
@@ -252,7 +252,7 @@ impl<'a> Forward<'a> {
     /// The demand of wheels that turn as they do.
     fn demand(&self, given: &Given, power_w: f64) -> WheelDemand {
         let [from, to] = given.wheel_rad_s;
-        let wheel_rad_s = larger(0.5 * (from + to), LEAST_WHEEL_RAD_S); // FO-3
+        let wheel_rad_s = larger(0.5 * (from + to), MIN_WHEEL_RAD_S); // FO-3
         let radius_m = self.car.road_load.wheel_radius_m;
         WheelDemand {
             speed_m_s: wheel_rad_s * radius_m,

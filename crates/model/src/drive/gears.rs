@@ -36,7 +36,7 @@ pub struct WltcClass {
     pub cycle: &'static str,
     /// Rated power over mass without payload, W/kg.
     pub w_per_kg: f64,
-    /// Whether 90 % of rated power meets the road load at 120 km/h.
+    /// True if 90 % of rated power meets the road load at 120 km/h.
     pub reaches_120_kmh: bool,
 }
 
@@ -78,7 +78,7 @@ impl Vehicle {
         }
     }
 
-    /// What UN GTR 15, Annex 2, needs to know of the car; none of one without a manual box.
+    /// Data of the car for UN GTR 15, Annex 2; `None` without a manual box.
     pub fn gtr15(&self) -> Option<GtrVehicle> {
         let Transmission::Manual(manual) = self.transmission() else {
             return None;

@@ -26,6 +26,6 @@ pub use run::{
 };
 pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};
-pub use together::{MOST_TOGETHER, Run, drive_each, drive_each_on};
+pub use together::{MAX_TOGETHER, Run, drive_each, drive_each_on};
 pub use totals::{Extreme, PhaseTotals, Totals};
 pub use vehicle::{ChangedParts, Vehicle};

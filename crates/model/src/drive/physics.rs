@@ -18,7 +18,7 @@
 use super::{Car, EnergyTerms, Recorder, Row, State, Vehicle, simulate};
 use crate::cycle::Cycle;
 use crate::flags::Flags;
-use crate::fluid::{BandFriction, VALID_K};
+use crate::lubricant::{BandFriction, VALID_K};
 use crate::math::{larger, ln, pair, smaller};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat};
@@ -105,13 +105,13 @@ impl Law {
         self.words()[1]
     }
 
-    /// What is compared, one phrase.
+    /// Compared quantities, one phrase.
     pub const fn doc(self) -> &'static str {
         self.words()[2]
     }
 }
 
-/// What a law found over all rows: the one that is nearest to its bound, or farthest beyond it.
+/// Worst row of a law: the one nearest to its bound, or farthest beyond it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finding {
     /// The law.
@@ -235,7 +235,7 @@ impl<'a> PhysicsCheck<'a> {
         }
     }
 
-    /// What each law found so far, in the order of [`Law::ALL`].
+    /// Worst rows so far, in the order of [`Law::ALL`].
     pub fn findings(&self) -> &[Finding] {
         &self.findings
     }
@@ -329,7 +329,7 @@ impl<'a> PhysicsCheck<'a> {
         .iter()
         .map(|n| n.abs())
         .sum();
-        // What bands and film lose, before slip against the torque relieves them (SL-11), over the levers of their forces.
+        // Losses of bands and film, before slip against the torque relieves them (SL-11), over the levers of their forces.
         let lost_nm = [Component::BeltBand, Component::BeltFilm].map(|part| row.loss_w[part] / w);
         let left_nm = lost_nm[0] + lost_nm[1];
         let before_nm = left_nm - smaller(row.slip * through_nm, 0.0);

@@ -5,8 +5,8 @@ use crate::cycle::Step;
 use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, HIGHEST_COOLANT_K};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
-use crate::math::{Left, Real};
+use crate::lubricant::VALID_K;
+use crate::math::{Mask, Real, physics};
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, HeatStep, METAL, NODES, SUMP};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::ByComponent;
@@ -51,7 +51,7 @@ pub struct Row<R: Real = f64> {
     /// Engine torque with accessories, without inertia, over full-load torque at that speed, 0..1.
     pub throttle: R,
     /// Gear of a manual box; 0 neutral or CVT.
-    pub gear: R::Each<u8>,
+    pub gear: R::PerLane<u8>,
     /// Belt ratio I = R_sec / R_pri (thesis eq. 5); NaN for a manual box.
     pub belt_ratio: R,
     /// Engine speed over wheel speed; NaN at standstill.
@@ -60,8 +60,8 @@ pub struct Row<R: Real = f64> {
     pub primary_pressure_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pressure_pa: R,
-    /// What decided the secondary pressure (PC-5); of no meaning for a manual box.
-    pub clamp_cause: R::Each<ClampCause>,
+    /// Cause of the secondary pressure (PC-5); without meaning for a manual box.
+    pub clamp_cause: R::PerLane<ClampCause>,
     /// Belt slip as a fraction; NaN for a manual box.
     pub slip: R,
     /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
@@ -110,12 +110,12 @@ pub struct Row<R: Real = f64> {
     pub power_ledger_error: R,
     /// Heat ledger: |in - stored - to air| over the sum of absolute terms.
     pub heat_ledger_error: R,
-    /// What the implicit solve left, as a fraction of full-load torque.
+    /// Residual of the implicit solve, as a fraction of full-load torque.
     pub solve_residual: R,
     /// Evaluations of the driveline that the implicit solve needed.
-    pub iterations: R::Each<u16>,
+    pub iterations: R::PerLane<u16>,
     /// States and departures from validity.
-    pub flags: R::Each<Flags>,
+    pub flags: R::PerLane<Flags>,
 }
 
 pub(super) type Input<'a, R = f64> = StepInput<'a, EngineAtTemperature<'a, R>, R>;
@@ -143,11 +143,8 @@ pub(super) struct Solved<'a, R: Real = f64> {
 }
 
 /// Energy terms of a step, each from the model that owns it.
-#[inline(always)]
-fn terms<R: Real>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+fn terms<R: Real>(input: &Input<R>, a: &Solved<R>) -> EnergyTerms<R> {
     let (d, b, wheel) = (a.output, a.burn, input.wheel);
     let engine_heat = b.to_coolant_w + b.to_oil_w;
     let shaft_w = a.inertia.accessories_nm * d.engine_rad_s;
@@ -157,11 +154,11 @@ where
         wheels: wheel.power_w - d.deficit_w,
         brake: d.brake_w,
         accessories,
-        losses: shaft_w.sum_of(&d.loss_w.0),
+        losses: shaft_w.sum(&d.loss_w.0),
         kinetic: a.inertia.kinetic_w,
         engine_heat,
         exhaust: b.exhaust_w,
-        node_heat: shaft_w.sum_of(&a.power_w),
+        node_heat: shaft_w.sum(&a.power_w),
         stored: a.heat.stored_w,
         to_air: a.heat.to_air_w,
         store: a.electric.store_w,
@@ -170,29 +167,26 @@ where
 }
 
 /// The row of a step with its energy terms; `is_cvt`: the car has a belt.
-#[inline(always)]
+#[physics]
 pub(super) fn row<R: Real>(
     is_cvt: bool,
     step: &Step,
     input: &Input<R>,
     a: &Solved<R>,
-) -> (Row<R>, EnergyTerms<R>)
-where
-    f64: Left<R>,
-{
+) -> (Row<R>, EnergyTerms<R>) {
     let terms = terms(input, a);
     let (d, b, wheel) = (a.output, a.burn, input.wheel);
     let engine_rad_s = d.engine_rad_s;
-    let (zero, none) = (engine_rad_s.filled(0.0), engine_rad_s.filled(f64::NAN));
+    let (zero, none) = (engine_rad_s.splat(0.0), engine_rad_s.splat(f64::NAN));
     let mut flags = d.flags.clone();
-    let turns = engine_rad_s.above(0.0);
+    let turns = engine_rad_s.gt(0.0);
     set_flag::<R>(&mut flags, Flags::FUEL_CUT, b.cut & turns);
     set_flag::<R>(&mut flags, Flags::OUTSIDE_VALIDITY, b.outside);
     let t = &a.heat.heat.node_k;
     let [first, second, third] = HIGHEST_K;
-    let hot = t[first.0].above(first.1) | t[second.0].above(second.1) | t[third.0].above(third.1);
+    let hot = t[first.0].gt(first.1) | t[second.0].gt(second.1) | t[third.0].gt(third.1);
     set_flag::<R>(&mut flags, Flags::TOO_HOT, hot);
-    let rolls = wheel.wheel_rad_s.above(0.0);
+    let rolls = wheel.wheel_rad_s.gt(0.0);
     let row = Row {
         time_s: step.time_s,
         dt_s: step.dt_s,
@@ -200,7 +194,7 @@ where
         speed_m_s: wheel.speed_m_s,
         accel_m_s2: wheel.accel_m_s2,
         distance_m: step.distance_m(),
-        wheel_torque_nm: R::pick(rolls, wheel.power_w / wheel.wheel_rad_s, zero),
+        wheel_torque_nm: rolls.select(wheel.power_w / wheel.wheel_rad_s, zero),
         wheel_power_w: wheel.power_w,
         wheel_work_positive_j: wheel.positive_j,
         wheel_work_negative_j: wheel.negative_j,
@@ -210,7 +204,7 @@ where
         throttle: d.throttle,
         gear: d.gear.clone(),
         belt_ratio: d.belt_ratio,
-        overall_ratio: R::pick(rolls, engine_rad_s / wheel.wheel_rad_s, none),
+        overall_ratio: rolls.select(engine_rad_s / wheel.wheel_rad_s, none),
         primary_pressure_pa: d.primary_pa,
         secondary_pressure_pa: d.secondary_pa,
         clamp_cause: d.clamp_cause.clone(),

@@ -21,7 +21,7 @@ pub enum Start {
     At(f64),
 }
 
-/// What a run is asked for.
+/// Output wanted of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Conditions {
     /// Ambient temperature, K.
@@ -30,11 +30,11 @@ pub struct Conditions {
     pub start: Start,
     /// Largest step, s.
     pub max_dt_s: f64,
-    /// Whether every row is kept.
+    /// True to keep every row.
     pub keep_rows: bool,
 }
 
-/// What a run gives.
+/// Result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Sums.

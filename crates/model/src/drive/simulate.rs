@@ -9,7 +9,7 @@ use crate::math::Real;
 use crate::thermal::Heat;
 use crate::transmission::TransmissionState;
 
-/// What a drive carries from step to step.
+/// State of a drive between steps.
 #[derive(Clone, Copy, Debug)]
 pub struct State<R: Real = f64, S = TransmissionState> {
     /// Temperatures.
@@ -18,22 +18,22 @@ pub struct State<R: Real = f64, S = TransmissionState> {
     pub transmission: Option<S>,
     /// Rotating energy of engine and primary side, J; NaN before the first step.
     pub kinetic_j: R,
-    /// What the engine did.
+    /// State of the engine's start.
     pub running: Running<R>,
     /// Temperature of the tyres, K.
     pub tyre_k: R,
-    /// What start-stop did.
+    /// State of start-stop.
     pub start_stop: StartStopState,
 }
 
 impl<R: Real, S> State<R, S> {
     /// Everything at one temperature, engine about to start.
     pub fn at(temp_k: R) -> Self {
-        let zero = temp_k.filled(0.0);
+        let zero = temp_k.splat(0.0);
         State {
             heat: Heat::uniform(temp_k),
             transmission: None,
-            kinetic_j: temp_k.filled(f64::NAN),
+            kinetic_j: temp_k.splat(f64::NAN),
             running: Running {
                 since_s: 0.0,
                 start_k: zero,

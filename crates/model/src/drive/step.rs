@@ -14,7 +14,7 @@ use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
 use crate::engine::{Burn, EngineAtTemperature, Running};
 use crate::flags::Flags;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::{BELT, COOLANT, ENGINE_OIL, Heat, HeatInput, HeatStep, METAL, NODES, SUMP};
@@ -40,7 +40,7 @@ use crate::transmission::{Driveline, StepInput, StepOutput, Transmission};
 #[derive(Clone, Debug)]
 pub struct Drive<'a> {
     car: &'a Car,
-    /// What is driven, where it is known before.
+    /// Trace driven, if known before.
     trace: Option<&'a Trace>,
     /// Gears of the cycle, one an interval.
     gears: Option<&'a [GearCommand]>,
@@ -77,7 +77,7 @@ impl<'a> Drive<'a> {
     }
 
     /// Drives one step: its row and its energy terms.
-    #[inline(always)]
+    #[physics]
     pub fn step(&mut self, step: &Step) -> (Row, EnergyTerms) {
         let car = self.car;
         let state = &mut self.state;
@@ -139,12 +139,9 @@ impl<'a> Drive<'a> {
     }
 }
 
-/// What a step demands of the wheels; the tyres warm up meanwhile.
-#[inline(always)]
-pub(super) fn wheel<R: Real, T>(car: &Car<R, T>, step: &Step, tyre_k: &mut R) -> WheelDemand<R>
-where
-    f64: Left<R>,
-{
+/// Computes the demand of a step at the wheels; the tyres warm up meanwhile.
+#[physics]
+pub(super) fn wheel<R: Real, T>(car: &Car<R, T>, step: &Step, tyre_k: &mut R) -> WheelDemand<R> {
     let wheel = car.road_load.wheel(step, car.tyre.extra_n(*tyre_k));
     *tyre_k = car
         .tyre
@@ -153,17 +150,14 @@ where
 }
 
 /// The engine at the beginning of a step, after what it did before.
-#[inline(always)]
+#[physics]
 pub(super) fn engine<'a, R: Real, T: Driveline<R>>(
     car: &'a Car<R, T>,
     step: &Step,
     wheel: &WheelDemand<R>,
     heat: &Heat<R>,
     running: &mut Running<R>,
-) -> EngineAtTemperature<'a, R>
-where
-    f64: Left<R>,
-{
+) -> EngineAtTemperature<'a, R> {
     *running = running.started(heat.node_k[COOLANT]);
     if !car.transmission.is_cvt() {
         *running = running.rolled(wheel.wheel_rad_s); // a CVT holds its speed by its ratio
@@ -179,48 +173,42 @@ where
 }
 
 /// The transmission in a step; before its first one it begins, and with it the rotating energy.
-#[inline(always)]
+#[physics]
 pub(super) fn begun<'s, R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     step: &Step,
     input: &Input<R>,
     transmission: &'s mut Option<T::State>,
     kinetic_j: &mut R,
-) -> &'s mut T::State
-where
-    f64: Left<R>,
-{
+) -> &'s mut T::State {
     // Not `get_or_insert_with`, which is a call in every step.
     let transmission = match transmission {
         Some(state) => state,
         none => none.insert(car.transmission.start(input)),
     };
-    let known = kinetic_j.reaches(*kinetic_j);
+    let known = kinetic_j.ge(*kinetic_j);
     if !known.all() {
         let w = T::engine_rad_s(transmission);
         let idling = 0.5 * car.engine.inertia_kg_m2 * w * w;
         let start_j = if step.engine_off {
-            w.filled(0.0)
+            w.splat(0.0)
         } else {
             idling
         };
-        *kinetic_j = R::pick(known, *kinetic_j, start_j);
+        *kinetic_j = known.select(*kinetic_j, start_j);
     }
     transmission
 }
 
-/// What follows from a solved transmission: its row, its energy terms and the temperatures after the step; rotating energy and what the engine did are brought up to date.
-#[inline(always)]
+/// Completes a step from its solved transmission: row, energy terms, temperatures after the step, rotating energy and state of the engine.
+#[physics]
 pub(super) fn end<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     step: &Step,
     input: &Input<R>,
     (output, electric): (&mut StepOutput<R>, &Electric<R>),
     (kinetic_j, running, tyre_k): (&mut R, &mut Running<R>, R),
-) -> ((Row<R>, EnergyTerms<R>), Heat<R>)
-where
-    f64: Left<R>,
-{
+) -> ((Row<R>, EnergyTerms<R>), Heat<R>) {
     let mut inertia = inertia(car, input, output, *kinetic_j);
     spend(car, output, inertia.surplus_w);
     let mut burn = input.engine.burn(output.engine_rad_s, inertia.crank_nm);
@@ -228,11 +216,11 @@ where
         burn.to_coolant_w = -inertia.kinetic_w; // the engine runs out against its own friction
     }
     // An engine at rest has no rotating energy, not even a rest of rounding.
-    let zero = output.engine_rad_s.filled(0.0);
-    let rests = zero.reaches(output.engine_rad_s);
+    let zero = output.engine_rad_s.splat(0.0);
+    let rests = zero.ge(output.engine_rad_s);
     let turning_j = *kinetic_j + inertia.kinetic_w * step.dt_s;
-    *kinetic_j = R::pick(rests, zero, turning_j);
-    let cranked = electric.kinetic_w.above(0.0);
+    *kinetic_j = rests.select(zero, turning_j);
+    let cranked = electric.kinetic_w.gt(0.0);
     if cranked.any() {
         inertia.kinetic_w = inertia.kinetic_w + electric.kinetic_w; // SS-4
         add_start(&mut burn, electric, car.engine.heating_value_j_kg);
@@ -258,47 +246,41 @@ where
     (result, heat_step.heat)
 }
 
-/// What a slower engine gives beyond its drag and load goes into a coupling that slips, else to the wheels.
-#[inline(always)]
-fn spend<R: Real, T: Driveline<R>>(car: &Car<R, T>, output: &mut StepOutput<R>, surplus_w: R)
-where
-    f64: Left<R>,
-{
+/// Rotating energy of a slowing engine beyond its drag and load goes into a coupling that slips, else to the wheels.
+#[physics]
+fn spend<R: Real, T: Driveline<R>>(car: &Car<R, T>, output: &mut StepOutput<R>, surplus_w: R) {
     let slips = output.has(Flags::CLUTCH_SLIPPING);
     if !slips.any() {
         return give_back(output, surplus_w);
     }
     // A clutch that loses a part only passes on the rest (LC-6).
     let lost = match car.transmission.coupling_factor() {
-        Some(factor) => factor.least(1.0),
-        None => surplus_w.filled(1.0),
+        Some(factor) => factor.min(1.0),
+        None => surplus_w.splat(1.0),
     };
     let launch_w = output.loss_w[Component::LaunchClutch];
-    output.loss_w[Component::LaunchClutch] = R::pick(slips, launch_w + lost * surplus_w, launch_w); // SI-4
-    give_back(output, R::pick(slips, (1.0 - lost) * surplus_w, surplus_w));
+    output.loss_w[Component::LaunchClutch] = slips.select(launch_w + lost * surplus_w, launch_w); // SI-4
+    give_back(output, slips.select((1.0 - lost) * surplus_w, surplus_w));
 }
 
 /// Power of the slower engine that reaches the wheels: it makes up for a deficit, or the brakes take it.
-#[inline(always)]
+#[physics]
 fn give_back<R: Real>(output: &mut StepOutput<R>, surplus_w: R) {
-    let helps_w = surplus_w.least(output.deficit_w);
+    let helps_w = surplus_w.min(output.deficit_w);
     output.deficit_w = output.deficit_w - helps_w;
     output.brake_w = output.brake_w + (surplus_w - helps_w); // SI-4
 }
 
-#[inline(always)]
+#[physics]
 fn inertia<R: Real, T>(
     car: &Car<R, T>,
     input: &Input<R>,
     output: &StepOutput<R>,
     kinetic_j: R,
-) -> Inertia<R>
-where
-    f64: Left<R>,
-{
+) -> Inertia<R> {
     let w = output.engine_rad_s;
-    let zero = w.filled(0.0);
-    let rests = zero.reaches(w);
+    let zero = w.splat(0.0);
+    let rests = zero.ge(w);
     let stopped_w = -kinetic_j * input.dt_s.recip();
     if rests.all() {
         return Inertia {
@@ -313,35 +295,32 @@ where
     let steady = output.shaft_nm + accessories_nm;
     let wanted = (0.5 * car.engine.inertia_kg_m2 * w * w - kinetic_j) / (input.dt_s * w);
     // Faster takes what is left below full load, slower what drag is left; never less than nothing.
-    let (faster, slower) = (wanted.above(0.0), zero.above(wanted));
+    let (faster, slower) = (wanted.gt(0.0), zero.gt(wanted));
     let mut torque = zero;
     if faster.any() {
-        torque = (engine.full_load_nm(w) - steady).held(0.0, wanted); // SI-2
+        torque = (engine.full_load_nm(w) - steady).clamp(0.0, wanted); // SI-2
     }
     if !faster.all() {
-        let braking = (-(steady + engine.own_drag_nm(w))).held(wanted, 0.0); // SI-2
-        torque = R::pick(faster, torque, braking);
+        let braking = (-(steady + engine.own_drag_nm(w))).clamp(wanted, 0.0); // SI-2
+        torque = faster.select(torque, braking);
     }
-    let over = R::pick(slower, torque - wanted, zero);
+    let over = slower.select(torque - wanted, zero);
     Inertia {
-        crank_nm: R::pick(rests, zero, steady + torque),
-        accessories_nm: R::pick(rests, zero, accessories_nm),
-        kinetic_w: R::pick(rests, stopped_w, torque.least(wanted) * w),
-        surplus_w: R::pick(rests, zero, over * w),
+        crank_nm: rests.select(zero, steady + torque),
+        accessories_nm: rests.select(zero, accessories_nm),
+        kinetic_w: rests.select(stopped_w, torque.min(wanted) * w),
+        surplus_w: rests.select(zero, over * w),
     } // SI-1
 }
 
-#[inline(always)]
+#[physics]
 pub(super) fn advance<R: Real, T>(
     car: &Car<R, T>,
     power_w: [R; NODES],
     output: &StepOutput<R>,
     input: &Input<R>,
     speed_power_07: f64,
-) -> HeatStep<R>
-where
-    f64: Left<R>,
-{
+) -> HeatStep<R> {
     let sump_k = input.heat.node_k[SUMP];
     let oil_volume_heat_j_m3k = car.oil.density_kg_m3(sump_k) * car.oil.heat_capacity_j_kgk(sump_k);
     car.network.advance_in_wind(
@@ -361,15 +340,12 @@ where
 }
 
 /// Heat into each node, W (SI-3).
-#[inline(always)]
+#[physics]
 fn node_power<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     output: &StepOutput<R>,
     burn: &Burn<R>,
-) -> [R; NODES]
-where
-    f64: Left<R>,
-{
+) -> [R; NODES] {
     let mut power = loss_heat_w(car, &output.loss_w);
     power[COOLANT] = power[COOLANT] + burn.to_coolant_w;
     power[ENGINE_OIL] = power[ENGINE_OIL] + burn.to_oil_w;
@@ -393,17 +369,17 @@ const fn heating<const COUNT: usize>(to: HeatTo) -> [Component; COUNT] {
 }
 
 /// Heat that the transmission's losses, W, put into each node, W (SI-3).
-#[inline(always)]
-pub fn loss_heat_w<R: Real, T: Driveline<R>>(car: &Car<R, T>, loss_w: &ByComponent<R>) -> [R; NODES]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn loss_heat_w<R: Real, T: Driveline<R>>(
+    car: &Car<R, T>,
+    loss_w: &ByComponent<R>,
+) -> [R; NODES] {
     const BELT_HEAT: [Component; 6] = heating(HeatTo::Belt);
     const METAL_HEAT: [Component; 4] = heating(HeatTo::Metal);
     const COUPLING_HEAT: [Component; 1] = heating(HeatTo::Coupling);
     const SUMP_HEAT: [Component; 7] = heating(HeatTo::Sump);
     // First the sums of what goes the same way.
-    let zero = car.belt_heat_share.filled(0.0);
+    let zero = car.belt_heat_share.splat(0.0);
     // Written out, so that the sums stay in registers.
     macro_rules! sum {
         ($components:ident: $($place:literal)*) => {

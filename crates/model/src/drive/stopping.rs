@@ -5,7 +5,7 @@ use super::row::Input;
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::engine::start_stop::{Command, Conditions, Electric, StartStopState};
 use crate::engine::{Burn, StartStop};
-use crate::math::{Real, larger};
+use crate::math::{Real, larger, physics};
 use crate::thermal::{COOLANT, Heat, SUMP};
 use crate::transmission::component::Component;
 use crate::transmission::{StepOutput, Transmission, TransmissionState};
@@ -17,7 +17,7 @@ pub(super) struct Stopping<'a> {
 }
 
 impl<'a> Stopping<'a> {
-    /// What the engine of a car with start-stop does in a step of a trace.
+    /// Action of the engine of a car with start-stop in a step of a trace.
     pub fn new(
         car: &'a Car,
         trace: Option<&Trace>,
@@ -49,7 +49,7 @@ impl<'a> Stopping<'a> {
         Some(Stopping { on, command })
     }
 
-    /// Whether the engine is at rest.
+    /// True with the engine at rest.
     pub fn stopped(&self) -> bool {
         self.command == Command::Stop
     }
@@ -63,7 +63,7 @@ impl<'a> Stopping<'a> {
         }
     }
 
-    /// What store, starter and alternator do in the step; a stopped CVT has its pressure and its electric pump.
+    /// Advances store, starter and alternator by the step, and pressure and electric pump of a stopped CVT.
     pub fn electric(
         &self,
         input: &Input,
@@ -99,7 +99,7 @@ impl<'a> Stopping<'a> {
 }
 
 /// Adds to what the engine burns the fuel of a start, and the heat of cranking.
-#[inline(always)]
+#[physics]
 pub(super) fn add_start<R: Real>(
     burn: &mut Burn<R>,
     electric: &Electric<R>,

@@ -11,7 +11,7 @@ use super::step::{begun, end, engine, wheel};
 use super::{Car, CarTrace, EnergyTerms, Row, Totals, Vehicle};
 use crate::cycle::{Cycle, GearCommand, Step, Trace};
 use crate::engine::start_stop::Electric;
-use crate::math::{Gather, Left, Level, Real, Simd, four};
+use crate::math::{Gather, Level, Real, Simd, four, physics};
 use crate::thermal::Heat;
 use crate::transmission::cvt::Cvt;
 use crate::transmission::manual::Manual;
@@ -68,7 +68,7 @@ fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
     let mut others = Vec::new();
     for run in runs {
         let joins = match group.first() {
-            Some((_, first)) => group.len() < most && first.alike(&run.1),
+            Some((_, first)) => group.len() < most && first.groups_with(&run.1),
             None => true,
         };
         if joins {
@@ -81,9 +81,9 @@ fn take_group(runs: Vec<Placed>, most: usize) -> (Vec<Placed>, Vec<Placed>) {
 }
 
 /// Most runs that are side by side.
-pub const MOST_TOGETHER: usize = 8;
+pub const MAX_TOGETHER: usize = 8;
 
-/// Whether the program is built for processors that may have vectors. A page's simulator is not: it would be larger for nothing.
+/// True in a build for processors that may have vectors. The simulator of a page leaves the lanes out, which would only enlarge it.
 const HAS_LANES: bool = cfg!(any(
     target_arch = "x86",
     target_arch = "x86_64",
@@ -98,7 +98,7 @@ fn width(level: Level) -> usize {
         not(debug_assertions)
     ))]
     if level.as_avx2().is_some() {
-        return MOST_TOGETHER;
+        return MAX_TOGETHER;
     }
     let _ = level;
     4
@@ -146,17 +146,17 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// Whether the car drives alone: with start-stop, or where each run would search its own way through its clamp law or shift map.
+    /// True for a car that drives alone: with start-stop, or where each run would search its own way through its clamp law or shift map.
     fn is_alone(&self) -> bool {
         let searches = self.cvt().is_some_and(Cvt::searches);
         self.car.engine.start_stop.is_some() || searches
     }
 
-    /// Whether another run can be in one group with this one.
-    fn alike(&self, other: &Self) -> bool {
+    /// True if another run can join the group of this one.
+    fn groups_with(&self, other: &Self) -> bool {
         let boxes = match (&self.car.transmission, &other.car.transmission) {
-            (Transmission::Manual(own), Transmission::Manual(others)) => own.alike(others),
-            (Transmission::Cvt(own), Transmission::Cvt(others)) => own.alike(others),
+            (Transmission::Manual(own), Transmission::Manual(others)) => own.groups_with(others),
+            (Transmission::Cvt(own), Transmission::Cvt(others)) => own.groups_with(others),
             _ => false,
         };
         let (a, b) = (&self.car, &other.car);
@@ -170,10 +170,10 @@ impl<'a> Prepared<'a> {
             && from.max_dt_s.to_bits() == to.max_dt_s.to_bits()
             && matches!(from.start, Start::Warm) == matches!(to.start, Start::Warm)
             && boxes
-            && a.engine.alike(&b.engine)
-            && a.network.alike(&b.network)
-            && a.oil.alike(&b.oil)
-            && a.engine_oil.alike(&b.engine_oil)
+            && a.engine.groups_with(&b.engine)
+            && a.network.groups_with(&b.network)
+            && a.oil.groups_with(&b.oil)
+            && a.engine_oil.groups_with(&b.engine_oil)
     }
 }
 
@@ -181,6 +181,8 @@ impl<'a> Prepared<'a> {
 ///
 /// Each level and width is code of its own, and costs building time: only the levels are here that make a difference. With checks for debugging there
 /// is one, of four lanes; the bits are the same.
+#[physics]
+#[inline(never)]
 fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outcome>> {
     #[cfg(all(
         any(target_arch = "x86", target_arch = "x86_64"),
@@ -188,49 +190,31 @@ fn together(level: Level, group: &[Prepared], phases: usize) -> Option<Vec<Outco
     ))]
     {
         if let Some(simd) = level.as_avx512() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || in_lanes(crate::math::eight(simd), group, phases),
-            ));
+            return Some(simd.vectorize(|| in_lanes(crate::math::eight(simd), group, phases)));
         }
         if let Some(simd) = level.as_avx2() {
-            return Some(simd.vectorize(
-                #[inline(always)]
-                || in_lanes(crate::math::eight(simd), group, phases),
-            ));
+            return Some(simd.vectorize(|| in_lanes(crate::math::eight(simd), group, phases)));
         }
     }
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     if let Some(simd) = level.as_sse2() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || in_lanes(four(simd), group, phases),
-        ));
+        return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));
     }
     #[cfg(target_arch = "aarch64")]
     if let Some(simd) = level.as_neon() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || in_lanes(four(simd), group, phases),
-        ));
+        return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));
     }
     #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
     if let Some(simd) = level.as_wasm_simd128() {
-        return Some(simd.vectorize(
-            #[inline(always)]
-            || in_lanes(four(simd), group, phases),
-        ));
+        return Some(simd.vectorize(|| in_lanes(four(simd), group, phases)));
     }
     let _ = (level, group, phases);
     None
 }
 
 /// A group in the lanes of a number; a lane without a run repeats the last one.
-#[inline(always)]
-fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome>
-where
-    f64: Left<R>,
-{
+#[physics]
+fn in_lanes<R: Real>(like: R, group: &[Prepared], phases: usize) -> Vec<Outcome> {
     let of_lane: Vec<&Prepared> = (0..R::LANES)
         .map(|lane| &group[lane.min(group.len() - 1)])
         .collect();
@@ -249,19 +233,16 @@ where
 }
 
 /// Drives the cars of a group, gathered, with the gears that the cycle prescribes.
-#[inline(always)]
+#[physics]
 fn in_cars<R: Real, T: Driveline<R>>(
     like: R,
     (car, gears): (&Car<R, T>, Option<&[GearCommand]>),
     of_lane: &[&Prepared],
     (group, phases): (&[Prepared], usize),
-) -> Vec<Outcome>
-where
-    f64: Left<R>,
-{
+) -> Vec<Outcome> {
     let trace = &*group[0].trace;
     let (conditions, max_dt_s) = (group[0].run.conditions, group[0].run.conditions.max_dt_s);
-    let start_k = like.by_lane(|lane| match of_lane[lane].run.conditions.start {
+    let start_k = like.map_lanes(|lane| match of_lane[lane].run.conditions.start {
         Start::At(temp_k) => temp_k,
         Start::Soak | Start::Warm => of_lane[lane].run.conditions.ambient_k,
     });
@@ -311,40 +292,31 @@ fn gathered<R: Real, T>(like: R, of: &[&Prepared], transmission: T) -> Car<R, T>
 }
 
 /// Drives a trace with its gears from a state on. No allocation a step.
-#[inline(always)]
+#[physics]
 fn simulate_together<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     (trace, gears): (&Trace, Option<&[GearCommand]>),
     max_dt_s: f64,
     state: &mut State<R, T::State>,
     recorder: &mut impl Recorder<R>,
-) where
-    f64: Left<R>,
-{
-    trace.for_each_step(
-        max_dt_s,
-        #[inline(always)]
-        |step| {
-            let gear = gears.and_then(|gears| gears.get(step.interval).copied());
-            let (row, terms) = drive_step(car, trace, &step, gear, state);
-            recorder.record(&row, &terms);
-        },
-    );
+) {
+    trace.for_each_step(max_dt_s, |step| {
+        let gear = gears.and_then(|gears| gears.get(step.interval).copied());
+        let (row, terms) = drive_step(car, trace, &step, gear, state);
+        recorder.record(&row, &terms);
+    });
 }
 
 /// One step of cars without start-stop.
-#[inline(always)]
+#[physics]
 fn drive_step<R: Real, T: Driveline<R>>(
     car: &Car<R, T>,
     trace: &Trace,
     step: &Step,
     gear: Option<GearCommand>,
     state: &mut State<R, T::State>,
-) -> (Row<R>, EnergyTerms<R>)
-where
-    f64: Left<R>,
-{
-    let zero = state.tyre_k.filled(0.0);
+) -> (Row<R>, EnergyTerms<R>) {
+    let zero = state.tyre_k.splat(0.0);
     let mut output = StepOutput::like(zero); // first, as in `Drive::step`
     let wheel = wheel(car, step, &mut state.tyre_k);
     let engine = engine(car, step, &wheel, &state.heat, &mut state.running);
@@ -365,13 +337,10 @@ where
     };
     let (own, kinetic_j) = (&mut state.transmission, &mut state.kinetic_j);
     let transmission = begun(car, step, &input, own, kinetic_j);
-    zero.within(
-        #[inline(always)]
-        || {
-            car.transmission
-                .solve_into(&input, transmission, &mut output)
-        },
-    );
+    zero.vectorize(|| {
+        car.transmission
+            .solve_into(&input, transmission, &mut output)
+    });
     let past = (&mut state.kinetic_j, &mut state.running, state.tyre_k);
     let electric = Electric::none(zero);
     let (result, heat) = end(car, step, &input, (&mut output, &electric), past);

@@ -2,7 +2,7 @@
 
 use super::{EnergyTerms, HIGHEST_K, Recorder, Row, TERM_NAMES};
 use crate::flags::Flags;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 use crate::transmission::component::{ByComponent, Component};
 
@@ -65,9 +65,9 @@ pub struct Totals<R: Real = f64> {
     /// Time of that row's end, s.
     pub min_clamp_at_s: R,
     /// Time with each flag, s, in the order of [`Flags::NAMES`].
-    pub flag_s: R::Each<[f64; Flags::NAMES.len()]>,
+    pub flag_s: R::PerLane<[f64; Flags::NAMES.len()]>,
     /// Moving time in which each cause decided the secondary pressure, s, in the order of [`ClampCause::NAMES`].
-    pub clamp_cause_s: R::Each<[f64; ClampCause::NAMES.len()]>,
+    pub clamp_cause_s: R::PerLane<[f64; ClampCause::NAMES.len()]>,
     /// Worst missing power, W.
     pub worst_deficit_w: R,
     /// Torque at the wheels missing there, Nm.
@@ -75,19 +75,19 @@ pub struct Totals<R: Real = f64> {
     /// End of the row with the worst deficit, s.
     pub worst_deficit_at_s: R,
     /// Highest engine speed of the rows above its limit, rad/s.
-    pub fastest_rad_s: R::Each<Extreme>,
+    pub fastest_rad_s: R::PerLane<Extreme>,
     /// Highest temperatures of the rows that are too hot, K, in the order of [`HIGHEST_K`].
-    pub hottest_k: R::Each<[Extreme; HIGHEST_K.len()]>,
+    pub hottest_k: R::PerLane<[Extreme; HIGHEST_K.len()]>,
     /// End of the first row with a gear that the cycle does not prescribe, s.
-    pub wrong_gear_at_s: R::Each<f64>,
+    pub wrong_gear_at_s: R::PerLane<f64>,
     /// Time in which torque, speed, fuel or a temperature was no number, s.
-    pub not_finite_s: R::Each<f64>,
+    pub not_finite_s: R::PerLane<f64>,
     /// End of the first such row, s.
-    pub not_finite_at_s: R::Each<f64>,
+    pub not_finite_at_s: R::PerLane<f64>,
     /// Largest residual of the implicit solve.
     pub worst_residual: R,
     /// Evaluations of the driveline.
-    pub evaluations: R::Each<u64>,
+    pub evaluations: R::PerLane<u64>,
     /// Rows.
     pub rows: u64,
 }
@@ -178,24 +178,24 @@ impl<R: Real> PhaseTotals<R> {
 impl<R: Real> Totals<R> {
     /// Empty sums for the runs of a number, for a number of phases.
     pub fn like(number: R, phases: usize) -> Self {
-        let (zero, none) = (number.filled(0.0), number.filled(f64::NAN));
+        let (zero, none) = (number.splat(0.0), number.splat(f64::NAN));
         Totals {
             phases: vec![PhaseTotals::like(zero); phases.max(1)],
             ledger_error: zero,
-            min_clamp_safety: zero.filled(f64::INFINITY),
+            min_clamp_safety: zero.splat(f64::INFINITY),
             min_clamp_at_s: none,
-            flag_s: R::every(|_| [0.0; Flags::NAMES.len()]),
-            clamp_cause_s: R::every(|_| [0.0; ClampCause::NAMES.len()]),
+            flag_s: R::per_lane(|_| [0.0; Flags::NAMES.len()]),
+            clamp_cause_s: R::per_lane(|_| [0.0; ClampCause::NAMES.len()]),
             worst_deficit_w: zero,
             worst_deficit_nm: zero,
             worst_deficit_at_s: none,
-            fastest_rad_s: R::every(|_| Extreme::default()),
-            hottest_k: R::every(|_| [Extreme::default(); HIGHEST_K.len()]),
-            wrong_gear_at_s: R::every(|_| f64::NAN),
-            not_finite_s: R::every(|_| 0.0),
-            not_finite_at_s: R::every(|_| f64::NAN),
+            fastest_rad_s: R::per_lane(|_| Extreme::default()),
+            hottest_k: R::per_lane(|_| [Extreme::default(); HIGHEST_K.len()]),
+            wrong_gear_at_s: R::per_lane(|_| f64::NAN),
+            not_finite_s: R::per_lane(|_| 0.0),
+            not_finite_at_s: R::per_lane(|_| f64::NAN),
             worst_residual: zero,
-            evaluations: R::every(|_| 0),
+            evaluations: R::per_lane(|_| 0),
             rows: 0,
         }
     }
@@ -207,58 +207,55 @@ impl<R: Real> Totals<R> {
             ledger_error: self.ledger_error.lane(run),
             min_clamp_safety: self.min_clamp_safety.lane(run),
             min_clamp_at_s: self.min_clamp_at_s.lane(run),
-            flag_s: *R::one(&self.flag_s, run),
-            clamp_cause_s: *R::one(&self.clamp_cause_s, run),
+            flag_s: *R::get(&self.flag_s, run),
+            clamp_cause_s: *R::get(&self.clamp_cause_s, run),
             worst_deficit_w: self.worst_deficit_w.lane(run),
             worst_deficit_nm: self.worst_deficit_nm.lane(run),
             worst_deficit_at_s: self.worst_deficit_at_s.lane(run),
-            fastest_rad_s: *R::one(&self.fastest_rad_s, run),
-            hottest_k: *R::one(&self.hottest_k, run),
-            wrong_gear_at_s: *R::one(&self.wrong_gear_at_s, run),
-            not_finite_s: *R::one(&self.not_finite_s, run),
-            not_finite_at_s: *R::one(&self.not_finite_at_s, run),
+            fastest_rad_s: *R::get(&self.fastest_rad_s, run),
+            hottest_k: *R::get(&self.hottest_k, run),
+            wrong_gear_at_s: *R::get(&self.wrong_gear_at_s, run),
+            not_finite_s: *R::get(&self.not_finite_s, run),
+            not_finite_at_s: *R::get(&self.not_finite_at_s, run),
             worst_residual: self.worst_residual.lane(run),
-            evaluations: *R::one(&self.evaluations, run),
+            evaluations: *R::get(&self.evaluations, run),
             rows: self.rows,
         }
     }
 }
 
-impl<R: Real> Totals<R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> Totals<R> {
     fn extremes(&mut self, row: &Row<R>) {
-        let at_s = row.deficit_w.filled(row.time_s);
-        let error = row.power_ledger_error.most(row.heat_ledger_error);
+        let at_s = row.deficit_w.splat(row.time_s);
+        let error = row.power_ledger_error.max(row.heat_ledger_error);
         // A ledger error that is not a number must not hide.
-        let worse = error.above(self.ledger_error) | !error.reaches(error);
-        self.ledger_error = R::pick(worse, error, self.ledger_error);
-        let weaker = self.min_clamp_safety.above(row.clamp_safety);
-        self.min_clamp_safety = R::pick(weaker, row.clamp_safety, self.min_clamp_safety);
-        self.min_clamp_at_s = R::pick(weaker, at_s, self.min_clamp_at_s);
-        let lacks = row.deficit_w.above(self.worst_deficit_w);
+        let worse = error.gt(self.ledger_error) | !error.ge(error);
+        self.ledger_error = worse.select(error, self.ledger_error);
+        let weaker = self.min_clamp_safety.gt(row.clamp_safety);
+        self.min_clamp_safety = weaker.select(row.clamp_safety, self.min_clamp_safety);
+        self.min_clamp_at_s = weaker.select(at_s, self.min_clamp_at_s);
+        let lacks = row.deficit_w.gt(self.worst_deficit_w);
         if lacks.any() {
             self.deficit(row, lacks, at_s);
         }
         let residual = row.solve_residual;
-        let worse = residual.above(self.worst_residual) | !residual.reaches(residual);
-        self.worst_residual = R::pick(worse, residual, self.worst_residual);
+        let worse = residual.gt(self.worst_residual) | !residual.ge(residual);
+        self.worst_residual = worse.select(residual, self.worst_residual);
         // One sum, so that a row pays for one test.
         let sum = row.engine_torque_nm
             + row.engine_speed_rad_s
             + row.fuel_kg_s
             + (row.coolant_k + row.engine_oil_k + row.sump_k + row.metal_k);
-        let is_finite = sum.filled(f64::MAX).reaches(sum.abs());
+        let is_finite = sum.splat(f64::MAX).ge(sum.abs());
         for run in 0..R::LANES {
-            if R::one(&row.flags, run).any(Flags::IMPOSSIBLE) {
+            if R::get(&row.flags, run).any(Flags::IMPOSSIBLE) {
                 let temps_k = [row.coolant_k, row.engine_oil_k, row.sump_k]; // in the order of HIGHEST_K
                 let speed_rad_s = row.engine_speed_rad_s.lane(run);
                 let temps_k = temps_k.map(|temp_k| temp_k.lane(run));
                 self.impossible(
                     run,
-                    *R::one(&row.flags, run),
+                    *R::get(&row.flags, run),
                     row.time_s,
                     speed_rad_s,
                     temps_k,
@@ -267,26 +264,25 @@ where
         }
         if (!is_finite).any() {
             for run in (0..R::LANES).filter(|run| !is_finite.lane(*run)) {
-                let first_s = R::one_mut(&mut self.not_finite_at_s, run);
+                let first_s = R::get_mut(&mut self.not_finite_at_s, run);
                 *first_s = if first_s.is_nan() {
                     row.time_s
                 } else {
                     *first_s
                 };
-                lengthen(R::one_mut(&mut self.not_finite_s, run), row.dt_s);
+                lengthen(R::get_mut(&mut self.not_finite_s, run), row.dt_s);
             }
         }
     }
 
     /// The worst deficit of the runs that miss the trace.
-    #[inline(always)]
     fn deficit(&mut self, row: &Row<R>, lacks: R::Mask, at_s: R) {
-        let misses = |run| R::one(&row.flags, run).contains(Flags::MISSED_TRACE);
-        let lacks = lacks & at_s.ask(misses);
+        let misses = |run| R::get(&row.flags, run).contains(Flags::MISSED_TRACE);
+        let lacks = lacks & at_s.mask_lanes(misses);
         let nm = row.deficit_w * row.wheel_torque_nm / row.wheel_power_w;
-        self.worst_deficit_w = R::pick(lacks, row.deficit_w, self.worst_deficit_w);
-        self.worst_deficit_at_s = R::pick(lacks, at_s, self.worst_deficit_at_s);
-        self.worst_deficit_nm = R::pick(lacks, nm, self.worst_deficit_nm);
+        self.worst_deficit_w = lacks.select(row.deficit_w, self.worst_deficit_w);
+        self.worst_deficit_at_s = lacks.select(at_s, self.worst_deficit_at_s);
+        self.worst_deficit_nm = lacks.select(nm, self.worst_deficit_nm);
     }
 
     // Numbers and no row, so that none has to be put together for this rare case.
@@ -301,15 +297,15 @@ where
         temps_k: [f64; HIGHEST_K.len()],
     ) {
         if flags.contains(Flags::OVERSPEED) {
-            R::one_mut(&mut self.fastest_rad_s, run).see(engine_rad_s, at_s);
+            R::get_mut(&mut self.fastest_rad_s, run).see(engine_rad_s, at_s);
         }
         if flags.contains(Flags::TOO_HOT) {
-            let hottest = R::one_mut(&mut self.hottest_k, run);
+            let hottest = R::get_mut(&mut self.hottest_k, run);
             for (extreme, temp_k) in hottest.iter_mut().zip(temps_k) {
                 extreme.see(temp_k, at_s);
             }
         }
-        let first_s = R::one_mut(&mut self.wrong_gear_at_s, run);
+        let first_s = R::get_mut(&mut self.wrong_gear_at_s, run);
         if flags.contains(Flags::WRONG_GEAR) && first_s.is_nan() {
             *first_s = at_s;
         }
@@ -317,17 +313,14 @@ where
 }
 
 /// Adds to a time that is one run's own.
-#[inline(always)]
+#[physics]
 fn lengthen(time_s: &mut f64, by_s: f64) {
     *time_s += by_s;
 }
 
-impl<R: Real> Recorder<R> for Totals<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Recorder<R> for Totals<R> {
     // Within the loop, so that the parts of a row that no total looks at are never put together.
-    #[inline(always)]
     fn record(&mut self, row: &Row<R>, terms: &EnergyTerms<R>) {
         let index = usize::from(row.phase).min(self.phases.len() - 1);
         let p = &mut self.phases[index];
@@ -346,21 +339,21 @@ where
         p.terms.add(terms, row.dt_s);
         for run in 0..R::LANES {
             if row.speed_m_s > 0.0 {
-                let cause = *R::one(&row.clamp_cause, run) as usize;
+                let cause = *R::get(&row.clamp_cause, run) as usize;
                 lengthen(
-                    &mut R::one_mut(&mut self.clamp_cause_s, run)[cause],
+                    &mut R::get_mut(&mut self.clamp_cause_s, run)[cause],
                     row.dt_s,
                 );
             }
-            let mut left = R::one(&row.flags, run).0;
+            let mut left = R::get(&row.flags, run).0;
             while left != 0 {
                 let bit = left.trailing_zeros() as usize; // flags are in the order of their bits
-                if let Some(seconds) = R::one_mut(&mut self.flag_s, run).get_mut(bit) {
+                if let Some(seconds) = R::get_mut(&mut self.flag_s, run).get_mut(bit) {
                     lengthen(seconds, row.dt_s);
                 }
                 left &= left - 1;
             }
-            *R::one_mut(&mut self.evaluations, run) += u64::from(*R::one(&row.iterations, run));
+            *R::get_mut(&mut self.evaluations, run) += u64::from(*R::get(&row.iterations, run));
         }
         self.rows += 1;
         self.extremes(row);

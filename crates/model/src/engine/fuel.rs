@@ -12,7 +12,7 @@
 //! line that would leave these bounds below the engine's highest speed.
 
 use crate::maps::BsfcMap;
-use crate::math::{Gather, Left, Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 
 const BAR: f64 = 1e5;
 /// Fuel over indicated work, both near zero, from which rounding explains that it is less.
@@ -21,7 +21,7 @@ const ALMOST_ALL: f64 = 1.0 - 1e-6;
 pub const EFFICIENCY: std::ops::RangeInclusive<f64> = 0.05..=1.0;
 
 /// Coefficients of the extended Willans line, per displacement, in bar and m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Willans<R: Real = f64> {
     /// a.
     pub a: R,
@@ -37,15 +37,13 @@ pub struct Willans<R: Real = f64> {
     pub l2: R,
 }
 
-gather!(Willans { a, b, c, a2, l, l2 });
-
 /// A fuel model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FuelModel<R: Real = f64> {
     /// Extended Willans line.
     Willans(Willans<R>),
     /// Measured map.
-    Map(R::Each<BsfcMap>),
+    Map(R::PerLane<BsfcMap>),
 }
 
 impl Gather for FuelModel {
@@ -61,7 +59,7 @@ impl Gather for FuelModel {
                 let lines: Vec<Willans> = of.iter().map(line).collect();
                 FuelModel::Willans(Gather::gather(like, &lines.iter().collect::<Vec<_>>()))
             }
-            FuelModel::Map(first) => FuelModel::Map(R::every(|run| match of[run] {
+            FuelModel::Map(first) => FuelModel::Map(R::per_lane(|run| match of[run] {
                 FuelModel::Map(map) => map.clone(),
                 FuelModel::Willans(_) => first.clone(), // never in one group
             })),
@@ -71,11 +69,11 @@ impl Gather for FuelModel {
     fn lane<R: Real>(together: &FuelModel<R>, lane: usize) -> Self {
         match together {
             FuelModel::Willans(line) => FuelModel::Willans(Willans::lane(line, lane)),
-            FuelModel::Map(map) => FuelModel::Map(R::one(map, lane).clone()),
+            FuelModel::Map(map) => FuelModel::Map(R::get(map, lane).clone()),
         }
     }
 
-    fn alike(&self, other: &Self) -> bool {
+    fn groups_with(&self, other: &Self) -> bool {
         matches!(
             (self, other),
             (FuelModel::Willans(_), FuelModel::Willans(_)) | (FuelModel::Map(_), FuelModel::Map(_))
@@ -94,25 +92,21 @@ pub struct FuelPoint<R: Real = f64> {
     pub outside: R::Mask,
 }
 
-impl<R: Real> FuelModel<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> FuelModel<R> {
     /// Friction mean effective pressure of the hot engine, Pa.
-    #[inline(always)]
     pub fn hot_friction_pa(&self, piston_m_s: R) -> R {
         match self {
             FuelModel::Willans(w) => (w.l + w.l2 * piston_m_s * piston_m_s) * BAR,
             FuelModel::Map(m) => {
-                let friction = piston_m_s.by_lane(|run| R::one(m, run).friction.0);
-                let per_square = piston_m_s.by_lane(|run| R::one(m, run).friction.1);
+                let friction = piston_m_s.map_lanes(|run| R::get(m, run).friction.0);
+                let per_square = piston_m_s.map_lanes(|run| R::get(m, run).friction.1);
                 (friction + per_square * piston_m_s * piston_m_s) * BAR
             }
         }
     }
 
     /// Fuel for a brake mean effective pressure with friction in force, both Pa.
-    #[inline(always)]
     pub fn fuel_mep(
         &self,
         piston_m_s: R,
@@ -121,8 +115,8 @@ where
         friction_pa: R,
     ) -> FuelPoint<R> {
         let need = brake_pa + friction_pa;
-        let zero = need.filled(0.0);
-        let none = zero.reaches(need);
+        let zero = need.splat(0.0);
+        let none = zero.ge(need);
         if none.all() {
             return FuelPoint {
                 fuel_pa: zero,
@@ -135,63 +129,58 @@ where
             FuelModel::Map(m) => self.of_map(m, piston_m_s, speed_rad_s, need),
         };
         FuelPoint {
-            fuel_pa: R::pick(none, zero, point.fuel_pa),
-            indicated_pa: R::pick(none, zero, point.indicated_pa),
+            fuel_pa: none.select(zero, point.fuel_pa),
+            indicated_pa: none.select(zero, point.indicated_pa),
             outside: !none & point.outside,
         }
     }
 
     /// Fuel of a measured map for an indicated mean effective pressure, Pa (BM-3).
-    #[inline(always)]
     fn of_map(
         &self,
-        map: &R::Each<BsfcMap>,
+        map: &R::PerLane<BsfcMap>,
         piston_m_s: R,
         speed_rad_s: R,
         need: R,
     ) -> FuelPoint<R> {
         let hot = self.hot_friction_pa(piston_m_s);
         let brake_pa = need - hot; // BM-3
-        let found = R::every(|run| {
-            R::one(map, run).at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run))
+        let found = R::per_lane(|run| {
+            R::get(map, run).at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run))
         });
-        let fuel_pa = need.by_lane(|run| R::one(&found, run).0);
-        let inside = need.ask(|run| R::one(&found, run).1);
+        let fuel_pa = need.map_lanes(|run| R::get(&found, run).0);
+        let inside = need.mask_lanes(|run| R::get(&found, run).1);
         // Below the map both go to zero together, up to rounding.
-        let short = fuel_pa.below(need * ALMOST_ALL - 1e-3);
+        let short = fuel_pa.lt(need * ALMOST_ALL - 1e-3);
         FuelPoint {
-            fuel_pa: R::pick(fuel_pa.reaches(need), fuel_pa, need),
+            fuel_pa: fuel_pa.ge(need).select(fuel_pa, need),
             indicated_pa: need,
             outside: !inside | short,
         }
     }
 }
 
-impl<R: Real> Willans<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Willans<R> {
     /// Indicated efficiency at no load, B.
-    #[inline(always)]
     pub fn efficiency(&self, piston_m_s: R) -> R {
         self.a + (self.b + self.c * piston_m_s) * piston_m_s
     }
 
-    #[inline(always)]
     fn fuel(&self, piston_m_s: R, need_pa: R) -> FuelPoint<R> {
         let line = self.efficiency(piston_m_s);
         let (least, most) = (*EFFICIENCY.start(), *EFFICIENCY.end());
-        let b = line.held(least, most);
+        let b = line.clamp(least, most);
         let need = need_pa * BAR.recip();
         let disc = b * b + 4.0 * self.a2 * need;
-        let turned = disc.filled(0.0).above(disc);
-        let root = R::pick(turned, disc.filled(0.0), disc.sqrt());
+        let turned = disc.splat(0.0).gt(disc);
+        let root = turned.select(disc.splat(0.0), disc.sqrt());
         let f = 2.0 * need / (b + root); // WI-1
         let indicated = (b + self.a2 * f) * f; // WI-2
-        let inside = line.reaches(least) & line.filled(most).reaches(line);
+        let inside = line.ge(least) & line.splat(most).ge(line);
         FuelPoint {
             fuel_pa: f * BAR,
-            indicated_pa: R::pick(turned, need_pa, indicated * BAR),
+            indicated_pa: turned.select(need_pa, indicated * BAR),
             outside: turned | !inside,
         }
     }

@@ -2,8 +2,8 @@
 
 use super::start_stop::{StartStop, StartStopKeys};
 use super::{EFFICIENCY, Engine, FuelModel, Willans};
-use crate::fluid::{Viscosity, viscosity};
 use crate::keys::{Bound, Choice, Repeat, Values, curve, keys};
+use crate::lubricant::{Viscosity, viscosity};
 use crate::maps::BsfcMap;
 use crate::math::{Curve, clamp};
 
@@ -186,7 +186,7 @@ fn check_efficiency<V: Values>(willans: &V, engine: &Engine) {
     } else {
         0.0
     };
-    // What could not be read is no number, and has its own complaint.
+    // NaN marks a value that could not be read and has its own problem.
     let outside = |speed: &f64| {
         line.efficiency(*speed) < *EFFICIENCY.start() || line.efficiency(*speed) > *EFFICIENCY.end()
     };

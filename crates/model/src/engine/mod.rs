@@ -25,8 +25,8 @@ pub use keys::{ENGINE, EngineKeys};
 pub use start::Running;
 pub use start_stop::StartStop;
 
-use crate::fluid::{Lubricant, ZERO_DEGC_K};
-use crate::math::{Curve, Left, Mask, Real, gather};
+use crate::lubricant::{Lubricant, ZERO_DEGC_K};
+use crate::math::{Curve, Gather, Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use std::cell::RefCell;
 use std::f64::consts::{FRAC_1_PI, PI};
@@ -41,7 +41,7 @@ const PER_FOUR_PI: f64 = 1.0 / FOUR_PI;
 const SAME_DRAG: f64 = 1.0 + 1e-4;
 
 /// Part of the full-load line that is left to an engine whose air does not carry its friction: keeps the throttle finite.
-const LEAST_FULL_LOAD: f64 = 0.02;
+const MIN_FULL_LOAD: f64 = 0.02;
 /// Highest temperature of the coolant, K: a half-and-half mix of water and glycol boils at 129 degC with 1 bar over ambient.
 pub const HIGHEST_COOLANT_K: f64 = 130.0 + ZERO_DEGC_K;
 
@@ -51,7 +51,7 @@ thread_local! {
 }
 
 /// The checked engine.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Engine<R: Real = f64> {
     /// Displacement, m3.
     pub displacement_m3: R,
@@ -122,16 +122,8 @@ pub struct Engine<R: Real = f64> {
     /// Fuel model.
     pub fuel: FuelModel<R>,
     /// Start-stop, if there is one.
+    #[gather(same)]
     pub start_stop: Option<StartStop>,
-}
-
-gather! {
-    Engine {
-        displacement_m3, stroke_m, rated_w, full_load, highest_rad_s, inertia_kg_m2, inertia_torque_nm, idle_hot_rad_s, idle_cold_rad_s,
-        idle_cold_k, idle_warm_k, idle_after_start_rad_s, idle_after_start_s, hot_k, viscous_share, viscous_exponent, reference_m2_s,
-        film_coolant_share, overrun_drag, enrichment, start_kg, start_s, cut_from_k, cut_above_rad_s, fuel_back_rad_s, electrical_w,
-        accessory_nm, exhaust_idle, exhaust_fast, friction_to_oil, heating_value_j_kg, fuel_density_kg_m3, co2_kg_kg, fuel,
-    } same { start_stop }
 }
 
 /// The engine at one temperature state, in one air.
@@ -155,7 +147,7 @@ pub struct EngineAtTemperature<'a, R: Real = f64> {
     pub charging_w: R,
 }
 
-/// What the engine burns and rejects at one operating point, W unless said.
+/// Fuel and heat of the engine at one operating point, W unless said.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Burn<R: Real = f64> {
     /// Fuel mass flow, kg/s.
@@ -168,9 +160,9 @@ pub struct Burn<R: Real = f64> {
     pub to_oil_w: R,
     /// Exhaust, sensible heat and unburnt fuel.
     pub exhaust_w: R,
-    /// Whether fuel is cut off.
+    /// True where fuel is cut off.
     pub cut: R::Mask,
-    /// Whether the fuel model left its validity.
+    /// True where the fuel model left its validity.
     pub outside: R::Mask,
 }
 
@@ -227,12 +219,9 @@ impl Engine {
     }
 }
 
-impl<R: Real> Engine<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Engine<R> {
     /// The engine in a step of `dt_s`, after what it did before.
-    #[inline(always)]
     pub fn in_step(
         &self,
         coolant_k: R,
@@ -251,16 +240,15 @@ where
             start_kg_s: self.start_kg_s(running, dt_s),
             cut_share: self.cut_share(coolant_k, running),
             charge,
-            charging_w: coolant_k.filled(0.0),
+            charging_w: coolant_k.splat(0.0),
         }
     }
 
     /// Idle speed, its mean over a step, rad/s.
-    #[inline(always)]
     fn idle_rad_s(&self, coolant_k: R, running: &Running<R>, dt_s: f64) -> R {
         let width = self.idle_warm_k - self.idle_cold_k;
-        let cold = ((self.idle_warm_k - coolant_k) / width).held(0.0, 1.0);
-        let started = ((start::COLD_K - running.start_k) * 30_f64.recip()).held(0.0, 1.0);
+        let cold = ((self.idle_warm_k - coolant_k) / width).clamp(0.0, 1.0);
+        let started = ((start::COLD_K - running.start_k) * 30_f64.recip()).clamp(0.0, 1.0);
         // Integral of 1 - t/t_a: half of what is spent, times t_a.
         let fading = running.spending_per_s(self.idle_after_start_s, dt_s);
         let raised = 0.5 * self.idle_after_start_s * fading * started;
@@ -270,102 +258,84 @@ where
     }
 
     /// Friction over that of the warm engine with the reference oil.
-    #[inline(always)]
     fn friction_factor(&self, coolant_k: R, oil_k: R, oil: &Lubricant<R>) -> R {
         let film_k = oil_k + self.film_coolant_share * (coolant_k - oil_k);
-        let film_k = film_k.least(self.hot_k);
+        let film_k = film_k.min(self.hot_k);
         let thicker = oil.kinematic_m2_s(film_k) / self.reference_m2_s;
         1.0 + self.viscous_share * ((self.viscous_exponent * thicker.ln()).exp() - 1.0) // EN-2
     }
 
     /// Torque of a mean effective pressure (four-stroke), Nm.
-    #[inline(always)]
     pub fn torque_nm(&self, mep_pa: R) -> R {
         mep_pa * self.displacement_m3 * PER_FOUR_PI
     }
 
     /// Mean effective pressure of a torque (four-stroke), Pa.
-    #[inline(always)]
     pub fn mep_pa(&self, torque_nm: R) -> R {
         torque_nm * FOUR_PI / self.displacement_m3
     }
 
     /// Mean piston speed, m/s.
-    #[inline(always)]
     pub fn piston_m_s(&self, speed_rad_s: R) -> R {
         speed_rad_s * self.stroke_m * FRAC_1_PI
     }
 }
 
-impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> PrimeMover<R> for EngineAtTemperature<'_, R> {
     fn idle_rad_s(&self) -> R {
         self.idle_rad_s
     }
 
-    #[inline(always)]
     fn max_rad_s(&self) -> R {
         self.engine.highest_rad_s
     }
 
-    #[inline(always)]
     fn rated_w(&self) -> R {
         self.engine.rated_w
     }
 
-    #[inline(always)]
     fn warm_power_w(&self, power_w: R, speed_rad_s: R) -> R {
-        let hot = speed_rad_s.along(&self.engine.full_load);
+        let hot = speed_rad_s.interpolate(&self.engine.full_load);
         power_w * hot / self.full_load_of(hot, speed_rad_s)
     }
 
-    #[inline(always)]
     fn max_accel_rad_s2(&self) -> R {
         self.engine.inertia_torque_nm / self.engine.inertia_kg_m2
     }
 
     /// EN-12: the drag at idle is that of the slowest engine, so that none of it is missing on the way.
-    #[inline(always)]
     fn slowed_rad_s(&self, from_rad_s: R, load_nm: R, dt_s: f64) -> R {
         let drag_nm = self.own_drag_nm(self.idle_rad_s);
         let per_nm = dt_s / self.engine.inertia_kg_m2;
         let k = load_nm * per_nm;
         let b = 0.5 * k + drag_nm * per_nm;
         let square = b * b + from_rad_s * (from_rad_s - k);
-        (square.most(0.0).sqrt() - b).most(0.0) // EN-12
+        (square.max(0.0).sqrt() - b).max(0.0) // EN-12
     }
 
-    #[inline(always)]
     fn full_load_nm(&self, speed_rad_s: R) -> R {
-        self.full_load_of(speed_rad_s.along(&self.engine.full_load), speed_rad_s)
+        self.full_load_of(speed_rad_s.interpolate(&self.engine.full_load), speed_rad_s)
     }
 
     /// EN-4: none at standstill.
-    #[inline(always)]
     fn accessories_nm(&self, speed_rad_s: R) -> R {
         let least = 0.5 * self.engine.idle_hot_rad_s;
-        let w = speed_rad_s.most(least);
+        let w = speed_rad_s.max(least);
         let turning_nm =
             (self.engine.electrical_w + self.charging_w) / w + self.engine.accessory_nm;
-        R::pick(speed_rad_s.above(0.0), turning_nm, w.filled(0.0)) // EN-4
+        speed_rad_s.gt(0.0).select(turning_nm, w.splat(0.0)) // EN-4
     }
 
     /// EN-7: in overrun with fuel cut off; where it is not cut, the engine burns what turns it and drags nothing (EN-11).
-    #[inline(always)]
     fn drag_nm(&self, speed_rad_s: R) -> R {
         self.cut_share * self.own_drag_nm(speed_rad_s) // EN-11
     }
 }
 
-impl<R: Real> EngineAtTemperature<'_, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> EngineAtTemperature<'_, R> {
     /// Full load at a speed from that of the hot engine there, Nm (EN-8).
-    #[inline(always)]
     fn full_load_of(&self, hot: R, speed_rad_s: R) -> R {
         let piston_m_s = self.engine.piston_m_s(speed_rad_s);
         let friction = self
@@ -374,17 +344,15 @@ where
         // Written so that a warm engine in the reference air has its line to the bit.
         let now =
             hot + (self.charge - 1.0) * (hot + friction) - (self.friction_factor - 1.0) * friction;
-        now.most(LEAST_FULL_LOAD * hot) // EN-8
+        now.max(MIN_FULL_LOAD * hot) // EN-8
     }
 
     /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
-    #[inline(always)]
     pub fn own_drag_nm(&self, speed_rad_s: R) -> R {
         self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
     }
 
     /// Friction mean effective pressure at the present temperature, Pa.
-    #[inline(always)]
     pub fn friction_pa(&self, speed_rad_s: R) -> R {
         self.engine
             .fuel
@@ -393,11 +361,10 @@ where
     }
 
     /// Fuel and heat at a speed and crankshaft torque (with accessories and inertia), Nm.
-    #[inline(always)]
     pub fn burn(&self, speed_rad_s: R, torque_nm: R) -> Burn<R> {
         let e = self.engine;
-        let zero = speed_rad_s.filled(0.0);
-        let rests = zero.reaches(speed_rad_s);
+        let zero = speed_rad_s.splat(0.0);
+        let rests = zero.ge(speed_rad_s);
         if rests.all() {
             return Burn {
                 fuel_kg_s: zero,
@@ -415,35 +382,31 @@ where
         let point = e
             .fuel
             .fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa);
-        let burns = point.fuel_pa.above(0.0);
+        let burns = point.fuel_pa.gt(0.0);
         let watts = e.displacement_m3 * speed_rad_s * PER_FOUR_PI;
         let burnt = point.fuel_pa * watts;
         let indicated = point.indicated_pa * watts;
         // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
-        let friction = R::pick(burns, friction_pa * watts, -brake_pa * watts);
+        let friction = burns.select(friction_pa * watts, -brake_pa * watts);
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
         let exhaust_share =
-            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * fast.held(0.0, 1.0);
+            e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * fast.clamp(0.0, 1.0);
         let waste = burnt - brake_pa * watts;
         // The exhaust has no more than the gas kept: nothing once fuel is cut.
-        let hot_gas = (exhaust_share * waste).least(burnt - indicated);
+        let hot_gas = (exhaust_share * waste).min(burnt - indicated);
         let to_oil = e.friction_to_oil * friction;
         let start_w = self.start_kg_s * e.heating_value_j_kg;
         let fuel_w = burnt * self.enrichment + start_w;
         // More taken up than the closed throttle explains would be energy from nowhere in the heat of friction.
-        let drawn = zero.reaches(point.fuel_pa)
-            & (-torque_nm).above(self.own_drag_nm(speed_rad_s) * SAME_DRAG + 1e-3);
+        let drawn = zero.ge(point.fuel_pa)
+            & (-torque_nm).gt(self.own_drag_nm(speed_rad_s) * SAME_DRAG + 1e-3);
         Burn {
-            fuel_kg_s: R::pick(rests, zero, fuel_w / e.heating_value_j_kg),
-            fuel_w: R::pick(rests, zero, fuel_w),
-            to_coolant_w: R::pick(rests, zero, waste - hot_gas - to_oil), // EN-6
-            to_oil_w: R::pick(rests, zero, to_oil),
-            exhaust_w: R::pick(
-                rests,
-                zero,
-                hot_gas + (self.enrichment - 1.0) * burnt + start_w,
-            ), // EN-9
-            cut: !rests & zero.filled(NO_FUEL_W).reaches(fuel_w),
+            fuel_kg_s: rests.select(zero, fuel_w / e.heating_value_j_kg),
+            fuel_w: rests.select(zero, fuel_w),
+            to_coolant_w: rests.select(zero, waste - hot_gas - to_oil), // EN-6
+            to_oil_w: rests.select(zero, to_oil),
+            exhaust_w: rests.select(zero, hot_gas + (self.enrichment - 1.0) * burnt + start_w), // EN-9
+            cut: !rests & zero.splat(NO_FUEL_W).ge(fuel_w),
             outside: !rests & (point.outside | drawn),
         }
     }

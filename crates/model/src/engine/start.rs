@@ -1,4 +1,4 @@
-//! What the engine did before a step: the laws that follow a start and the fuel cut look back at it.
+//! History of the engine before a step, for the laws that follow a start and the fuel cut.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -8,13 +8,13 @@
 //! With ramps in place of a hysteresis the fuel of a step is a continuous function of what went before, and no state is carried.
 
 use super::Engine;
-use crate::fluid::ZERO_DEGC_K;
-use crate::math::{Left, Mask, Real, both, ramp};
+use crate::lubricant::ZERO_DEGC_K;
+use crate::math::{Mask, Real, both, physics, ramp};
 
 /// Coolant from which a start is warm, K (EN-1, EN-3, EN-9).
 pub(super) const COLD_K: f64 = 60.0 + ZERO_DEGC_K;
 
-/// What the engine did before a step.
+/// History of the engine before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Running<R: Real = f64> {
     /// Time since the start, s: 0 at the start, infinite where it is long ago.
@@ -44,10 +44,10 @@ impl Running {
     };
 }
 
+#[physics]
 impl<R: Real> Running<R> {
     /// The same with the coolant of the start, K, where it starts now.
     #[must_use]
-    #[inline(always)]
     pub fn started(self, coolant_k: R) -> Running<R> {
         if self.since_s > 0.0 {
             return self;
@@ -60,26 +60,24 @@ impl<R: Real> Running<R> {
 
     /// The same with an engine in gear slowed down as the wheels are in a step, so that EN-11 has no lag of a step.
     #[must_use]
-    #[inline(always)]
     pub fn rolled(self, wheel_rad_s: R) -> Running<R> {
-        let keeps = wheel_rad_s.reaches(self.wheel_rad_s);
+        let keeps = wheel_rad_s.ge(self.wheel_rad_s);
         if keeps.all() {
             return self;
         }
         let slowed = self.speed_rad_s * wheel_rad_s / self.wheel_rad_s;
         Running {
-            speed_rad_s: R::pick(keeps, self.speed_rad_s, slowed),
-            wheel_rad_s: R::pick(keeps, self.wheel_rad_s, wheel_rad_s),
+            speed_rad_s: keeps.select(self.speed_rad_s, slowed),
+            wheel_rad_s: keeps.select(self.wheel_rad_s, wheel_rad_s),
             ..self
         }
     }
 
     /// After a step of a running engine, or of one that is off: `(engine_rad_s, wheel_rad_s)` are the speeds in the step.
-    #[inline(always)]
     #[must_use]
     pub fn after(self, off: bool, dt_s: f64, (engine_rad_s, wheel_rad_s): (R, R)) -> Running<R> {
         if off {
-            let zero = engine_rad_s.filled(0.0);
+            let zero = engine_rad_s.splat(0.0);
             return Running {
                 since_s: 0.0,
                 start_k: zero,
@@ -87,8 +85,10 @@ impl<R: Real> Running<R> {
                 wheel_rad_s: zero,
             };
         }
+        let mut since_s = self.since_s;
+        since_s += dt_s;
         Running {
-            since_s: self.since_s + dt_s,
+            since_s,
             speed_rad_s: engine_rad_s,
             wheel_rad_s,
             ..self
@@ -96,49 +96,39 @@ impl<R: Real> Running<R> {
     }
 }
 
-impl<R: Real> Running<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Running<R> {
     /// Rate in a step at which what fades over `within_s` is spent, 1/s: its mean, so that every step length spends the same.
-    #[inline(always)]
     pub(super) fn spending_per_s(&self, within_s: R, dt_s: f64) -> R {
-        let zero = within_s.filled(0.0);
-        let since = within_s.filled(self.since_s);
-        let over = since.reaches(within_s);
+        let zero = within_s.splat(0.0);
+        let since = within_s.splat(self.since_s);
+        let over = since.ge(within_s);
         if over.all() {
             return zero; // all is spent
         }
-        let u = both!(end => ([since, since + dt_s][end] / within_s).least(1.0));
+        let u = both!(end => ([since, since + dt_s][end] / within_s).min(1.0));
         let spent = both!(end => u[end] * (2.0 - u[end]));
-        R::pick(over, zero, (spent[1] - spent[0]) / dt_s)
+        over.select(zero, (spent[1] - spent[0]) / dt_s)
     }
 }
 
 /// Share of the fuel of a start that it takes at a temperature of the coolant, K.
-#[inline(always)]
-pub(super) fn cold_share<R: Real>(coolant_k: R) -> R
-where
-    f64: Left<R>,
-{
-    ((COLD_K - coolant_k) * 60_f64.recip()).held(0.0, 1.0)
+#[physics]
+pub(super) fn cold_share<R: Real>(coolant_k: R) -> R {
+    ((COLD_K - coolant_k) * 60_f64.recip()).clamp(0.0, 1.0)
 }
 
-impl<R: Real> Engine<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Engine<R> {
     /// Fuel of the start in a step, kg/s.
-    #[inline(always)]
     pub(super) fn start_kg_s(&self, running: &Running<R>, dt_s: f64) -> R {
         let cold = cold_share(running.start_k);
         self.start_kg * cold * running.spending_per_s(self.start_s, dt_s) // EN-9
     }
 
     /// Share of the overrun drag that is taken up with fuel cut; decided before the solve, so that nothing jumps within one.
-    #[inline(always)]
     pub(super) fn cut_share(&self, coolant_k: R, running: &Running<R>) -> R {
-        let warm = (coolant_k - self.cut_from_k).held(0.0, 1.0);
+        let warm = (coolant_k - self.cut_from_k).clamp(0.0, 1.0);
         let speed = running.speed_rad_s;
         warm * ramp(speed, self.fuel_back_rad_s, self.cut_above_rad_s) // EN-11
     }

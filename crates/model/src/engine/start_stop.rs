@@ -17,7 +17,7 @@
 
 use super::{Engine, EngineAtTemperature};
 use crate::keys::{Values, keys};
-use crate::math::{Real, clamp, exp, larger, smaller};
+use crate::math::{Real, clamp, exp, larger, physics, smaller};
 use crate::prime_mover::PrimeMover;
 
 /// The checked start-stop.
@@ -61,7 +61,7 @@ pub struct StartStop {
     pub pump: f64,
 }
 
-/// What start-stop carries from step to step.
+/// State of start-stop between steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StartStopState {
     /// True while the engine is stopped.
@@ -78,7 +78,7 @@ pub struct StartStopState {
     pub drawn_j: f64,
 }
 
-/// What it looks at before a step.
+/// Inputs of start-stop before a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Conditions {
     /// Coolant, K.
@@ -97,7 +97,7 @@ pub struct Conditions {
     pub dt_s: f64,
 }
 
-/// What the engine does in a step.
+/// Action of the engine in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
     /// It runs.
@@ -118,7 +118,7 @@ const STARTS_BELOW: f64 = 0.25;
 const FILL_S: f64 = 60.0;
 
 impl StartStop {
-    /// What the engine does in the next step (SS-1, SS-2).
+    /// Decides the action of the engine in the next step (SS-1, SS-2).
     pub fn command(&self, now: &Conditions, past: &mut StartStopState) -> Command {
         let was_stopped = past.stopped;
         past.fastest_m_s = larger(now.speed_m_s, past.fastest_m_s);
@@ -202,11 +202,11 @@ pub struct Electric<R: Real = f64> {
     pub pump_w: R,
 }
 
+#[physics]
 impl<R: Real> Electric<R> {
     /// Without start-stop, for the runs of a number.
-    #[inline(always)]
     pub fn none(number: R) -> Self {
-        let zero = number.filled(0.0);
+        let zero = number.splat(0.0);
         Electric {
             store_w: zero,
             loss_w: zero,

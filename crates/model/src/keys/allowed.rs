@@ -1,9 +1,9 @@
-//! What a key accepts, in words.
+//! Allowed values of a key, in words.
 
 use super::{Bound, Choice, Key, Kind, Quantity};
 
 impl Key<'_> {
-    /// What the key accepts, such as "0.5 to 10 mm".
+    /// Allowed values, such as "0.5 to 10 mm".
     pub fn allowed(&self) -> String {
         self.kind.allowed(self.quantity)
     }
@@ -12,7 +12,9 @@ impl Key<'_> {
     pub fn unit(&self) -> String {
         match &self.kind {
             Kind::Rows(columns) => {
-                let units = columns.iter().map(|(name, _)| Quantity::of(name).unit());
+                let units = columns
+                    .iter()
+                    .map(|(name, _)| Quantity::from_key(name).unit());
                 units.collect::<Vec<_>>().join(", ")
             }
             _ => self.quantity.unit().to_owned(),
@@ -29,7 +31,7 @@ impl Key<'_> {
         }
     }
 
-    /// Whether the value is a single number.
+    /// True if the value is a single number.
     pub fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Number(_) | Kind::Integer(..))
     }
@@ -56,7 +58,7 @@ impl Kind<'_> {
             Kind::Texts => "a list of texts".to_owned(),
             Kind::Rows(columns) => {
                 let words = columns.iter().map(|(name, range)| {
-                    format!("{name} {}", range.in_unit(Quantity::of(name).unit()))
+                    format!("{name} {}", range.in_unit(Quantity::from_key(name).unit()))
                 });
                 format!("rows of {}", words.collect::<Vec<_>>().join(", "))
             }

@@ -11,7 +11,7 @@ pub struct FileTable {
     pub columns: &'static [FileColumn],
     /// Group of columns along which the value may not fall.
     pub rises_with: Option<&'static str>,
-    /// Whether the rows fill a grid.
+    /// True if the rows fill a grid.
     pub is_grid: bool,
     /// Words of other programs, in lower case and joined by `_`, and the name of a column without its unit.
     pub words: &'static [(&'static str, &'static str)],
@@ -24,9 +24,9 @@ pub struct FileColumn {
     pub name: &'static str,
     /// Allowed values, in that unit.
     pub range: Bound,
-    /// What it gives; a table has one column of a group.
+    /// Group of the column; a table has one column of a group.
     pub group: &'static str,
-    /// Whether a table has to have a column of that group.
+    /// True if a table has to have a column of that group.
     pub required: bool,
 }
 

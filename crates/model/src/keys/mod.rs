@@ -25,7 +25,7 @@ pub struct Key<'k> {
     pub quantity: Quantity,
     /// Allowed values.
     pub kind: Kind<'k>,
-    /// Whether it has to be given, and its value if it is not.
+    /// Requirement, with the value where the key is missing.
     pub presence: Presence<'k>,
     /// Meaning.
     pub doc: &'k str,
@@ -33,7 +33,7 @@ pub struct Key<'k> {
     pub labels: &'static [&'static str],
 }
 
-/// What a key accepts.
+/// Allowed values of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind<'k> {
     /// A number within a range, in the key's unit.
@@ -75,7 +75,7 @@ pub struct Choice {
     pub name: &'static str,
     /// Meaning.
     pub doc: &'static str,
-    /// Its keys.
+    /// Keys of the table.
     pub table: Table,
 }
 
@@ -94,7 +94,7 @@ impl Choice {
 /// One column of a key that holds rows; the unit is the end of its name.
 pub type Column<'k> = (&'k str, Bound);
 
-/// Whether a key has to be given.
+/// Requirement of a key.
 #[derive(Clone, Copy, Debug)]
 pub enum Presence<'k> {
     /// Always.
@@ -151,7 +151,7 @@ impl Table {
     };
 
     /// A file, or a part without keys of its own, of these tables.
-    pub const fn of(tables: &'static [Table]) -> Self {
+    pub const fn from_tables(tables: &'static [Table]) -> Self {
         Table {
             tables,
             ..Table::EMPTY
@@ -191,7 +191,7 @@ impl<'k> Key<'k> {
     pub const fn new(name: &'k str, spec: (Kind<'k>, Presence<'k>), doc: &'k str) -> Self {
         Key {
             name,
-            quantity: Quantity::of(name),
+            quantity: Quantity::from_key(name),
             kind: spec.0,
             presence: spec.1,
             doc,
@@ -212,7 +212,7 @@ impl<'k> Key<'k> {
     /// The key with the unit of this suffix, which its name does not end in.
     pub const fn in_unit_of(self, suffix: &str) -> Self {
         Key {
-            quantity: Quantity::of(suffix),
+            quantity: Quantity::from_key(suffix),
             ..self
         }
     }
@@ -239,10 +239,10 @@ pub trait Values: Sized {
     /// The table `name` in this one.
     fn table(&self, name: &str) -> Self;
 
-    /// Whether the table is present.
+    /// True if the table is present.
     fn exists(&self) -> bool;
 
-    /// Whether the key is given.
+    /// True if the key is given.
     fn has(&self, key: &Key<'_>) -> bool;
 
     /// A number in SI units: the value given or the key's default.

@@ -42,7 +42,7 @@ impl Quantity {
     }
 
     /// The quantity of a key: the unit whose suffix ends it, the longest one if several do.
-    pub const fn of(key: &str) -> Quantity {
+    pub const fn from_key(key: &str) -> Quantity {
         let mut found = Quantity::NONE;
         let mut i = 0;
         while i < UNITS.len() {
@@ -72,7 +72,7 @@ impl Quantity {
     ///
     /// ```
     /// use cvtcycle_model::keys::Quantity;
-    /// let speed = Quantity::of("speed_kmh");
+    /// let speed = Quantity::from_key("speed_kmh");
     /// assert_eq!((speed.to_si(36.0), speed.from_si(10.0), speed.unit()), (10.0, 36.0, "km/h"));
     /// ```
     pub fn from_si(&self, si: f64) -> f64 {
@@ -177,5 +177,6 @@ const UNITS: [Quantity; 63] = [
 
 /// The key without its unit, to recognise the same quantity in another unit.
 pub fn stem(key: &str) -> &str {
-    key.strip_suffix(Quantity::of(key).suffix).unwrap_or(key)
+    key.strip_suffix(Quantity::from_key(key).suffix)
+        .unwrap_or(key)
 }

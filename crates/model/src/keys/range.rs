@@ -48,12 +48,12 @@ impl Bound {
         self.high
     }
 
-    /// Whether the lower end itself is allowed.
+    /// True if the lower end itself is allowed.
     pub const fn includes_low(&self) -> bool {
         self.low_included
     }
 
-    /// Whether `x` is allowed; never for NaN and infinities.
+    /// True if `x` is allowed; false for NaN and infinities.
     pub fn contains(&self, x: f64) -> bool {
         let above = if self.low_included {
             self.low <= x

@@ -6,7 +6,7 @@
 use crate::math::{Grid, larger};
 
 /// Most passes for the torque of a point behind the map.
-const MOST_PASSES: usize = 100;
+const MAX_PASSES: usize = 100;
 /// They end where the loss moves less, Nm.
 const STILL_NM: f64 = 1e-12;
 
@@ -80,7 +80,7 @@ impl LossMap {
             (factor * loss_nm, inside)
         };
         let mut answer = at(0.0);
-        for _ in 0..MOST_PASSES {
+        for _ in 0..MAX_PASSES {
             let before_nm = answer.0;
             answer = at(before_nm); // MP-3, MP-4
             if (answer.0 - before_nm).abs() <= STILL_NM {

@@ -6,10 +6,11 @@
 //!
 //! asin, sin, cos: at most one unit of the last place; tan two. sin and cos for |x| <= 100, within 1e-24 where they vanish. asin is NaN beyond 1.
 
+use super::physics;
 use super::real::{Mask, Real};
 use std::f64::consts::FRAC_PI_2;
 
-/// What the nearest f64 lacks of pi/2.
+/// Difference of pi/2 and the nearest f64.
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
 /// Leading 33 bits of pi/2, so that a small whole number times it is exact.
 const FRAC_PI_2_HIGH: f64 = f64::from_bits(FRAC_PI_2.to_bits() & !0xf_ffff);
@@ -37,9 +38,9 @@ const ASIN: [f64; 13] = [
 ];
 
 /// z P(z), in pieces of three coefficients that wait for no other.
-#[inline(always)]
+#[physics]
 fn asin_series<R: Real>(z: R) -> R {
-    #[inline(always)]
+    #[physics]
     fn three<R: Real>(z: R, k: usize) -> R {
         z * (z * ASIN[k + 2] + ASIN[k + 1]) + ASIN[k]
     }
@@ -50,12 +51,12 @@ fn asin_series<R: Real>(z: R) -> R {
 }
 
 /// asin of several numbers side by side, the same bits as one by one.
-#[inline(always)]
+#[physics]
 pub(super) fn asin_lanes<R: Real>(x: R) -> R {
-    if x.filled(ASIN_REACH).reaches(x.abs()).all() {
+    if x.splat(ASIN_REACH).ge(x.abs()).all() {
         x + x * asin_series(x * x)
     } else {
-        x.each(asin_of_one)
+        x.map(asin_of_one)
     }
 }
 
@@ -100,7 +101,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     let quarters = (x / FRAC_PI_2).round();
     let far = x - quarters * FRAC_PI_2_HIGH;
     let r = far - quarters * FRAC_PI_2_REST;
-    // What the second difference rounds off.
+    // Rounding error of the second difference.
     let low = (far - r) - quarters * FRAC_PI_2_REST;
     let z = r * r;
     let sin = r + (r * z * (taylor(z, 3) / -6.0) + low * (1.0 - 0.5 * z));

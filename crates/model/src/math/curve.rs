@@ -1,5 +1,6 @@
 //! Piecewise linear curve through points, held at its ends.
 
+use super::physics;
 use std::sync::Arc;
 
 /// A curve y(x) through points with strictly rising x; between them linear, outside them held.
@@ -108,7 +109,7 @@ impl Curve {
     }
 
     /// The piece that `x`, between the ends, is on.
-    #[inline(always)]
+    #[physics]
     pub(super) fn number(&self, x: f64) -> usize {
         // The whole number at or below, or one less at an edge: a cast would ask for every number that cannot be here.
         let cells = (x - self.first.0) * self.cells_per_x;
@@ -120,7 +121,7 @@ impl Curve {
         number
     }
 
-    /// Whether two curves have the same points, most often since they share them.
+    /// True if two curves have the same points, most often since they share them.
     pub(super) fn is_same(&self, other: &Curve) -> bool {
         Arc::ptr_eq(&self.pieces, &other.pieces) || self == other
     }

@@ -1,10 +1,11 @@
 //! Curves of several runs side by side.
 
 use super::curve::Curve;
-use super::real::Real;
+use super::physics;
+use super::real::{Mask, Real};
 
 /// The values at the lanes of `x`, with the bits of [`Curve::at`]: pieces from the one of the `least` lane on up to that of the `most`; no lane is NaN.
-#[inline(always)]
+#[physics]
 pub(super) fn across<R: Real>(curve: &Curve, x: R, (least, most): (f64, f64)) -> R {
     let (first, last) = (curve.first, curve.last);
     let flat = curve.pieces.len() - 1; // the last piece
@@ -16,19 +17,19 @@ pub(super) fn across<R: Real>(curve: &Curve, x: R, (least, most): (f64, f64)) ->
         0
     };
     let piece = &curve.pieces[number];
-    let (mut from, mut y) = (x.filled(piece.x), x.filled(piece.y));
-    let mut slope = x.filled(piece.slope);
+    let (mut from, mut y) = (x.splat(piece.x), x.splat(piece.y));
+    let mut slope = x.splat(piece.slope);
     while number < flat && most >= curve.pieces[number].end {
         number += 1;
         let piece = &curve.pieces[number];
-        let beyond = x.reaches(x.filled(piece.x));
-        from = R::pick(beyond, x.filled(piece.x), from);
-        y = R::pick(beyond, x.filled(piece.y), y);
-        slope = R::pick(beyond, x.filled(piece.slope), slope);
+        let beyond = x.ge(x.splat(piece.x));
+        from = beyond.select(x.splat(piece.x), from);
+        y = beyond.select(x.splat(piece.y), y);
+        slope = beyond.select(x.splat(piece.slope), slope);
     }
     let within = y + slope * (x - from);
-    let held = R::pick(x.above(x.filled(first.0)), within, x.filled(first.1));
-    R::pick(x.reaches(x.filled(last.0)), x.filled(last.1), held)
+    let held = x.gt(x.splat(first.0)).select(within, x.splat(first.1));
+    x.ge(x.splat(last.0)).select(x.splat(last.1), held)
 }
 
 /// The curves of runs side by side.
@@ -39,6 +40,7 @@ pub struct Curves<const LANES: usize> {
     common: bool,
 }
 
+#[physics]
 impl<const LANES: usize> Curves<LANES> {
     /// A curve for each lane, from the lane's place.
     pub(super) fn new(of: impl FnMut(usize) -> Curve) -> Self {
@@ -50,7 +52,6 @@ impl<const LANES: usize> Curves<LANES> {
     }
 
     /// The curve of all lanes, if they have one.
-    #[inline(always)]
     pub(super) fn common(&self) -> Option<&Curve> {
         self.common.then_some(&self.of_lane[0])
     }
@@ -62,7 +63,6 @@ impl<const LANES: usize> Curves<LANES> {
     }
 
     /// The curve of a lane.
-    #[inline(always)]
     pub(super) fn one(&self, lane: usize) -> &Curve {
         &self.of_lane[lane]
     }

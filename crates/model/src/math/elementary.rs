@@ -10,6 +10,7 @@
 //! within 1/256 of x = 1. tanh: at most 1.3 units of the last place. A library's own functions may differ in the last bit from one
 //! processor to the next; these use +, -, x, / only.
 
+use super::physics;
 use super::real::{Mask, Real};
 use std::f64::consts::LN_2;
 
@@ -82,12 +83,12 @@ const fn artanh_ln(x: f64) -> f64 {
 /// e to the power of x.
 #[inline]
 pub fn exp(x: f64) -> f64 {
-    exp_each([x])[0]
+    exp_array([x])[0]
 }
 
 /// e to the power of each x, the same bits as one by one: several together cost little more than one, since processors work in pairs.
-#[inline(always)]
-pub fn exp_each<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+#[physics]
+pub fn exp_array<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     // A loop, as `map` is a function of its own without the processor's features. One comparison for all: a sum within reach has every term within it. Beyond, each is asked.
     let sum = x.iter().fold(0.0, |sum, x| sum + x.abs());
     if sum < EXP_REACH {
@@ -116,46 +117,46 @@ fn exp_anywhere(x: f64) -> f64 {
 }
 
 /// exp within reach of its series, of one number or of several side by side.
-#[inline(always)]
+#[physics]
 fn exp_within<R: Real>(x: R) -> R {
     const PER_PART: f64 = PARTS as f64 / LN_2;
     const PART_HIGH: f64 = LN_2_HIGH / PARTS as f64;
     const PART_LOW: f64 = LN_2_LOW / PARTS as f64;
+    const INV_6: f64 = 1.0 / 6.0;
+    const INV_24: f64 = 1.0 / 24.0;
+    const INV_120: f64 = 1.0 / 120.0;
     let shifted = x * PER_PART + ROUND;
     let n = shifted - ROUND;
     let r = (x - n * PART_HIGH) - n * PART_LOW;
     let r2 = r * r;
-    let part = r + r2 * ((r * (1.0 / 6.0) + 0.5) + r2 * (r * (1.0 / 120.0) + 1.0 / 24.0));
-    let power = shifted.each(
-        #[inline(always)]
-        |shifted| {
-            let whole = shifted.to_bits();
-            let t = POWER[whole as usize % PARTS].to_bits();
-            f64::from_bits(t.wrapping_add((whole & !(PARTS as u64 - 1)) << 46))
-        },
-    );
+    let part = r + r2 * ((r * INV_6 + 0.5) + r2 * (r * INV_120 + INV_24));
+    let power = shifted.map(|shifted| {
+        let whole = shifted.to_bits();
+        let t = POWER[whole as usize % PARTS].to_bits();
+        f64::from_bits(t.wrapping_add((whole & !(PARTS as u64 - 1)) << 46))
+    });
     power + power * part
 }
 
 /// exp of several numbers side by side, the same bits as one by one.
-#[inline(always)]
+#[physics]
 pub(super) fn exp_lanes<R: Real>(x: R) -> R {
-    if x.filled(EXP_REACH).above(x.abs()).all() {
+    if x.splat(EXP_REACH).gt(x.abs()).all() {
         exp_within(x)
     } else {
-        x.each(exp_anywhere)
+        x.map(exp_anywhere)
     }
 }
 
 /// Natural logarithm.
 #[inline]
 pub fn ln(x: f64) -> f64 {
-    ln_each([x])[0]
+    ln_array([x])[0]
 }
 
-/// Natural logarithm of each x, the same bits as one by one; see [`exp_each`].
-#[inline(always)]
-pub fn ln_each<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+/// Natural logarithm of each x, the same bits as one by one; see [`exp_array`].
+#[physics]
+pub fn ln_array<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     // One comparison for all: between 2^-511 and 2^512 the two leading bits of this difference are zero. Beyond, each is asked.
     const LEAST: u64 = 512 << 52;
     let bits = x
@@ -194,60 +195,52 @@ fn ln_anywhere(x: f64) -> f64 {
 }
 
 /// ln of a normal positive number, or of several side by side.
-#[inline(always)]
+#[physics]
 fn ln_plain<R: Real>(x: R) -> R {
     /// Exponent field of 1.
     const BIAS: u64 = 1023 << 52;
     /// A whole number below it, put in its lowest bits, is added to it.
     const TWO_52: f64 = 4_503_599_627_370_496.0;
-    #[inline(always)]
+    const TWO_52_BIASED: f64 = TWO_52 + 1023.0;
+    const INV_3: f64 = 1.0 / 3.0;
+    const INV_6: f64 = 1.0 / 6.0;
+    const INV_7: f64 = 1.0 / 7.0;
+    #[physics]
     fn above(x: f64) -> u64 {
         x.to_bits().wrapping_add(BIAS - FIRST_CELL)
     }
-    #[inline(always)]
+    #[physics]
     fn cell(x: f64) -> (f64, f64) {
         CELL[(above(x) >> 45) as usize % CELLS]
     }
-    let inverse = x.each(
-        #[inline(always)]
-        |x| cell(x).0,
-    );
-    let ln_c = x.each(
-        #[inline(always)]
-        |x| cell(x).1,
-    );
-    let e = x.each(
-        #[inline(always)]
-        |x| f64::from_bits(above(x) >> 52 | TWO_52.to_bits()),
-    ) - (TWO_52 + 1023.0);
-    let scaled = x.each(
-        #[inline(always)]
-        |x| {
-            let exponent = above(x) & 0xfff0_0000_0000_0000;
-            f64::from_bits(x.to_bits().wrapping_sub(exponent).wrapping_add(BIAS))
-        },
-    );
+    let inverse = x.map(|x| cell(x).0);
+    let ln_c = x.map(|x| cell(x).1);
+    let e = x.map(|x| f64::from_bits(above(x) >> 52 | TWO_52.to_bits())) - TWO_52_BIASED;
+    let scaled = x.map(|x| {
+        let exponent = above(x) & 0xfff0_0000_0000_0000;
+        f64::from_bits(x.to_bits().wrapping_sub(exponent).wrapping_add(BIAS))
+    });
     let r = scaled * inverse - 1.0;
     let r2 = r * r;
-    let low = r2 * (r * (1.0 / 3.0) - 0.5);
-    let high = r2 * r2 * ((r * 0.2 - 0.25) + r2 * (r * (1.0 / 7.0) - 1.0 / 6.0));
+    let low = r2 * (r * INV_3 - 0.5);
+    let high = r2 * r2 * ((r * 0.2 - 0.25) + r2 * (r * INV_7 - INV_6));
     (e * LN_2_HIGH + ln_c) + (r + (low + (high + e * LN_2_LOW)))
 }
 
 /// ln of several numbers side by side, the same bits as one by one.
-#[inline(always)]
+#[physics]
 pub(super) fn ln_lanes<R: Real>(x: R) -> R {
-    let (least, most) = (x.filled(f64::MIN_POSITIVE), x.filled(f64::MAX));
-    let plain = x.reaches(least) & most.reaches(x);
+    let (least, most) = (x.splat(f64::MIN_POSITIVE), x.splat(f64::MAX));
+    let plain = x.ge(least) & most.ge(x);
     if plain.all() {
         ln_plain(x)
     } else {
-        x.each(ln_anywhere)
+        x.map(ln_anywhere)
     }
 }
 
 /// tanh for |x| < 1, of one number or of several side by side; z = x2.
-#[inline(always)]
+#[physics]
 fn tanh_near<R: Real>(x: R, z: R) -> R {
     // Small whole numbers: the numerator of the convergent over x, and what its denominator has more.
     let more = z * (z * (z * (z * 44.0 + 12_870.0) + 810_810.0) + 11_486_475.0);
@@ -256,23 +249,23 @@ fn tanh_near<R: Real>(x: R, z: R) -> R {
 }
 
 /// tanh for |x| >= 1, but for its sign.
-#[inline(always)]
+#[physics]
 fn tanh_beyond<R: Real>(e: R) -> R {
-    e.filled(1.0) - e.filled(2.0) / (e + 1.0)
+    e.splat(1.0) - e.splat(2.0) / (e + 1.0)
 }
 
 /// tanh of several numbers side by side, the same bits as one by one.
-#[inline(always)]
+#[physics]
 pub(super) fn tanh_lanes<R: Real>(x: R) -> R {
     let z = x * x;
-    let near = z.filled(1.0).above(z);
+    let near = z.splat(1.0).gt(z);
     let tanh = tanh_near(x, z);
     if near.all() {
         return tanh;
     }
     let beyond = tanh_beyond(exp_lanes(x.abs() * 2.0));
-    let beyond = R::pick(x.filled(0.0).above(x), -beyond, beyond);
-    R::pick(near, tanh, beyond)
+    let beyond = x.splat(0.0).gt(x).select(-beyond, beyond);
+    near.select(tanh, beyond)
 }
 
 /// Hyperbolic tangent.

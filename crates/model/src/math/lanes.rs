@@ -2,15 +2,16 @@
 //!
 //! [`f64x4`] and [`f64x8`] are [`Real`]: an equation that is written over `R` works on a whole group of runs. Which instructions the processor
 //! has is found at run time; [`dispatch`] calls a function once for the best of them, and every part that is inlined into it, or called by
-//! [`Real::within`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
+//! [`Real::vectorize`], is compiled for it. Neither level nor width moves a bit: nothing is contracted, and what is no plain arithmetic is done
 //! lane by lane in f64.
 //!
-//! A record has its lanes by [`gather!`](crate::math::gather), one line next to the struct: `gather!(Pump { viscous, friction } same { kind });`. What is `same`
-//! is shared by the runs of a group, so that the text may have an `if` on it; [`Gather::alike`] says which records can be in one group.
+//! `derive(Gather)` makes the record of a group from one record a run. Fields with `#[gather(same)]` are shared by the runs of a group, so an equation
+//! may branch on them; [`Gather::groups_with`] compares them.
 
 use super::curve::Curve;
 use super::curves::{Curves, across};
-use super::real::{Mask, Operand, Own, Real};
+use super::physics;
+use super::real::{LaneValue, Mask, Operand, Real, Selectable};
 use super::{circular, elementary};
 use fearless_simd::{
     Bytes, Select, SimdBase, SimdFloat, SimdMask, mask64x4, mask64x8, u64x4, u64x8,
@@ -20,37 +21,37 @@ use std::ops::{BitAnd, BitOr, Not};
 
 pub use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 
-/// Yes or no, for each lane of a vector of the processor.
+/// A bool for each lane of a vector of the processor.
 #[derive(Clone, Copy)]
-pub struct Answers<M>(M);
+pub struct LaneMask<M>(M);
 
 macro_rules! lanes {
     ($($vector:ident $mask:ident $bits:ident $count:literal),*) => {$(
-        impl<S: Simd> BitAnd for Answers<$mask<S>> {
+        #[physics]
+        impl<S: Simd> BitAnd for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn bitand(self, other: Self) -> Self {
-                Answers(self.0 & other.0)
+                LaneMask(self.0 & other.0)
             }
         }
 
-        impl<S: Simd> BitOr for Answers<$mask<S>> {
+        #[physics]
+        impl<S: Simd> BitOr for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn bitor(self, other: Self) -> Self {
-                Answers(self.0 | other.0)
+                LaneMask(self.0 | other.0)
             }
         }
 
-        impl<S: Simd> Not for Answers<$mask<S>> {
+        #[physics]
+        impl<S: Simd> Not for LaneMask<$mask<S>> {
             type Output = Self;
-            #[inline(always)]
             fn not(self) -> Self {
-                Answers(!self.0)
+                LaneMask(!self.0)
             }
         }
 
-        impl<S: Simd> Debug for Answers<$mask<S>> {
+        impl<S: Simd> Debug for LaneMask<$mask<S>> {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.debug_list()
                     .entries((0..$count).map(|lane| self.lane(lane)))
@@ -58,183 +59,166 @@ macro_rules! lanes {
             }
         }
 
-        impl<S: Simd> PartialEq for Answers<$mask<S>> {
+        impl<S: Simd> PartialEq for LaneMask<$mask<S>> {
             fn eq(&self, other: &Self) -> bool {
                 self.0.to_bitmask() == other.0.to_bitmask()
             }
         }
 
-        impl<S: Simd> Mask for Answers<$mask<S>> {
-            #[inline(always)]
+        #[physics]
+        impl<S: Simd> Mask for LaneMask<$mask<S>> {
             fn any(self) -> bool {
                 self.0.any_true()
             }
 
-            #[inline(always)]
             fn all(self) -> bool {
                 self.0.all_true()
             }
 
-            #[inline(always)]
             fn lane(self, lane: usize) -> bool {
                 (self.0.to_bitmask() >> lane) & 1 == 1
             }
         }
 
-        impl<S: Simd> Operand<$vector<S>> for f64 {
-            #[inline(always)]
-            fn lifted(self, like: $vector<S>) -> $vector<S> {
-                like.filled(self)
+        #[physics]
+        impl<S: Simd> Selectable<Self> for LaneMask<$mask<S>> {
+            fn select(mask: Self, if_true: Self, if_false: Self) -> Self {
+                (mask & if_true) | (!mask & if_false)
             }
         }
 
+        #[physics]
+        impl<S: Simd> Selectable<LaneMask<$mask<S>>> for $vector<S> {
+            fn select(mask: LaneMask<$mask<S>>, if_true: Self, if_false: Self) -> Self {
+                mask.0.select(if_true, if_false)
+            }
+        }
+
+        #[physics]
+        impl<S: Simd> Operand<$vector<S>> for f64 {
+            fn broadcast(self, like: $vector<S>) -> $vector<S> {
+                like.splat(self)
+            }
+        }
+
+        #[physics]
         impl<S: Simd> Real for $vector<S> {
-            type Mask = Answers<$mask<S>>;
-            type Each<T: Own> = [T; $count];
+            type Mask = LaneMask<$mask<S>>;
+            type PerLane<T: LaneValue> = [T; $count];
             type Curve = Curves<$count>;
             const LANES: usize = $count;
 
-            #[inline(always)]
-            fn filled(self, number: f64) -> Self {
-                Self::splat(self.simd, number)
+            fn splat(self, number: f64) -> Self {
+                SimdBase::splat(self.simd, number)
             }
 
-            #[inline(always)]
-            fn by_lane(self, f: impl Fn(usize) -> f64) -> Self {
+            fn map_lanes(self, f: impl Fn(usize) -> f64) -> Self {
                 Self::from_fn(self.simd, f)
             }
 
-            #[inline(always)]
             fn lane(self, lane: usize) -> f64 {
                 self[lane]
             }
 
-            #[inline(always)]
             fn with_lane(mut self, lane: usize, number: f64) -> Self {
                 self[lane] = number;
                 self
             }
 
-            #[inline(always)]
-            fn answer(self, yes: bool) -> Self::Mask {
-                Answers($mask::splat(self.simd, yes))
+            fn splat_mask(self, yes: bool) -> Self::Mask {
+                LaneMask($mask::splat(self.simd, yes))
             }
 
-            #[inline(always)]
-            fn ask(self, f: impl Fn(usize) -> bool) -> Self::Mask {
+            fn mask_lanes(self, f: impl Fn(usize) -> bool) -> Self::Mask {
                 let bits = (0..$count).fold(0, |bits, lane| bits | (u64::from(f(lane)) << lane));
-                Answers($mask::from_bitmask(self.simd, bits))
+                LaneMask($mask::from_bitmask(self.simd, bits))
             }
 
-            #[inline(always)]
-            fn every<T: Own>(f: impl FnMut(usize) -> T) -> [T; $count] {
+            fn per_lane<T: LaneValue>(f: impl FnMut(usize) -> T) -> [T; $count] {
                 std::array::from_fn(f)
             }
 
-            #[inline(always)]
-            fn one<T: Own>(of: &[T; $count], lane: usize) -> &T {
-                &of[lane]
+            fn get<T: LaneValue>(values: &[T; $count], lane: usize) -> &T {
+                &values[lane]
             }
 
-            #[inline(always)]
-            fn one_mut<T: Own>(of: &mut [T; $count], lane: usize) -> &mut T {
-                &mut of[lane]
+            fn get_mut<T: LaneValue>(values: &mut [T; $count], lane: usize) -> &mut T {
+                &mut values[lane]
             }
 
-            #[inline(always)]
             fn curves(of: impl FnMut(usize) -> Curve) -> Curves<$count> {
                 Curves::new(of)
             }
 
-            #[inline(always)]
             fn curve(of: &Curves<$count>, lane: usize) -> &Curve {
                 of.one(lane)
             }
 
-            #[inline(always)]
-            fn along(self, curves: &Curves<$count>) -> Self {
+            fn interpolate(self, curves: &Curves<$count>) -> Self {
                 match curves.common() {
-                    Some(curve) if self.reaches(self).all() => {
+                    Some(curve) if self.ge(self).all() => {
                         across(curve, self, (self.reduce_min(), self.reduce_max()))
                     }
                     _ => {
-                        let y = curves.at(std::array::from_fn(#[inline(always)] |lane| self[lane]));
-                        self.by_lane(#[inline(always)] |lane| y[lane])
+                        let y = curves.at(std::array::from_fn(|lane| self[lane]));
+                        Real::map_lanes(self, |lane| y[lane])
                     }
                 }
             }
 
-            #[inline(always)]
-            fn each(self, f: impl Fn(f64) -> f64) -> Self {
-                Self::from_fn(self.simd, #[inline(always)] |lane| f(self[lane]))
+            fn map(self, f: impl Fn(f64) -> f64) -> Self {
+                Self::from_fn(self.simd, |lane| f(self[lane]))
             }
 
-            #[inline(always)]
-            fn above(self, other: impl Operand<Self>) -> Self::Mask {
-                Answers(self.simd_gt(other.lifted(self)))
+            fn gt(self, other: impl Operand<Self>) -> Self::Mask {
+                LaneMask(self.simd_gt(other.broadcast(self)))
             }
 
-            #[inline(always)]
-            fn reaches(self, other: impl Operand<Self>) -> Self::Mask {
-                Answers(self.simd_ge(other.lifted(self)))
+            fn ge(self, other: impl Operand<Self>) -> Self::Mask {
+                LaneMask(self.simd_ge(other.broadcast(self)))
             }
 
-            #[inline(always)]
-            fn is_same(self, other: Self) -> Self::Mask {
+            fn bits_eq(self, other: Self) -> Self::Mask {
                 let bits: $bits<S> = self.bitcast();
-                Answers(bits.simd_eq(other.bitcast::<$bits<S>>()))
+                LaneMask(bits.simd_eq(other.bitcast::<$bits<S>>()))
             }
 
-            #[inline(always)]
-            fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self {
-                mask.0.select(yes, no)
-            }
-
-            #[inline(always)]
             fn abs(self) -> Self {
                 <Self as SimdBase<S>>::abs(self)
             }
 
-            #[inline(always)]
             fn sqrt(self) -> Self {
                 <Self as SimdFloat<S>>::sqrt(self)
             }
 
-            #[inline(always)]
-            fn within<T>(self, part: impl FnOnce() -> T) -> T {
+            fn vectorize<T>(self, part: impl FnOnce() -> T) -> T {
                 self.simd.vectorize(part)
             }
 
-            #[inline(always)]
             fn exp(self) -> Self {
                 elementary::exp_lanes(self)
             }
 
-            #[inline(always)]
             fn ln(self) -> Self {
                 elementary::ln_lanes(self)
             }
 
-            #[inline(always)]
             fn tanh(self) -> Self {
                 elementary::tanh_lanes(self)
             }
 
-            #[inline(always)]
             fn asin(self) -> Self {
                 circular::asin_lanes(self)
             }
 
-            #[inline(always)]
-            fn exp_each<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
+            fn exp_array<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
                 for x in &mut x {
                     *x = x.exp();
                 }
                 x
             }
 
-            #[inline(always)]
-            fn ln_each<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
+            fn ln_array<const COUNT: usize>(mut x: [Self; COUNT]) -> [Self; COUNT] {
                 for x in &mut x {
                     *x = x.ln();
                 }
@@ -246,19 +230,19 @@ macro_rules! lanes {
 
 lanes!(f64x4 mask64x4 u64x4 4, f64x8 mask64x8 u64x8 8);
 
-/// Most runs that are side by side.
-pub(crate) const MOST_LANES: usize = 8;
+/// Largest number of lanes.
+pub(crate) const MAX_LANES: usize = 8;
 
 /// Four zeros, from which other numbers take their lanes.
-#[inline(always)]
+#[physics]
 pub fn four<S: Simd>(simd: S) -> f64x4<S> {
-    f64x4::splat(simd, 0.0)
+    SimdBase::splat(simd, 0.0)
 }
 
 /// Eight zeros.
-#[inline(always)]
+#[physics]
 pub fn eight<S: Simd>(simd: S) -> f64x8<S> {
-    f64x8::splat(simd, 0.0)
+    SimdBase::splat(simd, 0.0)
 }
 
 /// A record of one run that several runs side by side can have together.
@@ -266,28 +250,28 @@ pub trait Gather: Sized {
     /// The record of all of them.
     type Together<R: Real>;
 
-    /// The record of the runs of a group, one for each lane of `like`; they are [`Gather::alike`].
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R>;
+    /// The record of the runs of a group, one for each lane of `like`; they are [`Gather::groups_with`].
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R>;
 
     /// The record of one run out of that of a group.
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self;
 
-    /// Whether two records can be in one group: what its runs share is the same in them.
-    fn alike(&self, other: &Self) -> bool;
+    /// True if two records fit in one group: their shared fields are equal.
+    fn groups_with(&self, other: &Self) -> bool;
 }
 
 impl Gather for f64 {
     type Together<R: Real> = R;
 
-    fn gather<R: Real>(like: R, of: &[&f64]) -> R {
-        like.by_lane(|lane| *of[lane])
+    fn gather<R: Real>(like: R, runs: &[&f64]) -> R {
+        like.map_lanes(|lane| *runs[lane])
     }
 
     fn lane<R: Real>(together: &R, lane: usize) -> f64 {
         together.lane(lane)
     }
 
-    fn alike(&self, _: &f64) -> bool {
+    fn groups_with(&self, _: &f64) -> bool {
         true
     }
 }
@@ -295,34 +279,34 @@ impl Gather for f64 {
 impl Gather for bool {
     type Together<R: Real> = R::Mask;
 
-    fn gather<R: Real>(like: R, of: &[&bool]) -> R::Mask {
-        like.ask(|lane| *of[lane])
+    fn gather<R: Real>(like: R, runs: &[&bool]) -> R::Mask {
+        like.mask_lanes(|lane| *runs[lane])
     }
 
     fn lane<R: Real>(together: &R::Mask, lane: usize) -> bool {
         together.lane(lane)
     }
 
-    fn alike(&self, _: &bool) -> bool {
+    fn groups_with(&self, _: &bool) -> bool {
         true
     }
 }
 
-/// What is looked up lane by lane.
+/// Implements `Gather` for types that are looked up lane by lane.
 macro_rules! gather_each {
     ($($name:ty),* $(,)?) => {$(
         impl $crate::math::Gather for $name {
-            type Together<R: $crate::math::Real> = R::Each<$name>;
+            type Together<R: $crate::math::Real> = R::PerLane<$name>;
 
-            fn gather<R: $crate::math::Real>(_: R, of: &[&Self]) -> R::Each<$name> {
-                R::every(|lane| of[lane].clone())
+            fn gather<R: $crate::math::Real>(_: R, runs: &[&Self]) -> R::PerLane<$name> {
+                R::per_lane(|lane| runs[lane].clone())
             }
 
-            fn lane<R: $crate::math::Real>(together: &R::Each<$name>, lane: usize) -> Self {
-                R::one(together, lane).clone()
+            fn lane<R: $crate::math::Real>(together: &R::PerLane<$name>, lane: usize) -> Self {
+                R::get(together, lane).clone()
             }
 
-            fn alike(&self, _: &Self) -> bool {
+            fn groups_with(&self, _: &Self) -> bool {
                 true
             }
         }
@@ -333,15 +317,15 @@ pub(crate) use gather_each;
 impl Gather for Curve {
     type Together<R: Real> = R::Curve;
 
-    fn gather<R: Real>(_: R, of: &[&Self]) -> R::Curve {
-        R::curves(|lane| of[lane].clone())
+    fn gather<R: Real>(_: R, runs: &[&Self]) -> R::Curve {
+        R::curves(|lane| runs[lane].clone())
     }
 
     fn lane<R: Real>(together: &R::Curve, lane: usize) -> Self {
         R::curve(together, lane).clone()
     }
 
-    fn alike(&self, _: &Self) -> bool {
+    fn groups_with(&self, _: &Self) -> bool {
         true
     }
 }
@@ -349,9 +333,9 @@ impl Gather for Curve {
 impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
     type Together<R: Real> = [T::Together<R>; COUNT];
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
         std::array::from_fn(|k| {
-            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            let each: Vec<&T> = runs.iter().map(|one| &one[k]).collect();
             T::gather(like, &each)
         })
     }
@@ -360,36 +344,36 @@ impl<T: Gather, const COUNT: usize> Gather for [T; COUNT] {
         std::array::from_fn(|k| T::lane(&together[k], lane))
     }
 
-    fn alike(&self, other: &Self) -> bool {
-        self.iter().zip(other).all(|(a, b)| a.alike(b))
+    fn groups_with(&self, other: &Self) -> bool {
+        self.iter().zip(other).all(|(a, b)| a.groups_with(b))
     }
 }
 
 impl<T: Gather> Gather for Vec<T> {
     type Together<R: Real> = Vec<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
         let part = |k: usize| {
-            let each: Vec<&T> = of.iter().map(|one| &one[k]).collect();
+            let each: Vec<&T> = runs.iter().map(|one| &one[k]).collect();
             T::gather(like, &each)
         };
-        (0..of[0].len()).map(part).collect()
+        (0..runs[0].len()).map(part).collect()
     }
 
     fn lane<R: Real>(together: &Self::Together<R>, lane: usize) -> Self {
         together.iter().map(|part| T::lane(part, lane)).collect()
     }
 
-    fn alike(&self, other: &Self) -> bool {
-        self.len() == other.len() && self.iter().zip(other).all(|(a, b)| a.alike(b))
+    fn groups_with(&self, other: &Self) -> bool {
+        self.len() == other.len() && self.iter().zip(other).all(|(a, b)| a.groups_with(b))
     }
 }
 
 impl<T: Gather> Gather for Option<T> {
     type Together<R: Real> = Option<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Option<Vec<&T>> = of.iter().map(|one| one.as_ref()).collect();
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
+        let each: Option<Vec<&T>> = runs.iter().map(|one| one.as_ref()).collect();
         each.map(|each| T::gather(like, &each))
     }
 
@@ -397,9 +381,9 @@ impl<T: Gather> Gather for Option<T> {
         together.as_ref().map(|one| T::lane(one, lane))
     }
 
-    fn alike(&self, other: &Self) -> bool {
+    fn groups_with(&self, other: &Self) -> bool {
         match (self, other) {
-            (Some(a), Some(b)) => a.alike(b),
+            (Some(a), Some(b)) => a.groups_with(b),
             (None, None) => true,
             _ => false,
         }
@@ -409,8 +393,8 @@ impl<T: Gather> Gather for Option<T> {
 impl<T: Gather> Gather for Box<T> {
     type Together<R: Real> = Box<T::Together<R>>;
 
-    fn gather<R: Real>(like: R, of: &[&Self]) -> Self::Together<R> {
-        let each: Vec<&T> = of.iter().map(|one| &***one).collect();
+    fn gather<R: Real>(like: R, runs: &[&Self]) -> Self::Together<R> {
+        let each: Vec<&T> = runs.iter().map(|one| &***one).collect();
         Box::new(T::gather(like, &each))
     }
 
@@ -418,40 +402,7 @@ impl<T: Gather> Gather for Box<T> {
         Box::new(T::lane(together, lane))
     }
 
-    fn alike(&self, other: &Self) -> bool {
-        (**self).alike(other)
+    fn groups_with(&self, other: &Self) -> bool {
+        (**self).groups_with(other)
     }
 }
-
-/// `gather!(Name { own, fields } same { shared, fields });`: lanes for a struct `Name<R = f64>`, whose first fields each run has of its own.
-macro_rules! gather {
-    ($name:ident { $($own:ident),* $(,)? } $(same { $($same:ident),* $(,)? })?) => {
-        impl $crate::math::Gather for $name {
-            type Together<R: $crate::math::Real> = $name<R>;
-
-            fn gather<R: $crate::math::Real>(like: R, of: &[&Self]) -> $name<R> {
-                $name {
-                    $($own: {
-                        let each: Vec<_> = of.iter().map(|one| &one.$own).collect();
-                        $crate::math::Gather::gather(like, &each)
-                    },)*
-                    $($($same: of[0].$same.clone(),)*)?
-                }
-            }
-
-            fn lane<R: $crate::math::Real>(together: &$name<R>, lane: usize) -> Self {
-                $name {
-                    $($own: $crate::math::Gather::lane::<R>(&together.$own, lane),)*
-                    $($($same: together.$same.clone(),)*)?
-                }
-            }
-
-            fn alike(&self, other: &Self) -> bool {
-                true
-                    $(&& $crate::math::Gather::alike(&self.$own, &other.$own))*
-                    $($(&& self.$same == other.$same)*)?
-            }
-        }
-    };
-}
-pub(crate) use gather;

@@ -11,20 +11,21 @@ mod scalar;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
-pub use elementary::{exp, exp_each, ln, ln_each, tanh};
+pub use cvtcycle_macros::{Gather, physics};
+pub use elementary::{exp, exp_array, ln, ln_array, tanh};
 pub use grid::{GRID_AXES, Grid};
-pub use lanes::{Answers, Gather, Level, Simd, dispatch, eight, f64x4, f64x8, four};
-pub(crate) use lanes::{MOST_LANES, gather, gather_each};
-pub use real::{Left, Mask, Operand, Own, Real};
+pub use lanes::{Gather, LaneMask, Level, Simd, dispatch, eight, f64x4, f64x8, four};
+pub(crate) use lanes::{MAX_LANES, gather_each};
+pub use real::{Implied, LaneValue, Left, Mask, Named, Operand, Real, Selectable};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
-#[inline(always)]
+#[physics]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// The smaller of two numbers; the second where one is no number.
-#[inline(always)]
+#[physics]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
@@ -40,29 +41,23 @@ pub fn clamp(x: f64, low: f64, high: f64) -> f64 {
 /// Linear ramp: 0 at or below `from`, 1 at or above `to`.
 ///
 /// `from` and `to` may be in either order; equal ends give a step: 0 below them, 1 at them and above.
-#[inline(always)]
-pub fn ramp<R: Real>(x: R, from: R, to: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn ramp<R: Real>(x: R, from: R, to: R) -> R {
     let width = to - from;
-    let step = R::pick(x.reaches(from), x.filled(1.0), x.filled(0.0));
-    let along = ((x - from) / width).held(0.0, 1.0);
-    R::pick(width.abs().above(0.0), along, step)
+    let step = x.ge(from).select(x.splat(1.0), x.splat(0.0));
+    let along = ((x - from) / width).clamp(0.0, 1.0);
+    width.abs().gt(0.0).select(along, step)
 }
 
 /// Smooth ramp with zero slope at both ends (3 u2 - 2 u3).
-#[inline(always)]
-pub fn smooth_ramp<R: Real>(x: R, from: R, to: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn smooth_ramp<R: Real>(x: R, from: R, to: R) -> R {
     let u = ramp(x, from, to);
     u * u * (3.0 - 2.0 * u)
 }
 
 /// The same of two sides, as an array: the compiler then works on both at once where it can.
-#[inline(always)]
+#[physics]
 pub fn pair(f: impl Fn(usize) -> f64) -> [f64; 2] {
     [f(0), f(1)]
 }

@@ -1,72 +1,86 @@
-//! The number that an equation is written for: an f64, or several side by side, one for each of several runs in lockstep.
+//! Number type of the equations: an f64, or several f64 side by side, one for each of several runs in lockstep.
 //!
-//! An equation over [`Real`] is one text for both. Each lane has the bits that f64 alone would have: only +, -, x, / and the square root, which are
-//! exact to rounding everywhere, choices by [`Real::pick`], and functions of f64 lane by lane ([`Real::each`]). Where runs may differ there is no `if`:
-//! both sides are worked out, and `pick` takes one. An `if` on what the runs of a group share, such as a formulation, stays an `if`.
+//! An equation over [`Real`] is one text for both, and each lane has the bits that f64 alone would have: only +, -, x, / and the square root, which
+//! are exact to rounding everywhere, choices by [`Mask::select`], and functions of f64 lane by lane ([`Real::map`]). Runs may differ in what a mask
+//! holds, so it takes no `if`: both sides are computed, and `select` takes one. An `if` on something that the runs of a group share, such as a
+//! formulation, stays an `if`.
 //!
-//! `where f64: Left<R>` lets constants be to the left of an operator: `2.0 * x`. A constant as the other side of a comparison or as a bound is given as it
-//! is: `x.most(0.0)`. One that has to be an `R` by itself takes its lanes from any number at hand: `x.filled(1.0)`.
+//! Constants are written as they are: `2.0 * x`, `x.max(0.0)`. A constant that has to be an `R` by itself takes its lanes from any number at hand:
+//! `x.splat(1.0)`. The methods with names of f64 differ from those in one point: `max` and `min` return the argument where one of the two is NaN.
 
 use super::curve::Curve;
+use super::physics;
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// Yes or no, for each lane.
+/// A bool for each lane.
+#[physics]
 pub trait Mask:
-    Copy + Debug + PartialEq + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+    Copy
+    + Debug
+    + PartialEq
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + Not<Output = Self>
+    + Selectable<Self>
 {
-    /// Whether it is yes in any lane.
+    /// True if any lane is true.
     fn any(self) -> bool;
 
-    /// Whether it is yes in every lane.
+    /// True if every lane is true.
     fn all(self) -> bool;
 
-    /// The answer of one lane.
+    /// The bool of one lane.
     fn lane(self, lane: usize) -> bool;
 
-    /// The answer of `yes` where it is yes, else that of `no`.
-    #[inline(always)]
-    fn then(self, yes: Self, no: Self) -> Self {
-        (self & yes) | (!self & no)
+    /// `if_true` in the lanes that are true, else `if_false`. Both are computed, so neither may panic.
+    fn select<T: Selectable<Self>>(self, if_true: T, if_false: T) -> T {
+        T::select(self, if_true, if_false)
     }
 }
 
+/// A value that [`Mask::select`] chooses lane by lane: a number or a mask.
+pub trait Selectable<M> {
+    /// `if_true` in the lanes where `mask` is true, else `if_false`.
+    fn select(mask: M, if_true: Self, if_false: Self) -> Self;
+}
+
+#[physics]
+impl Selectable<bool> for bool {
+    fn select(mask: bool, if_true: bool, if_false: bool) -> bool {
+        if mask { if_true } else { if_false }
+    }
+}
+
+#[physics]
 impl Mask for bool {
-    #[inline(always)]
     fn any(self) -> bool {
         self
     }
 
-    #[inline(always)]
     fn all(self) -> bool {
         self
     }
 
-    #[inline(always)]
     fn lane(self, _: usize) -> bool {
         self
     }
-
-    #[inline(always)]
-    fn then(self, yes: bool, no: bool) -> bool {
-        if self { yes } else { no }
-    }
 }
 
-/// What can be the other side of an operation on an `R`: an `R`, or an f64 for all lanes.
+/// Right side of an operation on an `R`: an `R`, or an f64 for all lanes.
 pub trait Operand<R>: Copy {
-    /// As an `R`, with the lanes of `like`.
-    fn lifted(self, like: R) -> R;
+    /// Converts to an `R` with the lanes of `like`.
+    fn broadcast(self, like: R) -> R;
 }
 
+#[physics]
 impl<R: Real> Operand<R> for R {
-    #[inline(always)]
-    fn lifted(self, _: R) -> R {
+    fn broadcast(self, _: R) -> R {
         self
     }
 }
 
-/// What can be to the left of an operator before an `R`: `where f64: Left<R>` lets constants be there.
+/// Left side of an operator before an `R`.
 pub trait Left<R>:
     Operand<R> + Add<R, Output = R> + Sub<R, Output = R> + Mul<R, Output = R> + Div<R, Output = R>
 {
@@ -81,12 +95,29 @@ impl<R, C> Left<R> for C where
 {
 }
 
-/// What a lane can have of its own.
-pub trait Own: Clone + Debug + PartialEq + Send + Sync {}
+/// Names a type `T` in a bound of another: as `Implied<f64, Is: Left<Self>>` it lets [`Real`] imply `f64: Left<R>`, which a plain `where` on the trait
+/// would ask of every function again.
+pub trait Implied<T>: Named<T, Is = T> {}
 
-impl<T: Clone + Debug + PartialEq + Send + Sync> Own for T {}
+impl<S, T> Implied<T> for S {}
 
-/// A number of the physics.
+/// The type that [`Implied`] names.
+pub trait Named<T> {
+    /// `T` itself.
+    type Is;
+}
+
+impl<S, T> Named<T> for S {
+    type Is = T;
+}
+
+/// Value that each lane has its own of, without arithmetic.
+pub trait LaneValue: Clone + Debug + PartialEq + Send + Sync {}
+
+impl<T: Clone + Debug + PartialEq + Send + Sync> LaneValue for T {}
+
+/// Number type of the equations.
+#[physics]
 pub trait Real:
     Copy
     + Debug
@@ -102,69 +133,78 @@ pub trait Real:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
+    + Implied<f64, Is: Left<Self>>
+    + Selectable<<Self as Real>::Mask>
 {
-    /// Answer of a comparison.
+    /// Result of a comparison.
     type Mask: Mask;
 
-    /// What each lane has of its own and no arithmetic works on, such as a curve.
-    type Each<T: Own>: Own;
+    /// A value for each lane without arithmetic, such as a gear.
+    type PerLane<T: LaneValue>: LaneValue;
 
     /// A curve for each lane.
-    type Curve: Own;
+    type Curve: LaneValue;
 
-    /// How many runs are side by side.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// A number in every lane that `self` has.
-    fn filled(self, number: f64) -> Self;
+    /// `number` in every lane that `self` has.
+    fn splat(self, number: f64) -> Self;
 
-    /// A number for each lane that `self` has, from the lane's place.
-    fn by_lane(self, f: impl Fn(usize) -> f64) -> Self;
+    /// A number for each lane that `self` has, computed from the lane's index.
+    fn map_lanes(self, f: impl Fn(usize) -> f64) -> Self;
 
     /// The number of one lane.
     fn lane(self, lane: usize) -> f64;
 
-    /// The same with another number in one lane.
+    /// `self` with another number in one lane.
     fn with_lane(self, lane: usize, number: f64) -> Self;
 
-    /// The same answer in every lane that `self` has.
-    fn answer(self, yes: bool) -> Self::Mask;
+    /// The same bool in every lane that `self` has.
+    fn splat_mask(self, yes: bool) -> Self::Mask;
 
-    /// An answer for each lane that `self` has, from the lane's place.
-    fn ask(self, f: impl Fn(usize) -> bool) -> Self::Mask;
+    /// A bool for each lane that `self` has, computed from the lane's index.
+    fn mask_lanes(self, f: impl Fn(usize) -> bool) -> Self::Mask;
 
-    /// A value for each lane.
-    fn every<T: Own>(f: impl FnMut(usize) -> T) -> Self::Each<T>;
+    /// A value for each lane, computed from the lane's index.
+    fn per_lane<T: LaneValue>(f: impl FnMut(usize) -> T) -> Self::PerLane<T>;
 
     /// The value of one lane.
-    fn one<T: Own>(of: &Self::Each<T>, lane: usize) -> &T;
+    fn get<T: LaneValue>(values: &Self::PerLane<T>, lane: usize) -> &T;
 
-    /// The same, to be changed.
-    fn one_mut<T: Own>(of: &mut Self::Each<T>, lane: usize) -> &mut T;
+    /// The value of one lane, to be changed.
+    fn get_mut<T: LaneValue>(values: &mut Self::PerLane<T>, lane: usize) -> &mut T;
 
-    /// A curve for each lane, from the lane's place.
-    fn curves(of: impl FnMut(usize) -> Curve) -> Self::Curve;
+    /// A curve for each lane, from the lane's index.
+    fn curves(f: impl FnMut(usize) -> Curve) -> Self::Curve;
 
     /// The curve of one lane.
-    fn curve(of: &Self::Curve, lane: usize) -> &Curve;
+    fn curve(curves: &Self::Curve, lane: usize) -> &Curve;
 
-    /// Value of a curve at it.
-    fn along(self, curve: &Self::Curve) -> Self;
+    /// Evaluates each lane's curve at its number.
+    fn interpolate(self, curve: &Self::Curve) -> Self;
 
-    /// Lane by lane what a function of f64 gives.
-    fn each(self, f: impl Fn(f64) -> f64) -> Self;
+    /// Applies a function of f64 lane by lane.
+    fn map(self, f: impl Fn(f64) -> f64) -> Self;
 
-    /// Where `self` is above the other; no where one is no number.
-    fn above(self, other: impl Operand<Self>) -> Self::Mask;
+    /// `self > other`; false where one is NaN.
+    fn gt(self, other: impl Operand<Self>) -> Self::Mask;
 
-    /// Where `self` is at or above the other; no where one is no number.
-    fn reaches(self, other: impl Operand<Self>) -> Self::Mask;
+    /// `self >= other`; false where one is NaN.
+    fn ge(self, other: impl Operand<Self>) -> Self::Mask;
 
-    /// Where both have the same bits.
-    fn is_same(self, other: Self) -> Self::Mask;
+    /// `self < other`; false where one is NaN.
+    fn lt(self, other: impl Operand<Self>) -> Self::Mask {
+        other.broadcast(self).gt(self)
+    }
 
-    /// `yes` where the mask says so, else `no`.
-    fn pick(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// `self <= other`; false where one is NaN.
+    fn le(self, other: impl Operand<Self>) -> Self::Mask {
+        other.broadcast(self).ge(self)
+    }
+
+    /// Compares the bits.
+    fn bits_eq(self, other: Self) -> Self::Mask;
 
     /// Magnitude.
     fn abs(self) -> Self;
@@ -172,65 +212,49 @@ pub trait Real:
     /// Square root, exact to rounding.
     fn sqrt(self) -> Self;
 
-    /// A part that is large enough to be a function of its own, with the processor's features of its caller.
-    fn within<T>(self, part: impl FnOnce() -> T) -> T;
+    /// Calls a part that is large enough to be a function of its own, compiled for the processor's features of its caller.
+    fn vectorize<T>(self, part: impl FnOnce() -> T) -> T;
 
-    /// The larger of two numbers; the other one where one is no number.
-    #[inline(always)]
-    fn most(self, other: impl Operand<Self>) -> Self {
-        let other = other.lifted(self);
-        Self::pick(self.above(other), self, other)
+    /// The larger of two numbers; `other` where one is NaN.
+    fn max(self, other: impl Operand<Self>) -> Self {
+        let other = other.broadcast(self);
+        self.gt(other).select(self, other)
     }
 
-    /// The smaller of two numbers; the other one where one is no number.
-    #[inline(always)]
-    fn least(self, other: impl Operand<Self>) -> Self {
-        let other = other.lifted(self);
-        Self::pick(other.above(self), self, other)
+    /// The smaller of two numbers; `other` where one is NaN.
+    fn min(self, other: impl Operand<Self>) -> Self {
+        let other = other.broadcast(self);
+        other.gt(self).select(self, other)
     }
 
-    /// Held between `low` and `high`; what is no number stays so.
-    #[inline(always)]
-    fn held(self, low: impl Operand<Self>, high: impl Operand<Self>) -> Self {
-        let (low, high) = (low.lifted(self), high.lifted(self));
-        let x = Self::pick(low.above(self), low, self);
-        Self::pick(x.above(high), high, x)
+    /// Limits to `low` and `high`; NaN stays NaN, and the bounds are not checked.
+    fn clamp(self, low: impl Operand<Self>, high: impl Operand<Self>) -> Self {
+        let (low, high) = (low.broadcast(self), high.broadcast(self));
+        let x = low.gt(self).select(low, self);
+        x.gt(high).select(high, x)
     }
 
-    /// e to the power of it.
+    /// e to the power of `self`.
     fn exp(self) -> Self;
 
     /// Natural logarithm.
     fn ln(self) -> Self;
 
-    /// e to the power of several, the same bits as one by one: together they cost less.
-    fn exp_each<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
+    /// e to the power of several numbers: the bits of one by one at less cost.
+    fn exp_array<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
 
-    /// Natural logarithm of several, the same bits as one by one: together they cost less.
-    fn ln_each<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
+    /// Natural logarithm of several numbers: the bits of one by one at less cost.
+    fn ln_array<const COUNT: usize>(x: [Self; COUNT]) -> [Self; COUNT];
 
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 
-    /// Angle whose sine it is, rad.
+    /// Inverse sine, rad.
     fn asin(self) -> Self;
 
-    /// Where `self` is below the other; no where one is no number.
-    #[inline(always)]
-    fn below(self, other: impl Operand<Self>) -> Self::Mask {
-        other.lifted(self).above(self)
-    }
-
-    /// Where `self` is at or below the other; no where one is no number.
-    #[inline(always)]
-    fn at_most(self, other: impl Operand<Self>) -> Self::Mask {
-        other.lifted(self).reaches(self)
-    }
-
-    /// The sum of numbers in their order, as `Iterator::sum` has it.
-    #[inline(always)]
-    fn sum_of(self, numbers: &[Self]) -> Self {
-        let mut sum = self.filled(-0.0);
+    /// Sum of numbers in their order, as `Iterator::sum` makes it.
+    fn sum(self, numbers: &[Self]) -> Self {
+        let mut sum = self.splat(-0.0);
         for number in numbers {
             sum = sum + *number;
         }

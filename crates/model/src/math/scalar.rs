@@ -1,155 +1,132 @@
 //! One run: f64 as a number of the physics.
 
-use super::real::{Operand, Own, Real};
+use super::physics;
+use super::real::{LaneValue, Operand, Real, Selectable};
 use super::{Curve, circular, clamp, elementary, larger, smaller};
 
+#[physics]
+impl Selectable<bool> for f64 {
+    fn select(mask: bool, if_true: f64, if_false: f64) -> f64 {
+        if mask { if_true } else { if_false }
+    }
+}
+
+#[physics]
 impl Real for f64 {
     type Mask = bool;
-    type Each<T: Own> = T;
+    type PerLane<T: LaneValue> = T;
     type Curve = Curve;
     const LANES: usize = 1;
 
-    #[inline(always)]
-    fn filled(self, number: f64) -> f64 {
+    fn splat(self, number: f64) -> f64 {
         number
     }
 
-    #[inline(always)]
-    fn by_lane(self, f: impl Fn(usize) -> f64) -> f64 {
+    fn map_lanes(self, f: impl Fn(usize) -> f64) -> f64 {
         f(0)
     }
 
-    #[inline(always)]
     fn lane(self, _: usize) -> f64 {
         self
     }
 
-    #[inline(always)]
     fn with_lane(self, _: usize, number: f64) -> f64 {
         number
     }
 
-    #[inline(always)]
-    fn answer(self, yes: bool) -> bool {
+    fn splat_mask(self, yes: bool) -> bool {
         yes
     }
 
-    #[inline(always)]
-    fn ask(self, f: impl Fn(usize) -> bool) -> bool {
+    fn mask_lanes(self, f: impl Fn(usize) -> bool) -> bool {
         f(0)
     }
 
-    #[inline(always)]
-    fn every<T: Own>(mut f: impl FnMut(usize) -> T) -> T {
+    fn per_lane<T: LaneValue>(mut f: impl FnMut(usize) -> T) -> T {
         f(0)
     }
 
-    #[inline(always)]
-    fn one<T: Own>(of: &T, _: usize) -> &T {
+    fn get<T: LaneValue>(of: &T, _: usize) -> &T {
         of
     }
 
-    #[inline(always)]
-    fn one_mut<T: Own>(of: &mut T, _: usize) -> &mut T {
+    fn get_mut<T: LaneValue>(of: &mut T, _: usize) -> &mut T {
         of
     }
 
-    #[inline(always)]
     fn curves(mut of: impl FnMut(usize) -> Curve) -> Curve {
         of(0)
     }
 
-    #[inline(always)]
     fn curve(of: &Curve, _: usize) -> &Curve {
         of
     }
 
-    #[inline(always)]
-    fn along(self, curve: &Curve) -> f64 {
+    fn interpolate(self, curve: &Curve) -> f64 {
         curve.at(self)
     }
 
-    #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> f64 {
+    fn map(self, f: impl Fn(f64) -> f64) -> f64 {
         f(self)
     }
 
-    #[inline(always)]
-    fn above(self, other: impl Operand<f64>) -> bool {
-        self > other.lifted(self)
+    fn gt(self, other: impl Operand<f64>) -> bool {
+        self > other.broadcast(self)
     }
 
-    #[inline(always)]
-    fn reaches(self, other: impl Operand<f64>) -> bool {
-        self >= other.lifted(self)
+    fn ge(self, other: impl Operand<f64>) -> bool {
+        self >= other.broadcast(self)
     }
 
-    #[inline(always)]
-    fn is_same(self, other: f64) -> bool {
+    fn bits_eq(self, other: f64) -> bool {
         self.to_bits() == other.to_bits()
     }
 
-    #[inline(always)]
-    fn pick(mask: bool, yes: f64, no: f64) -> f64 {
-        if mask { yes } else { no }
-    }
-
-    #[inline(always)]
     fn abs(self) -> f64 {
         self.abs()
     }
 
-    #[inline(always)]
     fn sqrt(self) -> f64 {
         self.sqrt()
     }
 
     #[inline(never)]
-    fn within<T>(self, part: impl FnOnce() -> T) -> T {
+    fn vectorize<T>(self, part: impl FnOnce() -> T) -> T {
         part()
     }
 
-    #[inline(always)]
-    fn exp_each<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
-        elementary::exp_each(x)
+    fn exp_array<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
+        elementary::exp_array(x)
     }
 
-    #[inline(always)]
-    fn ln_each<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
-        elementary::ln_each(x)
+    fn ln_array<const COUNT: usize>(x: [f64; COUNT]) -> [f64; COUNT] {
+        elementary::ln_array(x)
     }
 
-    #[inline(always)]
-    fn most(self, other: impl Operand<f64>) -> f64 {
-        larger(self, other.lifted(self))
+    fn max(self, other: impl Operand<f64>) -> f64 {
+        larger(self, other.broadcast(self))
     }
 
-    #[inline(always)]
-    fn least(self, other: impl Operand<f64>) -> f64 {
-        smaller(self, other.lifted(self))
+    fn min(self, other: impl Operand<f64>) -> f64 {
+        smaller(self, other.broadcast(self))
     }
 
-    #[inline(always)]
-    fn held(self, low: impl Operand<f64>, high: impl Operand<f64>) -> f64 {
-        clamp(self, low.lifted(self), high.lifted(self))
+    fn clamp(self, low: impl Operand<f64>, high: impl Operand<f64>) -> f64 {
+        clamp(self, low.broadcast(self), high.broadcast(self))
     }
 
-    #[inline(always)]
     fn exp(self) -> f64 {
         elementary::exp(self)
     }
 
-    #[inline(always)]
     fn ln(self) -> f64 {
         elementary::ln(self)
     }
 
-    #[inline(always)]
     fn tanh(self) -> f64 {
         elementary::tanh(self)
     }
 
-    #[inline(always)]
     fn asin(self) -> f64 {
         circular::asin(self)
     }

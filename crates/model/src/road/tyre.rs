@@ -10,10 +10,10 @@
 use super::GRAVITY_M_S2;
 use crate::cycle::Motion;
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 
 /// The checked tyres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Tyre<R: Real = f64> {
     /// Rolling resistance of the warm car, N; 0 without a tyre model.
     pub warm_n: R,
@@ -31,42 +31,29 @@ pub struct Tyre<R: Real = f64> {
     pub wind_w_k: R,
 }
 
-gather!(Tyre {
-    warm_n,
-    share,
-    per_k,
-    warm_k,
-    capacity_j_k,
-    still_w_k,
-    wind_w_k
-});
-
 /// Least rolling resistance over that of the warm tyre.
 const LEAST: f64 = 0.5;
 
-impl<R: Real> Tyre<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Tyre<R> {
     /// Rolling resistance over that of the warm tyre.
-    #[inline(always)]
     fn ratio(&self, tyre_k: R) -> R {
-        (1.0 + self.per_k * (self.warm_k - tyre_k)).most(LEAST)
+        (1.0 + self.per_k * (self.warm_k - tyre_k)).max(LEAST)
     }
 
     /// Force that tyres at a temperature add to the road load, N.
-    #[inline(always)]
     pub fn extra_n(&self, tyre_k: R) -> R {
         self.share * self.warm_n * (self.ratio(tyre_k) - 1.0) // RL-6
     }
 
     /// Temperature of the tyres at the end of a step, K.
-    #[inline(always)]
     pub fn advance_k(&self, tyre_k: R, ambient_k: R, motion: &Motion, dt_s: f64) -> R {
         let ratio = self.ratio(tyre_k);
         let warm_w = self.warm_n * motion.speed_m_s;
         let air_w_k = self.still_w_k + self.wind_w_k * motion.speed_power_07;
-        let slope_w_k = R::pick(ratio.above(LEAST), self.per_k * warm_w, warm_w.filled(0.0));
+        let slope_w_k = ratio
+            .gt(LEAST)
+            .select(self.per_k * warm_w, warm_w.splat(0.0));
         let surplus_w = warm_w * ratio - air_w_k * (tyre_k - ambient_k);
         tyre_k + surplus_w / (self.capacity_j_k * dt_s.recip() + air_w_k + slope_w_k) // RL-7
     }

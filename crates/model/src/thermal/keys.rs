@@ -1,8 +1,8 @@
 //! Keys of `[thermal]`, and a thermal network from their values.
 
 use super::{Cooler, Network};
-use crate::fluid::{Lubricant, ZERO_DEGC_K};
 use crate::keys::{Values, keys};
+use crate::lubricant::{Lubricant, ZERO_DEGC_K};
 
 keys! {
     /// Keys of `[thermal]` and its tables.

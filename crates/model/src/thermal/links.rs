@@ -4,7 +4,7 @@
 //! and metal are left for Gauss. The matrix is symmetric and diagonally dominant, so no pivot is zero.
 
 use super::{BELT, COOLANT, ENGINE_OIL, METAL, NODES, SUMP};
-use crate::math::{Left, Real};
+use crate::math::{Real, physics};
 
 /// Conductances between nodes, W/K.
 pub(super) struct Links<R: Real = f64> {
@@ -15,12 +15,9 @@ pub(super) struct Links<R: Real = f64> {
     pub sump_belt: R,
 }
 
-impl<R: Real> Links<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Links<R> {
     /// Heat that flows into each node from the others, W.
-    #[inline(always)]
     pub fn flows_w(&self, t: &[R; NODES]) -> [R; NODES] {
         let into_oil = self.coolant_oil * (t[COOLANT] - t[ENGINE_OIL]);
         let into_belt = self.sump_belt * (t[SUMP] - t[BELT]);
@@ -37,7 +34,6 @@ where
     }
 
     /// Rise of the nodes: solves (own + links) rise = right, `own` the diagonal without links (TH-5).
-    #[inline(always)]
     pub fn rise_k(&self, own: &[R; NODES], right: &[R; NODES]) -> [R; NODES] {
         let (oil, metal, exchanger) = (self.coolant_oil, self.coolant_metal, self.coolant_sump);
         // Leaves: what is left of the link after the leaf's own capacity and air.

@@ -23,7 +23,7 @@ mod links;
 pub use keys::ThermalKeys;
 use links::Links;
 
-use crate::math::{Left, Mask, Real, exp, gather, ln, places, ramp};
+use crate::math::{Gather, Mask, Real, exp, ln, physics, places, ramp};
 
 /// Number of nodes.
 pub const NODES: usize = 5;
@@ -39,7 +39,7 @@ pub const METAL: usize = 3;
 pub const BELT: usize = 4;
 
 /// The oil-to-air cooler.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Cooler<R: Real = f64> {
     /// U at standstill, W/K.
     pub still_w_k: R,
@@ -54,7 +54,7 @@ pub struct Cooler<R: Real = f64> {
 }
 
 /// The checked network.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Network<R: Real = f64> {
     /// Heat capacities, J/K; 0 for an unused node.
     pub capacity_j_k: [R; NODES],
@@ -98,18 +98,6 @@ pub struct Network<R: Real = f64> {
     pub under_bonnet: R,
 }
 
-gather! {
-    Cooler { still_w_k, per_speed_w_s_k_m, flow_share, highest_m3_s, bypass_below_k }
-}
-
-gather! {
-    Network {
-        capacity_j_k, sump_oil_m3, coolant_oil_w_k, block_air_w_k, block_air_per_speed, pan_air_w_k, pan_air_per_speed, radiator_w_k,
-        radiator_per_speed, thermostat_from_k, thermostat_to_k, oil_metal_w_k, case_air_w_k, case_air_per_speed, bell_housing_w_k, spray_w_k,
-        exchanger_w_k, exchanger_opens_k, cooler, under_bonnet,
-    }
-}
-
 /// Share of a conductance that is left with nothing turning (TH-6).
 const STILL: f64 = 0.1;
 
@@ -132,7 +120,7 @@ impl<R: Real> Heat<R> {
     }
 }
 
-/// What happens around the nodes in a step.
+/// Inputs of the nodes in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeatInput<R: Real = f64> {
     /// Heat into the nodes, W.
@@ -147,7 +135,7 @@ pub struct HeatInput<R: Real = f64> {
     pub oil_flow_m3_s: R,
     /// Heat capacity flow of the oil per volume flow, J/(m3 K).
     pub oil_volume_heat_j_m3k: R,
-    /// Whether engine and pumps turn.
+    /// True with engine and pumps turning.
     pub running: bool,
     /// Step, s.
     pub dt_s: f64,
@@ -186,31 +174,27 @@ struct Now<R: Real = f64> {
     cooler_w_k: R,
 }
 
-impl<R: Real> Now<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Now<R> {
     /// Conductance of each node to its air, W/K; the radiator's slope is kept apart.
-    #[inline(always)]
     fn air_w_k(&self) -> [R; NODES] {
         [
             self.block_air_w_k,
             self.pan_air_w_k,
             self.cooler_w_k,
             self.case_air_w_k,
-            self.cooler_w_k.filled(0.0),
+            self.cooler_w_k.splat(0.0),
         ]
     }
 
     /// Heat from each node to its air at the beginning of the step, W, that of the radiator included.
-    #[inline(always)]
     fn air_w(&self, t: &[R; NODES], ambient_k: R) -> [R; NODES] {
         [
             self.block_air_w_k * (t[COOLANT] - self.bonnet_k) + self.radiator.0,
             self.pan_air_w_k * (t[ENGINE_OIL] - self.bonnet_k),
             self.cooler_w_k * (t[SUMP] - ambient_k),
             self.case_air_w_k * (t[METAL] - self.bonnet_k),
-            ambient_k.filled(0.0),
+            ambient_k.splat(0.0),
         ]
     }
 }
@@ -220,68 +204,61 @@ pub(crate) fn speed_power(v: f64) -> f64 {
     if v > 0.0 { exp(0.7 * ln(v)) } else { 0.0 }
 }
 
-impl<R: Real> Network<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Network<R> {
     /// Belt to transmission oil by spray at a pump speed, W/K (TH-8).
-    #[inline(always)]
     pub fn spray_now_w_k(&self, pump_rad_s: R) -> R {
         let share = pump_rad_s * SPRAY_REFERENCE_RAD_S.recip();
-        self.spray_w_k * share.most(STILL) // TH-8
+        self.spray_w_k * share.max(STILL) // TH-8
     }
 
-    #[inline(always)]
     fn radiator(&self, coolant_k: R, input: &HeatInput<R>) -> (R, R) {
         let full = self.radiator_w_k + self.radiator_per_speed * input.speed_m_s;
         let full = if input.running { full } else { STILL * full };
         let per_width = 1.0 / (self.thermostat_to_k - self.thermostat_from_k);
-        let open = ((coolant_k - self.thermostat_from_k) * per_width).held(0.0, 1.0);
+        let open = ((coolant_k - self.thermostat_from_k) * per_width).clamp(0.0, 1.0);
         let over = coolant_k - input.ambient_k;
         // A coolant that is colder than the air warms towards it: with the opening held, the step ends between the two (TH-9).
-        let opens = open.above(0.0) & open.filled(1.0).above(open) & over.above(0.0);
+        let opens = open.gt(0.0) & open.splat(1.0).gt(open) & over.gt(0.0);
         let flow = full * open;
         let slope = if opens.any() {
-            R::pick(opens, full * (open + over * per_width), flow)
+            opens.select(full * (open + over * per_width), flow)
         } else {
             flow
         };
         (flow * over, slope) // TH-2
     }
 
-    #[inline(always)]
     fn cooler(&self, sump_k: R, input: &HeatInput<R>) -> (R, R) {
-        let zero = sump_k.filled(0.0);
+        let zero = sump_k.splat(0.0);
         let Some(c) = &self.cooler else {
             return (zero, zero);
         };
         let flow = c.flow_share * input.oil_flow_m3_s;
-        let flow = flow.least(c.highest_m3_s);
+        let flow = flow.min(c.highest_m3_s);
         let carried = flow * input.oil_volume_heat_j_m3k;
-        let open = ((sump_k - c.bypass_below_k) * 0.5).held(0.0, 1.0);
-        let passed = zero.reaches(carried) | zero.reaches(open);
+        let open = ((sump_k - c.bypass_below_k) * 0.5).clamp(0.0, 1.0);
+        let passed = zero.ge(carried) | zero.ge(open);
         if passed.all() {
             return (carried, zero);
         }
         let u = c.still_w_k + c.per_speed_w_s_k_m * input.speed_m_s;
         let cools = open * carried * (1.0 - (-u / carried).exp());
-        (carried, R::pick(passed, zero, cools)) // TH-3
+        (carried, passed.select(zero, cools)) // TH-3
     }
 
     /// The heat exchanger between coolant and transmission oil, W/K, with the pumps at a share of their flow (TH-7).
-    #[inline(always)]
     fn exchanger_now_w_k(&self, coolant_k: R, stirred: f64) -> R {
-        let there = self.exchanger_w_k.above(0.0);
-        let none = coolant_k.filled(0.0);
+        let there = self.exchanger_w_k.gt(0.0);
+        let none = coolant_k.splat(0.0);
         if !there.any() {
             return none;
         }
         let opens_k = self.exchanger_opens_k;
         let open = ramp(coolant_k, opens_k, opens_k + 5.0);
-        R::pick(there, stirred * self.exchanger_w_k * open, none) // TH-7
+        there.select(stirred * self.exchanger_w_k * open, none) // TH-7
     }
 
-    #[inline(always)]
     fn now(&self, heat: &Heat<R>, input: &HeatInput<R>, speed_power_07: f64) -> Now<R> {
         let t = &heat.node_k;
         let v = input.speed_m_s;
@@ -290,7 +267,7 @@ where
         let pump_rad_s = if input.running {
             input.pump_rad_s
         } else {
-            input.pump_rad_s.filled(0.0)
+            input.pump_rad_s.splat(0.0)
         };
         Now {
             block_air_w_k: self.block_air_w_k + self.block_air_per_speed * v,
@@ -311,12 +288,12 @@ where
     }
 
     /// Advances the nodes by one step (TH-5).
+    #[inline]
     pub fn advance(&self, heat: &Heat<R>, input: &HeatInput<R>) -> HeatStep<R> {
         self.advance_in_wind(heat, input, speed_power(input.speed_m_s))
     }
 
     /// The same, with the road speed to the power of 0.7, which a trace knows.
-    #[inline(always)]
     pub fn advance_in_wind(
         &self,
         heat: &Heat<R>,
@@ -330,18 +307,16 @@ where
         let (air_w_k, mut air_w) = (now.air_w_k(), now.air_w(t, input.ambient_k));
         let mut rise = self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w));
         // Only beyond the end of the thermostat's ramp can both be: the step was too long for its slope.
-        let zero = input.ambient_k.filled(0.0);
-        let shuts = zero.above(now.radiator.0 + now.radiator.1 * rise[COOLANT])
-            & (t[COOLANT] + rise[COOLANT]).above(input.ambient_k);
+        let zero = input.ambient_k.splat(0.0);
+        let shuts = zero.gt(now.radiator.0 + now.radiator.1 * rise[COOLANT])
+            & (t[COOLANT] + rise[COOLANT]).gt(input.ambient_k);
         if shuts.any() {
-            now.radiator.0 = R::pick(shuts, zero, now.radiator.0); // TH-9
-            now.radiator.1 = R::pick(shuts, zero, now.radiator.1);
+            now.radiator.0 = shuts.select(zero, now.radiator.0); // TH-9
+            now.radiator.1 = shuts.select(zero, now.radiator.1);
             air_w = now.air_w(t, input.ambient_k);
             // Rare: kept out of the way of the other steps.
-            rise = zero.within(
-                #[inline(always)]
-                || self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w)),
-            );
+            rise =
+                zero.vectorize(|| self.rise_k(&now, t, input, &capacity_w_k, (&air_w_k, &air_w)));
         }
         let node_k = places!(i in 0, 1, 2, 3, 4 => t[i] + rise[i]);
         let [s0, s1, s2, s3, s4] = places!(i in 0, 1, 2, 3, 4 => capacity_w_k[i] * rise[i]);
@@ -359,7 +334,6 @@ where
     }
 
     /// Rise of the nodes within the step, K, with conductance and heat to the air of each (TH-5).
-    #[inline(always)]
     fn rise_k(
         &self,
         now: &Now<R>,
@@ -372,25 +346,24 @@ where
         let mut own = places!(i in 0, 1, 2, 3, 4 => capacity_w_k[i] + air_w_k[i]);
         let mut right = places!(i in 0, 1, 2, 3, 4 => flows_w[i] + (input.power_w[i] - air_w[i]));
         own[COOLANT] = own[COOLANT] + now.radiator.1;
-        let zero = input.ambient_k.filled(0.0);
-        let unused = zero.reaches(self.capacity_j_k[BELT]);
+        let zero = input.ambient_k.splat(0.0);
+        let unused = zero.ge(self.capacity_j_k[BELT]);
         if unused.any() {
             // It keeps its pivot above zero and changes nothing else.
-            own[BELT] = R::pick(unused, own[BELT] + 1.0, own[BELT]);
-            right[BELT] = R::pick(unused, zero, right[BELT]);
+            own[BELT] = unused.select(own[BELT] + 1.0, own[BELT]);
+            right[BELT] = unused.select(zero, right[BELT]);
         }
         now.links.rise_k(&own, &right)
     }
 
-    #[inline(always)]
     fn cooler_ends(&self, now: &Now<R>, sump_k: R, ambient_k: R) -> (R, R) {
         if self.cooler.is_none() {
-            let none = sump_k.filled(f64::NAN);
+            let none = sump_k.splat(f64::NAN);
             return (none, none);
         }
-        let flows = now.cooler_flow_w_k.above(0.0);
+        let flows = now.cooler_flow_w_k.gt(0.0);
         let effect = now.cooler_w_k / now.cooler_flow_w_k;
-        let effect = R::pick(flows, effect, sump_k.filled(0.0));
+        let effect = flows.select(effect, sump_k.splat(0.0));
         (sump_k, sump_k - effect * (sump_k - ambient_k))
     }
 }

@@ -1,6 +1,6 @@
-//! What can decide the secondary pressure of a CVT.
+//! Causes of the secondary pressure of a CVT.
 
-/// What decided the secondary pressure.
+/// Cause of the secondary pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(usize)]
 pub enum ClampCause {
@@ -22,14 +22,14 @@ pub enum ClampCause {
 }
 
 impl ClampCause {
-    /// The cause as a number, which lanes can pick; [`ClampCause::of`] is the way back.
-    #[inline(always)]
+    /// The cause as a number, which masks can select; [`ClampCause::from_number`] is the way back.
+    #[crate::math::physics]
     pub(crate) const fn number(self) -> f64 {
         self as u8 as f64
     }
 
     /// The cause of a number.
-    pub(crate) fn of(number: f64) -> Self {
+    pub(crate) fn from_number(number: f64) -> Self {
         Self::NAMES[number as usize].0
     }
 

@@ -190,7 +190,7 @@ impl Component {
         self.entry().title
     }
 
-    /// What the loss is, one phrase.
+    /// Meaning of the loss, one phrase.
     pub const fn doc(self) -> &'static str {
         self.entry().doc
     }
@@ -269,8 +269,8 @@ impl<T: Gather> Gather for ByComponent<T> {
         ByComponent(Gather::lane::<R>(&together.0, lane))
     }
 
-    fn alike(&self, other: &Self) -> bool {
-        self.0.alike(&other.0)
+    fn groups_with(&self, other: &Self) -> bool {
+        self.0.groups_with(&other.0)
     }
 }
 

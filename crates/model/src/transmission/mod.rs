@@ -20,7 +20,7 @@ use self::cvt::CvtState;
 use self::loss_factor::LossFactors;
 use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::Real;
+use crate::math::{Real, physics};
 use crate::prime_mover::PrimeMover;
 use std::fmt::Debug;
 
@@ -35,7 +35,7 @@ pub enum Transmission {
 
 /// A transmission as the loop over a cycle sees it, of one run or of several side by side.
 pub trait Driveline<R: Real = f64> {
-    /// What it carries from step to step.
+    /// State between steps.
     type State: Clone + Debug;
 
     /// State at the beginning of a cycle.
@@ -68,9 +68,11 @@ pub trait Driveline<R: Real = f64> {
     fn coupling_factor(&self) -> Option<R>;
 }
 
+#[physics]
 impl Driveline for Transmission {
     type State = TransmissionState;
 
+    #[inline]
     fn start<P: PrimeMover>(&self, input: &StepInput<P>) -> TransmissionState {
         match self {
             Transmission::Cvt(cvt) => {
@@ -102,17 +104,14 @@ impl Driveline for Transmission {
         }
     }
 
-    #[inline(always)]
     fn engine_rad_s(state: &TransmissionState) -> f64 {
         state.driveline.engine_rad_s
     }
 
-    #[inline(always)]
     fn is_cvt(&self) -> bool {
         matches!(self, Transmission::Cvt(_))
     }
 
-    #[inline(always)]
     fn neutral_share(
         &self,
         state: Option<&TransmissionState>,
@@ -129,13 +128,12 @@ impl Driveline for Transmission {
         }
     }
 
-    #[inline(always)]
     fn coupling_factor(&self) -> Option<f64> {
         self.coupling().loss_factor()
     }
 }
 
-/// What a transmission carries from step to step.
+/// State of a transmission between steps.
 #[derive(Clone, Copy, Debug)]
 pub struct TransmissionState {
     /// CVT: its belt and the start of its solve.

@@ -1,17 +1,17 @@
-//! What a driveline receives and gives in a time step.
+//! Input, state and output of a driveline in a time step.
 
 use super::clamp_cause::ClampCause;
 use super::component::{ByComponent, Component};
 use super::coupling::Reach;
 use crate::cycle::GearCommand;
 use crate::flags::Flags;
-use crate::fluid::Lubricant;
-use crate::math::{Left, Mask, Real};
+use crate::lubricant::Lubricant;
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::road::WheelDemand;
 use crate::thermal::Heat;
 
-/// What a driveline receives for a step.
+/// Input of a driveline for a step.
 #[derive(Debug)]
 pub struct StepInput<'a, P, R: Real = f64> {
     /// Demand at the wheels.
@@ -32,12 +32,9 @@ pub struct StepInput<'a, P, R: Real = f64> {
     pub neutral_share: R,
 }
 
-impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<P: PrimeMover<R>, R: Real> StepInput<'_, P, R> {
     /// Engine speeds within reach of the one before the step, for an engine that passes on at least `load_nm`.
-    #[inline(always)]
     pub(super) fn reach(&self, from_rad_s: R, load_nm: R) -> Reach<R> {
         Reach {
             from_rad_s,
@@ -47,11 +44,11 @@ where
     }
 }
 
-/// What a driveline keeps of the step before.
+/// State of a driveline after the step before.
 #[derive(Clone, Copy, Debug)]
 pub struct DrivelineState<R: Real = f64> {
     /// Manual box: gear engaged.
-    pub gear: R::Each<u8>,
+    pub gear: R::PerLane<u8>,
     /// Engine speed, rad/s.
     pub engine_rad_s: R,
     /// Throttle, as a start for the solve.
@@ -66,7 +63,7 @@ pub struct DrivelineState<R: Real = f64> {
     pub rested_s: f64,
 }
 
-/// What a driveline gives for a step, powers in W.
+/// Output of a driveline for a step, powers in W.
 #[derive(Clone, Copy, Debug)]
 pub struct StepOutput<R: Real = f64> {
     /// Engine speed, rad/s.
@@ -76,15 +73,15 @@ pub struct StepOutput<R: Real = f64> {
     /// Throttle 0..1.
     pub throttle: R,
     /// Gear of a manual box, 0 otherwise.
-    pub gear: R::Each<u8>,
+    pub gear: R::PerLane<u8>,
     /// Belt ratio; NaN for a manual box.
     pub belt_ratio: R,
     /// Primary pressure, Pa; NaN for a manual box.
     pub primary_pa: R,
     /// Secondary pressure, Pa; NaN for a manual box.
     pub secondary_pa: R,
-    /// What decided the secondary pressure; of no meaning for a manual box.
-    pub clamp_cause: R::Each<ClampCause>,
+    /// Cause of the secondary pressure; without meaning for a manual box.
+    pub clamp_cause: R::PerLane<ClampCause>,
     /// Belt slip; NaN for a manual box.
     pub slip: R,
     /// Torque that the primary pulley takes from its shaft, Nm; NaN without a belt that turns.
@@ -108,36 +105,33 @@ pub struct StepOutput<R: Real = f64> {
     /// Residual of the solve, a fraction.
     pub residual: R,
     /// Evaluations of the solve.
-    pub iterations: R::Each<u16>,
+    pub iterations: R::PerLane<u16>,
     /// Flags.
-    pub flags: R::Each<Flags>,
+    pub flags: R::PerLane<Flags>,
 }
 
+#[physics]
 impl StepOutput {
     /// Nothing turns.
-    #[inline(always)]
     pub fn at_rest() -> Self {
         StepOutput::like(0.0)
     }
 }
 
-impl<R: Real> StepOutput<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> StepOutput<R> {
     /// Nothing turns in any of the runs of a number.
-    #[inline(always)]
     pub fn like(number: R) -> Self {
-        let (zero, none) = (number.filled(0.0), number.filled(f64::NAN));
+        let (zero, none) = (number.splat(0.0), number.splat(f64::NAN));
         StepOutput {
             engine_rad_s: zero,
             shaft_nm: zero,
             throttle: zero,
-            gear: R::every(|_| 0),
+            gear: R::per_lane(|_| 0),
             belt_ratio: none,
             primary_pa: none,
             secondary_pa: none,
-            clamp_cause: R::every(|_| ClampCause::Law),
+            clamp_cause: R::per_lane(|_| ClampCause::Law),
             slip: none,
             primary_nm: none,
             secondary_nm: none,
@@ -149,52 +143,46 @@ where
             deficit_w: zero,
             oil_flow_m3_s: zero,
             residual: zero,
-            iterations: R::every(|_| 0),
-            flags: R::every(|_| Flags::default()),
+            iterations: R::per_lane(|_| 0),
+            flags: R::per_lane(|_| Flags::default()),
         }
     }
 
     /// Splits the difference between the power given and the power demanded into brake and deficit.
-    #[inline(always)]
     pub(super) fn split_brake_and_shortfall(&mut self, wheel: &WheelDemand<R>, output_w: R) {
-        self.split_of(output_w.answer(true), wheel, output_w);
+        self.split_of(output_w.splat_mask(true), wheel, output_w);
     }
 
     /// The same for the runs of a mask.
-    #[inline(always)]
     pub(super) fn split_of(&mut self, runs: R::Mask, wheel: &WheelDemand<R>, output_w: R) {
         let over = output_w - wheel.power_w;
-        let brakes = over.reaches(0.0);
-        self.output_w = R::pick(runs, output_w, self.output_w);
-        self.brake_w = R::pick(runs & brakes, over, self.brake_w);
-        self.deficit_w = R::pick(runs & !brakes, -over, self.deficit_w);
+        let brakes = over.ge(0.0);
+        self.output_w = runs.select(output_w, self.output_w);
+        self.brake_w = (runs & brakes).select(over, self.brake_w);
+        self.deficit_w = (runs & !brakes).select(-over, self.deficit_w);
     }
 
     /// Adds a loss power.
-    #[inline(always)]
     pub(super) fn add_loss(&mut self, component: Component, watts: R) {
         self.loss_w[component] = self.loss_w[component] + watts;
     }
 
     /// Sets a flag where the mask says so.
-    #[inline(always)]
     pub fn flag(&mut self, flag: Flags, on: R::Mask) {
         set_flag::<R>(&mut self.flags, flag, on);
     }
 
     /// Where a flag is set.
-    #[inline(always)]
     pub fn has(&self, flag: Flags) -> R::Mask {
-        let has = |run| R::one(&self.flags, run).contains(flag);
-        self.engine_rad_s.ask(has)
+        let has = |run| R::get(&self.flags, run).contains(flag);
+        self.engine_rad_s.mask_lanes(has)
     }
 
     /// Takes over what another output has for the runs of a mask.
-    #[inline(always)]
     pub(super) fn take(&mut self, runs: R::Mask, other: &StepOutput<R>) {
         macro_rules! numbers {
             ($($field:ident),*) => {
-                $(self.$field = R::pick(runs, other.$field, self.$field);)*
+                $(self.$field = runs.select(other.$field, self.$field);)*
             };
         }
         numbers!(
@@ -216,27 +204,27 @@ where
         );
         numbers!(deficit_w, oil_flow_m3_s, residual);
         for (own, other) in self.loss_w.iter_mut().zip(&other.loss_w) {
-            *own = R::pick(runs, *other, *own);
+            *own = runs.select(*other, *own);
         }
         for run in 0..R::LANES {
             if runs.lane(run) {
-                *R::one_mut(&mut self.gear, run) = *R::one(&other.gear, run);
-                *R::one_mut(&mut self.clamp_cause, run) = *R::one(&other.clamp_cause, run);
-                *R::one_mut(&mut self.iterations, run) = *R::one(&other.iterations, run);
-                *R::one_mut(&mut self.flags, run) = *R::one(&other.flags, run);
+                *R::get_mut(&mut self.gear, run) = *R::get(&other.gear, run);
+                *R::get_mut(&mut self.clamp_cause, run) = *R::get(&other.clamp_cause, run);
+                *R::get_mut(&mut self.iterations, run) = *R::get(&other.iterations, run);
+                *R::get_mut(&mut self.flags, run) = *R::get(&other.flags, run);
             }
         }
     }
 }
 
 /// Sets a flag of the runs where the mask says so.
-#[inline(always)]
-pub(crate) fn set_flag<R: Real>(flags: &mut R::Each<Flags>, flag: Flags, on: R::Mask) {
+#[physics]
+pub(crate) fn set_flag<R: Real>(flags: &mut R::PerLane<Flags>, flag: Flags, on: R::Mask) {
     if R::LANES == 1 {
-        R::one_mut(flags, 0).set(flag, on.any());
+        R::get_mut(flags, 0).set(flag, on.any());
     } else if on.any() {
         for run in 0..R::LANES {
-            R::one_mut(flags, run).set(flag, on.lane(run));
+            R::get_mut(flags, run).set(flag, on.lane(run));
         }
     }
 }

@@ -9,7 +9,7 @@
 //!
 //!   T (1 + T w/P_h) = T_0, P_h = 1/(m b R): the dissipation at which the drag has fallen to one half.
 //!
-//! Its positive root is FH-1. Since exp x >= 1 + x, FH-1 is never below the drag with the full exponential: a bound from above. T_0 w/P_h
+//! The positive root is FH-1. Since exp x >= 1 + x, FH-1 is never below the drag with the full exponential: a bound from above. T_0 w/P_h
 //! is the Nahme number. Limits: T = T_0 for P_h without bound (to the last bit) and for w = 0; T = sqrt(T_0 P_h/w) far above, so drag
 //! grows with the root of the power law only. T never exceeds T_0, never falls as T_0 rises, and T w never falls as w rises.
 //!
@@ -18,16 +18,14 @@
 //! The film is taken to be in step with its dissipation: it holds grams of oil, and is there within a second.
 
 use crate::keys::{Key, Values, spec};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Real, physics};
 
 /// Heating of a film by its own drag.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Gather, PartialEq)]
 pub struct ViscousSelfHeating<R: Real = f64> {
     /// Four over the dissipation that halves the drag, 1/W; 0 without heating.
     four_per_halving_w: R,
 }
-
-gather!(ViscousSelfHeating { four_per_halving_w });
 
 impl ViscousSelfHeating {
     /// No heating: the drag follows the viscosity of the sump.
@@ -41,12 +39,9 @@ impl ViscousSelfHeating {
     }
 }
 
-impl<R: Real> ViscousSelfHeating<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> ViscousSelfHeating<R> {
     /// Heating by the dissipation in W that halves the drag (FH-1).
-    #[inline(always)]
     pub fn halving(halving_w: R) -> Self {
         ViscousSelfHeating {
             four_per_halving_w: 4.0 / halving_w,
@@ -54,7 +49,6 @@ where
     }
 
     /// Viscous drag, Nm, from the drag without heating, Nm, and the speed, rad/s (FH-1); both not below zero.
-    #[inline(always)]
     pub fn torque_nm(self, unheated_nm: R, speed_rad_s: R) -> R {
         2.0 * unheated_nm
             / (1.0 + (1.0 + unheated_nm * speed_rad_s * self.four_per_halving_w).sqrt()) // FH-1

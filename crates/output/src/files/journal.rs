@@ -1,4 +1,4 @@
-//! The journal of a set of files: which name each file under a temporary one gets. A set that was interrupted is completed from it.
+//! Journal of a set of files: maps temporary names to final ones, so that an interrupted commit can be completed.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -13,18 +13,18 @@ use serde::{Deserialize, Serialize};
 
 pub(super) const SCHEMA: u32 = 1;
 
-/// What is being put into place.
+/// Files being put into place.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Journal {
     pub(super) schema: u32,
     pub(super) build: String,
-    /// Temporary name and name of each file.
+    /// Temporary and final name of each file.
     pub(super) files: Vec<(String, String)>,
     pub(super) remove: Vec<String>,
 }
 
-/// Completes what a process that was killed was putting into place in a directory, if it holds such a set. Needs no lock where there is none.
+/// Completes a commit that a killed process left in a directory, if there is one. Takes no lock if there is none.
 ///
 /// # Errors
 /// A problem of `--out`: another process writes there, the directory cannot be written, or the journal is damaged.
@@ -38,7 +38,7 @@ pub fn settle(dir: &Path) -> Result<(), Problem> {
     Ok(())
 }
 
-/// The same for a process that holds the lock.
+/// Completes an interrupted commit for a process that already holds the lock.
 ///
 /// # Errors
 /// A problem of `--out`: the directory cannot be written, or another user wrote the journal, or it is damaged.
@@ -72,7 +72,7 @@ pub fn complete(lock: &DirLock) -> Result<(), Problem> {
 }
 
 impl Journal {
-    /// Reads a journal, whose author may be unknown; none if it is not one that this program wrote.
+    /// Reads a journal, which may come from an unknown author; `None` if this program did not write it.
     fn read(root: &Path, file: &Path) -> Option<Self> {
         let is_plain = |path: &Path| fs::symlink_metadata(path).map(|found| found.is_file());
         if !is_plain(file).ok()? {
@@ -93,13 +93,13 @@ impl Journal {
         fits.then_some(journal)
     }
 
-    /// Does what is left of it.
+    /// Performs the remaining steps.
     fn complete(&self, root: &Path) -> io::Result<()> {
         let mut folders = BTreeSet::from([root.to_path_buf()]);
         for (temporary, name) in &self.files {
             let (temporary, target) = (root.join(temporary), root.join(name));
             let folder = target.parent().unwrap_or(root).to_path_buf();
-            // Else it has its name already.
+            // A file without its temporary name already has its final one.
             if is_there(&temporary) {
                 if !is_there(&folder) {
                     fs::create_dir(&folder)?;
@@ -119,12 +119,12 @@ impl Journal {
     }
 }
 
-/// Whether a name leads nowhere else.
+/// Tests that a name has no path components.
 pub(super) fn is_plain_name(name: &str) -> bool {
     Path::new(name).file_name().is_some_and(|last| last == name)
 }
 
-/// Whether a name is that of a file in the directory, or in a folder in it that is no link.
+/// Tests that a name is a file in the directory, or in a folder in it that is not a link.
 fn is_place(root: &Path, name: &str) -> bool {
     let is_own = |name: &str| is_plain_name(name) && !is_temporary(name) && name != JOURNAL;
     match name.split_once('/') {
@@ -136,7 +136,7 @@ fn is_place(root: &Path, name: &str) -> bool {
     }
 }
 
-/// Whether the user of this process wrote a file: only then is done what it says.
+/// Tests that the user of this process owns a file. Journals of other users are not executed.
 #[cfg(unix)]
 fn is_own(root: &Path, file: &Path) -> io::Result<bool> {
     use std::os::unix::fs::MetadataExt;

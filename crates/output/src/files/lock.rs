@@ -1,4 +1,4 @@
-//! One process writes in a directory, and what it makes there goes with it if it ends halfway.
+//! Locks a directory for one writing process, and removes what the process created there if it ends early.
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -9,46 +9,49 @@ use cvtcycle_config::{Problem, ProblemKind};
 
 use super::{JOURNAL, LOCK, failed, is_temporary, problem};
 
-/// A lock that another process holds is tried again so often, at this interval: putting files into place takes a moment, a run longer.
+/// Number and interval of attempts on a lock that another process holds: putting files into place takes a moment, a run longer.
 const TRIES: usize = 20;
 const INTERVAL: Duration = Duration::from_millis(10);
-/// The same for a command that has computed its results and needs the lock for that moment only.
+/// Number of attempts by a command that has computed its results and needs the lock only to write them.
 const PATIENT: usize = 500;
 
-/// A directory in which this process, and no other, writes. The lock ends with the process, however that ends.
+/// Directory in which only this process writes. The lock ends with the process, even if it is killed.
 ///
-/// On Unix the directory itself is locked; elsewhere, and on file systems that lock no directories, an empty file in it, which means nothing
-/// once it is not locked; where there are no locks at all, only two commands that begin at once are not kept apart. Directories that were
-/// made for it go again when it is dropped, if they are empty, unless [`DirLock::keep`] was called.
+/// On Unix the directory itself is locked; elsewhere, and on file systems that cannot lock directories, an empty file in it, which has no
+/// meaning once it is unlocked. Without file locks, two commands that start at the same time are not kept apart. Directories created for the
+/// lock are removed when it is dropped, if they are empty, unless [`DirLock::keep`] was called.
 #[derive(Debug)]
 pub struct DirLock {
     path: PathBuf,
     created: Vec<PathBuf>,
-    held: Option<File>,
-    /// Whether a file in the directory is locked, and not the directory itself.
+    locked_file: Option<File>,
+    /// True if a file in the directory is locked instead of the directory itself.
     by_file: bool,
 }
 
-/// How an attempt ended.
+/// Result of an attempt to lock.
 enum Attempt {
     /// Locked, or there are no locks.
-    Locked { held: Option<File>, by_file: bool },
+    Locked {
+        locked_file: Option<File>,
+        by_file: bool,
+    },
     /// Another process holds the lock.
     Busy,
-    /// What was locked was removed or replaced meanwhile.
+    /// The locked path was removed or replaced meanwhile.
     Gone,
 }
 
 impl DirLock {
-    /// Makes what is missing of a directory, and locks it.
+    /// Creates the missing parts of a directory, and locks it.
     ///
     /// # Errors
-    /// A problem of `--out`: another process writes there, or the words of the operating system.
+    /// A problem of `--out`: another process writes there, or an error of the operating system.
     pub fn create(path: &Path) -> Result<Self, Problem> {
         Self::within(TRIES, path, true)
     }
 
-    /// Locks a directory that is there.
+    /// Locks an existing directory.
     ///
     /// # Errors
     /// As [`DirLock::create`].
@@ -56,7 +59,7 @@ impl DirLock {
         Self::within(TRIES, path, false)
     }
 
-    /// Locks a directory that is there, and waits some seconds for another process that puts its files into place.
+    /// Locks an existing directory; waits some seconds for another process that is putting its files into place.
     ///
     /// # Errors
     /// As [`DirLock::create`].
@@ -76,18 +79,21 @@ impl DirLock {
             let mut lock = DirLock {
                 path: path.to_path_buf(),
                 created: Vec::new(),
-                held: None,
+                locked_file: None,
                 by_file: false,
             };
             if makes {
                 make(path, &mut lock.created).map_err(|error| cannot("create", &error))?;
             }
             match attempt(path) {
-                Ok(Attempt::Locked { held, by_file }) => {
-                    (lock.held, lock.by_file) = (held, by_file);
+                Ok(Attempt::Locked {
+                    locked_file,
+                    by_file,
+                }) => {
+                    (lock.locked_file, lock.by_file) = (locked_file, by_file);
                     return Ok(lock);
                 }
-                // The process that holds the lock, or made the directory anew, uses it now.
+                // The process that holds the lock, or recreated the directory, uses it now.
                 Ok(Attempt::Busy | Attempt::Gone) => lock.keep(),
                 Err(error) if makes && error.kind() == ErrorKind::NotFound => {}
                 Err(error) => return Err(cannot("lock", &error)),
@@ -103,13 +109,13 @@ impl DirLock {
         &self.path
     }
 
-    /// Lets the directories stay that were made for it.
+    /// Keeps the directories that were created for it.
     pub fn keep(&mut self) {
         self.created.clear();
     }
 
-    /// Removes what ended processes left half written in the directory, or in a folder in it: plain files under temporary names that
-    /// no process holds. Nothing while a set of files waits to be put into place.
+    /// Removes files that ended processes left incomplete in the directory, or in a folder in it: unlocked plain files under temporary names.
+    /// Does nothing while a commit is pending.
     pub fn sweep(&self, folder: &Path) {
         let Ok(entries) = fs::read_dir(folder) else {
             return;
@@ -145,20 +151,21 @@ impl Drop for DirLock {
             drop(fs::remove_file(self.path.join(LOCK)));
         }
         for dir in self.created.iter().rev() {
-            // Fails if somebody else has put a file there meanwhile, and then it must stay.
+            // Fails if another process has put a file there meanwhile; the directory must then stay.
             drop(fs::remove_dir(dir));
         }
-        // Only now may another process begin.
-        drop(self.held.take());
+        // Unlocking last keeps other processes out until here.
+        drop(self.locked_file.take());
     }
 }
 
-/// Whether there is something of that name, be it a link.
+/// Tests that a path exists, without following a link.
 pub(super) fn is_there(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok()
 }
 
-/// Makes what is missing of a directory, and notes what was made here, outermost first: what another process makes at the same time is not.
+/// Creates the missing parts of a directory and records them, outermost first. Parts that another process creates at the same time are not
+/// recorded.
 fn make(path: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
     let is_missing = |dir: &&Path| !dir.as_os_str().is_empty() && !dir.exists();
     let missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
@@ -173,7 +180,7 @@ fn make(path: &Path, made: &mut Vec<PathBuf>) -> io::Result<()> {
 }
 
 fn attempt(path: &Path) -> io::Result<Attempt> {
-    // What is no directory is not opened: a pipe would be waited for.
+    // Only directories are opened: opening a pipe would block.
     if !fs::metadata(path)?.is_dir() {
         return Err(io::Error::new(
             ErrorKind::NotADirectory,
@@ -183,17 +190,17 @@ fn attempt(path: &Path) -> io::Result<Attempt> {
     if cfg!(unix) {
         match File::open(path) {
             Ok(dir) => match attempt_on(dir, path, false) {
-                // Of the directory there are no locks here.
+                // The file system cannot lock directories.
                 Err(_) => {}
                 attempt => return attempt,
             },
-            // It may be written and not read.
+            // The directory may be writable and not readable.
             Err(error) if error.kind() == ErrorKind::PermissionDenied => {}
             Err(error) => return Err(error),
         }
     }
     let name = path.join(LOCK);
-    // A link is not followed.
+    // Links are not followed.
     if fs::symlink_metadata(&name).is_ok_and(|found| !found.is_file()) {
         let message = format!("{LOCK} in it is not a plain file");
         return Err(io::Error::new(ErrorKind::InvalidInput, message));
@@ -202,7 +209,7 @@ fn attempt(path: &Path) -> io::Result<Attempt> {
     options.read(true).write(true).create(true).truncate(false);
     match attempt_on(options.open(&name)?, &name, true) {
         Err(error) if error.kind() == ErrorKind::Unsupported => Ok(Attempt::Locked {
-            held: None,
+            locked_file: None,
             by_file: true,
         }),
         attempt => attempt,
@@ -212,7 +219,7 @@ fn attempt(path: &Path) -> io::Result<Attempt> {
 fn attempt_on(opened: File, path: &Path, by_file: bool) -> io::Result<Attempt> {
     match opened.try_lock() {
         Ok(()) if is_at(&opened, path) => Ok(Attempt::Locked {
-            held: Some(opened),
+            locked_file: Some(opened),
             by_file,
         }),
         Ok(()) => Ok(Attempt::Gone),
@@ -221,7 +228,7 @@ fn attempt_on(opened: File, path: &Path, by_file: bool) -> io::Result<Attempt> {
     }
 }
 
-/// Whether what was opened is what has that path now.
+/// Tests that an opened file is still the one at that path.
 #[cfg(unix)]
 fn is_at(opened: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
@@ -237,7 +244,7 @@ fn is_at(_: &File, path: &Path) -> bool {
     is_there(path)
 }
 
-/// Makes the renames last through a power cut, where directories can be synced at all.
+/// Makes the renames durable across a power cut, where directories can be synced.
 pub fn sync_directory(path: &Path) {
     if let Ok(dir) = File::open(path) {
         drop(dir.sync_all());

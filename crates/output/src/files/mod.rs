@@ -1,4 +1,4 @@
-//! The files of a run: all of them appear under their names, or none.
+//! Files of a run: all appear under their names, or none.
 mod journal;
 mod lock;
 mod set;
@@ -18,20 +18,20 @@ pub use lock::{DirLock, sync_directory};
 pub use set::{FileSet, FileWriter};
 pub use sum::{Sum, Summing, Sums, hex, sha256, sum_of};
 
-/// The files that mark a directory as one of an earlier run or calibration.
+/// Files that identify a directory as one of an earlier run or calibration.
 const MARKS: [&str; 2] = ["summary.json", "calibration.json"];
-/// The file that marks a directory as one of a study.
+/// File that identifies a directory as one of a study.
 const STUDY: &str = "study.json";
-/// Names of files that are still being written begin and end like this.
+/// Prefix and suffix of the names of incomplete files.
 const TEMPORARY: (&str, &str) = (".cvtcycle-", ".tmp");
-/// The journal of files that are being put into place.
+/// Journal of a commit in progress.
 const JOURNAL: &str = ".cvtcycle-commit.json";
-/// Locked by the process that writes, where the directory itself cannot be locked.
+/// Lock file, used where the directory itself cannot be locked.
 pub const LOCK: &str = ".lock";
-/// A directory's contents are listed up to this number of names.
+/// Maximum number of names listed of a directory's contents.
 const LISTED: usize = 8;
 
-/// A directory that receives the files of a run, and that no other process writes meanwhile.
+/// Directory that receives the files of a run and is locked against other processes.
 ///
 /// Files are written under temporary names and renamed by [`OutputDir::commit`], all or none. Dropped before
 /// that, it removes them again, with the directories that it created.
@@ -60,7 +60,7 @@ impl OutputDir {
     /// earlier run. Fails at once if no file can be created in it.
     ///
     /// # Errors
-    /// A problem of `--out` that says what is in the way.
+    /// A problem of `--out` that names the obstacle.
     pub fn create(path: impl AsRef<Path>, force: bool) -> Result<Self, Problem> {
         let path = path.as_ref().to_path_buf();
         check_directory(&path)?;
@@ -75,7 +75,7 @@ impl OutputDir {
             set,
             sums: Sums::new(),
         };
-        // Better to learn now than after the simulation that nothing can be written here.
+        // Fails before the simulation if the directory is not writable.
         temporary_in(&dir.path).map_err(|error| dir.cannot_write("a file", &error))?;
         Ok(dir)
     }
@@ -97,10 +97,10 @@ impl OutputDir {
         Ok(())
     }
 
-    /// Writes several files, each as [`OutputDir::write`] does, at the same time. They are listed in this order, whichever is ready first.
+    /// Writes several files in parallel, each as [`OutputDir::write`] does. They are listed in this order, independent of timing.
     ///
     /// # Errors
-    /// As there, of the first file in this order.
+    /// The first error in this order, as of [`OutputDir::write`].
     pub fn write_all(&mut self, files: Vec<(String, FileWriter)>) -> Result<(), Problem> {
         let (names, writers): (Vec<String>, Vec<FileWriter>) = files.into_iter().unzip();
         for (k, name) in names.iter().enumerate() {
@@ -120,7 +120,7 @@ impl OutputDir {
         &self.path
     }
 
-    /// SHA-256 of the files so far, by their names.
+    /// SHA-256 of the files written so far, by name.
     pub fn sums(&self) -> &Sums {
         &self.sums
     }
@@ -133,7 +133,7 @@ impl OutputDir {
         self.write(name, |out| out.write_all(bytes.as_ref()))
     }
 
-    /// Names that an earlier run left in the directory and that this run has not written.
+    /// Lists the names that an earlier run left in the directory and this run has not written.
     pub fn left_over(&self) -> Vec<String> {
         let is_left = |name: &&String| !self.set.names().any(|other| other == Path::new(name));
         self.earlier.iter().filter(is_left).cloned().collect()
@@ -153,14 +153,14 @@ impl OutputDir {
         Ok(paths)
     }
 
-    /// Checks the name of a file that is not yet one of the set, after others that are not either.
+    /// Checks the name of a new file against those of the set and against `others`.
     fn check_name(&self, name: &str, others: &[String]) -> Result<(), Problem> {
         if !journal::is_plain_name(name) || name.contains(['/', '\\', ':']) {
             let message = format!("`{name}` cannot be the name of an output file");
             let hint = "rename the vehicle or cycle that gives the file its name";
             return Err(problem(&self.path, &message, hint));
         }
-        // Not all file systems tell upper from lower case.
+        // Some file systems ignore case.
         let lower = name.to_lowercase();
         let is_same = |other: &Path| other.to_string_lossy().to_lowercase() == lower;
         let mut names = self.set.names().chain(others.iter().map(Path::new));
@@ -182,7 +182,7 @@ impl OutputDir {
     }
 }
 
-/// Checks that a path can be that of a directory.
+/// Checks that a path can be used as a directory.
 pub fn check_directory(path: &Path) -> Result<(), Problem> {
     if path.as_os_str().is_empty() {
         let message = "the name of the output directory is empty";
@@ -196,11 +196,11 @@ pub fn check_directory(path: &Path) -> Result<(), Problem> {
     Ok(())
 }
 
-/// A file under a temporary name in a directory.
+/// Creates a file under a temporary name in a directory.
 pub fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
-    // Temporary files are private by default; results are as readable as the user's umask says.
+    // Temporary files are private by default; results follow the user's umask.
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
@@ -209,12 +209,12 @@ pub fn temporary_in(directory: &Path) -> io::Result<NamedTempFile> {
     builder.tempfile_in(directory)
 }
 
-/// Whether a name is that of a file that was being written when a run was interrupted.
+/// Tests for the name of an incomplete file of an interrupted run.
 pub fn is_temporary(name: &str) -> bool {
     name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1)
 }
 
-/// Names in a directory, sorted, without the lock and what an interrupted run may have left half written.
+/// Lists the names in a directory, sorted, without lock, journal and incomplete files.
 pub fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(path)? {
@@ -232,7 +232,7 @@ fn is_mark(name: &str) -> bool {
 }
 
 fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Problem> {
-    // The results of a study bear the mark of a run as well, and are not to be replaced by one.
+    // Results of a study also contain the files of a run, and must not be replaced by one.
     let marked = names.iter().any(|name| is_mark(name)) && !names.iter().any(|name| name == STUDY);
     if names.is_empty() || (marked && force) {
         return Ok(());
@@ -250,12 +250,12 @@ fn check_contents(path: &Path, names: &[String], force: bool) -> Result<(), Prob
     Err(problem(path, &message, &hint).settings(settings))
 }
 
-/// The names of a directory, of many the first.
+/// Lists the names of a directory, up to a maximum.
 pub fn list(names: &[String]) -> String {
     listed(names, LISTED)
 }
 
-/// The first names, and how many more there are.
+/// Lists the first `max` names and the number of the remaining ones.
 pub fn listed(names: &[String], max: usize) -> String {
     let list = names[..names.len().min(max)].join(", ");
     match names.len().saturating_sub(max) {
@@ -264,7 +264,7 @@ pub fn listed(names: &[String], max: usize) -> String {
     }
 }
 
-/// The problem of an operating system error in writing.
+/// Converts an operating system error in writing into a problem.
 pub fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
     use io::ErrorKind::{
         NotADirectory, PermissionDenied, QuotaExceeded, ReadOnlyFilesystem, StorageFull,
@@ -275,13 +275,13 @@ pub fn failed(path: &Path, what: &str, error: &io::Error) -> Problem {
         NotADirectory => "a part of the path is a file; choose another name",
         _ => "check the path, or choose another directory",
     };
-    // Without the temporary name that is appended where a file could not be created.
+    // Strips the temporary name that is appended to the error if a file could not be created.
     let words = error.to_string();
     let words = words.split(" at path \"").next().unwrap_or_default();
     problem(path, &format!("{what}: {words}"), hint)
 }
 
-/// A problem of the output.
+/// Creates a problem of the output.
 pub fn problem(path: &Path, message: &str, hint: &str) -> Problem {
     Problem::output(message.to_string())
         .at(Argument::Output)

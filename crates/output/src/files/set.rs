@@ -1,8 +1,8 @@
-//! Files that get their names together, wherever the process ends.
+//! Set of files renamed together, safe against a kill at any point.
 //!
-//! All of them are written under temporary names first. Then a journal says which name each one gets, and its own rename is the moment in
-//! which the new set counts: a process that is killed before leaves the earlier files as they were, and what one leaves that is killed
-//! after is completed by the next one that reads or writes there.
+//! All files are written under temporary names first. A journal then maps them to their final names, and renaming the journal commits the set: a
+//! process killed before leaves the earlier files unchanged, and a commit interrupted after is completed by the next process that reads or
+//! writes there.
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -18,16 +18,16 @@ use super::sum::{Sum, Summing};
 use super::{JOURNAL, temporary_in};
 use crate::BUILD;
 
-/// Files of a directory that get their names together: names in it, or in a folder in it. Dropped before [`FileSet::commit`], it removes them.
+/// Files that are renamed together, in a directory or a folder in it. Dropping the set before [`FileSet::commit`] removes them.
 #[derive(Debug)]
 pub struct FileSet {
-    /// Path of each file now, and its name.
+    /// Current path of each file, and its final name.
     files: Vec<(PathBuf, PathBuf)>,
-    /// Names of earlier files that go.
+    /// Names of earlier files to remove.
     remove: Vec<PathBuf>,
-    /// Other files under temporary names.
+    /// Further files under temporary names.
     others: Vec<PathBuf>,
-    // Last: the files go while no other process may write.
+    // Dropped last, so that the files are removed under the lock.
     lock: DirLock,
 }
 
@@ -35,7 +35,7 @@ pub struct FileSet {
 pub type FileWriter<'a> = Box<dyn FnOnce(&mut (dyn Write + Send)) -> io::Result<()> + Send + 'a>;
 
 impl FileSet {
-    /// Begins a set in a locked directory, after what another process was putting into place there.
+    /// Begins a set in a locked directory, after completing an interrupted commit.
     ///
     /// # Errors
     /// A problem of `--out`: the directory cannot be written, or belongs to another user, or the journal is damaged.
@@ -49,15 +49,15 @@ impl FileSet {
         })
     }
 
-    /// Removes what ended processes left half written.
+    /// Removes incomplete files of ended processes.
     pub fn sweep(&self) {
         self.lock.sweep(self.lock.path());
     }
 
-    /// Writes a file, down to the disk, under a temporary name, and returns its checksum.
+    /// Writes a file under a temporary name, syncs it to disk, and returns its checksum.
     ///
     /// # Errors
-    /// Those of the operating system.
+    /// Errors of the operating system.
     pub fn write(
         &mut self,
         name: &Path,
@@ -68,7 +68,7 @@ impl FileSet {
         Ok(sum)
     }
 
-    /// The same for several files, at the same time; checksums in their order.
+    /// Writes several files in parallel; returns checksums in their order.
     pub fn write_all(&mut self, files: Vec<(&Path, FileWriter)>) -> Vec<io::Result<Sum>> {
         let this = &*self;
         let written = files.into_par_iter();
@@ -81,7 +81,7 @@ impl FileSet {
         written.into_iter().map(&mut keep).collect()
     }
 
-    /// Lets an earlier file go with the commit.
+    /// Marks an earlier file for removal at the commit.
     pub fn remove(&mut self, name: PathBuf) {
         self.remove.push(name);
     }
@@ -94,7 +94,7 @@ impl FileSet {
     /// Gives every file its name.
     ///
     /// # Errors
-    /// The file that cannot be put into place; all earlier files have then their names again.
+    /// The file that cannot be put into place; all earlier files then have their names again.
     pub fn commit(mut self) -> Result<(), Unplaced> {
         carry_out(&self.steps()?)?;
         self.lock.keep();
@@ -106,7 +106,7 @@ impl FileSet {
         f: impl FnOnce(&mut (dyn Write + Send)) -> io::Result<()>,
     ) -> io::Result<(PathBuf, Sum)> {
         let file = temporary_in(self.lock.path())?;
-        // The bare file: the named one would add its temporary name to every error.
+        // `NamedTempFile` would add its temporary name to every error.
         let mut out = Summing::new(BufWriter::new(file.as_file()));
         f(&mut out)?;
         out.flush()?;
@@ -116,13 +116,13 @@ impl FileSet {
         Ok((path, sum))
     }
 
-    /// A name for a file that waits for its end.
+    /// Creates a temporary name for a file that is moved aside.
     fn spare(&self) -> io::Result<PathBuf> {
         let spare = temporary_in(self.lock.path())?.into_temp_path();
         spare.keep().map_err(|error| error.error)
     }
 
-    /// What the commit does, in this order. The first rename is that of the journal.
+    /// Steps of the commit in order. The first rename is that of the journal.
     fn steps(&mut self) -> Result<Vec<Step>, Unplaced> {
         let root = self.lock.path().to_path_buf();
         let place = root.join(JOURNAL);
@@ -161,7 +161,7 @@ impl FileSet {
         Ok(steps)
     }
 
-    /// Writes the journal under a temporary name. None for names that are no text, which it cannot hold: they are put into place without.
+    /// Writes the journal under a temporary name. `None` if a name is not valid text; the files are then put into place without a journal.
     fn journal(&mut self) -> io::Result<Option<PathBuf>> {
         let text = |path: &Path| path.to_str().map(str::to_owned);
         let last = |path: &Path| text(Path::new(path.file_name()?));
@@ -188,7 +188,7 @@ impl FileSet {
 
 impl Drop for FileSet {
     fn drop(&mut self) {
-        // A journal that could not be taken back needs what it names.
+        // A journal that could not be withdrawn needs the files that it names.
         if is_there(&self.lock.path().join(JOURNAL)) {
             return;
         }
@@ -248,7 +248,7 @@ mod tests {
         set
     }
 
-    /// Ends as a process ends that is killed: nothing is removed, and the lock is free.
+    /// Simulates a killed process: removes nothing, and frees the lock.
     fn kill(mut set: FileSet) {
         set.files.clear();
         set.others.clear();
@@ -256,7 +256,7 @@ mod tests {
 
     const RUN: [(&str, &str); 3] = [("a.csv", "1"), ("b.csv", "1"), ("summary.json", "1")];
 
-    /// What was there, what is new, and what goes.
+    /// Earlier files, new files, and names to remove.
     type Case = (
         &'static [(&'static str, &'static str)],
         &'static [(&'static str, &'static str)],
@@ -289,9 +289,9 @@ mod tests {
         after
     }
 
-    /// Killed at any step, the directory holds the earlier files until the journal has its name, and the new ones after, as soon as it is settled.
+    /// A commit killed at any step leaves the earlier files until the journal has its name, and after settling the new ones from then on.
     #[test]
-    fn wherever_the_process_ends_the_files_are_all_old_or_all_new() {
+    fn kill_at_any_step_leaves_all_old_or_all_new_files() {
         for (before, new, gone) in CASES {
             let before = tree_of(before);
             let after = after(&before, new, gone);
@@ -318,9 +318,9 @@ mod tests {
         }
     }
 
-    /// A step that fails takes all steps before it back; and if the way back is interrupted as well, the set is completed.
+    /// A failed step undoes all steps before it; if the undo is interrupted as well, the set is completed.
     #[test]
-    fn wherever_a_step_fails_the_earlier_files_are_back() {
+    fn failed_step_restores_the_earlier_files() {
         for (before, new, gone) in CASES {
             let before = tree_of(before);
             let after = after(&before, new, gone);
@@ -353,9 +353,9 @@ mod tests {
         }
     }
 
-    /// Of two that write into one directory one is refused, and changes nothing.
+    /// A second process that writes into a directory is refused, and changes nothing.
     #[test]
-    fn one_at_a_time() {
+    fn second_writer_is_refused() {
         let dir = folder(&Tree::new());
         let first = begun(dir.path(), &RUN, &[]);
         let problem = DirLock::take(dir.path()).expect_err("it is locked");
@@ -366,9 +366,9 @@ mod tests {
         assert_eq!(tree(dir.path()), tree_of(&RUN));
     }
 
-    /// A journal that another program wrote leads nowhere: names stay in the directory, and only temporary files are moved.
+    /// A foreign journal cannot reach outside: names stay in the directory, and only temporary files are moved.
     #[test]
-    fn a_journal_that_leads_elsewhere_is_damaged() {
+    fn journal_with_outside_paths_is_damaged() {
         let temporary = ".cvtcycle-0.tmp";
         let journal = |from: &str, to: &str, gone: &str, schema: u32| {
             let (files, remove) = ([[from, to]], [gone]);

@@ -1,4 +1,4 @@
-//! The steps that put files into place: all of them are taken, or none.
+//! Undoable steps that put files into place, all or none.
 
 use std::fs;
 use std::io::{self};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use super::is_temporary;
 use super::lock::sync_directory;
 
-/// A file that could not be put into place, and why.
+/// File that could not be put into place, with the error.
 pub(super) type Unplaced = (PathBuf, io::Error);
 
-/// What puts files into place; each can be undone.
+/// Undoable step of a commit.
 #[derive(Debug)]
 pub(super) enum Step {
     Folder(PathBuf),
@@ -40,7 +40,7 @@ impl Step {
         }
     }
 
-    /// The file that it is about, by its own name.
+    /// File that the step concerns, by its final name.
     fn subject(&self) -> &Path {
         match self {
             Step::Rename(from, to) if has_temporary_name(to) => from,
@@ -56,11 +56,11 @@ fn has_temporary_name(path: &Path) -> bool {
     is_temporary(&name.to_string_lossy())
 }
 
-/// Takes all steps or, if one fails, none: the way back ends with the journal, so that it may be interrupted as well.
+/// Runs all steps; undoes them if one fails. The undo withdraws the journal last, so that it may be interrupted as well.
 pub(super) fn carry_out(steps: &[Step]) -> Result<(), Unplaced> {
     for (done, step) in steps.iter().enumerate() {
         if let Err(error) = step.run() {
-            // If one way back is closed the journal stays, and the next command completes the set.
+            // If a step cannot be undone the journal stays, and the next command completes the set.
             drop(steps[..done].iter().rev().try_for_each(Step::undo));
             return Err((step.subject().to_path_buf(), error));
         }

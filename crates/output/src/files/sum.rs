@@ -11,20 +11,20 @@ pub type Sum = [u8; 32];
 /// SHA-256 of files in hexadecimal, by their names.
 pub type Sums = IndexMap<String, String>;
 
-/// SHA-256 of some bytes.
+/// Hashes bytes.
 pub fn sha256(bytes: &[u8]) -> Sum {
     Sha256::digest(bytes).into()
 }
 
-/// A checksum in hexadecimal.
+/// Formats a checksum in hexadecimal.
 pub fn hex(sum: &Sum) -> String {
     sum.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// SHA-256 of what is left to read of a file.
+/// Hashes the rest of a file.
 ///
 /// # Errors
-/// Those of the operating system.
+/// Errors of the operating system.
 pub fn sum_of(mut file: &File) -> io::Result<Sum> {
     let mut hasher = Sha256::new();
     let mut buffer = vec![0; 1 << 16];
@@ -38,7 +38,7 @@ pub fn sum_of(mut file: &File) -> io::Result<Sum> {
     }
 }
 
-/// Takes the checksum of what is written through it.
+/// Writer that hashes the bytes passed through it.
 #[derive(Debug)]
 pub struct Summing<W> {
     out: W,
@@ -46,7 +46,7 @@ pub struct Summing<W> {
 }
 
 impl<W: Write> Summing<W> {
-    /// Nothing yet.
+    /// Starts with an empty hash.
     pub fn new(out: W) -> Self {
         Summing {
             out,
@@ -54,7 +54,7 @@ impl<W: Write> Summing<W> {
         }
     }
 
-    /// The checksum.
+    /// Returns the checksum.
     pub fn finish(self) -> Sum {
         self.hasher.finalize().into()
     }

@@ -1,4 +1,4 @@
-//! A `trace_*.csv` of this program back to a history.
+//! Reads a `trace_*.csv` of this program into a history.
 
 use super::{History, MAX_PHASES, SHORTER, flags_of, is_number, known, missing};
 use crate::Flags;
@@ -7,9 +7,9 @@ use cvtcycle_config::bounded::STEPS;
 use cvtcycle_config::csv::{self, Cells, Collector, Column, Line, Schema, Table};
 use cvtcycle_config::{Bound, Problem, Problems};
 
-/// What helps with a trace that cannot be read.
+/// Hint for a trace that cannot be read.
 pub const AGAIN: &str = "write it anew with `cvtcycle run`";
-/// What a cell of the column of flags may hold.
+/// Allowed contents of a cell of the column of flags.
 pub const FLAGS: &str = "names of flags joined by |";
 
 fn schema() -> Schema {
@@ -32,12 +32,12 @@ fn schema() -> Schema {
 }
 
 impl History {
-    /// Reads a trace that this program has written as CSV. Columns that it does not know, as of a newer version, are passed over.
+    /// Reads a CSV trace written by this program. Unknown columns, as of a newer version, are skipped.
     ///
     /// # Errors
-    /// All problems at once, each with its line and column: the file is no text, a column that every trace has is missing or there
-    /// twice, a row has too few or too many values, a cell is no number, a flag is unknown, time does not rise, there are no rows.
-    /// After 50 the rest is counted in one last entry.
+    /// All problems at once, each with its line and column: the file is not text, a required column is missing or appears twice, a row has too
+    /// few or too many values, a cell is not a number, a flag is unknown, time does not rise, there are no rows. Problems beyond 50 are counted
+    /// in one last entry.
     pub fn read_csv(file_name: &str, bytes: &[u8]) -> Result<Self, Problems> {
         let mut problems = Collector::new(file_name);
         let schema = schema();
@@ -51,7 +51,7 @@ impl History {
     }
 }
 
-/// Reports columns that every trace has and this one has not.
+/// Reports required columns that are missing.
 fn check(table: &Table, header: Line<'_>, problems: &mut Collector<'_>) {
     for own in missing(&columns_of(table)) {
         problems.line(header, &own.name, || {
@@ -67,7 +67,7 @@ fn columns_of(table: &Table) -> Vec<&'static TraceColumn> {
     known(table.columns().flatten().map(|column| &*column.name))
 }
 
-/// A trace while it is read; columns are indices in [`COLUMNS`].
+/// Trace being read; columns are indices into [`COLUMNS`].
 struct Reading {
     history: History,
     numbers: Vec<usize>,
@@ -96,7 +96,7 @@ impl Reading {
         }
     }
 
-    /// Adds a row; false where no further one is to be read.
+    /// Adds a row; false once no further row should be read.
     fn add(&mut self, row: &csv::Row<'_, '_>, problems: &mut Collector<'_>) -> bool {
         let time_s = row.number(self.time);
         if let (Some(before_s), Some(time_s)) = (self.before_s, time_s)
@@ -124,7 +124,7 @@ impl Reading {
     }
 }
 
-/// What is wrong where nearly every step has a phase of its own.
+/// Problem of a file in which nearly every step has a phase of its own.
 pub fn too_many_phases(history: &History) -> Option<Problem> {
     let message = "there are too many phases";
     (history.phases().len() > MAX_PHASES).then(|| {
@@ -134,7 +134,7 @@ pub fn too_many_phases(history: &History) -> Option<Problem> {
     })
 }
 
-/// A word, with the quotes in it as they were before it was written.
+/// Returns a word with its quotes as they were before it was written.
 fn unquoted(row: &csv::Row<'_, '_>, column: usize) -> String {
     let cell = row.cell(column);
     let quoted = cell.is_some_and(|cell| cell.line.text[..cell.field.start].ends_with('"'));

@@ -1,14 +1,14 @@
-//! A grid of operating points: what can be varied, and the values of each axis.
+//! Grid of operating points: axes and their values.
 
 use crate::number::plain;
 use cvtcycle_config::Bound;
-use cvtcycle_model::bench::solvable_ratios;
+use cvtcycle_model::rig::solvable_ratios;
 use cvtcycle_model::transmission::Transmission;
 
-/// Most points of a grid.
+/// Maximum number of points.
 pub const MAX_POINTS: usize = 1_000_000;
 
-/// What a grid can vary, outermost first: the last one runs fastest.
+/// Axes of a grid, outermost first: the last one varies fastest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum Axis {
@@ -16,15 +16,15 @@ pub enum Axis {
     Ratio,
     /// Oil in the sump, degC.
     Sump,
-    /// Belt and spray, degC; in steady state over the sump where it is not given.
+    /// Belt and spray, degC; by default in steady state above the sump.
     Belt,
     /// Throttle that the clamp law sees.
     Throttle,
-    /// Secondary pressure, bar; the clamp law's where it is not given.
+    /// Secondary pressure, bar; by default from the clamp law.
     Pressure,
-    /// Torque at the output shaft, Nm; not given where that at the input shaft is.
+    /// Torque at the output shaft, Nm; absent if that at the input shaft is given.
     Torque,
-    /// Torque at the input shaft, Nm; in a CVT the clamp law sees it over full load as throttle.
+    /// Torque at the input shaft, Nm; in a CVT the clamp law takes it over full load as throttle.
     InputTorque,
     /// Speed of the input shaft, rpm.
     Speed,
@@ -45,9 +45,9 @@ impl Axis {
         Axis::Speed,
     ];
 
-    /// Range of its values, and the suffix of a key with its unit; ratios and gears depend on the transmission.
+    /// Valid range, and the suffix of a key with its unit; ratios and gears depend on the transmission.
     pub fn range(self) -> (Bound, &'static str) {
-        // Where the fluid models hold.
+        // Validity of the fluid models.
         let temp = Bound::closed(-40.0, 160.0);
         match self {
             Axis::Ratio => (Bound::any(), ""),
@@ -59,7 +59,7 @@ impl Axis {
         }
     }
 
-    /// As [`Axis::range`], for a transmission: ratios at which the belt fits around both pulleys, or gears that there are.
+    /// Valid range for a transmission, as [`Axis::range`]: ratios at which the belt fits around both pulleys, or existing gears.
     pub fn range_in(self, transmission: &Transmission) -> (Bound, &'static str) {
         match (self, transmission) {
             (Axis::Ratio, Transmission::Cvt(cvt)) => {
@@ -73,7 +73,7 @@ impl Axis {
         }
     }
 
-    /// Title of a plot's axis and heading of a table's column.
+    /// Axis title of a plot and heading of a table's column.
     fn names(self, cvt: bool) -> (&'static str, &'static str) {
         match self {
             Axis::Ratio if cvt => ("Belt ratio", "ratio"),
@@ -98,7 +98,7 @@ impl Axis {
         self.names(cvt).1
     }
 
-    /// A value of the axis, without its unit.
+    /// Formats a value without its unit.
     pub fn text(self, x: f64) -> String {
         match self {
             Axis::Ratio => plain((x * 1e3).round() / 1e3),
@@ -106,7 +106,7 @@ impl Axis {
         }
     }
 
-    /// A value of the axis in words.
+    /// Formats a value in words.
     pub fn words(self, cvt: bool, x: f64) -> String {
         let text = self.text(x);
         match self {
@@ -120,7 +120,7 @@ impl Axis {
     }
 }
 
-/// Values of all axes, each in the unit of its column. Empty: not given, for belt temperature, pressure, and one of the torques only.
+/// Values of all axes, each in the unit of its column. Only belt temperature, pressure and one of the torques may be empty: not given.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LossGrid {
     /// Values by [`Axis`].
@@ -129,33 +129,33 @@ pub struct LossGrid {
 
 impl LossGrid {
     /// Values of one axis.
-    pub fn of(&self, axis: Axis) -> &[f64] {
+    pub fn axis_values(&self, axis: Axis) -> &[f64] {
         &self.values[axis as usize]
     }
 
     /// Axes with more than one value, outermost first.
     pub fn varied(&self) -> Vec<Axis> {
         let mut axes = Axis::ALL.to_vec();
-        axes.retain(|axis| self.of(*axis).len() > 1);
+        axes.retain(|axis| self.axis_values(*axis).len() > 1);
         axes
     }
 
-    /// Number of points, as a float: it may exceed what can be counted.
+    /// Number of points as a float, since it may overflow an integer.
     pub fn size(&self) -> f64 {
         self.values.iter().map(|v| v.len().max(1) as f64).product()
     }
 
-    /// Number of points of a grid that is not too large.
+    /// Number of points; valid up to [`MAX_POINTS`].
     pub fn len(&self) -> usize {
         self.values.iter().map(|v| v.len().max(1)).product()
     }
 
-    /// Whether there is no point; never, since an axis without values counts as one.
+    /// Always false: an axis without values counts as one point.
     pub fn is_empty(&self) -> bool {
         false
     }
 
-    /// Index of the value of each axis at a point.
+    /// Indices of the axis values at a point.
     pub fn indices(&self, mut index: usize) -> [usize; Axis::COUNT] {
         let mut out = [0; Axis::COUNT];
         for (place, values) in out.iter_mut().zip(&self.values).rev() {
@@ -166,7 +166,7 @@ impl LossGrid {
         out
     }
 
-    /// The values of a point, NaN where an axis is not given.
+    /// Axis values of a point, NaN where an axis is not given.
     pub fn at(&self, index: usize) -> [f64; Axis::COUNT] {
         let indices = self.indices(index);
         std::array::from_fn(|k| self.values[k].get(indices[k]).copied().unwrap_or(f64::NAN))

@@ -1,4 +1,4 @@
-//! Whether a baseline is the subject with another transmission, and what else differs.
+//! Compares a baseline with the subject: same car with another transmission, or other differences.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::number::signed;
 use cvtcycle_config::KeyInfo;
 use cvtcycle_config::setup::Setup;
 
-/// Tables in which both have the same values where the comparison is like for like.
+/// Tables whose values are equal in a like-for-like comparison.
 const SAME: [&str; 5] = [
     "road_load.",
     "engine.",
@@ -14,12 +14,12 @@ const SAME: [&str; 5] = [
     "thermal.engine.",
     "thermal.radiator.",
 ];
-/// Largest difference of a value, over the value: that of rounding.
+/// Maximum relative difference of equal values: rounding.
 const EQUAL: f64 = 1e-9;
-/// That of a wheel radius, whose measured values scatter as much.
+/// Maximum relative difference of a wheel radius, whose measurements scatter by this much.
 const RADIUS: (&str, f64) = ("road_load.wheel_radius_m", 0.01);
 
-/// A value of the subject that a baseline does not share; empty where one of them has none.
+/// Value of the subject that a baseline does not share; empty where a car lacks it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Difference {
     /// Dotted key.
@@ -32,11 +32,11 @@ pub struct Difference {
     pub baseline: String,
 }
 
-/// Name, unit, decimals and value of what a difference is named by first.
-type Named = (&'static str, &'static str, usize, fn(&Setup) -> f64);
+/// Name, unit, decimals and value of a difference named first.
+type NamedQuantity = (&'static str, &'static str, usize, fn(&Setup) -> f64);
 
-/// What moves the fuel most.
-const NAMED: [Named; 7] = [
+/// Quantities with the largest effect on fuel.
+const NAMED: [NamedQuantity; 7] = [
     ("mass", "kg", 0, |car| car.road_load.base.mass_kg),
     ("rated power", "kW", 0, |car| car.engine().rated_w / 1e3),
     ("displacement", "cm3", 0, |car| {
@@ -53,10 +53,10 @@ const NAMED: [Named; 7] = [
         car.road_load.base.wheel_radius_m * 1e3
     }),
 ];
-/// So many of them are named, so that the words stay on a line.
-const MOST_NAMED: usize = 3;
+/// Maximum number of named differences, so that the words fit on a line.
+const MAX_NAMED: usize = 3;
 
-/// What differs besides the transmission and its oil.
+/// Lists differences other than the transmission and its oil.
 #[must_use]
 pub fn differences(subject: &Setup, baseline: &Setup) -> Vec<Difference> {
     let watched = |info: &&KeyInfo| {
@@ -101,7 +101,7 @@ fn same(a: &KeyInfo, b: &KeyInfo) -> bool {
     }
 }
 
-/// "like for like", or what makes that it is not: "not like for like: mass -190 kg, rated power -22 kW and 12 other values".
+/// Words for a comparison: "like for like", or "not like for like: mass -190 kg, rated power -22 kW and 12 other values".
 #[must_use]
 pub fn words(subject: &Setup, baseline: &Setup, differences: &[Difference]) -> String {
     if differences.is_empty() {
@@ -113,7 +113,7 @@ pub fn words(subject: &Setup, baseline: &Setup, differences: &[Difference]) -> S
         let is_zero = text.chars().all(|c| !c.is_ascii_digit() || c == '0');
         (!is_zero).then(|| format!("{name} {text} {unit}"))
     });
-    let named: Vec<String> = named.take(MOST_NAMED).collect();
+    let named: Vec<String> = named.take(MAX_NAMED).collect();
     let rest = differences.len().saturating_sub(named.len());
     let rest = match (rest, named.len()) {
         (0, _) => String::new(),

@@ -1,11 +1,11 @@
-//! The checks that a run failed: of each its time, and its worst or its first row.
+//! Failed checks of a run, each with its time, and its worst or first row.
 //!
 //! | check | fails |
 //! |---|---|
 //! | `missed_trace`, `not_converged`, `too_hot`, `wrong_gear` | a row with the flag |
 //! | `overspeed` | a row with the flag, more than 1 % above the end of the full-load line as well |
 //! | `ledger_error` | an energy balance of a row open by more than 1e-9, or that of the run by more than the rounding of its sums |
-//! | `not_finite` | a row in which torque, speed, fuel or a temperature is no number; its ledger is not looked at then |
+//! | `not_finite` | a row in which torque, speed, fuel or a temperature is not finite; its ledger is not checked |
 //! | flags of [`STRICT`] | under `--strict` a row with the flag |
 
 use serde::{Deserialize, Serialize};
@@ -15,13 +15,13 @@ use crate::Flags;
 use crate::number::{finite, fixed};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::{HIGHEST_K, Totals};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
 use cvtcycle_model::keys::rpm;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::math::larger;
 
-/// Ledger error above which a row fails, and a run whose sums round less.
+/// Maximum ledger error of a row, and of a run unless its sums round more.
 const LEDGER_TOLERANCE: f64 = 1e-9;
-/// Engine speed over the end of the full-load line that is no failure yet: slip of a belt comes on top of the ratio that is aimed at.
+/// Engine speed over the end of the full-load line up to which overspeed is no failure: belt slip adds to the ratio target.
 const OVERSPEED: f64 = 1.01;
 /// Flags that fail a strict run.
 const STRICT: [Flags; 4] = [
@@ -30,7 +30,7 @@ const STRICT: [Flags; 4] = [
     Flags::LOW_CLAMP,
     Flags::FLOW_LIMITED,
 ];
-/// What is too hot, in the order of [`HIGHEST_K`].
+/// Names of the temperatures in [`HIGHEST_K`].
 const HOT: [&str; HIGHEST_K.len()] = ["coolant", "engine oil", "transmission oil"];
 
 /// A check that a run failed.
@@ -44,7 +44,7 @@ pub struct Failure {
     pub at_s: Option<f64>,
     /// Phase of that row.
     pub phase: Option<String>,
-    /// What the value is one of, where the name of the check does not say it: `coolant`, `engine oil`, `transmission oil`.
+    /// Subject of the value, unless the name of the check says it: `coolant`, `engine oil`, `transmission oil`.
     pub of: Option<String>,
     /// Value in the worst row.
     pub value: Option<f64>,
@@ -55,7 +55,7 @@ pub struct Failure {
 }
 
 impl Failure {
-    fn of_flag(flag: Flags, totals: &Totals) -> Self {
+    fn from_flag(flag: Flags, totals: &Totals) -> Self {
         Failure {
             check: flag.names().collect(),
             seconds: finite(totals.seconds(flag)),
@@ -63,7 +63,7 @@ impl Failure {
         }
     }
 
-    /// With the value of its worst row, the limit and the unit.
+    /// Adds the value of the worst row, the limit and the unit.
     fn value(self, value: f64, limit: impl Into<Option<f64>>, unit: &str) -> Self {
         Failure {
             value: finite(value),
@@ -73,7 +73,7 @@ impl Failure {
         }
     }
 
-    /// The failure in a few words: `overspeed for 212 s, worst 15117.0 rpm at 98 s in eudc`.
+    /// Formats the failure in a few words: `overspeed for 212 s, worst 15117.0 rpm at 98 s in eudc`.
     pub fn brief(&self) -> String {
         let check = &self.check;
         let Some(seconds) = self.seconds else {
@@ -107,8 +107,8 @@ pub struct Deficit {
 }
 
 impl Deficit {
-    /// That of a run.
-    pub(super) fn of(cycle: &Cycle, driven: &Driven) -> Option<Self> {
+    /// Finds the worst row of a run that missed its trace.
+    pub(super) fn worst(cycle: &Cycle, driven: &Driven) -> Option<Self> {
         let totals = &driven.outcome.totals;
         let at_s = finite(totals.worst_deficit_at_s)?;
         Some(Deficit {
@@ -120,7 +120,7 @@ impl Deficit {
     }
 }
 
-/// The phase of a row by its end, s.
+/// Finds the phase of a row by its end, s.
 fn phase_at(cycle: &Cycle, driven: &Driven, at_s: f64) -> Option<String> {
     let trace = cycle.trace_for(driven.setup.transmission().is_cvt());
     let interval = trace.intervals.iter().find(|i| at_s <= i.end_s + 1e-9)?;
@@ -128,14 +128,14 @@ fn phase_at(cycle: &Cycle, driven: &Driven, at_s: f64) -> Option<String> {
     Some(name.unwrap_or(&cycle.name).to_lowercase())
 }
 
-/// Relative errors of the energy balances of a run: the largest of a row, and that of the sums.
+/// Relative errors of the energy balances of a run: maximum over the rows, and of the sums.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LedgerErrors {
     pub row: Option<f64>,
     pub run: Option<f64>,
 }
 
-/// All checks that a run failed.
+/// Lists all failed checks of a run.
 pub(super) fn failures(
     cycle: &Cycle,
     settings: &Settings,
@@ -143,14 +143,14 @@ pub(super) fn failures(
     ledger: LedgerErrors,
 ) -> Vec<Failure> {
     let (totals, engine) = (&driven.outcome.totals, driven.setup.engine());
-    let flag = |flag: Flags| (totals.seconds(flag) > 0.0).then(|| Failure::of_flag(flag, totals));
+    let flag = |flag: Flags| (totals.seconds(flag) > 0.0).then(|| Failure::from_flag(flag, totals));
     let at = |failure: Failure, at_s: f64| Failure {
         at_s: finite(at_s),
         phase: phase_at(cycle, driven, at_s),
         ..failure
     };
 
-    let missed = flag(Flags::MISSED_TRACE).map(|failure| match Deficit::of(cycle, driven) {
+    let missed = flag(Flags::MISSED_TRACE).map(|failure| match Deficit::worst(cycle, driven) {
         Some(worst) => at(failure, worst.at_s).value(worst.power_w / 1e3, None::<f64>, "kW"),
         None => failure,
     });
@@ -182,7 +182,7 @@ pub(super) fn failures(
         };
         at(failure, totals.not_finite_at_s)
     });
-    // Stated as what is good, so that an error that is no number fails. A plain sum of n terms rounds by up to n epsilon.
+    // The comparison is positive so that NaN fails. A plain sum of n terms rounds by up to n epsilon.
     let closed = |error: Option<f64>, tolerance: f64| error.is_some_and(|e| e <= tolerance);
     let rounding = totals.rows as f64 * f64::EPSILON;
     let run_tolerance = larger(LEDGER_TOLERANCE, rounding);

@@ -1,8 +1,8 @@
-//! What is known of a result from elsewhere: how sure it is, and which published number it contradicts.
+//! External knowledge of a result: its uncertainty, and the published numbers that it contradicts.
 
 use serde::{Deserialize, Serialize};
 
-/// A difference of fuel over the draws of a plan of uncertainty, for this very case.
+/// Difference of fuel over the draws of a plan of uncertainty, for exactly this case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DrawnDifference {
     /// Name of the plan.
@@ -23,19 +23,19 @@ pub struct DrawnDifference {
 pub struct Contradiction {
     /// Row of `cvtcycle validate`.
     pub row: String,
-    /// Baseline of the difference; none for the fuel of the subject itself.
+    /// Baseline of the difference; `None` for the fuel of the subject itself.
     pub baseline: Option<String>,
-    /// Group of phases; none for the whole cycle.
+    /// Group of phases; `None` for the whole cycle.
     pub phase: Option<String>,
     /// The number of this run, in `unit`.
     pub computed: f64,
-    /// Its unit.
+    /// Unit.
     pub unit: String,
     /// The published text.
     pub printed: String,
-    /// The published numbers, from the smallest to the largest, in the same unit; none in files of an earlier version.
+    /// Published range in the same unit; `None` in files of an earlier version.
     #[serde(default)]
     pub between: Option<[f64; 2]>,
-    /// At which condition it was found.
+    /// Condition at which it was found.
     pub condition: String,
 }

@@ -1,4 +1,4 @@
-//! Measured maps that a drive left: outside its grid a map holds the value of its edge, which is no measurement.
+//! Measured maps that a drive left: outside its grid a map is clamped to its edge, which is not a measurement.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::math::GRID_AXES;
 use cvtcycle_model::transmission::component::{Component, Part};
 
-/// Share of the time with the engine on from which a map that was left is a headline.
+/// Share of the engine-on time from which leaving a map is a headline.
 const LARGE: f64 = 0.1;
 
 /// A map that was left for a large part of a drive.
@@ -21,17 +21,17 @@ const LARGE: f64 = 0.1;
 pub struct MapLeft {
     /// As the vehicle's file names it.
     pub file: String,
-    /// Of the time with the engine on.
+    /// Share of the engine-on time, per cent.
     pub percent: f64,
-    /// Column by whose values it was left for the longest time.
+    /// Column whose range was left for the longest time.
     pub column: String,
-    /// Which end of them: `below` or `above`.
+    /// Side of the range: `below` or `above`.
     pub side: String,
-    /// That end, in the unit of the column.
+    /// End of the range, in the unit of the column.
     pub end: Option<f64>,
 }
 
-/// Looks for the maps that each car of a run left.
+/// Finds the maps that each car of a run left.
 pub fn find_maps_left(
     summary: &mut Summary,
     cycle: &Cycle,
@@ -43,8 +43,8 @@ pub fn find_maps_left(
     }
 }
 
-/// The maps that a car left for a large part of its drive. Only where the flags of the drive say that something was left for so long are its
-/// rows looked at; without rows it is driven again.
+/// Finds the maps that a car left for a large part of its drive. Rows are searched only if the flags of the drive show a departure that long; a
+/// drive without rows is repeated.
 fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<MapLeft> {
     let totals = &driven.outcome.totals;
     let running_s = totals.total().duration_s - totals.seconds(Flags::ENGINE_OFF);
@@ -54,7 +54,7 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
         return Vec::new();
     }
     let maps: Vec<(Component, &LossMap)> = transmission.maps().collect();
-    let mut times = vec![Left::default(); maps.len()];
+    let mut times = vec![TimeOutside::default(); maps.len()];
     let mut see = |rows: &[Row]| {
         for ((component, map), left) in maps.iter().zip(&mut times) {
             left.add(rows, *component, map);
@@ -64,8 +64,8 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
         [] => drop(drive_into(driven.setup, cycle, conditions, Some(&mut see))),
         rows => see(rows),
     }
-    let of_map = |((component, map), left): (&(Component, &LossMap), &Left)| {
-        let (axis, side, _) = left.most()?;
+    let of_map = |((component, map), left): (&(Component, &LossMap), &TimeOutside)| {
+        let (axis, side, _) = left.longest_departure()?;
         let values = map.grid().axes()[axis].as_slice();
         let is_box = component.part() == Part::BoxMap;
         let column = match (axis, is_box) {
@@ -78,7 +78,7 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
             percent: 100.0 * left.any_s / running_s,
             column: column.to_owned(),
             side: ["below", "above"][side].to_owned(),
-            end: end.and_then(|si| finite(Quantity::of(column).from_si(si))),
+            end: end.and_then(|si| finite(Quantity::from_key(column).from_si(si))),
         })
     };
     maps.iter().zip(&times).filter_map(of_map).collect()
@@ -98,14 +98,14 @@ fn file(driven: &Driven, component: Component) -> String {
     found.map_or(key.clone(), |info| info.value.clone())
 }
 
-/// Time outside a map, s: at all, and below and above each of its axes.
+/// Time outside a map, s: in total, and below and above each of its axes.
 #[derive(Clone, Default)]
-struct Left {
+struct TimeOutside {
     any_s: f64,
     sides_s: [[f64; 2]; GRID_AXES],
 }
 
-impl Left {
+impl TimeOutside {
     fn add(&mut self, rows: &[Row], component: Component, map: &LossMap) {
         for row in rows.iter().filter(|row| !row.flags.any(Flags::ENGINE_OFF)) {
             let mut is_left = false;
@@ -124,14 +124,14 @@ impl Left {
     }
 
     /// Axis, side and time of the longest departure.
-    fn most(&self) -> Option<(usize, usize, f64)> {
+    fn longest_departure(&self) -> Option<(usize, usize, f64)> {
         let all = self.sides_s.iter().enumerate();
         let all = all.flat_map(|(axis, sides)| [(axis, 0, sides[0]), (axis, 1, sides[1])]);
         all.max_by(|a, b| a.2.total_cmp(&b.2))
     }
 }
 
-/// Where a row reads the map of a component, in the order of its axes; none where the row does not know it.
+/// Coordinates at which a row reads the map of a component; `None` where the row does not record them.
 fn at(row: &Row, component: Component) -> [Option<f64>; GRID_AXES] {
     let is_box = component.part() == Part::BoxMap;
     let of_engine = is_box || [Component::Pump, Component::InputShaft].contains(&component);

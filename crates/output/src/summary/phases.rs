@@ -34,7 +34,7 @@ pub(super) struct PhaseFuel {
 }
 
 impl PhaseFuel {
-    pub(super) fn of(part: &PhaseTotals, engine: &Engine) -> Self {
+    pub(super) fn new(part: &PhaseTotals, engine: &Engine) -> Self {
         let litres = litres_per_100km(part.fuel_kg, engine.fuel_density_kg_m3, part.distance_m);
         PhaseFuel {
             l_per_100km: finite(litres),
@@ -52,7 +52,7 @@ pub(super) fn phases(cycle: &Cycle, driven: &Driven, engine: &Engine) -> Vec<Pha
     groups
         .map(|(name, phases)| {
             let part = driven.outcome.totals.over(&phases);
-            let fuel = PhaseFuel::of(&part, engine);
+            let fuel = PhaseFuel::new(&part, engine);
             PhaseSummary {
                 name,
                 distance_km: part.distance_m / 1e3,
@@ -77,7 +77,7 @@ pub(super) fn weighted_fuel(cycle: &Cycle, driven: &Driven, engine: &Engine) -> 
             .iter()
             .filter(|(name, _)| names.contains(&name.as_str()));
         let phases: Vec<u16> = named.flat_map(|(_, list)| list.clone()).collect();
-        PhaseFuel::of(&driven.outcome.totals.over(&phases), engine).l_per_100km
+        PhaseFuel::new(&driven.outcome.totals.over(&phases), engine).l_per_100km
     };
     let cold = bags(["cold_transient", "stabilised"])?;
     let hot = bags(["hot_transient", "stabilised"])?;

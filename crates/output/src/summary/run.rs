@@ -1,4 +1,4 @@
-//! The numbers of one car: each is a field of [`RunSummary`] with its value in [`run_summary`].
+//! Numbers of one car: fields of [`RunSummary`], with their values in [`run_summary`].
 
 use serde::{Deserialize, Serialize};
 
@@ -10,15 +10,15 @@ use crate::number::{finite, fixed, tiny};
 use crate::{Component, Flags, PhaseTotals, TERM_NAMES};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::Outcome;
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::clamp_cause::ClampCause;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 
-/// Source of the shift speeds of a twin without own ones.
+/// Source of the shift speeds of a twin that has none of its own.
 const BY_RULE: &str = "TW-3";
-/// What a drive says of shift speeds that are values of its car.
+/// Source of shift speeds that are values of the vehicle's file.
 const OF_FILE: &str = "shift speeds of the vehicle file";
 
 /// Miles per imperial gallon at 1 L/100 km.
@@ -44,10 +44,10 @@ pub struct RunSummary {
     pub lubricant: String,
     /// Engine oil.
     pub engine_oil: String,
-    /// Launch device where it is no clutch: `torque_converter`.
+    /// Launch device other than a clutch: `torque_converter`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub launch_device: Option<String>,
-    /// Where a manual car's gears come from; null for a CVT.
+    /// Source of a manual car's gears; null for a CVT.
     pub gear_schedule: Option<String>,
     /// Driven distance.
     pub distance_km: f64,
@@ -89,7 +89,7 @@ pub struct RunSummary {
     pub standstill_fuel_g: f64,
     /// Smallest clamp safety factor; null for a manual box.
     pub min_clamp_safety: Option<f64>,
-    /// Moving time in which each cause decided the secondary pressure; null for a manual box.
+    /// Moving time by the cause that decided the secondary pressure; null for a manual box.
     pub clamp_cause_s: Option<Named>,
     /// Time at a ratio limit; null for a manual box.
     pub at_ratio_limit_s: Option<f64>,
@@ -99,35 +99,35 @@ pub struct RunSummary {
     pub ledger_error: Option<f64>,
     /// Ledger error of the terms summed over the run.
     pub run_ledger_error: Option<f64>,
-    /// Time in which the car could not follow.
+    /// Time in which the car could not follow the trace.
     pub trace_missed_s: f64,
     /// Time outside the validity of a model.
     pub outside_validity_s: f64,
     /// Seconds with each flag.
     pub flags_s: Named,
-    /// Where most power was missing; null if the trace was followed.
+    /// Row with the largest missing power; null if the trace was followed.
     pub worst_deficit: Option<Deficit>,
-    /// How the implicit solve went.
+    /// Statistics of the implicit solve.
     pub solve: Solve,
     /// Measured maps that were left for a large part of the drive.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub maps_left: Vec<MapLeft>,
-    /// What a reader of these numbers should know.
+    /// Notes for readers of these numbers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// Names of the checks that failed, as in `failures`.
+    /// Names of the failed checks, as in `failures`.
     pub failed_checks: Vec<String>,
-    /// The checks that failed, each with its time and its worst or first row; empty in files of an earlier version.
+    /// Failed checks, each with its time and its worst or first row; empty in files of an earlier version.
     #[serde(default)]
     pub failures: Vec<Failure>,
     /// Demanded work at the wheels in driving over that work with all losses of the transmission; null without either.
     pub transmission_efficiency_percent: Option<f64>,
-    /// What each loss costs; null where it was not computed.
+    /// Price of each loss; null if not computed.
     #[serde(default)]
     pub price: Option<PriceSummary>,
 }
 
-/// How the implicit solve went.
+/// Statistics of the implicit solve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
     /// Largest residual, as a fraction of full-load torque.
@@ -137,7 +137,7 @@ pub struct Solve {
 }
 
 impl RunSummary {
-    /// Its name in tables and figures.
+    /// Name in tables and figures.
     pub fn label(&self) -> &str {
         match self.short.as_str() {
             "" => &self.vehicle,
@@ -150,8 +150,8 @@ impl RunSummary {
         self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)
     }
 
-    /// A term of the power ledger that fuel goes to, kJ. `electric` is what battery, starter and alternator keep: their losses, and what
-    /// is stored in the battery (0 without start-stop).
+    /// Term of the power ledger that consumes fuel, kJ. `electric` is the remainder of battery, starter and alternator: their losses, and the
+    /// energy stored in the battery (0 without start-stop).
     pub fn term_kj(&self, name: &str) -> Option<f64> {
         let term = |name: &str| self.ledger_kj.get(name);
         match name {
@@ -160,7 +160,7 @@ impl RunSummary {
         }
     }
 
-    /// A loss of its transmission as people write it: the launch device has its own name.
+    /// Name of a transmission loss for people: the launch device has its own name.
     pub fn loss_words(&self, component: &str) -> String {
         let launch = component == Component::LaunchClutch.name();
         let own = self.launch_device.as_deref().filter(|_| launch);
@@ -172,7 +172,7 @@ impl RunSummary {
         self.ledger_kj.get("losses").unwrap_or(0.0)
     }
 
-    /// One of its failures as the end of a sentence that begins with the car.
+    /// Formats a failure as the end of a sentence that begins with the car.
     pub fn failure_text(&self, failure: &Failure) -> String {
         let seconds = fixed(failure.seconds, 1);
         let (at, phase) = (fixed(failure.at_s, 1), failure.phase.as_deref());
@@ -201,8 +201,8 @@ impl RunSummary {
                 format!("turns the engine at {value}, above {limit} {unit}, for {seconds} s")
             }
             "too_hot" => {
-                let (of, value) = (failure.of.as_deref().unwrap_or("oil"), value(1));
-                format!("heats the {of} to {value}, above {limit} {unit}, for {seconds} s")
+                let (node, value) = (failure.of.as_deref().unwrap_or("oil"), value(1));
+                format!("heats the {node} to {value}, above {limit} {unit}, for {seconds} s")
             }
             "wrong_gear" => format!(
                 "is driven faster for {seconds} s in which the cycle prescribes no gear, first {row}"
@@ -215,7 +215,7 @@ impl RunSummary {
     }
 }
 
-/// The numbers of one car. `role` is `subject` or `baseline`.
+/// Summarises one car. `role` is `subject` or `baseline`.
 pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driven) -> RunSummary {
     let Driven {
         name,
@@ -226,7 +226,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     let (engine, cvt) = (setup.engine(), setup.transmission().is_cvt());
     let (oil, engine_oil) = setup.oils();
     let all = totals.total();
-    let fuel = PhaseFuel::of(&all, engine);
+    let fuel = PhaseFuel::new(&all, engine);
     let weighted = weighted_fuel(cycle, driven, engine);
     let headline = weighted.or(fuel.l_per_100km).filter(|l| *l > 0.0);
     let mpg = |factor: f64| headline.map(|l| factor / l);
@@ -276,7 +276,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         trace_missed_s: seconds(Flags::MISSED_TRACE),
         outside_validity_s: seconds(Flags::OUTSIDE_VALIDITY),
         flags_s: flags.map(|((_, name), s)| (*name, finite(s))).collect(),
-        worst_deficit: Deficit::of(cycle, driven),
+        worst_deficit: Deficit::worst(cycle, driven),
         solve: Solve {
             worst_residual: totals.worst_residual,
             evaluations_per_step: finite(totals.evaluations as f64 / totals.rows as f64),
@@ -300,13 +300,13 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
     summary
 }
 
-/// The launch device of a transmission where it is no clutch.
-fn launch_device(of: &Transmission) -> Option<String> {
-    let coupling = of.coupling();
+/// Name of a launch device other than a clutch.
+fn launch_device(transmission: &Transmission) -> Option<String> {
+    let coupling = transmission.coupling();
     coupling.by_command().then(|| coupling.device().to_owned())
 }
 
-/// Where the gears come from; the shift speeds of a twin are in no file.
+/// Source of the gears; no file holds the shift speeds of a twin.
 fn gear_schedule(driven: &Driven) -> Option<String> {
     let words = driven.outcome.gear_schedule;
     let mut keys = driven.setup.keys.iter();
@@ -320,12 +320,12 @@ fn gear_schedule(driven: &Driven) -> Option<String> {
 }
 
 fn larger(a: f64, b: f64) -> f64 {
-    // What is no number must not hide behind the other.
+    // NaN must not be hidden by the other operand.
     if a.is_nan() || a > b { a } else { b }
 }
 
 fn losses(driven: &Driven, settings: &Settings, all: &PhaseTotals) -> Named {
-    // The verification formulations know no film of its own: whatever shear there is belongs to the bands.
+    // The verification formulations have no film model: all shear belongs to the bands.
     let film =
         settings.formulation.is_empty() || settings.formulation == Formulation::Smooth.name();
     let joules = |c: Component| all.loss_j[c];

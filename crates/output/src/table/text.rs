@@ -1,4 +1,4 @@
-//! Tables for people: aligned columns without rules, as wide as the lines of a terminal, and for `grep`, or Markdown.
+//! Tables for people: aligned columns without rules, fitted to the terminal, readable by `grep`; or Markdown.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -6,25 +6,24 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use comfy_table::presets::NOTHING;
 use comfy_table::{Cell, CellAlignment, ColumnConstraint, Table, Width};
 
-/// Columns of a line that no terminal shows.
+/// Columns of a line that is not shown in a terminal.
 const LINE: usize = 100;
-/// Columns that a line can have: below, no table of numbers fits; above, the eye loses the line.
+/// Allowed columns of a line: below, no table of numbers fits; above, lines are hard to follow.
 const LINES: std::ops::RangeInclusive<usize> = 60..=140;
-/// Columns of the lines that are written from now on.
+/// Current width of lines, columns.
 static LINE_WIDTH: AtomicUsize = AtomicUsize::new(LINE);
 /// Blanks between two columns.
 const GAP: usize = 2;
-/// Blanks that an indented table has before each line.
+/// Prefix of the lines of an indented table.
 const INDENT: &str = "  ";
-/// Least number of columns of numbers of a table that may go on below itself.
+/// Minimum number of columns in a table of numbers that may continue below itself.
 const FOLDED: usize = 3;
-/// Lines narrower than this have the text of a last column below its row, indented by so much, where it would have less than so many columns.
+/// Lines narrower than this have the text of a last column below its row, indented by `HANG`, if fewer than `TEXT` columns remain for it.
 const NARROW: usize = 76;
 const HANG: &str = "    ";
 const TEXT: usize = 22;
 
-/// Sets the width of all lines that follow, in columns; it is kept within 60 to 140. A program does it once, for its terminal; without it lines
-/// have 100 columns.
+/// Sets the width of all further lines, in columns, clamped to 60 to 140. A program calls it once, for its terminal; the default is 100 columns.
 pub fn set_line_width(columns: usize) {
     let columns = columns.clamp(*LINES.start(), *LINES.end());
     LINE_WIDTH.store(columns, Ordering::Relaxed);
@@ -35,7 +34,7 @@ pub fn line_width() -> usize {
     LINE_WIDTH.load(Ordering::Relaxed)
 }
 
-/// A table of texts, row by row.
+/// Table of texts, row by row.
 #[derive(Clone, Debug)]
 pub struct TextTable {
     right: Vec<bool>,
@@ -45,7 +44,7 @@ pub struct TextTable {
 }
 
 impl TextTable {
-    /// A table with columns aligned right (`r`) or left (`l`).
+    /// Creates a table with columns aligned right (`r`) or left (`l`).
     ///
     /// ```
     /// use cvtcycle_output::table::TextTable;
@@ -72,7 +71,7 @@ impl TextTable {
         }
     }
 
-    /// Keeps the leading columns at least this wide, which aligns tables that follow each other.
+    /// Widens the leading columns to at least these widths, which aligns tables that follow each other.
     #[must_use]
     pub fn min_widths(self, widths: &[usize]) -> Self {
         TextTable {
@@ -86,13 +85,13 @@ impl TextTable {
         self.rows.push(cells.into_iter().map(Into::into).collect());
     }
 
-    /// The lines, for a terminal. Where they have no room, words are wrapped in the widest columns, and a table of numbers goes on below itself;
-    /// no word and no number is cut, but keys and paths at their joints.
+    /// Formats the table for a terminal. If it does not fit, words are wrapped in the widest columns, and a table of numbers continues below
+    /// itself; words and numbers are not cut, except keys and paths at their joints.
     pub fn text(&self) -> String {
         self.text_in(line_width() - self.indent.len())
     }
 
-    /// The lines; none if there is nothing below the headings.
+    /// Formats the table; empty if there are no rows below the headings.
     pub(super) fn unless_empty(&self) -> String {
         match self.rows.len() {
             0 | 1 => String::new(),
@@ -100,7 +99,7 @@ impl TextTable {
         }
     }
 
-    /// The lines in a width.
+    /// Formats the table for a width.
     fn text_in(&self, width: usize) -> String {
         if self.goes_below(width) {
             return self.with_text_below(width);
@@ -115,7 +114,7 @@ impl TextTable {
         }
     }
 
-    /// Number of the leading columns that a width has room for; none if it has room for all, or the table is no table of numbers.
+    /// Number of leading columns that fit a width; `None` if all fit, or the table is not one of numbers.
     fn fitting(&self, width: usize) -> Option<usize> {
         let numbers = self.right.iter().filter(|right| **right).count();
         let mut end = 0;
@@ -123,12 +122,12 @@ impl TextTable {
             end += self.longest_word(*column) + if *column > 0 { GAP } else { 0 };
             end <= width
         });
-        // Of the first column and another one there is always some part.
+        // At least the first column and one other are shown.
         let fitting = fits.count().max(2);
         (numbers >= FOLDED && fitting < self.right.len()).then_some(fitting)
     }
 
-    /// Whether a narrow line has no room for the texts of the last column next to the others.
+    /// True if a narrow line cannot fit the texts of the last column next to the others.
     fn goes_below(&self, width: usize) -> bool {
         let last = self.right.len().saturating_sub(1);
         if width >= NARROW || last < 2 || self.right[last] || self.fitting(width).is_some() {
@@ -140,7 +139,7 @@ impl TextTable {
         squeezed || widths.iter().sum::<usize>() > room
     }
 
-    /// The lines with the text of the last column below those of its row, indented.
+    /// Formats the table with the text of the last column below its row, indented.
     fn with_text_below(&self, width: usize) -> String {
         let last = self.right.len() - 1;
         let before = self.part(0..last);
@@ -156,19 +155,19 @@ impl TextTable {
         text
     }
 
-    /// Some of the columns, after the first, which names the rows.
+    /// Selects some of the columns, after the first, which names the rows.
     fn part(&self, columns: Range<usize>) -> TextTable {
         let taken: Vec<usize> = [0]
             .into_iter()
             .chain(columns.start.max(1)..columns.end)
             .collect();
-        let of = |cells: &Vec<String>| {
+        let measure = |cells: &Vec<String>| {
             let cells = taken.iter().filter_map(|k| cells.get(*k).cloned());
             cells.collect()
         };
         TextTable {
             right: taken.iter().map(|k| self.right[*k]).collect(),
-            rows: self.rows.iter().map(of).collect(),
+            rows: self.rows.iter().map(measure).collect(),
             indent: self.indent,
             min_widths: Vec::new(),
         }
@@ -180,7 +179,7 @@ impl TextTable {
         self.row_lines(&rows, &self.widths(width - last * GAP))
     }
 
-    /// Some of the rows in columns of these widths.
+    /// Formats some of the rows in columns of these widths.
     fn row_lines(&self, rows: &[&Vec<String>], widths: &[usize]) -> String {
         let mut table = Table::new();
         table.load_style(NOTHING);
@@ -206,8 +205,7 @@ impl TextTable {
             .collect()
     }
 
-    /// Widths of the columns: of their contents if there is room for them, else the widest are narrowed to one width, but no column below its
-    /// longest word.
+    /// Widths of the columns: of their contents if they fit; else the widest are narrowed to one width, but no column below its longest word.
     fn widths(&self, room: usize) -> Vec<usize> {
         let columns = 0..self.right.len();
         let own: Vec<usize> = columns.map(|k| self.widest(k, characters)).collect();
@@ -231,7 +229,7 @@ impl TextTable {
         capped(cap.unwrap_or(1)).collect()
     }
 
-    /// Characters that a column needs: those of its longest word; numbers with their units, below a heading on the right, are one word.
+    /// Minimum width of a column: its longest word. Numbers with their units, below a right-aligned heading, count as one word.
     fn longest_word(&self, column: usize) -> usize {
         let right = self.right.get(column).copied().unwrap_or(false);
         let words = |text: &str| pieces(text).map(|(_, piece)| piece.chars().count()).max();
@@ -248,33 +246,33 @@ impl TextTable {
         head.max(rest).max(1)
     }
 
-    fn widest(&self, column: usize, of: impl Fn(&str) -> usize) -> usize {
-        self.widest_of(self.rows.iter(), column, of)
+    fn widest(&self, column: usize, measure: impl Fn(&str) -> usize) -> usize {
+        self.widest_of(self.rows.iter(), column, measure)
     }
 
     fn widest_of<'t>(
         &self,
         rows: impl Iterator<Item = &'t Vec<String>>,
         column: usize,
-        of: impl Fn(&str) -> usize,
+        measure: impl Fn(&str) -> usize,
     ) -> usize {
         let cells = rows.filter_map(|row| row.get(column));
-        cells.map(|text| of(text)).max().unwrap_or(0)
+        cells.map(|text| measure(text)).max().unwrap_or(0)
     }
 }
 
-/// Characters of the longest line of a text.
+/// Number of characters of the longest line of a text.
 fn characters(text: &str) -> usize {
     let lines = text.lines().map(|line| line.chars().count());
     lines.max().unwrap_or(0)
 }
 
-/// Length of a word from which on it may be parted at its joints: keys, paths, lists without blanks.
+/// Length from which a word may be split at its joints: keys, paths, lists without blanks.
 const LONG_WORD: usize = 16;
 /// Ends of the parts of a long word.
 const JOINTS: [char; 5] = ['/', '_', ':', '.', ','];
 
-/// Words of a text, each with the blank before it, long ones in parts without one.
+/// Splits a text into words, each with the blank before it; parts of long words have none.
 fn pieces(text: &str) -> impl Iterator<Item = (&'static str, &str)> {
     text.split_whitespace().flat_map(|word| {
         let parts: Vec<&str> = match word.chars().count() > LONG_WORD {
@@ -286,7 +284,7 @@ fn pieces(text: &str) -> impl Iterator<Item = (&'static str, &str)> {
     })
 }
 
-/// A text in lines of a width; its own lines stay. It is unchanged where it fits.
+/// Wraps a text to a width, keeping its line breaks. Text that fits is unchanged.
 fn folded(text: &str, width: usize) -> String {
     if characters(text) <= width {
         return text.to_owned();
@@ -310,7 +308,7 @@ fn folded(text: &str, width: usize) -> String {
     lines.join("\n")
 }
 
-/// A sentence wrapped to the width of the tables, with a mark before its first line.
+/// Wraps a sentence to the width of the tables, with a mark before its first line.
 pub fn wrapped(sentence: &str, mark: &str) -> String {
     let blank = " ".repeat(mark.chars().count());
     let mut table = TextTable::new("l");
@@ -323,7 +321,7 @@ pub fn wrapped(sentence: &str, mark: &str) -> String {
         .collect()
 }
 
-/// Lines, each wrapped to the width of a line; what follows keeps its indentation.
+/// Wraps each line to the line width; continuation lines keep its indentation.
 pub fn paragraphs(text: &str) -> String {
     let wrap = |line: &str| {
         let blank = line.len() - line.trim_start().len();
@@ -332,7 +330,7 @@ pub fn paragraphs(text: &str) -> String {
     text.lines().map(wrap).collect()
 }
 
-/// A text cut to a number of characters.
+/// Cuts a text to a number of characters.
 pub fn cut(text: &str, max_len: usize) -> String {
     match text.char_indices().nth(max_len) {
         None => text.to_owned(),
@@ -356,10 +354,10 @@ mod tests {
         table
     }
 
-    /// Property: at any width the words are those of the widest table, in their order by column, and lines keep within the width if the longest
-    /// words do.
+    /// Property: at any width the words are those of the widest table, in order by column, and lines keep within the width if the longest words
+    /// do.
     #[test]
-    fn no_width_cuts_a_word() {
+    fn wrapping_never_cuts_a_word() {
         let table = rows();
         let words = |text: &str| {
             let mut words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
@@ -375,9 +373,9 @@ mod tests {
         }
     }
 
-    /// Property: on a narrow line a text without room lies below its row, with all its words, and no line is too wide.
+    /// Property: on a narrow line a text that does not fit lies below its row, complete, and no line is too wide.
     #[test]
-    fn a_text_without_room_goes_below_its_row() {
+    fn long_text_moves_below_its_row() {
         let mut table = TextTable::new("llll");
         table.row(["row", "verdict", "computed", "what"]);
         let what = "inertia classes of the two cars lie within what the dynamometer can set";
@@ -390,9 +388,9 @@ mod tests {
         assert_eq!(table.text_in(120).lines().count(), 3);
     }
 
-    /// Property: a table of numbers without room goes on below itself, each part with the first column, and keeps within the width.
+    /// Property: a table of numbers that does not fit continues below itself, each part with the first column, within the width.
     #[test]
-    fn numbers_go_on_below() {
+    fn wide_table_of_numbers_continues_below() {
         let mut table = TextTable::new("lrrrrr");
         table.row(["bar", "break", "capacity", "primary", "secondary", "linear"]);
         table.row(["15", "41.2", "143.8", "0.122", "0.069", "0.949"]);
@@ -406,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn long_names_part_at_their_joints() {
+    fn long_names_split_at_their_joints() {
         let text = "as in calibrations/rover_216_transmission.toml (fit)";
         assert_eq!(
             folded(text, 22),
@@ -415,9 +413,9 @@ mod tests {
         assert_eq!(folded("no long name", 40), "no long name");
     }
 
-    /// Numbers and their units are not parted, headings above them are.
+    /// Numbers keep their units on the same line, headings above them may not.
     #[test]
-    fn a_number_keeps_its_unit() {
+    fn number_keeps_its_unit() {
         let text = rows().text_in(46);
         assert!(text.contains("8.57 cm³/rev"), "{text}");
         assert!(!text.contains("over rover_216_5mt"), "{text}");

@@ -6,7 +6,7 @@ use crate::number::fixed;
 /// Heading, alignment and text of an item.
 type TextColumn<'a, T> = (String, bool, Box<dyn Fn(&T) -> String + 'a>);
 
-/// Columns of a table for people, whose rows are items of one type.
+/// Columns of a table for people; each row is an item of one type.
 ///
 /// ```
 /// use cvtcycle_output::table::TextColumns;
@@ -24,7 +24,7 @@ impl<T> Default for TextColumns<'_, T> {
 }
 
 impl<'a, T> TextColumns<'a, T> {
-    /// No columns.
+    /// Creates an empty list of columns.
     pub fn new() -> Self {
         TextColumns(Vec::new())
     }
@@ -79,7 +79,7 @@ impl<'a, T> TextColumns<'a, T> {
         table
     }
 
-    /// The lines of the table of some items; none if there are no items.
+    /// Formats the table of some items; empty if there are no items.
     pub fn lines<'t>(&self, items: impl IntoIterator<Item = &'t T>) -> String
     where
         T: 't,
@@ -87,7 +87,7 @@ impl<'a, T> TextColumns<'a, T> {
         self.table(items).unless_empty()
     }
 
-    /// The same, indented.
+    /// Formats the table of some items, indented.
     pub fn text<'t>(&self, items: impl IntoIterator<Item = &'t T>) -> String
     where
         T: 't,

@@ -7,7 +7,7 @@ use serde_json::{Value as Json, json};
 
 use super::Column;
 
-/// A CSV file that is written row by row. Numbers read back to the same `f64`.
+/// CSV writer, row by row. Numbers read back to the same `f64`.
 pub struct CsvWriter<W: Write> {
     out: csv::Writer<W>,
     text: String,
@@ -17,7 +17,7 @@ impl<W: Write> CsvWriter<W> {
     /// Writes the names of the columns.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn new<T: AsRef<[u8]>>(out: W, names: impl IntoIterator<Item = T>) -> io::Result<Self> {
         let mut out = csv::Writer::from_writer(out);
         out.write_record(names).map_err(csv_error)?;
@@ -27,10 +27,10 @@ impl<W: Write> CsvWriter<W> {
         })
     }
 
-    /// Writes a row, of which each cell appends its text.
+    /// Writes a row; each cell appends its text.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn row<T>(
         &mut self,
         cells: impl IntoIterator<Item = T>,
@@ -44,16 +44,16 @@ impl<W: Write> CsvWriter<W> {
         self.out.write_record(None::<&[u8]>).map_err(csv_error)
     }
 
-    /// Hands everything on.
+    /// Flushes the output.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// I/O errors of `out`.
     pub fn finish(mut self) -> io::Result<()> {
         self.out.flush()
     }
 }
 
-/// The error of the operating system within one of CSV: it says whether the disk is full.
+/// Unwraps the operating system's error from one of CSV, which says that the disk is full.
 fn csv_error(error: csv::Error) -> io::Error {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => error,
@@ -64,7 +64,7 @@ fn csv_error(error: csv::Error) -> io::Error {
 /// Writes names and rows as CSV. `phases` are the names of phases that cells refer to.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_csv<R, C: Borrow<Column<R>>, I: Borrow<R>>(
     out: impl Write,
     columns: &[C],
@@ -81,7 +81,7 @@ pub fn write_csv<R, C: Borrow<Column<R>>, I: Borrow<R>>(
     csv.finish()
 }
 
-/// The rows as CSV in memory; none if there are no rows.
+/// Formats rows as CSV in memory; `None` if there are no rows.
 pub fn csv_bytes<R>(columns: &[Column<R>], rows: &[R]) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     let written = write_csv(&mut bytes, columns, rows, &[]);
@@ -90,19 +90,19 @@ pub fn csv_bytes<R>(columns: &[Column<R>], rows: &[R]) -> Option<Vec<u8>> {
     (!rows.is_empty()).then_some(bytes)
 }
 
-/// Name, unit and meaning of the columns.
+/// Describes the columns: name, unit and meaning.
 pub fn json_columns<R>(columns: &[Column<R>]) -> Json {
     let head = |c: &Column<R>| json!({ "name": c.name, "unit": c.unit, "meaning": c.doc });
     columns.iter().map(head).collect()
 }
 
-/// A row as an object by the names of the columns.
+/// Converts a row to an object by column name.
 pub fn json_row<R>(columns: &[Column<R>], row: &R) -> Json {
     let cell = |column: &Column<R>| (column.name.clone().into_owned(), column.cell(row).json());
     Json::Object(columns.iter().map(cell).collect())
 }
 
-/// Rows as objects.
+/// Converts rows to objects.
 pub fn json_rows<R>(columns: &[Column<R>], rows: &[R]) -> Json {
     rows.iter().map(|row| json_row(columns, row)).collect()
 }
@@ -110,7 +110,7 @@ pub fn json_rows<R>(columns: &[Column<R>], rows: &[R]) -> Json {
 /// Writes an object: the entries of the object `head`, then `points`, a row a line.
 ///
 /// # Errors
-/// Those of `out`.
+/// I/O errors of `out`.
 pub fn write_json<R, I: Borrow<R>>(
     out: &mut dyn Write,
     head: &Json,

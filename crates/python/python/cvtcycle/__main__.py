@@ -9,8 +9,8 @@ from . import _native
 
 
 def main() -> int:
-    """Runs the program with the words of this process, and gives its exit code."""
-    # The program handles Ctrl-C where it has something to finish; elsewhere it ends at once, as any program does.
+    """Runs the program with the arguments of this process, and returns its exit code."""
+    # The program handles Ctrl-C while it has something to finish; otherwise Ctrl-C ends it at once, as any program.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _native.program(["cvtcycle", *sys.argv[1:]])
 

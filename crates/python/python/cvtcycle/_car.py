@@ -10,21 +10,21 @@ from typing import Any
 
 from . import _native
 from ._errors import bad
-from ._table import columns_of, table_text, texts
+from ._table import frame_columns, table_text, texts
 
 Set = Mapping[str, Any] | Iterable[str] | None
 """Changes of values: a mapping from key to value, or texts ``KEY=VALUE``."""
 
 
 def path_word(key: str, path: object) -> str:
-    """A name or path as text."""
+    """Converts a name or path to text."""
     if not isinstance(path, (str, os.PathLike)):
         raise bad(key, f"{type(path).__name__} is no name and no path", allowed="a text or a path")
     return os.fspath(path)
 
 
 def assignments(changes: Set) -> list[str]:
-    """Changes of values as texts ``KEY=VALUE``."""
+    """Converts changes of values to texts ``KEY=VALUE``."""
     if changes is None:
         return []
     if isinstance(changes, Mapping):
@@ -54,7 +54,7 @@ def _quoted(key: str, value: Any) -> str:
 
 
 def _plain(place: str, value: Any) -> Any:
-    """A value of a dict in the types of JSON."""
+    """Converts a value of a dict to JSON types."""
     if isinstance(value, Mapping):
         return {str(name): _plain(f"{place}.{name}" if place else str(name), own) for name, own in value.items()}
     if hasattr(value, "tolist"):
@@ -90,18 +90,18 @@ class Car:
         self._car = _native.Car(*self._made[1:])
 
     @classmethod
-    def _of(cls, made: tuple[Any, ...]) -> Car:
+    def _build(cls, made: tuple[Any, ...]) -> Car:
         car = cls.__new__(cls)
         kind, *rest = made
         car._made = made
         if kind == "twin":
-            car._car = cls._of(rest[0])._car.twin()
+            car._car = cls._build(rest[0])._car.twin()
         else:
-            car._car = (_native.Car if kind == "word" else _native.Car.of_text)(*rest)
+            car._car = (_native.Car if kind == "word" else _native.Car.from_text)(*rest)
         return car
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Car._of, (self._made,)
+        return Car._build, (self._made,)
 
     @classmethod
     def from_toml(
@@ -115,22 +115,22 @@ class Car:
         engine_oil: str | None = None,
         formulation: str = "smooth",
     ) -> Car:
-        """A car from the text of a vehicle file. Problems cite it as ``name``; maps that it names are looked for in ``folder``."""
+        """Reads the text of a vehicle file. Problems cite it as ``name``; relative paths of maps start at ``folder``."""
         if not isinstance(text, str):
             raise bad("text", f"{type(text).__name__} is no text")
         folder = path_word("folder", folder)
-        return cls._of(("text", name, text, folder, assignments(set), lubricant, engine_oil, formulation))
+        return cls._build(("text", name, text, folder, assignments(set), lubricant, engine_oil, formulation))
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any], **options: Any) -> Car:
-        """A car from the tables of a vehicle file as dicts; the options are those of :meth:`from_toml`."""
+        """Reads the tables of a vehicle file as dicts; options as in :meth:`from_toml`."""
         if not isinstance(data, Mapping):
             raise bad("data", f"{type(data).__name__} is no dict")
-        return cls.from_toml(_native.Car.toml_of(json.dumps(_plain("", data))), **{"name": "dict.toml", **options})
+        return cls.from_toml(_native.Car.json_to_toml(json.dumps(_plain("", data))), **{"name": "dict.toml", **options})
 
     def twin(self) -> Car:
-        """The same car with a manual box."""
-        return Car._of(("twin", self._made))
+        """Same car with a manual box."""
+        return Car._build(("twin", self._made))
 
     @property
     def name(self) -> str:
@@ -139,22 +139,22 @@ class Car:
 
     @property
     def title(self) -> str:
-        """Name for people."""
+        """Title for display."""
         return self._car.title
 
     @property
     def is_cvt(self) -> bool:
-        """Whether it has a CVT; otherwise a manual box."""
+        """True for a CVT, False for a manual box."""
         return self._car.is_cvt
 
     @property
     def baselines(self) -> list[str]:
-        """The cars that its file compares it with, for ``baselines`` of :func:`run`."""
+        """Baselines of its file, for ``baselines`` of :func:`run`."""
         return self._car.baselines
 
     @property
     def notes(self) -> list[str]:
-        """What a reader of its results should know, a sentence each."""
+        """Notes on its results, one sentence each."""
         return self._car.notes
 
     def keys(self) -> list[dict[str, str]]:
@@ -163,7 +163,7 @@ class Car:
         return listed
 
     def __getitem__(self, key: str) -> str:
-        """The value of a key, as its file has it."""
+        """Value of a key as written in its file."""
         for own in self.keys():
             if own["key"] == key:
                 return own["value"]
@@ -181,30 +181,30 @@ class Cycle:
         self._cycle = _native.Cycle(*self._made[1:])
 
     @classmethod
-    def _of(cls, made: tuple[Any, ...]) -> Cycle:
+    def _build(cls, made: tuple[Any, ...]) -> Cycle:
         cycle = cls.__new__(cls)
         kind, *rest = made
         cycle._made = made
-        cycle._cycle = (_native.Cycle if kind == "word" else _native.Cycle.of_bytes)(*rest)
+        cycle._cycle = (_native.Cycle if kind == "word" else _native.Cycle.from_bytes)(*rest)
         return cycle
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Cycle._of, (self._made,)
+        return Cycle._build, (self._made,)
 
     @classmethod
     def read(cls, file: Any, *, columns: str | None = None) -> Cycle:
-        """From a path or an open file: the program's own form, EPA, FASTSim, VECTO or a logger's table.
+        """Reads a path or an open file in the program's own form, or of EPA, FASTSim, VECTO or a logger.
 
         ``columns`` names those that are meant, such as ``time=Time_ADC:s,speed=VehSpd:mph``.
         """
         if not hasattr(file, "read"):
-            return cls._of(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns))
+            return cls._build(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns))
         try:
             data = file.read()
         except (OSError, ValueError) as error:
             raise bad("file", f"cannot read it: {error}") from error
         name = str(getattr(file, "name", "file"))
-        return cls._of(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns))
+        return cls._build(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns))
 
     @classmethod
     def from_arrays(
@@ -218,7 +218,7 @@ class Cycle:
         engine_off: Any = None,
         name: str = "arrays",
     ) -> Cycle:
-        """From arrays: time in s, speed in m/s, slope as rise over run, names of phases, gears, and 0 or 1 where the engine is off."""
+        """Builds a cycle from arrays: time in s, speed in m/s, slope as rise over run, names of phases, gears, and 1 while the engine is off, else 0."""
         given = {
             "time_s": time_s,
             "speed_m_s": speed_m_s,
@@ -231,22 +231,22 @@ class Cycle:
 
     @classmethod
     def from_frame(cls, frame: Any, *, name: str = "frame", columns: str | None = None) -> Cycle:
-        """From a frame or a mapping whose columns have the names of a cycle's file, such as ``time_s`` and ``speed_kmh``."""
-        return cls._of(("text", name, table_text(columns_of("frame", frame)), columns))
+        """Builds a cycle from a frame or mapping with the columns of a cycle file, such as ``time_s`` and ``speed_kmh``."""
+        return cls._build(("text", name, table_text(frame_columns("frame", frame)), columns))
 
     @property
     def name(self) -> str:
-        """Name under which results cite it."""
+        """Name used in results."""
         return self._cycle.name
 
     @property
     def title(self) -> str:
-        """Name for people."""
+        """Title for display."""
         return self._cycle.title
 
     @property
     def read_as(self) -> str | None:
-        """How its file was read, where it is another program's."""
+        """Interpretation of a file of another program; None for the program's own form."""
         return self._cycle.read_as
 
     @property

@@ -6,36 +6,36 @@ from typing import TypedDict
 
 
 class Problem(TypedDict):
-    """One problem of an input. A part that is not known is None, or an empty text."""
+    """One problem of an input. An unknown part is None or an empty text."""
 
     kind: str
-    """Word for programs, such as ``out_of_range``."""
+    """Machine-readable kind, such as ``out_of_range``."""
     file: str | None
-    """File, or the name that was given to a text."""
+    """File, or the name given to a text."""
     line: int | None
     """Line in the file, from 1."""
     column: int | None
     """Column in the line, from 1."""
     override: str | None
-    """The change of a value that it is about, ``KEY=VALUE``."""
+    """Change of a value concerned, ``KEY=VALUE``."""
     argument: str | None
-    """What it is about where that is a name or a path: ``vehicle``, ``cycle``, ``plan``."""
+    """Kind of the name or path concerned: ``vehicle``, ``cycle``, ``plan``."""
     key: str
     """Key of the file, column of the table, or argument of the call."""
     value: str
-    """The value as it was given."""
+    """Value as given."""
     allowed: str
-    """What would be accepted."""
+    """Accepted values."""
     message: str
-    """What is wrong, in a sentence."""
+    """Description of the problem, one sentence."""
     hint: str
-    """What to do about it."""
+    """Advice."""
     suggested: list[str]
-    """Known names that may have been meant."""
+    """Known names similar to the given one."""
 
 
 class InputError(ValueError):
-    """An input has problems; ``problems`` has all of them, the text of the exception describes them."""
+    """Bad input. ``problems`` has all problems, which the text of the exception describes."""
 
     problems: list[Problem]
 
@@ -48,7 +48,7 @@ class InputError(ValueError):
 
 
 def bad(key: str, message: str, *, value: str = "", allowed: str = "", hint: str = "") -> InputError:
-    """The exception of an argument."""
+    """Exception for an argument."""
     problem: Problem = {
         "kind": "invalid",
         "file": None,

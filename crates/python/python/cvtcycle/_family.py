@@ -1,4 +1,4 @@
-"""One car with other numbers, as a function of them."""
+"""A car with varied numbers, as a function of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 from ._car import Car, Cycle
 from ._errors import bad
-from ._run import car_of, cycle_of
+from ._run import as_car, as_cycle
 from ._table import Table, doubles, texts
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ class Family:
     """A car and a cycle as a function of some keys, for optimisers and sensitivity analyses.
 
     ``keys`` are numbers of the car's files (``lubricant.`` and ``engine_oil.`` for the fluids), and ``ambient_degc``. Calls are
-    vectorised: each row of ``X`` is a point, driven on all cores. A car that cannot be driven gives NaN, and :meth:`table` says why.
+    vectorised: each row of ``X`` is a point, driven on all cores. A car that cannot be driven gives NaN; :meth:`table` has the reason.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class Family:
         dt_s: float = 1.0,
         threads: int | None = None,
     ) -> None:
-        own, driven, names = car_of("car", car), cycle_of(cycle), texts("keys", keys)
+        own, driven, names = as_car("car", car), as_cycle(cycle), texts("keys", keys)
         self._made = (own, driven, names, ambient_degc, start, dt_s)
         self._family = _native.Family(own._car, driven._cycle, names, ambient_degc, start, dt_s)
         self.threads = threads
@@ -45,7 +45,7 @@ class Family:
 
     @property
     def keys(self) -> list[str]:
-        """The keys, in the order of the columns of ``X``."""
+        """Keys in the order of the columns of ``X``."""
         return [key for key, _, _ in self._family.arguments]
 
     @property
@@ -55,20 +55,20 @@ class Family:
 
     @property
     def base(self) -> dict[str, float]:
-        """The value of each key in the car as it is; NaN where its files have none."""
+        """Value of each key in the unchanged car; NaN for a key missing in its files."""
         return {key: base for key, _, base in self._family.arguments}
 
     @property
     def outputs(self) -> dict[str, str]:
-        """Every output with its unit and meaning."""
+        """Outputs with unit and meaning."""
         return {name: f"{unit}: {doc}" if unit else doc for name, unit, doc in self._family.outputs}
 
     def table(self, X: Any, outputs: Iterable[str] | str = ()) -> Table:
-        """The outputs at the points of ``X`` (N, D), and in the column ``reason`` why a car was not driven or failed a check."""
+        """Computes all outputs at the points of ``X`` (N, D). The column ``reason`` explains cars that were not driven or failed a check."""
         return Table(self._family.points(self._points(X), texts("outputs", outputs), self.threads))
 
     def __call__(self, X: Any, outputs: Iterable[str] | str = "headline_fuel_l_per_100km") -> NDArray[numpy.float64]:
-        """The outputs at the points of ``X`` (N, D) or at one point (D,): one number a point for one name, a column a name for a list.
+        """Computes outputs at the points of ``X`` (N, D) or at one point (D,): one number per point for one name, one column per name for a list.
 
         Needs NumPy.
         """

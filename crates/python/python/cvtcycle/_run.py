@@ -16,7 +16,7 @@ from ._table import Table, _html
 
 
 class Picture:
-    """A drawing as SVG; a notebook shows it."""
+    """SVG drawing, displayed by notebooks."""
 
     def __init__(self, svg: str) -> None:
         self.svg = svg
@@ -34,7 +34,7 @@ class Picture:
 
 
 class Run:
-    """Cars that have been driven through a cycle; the first is the subject, the others are what it is compared with."""
+    """Drives of cars through a cycle. The first car is the subject, the others are its baselines."""
 
     def __init__(self, run: _native.Run, words: list[str]) -> None:
         self._run = run
@@ -47,7 +47,7 @@ class Run:
 
     @property
     def fuel_l_per_100km(self) -> float:
-        """Fuel of the subject over the whole cycle, L/100 km; NaN for less than a metre."""
+        """Fuel of the subject over the whole cycle, L/100 km; NaN below a distance of one metre."""
         return self._run.fuel_l_per_100km
 
     @cached_property
@@ -58,12 +58,12 @@ class Run:
 
     @cached_property
     def traces(self) -> dict[str, Table]:
-        """The trace of each car by its name."""
+        """Trace of each car by name."""
         return {name: self._trace(k) for k, name in enumerate(self.cars)}
 
     @cached_property
     def trace(self) -> Table:
-        """The trace of the subject: one row a step."""
+        """Trace of the subject, one row per step."""
         return self._trace(0)
 
     def _trace(self, car: int) -> Table:
@@ -72,7 +72,7 @@ class Run:
         return Table(self._run.trace(car))
 
     def plot(self, kind: str = "losses", car: str | int = 0) -> Picture:
-        """A figure: ``losses``, ``driveline``, ``pressure``, ``temperatures``, ``operating_points`` of a car, or ``fuel`` of all."""
+        """Draws ``losses``, ``driveline``, ``pressure``, ``temperatures`` or ``operating_points`` of a car, or ``fuel`` of all."""
         if not self._run.has_trace:
             raise bad("trace", "this run kept no steps to draw", hint="drive it with trace=True")
         return Picture(self._run.picture(kind, self._index(car)))
@@ -86,14 +86,14 @@ class Run:
         raise bad("car", "there is no such car in this run", value=str(car), allowed=", ".join(cars))
 
     def write(self, folder: str | os.PathLike[str], *, format: str = "csv", force: bool = False) -> list[str]:
-        """Writes the files of ``cvtcycle run --out``: summary, inputs, traces, plots. Gives their paths."""
+        """Writes the files of ``cvtcycle run --out``: summary, inputs, traces, plots. Returns their paths."""
         paths = self._with_trace("write").write(path_word("folder", folder), format, force, self._command)
         return [os.fspath(path) for path in paths]
 
     def report(
         self, file: str | os.PathLike[str], *, cover: str | os.PathLike[str] | None = None, force: bool = False
     ) -> list[str]:
-        """Writes a report for a design review, HTML or Markdown by the ending of its name. Gives the paths of its files."""
+        """Writes a report for a design review, HTML or Markdown by the extension of its name. Returns the paths of its files."""
         cover = None if cover is None else path_word("cover", cover)
         paths = self._with_trace("report").report(path_word("file", file), cover, force, self._command)
         return [os.fspath(path) for path in paths]
@@ -131,13 +131,13 @@ def _shown(number: float | None, decimals: int) -> str:
     return "-" if number is None else f"{number:.{decimals}f}"
 
 
-def car_of(key: str, car: Car | str | os.PathLike[str]) -> Car:
-    """A car, or the one of a name or path."""
+def as_car(key: str, car: Car | str | os.PathLike[str]) -> Car:
+    """Returns a car, reading it from a name or path if needed."""
     return car if isinstance(car, Car) else Car(path_word(key, car))
 
 
-def cycle_of(cycle: Cycle | str | os.PathLike[str]) -> Cycle:
-    """A cycle, or the one of a name or path."""
+def as_cycle(cycle: Cycle | str | os.PathLike[str]) -> Cycle:
+    """Returns a cycle, reading it from a name or path if needed."""
     return cycle if isinstance(cycle, Cycle) else Cycle(path_word("cycle", cycle))
 
 
@@ -152,17 +152,17 @@ def run(
     trace: bool = True,
     price: bool = False,
 ) -> Run:
-    """Drives a car, and those that it is compared with, through a cycle.
+    """Drives a car and its baselines through a cycle.
 
     ``start`` is ``soak`` (everything at ambient), ``warm`` (directly after the same cycle from a soak) or a temperature in degC. ``dt_s`` is
     the longest time step. ``baselines`` are cars, names or paths, and ``twin`` for the same car with a manual box. Without ``trace`` no
     steps are kept, which is faster. With ``price`` each car is driven again without each of its losses, for the fuel that it costs.
     """
-    subject = car_of("car", car)
+    subject = as_car("car", car)
     if isinstance(baselines, (str, os.PathLike, Car)):
         baselines = [baselines]
-    others = [subject.twin() if own == "twin" else car_of("baselines", own) for own in baselines]
-    cycle = cycle_of(cycle)
+    others = [subject.twin() if own == "twin" else as_car("baselines", own) for own in baselines]
+    cycle = as_cycle(cycle)
     made = _native.run(
         [own._car for own in (subject, *others)], cycle._cycle, ambient_degc, start, dt_s, bool(trace), bool(price)
     )

@@ -22,16 +22,16 @@ class StoredStudy:
 
     @property
     def parts(self) -> tuple[int, int]:
-        """Number of parts that are there, and that there will be."""
+        """Number of parts present, and in total."""
         return self._study.parts
 
     def answer(self, confidence: float | None = None) -> dict[str, Any]:
-        """What the study says, as ``cvtcycle study show --json`` prints it."""
+        """Results of the study, as ``cvtcycle study show --json`` prints them."""
         found: dict[str, Any] = json.loads(self._study.answer(confidence))
         return found
 
     def table(self, columns: Iterable[str] | str = ()) -> Table:
-        """The runs of the parts that are there: some columns, or all."""
+        """Runs of the parts present: some columns, or all."""
         return Table(self._study.table(texts("columns", columns)))
 
     def __repr__(self) -> str:
@@ -39,7 +39,7 @@ class StoredStudy:
 
 
 class Study:
-    """A plan with its cars loaded and every value tried. A shipped plan (``names("plan")``), or the path of a TOML file."""
+    """Plan with its cars loaded and every value tried: a shipped plan (``names("plan")``), or the path of a TOML file."""
 
     def __init__(
         self, plan: str | os.PathLike[str], *, samples: int | None = None, seed: int | None = None
@@ -50,21 +50,21 @@ class Study:
     def from_toml(
         cls, text: str, *, name: str = "plan.toml", samples: int | None = None, seed: int | None = None
     ) -> Study:
-        """From the text of a plan, which problems cite as ``name``."""
+        """Reads the text of a plan, which problems cite as ``name``."""
         study = cls.__new__(cls)
         study._study = _native.Study(name, text, samples, seed)
         return study
 
     @staticmethod
     def open(folder: str | os.PathLike[str]) -> StoredStudy:
-        """The study in a folder."""
+        """Opens the study in a folder."""
         return StoredStudy(folder)
 
     @staticmethod
     def merge(
         folder: str | os.PathLike[str], shards: Iterable[str | os.PathLike[str]], *, force: bool = False
     ) -> StoredStudy:
-        """Puts shards together, folders with parts of one plan, and writes the results: byte for byte the study of one machine."""
+        """Merges shards, folders with parts of one plan, and writes the results: byte for byte the study of one machine."""
         if isinstance(shards, (str, bytes, os.PathLike)):
             raise bad("shards", f"{type(shards).__name__} is no list of folders")
         _native.StoredStudy.merge(path_word("folder", folder), [path_word("shards", own) for own in shards], force)
@@ -92,17 +92,17 @@ class Study:
 
     @property
     def points_per_part(self) -> int:
-        """Number of points of a part; the last one may have fewer."""
+        """Number of points of a part; the last part may have fewer."""
         return self._study.points_per_part
 
     def run(self, parts: tuple[int, int] | None = None, *, threads: int | None = None) -> Table:
-        """Drives the points of the parts from the first up to, and without, the second number; of all parts without them."""
+        """Drives the points of the parts from ``parts[0]`` up to, excluding, ``parts[1]``; of all parts by default."""
         return Table(self._study.run(self._range(parts), threads))
 
     def write_parts(
         self, parts: tuple[int, int] | None, folder: str | os.PathLike[str], *, threads: int | None = None
     ) -> int:
-        """Writes parts into a folder, those that are not there yet, and gives the number of parts that are there then."""
+        """Writes missing parts into a folder, and returns the number of parts there."""
         return self._study.write_parts(self._range(parts), path_word("folder", folder), threads)
 
     def _range(self, parts: tuple[int, int] | None) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""Tables of columns, and arrays on their way in."""
+"""Tables of columns, and conversion of arrays to native input."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Table:
         return name in self.columns
 
     def __getitem__(self, name: str) -> Any:
-        """The numbers of a column as a NumPy array, a view that cannot be written to (without NumPy a list); words as a list."""
+        """Column as a read-only NumPy view (a list without NumPy); words as a list."""
         column = self._table.column(name)
         if isinstance(column, list):
             return column
@@ -69,18 +69,18 @@ class Table:
         return self._table.__arrow_c_schema__()
 
     def to_dict(self) -> dict[str, list[Any]]:
-        """Lists of Python by name."""
+        """Converts the columns to lists, by name."""
         columns = {name: self._table.column(name) for name in self.columns}
         return {name: c if isinstance(c, list) else c.tolist() for name, c in columns.items()}
 
     def to_polars(self) -> polars.DataFrame:
-        """The table as a frame of polars, without a copy."""
+        """Converts the table to a polars frame, without a copy."""
         import polars
 
         return polars.DataFrame(self)
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The table as a frame of pandas, with the units in ``attrs["units"]``."""
+        """Converts the table to a pandas frame, with the units in ``attrs["units"]``."""
         import pandas
 
         frame: pandas.DataFrame = pandas.DataFrame({name: self[name] for name in self.columns})
@@ -110,7 +110,7 @@ def _cell(value: Any) -> str:
 
 
 def doubles(key: str, values: Any) -> bytes:
-    """Numbers as doubles in a row. Arrays of NumPy, frames and sequences are taken; nothing else is read as a number."""
+    """Converts a NumPy array, a series of a frame or a sequence to contiguous doubles. Does not parse text as numbers."""
     if hasattr(values, "__array__") and hasattr(values, "dtype"):
         import numpy
 
@@ -140,8 +140,8 @@ def _listed(key: str, values: Any) -> list[Any]:
         raise bad(key, f"{type(values).__name__} is no sequence of numbers") from error
 
 
-def columns_of(key: str, frame: Any) -> dict[str, list[Any]]:
-    """The columns of a mapping or of a frame (polars, pandas, pyarrow, Table) as lists."""
+def frame_columns(key: str, frame: Any) -> dict[str, list[Any]]:
+    """Converts the columns of a mapping or frame (polars, pandas, pyarrow, Table) to lists."""
     if isinstance(frame, Table):
         return frame.to_dict()
     if isinstance(frame, Mapping):
@@ -156,7 +156,7 @@ def columns_of(key: str, frame: Any) -> dict[str, list[Any]]:
 
 
 def table_text(columns: Mapping[str, Sequence[Any]]) -> bytes:
-    """Columns of one length as the text of a CSV file, numbers exact; None is an empty cell."""
+    """Formats columns of equal length as CSV with round-trip numbers. None becomes an empty cell."""
     lengths = {name: len(values) for name, values in columns.items()}
     if len(set(lengths.values())) > 1:
         raise bad(", ".join(columns), "the columns are of different lengths: " + _lengths(lengths))
@@ -183,7 +183,7 @@ def _word(value: Any) -> str:
 
 
 def texts(key: str, values: Iterable[str] | str) -> list[str]:
-    """A text, or several, as a list."""
+    """Converts one or several texts to a list."""
     listed = [values] if isinstance(values, str) else list(values)
     for value in listed:
         if not isinstance(value, str):

@@ -10,23 +10,23 @@ from typing import Any
 from . import _native
 from ._car import Car, Set, assignments, path_word
 from ._errors import bad
-from ._run import car_of
-from ._table import Table, columns_of, doubles, table_text, texts
+from ._run import as_car
+from ._table import Table, frame_columns, doubles, table_text, texts
 
 
 def names(kind: str) -> list[str]:
-    """Names of what the package carries: ``vehicle``, ``cycle``, ``lubricant``, ``plan``, ``calibration``, ``class``, ``rig``, ``levers``."""
+    """Names of embedded inputs of a kind: ``vehicle``, ``cycle``, ``lubricant``, ``plan``, ``calibration``, ``class``, ``rig``, ``levers``."""
     return _native.names(kind)
 
 
 def explain(word: str) -> dict[str, Any]:
-    """The meaning of a key, column, flag, label of an equation or term, as ``cvtcycle explain --json`` prints it."""
+    """Explains a key, column, flag, label of an equation or term, as ``cvtcycle explain --json`` prints it."""
     found: dict[str, Any] = json.loads(_native.explain(word))
     return found
 
 
 def schema(kind: str) -> dict[str, Any]:
-    """The JSON Schema of a kind of file: ``vehicle``, ``lubricant``, ``rig``, ``calibration``, ``validation``, ``plan``, ``levers``."""
+    """JSON Schema of a kind of file: ``vehicle``, ``lubricant``, ``rig``, ``calibration``, ``validation``, ``plan``, ``levers``."""
     found: dict[str, Any] = json.loads(_native.schema(kind))
     return found
 
@@ -45,14 +45,14 @@ def losses(
     secondary_pressure_bar: Any = None,
     threads: int | None = None,
 ) -> Table:
-    """Losses of each part of a transmission at operating points, torques at the input shaft; the launch clutch is locked.
+    """Computes losses of each component of a transmission at operating points: torques at the input shaft, with the launch clutch locked.
 
     Arguments are numbers or arrays of one length; their names are those of the columns that come back. A CVT needs ``belt_ratio``, a manual
     box ``gear``. ``output_torque_nm`` is behind the final drive (0 if no torque is given); ``input_torque_nm`` takes its place, and that of
     ``throttle``: the clamping law sees it over full load. Without ``belt_spray_degc`` the belt is in steady state over the sump,
     without ``secondary_pressure_bar`` the pressure is that of the clamping law at ``throttle`` (0 if it is not given).
     """
-    subject = car_of("car", car)
+    subject = as_car("car", car)
     ratio = "belt_ratio" if subject.is_cvt else "gear"
     given = {
         "belt_ratio": belt_ratio,
@@ -82,12 +82,12 @@ def belt(
     band_speed: float | None = None,
     name: str = "points",
 ) -> Table:
-    """The belt model at the points of a table, a mapping or a frame with the columns of ``cvtcycle belt``.
+    """Evaluates the belt model at the points of a table, a mapping or a frame with the columns of ``cvtcycle belt``.
 
     It needs ``ratio``, ``input_speed_rpm``, ``secondary_pressure_bar`` and ``output_torque_nm`` (at the secondary pulley).
     """
-    text = table_text(columns_of("points", points))
-    return Table(_native.belt(car_of("car", car)._car, name, text, formulation, band_speed))
+    text = table_text(frame_columns("points", points))
+    return Table(_native.belt(as_car("car", car)._car, name, text, formulation, band_speed))
 
 
 def validate(
@@ -99,7 +99,7 @@ def validate(
     only_rows: bool = False,
     chapter: str | None = None,
 ) -> dict[str, Any]:
-    """Compares published values, and those of the user's own files of ``rows``, with the model, as ``cvtcycle validate --json`` does."""
+    """Compares the model with published values and with the user's own files of ``rows``, as ``cvtcycle validate --json`` does."""
     own = texts("rows", rows)
     word = path_word("vehicle", vehicle)
     found = _native.validate(word, lubricant, assignments(set), own, not only_rows, chapter)
@@ -115,6 +115,6 @@ def calibrate(
     folds: bool = True,
     threads: int | None = None,
 ) -> dict[str, Any]:
-    """Fits parameters to measurements, as ``cvtcycle calibrate --json`` does; without ``folds`` there are no prediction errors."""
+    """Fits parameters to measurements, as ``cvtcycle calibrate --json`` does. Without ``folds`` it computes no prediction errors."""
     found: dict[str, Any] = json.loads(_native.calibrate(path_word("plan", plan), starts, seed, folds, threads))
     return found

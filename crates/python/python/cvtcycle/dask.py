@@ -40,7 +40,7 @@ def run(
     threads: int = 1,
     force: bool = False,
 ) -> StoredStudy:
-    """Drives a plan on the workers of ``client`` and merges what they write into the folder ``out``.
+    """Drives a plan on the workers of ``client`` and merges their parts into the folder ``out``.
 
     Each task drives ``parts_per_task`` parts with ``threads`` threads into a folder of its own below ``OUT.shards``. A task whose worker
     dies is given to another one, which goes on with the whole parts that are there: at most the parts in flight are driven twice. The

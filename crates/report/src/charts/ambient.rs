@@ -17,7 +17,7 @@ fn points(x: &[f64], y: &[f64]) -> Points {
     list
 }
 
-/// Series of one panel: a look for each car, solid for the first start and dotted for the second.
+/// Series of one panel: one look for each car, solid for the first start and dotted for the second.
 fn series(matrix: &Matrix, by_car: &[Vec<Vec<f64>>], first_look: usize) -> Vec<(Look, Points)> {
     let mut list = Vec::new();
     for (car, by_start) in by_car.iter().enumerate() {
@@ -56,12 +56,12 @@ fn by_part(
     matrix: &Matrix,
     y_title: &'static str,
     first_look: usize,
-    of: fn(&FuelPart) -> &[Vec<Vec<f64>>],
+    select: fn(&FuelPart) -> &[Vec<Vec<f64>>],
 ) -> LineChart {
     let panel = |part: &FuelPart| LinePanel {
         heading: heading(&part.name),
         y_title,
-        series: series(matrix, of(part), first_look),
+        series: series(matrix, select(part), first_look),
         ..LinePanel::default()
     };
     LineChart {
@@ -84,7 +84,7 @@ pub fn ambient_fuel(matrix: &Matrix, title: &str) -> Picture {
     })
 }
 
-/// Excess of the subject against ambient temperature; none without baselines.
+/// Excess of the subject against ambient temperature; `None` without baselines.
 pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
     let (subject, baselines) = matrix.cars.split_first()?;
     let over: Vec<String> = baselines
@@ -99,7 +99,7 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
         names: names(matrix, &over, 1),
         ..by_part(matrix, "Excess fuel [%]", 1, |part| &part.excess_percent)
     };
-    // The phases say the same.
+    // The phases repeat the same.
     chart.panels.truncate(1);
     for panel in &mut chart.panels {
         panel.with_y = vec![0.0];
@@ -107,14 +107,14 @@ pub fn ambient_penalty(matrix: &Matrix, title: &str) -> Option<Picture> {
     (!baselines.is_empty()).then(|| line_chart(&chart))
 }
 
-/// The least and the largest ambient temperature with a number there, in that order.
+/// Numbers at the lowest and the highest ambient temperature that has one, in that order.
 fn ends(matrix: &Matrix, numbers: &[f64]) -> Option<[(f64, f64); 2]> {
     let points = points(&matrix.ambient_degc, numbers);
     let (first, last) = (points.first()?, points.last()?);
     (points.len() > 1).then_some([*first, *last])
 }
 
-/// What the cold costs the subject from the first start.
+/// Title: the subject's extra fuel in the cold, from the first start.
 fn fuel_title(matrix: &Matrix) -> String {
     let whole = matrix
         .fuel
@@ -137,7 +137,7 @@ fn fuel_title(matrix: &Matrix) -> String {
     )
 }
 
-/// Whether the difference to the first baseline depends on the ambient temperature.
+/// Title: dependence of the difference to the first baseline on the ambient temperature.
 fn penalty_title(matrix: &Matrix, subject: &str) -> String {
     let part = matrix.fuel.first();
     let percent = part.and_then(|part| part.excess_percent.first()?.first());
@@ -182,8 +182,10 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
     let names = names.map(|(index, ambient)| (Look::solid(index), degc(*ambient)));
     let word = matrix.starts.get(start).map_or("", String::as_str);
     let end = |ambient: f64| {
-        let mut of = own(0).filter(|run| matrix.ambient_degc.get(run.ambient) == Some(&ambient));
-        of.next()?
+        let mut runs_there =
+            own(0).filter(|run| matrix.ambient_degc.get(run.ambient) == Some(&ambient));
+        runs_there
+            .next()?
             .sump_degc
             .iter()
             .copied()
@@ -218,7 +220,7 @@ pub fn warm_up(matrix: &Matrix, runs: &[WarmUp], start: usize, title: &str) -> P
     })
 }
 
-/// A line whose look is the place of its ambient temperature among all.
+/// Line of a run, with the look of its ambient temperature among all.
 fn warm_up_line(matrix: &Matrix, run: &WarmUp) -> (Look, Points) {
     let own = matrix
         .ambient_degc

@@ -1,4 +1,4 @@
-//! What each lever of a car saves, as a strip of its draws.
+//! Savings of each lever of a car, as a strip of its draws.
 
 use super::engine::{
     Axis, Chart, Entry, Fill, INK, Label, QUIET, Style, Symbol, WIDTH, at, optional_cell,
@@ -6,39 +6,39 @@ use super::engine::{
 };
 use super::picture::{Picture, PictureTable};
 use crate::number::{capital_first, degc};
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
 
-/// Right edge of the plot with room for the counts, left edge of what lies below it, height of a row, pixels.
+/// Right edge of the plot with room for the counts, left edge of blocks below it, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 96.0;
 const MARGIN: f64 = 12.0;
 const ROW: f64 = 20.0;
 /// Half of the height of the bar of a range, radius of its median, pixels.
 const HALF: f64 = 5.0;
 const RADIUS: f64 = 4.5;
-/// Levers of a combination that are named below the figure; tables have all.
+/// Number of levers of a combination named below the figure; tables list all.
 const NAMED: usize = 3;
-/// What the marks are.
+/// Names of the marks.
 const MARKS: [&str; 2] = ["One change", "Changes together"];
 
-/// For each lever of a car at one ambient temperature the range of its draws and their median; combinations last.
+/// Draws the range of the draws and their median for each lever of a car at one ambient temperature; combinations last.
 pub fn lever_strip(answer: &LeverAnswer, block: &LeverBlock) -> Picture {
     strip(answer, block, &block.rows.iter().collect::<Vec<_>>())
 }
 
-/// The same of the levers that save most and work, at most so many, and of the combinations.
-pub fn foremost_levers(answer: &LeverAnswer, block: &LeverBlock, most: usize) -> Picture {
+/// As [`lever_strip`], for at most `max_shown` levers with the largest savings, and the combinations.
+pub fn foremost_levers(answer: &LeverAnswer, block: &LeverBlock, max_shown: usize) -> Picture {
     let (together, single): (Vec<_>, Vec<_>) =
         block.rows.iter().partition(|row| row.is_combination());
-    let single = single.into_iter().filter(|row| saves(row)).take(most);
+    let single = single.into_iter().filter(|row| saves(row)).take(max_shown);
     strip(answer, block, &single.chain(together).collect::<Vec<_>>())
 }
 
-/// Whether a lever works and saves fuel.
+/// True if a lever works and saves fuel.
 pub fn saves(row: &LeverRow) -> bool {
     !row.does_not_work() && row.fuel_percent.value < 0.0
 }
 
-/// Name of a lever; of a combination that has none of its own how many there are in it.
+/// Name of a lever; an unnamed combination is named by its number of levers.
 pub fn lever_title(row: &LeverRow) -> String {
     match row.of.title.as_str() {
         "combination" => format!("combination of {} changes", row.of.members.len()),
@@ -93,7 +93,7 @@ fn strip(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Pictur
         .picture(table(answer, rows))
 }
 
-/// The lever that saves most, and the largest combination, in a sentence.
+/// Title: the lever with the largest saving, and the largest combination.
 fn title(block: &LeverBlock) -> String {
     let (together, mut single): (Vec<_>, Vec<_>) =
         (block.rows.iter().filter(|row| saves(row))).partition(|row| row.is_combination());
@@ -137,7 +137,7 @@ fn notes(answer: &LeverAnswer, block: &LeverBlock, rows: &[&LeverRow]) -> Vec<St
     [marks].into_iter().chain(together).collect()
 }
 
-/// In how many draws a lever saves.
+/// Counts the draws in which a lever saves.
 fn counted(answer: &LeverAnswer, row: &LeverRow) -> String {
     match answer.plan {
         Some(_) if row.n == 0 => "no good run".to_owned(),

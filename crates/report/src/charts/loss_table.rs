@@ -10,9 +10,9 @@ use crate::number::{capital_first, grouped};
 use cvtcycle_output::Component;
 use cvtcycle_output::losses::{Axis as GridAxis, LossRow, LossTable};
 
-/// Smallest number of values on an axis of a map: values between two points are unknown.
+/// Minimum number of values on an axis of a map: values between two points are unknown.
 const MIN_ON_MAP: usize = 3;
-/// Largest number of panels of a figure.
+/// Maximum number of panels of a figure.
 const MAX_PANELS: usize = 12;
 /// Axes by priority.
 const ORDER: [GridAxis; 8] = [
@@ -26,18 +26,18 @@ const ORDER: [GridAxis; 8] = [
     GridAxis::Ratio,
 ];
 
-/// Figures with their file names; none for a single point.
-pub fn loss_figures(plan: &LossTable) -> Vec<(String, String)> {
-    let varied = plan.grid.varied();
-    let count = |axis: &GridAxis| plan.grid.of(*axis).len();
-    let gears = |axis: &GridAxis| *axis == GridAxis::Ratio && !plan.is_cvt();
+/// Draws figures with their file names; empty for a single point.
+pub fn loss_figures(table: &LossTable) -> Vec<(String, String)> {
+    let varied = table.grid.varied();
+    let count = |axis: &GridAxis| table.grid.axis_values(*axis).len();
+    let gears = |axis: &GridAxis| *axis == GridAxis::Ratio && !table.is_cvt();
     let drawn = ORDER.into_iter().filter(|axis| varied.contains(axis));
     let on_map = drawn
         .clone()
         .filter(|axis| count(axis) >= MIN_ON_MAP && !gears(axis));
-    let rows: Vec<LossRow> = plan.rows().collect();
+    let rows: Vec<LossRow> = table.rows().collect();
     let stacked = |x: GridAxis| {
-        let svg = stack(plan, &Layout::new(plan, &rows, x, None));
+        let svg = stack(table, &Layout::new(table, &rows, x, None));
         vec![("losses_stacked.svg".to_owned(), svg)]
     };
     match (on_map.collect::<Vec<_>>().as_slice(), varied.is_empty()) {
@@ -45,14 +45,14 @@ pub fn loss_figures(plan: &LossTable) -> Vec<(String, String)> {
         ([], false) => stacked(drawn.max_by_key(count).unwrap_or(GridAxis::Ratio)),
         ([x], _) => stacked(*x),
         ([x, rest @ ..], _) => {
-            // The axis with most values, so that few panels are needed; of equals the first.
+            // The axis with the largest number of values, for few panels; the first of equals.
             let y = rest.iter().rev().max_by_key(|axis| count(axis));
-            maps(plan, &Layout::new(plan, &rows, *x, y.copied()))
+            maps(table, &Layout::new(table, &rows, *x, y.copied()))
         }
     }
 }
 
-/// One value of each axis that is not drawn along, and the rows of its panel.
+/// One value of each axis that is not drawn, and the rows of its panel.
 struct Panel<'a> {
     title: String,
     /// Rows by x, then by y.
@@ -67,13 +67,13 @@ struct Layout<'a> {
 }
 
 impl<'a> Layout<'a> {
-    fn new(plan: &LossTable, rows: &'a [LossRow], x: GridAxis, y: Option<GridAxis>) -> Self {
+    fn new(table: &LossTable, rows: &'a [LossRow], x: GridAxis, y: Option<GridAxis>) -> Self {
         let along = |axis: &GridAxis| x == *axis || y == Some(*axis);
-        let varied = plan.grid.varied().into_iter();
+        let varied = table.grid.varied().into_iter();
         let others: Vec<GridAxis> = varied.filter(|axis| !along(axis)).collect();
         let held = |axis: &GridAxis| !along(axis) && !others.contains(axis);
         let fixed: Vec<GridAxis> = GridAxis::ALL.into_iter().filter(held).collect();
-        let at = |row: &LossRow, axis: GridAxis| row.asked[axis as usize];
+        let at = |row: &LossRow, axis: GridAxis| row.requested[axis as usize];
         // In the order of the grid, each combination once.
         let mut places: BTreeMap<Vec<u64>, usize> = BTreeMap::new();
         let mut groups: Vec<Vec<&LossRow>> = Vec::new();
@@ -87,8 +87,8 @@ impl<'a> Layout<'a> {
         }
         let count = groups.len();
         let panel = |mut list: Vec<&'a LossRow>| {
-            let title = plan.held(&list[0].asked, &others);
-            // Stable: first by y, then by x.
+            let title = table.values_in_words(&list[0].requested, &others);
+            // Stable sort: by x after y.
             for axis in y.into_iter().chain([x]) {
                 list.sort_by(|a, b| at(a, axis).total_cmp(&at(b, axis)));
             }
@@ -97,12 +97,12 @@ impl<'a> Layout<'a> {
             Panel { title, rows }
         };
         let values = |axis: GridAxis| {
-            let mut values = plan.grid.of(axis).to_vec();
+            let mut values = table.grid.axis_values(axis).to_vec();
             values.sort_by(f64::total_cmp);
             (axis, values)
         };
-        let held = plan.held(&plan.grid.at(0), &fixed);
-        let mut subject = format!("{}: {held}", plan.setup.name);
+        let held = table.values_in_words(&table.grid.at(0), &fixed);
+        let mut subject = format!("{}: {held}", table.setup.name);
         if count > MAX_PANELS {
             subject += &format!(" (first {MAX_PANELS} of {count} combinations)");
         }
@@ -116,11 +116,11 @@ impl<'a> Layout<'a> {
 }
 
 /// One map of the total and one of each group of components.
-fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
+fn maps(table: &LossTable, layout: &Layout) -> Vec<(String, String)> {
     let Some((y_axis, y)) = &layout.y else {
         return Vec::new();
     };
-    let cvt = plan.is_cvt();
+    let cvt = table.is_cvt();
     let draw = |file: &str, title: &str, parts: &[Component]| {
         let sum = |row: &&LossRow| parts.iter().map(|c| row.answer.part_nm(*c)).sum::<f64>();
         let drawn = layout
@@ -129,7 +129,7 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
             .flat_map(|panel| panel.rows.iter().flatten());
         let title = &span(title, drawn.map(sum));
         let column = |column: &Vec<&LossRow>| column.iter().map(sum).collect();
-        let panel = |of: &Panel| (of.title.clone(), of.rows.iter().map(column).collect());
+        let panel = |facet: &Panel| (facet.title.clone(), facet.rows.iter().map(column).collect());
         let figure = MapFigure {
             title,
             subject: &layout.subject,
@@ -140,8 +140,8 @@ fn maps(plan: &LossTable, layout: &Layout) -> Vec<(String, String)> {
         };
         (format!("losses_{file}.svg"), map_figure(&figure))
     };
-    let total = draw("total", "The transmission loses", &plan.components());
-    let groups = plan.groups().into_iter().map(|(name, parts)| {
+    let total = draw("total", "The transmission loses", &table.components());
+    let groups = table.groups().into_iter().map(|(name, parts)| {
         let name = name.to_lowercase();
         draw(
             &name.replace(' ', "_"),
@@ -173,8 +173,8 @@ const ABOVE: f64 = 24.0;
 const STRIPS: [f64; 2] = [206.0, 16.0];
 
 /// All components stacked over one axis.
-fn stack(plan: &LossTable, layout: &Layout) -> String {
-    let parts = plan.components();
+fn stack(table: &LossTable, layout: &Layout) -> String {
+    let parts = table.components();
     let several = layout.panels.len() > 1;
     let strip = STRIPS[usize::from(several)];
     let (columns, size, pitch) = panels_left_of(strip, layout.panels.len());
@@ -189,19 +189,19 @@ fn stack(plan: &LossTable, layout: &Layout) -> String {
     let sums = layout.panels.iter().flat_map(|panel| &panel.rows).map(sum);
     let ticks = if several { (4, 5) } else { (8, 8) };
     let (axis, xs) = &layout.x;
-    let x = Axis::exact(axis.title(plan.is_cvt()), xs[0], xs[xs.len() - 1], ticks.0);
+    let x = Axis::exact(axis.title(table.is_cvt()), xs[0], xs[xs.len() - 1], ticks.0);
     let y = Axis::round("Loss at the input shaft [Nm]", sums.chain([0.0]), ticks.1);
-    let panel = |(k, of): (usize, &Panel)| {
-        let mut panel = engine::Panel::new(place(k), x.clone(), y.clone()).heading(&of.title);
+    let panel = |(k, facet): (usize, &Panel)| {
+        let mut panel = engine::Panel::new(place(k), x.clone(), y.clone()).heading(&facet.title);
         let layer = |(k, part): (usize, &Component)| {
-            let losses = of.rows.iter().map(|column| loss(column[0], *part));
+            let losses = facet.rows.iter().map(|column| loss(column[0], *part));
             (Look::solid(k), xs.iter().copied().zip(losses).collect())
         };
         let layers = parts.iter().enumerate().map(layer).collect();
         stack_layers(&mut panel, layers, |k| Fill::component(parts[k]));
         panel
     };
-    // Listed from the top, as they lie in the stack.
+    // Listed from the top, as in the stack.
     let entries = parts.iter().rev();
     let entries = entries.map(|part| Entry::fill(Fill::component(*part), part.title()));
     let titles: Vec<&str> = parts.iter().map(|part| part.title()).collect();

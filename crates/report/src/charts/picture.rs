@@ -1,4 +1,4 @@
-//! A picture with the table of its numbers, which also fills the box under the pointer.
+//! A picture with the table of its numbers, which also fills its tooltips.
 
 use crate::number::with_unit;
 
@@ -23,9 +23,9 @@ pub struct PictureTable {
     pub note: String,
 }
 
-/// Rows and cells at most that are listed in the picture in words.
+/// Maximum number of rows and cells listed in the picture in words.
 const MAX_LISTED: (usize, usize) = (12, 50);
-/// Columns at most whose span is given there.
+/// Maximum number of columns whose span is listed there.
 pub(crate) const MAX_SPANS: usize = 6;
 
 impl PictureTable {
@@ -38,7 +38,7 @@ impl PictureTable {
         }
     }
 
-    /// A table with names and units of its columns that are made at run time.
+    /// A table whose names and units are known only at run time.
     pub fn with_columns(columns: impl IntoIterator<Item = (String, &'static str)>) -> Self {
         PictureTable {
             columns: columns.into_iter().collect(),
@@ -46,7 +46,7 @@ impl PictureTable {
         }
     }
 
-    /// The table with a remark.
+    /// Adds a remark.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
@@ -59,7 +59,7 @@ impl PictureTable {
         self.rows.len() - 1
     }
 
-    /// The numbers of a column with their cells; none if it holds words, or nothing.
+    /// Numbers of a column with their cells; `None` if it holds words, or nothing.
     pub(crate) fn numbers(&self, column: usize) -> Option<Vec<(f64, &str)>> {
         let cells = self.rows.iter().filter_map(|row| row.get(column));
         let cells = cells.filter(|cell| !cell.is_empty());
@@ -68,7 +68,7 @@ impl PictureTable {
         numbers.filter(|list| !list.is_empty())
     }
 
-    /// "Torque [Nm] from 2 to 11", over some columns; none if they hold words, or nothing.
+    /// "Torque [Nm] from 2 to 11", over some columns; `None` if they hold words, or nothing.
     pub(crate) fn span(&self, name: &str, columns: &[usize]) -> Option<String> {
         let numbers = columns.iter().filter_map(|column| self.numbers(*column));
         let numbers: Vec<(f64, &str)> = numbers.flatten().collect();
@@ -77,7 +77,7 @@ impl PictureTable {
         Some(format!("{name} from {} to {}", low.1, high.1))
     }
 
-    /// The numbers in words: the rows of a short table, the spans of the first columns of a long one.
+    /// Formats the numbers in words: the rows of a short table, the spans of the first columns of a long one.
     pub(crate) fn in_words(&self) -> String {
         let heads = self.columns.iter();
         let heads: Vec<String> = heads.map(|(name, unit)| with_unit(name, unit)).collect();

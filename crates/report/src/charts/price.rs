@@ -1,4 +1,4 @@
-//! What each loss costs, next to the energy that it takes.
+//! Price of each loss, next to its energy.
 
 use super::engine::{
     Axis, Chart, Fill, INK, Label, Style, WIDTH, at, optional_cell, rows_left, rows_panel, stroke,
@@ -7,7 +7,7 @@ use super::picture::{Picture, PictureTable};
 use cvtcycle_output::Component;
 use cvtcycle_output::summary::RunSummary;
 
-/// Right edge of the plot, left edge of what lies below it, height of a row, pixels.
+/// Right edge of the plot, left edge of blocks below it, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 28.0;
 const MARGIN: f64 = 12.0;
 const ROW: f64 = 27.0;
@@ -15,12 +15,12 @@ const ROW: f64 = 27.0;
 const HALVES: [(f64, f64); 2] = [(-10.0, -0.5), (0.5, 10.0)];
 /// Opacity of both.
 const PALE: [f64; 2] = [0.4, 1.0];
-/// What the bars are.
+/// Names of the bars.
 const BARS: [&str; 2] = ["Energy of the loss", "Fuel saved without the loss"];
 
-/// Bars of each loss of a car, and of all together: its share of the fuel's energy, and the fuel that would be saved without it.
+/// Draws bars of each loss of a car, and of all together: its share of the fuel's energy, and the fuel saved without it.
 pub fn price_bars(run: &RunSummary, subject: &str) -> Picture {
-    // By the table of components, so that a file with other names draws no other rows.
+    // Iterates over the table of components, so that a file with other names adds no rows.
     let loss = |c: Component| run.price.as_ref()?.losses.get(c.name());
     let row = |c: Component| {
         let loss = loss(c)?;
@@ -68,7 +68,7 @@ pub fn price_bars(run: &RunSummary, subject: &str) -> Picture {
         .picture(table)
 }
 
-/// What the losses cost together, and the one that costs most.
+/// Title: price of all losses together, and the most expensive one.
 fn title(run: &RunSummary, subject: &str) -> String {
     let Some(price) = &run.price else {
         return "The price of the losses was not computed".to_owned();
@@ -77,11 +77,11 @@ fn title(run: &RunSummary, subject: &str) -> String {
     let costs = Component::ALL
         .into_iter()
         .filter_map(|c| Some((c, cost(&c)?)));
-    let most = costs.max_by(|a, b| a.1.total_cmp(&b.1));
-    let most = most.map_or_else(String::new, |(c, percent)| {
+    let dearest = costs.max_by(|a, b| a.1.total_cmp(&b.1));
+    let dearest = dearest.map_or_else(String::new, |(c, percent)| {
         let name = run.loss_words(c.name());
         format!(", the largest of them {name} ({percent:.1} %)")
     });
     let together = price.together.percent.unwrap_or(f64::NAN);
-    format!("Its losses cost {subject} {together:.1} % of its fuel{most}")
+    format!("Its losses cost {subject} {together:.1} % of its fuel{dearest}")
 }

@@ -1,4 +1,4 @@
-//! Figures like 6-5 to 6-9 of the thesis: slip and radii on the variator rig, with what it prints of them.
+//! Figures like 6-5 to 6-9 of the thesis: slip and radii on the variator rig, with its printed numbers.
 
 use super::engine::{
     Axis, BELOW, Chart, End, Entry, INK, LEFT, PLOT_LEFT, PUBLISHED, Palette, Panel, Point, Stroke,
@@ -7,24 +7,24 @@ use super::engine::{
 use super::picture::PictureTable;
 use super::printed::{THESIS_CAR, number};
 use crate::number::{grouped, signed};
-use cvtcycle_model::bench::variator::{RigFlags, VariatorRow};
+use cvtcycle_model::rig::variator::{RigFlags, VariatorRow};
 use cvtcycle_output::variator::{Curve, VariatorCurves};
 
 const X: &str = "Torque at the secondary pulley [Nm]";
-/// Largest number of tests that are drawn.
+/// Maximum number of drawn tests.
 const MAX_TESTS: usize = 6;
-/// Largest slip that is drawn.
+/// Maximum drawn slip.
 const MAX_SLIP: f64 = 0.05;
 /// Slip up to which the thesis has figures, a share.
 const PRINTED_SLIP: f64 = 0.03;
-/// Secondary pressure at which it prints slip speeds and a breakpoint, bar.
+/// Secondary pressure of the printed slip speeds and breakpoint, bar.
 const PRINTED_BAR: f64 = 30.0;
 
 const TOP: f64 = 84.0;
 /// Room between two panels, and right of each for the names of its lines, pixels.
 const GAP: f64 = 36.0;
 const NAMES: f64 = 62.0;
-/// Sizes of a panel that is alone in its row, and of one of two, pixels.
+/// Sizes of a panel alone in its row, and of one of two, pixels.
 const LONE: Point = (WIDTH - PLOT_LEFT - NAMES - 12.0, 270.0);
 const PAIRED: Point = ((WIDTH - PLOT_LEFT - LEFT - 2.0 * NAMES - 24.0) / 2.0, 240.0);
 const RADIUS: f64 = 3.6;
@@ -39,10 +39,13 @@ const SLIP_SPEED: [(&str, Get); 2] = [
 ];
 
 /// Figures with their file names.
-pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
-    let tests = plan.curves.chunk_by(Curve::is_same_test).take(MAX_TESTS);
+pub fn variator_figures(rig_curves: &VariatorCurves) -> Vec<(&'static str, String)> {
+    let tests = rig_curves
+        .curves
+        .chunk_by(Curve::is_same_test)
+        .take(MAX_TESTS);
     let tests: Vec<&[Curve]> = tests.collect();
-    let is_printed = plan.vehicle == THESIS_CAR;
+    let is_printed = rig_curves.vehicle == THESIS_CAR;
     let slip = |test: &&[Curve]| {
         let mut curves = by_pressure(test, "Slip [%]", SLIP);
         if is_printed {
@@ -68,12 +71,12 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
     vec![
         (
             "radii.svg",
-            figure(plan, radius_title(&tests), radii.collect(), 2),
+            figure(rig_curves, radius_title(&tests), radii.collect(), 2),
         ),
         (
             "slip.svg",
             figure(
-                plan,
+                rig_curves,
                 slip_title(&tests),
                 tests.iter().map(slip).collect(),
                 1,
@@ -81,12 +84,12 @@ pub fn variator_figures(plan: &VariatorCurves) -> Vec<(&'static str, String)> {
         ),
         (
             "slip_speed.svg",
-            figure(plan, speed_title(&tests), speeds, 2),
+            figure(rig_curves, speed_title(&tests), speeds, 2),
         ),
     ]
 }
 
-/// Ratio and speed of a test, without its temperature: what fits above half of a picture.
+/// Ratio and speed of a test, without its temperature: fits above half of a picture.
 fn short_name(curve: &Curve) -> String {
     let name = curve.test_name();
     let short = name
@@ -100,7 +103,7 @@ fn bar(curve: &Curve) -> String {
     format!("{} bar", curve.bar())
 }
 
-/// What slip begins with and ends at over the pressures of the first test.
+/// Title: slip at low torque and at the end over the pressures of the first test.
 fn slip_title(tests: &[&[Curve]]) -> String {
     let test = tests.first().copied().unwrap_or_default();
     let ends = test.first().zip(test.last());
@@ -124,7 +127,7 @@ fn slip_title(tests: &[&[Curve]]) -> String {
     }
 }
 
-/// Where a curve passes a value of one quantity, another one there.
+/// Interpolates one quantity at the point where a curve passes a value of another one.
 fn where_it_is(curve: &Curve, of: Get, value: f64, get: Get) -> Option<f64> {
     let points: Vec<(f64, f64)> = rows(curve).map(|row| (of(row), get(row))).collect();
     let mut pieces = points.windows(2);
@@ -133,7 +136,7 @@ fn where_it_is(curve: &Curve, of: Get, value: f64, get: Get) -> Option<f64> {
     Some(y0 + (y1 - y0) * (value - x0) / (x1 - x0))
 }
 
-/// The curve at the pressure of which the thesis prints slip speeds, in the test that has one and a breakpoint.
+/// Curve at the pressure of the printed slip speeds, in a test that has one and a breakpoint.
 fn printed_curve(test: &[Curve]) -> Option<&Curve> {
     let own = |curve: &&Curve| (curve.bar() - PRINTED_BAR).abs() < 1e-6;
     let curve = test.iter().find(own)?;
@@ -159,7 +162,7 @@ fn speed_title(tests: &[&[Curve]]) -> String {
     }
 }
 
-/// How far the primary's radius from the speeds is from that at no torque, at the last torque that is drawn, %.
+/// Relative change of the primary's radius from the speeds, from zero torque to the last drawn torque, %.
 fn radius_change(curve: &Curve) -> Option<(f64, f64)> {
     points(curve, RADII[0].1[0]).last().copied()
 }
@@ -181,7 +184,7 @@ struct Curves {
     heading: String,
     y: &'static str,
     lines: Vec<Line>,
-    /// What the colours mean.
+    /// Meaning of the colours.
     palette: Palette,
     /// Published points, and a published range over all torques.
     printed: (Vec<Point>, Option<[f64; 2]>),
@@ -191,12 +194,12 @@ struct Line {
     name: String,
     /// Points in ascending order of torque.
     points: Vec<Point>,
-    /// Where the breakpoint lies on it.
+    /// Breakpoint on the line.
     breakpoint: Option<Point>,
 }
 
 impl Curves {
-    /// Slip that the thesis calls typical, and the breakpoint that it prints.
+    /// Typical slip by the thesis, and its printed breakpoint.
     fn printed_slip(&mut self, test: &[Curve]) {
         if printed_curve(test).is_none() {
             return;
@@ -205,7 +208,7 @@ impl Curves {
         self.printed = (breakpoint.into_iter().collect(), number(&["6.11b"]));
     }
 
-    /// Slip speed of the primary where slip is 3 %, and of the secondary where the primary has the printed one.
+    /// Slip speed of the primary at 3 % slip, and of the secondary where the primary has the printed one.
     fn printed_speed(&mut self, test: &[Curve], pulley: usize) {
         let torque: Get = |r| r.output_nm;
         let Some((curve, [primary, _])) = printed_curve(test).zip(number(&["6.12a"])) else {
@@ -232,8 +235,7 @@ impl Curves {
     }
 }
 
-/// Rows up to the slip that is drawn, in ascending order of torque: the figures of the thesis end at 3 %, and at gross slip the value is only
-/// a bound.
+/// Rows up to the drawn slip, in ascending order of torque: the figures of the thesis end at 3 %, and at gross slip the value is only a bound.
 fn rows(curve: &Curve) -> impl Iterator<Item = &VariatorRow> {
     curve.rows.iter().filter(|row| {
         row.belt.losses.slip_total.abs() <= MAX_SLIP && !row.flags.contains(RigFlags::GROSS_SLIP)
@@ -272,7 +274,7 @@ fn by_pressure(test: &[Curve], y: &'static str, get: Get) -> Curves {
     }
 }
 
-/// Name and value of the radii of both pulleys: their change from what the rig takes for the radius at no torque, %.
+/// Name and value of the radii of both pulleys: their change from the rig's radius at zero torque, %.
 const RADII: [(&str, [Get; 2]); 2] = [
     (
         "speeds",
@@ -290,7 +292,7 @@ const RADII: [(&str, [Get; 2]); 2] = [
     ),
 ];
 
-/// Radii of a pulley, from the geometry and from the speeds.
+/// Radii of a pulley, by geometry and by speeds.
 fn radii(pulley: &str, curve: &Curve, k: usize) -> Curves {
     let line = |(name, get): (&str, [Get; 2])| Line {
         name: name.to_owned(),
@@ -307,8 +309,13 @@ fn radii(pulley: &str, curve: &Curve, k: usize) -> Curves {
 }
 
 /// Panels in rows, with the names of the lines at their ends.
-fn figure(plan: &VariatorCurves, title: String, panels: Vec<Curves>, columns: usize) -> String {
-    let (vehicle, model) = (&plan.vehicle, &plan.formulation);
+fn figure(
+    rig_curves: &VariatorCurves,
+    title: String,
+    panels: Vec<Curves>,
+    columns: usize,
+) -> String {
+    let (vehicle, model) = (&rig_curves.vehicle, &rig_curves.formulation);
     let percent = 100.0 * MAX_SLIP;
     let subject = format!("{vehicle}, {model}; drawn up to {percent} % slip");
     let size = if columns > 1 { PAIRED } else { LONE };
@@ -354,7 +361,7 @@ const EDGE: Stroke = stroke(PUBLISHED, 1.2, &[3.0, 2.0]);
 fn draw(mut panel: Panel, of: Curves) -> Panel {
     let points = |line: &Line| line.points.clone().into_iter().chain(line.breakpoint);
     let all: Vec<Point> = of.lines.iter().flat_map(points).collect();
-    // Every panel has its own range: high ratio ends where low ratio has hardly begun.
+    // Each panel has its own range: high ratio ends at torques where low ratio has hardly begun.
     let (low, high) = range(all.iter().map(|p| p.0)).unwrap_or((0.0, 1.0));
     let printed = of.printed.0.iter().map(|p| p.1);
     let printed = printed.chain(of.printed.1.into_iter().flatten());

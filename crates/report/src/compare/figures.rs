@@ -1,8 +1,8 @@
-//! Figures of two runs: the difference by component and the traces.
+//! Figures of two runs: difference by component, and traces.
 
 use super::Pair;
 use crate::charts::figures::{
-    Difference, DifferenceTerm, Overlay, OverlayPanel, TERMS, Term, TraceDifference,
+    DifferenceTerm, EnergyDifference, Overlay, OverlayPanel, TERMS, Term, TraceDifference,
     difference_bars, overlay, trace_difference,
 };
 use crate::document::{ReportTable, Section};
@@ -21,7 +21,7 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     let component = |c: Component| {
         let kj = cars.map(|car| car.run.loss_kj.get(c.name()));
         let some = kj.iter().any(Option::is_some);
-        some.then(|| DifferenceTerm::of(c, kj.map(|kj| kj.unwrap_or(0.0))))
+        some.then(|| DifferenceTerm::component(c, kj.map(|kj| kj.unwrap_or(0.0))))
     };
     let ledger = |(name, words, term): (&str, &str, Term)| {
         let kj = cars.map(|car| car.run.term_kj(name).unwrap_or(0.0));
@@ -31,12 +31,12 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     };
     let components = Component::ALL.into_iter().filter_map(component);
     let terms = TERMS.into_iter().filter_map(ledger);
-    let of = |of: fn(&Car) -> f64| cars.map(of);
-    let picture = difference_bars(&Difference {
+    let of_both = |of_both: fn(&Car) -> f64| cars.map(of_both);
+    let picture = difference_bars(&EnergyDifference {
         names: names.clone(),
-        fuel_kj_per_l: of(|car| car.run.fuel_energy_kj / car.run.fuel_l),
-        distance_km: of(|car| car.run.distance_km),
-        fuel_kj: of(|car| car.run.fuel_energy_kj),
+        fuel_kj_per_l: of_both(|car| car.run.fuel_energy_kj / car.run.fuel_l),
+        distance_km: of_both(|car| car.run.distance_km),
+        fuel_kj: of_both(|car| car.run.fuel_energy_kj),
         terms: components.chain(terms).collect(),
     });
     let [a, b] = names;
@@ -50,7 +50,7 @@ fn ends(subject: &Pair, names: &[String; 2]) -> ReportTable {
     let q = Quantity::Degc;
     let columns = [names[0].as_str(), &names[1], "difference"].map(|name| (name, q.unit()));
     let mut table =
-        ReportTable::of_numbers("Temperatures of the subjects at the end", "Node", columns);
+        ReportTable::numeric("Temperatures of the subjects at the end", "Node", columns);
     let (a, b) = (&subject.a.run.end_degc, &subject.b.run.end_degc);
     for (node, x) in a.iter() {
         let y = b.get(node);
@@ -72,7 +72,7 @@ const OVERLAID: [(&str, &str, &str); 6] = [
     ("slip_percent", "Belt slip", "%"),
 ];
 
-/// Panels of one picture.
+/// Number of panels of a picture.
 const PANELS: usize = 3;
 
 pub(super) fn traces(subject: &Pair, names: &[String; 2]) -> Section {

@@ -1,4 +1,4 @@
-//! Any number of runs next to each other: the subject of each against that of one of them.
+//! Comparison of any number of runs: the subject of each against that of a reference.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -13,26 +13,26 @@ use cvtcycle_output::record::Manifest;
 use cvtcycle_output::summary::{RunSummary, StartWord};
 use cvtcycle_output::{Component, summary::SCHEMA};
 
-/// A loss whose difference is smaller than this share of the largest one is left out.
-const LEAST_SHARE: f64 = 0.01;
-/// Most values that are named where runs differ in few.
+/// Losses are omitted if their difference is below this share of the largest one.
+const MIN_SHARE: f64 = 0.01;
+/// Maximum number of named differences between runs.
 const FEW: usize = 8;
 
 /// Runs next to each other.
 #[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
-    /// Version of the object, and the program.
+pub struct RunComparison {
+    /// Version of the object, and program.
     #[serde(flatten)]
     pub manifest: Manifest,
     /// Name of the run that the others are compared with.
     pub reference: String,
     /// The runs, the reference first.
     pub runs: Vec<Side>,
-    /// What the runs are driven under, where it is not the same.
-    pub conditions: Vec<Different>,
-    /// Values of the cars that are not the same; none where a run has no record of them.
-    pub values: Option<Vec<Different>>,
-    /// Losses whose difference counts, in the order of the power flow.
+    /// Conditions that differ between the runs.
+    pub conditions: Vec<DifferingValue>,
+    /// Values that differ between the cars; `None` where a run has no record of them.
+    pub values: Option<Vec<DifferingValue>>,
+    /// Losses with a relevant difference, in the order of the power flow.
     pub components: Vec<String>,
 }
 
@@ -47,37 +47,37 @@ pub struct Side {
     pub fuel_l_per_100km: Option<f64>,
     /// Difference to the reference.
     pub difference_l_per_100km: Option<f64>,
-    /// The same, per cent.
+    /// Difference, per cent.
     pub difference_percent: Option<f64>,
     /// Carbon dioxide of the headline fuel.
     pub co2_g_per_km: Option<f64>,
-    /// Loss of each component for a kilometre.
+    /// Loss of each component per kilometre.
     pub loss_kj_per_km: BTreeMap<String, Option<f64>>,
-    /// All losses of the transmission for a kilometre.
+    /// Total loss of the transmission per kilometre.
     pub transmission_loss_kj_per_km: Option<f64>,
     /// Smallest clamp safety factor.
     pub min_clamp_safety: Option<f64>,
-    /// Time in which the car could not follow.
+    /// Time in which the car could not follow the trace.
     pub trace_missed_s: f64,
-    /// Names of the checks that failed.
+    /// Names of the failed checks.
     pub failed_checks: Vec<String>,
 }
 
-/// Something that is not the same in all runs.
+/// A value or condition that differs between runs.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct Different {
+pub struct DifferingValue {
     /// Dotted key, or a condition of the run.
     pub key: String,
     /// Unit, `-` for none.
     pub unit: String,
-    /// Value in each run, empty where it has none.
+    /// Value in each run, empty if absent.
     pub values: Vec<String>,
 }
 
-impl Different {
-    fn of(key: &str, unit: &str, values: Vec<String>) -> Option<Self> {
+impl DifferingValue {
+    fn unless_equal(key: &str, unit: &str, values: Vec<String>) -> Option<Self> {
         let same = values.windows(2).all(|pair| pair[0] == pair[1]);
-        (!same).then(|| Different {
+        (!same).then(|| DifferingValue {
             key: key.to_owned(),
             unit: unit.to_owned(),
             values,
@@ -85,11 +85,11 @@ impl Different {
     }
 }
 
-impl Comparison {
-    /// What the runs differ in, where it can be said in a sentence.
+impl RunComparison {
+    /// Cause of the differences, if it fits in a sentence.
     pub fn cause(&self) -> Option<String> {
         let found = self.values.as_deref()?;
-        let said = |different: &Different| {
+        let said = |different: &DifferingValue| {
             let unit = match different.unit.as_str() {
                 "-" | "" => String::new(),
                 unit => format!(" {unit}"),
@@ -111,8 +111,12 @@ impl Comparison {
 /// Compares the runs of some directories with that at the place `reference`. Runs under different conditions are refused unless `loosely`.
 ///
 /// # Errors
-/// Directories that hold no run, runs that were not driven alike.
-pub fn compare(dirs: &[PathBuf], reference: usize, loosely: bool) -> Result<Comparison, Problems> {
+/// Directories without a run; runs under different conditions.
+pub fn compare(
+    dirs: &[PathBuf],
+    reference: usize,
+    loosely: bool,
+) -> Result<RunComparison, Problems> {
     let (mut problems, mut found) = (Problems::new(), Vec::new());
     for dir in dirs {
         match find(dir, &[]) {
@@ -134,10 +138,10 @@ pub fn compare(dirs: &[PathBuf], reference: usize, loosely: bool) -> Result<Comp
     if let Some(first) = conditions.first().filter(|_| !loosely) {
         return Err(apart(first, &named).into());
     }
-    Ok(of_runs(&named, conditions))
+    Ok(compare_runs(&named, conditions))
 }
 
-/// Names of the directories, with numbers where they are the same.
+/// Names of the directories, numbered where they are equal.
 pub fn names(dirs: &[PathBuf]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for dir in dirs {
@@ -152,17 +156,17 @@ pub fn names(dirs: &[PathBuf]) -> Vec<String> {
     names
 }
 
-/// What the runs were driven under, where it differs.
-fn conditions(named: &[(String, RunResults)]) -> Vec<Different> {
-    let each = |key: &str, unit: &str, of: &dyn Fn(&RunResults) -> String| {
-        let values = named.iter().map(|(_, run)| of(run));
-        Different::of(key, unit, values.collect())
+/// Conditions that differ between the runs.
+fn conditions(named: &[(String, RunResults)]) -> Vec<DifferingValue> {
+    let each = |key: &str, unit: &str, value_of: &dyn Fn(&RunResults) -> String| {
+        let values = named.iter().map(|(_, run)| value_of(run));
+        DifferingValue::unless_equal(key, unit, values.collect())
     };
     let start = |run: &RunResults| match &run.summary.start {
         StartWord::Word(word) => word.clone(),
         StartWord::Degc(degc) => format!("{} degC", plain(*degc)),
     };
-    // A cycle of a file may have changed under its name.
+    // A cycle's file may have changed under the same name.
     let trace = |run: &RunResults| {
         let record = run.record.as_ref();
         record.map_or_else(String::new, |record| record.cycle.sha256.clone())
@@ -188,8 +192,8 @@ fn conditions(named: &[(String, RunResults)]) -> Vec<Different> {
     all.into_iter().flatten().collect()
 }
 
-/// The problem of runs that were not driven alike.
-fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
+/// Problem of runs under different conditions.
+fn apart(different: &DifferingValue, named: &[(String, RunResults)]) -> Problem {
     let other = different
         .values
         .iter()
@@ -202,7 +206,7 @@ fn apart(different: &Different, named: &[(String, RunResults)]) -> Problem {
     problem(&named[other].1.path, &message, hint).settings(&[Setting::Loosely])
 }
 
-fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Comparison {
+fn compare_runs(named: &[(String, RunResults)], conditions: Vec<DifferingValue>) -> RunComparison {
     let base = &named[0].1.summary.runs[0];
     let runs: Vec<Side> = named
         .iter()
@@ -216,9 +220,9 @@ fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Compar
         ends.1 - ends.0
     };
     let largest = Component::ALL.iter().map(spread).fold(0.0, f64::max);
-    let counts = |c: &Component| largest > 0.0 && spread(c) >= LEAST_SHARE * largest;
+    let counts = |c: &Component| largest > 0.0 && spread(c) >= MIN_SHARE * largest;
     let components = Component::ALL.into_iter().filter(counts);
-    Comparison {
+    RunComparison {
         manifest: Manifest::new(SCHEMA),
         reference: runs[0].name.clone(),
         components: components.map(|c| c.name().to_owned()).collect(),
@@ -228,7 +232,7 @@ fn of_runs(named: &[(String, RunResults)], conditions: Vec<Different>) -> Compar
     }
 }
 
-/// A loss for a kilometre; zero of a car without this component.
+/// Loss per kilometre; zero for a car without this component.
 fn loss(run: &Side, component: &str) -> f64 {
     run.loss_kj_per_km
         .get(component)
@@ -265,8 +269,8 @@ fn side(name: &str, run: &RunSummary, base: &RunSummary) -> Side {
     }
 }
 
-/// Values of the subjects that differ, in the order of their keys; none where a run has no record.
-fn values(named: &[(String, RunResults)]) -> Option<Vec<Different>> {
+/// Values of the subjects that differ, in the order of their keys; `None` where a run has no record.
+fn values(named: &[(String, RunResults)]) -> Option<Vec<DifferingValue>> {
     let mut by_key: BTreeMap<&str, (&str, Vec<String>)> = BTreeMap::new();
     for (place, (_, run)) in named.iter().enumerate() {
         let car = run.record.as_ref()?.cars.first()?;
@@ -278,7 +282,7 @@ fn values(named: &[(String, RunResults)]) -> Option<Vec<Different>> {
     let different = by_key.into_iter();
     Some(
         different
-            .filter_map(|(key, (unit, values))| Different::of(key, unit, values))
+            .filter_map(|(key, (unit, values))| DifferingValue::unless_equal(key, unit, values))
             .collect(),
     )
 }

@@ -1,9 +1,9 @@
-//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), a table of any number.
+//! Comparison of runs: a document on two of one cycle (two fluids, two pumps, two offsets), and a table of any number.
 
 mod figures;
 mod many;
 
-pub use many::{Comparison, Different, Side, compare, names};
+pub use many::{DifferingValue, RunComparison, Side, compare, names};
 
 use figures::{difference, traces};
 
@@ -72,7 +72,7 @@ pub(crate) fn document(a: &RunResults, b: &RunResults) -> Result<Document, Probl
     })
 }
 
-/// What the two are called: the names of their directories, with letters where these are the same.
+/// Names of the runs: those of their directories, with letters appended if equal.
 fn both_names(a: &RunResults, b: &RunResults) -> [String; 2] {
     let name = |found: &RunResults| match found.path.file_name() {
         Some(name) => name.to_string_lossy().into_owned(),
@@ -95,7 +95,7 @@ fn subtitle(a: &RunResults, b: &RunResults) -> String {
     }
 }
 
-/// Subjects with each other, baselines by their names.
+/// Pairs the subjects, and baselines by name.
 fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
     let (Some((subject_a, rest_a)), Some((subject_b, rest_b))) = (a.split_first(), b.split_first())
     else {
@@ -115,7 +115,7 @@ fn pairs<'a>(a: &[Car<'a>], b: &[Car<'a>]) -> Vec<Pair<'a>> {
 
 fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
     let mut section = Section::new("answer", "Answer");
-    // The fuel for a kJ of loss is known of one car under one set of conditions only.
+    // The fuel for a kJ of loss is known for one car under one set of conditions only.
     let same_conditions = (a.summary.ambient_degc - b.summary.ambient_degc).abs() < 1e-9
         && a.summary.start == b.summary.start;
     let alike = same_conditions
@@ -149,26 +149,26 @@ fn answer(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -
     section
 }
 
-/// The value that differs, where it is the only one, as the beginning of a sentence.
+/// Beginning of a sentence with the differing value, if there is only one.
 fn only_change(subjects: &Pair) -> String {
     let records = subjects.a.record.zip(subjects.b.record);
     let changes = records.map_or_else(Vec::new, |(a, b)| changes(a, b));
     match &changes[..] {
-        [of] if !of.here.is_empty() && !of.shipped.is_empty() => {
-            let unit = match sign(&of.unit) {
+        [change] if !change.here.is_empty() && !change.shipped.is_empty() => {
+            let unit = match sign(&change.unit) {
                 "-" | "" => String::new(),
                 unit => format!("\u{a0}{unit}"),
             };
             format!(
                 "With {} {}{unit} instead of {}{unit}: ",
-                of.key, of.here, of.shipped
+                change.key, change.here, change.shipped
             )
         }
         _ => String::new(),
     }
 }
 
-/// The fuel of both subjects, and the difference.
+/// Fuel of both subjects, and the difference.
 fn lead(subjects: &Pair, [name_a, name_b]: &[String; 2]) -> String {
     let fuel = |car: &Car| car.run.headline_fuel().unwrap_or(f64::NAN);
     let (fuel_a, fuel_b) = (fuel(&subjects.a), fuel(&subjects.b));
@@ -188,7 +188,7 @@ fn less_or_more(change: f64) -> &'static str {
     if change < 0.0 { "less" } else { "more" }
 }
 
-/// The components that moved most.
+/// Components with the largest changes.
 fn largest(a: &Car, b: &Car, alike: bool) -> String {
     let kj = |car: &Car, c: Component| car.run.loss_kj.get(c.name()).unwrap_or(0.0);
     let moved = |c: Component| (c, kj(b, c) - kj(a, c));
@@ -224,7 +224,7 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
         ("difference", unit),
         ("difference", "%"),
     ];
-    let mut table = ReportTable::of_numbers("Fuel", "Car, phase", columns);
+    let mut table = ReportTable::numeric("Fuel", "Car, phase", columns);
     for Pair { a, b } in pairs {
         let car = if a.run.vehicle == b.run.vehicle {
             a.run.label().to_owned()
@@ -266,11 +266,13 @@ const CONDITIONS: [Condition; 10] = [
         cycle_title(&run.summary, run.record.as_ref())
     }),
     ("Conditions", |run| conditions_line(&run.summary)),
-    ("Subject", |run| of_subject(run, |car| &car.title)),
+    ("Subject", |run| subject_field(run, |car| &car.title)),
     ("Transmission oil", |run| {
-        of_subject(run, |car| &car.lubricant)
+        subject_field(run, |car| &car.lubricant)
     }),
-    ("Engine oil", |run| of_subject(run, |car| &car.engine_oil)),
+    ("Engine oil", |run| {
+        subject_field(run, |car| &car.engine_oil)
+    }),
     ("Longest step", |run| {
         format!("{} s", run.summary.settings.dt_s)
     }),
@@ -284,16 +286,16 @@ const CONDITIONS: [Condition; 10] = [
     ("Program", |run| run.summary.manifest.program.clone()),
 ];
 
-fn of_subject(run: &RunResults, of: fn(&RunSummary) -> &String) -> String {
+fn subject_field(run: &RunResults, field: fn(&RunSummary) -> &String) -> String {
     let subject = run.summary.runs.first();
-    subject.map_or(String::new(), |car| of(car).clone())
+    subject.map_or(String::new(), |car| field(car).clone())
 }
 
 fn conditions(a: &RunResults, b: &RunResults, pairs: &[Pair], names: &[String; 2]) -> Section {
     let mut section = Section::new("conditions", "Conditions, and what differs");
-    let mut table = ReportTable::of_words("Conditions", &["", &names[0], &names[1]]);
-    for (name, of) in CONDITIONS {
-        let (a, b) = (of(a), of(b));
+    let mut table = ReportTable::textual("Conditions", &["", &names[0], &names[1]]);
+    for (name, field) in CONDITIONS {
+        let (a, b) = (field(a), field(b));
         if !(a.is_empty() && b.is_empty()) {
             table.row([name.to_owned(), a, b]);
         }

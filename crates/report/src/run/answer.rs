@@ -1,4 +1,4 @@
-//! Page 1: question, answer with its interval and what contradicts it, price of the losses, options, risk, next test, decision.
+//! Page 1: question, answer with its interval and contradicting numbers, price of the losses, options, risk, next test, decision.
 
 use super::super::document::{Block, Section};
 use super::super::number::{Quantity, capital_first, grouped, words};
@@ -7,18 +7,18 @@ use super::super::{study, study_answers, validation};
 use super::{Car, conditions_line, cycle_title, doubts};
 use crate::charts::decision::{Against, against, answer_strip, level};
 use crate::charts::{foremost_levers, lever_title, saves};
+use cvtcycle_analysis::attribute;
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
+use cvtcycle_analysis::words::decimals;
+use cvtcycle_analysis::words::run::contradictions;
 use cvtcycle_output::summary::{Comparison, Contradiction, RunSummary, Summary};
-use cvtcycle_study::attribute;
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_study::words::decimals;
-use cvtcycle_study::words::run::contradictions;
 
-/// Levers on page 1, and among the decisions, at most.
+/// Maximum number of levers on page 1, and among the decisions.
 const OPTIONS: (usize, usize) = (6, 2);
-/// Change of the least clamp safety that is worth saying.
+/// Minimum change of the minimum clamp safety that is mentioned.
 const SAFETY: f64 = 0.05;
 
-/// The levers of the car and the ambient temperature of a run.
+/// Levers for the car and the ambient temperature of a run.
 pub(super) type Options = Option<(LeverAnswer, LeverBlock)>;
 
 pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Section {
@@ -44,7 +44,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     }
     strip(&mut section, summary, cycle);
     for line in contradictions(&summary.labelled()) {
-        // "Soak" is a word of test cells.
+        // "Soak" is a term of test cells, unfamiliar to other readers.
         section.alert(line.replace("soak, ", "cold start, "));
     }
     if let Some(price) = cars.first().and_then(|car| attribute::answer(car.run)) {
@@ -77,7 +77,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car], options: &Options) -> Se
     section
 }
 
-/// The title of a cycle up to its details: "NEDC" of "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)".
+/// Shortens the title of a cycle: "NEDC" of "NEDC: four ECE 15 and one EUDC, 1180 s (UN R83)".
 pub(crate) fn brief(title: &str) -> &str {
     title.split([':', '(', ',']).next().map_or(title, str::trim)
 }
@@ -98,7 +98,7 @@ fn interval(comparison: &Comparison) -> Option<[f64; 2]> {
     Some([drawn.percent[0], drawn.percent[2]])
 }
 
-/// Fuel of the subject, and its difference to the first baseline with what is known of it.
+/// Fuel of the subject, and its difference to the first baseline with the known uncertainty.
 fn lead(summary: &Summary, cycle: &str) -> String {
     let Some(subject) = summary.runs.first() else {
         return String::new();
@@ -110,8 +110,8 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     };
     let text = format!("The {} uses {fuel}{weighted} on {cycle}", subject.label());
     let first = summary.comparison.first().zip(summary.runs.get(1));
-    let Some((percent, comparison, baseline)) =
-        first.and_then(|(of, baseline)| Some((of.fuel_percent?, of, baseline)))
+    let Some((percent, comparison, baseline)) = first
+        .and_then(|(comparison, baseline)| Some((comparison.fuel_percent?, comparison, baseline)))
     else {
         return text + ".";
     };
@@ -119,11 +119,11 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let difference = against(percent, interval(comparison), &other);
     let kind = likeness(comparison);
     let known = match &comparison.interval {
-        Some(of) => {
-            let ends = level([of.percent[0], of.percent[2]]);
+        Some(interval) => {
+            let ends = level([interval.percent[0], interval.percent[2]]);
             format!(
                 "With all uncertain values varied, 90 % of {} runs give {ends}",
-                of.draws
+                interval.draws
             )
         }
         None => "How sure that is, is not known".to_owned(),
@@ -131,7 +131,7 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     format!("{text}: {difference}{kind}. {known}.")
 }
 
-/// " (not like for like)", where that is so.
+/// " (not like for like)", where that applies.
 fn likeness(comparison: &Comparison) -> &'static str {
     match comparison.differences.is_empty() {
         true => "",
@@ -139,7 +139,7 @@ fn likeness(comparison: &Comparison) -> &'static str {
     }
 }
 
-/// The lever that saves most, in a sentence.
+/// Sentence on the lever with the largest saving.
 fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     let row = single(block).next()?;
     let (name, saved) = (&row.of.title, -row.fuel_percent.value);
@@ -160,13 +160,13 @@ fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
     })
 }
 
-/// Levers that work and save, the one that saves most first.
+/// Working levers that save fuel, in descending saving.
 fn single(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
     let single = block.rows.iter().filter(|row| !row.is_combination());
     single.filter(|row| saves(row))
 }
 
-/// How sure the difference to each baseline is, as a figure; none without a baseline.
+/// Adds a figure of the confidence in the difference to each baseline, if there is one.
 pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     let Some((subject, baselines)) = summary.runs.split_first() else {
         return;
@@ -178,7 +178,10 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
         baseline: baseline.label().to_owned(),
         title: format!("{}{}", baseline.title, likeness(comparison)),
         files: comparison.fuel_percent,
-        drawn: comparison.interval.as_ref().map(|of| of.percent),
+        drawn: comparison
+            .interval
+            .as_ref()
+            .map(|interval| interval.percent),
         published: published(summary, &baseline.vehicle),
     };
     let rows: Vec<Against> = baselines.iter().zip(&summary.comparison).map(row).collect();
@@ -191,10 +194,11 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
     section.figure("answer", caption, picture);
 }
 
-/// The published range of the difference to a baseline over the whole cycle, where it contradicts that of the run.
+/// Published range of the difference to a baseline over the whole cycle, if it contradicts that of the run.
 pub(super) fn published(summary: &Summary, baseline: &str) -> Option<[f64; 2]> {
     let mut contradicted = summary.contradicted.iter();
-    let own = |of: &&Contradiction| of.phase.is_none() && of.baseline.as_deref() == Some(baseline);
+    let own =
+        |row: &&Contradiction| row.phase.is_none() && row.baseline.as_deref() == Some(baseline);
     contradicted.find(own)?.between
 }
 
@@ -229,18 +233,18 @@ fn risks(found: &RunResults, cars: &[Car], options: &Options) -> Vec<String> {
     list
 }
 
-/// The changes that are asked for: the foremost by themselves, and the combinations.
+/// Proposed changes: the first single levers, and the combinations.
 fn asked(block: &LeverBlock) -> impl Iterator<Item = &LeverRow> {
     let together = block.rows.iter();
     let together = together.filter(|row| row.is_combination() && saves(row));
     single(block).take(OPTIONS.1).chain(together)
 }
 
-/// What a change takes: safety against belt slip, and what has to be built or proven.
+/// Risk of a change: safety against belt slip, and parts to be built or proven.
 fn risk(row: &LeverRow, now: Option<f64>) -> Option<String> {
     let worst = row.worst("min_clamp_safety");
     let falls = now.is_some_and(|now| worst < now - SAFETY).then(|| {
-        let [now, worst] = [now, Some(worst)].map(|of| Quantity::Ratio.text(of));
+        let [now, worst] = [now, Some(worst)].map(|safety| Quantity::Ratio.text(safety));
         format!("the least clamping safety falls from {now} to {worst} in the worst run")
     });
     let needs = match row.is_combination() {
@@ -257,14 +261,14 @@ fn no_test() -> String {
     "Not known: a study of the case that samples its uncertain values says which of them is worth a test (`cvtcycle study uncertainty_rover`).".to_owned()
 }
 
-/// The value that is worth a test: the difference that knowing it would make, and the test in a few words.
+/// Next test: the reduction of the spread by knowing a value, and the test in a few words.
 fn next_test(own: &StudyResults, summary: &Summary) -> Option<(String, String)> {
     if study_answers::other_case(own, summary).is_some() {
         return None;
     }
-    let (of, best) = study::cause(own)?;
-    let digits = decimals([0.0, of.sd]) + 1;
-    let [sd, left] = [of.sd, best.sd_left.value].map(|x| grouped(x, digits));
+    let (information, best) = study::cause(own)?;
+    let digits = decimals([0.0, information.sd]) + 1;
+    let [sd, left] = [information.sd, best.sd_left.value].map(|x| grouped(x, digits));
     let name = &best.name;
     let test = match best.test.as_str() {
         "" => format!("measure {name}"),

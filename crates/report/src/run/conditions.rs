@@ -6,7 +6,7 @@ use super::super::results::RunResults;
 use super::{Car, cycle_title, start_line};
 use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
 
-/// Changes shown before the rest is folded away.
+/// Number of changes shown before the collapsed rest.
 const SHOWN: usize = 25;
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
@@ -60,7 +60,7 @@ fn table(cars: &[Car]) -> ReportTable {
         "Engine oil",
         "Distance",
     ];
-    let mut table = ReportTable::of_words("Cars and fluids", &columns);
+    let mut table = ReportTable::textual("Cars and fluids", &columns);
     for car in cars {
         let run = car.run;
         let schedule = run.gear_schedule.as_deref();
@@ -78,7 +78,7 @@ fn table(cars: &[Car]) -> ReportTable {
     table
 }
 
-/// The controller of a CVT: its clamp law and what sets its ratio.
+/// Controller of a CVT: its clamp law and ratio control.
 fn controller(record: &CarRecord, name: &str) -> Option<(String, String)> {
     const RATIO: &str = "transmission.cvt.ratio.";
     let mut values = record.values.iter();
@@ -126,9 +126,9 @@ fn changes(section: &mut Section, car: &Car, record: &CarRecord) {
     }
 }
 
-/// Values that differ, side by side.
+/// Table of differing values in two columns.
 pub(crate) fn change_table(caption: &str, changes: &[Change], names: [&str; 2]) -> ReportTable {
-    let mut table = ReportTable::of_words(caption, &["Key", "Unit", names[0], names[1]]);
+    let mut table = ReportTable::textual(caption, &["Key", "Unit", names[0], names[1]]);
     let cell = |text: &str| if text.is_empty() { NONE } else { text }.to_owned();
     for change in changes {
         let (key, unit) = (change.key.clone(), sign(&change.unit).to_owned());

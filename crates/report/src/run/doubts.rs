@@ -1,12 +1,12 @@
-//! Results behind page 1: fuel by phase, where the energy went, what the studies say, what to doubt.
+//! Results behind page 1: fuel by phase, uses of the fuel, results of the studies, doubts.
 
 use super::super::document::{Block, ReportTable, Section};
 use super::super::number::{Quantity, capital_first, grouped, list_of, percent, phase, words};
 use super::super::results::{RunResults, StudyResults};
 use super::super::{study_answers, validation};
 use super::{Car, energy};
+use cvtcycle_analysis::words::run::{intervals, maps_left};
 use cvtcycle_output::summary::{RunSummary, Summary};
-use cvtcycle_study::words::run::{intervals, maps_left};
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("results", "Results, and what to doubt");
@@ -18,7 +18,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     }
     section.text(ends(cars));
     for own in &found.studies {
-        // A study of another case says nothing about this run; its section says what it is.
+        // A study of another case does not apply to this run; its section describes it.
         if let Some(why) = study_answers::other_case(own, summary) {
             let title = &own.answer.title;
             section.alert(format!(
@@ -26,7 +26,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
             ));
             continue;
         }
-        // What the levers save is on page 1 and in their own section.
+        // Savings of the levers are on page 1 and in their own section.
         if own.outline.levers.is_some() {
             continue;
         }
@@ -47,11 +47,11 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
 fn fuel(summary: &Summary) -> ReportTable {
     let runs = &summary.runs;
     let columns = runs.iter().map(|run| (run.label().to_owned(), ""));
-    let mut table = ReportTable::of_numbers("Fuel and distance", "", columns);
-    let mut add = |what: &str, quantity: Quantity, strong: bool, of: &ByRun| {
+    let mut table = ReportTable::numeric("Fuel and distance", "", columns);
+    let mut add = |what: &str, quantity: Quantity, strong: bool, value_of: &ByRun| {
         let name = format!("{what} [{}]", quantity.unit());
         let values = runs.iter().enumerate();
-        table.named(name, values.map(|(k, run)| quantity.bare(of(k, run))));
+        table.named(name, values.map(|(k, run)| quantity.bare(value_of(k, run))));
         table.emphasise(strong);
     };
     let groups = runs.first().map_or(&[][..], |run| &run.phases);
@@ -68,8 +68,8 @@ fn fuel(summary: &Summary) -> ReportTable {
         run.fuel_l_per_100km
     });
     if weighted {
-        let of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
-        add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, of);
+        let value_of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
+        add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, value_of);
     }
     if runs.len() > 1 {
         let against = |k: usize| summary.comparison.get(k.checked_sub(1)?)?.fuel_percent;
@@ -85,8 +85,8 @@ fn fuel(summary: &Summary) -> ReportTable {
     } else {
         "Carbon dioxide"
     };
-    let of: &ByRun = &|_, run| run.weighted_co2_g_per_km.or(run.co2_g_per_km);
-    add(co2, Quantity::Co2, false, of);
+    let value_of: &ByRun = &|_, run| run.weighted_co2_g_per_km.or(run.co2_g_per_km);
+    add(co2, Quantity::Co2, false, value_of);
     add("Driven distance", Quantity::Distance, false, &|_, run| {
         Some(run.distance_km)
     });
@@ -94,7 +94,7 @@ fn fuel(summary: &Summary) -> ReportTable {
     table
 }
 
-/// A number of a run by its index.
+/// Number of a run by its index.
 type ByRun<'a> = dyn Fn(usize, &RunSummary) -> Option<f64> + 'a;
 
 fn where_it_went(cars: &[Car]) -> String {
@@ -136,10 +136,10 @@ fn ends(cars: &[Car]) -> String {
     format!("At the end, after {seconds}: {}.", ends.join("; "))
 }
 
-/// Temperature below which the thesis measured trends only, degC.
+/// Minimum temperature of the thesis's measurements beyond trends, degC.
 const MEASURED_FROM_DEGC: f64 = 25.0;
 
-/// Share of the time in which the transmission oil of each car is below the measured temperatures, in a sentence, if there is any.
+/// Sentence on the share of time in which the transmission oil of each car is below the measured temperatures, if there is any.
 pub(super) fn cold(cars: &[Car]) -> Option<String> {
     let share = |car: &Car| {
         let history = car.history?;
@@ -148,11 +148,11 @@ pub(super) fn cold(cars: &[Car]) -> Option<String> {
         let cold = steps.filter(|(degc, _)| **degc < MEASURED_FROM_DEGC);
         let cold: f64 = cold.map(|(_, dt)| dt).sum();
         let share = grouped(100.0 * cold / car.run.duration_s, 0);
-        let of = match cars.len() {
+        let value_of = match cars.len() {
             1 => String::new(),
             _ => format!(" ({})", car.run.label()),
         };
-        (cold > 0.0).then(|| format!("{share} %{of}"))
+        (cold > 0.0).then(|| format!("{share} %{value_of}"))
     };
     let shares: Vec<String> = cars.iter().filter_map(share).collect();
     let from = super::degc(MEASURED_FROM_DEGC);
@@ -176,9 +176,12 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     let labelled = found.summary.labelled();
     let unlike = labelled.comparison.iter();
     let unlike = unlike.filter(|comparison| !comparison.differences.is_empty());
-    list.extend(
-        unlike.map(|of| format!("The comparison with {} is {}.", of.baseline, of.likeness)),
-    );
+    list.extend(unlike.map(|comparison| {
+        format!(
+            "The comparison with {} is {}.",
+            comparison.baseline, comparison.likeness
+        )
+    }));
     list.extend(cold(cars));
     list.extend(super::values::doubt(found, cars));
     let has_interval = |study: &&StudyResults| {

@@ -7,7 +7,7 @@ use crate::charts::Picture;
 use crate::charts::decision::PerKm;
 use crate::charts::figures::{CarEnergy, TERMS, Term, energy_flow, transmission_flow};
 
-/// A car's ledger as the figures want it, kJ/km.
+/// Ledger of a car for the figures, kJ/km.
 fn car_energy(car: &Car, conditions: &str) -> CarEnergy {
     let per_km = |kj: f64| kj / car.run.distance_km;
     let term = |name: &str| per_km(car.run.term_kj(name).unwrap_or(f64::NAN));
@@ -28,12 +28,15 @@ fn car_energy(car: &Car, conditions: &str) -> CarEnergy {
     }
 }
 
-/// The ledgers of all cars, to be drawn on one scale.
+/// Ledgers of all cars, with a common scale.
 fn energies(cars: &[Car], conditions: &str) -> Vec<CarEnergy> {
-    let of = |car| car_energy(car, conditions);
-    let mut all: Vec<CarEnergy> = cars.iter().map(of).collect();
-    let most = |of: fn(&CarEnergy) -> f64| all.iter().map(of).fold(0.0, f64::max);
-    let largest_kj_km = [most(|car| car.fuel_kj_km), most(CarEnergy::flywheel_kj_km)];
+    let energy = |car| car_energy(car, conditions);
+    let mut all: Vec<CarEnergy> = cars.iter().map(energy).collect();
+    let max_of = |value_of: fn(&CarEnergy) -> f64| all.iter().map(value_of).fold(0.0, f64::max);
+    let largest_kj_km = [
+        max_of(|car| car.fuel_kj_km),
+        max_of(CarEnergy::flywheel_kj_km),
+    ];
     for car in &mut all {
         car.largest_kj_km = largest_kj_km;
     }
@@ -42,23 +45,23 @@ fn energies(cars: &[Car], conditions: &str) -> Vec<CarEnergy> {
 
 /// Energies of two cars over their distance, kJ/km.
 pub(crate) fn per_km(subject: &Car, baseline: &Car) -> PerKm {
-    let of = |car: &Car, kj: Option<f64>| kj.unwrap_or(0.0) / car.run.distance_km;
+    let per_km = |car: &Car, kj: Option<f64>| kj.unwrap_or(0.0) / car.run.distance_km;
     let term = |(name, words, term): (&str, &str, Term)| {
-        let [own, other] = [subject, baseline].map(|car| of(car, car.run.term_kj(name)));
+        let [own, other] = [subject, baseline].map(|car| per_km(car, car.run.term_kj(name)));
         (words.to_owned(), term, own - other)
     };
     PerKm {
         names: [subject, baseline].map(|car| car.run.label().to_owned()),
-        fuel: [subject, baseline].map(|car| of(car, Some(car.run.fuel_energy_kj))),
+        fuel: [subject, baseline].map(|car| per_km(car, Some(car.run.fuel_energy_kj))),
         terms: TERMS.into_iter().map(term).collect(),
     }
 }
 
-/// What the fuel of the subject has more than that of a baseline over a kilometre, term by term.
+/// Sentence on the excess fuel of the subject over a baseline per kilometre, term by term.
 pub(super) fn difference(subject: &Car, baseline: &Car) -> String {
-    let of = per_km(subject, baseline);
-    let difference = of.fuel[0] - of.fuel[1];
-    let mut terms = of.terms;
+    let energies = per_km(subject, baseline);
+    let difference = energies.fuel[0] - energies.fuel[1];
+    let mut terms = energies.terms;
     terms.sort_by(|a, b| b.2.abs().total_cmp(&a.2.abs()));
     let kj = |x: f64| signed(grouped(x, 0), x);
     let large = terms.iter().filter(|(.., x)| x.abs() >= 0.5);
@@ -130,17 +133,17 @@ pub(super) fn section(cars: &[Car], conditions: &str) -> Section {
 
 fn balance(cars: &[Car]) -> ReportTable {
     let mut table = with_shares("Energy balance", "Term", "of fuel", cars);
-    let mut add = |words: &str, of: &dyn Fn(&Car) -> Option<f64>| {
+    let mut add = |words: &str, value_of: &dyn Fn(&Car) -> Option<f64>| {
         table.named(
             words,
-            cells_with_shares(cars, |car| Some((of(car), car.run.fuel_energy_kj))),
+            cells_with_shares(cars, |car| Some((value_of(car), car.run.fuel_energy_kj))),
         );
     };
     for (term, words, _) in TERMS {
-        let of = |car: &Car| car.run.term_kj(term);
-        let is_there = |car: &Car| of(car).is_some_and(|kj| kj.abs() > 0.0);
+        let value_of = |car: &Car| car.run.term_kj(term);
+        let is_there = |car: &Car| value_of(car).is_some_and(|kj| kj.abs() > 0.0);
         if term != "electric" || cars.iter().any(is_there) {
-            add(words, &of);
+            add(words, &value_of);
         }
     }
     add("fuel", &|car| Some(car.run.fuel_energy_kj));
@@ -149,18 +152,19 @@ fn balance(cars: &[Car]) -> ReportTable {
 }
 
 /// An empty table of energies of each car with their shares.
-pub(super) fn with_shares(caption: &str, first: &str, of: &str, cars: &[Car]) -> ReportTable {
-    let columns = |car: &Car| [(car.run.label().to_owned(), "kJ"), (of.to_owned(), "%")];
-    ReportTable::of_numbers(caption, first, cars.iter().flat_map(columns))
+pub(super) fn with_shares(caption: &str, first: &str, whole: &str, cars: &[Car]) -> ReportTable {
+    let columns = |car: &Car| [(car.run.label().to_owned(), "kJ"), (whole.to_owned(), "%")];
+    ReportTable::numeric(caption, first, cars.iter().flat_map(columns))
 }
 
 /// Cells of an energy and a whole of each car, kJ; empty without them.
 pub(super) fn cells_with_shares(
     cars: &[Car],
-    of: impl Fn(&Car) -> Option<(Option<f64>, f64)>,
+    energy_and_whole: impl Fn(&Car) -> Option<(Option<f64>, f64)>,
 ) -> impl Iterator<Item = String> {
-    cars.iter().flat_map(move |car| match of(car) {
-        Some((kj, whole)) => [Quantity::Energy.bare(kj), percent(kj, whole)],
-        None => Default::default(),
-    })
+    cars.iter()
+        .flat_map(move |car| match energy_and_whole(car) {
+            Some((kj, whole)) => [Quantity::Energy.bare(kj), percent(kj, whole)],
+            None => Default::default(),
+        })
 }

@@ -1,4 +1,4 @@
-//! The sections that are mostly figures: energy, losses, warm-up, driveline, engine.
+//! Sections that are mainly figures: energy, losses, warm-up, driveline, engine.
 
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, capital, phase as phase_name};
@@ -84,7 +84,7 @@ fn conditions(found: &RunResults) -> String {
     format!("{}, {}", brief(&cycle), conditions_line(&found.summary))
 }
 
-/// What the losses cost and where they come from; by phase and over time in the full report.
+/// Price and origin of the losses; by phase and over time in the full report.
 fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     let mut section = Section::new("losses", "Losses: what they cost, and where they are");
     let conditions = conditions(found);
@@ -134,7 +134,7 @@ fn losses_section(found: &RunResults, all: &[Car]) -> Section {
     section
 }
 
-/// The name of a figure: that of the first car is the plain one.
+/// File name of a figure: the first car has no suffix.
 fn file(name: &str, all: &[Car], car: &Car) -> String {
     match all
         .first()
@@ -145,7 +145,7 @@ fn file(name: &str, all: &[Car], car: &Car) -> String {
     }
 }
 
-/// From the fuel of the first baseline to that of the subject, and from that of the subject to each baseline.
+/// Waterfalls from the fuel of the first baseline to that of the subject, and from that of the subject to each baseline.
 fn waterfalls(all: &[Car], conditions: &str) -> Vec<(String, String, String, Picture)> {
     let Some((subject, baselines)) = all.split_first() else {
         return Vec::new();
@@ -153,18 +153,18 @@ fn waterfalls(all: &[Car], conditions: &str) -> Vec<(String, String, String, Pic
     let first = baselines.first().map(|baseline| (subject, baseline));
     let others = baselines.iter().map(|baseline| (baseline, subject));
     let view = |(own, other): (&Car, &Car)| {
-        let of = energy::per_km(own, other);
-        let [name, from] = &of.names;
+        let energies = energy::per_km(own, other);
+        let [name, from] = &energies.names;
         let caption = format!(
             "Energy over distance from the fuel of {from} to that of {name}; the terms add up."
         );
-        let picture = waterfall(&of, conditions);
+        let picture = waterfall(&energies, conditions);
         (name.clone(), file("waterfall", all, own), caption, picture)
     };
     first.into_iter().chain(others).map(view).collect()
 }
 
-/// A part of the cycle that a car drives again and again with the same speeds: its name, and what each drive loses.
+/// Part of the cycle that a car drives repeatedly with the same speeds: its name, and the losses of each drive.
 fn natural_experiment<'a>(car: &Car<'a>) -> Option<(&'a str, Vec<Repeat>, String)> {
     let history = car.history?;
     let rows = |phase: usize| (0..history.len()).filter(move |i| history.phase(*i) == phase);
@@ -189,9 +189,9 @@ fn natural_experiment<'a>(car: &Car<'a>) -> Option<(&'a str, Vec<Repeat>, String
         let own: Vec<usize> = rows(*phase).collect();
         let (begin, end) = (own.first()?, own.last()?);
         let loss = |group: &LossGroup| {
-            let of = components.iter().filter(|c| c.group() == *group);
+            let parts = components.iter().filter(|c| c.group() == *group);
             let at = |c, i: &usize| Some(loss_w(history, c).get(*i)? * history.dt_s().get(*i)?);
-            let joule = of.flat_map(|c| own.iter().filter_map(move |i| at(c, i)));
+            let joule = parts.flat_map(|c| own.iter().filter_map(move |i| at(c, i)));
             (*group, joule.filter(|x| x.is_finite()).sum::<f64>() / 1e3)
         };
         Some(Repeat {
@@ -238,7 +238,7 @@ fn group_losses(history: &History, group: &str) -> Vec<(Component, f64)> {
     history.components().iter().map(sum).collect()
 }
 
-/// The loss power of a component over time, W.
+/// Loss power of a component over time, W.
 fn loss_w<'a>(history: &'a History, component: &Component) -> &'a [f64] {
     loss_column(*component).map_or(&[], |column| history.column(&column.name))
 }
@@ -272,7 +272,7 @@ fn warm_up(all: &[Car], runs: &[PlotRun]) -> Section {
     let columns = all
         .iter()
         .map(|car| (car.run.label().to_owned(), Quantity::Degc.unit()));
-    let mut table = ReportTable::of_numbers("Temperatures at the end", "Node", columns);
+    let mut table = ReportTable::numeric("Temperatures at the end", "Node", columns);
     let nodes = all.iter().flat_map(|car| car.run.end_degc.iter());
     for node in distinct(nodes.map(|(name, _)| name)) {
         let ends = all.iter().map(|car| car.run.end_degc.get(node));

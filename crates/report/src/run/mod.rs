@@ -24,14 +24,14 @@ pub(super) use conditions::change_table;
 pub(crate) use energy::per_km;
 pub use reproduce::hashes;
 
-/// A car of a run with everything that is known of it.
+/// A car of a run with all its data.
 #[derive(Clone, Copy)]
 pub struct Car<'a> {
-    /// Its numbers.
+    /// Summary.
     pub run: &'a RunSummary,
-    /// Its inputs.
+    /// Inputs.
     pub record: Option<&'a CarRecord>,
-    /// Its trace.
+    /// Trace.
     pub history: Option<&'a History>,
 }
 
@@ -43,7 +43,7 @@ impl Car<'_> {
     }
 }
 
-/// The cars of a run, the subject first.
+/// Cars of a run, the subject first.
 pub fn cars<'a>(found: &'a RunResults) -> Vec<Car<'a>> {
     let runs = found.summary.runs.iter().zip(&found.histories);
     let records = found.record.as_ref().map_or(&[][..], |record| &record.cars);
@@ -55,10 +55,10 @@ pub fn cars<'a>(found: &'a RunResults) -> Vec<Car<'a>> {
     runs.map(car).collect()
 }
 
-/// The report of a run.
+/// Builds the report of a run.
 ///
 /// # Errors
-/// A part of a study that cannot be read.
+/// A part of a study cannot be read.
 pub fn document(found: &RunResults) -> Result<Document, Problem> {
     let cars = cars(found);
     let mut document = Document {
@@ -91,7 +91,7 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
             Some(_) => Vec::new(),
         };
         let mut section = study::section(own, &known)?;
-        // Of several studies of a kind the first keeps the plain name.
+        // The first of several studies of a kind keeps the unnumbered name.
         let same = |other: &Section| other.id == section.id;
         if sections.iter().any(same) {
             section.id = format!("{}-{k}", section.id);
@@ -106,7 +106,7 @@ pub fn document(found: &RunResults) -> Result<Document, Problem> {
     Ok(document)
 }
 
-/// Differences to the baselines that no study has: with the nominal values, and published ones.
+/// Differences to the baselines from other sources than studies: with the nominal values, and published ones.
 fn known(summary: &Summary) -> Vec<(String, KnownValue)> {
     let baselines = summary.runs.iter().skip(1).zip(&summary.comparison);
     let of = |(run, comparison): (&RunSummary, &Comparison)| {
@@ -114,13 +114,13 @@ fn known(summary: &Summary) -> Vec<(String, KnownValue)> {
             nominal: comparison.fuel_percent,
             published: answer::published(summary, &run.vehicle),
         };
-        // As the labelled answer of a study has it.
+        // Named as in the labelled answer of a study.
         (run.label().to_owned(), known)
     };
     baselines.map(of).collect()
 }
 
-/// Cars that a title names, at most.
+/// Maximum number of cars named in a title.
 const NAMED: usize = 3;
 
 fn title(summary: &Summary) -> String {
@@ -137,7 +137,7 @@ fn title(summary: &Summary) -> String {
     }
 }
 
-/// The cycle as people call it.
+/// Name of the cycle for people.
 pub fn cycle_title(summary: &Summary, record: Option<&Record>) -> String {
     let title = record.map(|r| r.cycle.title.clone());
     let title = title.filter(|title| !title.is_empty());

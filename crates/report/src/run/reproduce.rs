@@ -1,4 +1,4 @@
-//! What is needed to get the same numbers again.
+//! Information needed to reproduce the numbers.
 
 use super::super::document::{ReportTable, Section};
 use super::super::number::{Quantity, tiny, words};
@@ -24,7 +24,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
         section.table(hashes(record, "Inputs"));
     }
     let columns = cars.iter().map(|car| (car.run.label().to_owned(), ""));
-    let mut table = ReportTable::of_numbers("Ledgers and solution", "", columns);
+    let mut table = ReportTable::numeric("Ledgers and solution", "", columns);
     for (name, of) in SOLUTION {
         table.named(name, cars.iter().map(|car| of(car.run)));
     }
@@ -35,7 +35,7 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     section
 }
 
-/// A number of a run with its name.
+/// Name and number of a run.
 type Line = (&'static str, fn(&RunSummary) -> String);
 
 const SOLUTION: [Line; 4] = [
@@ -51,7 +51,7 @@ const SOLUTION: [Line; 4] = [
 
 /// Files of every car with their hashes.
 pub fn hashes(record: &Record, caption: &str) -> ReportTable {
-    let mut table = ReportTable::of_words(caption, &["Car", "What", "File", "SHA-256"]);
+    let mut table = ReportTable::textual(caption, &["Car", "What", "File", "SHA-256"]);
     for car in &record.cars {
         let files = [
             ("vehicle", &car.vehicle),
@@ -73,7 +73,7 @@ pub fn hashes(record: &Record, caption: &str) -> ReportTable {
 
 fn flags(cars: &[Car]) -> ReportTable {
     let columns = cars.iter().map(|car| (car.run.label().to_owned(), "s"));
-    let mut table = ReportTable::of_numbers("Time with each flag", "Flag", columns);
+    let mut table = ReportTable::numeric("Time with each flag", "Flag", columns);
     for (name, _) in cars
         .first()
         .into_iter()

@@ -8,12 +8,12 @@ use super::super::results::RunResults;
 use super::Car;
 use cvtcycle_output::record::{CarRecord, Effect, Sensitivity, ValueRecord};
 
-/// Assumptions and fits of the subject in the body.
+/// Number of assumptions and fits of the subject in the body.
 const SHOWN: usize = 10;
-/// Effects below this, per cent of fuel, are written as 0.
+/// Effect below which 0 is written, per cent of fuel.
 const SMALL_PERCENT: f64 = 0.005;
 
-/// True for a value from judgement or a fit, or of a class or another car, not from a source of this one.
+/// True for a value from judgement, a fit, a class or another car, without a source for this one.
 fn is_doubtful(value: &ValueRecord) -> bool {
     ["assumed", "fitted", "default"].contains(&value.status.as_str()) || is_inherited(value)
 }
@@ -23,7 +23,7 @@ fn is_inherited(value: &ValueRecord) -> bool {
     ["class", "like"].contains(&value.status.as_str())
 }
 
-/// "assumed, fitted or X", with what is inherited where there is such a value.
+/// "assumed, fitted or X", with the inherited values if there are any.
 fn doubtful_words(car: &CarRecord, last: &str) -> String {
     let inherited = match car.values.iter().any(is_inherited) {
         true => ", inherited",
@@ -32,7 +32,7 @@ fn doubtful_words(car: &CarRecord, last: &str) -> String {
     format!("assumed, fitted{inherited} or {last}")
 }
 
-/// True if there is a value: neither a choice of a model nor an optional key without a value.
+/// True for a given value: neither a choice of a model nor an optional key without a value.
 fn is_given(value: &ValueRecord) -> bool {
     value.status != "choice" && !value.value.is_empty()
 }
@@ -56,12 +56,14 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Option<Section> {
     }
     let mut more = Section::default();
     for (k, car) in cars.iter().enumerate() {
-        let Some(of) = car.record else { continue };
+        let Some(car_record) = car.record else {
+            continue;
+        };
         let body = if k == 0 { Some(&mut section) } else { None };
-        of_car(
+        add_car_values(
             body,
             &mut more,
-            (of, car.run.label()),
+            (car_record, car.run.label()),
             record.sensitivity.as_ref(),
         );
     }
@@ -89,31 +91,31 @@ fn count(cars: &[Car]) -> String {
     known.map(one).collect::<Vec<_>>().join(" ")
 }
 
-/// A value with its effect on fuel.
+/// Value with its effect on fuel.
 type Ranked<'a> = (&'a ValueRecord, Option<&'a Effect>);
 
-/// Some values of a car with their effects, the strongest first.
+/// Selects values of a car with their effects, the strongest first.
 fn ranked<'a>(
     car: &'a CarRecord,
     sensitivity: Option<&'a Sensitivity>,
     wanted: fn(&ValueRecord) -> bool,
 ) -> Vec<Ranked<'a>> {
-    let effects = sensitivity.map_or(&[][..], |of| &of.effects);
+    let effects = sensitivity.map_or(&[][..], |found| &found.effects);
     let effect = |value: &ValueRecord| {
         let own = |effect: &&Effect| effect.car == car.name && effect.key == value.key;
         effects.iter().find(own)
     };
     let values = car.values.iter().filter(|value| wanted(value));
     let mut list: Vec<Ranked> = values.map(|value| (value, effect(value))).collect();
-    // No number last.
-    let size = |of: &Ranked| of.1.map_or(-1.0, Effect::size_percent).max(-1.0);
-    // Stable: values without an effect keep the order of the file.
+    // Values without an effect come last.
+    let size = |ranked: &Ranked| ranked.1.map_or(-1.0, Effect::size_percent).max(-1.0);
+    // Stable sort: values without an effect keep the order of the file.
     list.sort_by(|a, b| size(b).total_cmp(&size(a)));
     list
 }
 
-/// Values of a car: the strongest doubtful ones in the body if there is one, all others in what the full report has.
-fn of_car(
+/// Adds the values of a car: the strongest doubtful ones to the body if there are any, all others to the full report.
+fn add_car_values(
     body: Option<&mut Section>,
     more: &mut Section,
     (car, name): (&CarRecord, &str),
@@ -152,7 +154,7 @@ fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> R
     if sensitivity.is_some() {
         columns.extend(heads.iter().map(String::as_str));
     }
-    let mut table = ReportTable::of_words(caption, &columns);
+    let mut table = ReportTable::textual(caption, &columns);
     for column in table.columns.iter_mut().skip(4) {
         column.number = true;
     }
@@ -178,17 +180,17 @@ fn table(caption: &str, list: &[Ranked], sensitivity: Option<&Sensitivity>) -> R
     table
 }
 
-/// Long texts and lists cut to what fits a cell.
+/// Cuts long texts and lists to fit a cell.
 fn short(text: &str) -> String {
-    const MOST: usize = 90;
-    if text.chars().count() <= MOST {
+    const MAX_CHARS: usize = 90;
+    if text.chars().count() <= MAX_CHARS {
         text.to_owned()
     } else {
-        text.chars().take(MOST).collect::<String>() + "\u{2026}"
+        text.chars().take(MAX_CHARS).collect::<String>() + "\u{2026}"
     }
 }
 
-/// The number of doubtful values, and the one with the largest effect.
+/// Sentence on the number of doubtful values, and the one with the largest effect.
 pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
     let (record, subject) = (found.record.as_ref()?, cars.first()?.record?);
     let count = |wanted: fn(&ValueRecord) -> bool| {
@@ -209,7 +211,7 @@ pub(super) fn doubt(found: &RunResults, cars: &[Car]) -> Option<String> {
         sensitivity,
     ) && effect.size_percent().is_finite()
     {
-        // A temperature is moved by kelvins, not by a share of its degrees.
+        // A temperature is changed by kelvins, not by a share of its degrees.
         let step = match value.unit.as_str() {
             "degC" => "5\u{a0}K".to_owned(),
             _ => percent_text(sensitivity.step_percent),

@@ -1,4 +1,4 @@
-//! What a study was made with, and how it is repeated.
+//! Inputs of a study, and instructions to repeat it.
 
 use std::collections::BTreeSet;
 
@@ -18,7 +18,7 @@ fn text_of(value: &Value) -> String {
     }
 }
 
-/// Names of the cars and what the manifest says of them; of a study of levers the cars as they are.
+/// Names of the cars with their entries in the manifest; for a study of levers the unchanged cars.
 fn cars(study: &StudyResults) -> impl Iterator<Item = (String, &Value)> {
     let levers = study.outline.levers.as_ref();
     let mut seen = BTreeSet::new();
@@ -33,7 +33,7 @@ fn cars(study: &StudyResults) -> impl Iterator<Item = (String, &Value)> {
     })
 }
 
-/// What all runs have in common, and the cars.
+/// Conditions common to all runs, and the cars.
 pub(super) fn conditions(study: &StudyResults) -> Section {
     let mut section = Section::new("conditions", "Conditions");
     let base = &study.manifest["base"];
@@ -64,7 +64,7 @@ pub(super) fn conditions(study: &StudyResults) -> Section {
         "Transmission oil",
         "Engine oil",
     ];
-    let mut table = ReportTable::of_words("Cars", &columns);
+    let mut table = ReportTable::textual("Cars", &columns);
     for (name, car) in cars(study) {
         let keys = ["role", "title", "lubricant", "engine_oil"];
         table.row(std::iter::once(name).chain(keys.map(|key| text_of(&car[key]))));
@@ -73,7 +73,7 @@ pub(super) fn conditions(study: &StudyResults) -> Section {
     section
 }
 
-/// What is needed to compute the study again.
+/// Information needed to repeat the study.
 pub(super) fn reproduce(study: &StudyResults) -> Section {
     let mut section = Section::new("reproducibility", "Reproducibility");
     let manifest = &study.manifest;

@@ -1,9 +1,9 @@
-//! The results of a study of levers: as a section of a run's report, or as a report of its own.
+//! Results of a study of levers, as a section of a run's report or as a separate report.
 
+use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
+use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
 use cvtcycle_study::execute::side_effects::{FLOOR, LUGGING};
-use cvtcycle_study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words, lever_answer};
-use cvtcycle_study::words::decimals;
 
 use super::conditions::{conditions, reproduce};
 use super::{ended_badly, unfinished};
@@ -12,13 +12,13 @@ use crate::number::{NONE, Quantity, degc, grouped, signed};
 use crate::results::StudyResults;
 use crate::study_pictures::lever_pictures;
 
-/// Levers of a car in the body of a run's report at most.
+/// Maximum number of levers of a car in the body of a run's report.
 const SHOWN: usize = 12;
 
-/// The levers as a section of a report.
+/// Builds the section on levers.
 ///
 /// # Errors
-/// A part that cannot be read.
+/// A part cannot be read.
 pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     let answer = answer_of(study)?;
     let mut section = said(study, &answer, "levers", "Levers");
@@ -30,10 +30,10 @@ pub fn section(study: &StudyResults) -> Result<Section, Problem> {
     Ok(section)
 }
 
-/// The report of a study of levers.
+/// Builds the report of a study of levers.
 ///
 /// # Errors
-/// A part that cannot be read.
+/// A part cannot be read.
 pub fn document(study: &StudyResults) -> Result<Document, Problem> {
     let answer = answer_of(study)?;
     let cars: Vec<&str> = named(&answer.blocks, |block| block.vehicle.as_str());
@@ -61,10 +61,13 @@ fn answer_of(study: &StudyResults) -> Result<LeverAnswer, Problem> {
     Ok(answer)
 }
 
-/// What the blocks have, each once, in their order.
-fn named<'b, T: PartialEq>(blocks: &'b [LeverBlock], of: impl Fn(&'b LeverBlock) -> T) -> Vec<T> {
+/// Distinct properties of the blocks, in their order.
+fn named<'b, T: PartialEq>(
+    blocks: &'b [LeverBlock],
+    property: impl Fn(&'b LeverBlock) -> T,
+) -> Vec<T> {
     let mut list = Vec::new();
-    for value in blocks.iter().map(of) {
+    for value in blocks.iter().map(property) {
         if !list.contains(&value) {
             list.push(value);
         }
@@ -77,7 +80,7 @@ fn case(block: &LeverBlock) -> String {
     format!("{} at {}", block.vehicle, degc(block.ambient_degc))
 }
 
-/// The answer in sentences, and how many runs it is from.
+/// Answer in sentences, with the number of runs behind it.
 fn said(study: &StudyResults, answer: &LeverAnswer, id: &str, title: &str) -> Section {
     let mut section = Section::new(id, title);
     section
@@ -118,7 +121,7 @@ fn details(answer: &LeverAnswer) -> Section {
     section
 }
 
-/// The foremost levers, or all of them, and the combinations.
+/// Table of the first levers, or all of them, and the combinations.
 fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> ReportTable {
     let [low, high] = answer
         .confidence
@@ -136,7 +139,7 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
     ];
     let columns = columns.map(|(name, unit)| (name.to_owned(), unit));
     let caption = format!("Levers, {}", case(block));
-    let mut table = ReportTable::of_numbers(&caption, "Lever", columns);
+    let mut table = ReportTable::numeric(&caption, "Lever", columns);
     let single = block.rows.iter().filter(|row| !row.is_combination());
     let together = block.rows.iter().filter(|row| row.is_combination());
     let shown = single.take(most.unwrap_or(usize::MAX)).chain(together);
@@ -161,7 +164,7 @@ fn numbers(answer: &LeverAnswer, block: &LeverBlock, most: Option<usize>) -> Rep
 fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
     let drawn = answer.plan.is_some() && row.n > 0;
     let [low, high] = [row.low_percent.value, row.high_percent.value];
-    // Digits end where the interval begins.
+    // Digits beyond the interval are dropped.
     let digits = if drawn { decimals([low, high]) } else { 2 };
     let change = |x: f64| signed(grouped(x, digits), x);
     let of_draws = |x: f64| match drawn {
@@ -185,18 +188,18 @@ fn cells(answer: &LeverAnswer, row: &LeverRow) -> Vec<String> {
     ]
 }
 
-/// What each lever changes and takes, and how its size is known.
+/// Table of the change and the requirement of each lever, and the source of its size.
 fn what_they_take(block: &LeverBlock) -> ReportTable {
     let heads = ["Lever", "Changes", "Needs", "Status", "Where from"];
-    let mut table = ReportTable::of_words("What the levers change and take", &heads);
+    let mut table = ReportTable::textual("What the levers change and take", &heads);
     for row in block.rows.iter().filter(|row| !row.is_combination()) {
-        let of = &row.of;
+        let lever = &row.of;
         let words = [
-            &of.title,
-            &of.set.join(", "),
-            &of.needs,
-            &of.status,
-            &of.source,
+            &lever.title,
+            &lever.set.join(", "),
+            &lever.needs,
+            &lever.status,
+            &lever.source,
         ];
         table.row(words.map(String::clone));
     }

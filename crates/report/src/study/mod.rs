@@ -1,4 +1,4 @@
-//! The results of a study: as a section of a run's report, or as a report of its own.
+//! Results of a study, as a section of a run's report or as a separate report.
 
 mod conditions;
 mod levers;
@@ -13,17 +13,17 @@ use crate::number::{Quantity, degc, grouped, phase, sign, words};
 use crate::results::StudyResults;
 use crate::study_answers::answers;
 use crate::study_pictures::study_pictures;
+use cvtcycle_analysis::words::decimals;
 use cvtcycle_config::Problem;
 use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::answer::{Ended, Information, KnownFactor};
 use cvtcycle_study::execute::outputs::EXCESS;
 use cvtcycle_study::statistics::of_hundred;
-use cvtcycle_study::words::decimals;
 
-/// The study as a section of a report; `known` are numbers of its differences that are none of its runs, by baseline.
+/// Builds the section of a study; `known` are numbers of its differences from other sources than its runs, by baseline.
 ///
 /// # Errors
-/// A part that cannot be read.
+/// A part cannot be read.
 pub fn section(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<Section, Problem> {
     if study.outline.levers.is_some() {
         return levers::section(study);
@@ -51,7 +51,7 @@ pub fn section(study: &StudyResults, known: &[(String, KnownValue)]) -> Result<S
     Ok(section)
 }
 
-/// The cause above chance that decides most of the difference to a baseline.
+/// Statistically significant cause with the largest share in the difference to a baseline.
 pub(crate) fn cause(study: &StudyResults) -> Option<(&Information, &KnownFactor)> {
     let mut outputs = study.answer.outputs.iter();
     let of = outputs.find(|of| of.output == EXCESS && of.information.is_some())?;
@@ -59,7 +59,7 @@ pub(crate) fn cause(study: &StudyResults) -> Option<(&Information, &KnownFactor)
     Some((of, of.causes().next()?))
 }
 
-/// Leaves text, the first table and some figures in the body; all others are for the full report.
+/// Keeps text, the first table and some figures in the body; moves all others to the full report.
 fn fold(section: &mut Section, kept: &[&str]) {
     let mut tables = 0;
     let is_body = |block: &Block| match block {
@@ -78,7 +78,7 @@ fn fold(section: &mut Section, kept: &[&str]) {
     section.more = more;
 }
 
-/// A warning that parts of the study are missing.
+/// Warning about missing parts of the study.
 pub(super) fn unfinished(study: &StudyResults, what: &str) -> Option<Block> {
     let alert = |text| Block::Alert(format!("{text}; {what}."));
     study.unfinished().map(alert)
@@ -138,7 +138,7 @@ fn caption(name: &str, study: &StudyResults) -> String {
     }
 }
 
-/// How many points and runs, and how they ended.
+/// Numbers of points and runs, with their outcomes.
 fn extent(study: &StudyResults) -> String {
     let (answer, outline) = (&study.answer, &study.outline);
     let runs = outline.points * outline.cars.len() as u64;
@@ -154,7 +154,7 @@ fn extent(study: &StudyResults) -> String {
     text + &ended_badly(&answer.runs)
 }
 
-/// How many runs have no good numbers, and why, after a sentence; empty if all have.
+/// Sentence continuation on runs without good numbers, with the reasons; empty if there are none.
 pub(super) fn ended_badly(runs: &Ended) -> String {
     let bad = runs.failed + runs.not_run;
     if bad == 0 {
@@ -201,14 +201,14 @@ fn tables(section: &mut Section, matrix: &Matrix) {
     ));
 }
 
-/// A table with a row for each start and ambient temperature, of which `cells` gets the indices.
+/// Table with a row for each start and ambient temperature, whose indices are passed to `cells`.
 fn by_case(
     matrix: &Matrix,
     caption: &str,
     columns: impl Iterator<Item = (String, &'static str)>,
     cells: impl Fn(usize, usize) -> Vec<String>,
 ) -> ReportTable {
-    let mut table = ReportTable::of_numbers(caption, "Start, ambient", columns);
+    let mut table = ReportTable::numeric(caption, "Start, ambient", columns);
     for (s, start) in matrix.starts.iter().enumerate() {
         for (a, ambient) in matrix.ambient_degc.iter().enumerate() {
             table.named(format!("{start}, {}", degc(*ambient)), cells(s, a));
@@ -217,7 +217,7 @@ fn by_case(
     table
 }
 
-/// Moments and quantiles of draws; of points that are no sample the ends, and where they are.
+/// Moments and quantiles of draws; for points that are not a sample the extremes with their places.
 fn outputs(study: &StudyResults) -> ReportTable {
     let ends = study.answer.confidence.ends();
     let [low, high] = ends.map(|p| format!("{} %", of_hundred(p)));
@@ -227,7 +227,7 @@ fn outputs(study: &StudyResults) -> ReportTable {
         false => ["runs", "least", "at", "most", "at that"],
     };
     let columns = names.iter().map(|name| (name.to_string(), ""));
-    let mut table = ReportTable::of_numbers("Outputs", "Output", columns);
+    let mut table = ReportTable::numeric("Outputs", "Output", columns);
     for at in [3, 5].into_iter().filter(|_| !sampled) {
         table.columns[at].number = false;
     }
@@ -279,7 +279,7 @@ fn output_name(column: &str) -> String {
     words(stem.unwrap_or(column))
 }
 
-/// Keys of a factor in the manifest, and heads of their columns.
+/// Manifest keys of a factor, and heads of their columns.
 const FACTOR: [(&str, &str); 8] = [
     ("name", "Factor"),
     ("key", "Key"),
@@ -295,7 +295,7 @@ fn factors(study: &StudyResults) -> ReportTable {
     let list = study.manifest["factors"].as_array();
     let list = list.map_or(&[][..], Vec::as_slice);
     let caption = format!("Factors of the study ({})", list.len());
-    let mut table = ReportTable::of_words(&caption, &FACTOR.map(|(_, head)| head));
+    let mut table = ReportTable::textual(&caption, &FACTOR.map(|(_, head)| head));
     let text = |value: &Value| match value {
         Value::String(text) => text.clone(),
         Value::Array(list) => {
@@ -311,10 +311,10 @@ fn factors(study: &StudyResults) -> ReportTable {
     table
 }
 
-/// The report of a study.
+/// Builds the report of a study.
 ///
 /// # Errors
-/// A part that cannot be read.
+/// A part cannot be read.
 pub fn document(study: &StudyResults) -> Result<Document, Problem> {
     if study.outline.levers.is_some() {
         return levers::document(study);

@@ -29,7 +29,7 @@ use crate::statistics::{Confidence, Share, Summary};
 use ambient::{Matrix, matrix};
 use cvtcycle_config::Problem;
 use output::output;
-pub(crate) use study_table::Status;
+pub use study_table::Status;
 
 /// Version of an [`Answer`] as JSON. 2: intervals of any confidence under one name, ends in place of moments where the points are no sample.
 const SCHEMA: u32 = 2;
@@ -105,7 +105,8 @@ pub struct Comparison {
 /// use cvtcycle_study::plan::Plan;
 /// use cvtcycle_study::statistics::Confidence;
 /// use cvtcycle_study::store::{Rows, Values};
-/// use cvtcycle_study::{NoProgress, PartWriter, Study, StudyManifest, StudyTable, TableSource, answer};
+/// use cvtcycle_output::progress::NoProgress;
+/// use cvtcycle_study::{PartWriter, Study, StudyManifest, StudyTable, TableSource, answer};
 ///
 /// /// Keeps the table of runs in memory.
 /// struct Memory<'s>(&'s Study, Mutex<Vec<(u64, Rows)>>);
@@ -210,7 +211,11 @@ fn summary(numbers: &Column, sample: Option<Confidence>) -> Result<Option<Summar
     sample.map(over).transpose()
 }
 
-pub(crate) fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
+/// Counts how the runs of a study ended.
+///
+/// # Errors
+/// The status column cannot be read.
+pub fn ended(frame: &StudyTable) -> Result<Ended, Problem> {
     let mut reasons = Counts::default();
     frame.each_reason(|status, reason| {
         for one in reason.split("; ") {
@@ -249,7 +254,7 @@ impl Counts {
 }
 
 /// Words with their counts, the commonest first.
-pub(crate) fn counted(words: impl Iterator<Item = String>) -> Vec<(String, usize)> {
+pub fn counted(words: impl Iterator<Item = String>) -> Vec<(String, usize)> {
     let mut counts = Counts::default();
     words.for_each(|word| counts.add(&word));
     counts.sorted()

@@ -95,7 +95,7 @@ impl Status {
     }
 
     /// Whether there is no result to be trusted.
-    pub(crate) fn is_bad(self) -> bool {
+    pub fn is_bad(self) -> bool {
         matches!(self, Status::Failed | Status::NotRun)
     }
 }

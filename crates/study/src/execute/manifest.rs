@@ -48,7 +48,7 @@ impl Study {
         if let Some(levers) = &self.levers {
             rest["levers"] = levers.clone();
         }
-        let value = manifest.of_run(&rest).with(&rest);
+        let value = manifest.for_run(&rest).with(&rest);
         let text = serde_json::to_string_pretty(&value).unwrap_or_default();
         text + "\n"
     }

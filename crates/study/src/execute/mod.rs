@@ -18,7 +18,7 @@ pub mod side_effects;
 
 pub use cars::{Column, StudyCar};
 pub use manifest::StudyManifest;
-pub(crate) use notes::idle;
+pub use notes::idle;
 pub use pilot::Pilot;
 pub(crate) use point::{reason, status};
 pub use prepare::{Columns, Study};
@@ -30,19 +30,19 @@ use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread::{self, ScopedJoinHandle};
 
-use crate::Progress;
 use crate::plan::{Factor, FactorValue, FactorValues, STUDY};
 use crate::store::{PartTable, Rows, StudyDir, TRACE_ROWS};
 use cvtcycle_config::bounded::{CELLS, kept_steps};
 use cvtcycle_config::{Place, Problem};
-use cvtcycle_model::drive::MOST_TOGETHER;
+use cvtcycle_model::drive::MAX_TOGETHER;
+use cvtcycle_output::progress::Progress;
 use manifest::{RUNS, TRACES};
 use point::Worker;
 use rows::{Filler, Traces};
 
 /// Least number of points that a thread takes at a time: those that are driven side by side; and the number of such takings that a larger part is
 /// divided into. What comes out does not depend on them.
-const MIN_CHUNK: u64 = MOST_TOGETHER as u64;
+const MIN_CHUNK: u64 = MAX_TOGETHER as u64;
 const CHUNKS: u64 = 64;
 /// Most points of a part, and the number of parts that a small study is divided into at least.
 const MAX_POINTS: u64 = 4096;
@@ -295,7 +295,7 @@ impl Study {
             if progress.stopped() {
                 return None;
             }
-            let to = points.end.min(from.saturating_add(MOST_TOGETHER as u64));
+            let to = points.end.min(from.saturating_add(MAX_TOGETHER as u64));
             let of_points = self.points(from..to, worker, traces.as_mut());
             for (point, of_point) in (from..to).zip(&of_points) {
                 filler.push(point, of_point, &mut runs);
@@ -417,8 +417,8 @@ impl<'s> Queue<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::NoProgress;
     use crate::plan::Plan;
+    use cvtcycle_output::progress::NoProgress;
 
     /// Keeps the rows of every part in words: a missing number is equal to another.
     #[derive(Default)]

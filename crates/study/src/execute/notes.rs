@@ -8,7 +8,7 @@ use cvtcycle_config::setup::is_twin;
 const MOST_NAMES: usize = 10;
 
 /// The factors that do not act on a car though they are of its kind, in a sentence; none where all act.
-pub(crate) fn idle(vehicle: &str, car: &StudyCar, factors: &[Factor]) -> Option<String> {
+pub fn idle(vehicle: &str, car: &StudyCar, factors: &[Factor]) -> Option<String> {
     let names = car.idle.iter().map(|f| factors[*f].name.as_str());
     let first: Vec<&str> = names.take(MOST_NAMES).collect();
     let more = match car.idle.len().saturating_sub(MOST_NAMES) {

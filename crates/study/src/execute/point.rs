@@ -13,7 +13,7 @@ use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_config::setup::template::{ParameterRef, Variant};
 use cvtcycle_model::drive::{Conditions, Outcome, Row, Run, Start, drive_each, drive_into};
-use cvtcycle_model::fluid::ZERO_DEGC_K;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Failure, RunSummary, Settings, compare, run_summary};
 
 /// What one thread keeps from point to point: a bench for each variant of each car.
@@ -139,7 +139,7 @@ struct Ready {
 
 impl Study {
     /// A number of each car at the first point, with whether its run is fine; NaN where there is none.
-    pub(crate) fn first_point(&self, output: &str) -> Vec<(f64, bool)> {
+    pub fn first_point(&self, output: &str) -> Vec<(f64, bool)> {
         let at = self.outputs.iter().position(|column| column.name == output);
         let runs = self.point(0);
         let number = |run: PointRun| {
@@ -150,7 +150,7 @@ impl Study {
     }
 
     /// Factors of a car with draws outside the range of their keys, and their numbers of such draws.
-    pub(crate) fn held(&self, car: &StudyCar) -> Vec<(usize, usize)> {
+    pub fn held(&self, car: &StudyCar) -> Vec<(usize, usize)> {
         let Plan {
             factors, design, ..
         } = &self.plan;

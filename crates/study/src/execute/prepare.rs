@@ -43,7 +43,7 @@ pub struct Study {
     /// Engine speed, rpm, below which load is heard and felt, where side effects are kept.
     pub(super) sides: Option<f64>,
     /// What the columns are, for the manifest; none where the cars are those of the plan.
-    pub(crate) levers: Option<Value>,
+    pub levers: Option<Value>,
 }
 
 /// Cars in place of those of the plan.

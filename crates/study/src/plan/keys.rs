@@ -14,7 +14,8 @@ pub(super) const MAX_IN_RANGE: i64 = 10_000;
 pub const MAX_SAMPLES: u64 = 1_000_000_000;
 
 /// A plan: its head and its factors.
-pub const PLAN: Table = Table::of(&[StudyKeys::TABLE, FactorKeys::TABLE.repeated(Repeat::List)]);
+pub const PLAN: Table =
+    Table::from_tables(&[StudyKeys::TABLE, FactorKeys::TABLE.repeated(Repeat::List)]);
 
 keys! {
     /// Keys of `[study]`.
@@ -137,7 +138,8 @@ const ACTS: &[Choice] = &[
     Choice::word("offset", "it is added to the value"),
 ];
 
-pub(crate) const STATUSES: &[Choice] = &[
+/// Words of the status of a value in a plan.
+pub const STATUSES: &[Choice] = &[
     Choice::word("source", "a reference states them"),
     Choice::word("derived", "computed from known values"),
     Choice::word("fitted", "fitted to measurements"),
@@ -221,7 +223,8 @@ fn vehicles() -> String {
     )
 }
 
-pub(crate) fn lubricants() -> String {
+/// Lubricants that a plan or a lever can name, for messages.
+pub fn lubricants() -> String {
     format!(
         "{}, or the path of a TOML file",
         File::Lubricant.names().join(", ")
@@ -241,7 +244,7 @@ pub(super) fn run_option(key: &str) -> Option<&'static Key<'static>> {
 
 /// Unit of the numbers of a run option or of a dotted key.
 pub(super) fn quantity(key: &str) -> Quantity {
-    run_option(key).map_or_else(|| Quantity::of(key), |row| row.quantity)
+    run_option(key).map_or_else(|| Quantity::from_key(key), |row| row.quantity)
 }
 
 /// Range of the numbers of a run option; none where it takes words only, or for a key of a file.

@@ -25,8 +25,9 @@ pub use cvtcycle_config::embedded::plans as embedded_plans;
 use cvtcycle_config::setup::{Kind, NamedBy, text_of};
 pub use design::{MAX_SOBOL_DIMENSIONS, MAX_SOBOL_SAMPLES};
 pub(crate) use factor::unit;
+pub(crate) use keys::STUDY;
 pub use keys::{MAX_SAMPLES, PLAN};
-pub(crate) use keys::{STATUSES, STUDY, lubricants};
+pub use keys::{STATUSES, lubricants};
 pub use places::Places;
 pub use write::Axis;
 

@@ -1,10 +1,9 @@
-//! A table of a study as one file: CSV, Parquet, or a workbook for Excel.
+//! A table of a study as one file: CSV or Parquet.
 //!
 //! | format | for | what to know |
 //! |---|---|---|
 //! | `.csv` | anything | names with units; begins with a byte order mark if and only if there is a letter beyond ASCII, since Excel takes such a file for another encoding without it; pandas, polars, DuckDB and Excel skip the mark |
 //! | `.parquet` | programs | names without units, which are in the metadata with the manifest; a row group a part |
-//! | `.xlsx` | Excel, LibreOffice | names with units, numbers as numbers whatever the decimal sign of the country; at most 1 048 575 rows, 16 384 columns and 5 000 000 cells |
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -14,7 +13,6 @@ use super::csv::{CsvTable, Header};
 use super::parquet::{ParquetTable, RUN_KEY, run_of};
 use super::read::{Status, Study};
 use super::table::{Head, Kind, Rows, Values};
-use super::xlsx::{MAX_CELLS, MAX_COLUMNS, MAX_ROWS, XlsxTable};
 use cvtcycle_config::{Problem, Setting};
 use cvtcycle_output::file::OutputFile;
 use cvtcycle_output::files::problem;
@@ -29,17 +27,12 @@ pub enum Format {
     Csv,
     /// Parquet.
     Parquet,
-    /// Office Open XML workbook.
-    Xlsx,
 }
 
 impl Format {
     /// Formats by the ending of a file.
-    pub const NAMES: [(&'static str, Format); 3] = [
-        ("csv", Format::Csv),
-        ("parquet", Format::Parquet),
-        ("xlsx", Format::Xlsx),
-    ];
+    pub const NAMES: [(&'static str, Format); 2] =
+        [("csv", Format::Csv), ("parquet", Format::Parquet)];
 
     /// The format of the ending of a file's name.
     ///
@@ -54,7 +47,7 @@ impl Format {
             let message =
                 format!("the ending of {path_name} does not say in which format to write");
             problem(path, &message, "for example runs.csv")
-                .allowed("a name that ends in .csv, .parquet or .xlsx")
+                .allowed("a name that ends in .csv or .parquet")
         })
     }
 }
@@ -71,8 +64,7 @@ pub struct Exported {
 /// Writes all rows of a table that are there, in the order of the parts; one part is in memory at a time. The caller commits the file.
 ///
 /// # Errors
-/// A problem: no part is there yet, a part is damaged, the rows do not fit into a workbook (found before anything is written), or the
-/// words of the operating system.
+/// A problem: no part is there yet, a part is damaged, or the error of the operating system.
 pub fn export(
     study: &Study,
     table: &str,
@@ -91,9 +83,6 @@ pub fn export(
         return Err(problem.settings(&[Setting::Resume]));
     }
     let rows = study.rows(table)?;
-    if format == Format::Xlsx {
-        check_size(out.path(), rows, heads.len())?;
-    }
     let bom = format == Format::Csv && beyond_ascii(study, table, &heads)?;
     let (run, manifest) = (run_of(study.manifest()), study.manifest().to_string());
     let file = &mut *out;
@@ -109,21 +98,13 @@ pub fn export(
                 let metadata: Vec<_> = run.chain(own).collect();
                 Box::new(ParquetTable::new(file, &heads, &metadata, first)?)
             }
-            Format::Xlsx => Box::new(XlsxTable::new(file, table, &heads)?),
         })
     };
     let written = copy(study, table, &heads, begin)?;
-    written.map_err(|error| match error.kind() {
-        // A cell that no workbook can hold.
-        io::ErrorKind::InvalidInput => problem(out.path(), &error.to_string(), NO_LIMIT),
-        _ => out.cannot_write(&error),
-    })?;
+    written.map_err(|error| out.cannot_write(&error))?;
     study.unchanged()?;
     Ok(Exported { rows, status })
 }
-
-/// What helps where a workbook is too small.
-const NO_LIMIT: &str = "write .csv or .parquet, which have no such limit";
 
 /// Writes all parts to a table that is begun with the rows of the first one: a problem of reading them, or an error of the table.
 fn copy<'a>(
@@ -146,28 +127,6 @@ fn copy<'a>(
         }
     }
     Ok(writer.finish())
-}
-
-/// Refuses what does not fit into a sheet, or into memory as a workbook.
-fn check_size(path: &Path, rows: u64, columns: usize) -> Result<(), Problem> {
-    let columns = columns as u64;
-    let cells = rows.saturating_mul(columns);
-    let message = if rows > MAX_ROWS {
-        format!(
-            "a sheet of Excel holds at most {MAX_ROWS} rows below its header, the study has {rows} rows"
-        )
-    } else if columns > MAX_COLUMNS {
-        format!(
-            "a sheet of Excel holds at most {MAX_COLUMNS} columns, the study has {columns} columns"
-        )
-    } else if cells > MAX_CELLS {
-        format!(
-            "a workbook is built in memory, with at most {MAX_CELLS} cells; the study has {rows} rows of {columns} columns, {cells} cells"
-        )
-    } else {
-        return Ok(());
-    };
-    Err(problem(path, &message, NO_LIMIT))
 }
 
 /// True if a head or a cell has a letter beyond ASCII.

@@ -30,7 +30,6 @@ mod parquet_read;
 mod read;
 mod table;
 mod trace;
-mod xlsx;
 
 pub use csv::{CsvTable, Header, write_csv};
 pub use dir::{PartTable, StudyDir};

@@ -1,10 +1,10 @@
 //! The tests of the transmission rig as tables.
 
-use cvtcycle::model::bench::BenchPoint;
-use cvtcycle::model::bench::transmission::{
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
+use cvtcycle::model::rig::BenchPoint;
+use cvtcycle::model::rig::transmission::{
     Branch, Conditions, Loop, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
-use cvtcycle::model::fluid::ZERO_DEGC_K;
 use cvtcycle::output::Flags;
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::rig::{MEETING_NM, Range, RigResults, is_near, oil_degc, ranges, rpm};
@@ -14,16 +14,16 @@ use super::RigPlan;
 use crate::print::colour::Paint;
 use crate::print::sections;
 
-/// Speed at which the split is shown, rpm: that of the transients of thesis 5.3.2.
+/// Speed of the table of components, rpm: that of the transients of thesis 5.3.2.
 const SPLIT_RPM: f64 = 2500.0;
-/// Ratio, speeds in rpm, and totals in Nm that thesis 5.3.1 prints.
+/// Totals printed in thesis 5.3.1: ratio, two speeds in rpm, their torques in Nm.
 const PRINTED: [(&str, f64, f64, f64, f64); 2] = [
     ("low", 1000.0, 4000.0, 8.5, 13.0),
     ("high", 2000.0, 4000.0, 9.0, 13.0),
 ];
-/// Bulk oil of these totals, degC, with the rounding errors of its conversion.
+/// Bulk oil temperatures of these totals, degC, widened by the rounding of the conversion.
 const PRINTED_DEGC: std::ops::RangeInclusive<f64> = 25.0 - 1e-6..=95.0 + 1e-6;
-/// Ratio, bulk oil in degC and torque loss in Nm of the warm-up that thesis 5.3.2 prints; the first one at the start.
+/// Warm-up printed in thesis 5.3.2: ratio, bulk oil in degC, torque loss in Nm; without temperature at the start.
 const PRINTED_TRANSIENT: [(&str, Option<f64>, f64); 5] = [
     ("low", None, 12.5),
     ("low", Some(80.0), 11.0),
@@ -31,10 +31,10 @@ const PRINTED_TRANSIENT: [(&str, Option<f64>, f64); 5] = [
     ("high", None, 11.0),
     ("high", Some(100.0), 9.25),
 ];
-/// Bulk oil temperatures of the table of transients, degC.
+/// Bulk oil temperatures in the table of transients, degC.
 const SHOWN_DEGC: [f64; 6] = [25.0, 40.0, 60.0, 80.0, 95.0, 100.0];
 
-/// All results for people.
+/// Prints all results.
 pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
     let (setup, c, belt) = (&plan.setup, &plan.conditions, &plan.formulation);
     let (name, title) = (paint.heading(&setup.name), &setup.title);
@@ -76,7 +76,7 @@ pub fn tables(plan: &RigPlan, found: &RigResults, paint: Paint) -> String {
     text
 }
 
-/// The tested speed next to [`SPLIT_RPM`].
+/// Tested speed nearest to [`SPLIT_RPM`].
 fn shown_rpm<'a>(sets: impl Iterator<Item = &'a BenchPoint>) -> f64 {
     let distance = |rpm: &f64| (rpm - SPLIT_RPM).abs();
     let nearest = sets
@@ -98,13 +98,13 @@ fn steady(plan: &RigPlan, points: &[SteadyPoint]) -> String {
         let tested = |p: &&SteadyPoint| {
             (*from..=*to).contains(&rpm(&p.set)) && PRINTED_DEGC.contains(&oil_degc(&p.set))
         };
-        Some(Range::of(on(*ratio).filter(tested).map(|p| p.answer.total_nm())).text(2))
+        Some(Range::over(on(*ratio).filter(tested).map(|p| p.answer.total_nm())).text(2))
     };
     TextColumns::new()
         .left("ratio", name)
         .right("I", |ratio| plain(*ratio))
         .right("rpm", |ratio| {
-            Range::of(on(*ratio).map(|p| rpm(&p.set))).text(0)
+            Range::over(on(*ratio).map(|p| rpm(&p.set))).text(0)
         })
         .right("loss Nm", |ratio| ranges(points, *ratio).0.text(2))
         .right("bar", |ratio| ranges(points, *ratio).1.text(1))
@@ -139,7 +139,7 @@ fn loaded(plan: &RigPlan, points: &[SteadyPoint], at_rpm: f64) -> String {
     if points.is_empty() {
         return String::new();
     }
-    // Of many torques the ends; the figure shows all.
+    // With many torques the table has the first and the last; the figure has all.
     let shown = match plan.points.torques_nm.as_slice() {
         [first, .., last] if plan.points.torques_nm.len() > 8 => vec![*first, *last],
         all => all.to_vec(),
@@ -186,7 +186,7 @@ fn strip_down(c: &Conditions, found: &RigResults, at_rpm: f64) -> String {
         });
     let table = columns.lines(rows.iter().filter(|s| is_near(rpm(&s.set), at_rpm)));
     let bar = |stage: &Stage| {
-        let range = Range::of(rows.iter().map(|s| s.stage(*stage).secondary_pa / 1e5));
+        let range = Range::over(rows.iter().map(|s| s.stage(*stage).secondary_pa / 1e5));
         format!("{} {}", stage.name().replace('_', " "), range.text(1))
     };
     let bars: Vec<String> = Stage::ALL[..4].iter().map(bar).collect();
@@ -228,7 +228,7 @@ fn loop_notes(c: &Conditions, l: &Loop) -> String {
     let name = c.ratio_name(l.ratio);
     let minutes = |branch: Branch| {
         let on = l.moments.iter().filter(|m| m.branch == branch);
-        let times = Range::of(on.map(|m| m.time_s / 60.0));
+        let times = Range::over(on.map(|m| m.time_s / 60.0));
         fixed(times.high - times.low, 0)
     };
     let [warming, cooling] = [Branch::Warming, Branch::Cooling].map(minutes);
@@ -269,7 +269,7 @@ fn second_box(plan: &RigPlan, found: &RigResults) -> String {
                 .second_box
                 .iter()
                 .filter(|t| is_near(t.first.set.ratio, *ratio));
-            Range::of(on.map(get)).text(2)
+            Range::over(on.map(get)).text(2)
         }
     };
     TextColumns::new()

@@ -2,8 +2,8 @@
 
 use cvtcycle::config::setup::Setup;
 use cvtcycle::config::{Bound, Problems, to_si};
-use cvtcycle::model::bench::solvable_ratios;
-use cvtcycle::model::bench::variator::{Held, MAX_RAD_S, VariatorRig};
+use cvtcycle::model::rig::solvable_ratios;
+use cvtcycle::model::rig::variator::{Held, MAX_RAD_S, VariatorRig};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::losses::MAX_POINTS;
 use cvtcycle::output::variator::{Curve, VariatorCurves};
@@ -17,14 +17,14 @@ use crate::args::ranges::{values, values_or_words};
 pub const RATIOS: &str = "low,high";
 /// High ratio of the rig (thesis Appendix C; 5.5.1 refers to it).
 const HIGH: f64 = 0.5;
-/// Default speed: chapter 6 prints none, Appendix C begins with this one (ASSUMED).
+/// Default speed, rpm. Chapter 6 prints none; Appendix C starts with this one (ASSUMED).
 const SPEED_RPM: f64 = 2000.0;
 const SPEED: Bound = Bound::open_low(0.0, 10_000.0);
 const PRESSURE: Bound = Bound::closed(0.0, 100.0);
 const TEMP: Bound = Bound::closed(-40.0, 160.0);
 const TORQUE: Bound = Bound::closed(-1000.0, 1000.0);
 const PULSES: Bound = Bound::closed(1.0, 10_000.0);
-/// Pressures of the thesis in low and in high ratio (6.4).
+/// Pressures of the thesis at low and at high ratio (6.4).
 const LOW_BAR: [f64; 5] = [15.0, 20.0, 25.0, 30.0, 35.0];
 const HIGH_BAR: [f64; 5] = [10.0, 10.5, 11.0, 11.5, 12.0];
 
@@ -63,7 +63,7 @@ pub fn plan(args: &RigVariatorArgs, problems: &mut Problems) -> Option<VariatorP
     let rig = setup.as_ref().and_then(|setup| VariatorRig::new(setup));
     let hint = "name a vehicle with a CVT, such as rover_216_cvt";
     args.car.need_cvt(setup.as_ref(), hint, problems);
-    // Without a rig the values are checked against limits that any belt meets.
+    // Without a rig, after a problem with the vehicle, checks against limits valid for any belt.
     let (limits, low) = rig.as_ref().map_or(((0.1, 10.0), 2.4), |rig| {
         (solvable_ratios(&rig.cvt().belt), rig.cvt().ratio.low)
     });
@@ -100,7 +100,7 @@ pub fn plan(args: &RigVariatorArgs, problems: &mut Problems) -> Option<VariatorP
     })
 }
 
-/// Every combination, ratio outermost, pressure fastest.
+/// All combinations: ratio in the outermost loop, pressure in the innermost.
 fn held(
     ratios: &[f64],
     pressures: Option<&[f64]>,
@@ -109,7 +109,7 @@ fn held(
 ) -> Vec<Held> {
     let mut list = Vec::new();
     for ratio in ratios {
-        // The secondary stays below the speed limit of the rig.
+        // Keeps the secondary below the speed limit of the rig.
         let default_rad_s = to_si("_rpm", SPEED_RPM).min(MAX_RAD_S * ratio);
         let speeds = speeds.map_or_else(
             || vec![default_rad_s],

@@ -1,16 +1,16 @@
-//! What the levers save, as tables.
+//! Savings of the levers as tables.
 
+use cvtcycle::analysis::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words};
 use cvtcycle::output::number::{NONE, fixed, plain, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
 use cvtcycle::study::answer::Ended;
 use cvtcycle::study::execute::side_effects::{FLOOR, LUGGING};
-use cvtcycle::study::levers::{LeverAnswer, LeverBlock, LeverRow, answer_in_words};
 
 use super::super::tables::MAX_REASONS;
 use crate::print::colour::Paint;
 use crate::print::{bold, sections};
 
-/// All results for people.
+/// Prints all results.
 pub fn tables(answer: &LeverAnswer, (present, all): (usize, usize), paint: Paint) -> String {
     let mut text = bold(&answer.title, paint);
     text += &match &answer.plan {
@@ -51,7 +51,7 @@ pub fn tables(answer: &LeverAnswer, (present, all): (usize, usize), paint: Paint
     text + &left_out(&answer.runs)
 }
 
-/// The runs that are left out, with their reasons.
+/// Runs left out, with their reasons.
 fn left_out(runs: &Ended) -> String {
     let bad = runs.failed + runs.not_run;
     if bad == 0 {
@@ -92,7 +92,7 @@ fn levers(answer: &LeverAnswer, block: &LeverBlock) -> String {
     table.text()
 }
 
-/// The name, with the number of its runs that fail.
+/// Name, with the number of failed runs.
 fn marked(row: &LeverRow) -> String {
     match row.failed {
         0 => row.of.name.clone(),
@@ -115,17 +115,20 @@ fn saves(answer: &LeverAnswer, row: &LeverRow) -> String {
     }
 }
 
-/// What each lever takes, and how its size is known.
+/// Requirements of each lever, and the basis of its size.
 fn needs(block: &LeverBlock) -> String {
     let single = block.rows.iter().filter(|row| !row.is_combination());
     let line = |row: &LeverRow| {
-        let of = &row.of;
-        let needs = match of.needs.as_str() {
+        let lever = &row.of;
+        let needs = match lever.needs.as_str() {
             "" => String::new(),
             needs => format!("; {needs}"),
         };
-        let status = &of.status;
-        wrapped(&format!("{}: {}{needs} [{status}]", of.name, of.title), "")
+        let status = &lever.status;
+        wrapped(
+            &format!("{}: {}{needs} [{status}]", lever.name, lever.title),
+            "",
+        )
     };
     single.map(line).collect()
 }

@@ -1,4 +1,4 @@
-//! What is left when a cause is taken away, and what depends on nothing but its own causes. No input of the allowed range gives what is no number.
+//! Effects that vanish with their causes or depend on them alone. No input of the allowed range gives NaN.
 
 use super::*;
 

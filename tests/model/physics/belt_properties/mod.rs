@@ -16,7 +16,7 @@ mod monotone;
 mod scaling;
 mod statics;
 
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, belt_state,
 };
@@ -151,7 +151,7 @@ impl Point {
     }
 }
 
-/// What must be finite and continuous, with names.
+/// Quantities that must be finite and continuous, with names.
 pub const NAMES: [&str; 11] = [
     "band",
     "film",

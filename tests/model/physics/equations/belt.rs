@@ -3,7 +3,7 @@
 
 use super::{near, same};
 use crate::common::car;
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, BeltState, Formulation, Geometry, belt_losses, belt_state,
@@ -67,7 +67,7 @@ struct Branch {
     active: f64,
 }
 
-/// What a branch looks at: of the loaded pulley first, then of the other.
+/// Inputs of a branch: the loaded pulley first, then the other.
 struct Side {
     cx: f64,
     slack: f64,

@@ -4,14 +4,14 @@ use super::{near, same};
 use crate::common::bench_step::{Bench as StepBench, Setting};
 use crate::common::{RPM, ZERO, car, loaded_point, rover_bench};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::point::LIMIT_SLACK;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Formulation, belt_point};
 
-/// What a bench is set to where nothing is said: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
+/// Default settings of the rig: ratio 1, 2500 rpm, 75 degC, the shipped box, no load.
 #[test]
 fn defaults_of_the_bench() {
     let p = BenchPoint::default();
@@ -316,7 +316,7 @@ fn val_solvable_ratios_are_the_last_that_fit() {
             let pitch = belt.segment_thickness_m;
             p >= pitch && s >= pitch && (p + s + 2.0 * g.strut_m - length).abs() <= 1e-9 * length
         };
-        let (high, low) = cvtcycle_model::bench::solvable_ratios(&belt);
+        let (high, low) = cvtcycle_model::rig::solvable_ratios(&belt);
         assert!(
             (0.05..=1.0).contains(&high) && (1.0..=20.0).contains(&low),
             "{high} {low}"
@@ -406,7 +406,7 @@ fn val_the_bench_loses_what_a_step_of_driving_loses() {
         let answer = bench.solve(&BenchPoint {
             ratio,
             input_rad_s: drive.engine_rad_s,
-            // What really passed the output shaft: in overrun the brakes take a part.
+            // Torque that passed the output shaft: in overrun the brakes take a part.
             output_nm: drive.output_w / wheel_rad_s,
             pressure_pa: Some(drive.secondary_pa),
             sump_k: s.sump_degc + ZERO,
@@ -500,4 +500,32 @@ fn val_manual_box_by_hand() {
     close(idle.input_nm, idle.total_nm(), 1e-12, "no load");
     assert!((at(300.0).input_nm - (300.0 / 5.25 + at(300.0).total_nm())).abs() < 1e-12);
     assert!((at(0.0).output_rad_s - 2500.0 * RPM / 5.25).abs() < 1e-9);
+}
+
+/// A point found by the torque at the input takes that torque, with the throttle that full load gives it, in both kinds of boxes.
+#[test]
+fn val_a_torque_at_the_input_is_met() {
+    for (name, ratio) in [("rover_216_cvt", 0.8), ("rover_216_5mt", 3.0)] {
+        let setup = car(name, &[]);
+        let full_load_nm = setup.car(293.15).engine.full_load.at(2500.0 * RPM);
+        let bench = Bench::new(&setup);
+        for wanted_nm in [-20.0, 0.0, 60.0] {
+            let asked = BenchPoint {
+                ratio,
+                throttle: 0.3,
+                ..BenchPoint::default()
+            };
+            let found = bench.at_input_torque(&asked, wanted_nm);
+            let got_nm = bench.solve(&found).input_nm;
+            assert!(
+                (got_nm - wanted_nm).abs() <= 1e-12 * (1.0 + wanted_nm.abs()),
+                "{name}: {got_nm} instead of {wanted_nm}"
+            );
+            let throttle = match setup.car(293.15).transmission {
+                Transmission::Cvt(_) => (wanted_nm / full_load_nm).max(0.0),
+                Transmission::Manual(_) => 0.3,
+            };
+            same(found.throttle, throttle);
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use super::{near, same};
 use crate::common::{CARS, ZERO, car, cycle, soak_rows};
 use cvtcycle_model::drive::Car;
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::road::WheelDemand;
 use cvtcycle_model::thermal::{Heat, NODES};
 use cvtcycle_model::transmission::clamp_cause::ClampCause;

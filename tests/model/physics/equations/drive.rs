@@ -20,7 +20,7 @@ use cvtcycle_model::transmission::cvt::variator::{
 use cvtcycle_model::transmission::cvt::{Cvt, LossChanges, viscosity_power};
 use cvtcycle_model::transmission::{StepOutput, Transmission};
 
-/// What fixes the output torque.
+/// Limit that fixes the output torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Bind {
     Demand,
@@ -197,7 +197,7 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     ); // LC-4
     assert!(lost(Component::BeltMap) == 0.0 && lost(Component::GearMesh) == 0.0);
 
-    // What binds, and the torque that the engine is asked for (CV-3, CV-4).
+    // Binding limit and demanded torque of the engine (CV-3, CV-4).
     let idle = engine.idle_rad_s;
     let together = 1.0 - ((we / wp - 1.0) / 0.02).clamp(0.0, 1.0);
     let dragged = engine.drag_nm(we) + engine.accessories_nm(we) + spin_nm;

@@ -2,7 +2,7 @@
 
 use super::same;
 use crate::common::{ZERO, car};
-use cvtcycle_model::fluid::{BandFriction, FilmPowers, Friction, Lubricant, Viscosity};
+use cvtcycle_model::lubricant::{BandFriction, FilmPowers, Friction, Lubricant, Viscosity};
 
 fn friction() -> Friction {
     Friction {
@@ -42,7 +42,7 @@ fn val_walther_by_hand() {
     }
 }
 
-/// What the viscosity's points must be, on both sides of each bound.
+/// Requirements of the viscosity's points, on both sides of each bound.
 #[test]
 fn refuses_what_is_no_oil() {
     let ok = |points: &[(f64, f64)]| Viscosity::new(points).is_ok();

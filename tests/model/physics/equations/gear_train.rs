@@ -5,7 +5,7 @@
 use super::{near, same};
 use crate::common::{RPM, ZERO, car};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_model::fluid::OilState;
+use cvtcycle_model::lubricant::OilState;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::Cvt;
@@ -610,7 +610,7 @@ fn val_manual_boxes_without_load() {
 /// FD-1, FD-2 in the box: the component is what the train takes, in drive, in overrun and in the cold.
 #[test]
 fn val_final_drive_is_its_train() {
-    use cvtcycle_model::bench::{Bench, BenchPoint};
+    use cvtcycle_model::rig::{Bench, BenchPoint};
     let setup = car("rover_216_cvt", &[]);
     let bench = Bench::new(&setup);
     let drive = &cvt(&setup).final_drive;

@@ -387,7 +387,7 @@ fn an_engine_too_weak_to_idle_is_flagged() {
     let (w, cold) = (d.engine_rad_s, car.engine.clone());
     let cold = cold.at(k, k, &car.engine_oil, 1.0);
     let nm = d.shaft_nm + cold.accessories_nm(w);
-    // What cold friction takes off the line (EN-8).
+    // Loss of the line by cold friction (EN-8).
     let hot_nm = cold.engine.torque_nm(cold.friction_pa(w)) / cold.friction_factor;
     let lost_nm = (cold.friction_factor - 1.0) * hot_nm;
     for (share, want) in [

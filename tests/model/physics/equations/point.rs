@@ -1,7 +1,7 @@
 //! Flags of a point of the `belt` command: each by itself, from both sides of its bound.
 
 use crate::common::ZERO;
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::transmission::cvt::variator::point::{LIMIT_SLACK, PointFlags, PointLimits};
 use cvtcycle_model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, BeltPoint, Formulation, belt_point,

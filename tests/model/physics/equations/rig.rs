@@ -10,7 +10,7 @@ use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad};
 /// A transient of the transmission rig: energies from its own seconds, the branches between them, the gap and where it is widest.
 #[test]
 fn val_transient_from_its_seconds() {
-    use cvtcycle_model::bench::transmission::{Branch, transient};
+    use cvtcycle_model::rig::transmission::{Branch, transient};
     let (bench, mut c) = (
         rover_bench(),
         cvtcycle_config::rig::load(&[Override::number("rig.transient.end_degc", 45.0)])
@@ -47,7 +47,7 @@ fn val_transient_from_its_seconds() {
         }; // RT-2
     }
     // The first minute once more by the network itself (RT-1), heat by SI-3.
-    let network = cvtcycle_model::bench::transmission::on_the_rig(&car.network);
+    let network = cvtcycle_model::rig::transmission::on_the_rig(&car.network);
     let mut node_k = [c.transient.start_k; NODES];
     (node_k[COOLANT], node_k[ENGINE_OIL]) = (c.room_k, c.room_k);
     let mut heat = Heat { node_k };
@@ -142,9 +142,9 @@ fn val_transient_from_its_seconds() {
 /// The second box against the first (RT-6).
 #[test]
 fn val_second_box_is_a_difference() {
-    use cvtcycle_model::bench::transmission::{Plan, second_box};
+    use cvtcycle_model::rig::transmission::{Plan, second_box};
     let c = cvtcycle_config::rig::load(&[]).unwrap().0;
-    for two in second_box(&rover_bench(), &c, &Plan::of(&c)) {
+    for two in second_box(&rover_bench(), &c, &Plan::from_conditions(&c)) {
         same(
             two.difference_nm(),
             two.second.answer.total_nm() - two.first.answer.total_nm(),
@@ -155,7 +155,7 @@ fn val_second_box_is_a_difference() {
 /// The variator rig: the belt at the slip that comes out, with an uncompensated cylinder and a film; limits from both sides; summary.
 #[test]
 fn val_variator_rig_from_its_parts() {
-    use cvtcycle_model::bench::variator::{Held, Resolution, VariatorRig};
+    use cvtcycle_model::rig::variator::{Held, Resolution, VariatorRig};
     use cvtcycle_model::transmission::cvt::variator::belt_state;
     let setup = car(
         "rover_216_cvt",

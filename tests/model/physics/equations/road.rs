@@ -144,7 +144,7 @@ fn val_ambient_by_hand() {
     );
 }
 
-/// What a step says of its speeds: means of v, v2, v3 and the power of 0.7.
+/// Means of v, v2, v3 and v^0.7 over a step.
 #[test]
 fn val_motion_by_hand() {
     let m = Motion::between(4.0, 10.0, 2.0);

@@ -243,7 +243,7 @@ fn after(
     (d, state)
 }
 
-/// What the box remembers: speed, throttle and pressure of the step, whether it stood, whether the clutch holds.
+/// State of the box: speed, throttle and pressure of the step, standstill, clutch locked.
 #[test]
 fn a_step_is_remembered() {
     let b = bench();

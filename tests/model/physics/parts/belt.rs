@@ -1,7 +1,7 @@
 //! The belt against an independent transcription of the printed program, its geometry, and its properties.
 
 use crate::belt_properties::thesis_belt;
-use cvtcycle_model::fluid::BandFriction;
+use cvtcycle_model::lubricant::BandFriction;
 use cvtcycle_model::transmission::cvt::variator::{Geometry, *};
 
 /// Outside truth: 200 ratios of an independent program, committed with the tests.
@@ -100,7 +100,10 @@ impl Golden<'_> {
 }
 
 fn golden() -> Vec<Golden<'static>> {
-    let text = include_str!("../../../golden/belt_points.csv");
+    rows(include_str!("../../../golden/belt_points.csv"))
+}
+
+fn rows(text: &str) -> Vec<Golden<'_>> {
     let names: Vec<&str> = text.lines().next().expect("header").split(',').collect();
     text.lines()
         .skip(1)
@@ -464,4 +467,59 @@ fn val_no_band_loss_at_unity_and_monotone_in_clamp() {
         assert!(s.losses.sum_nm() > last);
         last = s.losses.sum_nm();
     }
+}
+
+/// The printed forms at every point of the tables that has a meaning: number of segments, tension, slip and each loss.
+#[test]
+fn val_golden_points_as_printed() {
+    let mut all = golden();
+    all.extend(rows(include_str!("../../../golden/belt_edge_points.csv")));
+    let mut count = 0;
+    for row in all.iter().filter(|row| row.text("status") == "ok") {
+        let belt = Belt {
+            stop_from_ratio: 9.0,
+            stop_to_ratio: 10.0,
+            ..belt_of(row)
+        };
+        let at = BeltAtRatio::new(&belt, row.num("ratio"));
+        let load = BeltLoad {
+            segment_friction: row.num("segment_friction"),
+            ..load(
+                row.num("input_speed_rpm"),
+                row.num("output_torque_nm"),
+                row.num("secondary_pressure_bar"),
+                row.num("band_friction"),
+            )
+        };
+        let got = belt_point(&belt, &at, &load);
+        let [primary_slip, secondary_slip] = got.slip_m_s;
+        for (name, number) in [
+            ("segment_compression_n", got.tension.compression_n),
+            ("band_tension_step_n", got.tension.step_n),
+            ("active_segments", got.active_segments),
+            ("gap_slip_m_s", got.gap_slip_m_s),
+            ("idle_slip_m_s", got.idle_slip_m_s),
+            ("primary_slip_m_s", primary_slip),
+            ("secondary_slip_m_s", secondary_slip),
+            ("band_loss_primary_nm", got.band_loss_nm[0]),
+            ("band_loss_secondary_nm", got.band_loss_nm[1]),
+            ("slip_loss_primary_nm", got.slip_loss_nm[0]),
+            ("slip_loss_secondary_nm", got.slip_loss_nm[1]),
+            ("wedge_loss_primary_nm", got.wedge_loss_nm[0]),
+            ("wedge_loss_secondary_nm", got.wedge_loss_nm[1]),
+            ("penetration_loss_primary_nm", got.penetration_loss_nm[0]),
+            ("penetration_loss_secondary_nm", got.penetration_loss_nm[1]),
+            ("belt_loss_nm", got.loss_nm),
+        ] {
+            let want = row.num(name);
+            assert!(
+                (number - want).abs() <= 1e-9 * (1.0 + want.abs()),
+                "case {} {}: {name} is {number} instead of {want}",
+                row.text("case"),
+                row.text("formulation")
+            );
+            count += 1;
+        }
+    }
+    assert_eq!(count, 16 * 1255);
 }

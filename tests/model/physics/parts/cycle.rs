@@ -234,3 +234,24 @@ fn sums_by_hand() {
         (4.0, 12.0, 0.0)
     );
 }
+
+/// Intervals of one phase make a cycle without phases, those of two a cycle with two names.
+#[test]
+fn phases_of_intervals_are_named_by_number() {
+    let interval = |start_s: f64, phase| Interval {
+        start_s,
+        end_s: start_s + 10.0,
+        start_speed_m_s: 5.0,
+        end_speed_m_s: 5.0,
+        phase,
+        grade: 0.0,
+        engine_off: false,
+    };
+    let names = |phases: [u16; 2]| {
+        let [a, b] = phases;
+        let made = Cycle::from_intervals("own", vec![interval(0.0, a), interval(10.0, b)]);
+        made.unwrap().phases
+    };
+    assert_eq!(names([0, 0]), Vec::<String>::new());
+    assert_eq!(names([0, 1]), ["phase_1", "phase_2"]);
+}

@@ -1,7 +1,7 @@
 //! Unit tests of `model::math` and of the ranges and units of `model::keys`.
 
 use cvtcycle_model::keys::{Bound, Quantity, stem};
-use cvtcycle_model::math::{Curve, GRID_AXES, Grid, exp, exp_each, ln, ln_each};
+use cvtcycle_model::math::{Curve, GRID_AXES, Grid, exp, exp_array, ln, ln_array};
 use std::f64::consts::LN_2;
 
 #[test]
@@ -117,10 +117,10 @@ fn several_together_are_each_alone() {
         [0.3, f64::NEG_INFINITY, 701.0, -12.5, 0.0],
         [f64::MIN_POSITIVE, 0.0, 3.0, 1e300, 0.7],
     ] {
-        assert_eq!(bits(exp_each(x)), bits(x.map(exp)), "{x:?}");
+        assert_eq!(bits(exp_array(x)), bits(x.map(exp)), "{x:?}");
         let positive = x.map(f64::abs);
         assert_eq!(
-            bits(ln_each(positive)),
+            bits(ln_array(positive)),
             bits(positive.map(ln)),
             "{positive:?}"
         );
@@ -285,7 +285,7 @@ const EXPECTED: [(&str, f64, f64, &str); 67] = [
 #[test]
 fn every_unit_converts_as_worked_out_by_hand() {
     for (key, value, si, name) in EXPECTED {
-        let quantity = Quantity::of(key);
+        let quantity = Quantity::from_key(key);
         let found = quantity.to_si(value);
         assert!(
             (found - si).abs() <= 1e-12 * si.abs(),
@@ -302,7 +302,7 @@ fn the_table_above_leaves_no_unit_out() {
     for unit in Quantity::ALL {
         let tried = EXPECTED
             .iter()
-            .any(|(key, ..)| Quantity::of(key).suffix() == unit.suffix());
+            .any(|(key, ..)| Quantity::from_key(key).suffix() == unit.suffix());
         assert!(tried, "{} is not tried", unit.suffix());
         let same = |other: &&Quantity| other.suffix() == unit.suffix();
         assert_eq!(Quantity::ALL.iter().filter(same).count(), 1, "{unit:?}");

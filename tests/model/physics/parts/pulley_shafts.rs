@@ -2,8 +2,8 @@
 
 use crate::common::{RPM, ZERO, car};
 use cvtcycle_config::setup::{Options, load};
-use cvtcycle_model::bench::transmission::Piece;
-use cvtcycle_model::bench::{Bench, BenchAnswer, BenchPoint, Parts};
+use cvtcycle_model::rig::transmission::Piece;
+use cvtcycle_model::rig::{Bench, BenchAnswer, BenchPoint, Parts};
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle_model::transmission::cvt::seal_ring::SealRing;
@@ -148,7 +148,7 @@ fn rings_and_bearings_load_the_belt() {
     }
 }
 
-/// What goes out of the box with which part: all of it with the belt but the primary's rings, which go with the pump.
+/// Losses that leave the box with a part: all with the belt except the primary's rings, which leave with the pump.
 #[test]
 fn rings_stay_with_the_pump() {
     let bench = bench();

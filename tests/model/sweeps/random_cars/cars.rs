@@ -23,7 +23,7 @@ struct Change {
     key: Index,
     /// From -1 to 1: towards the lower or the upper end.
     toward: f64,
-    /// Whether anything goes that the key allows, or what another car of the kind might have.
+    /// Range of the draw: all that the key allows, or values of another car of the kind.
     wide: bool,
 }
 

@@ -75,7 +75,8 @@ fn nothing_depends_on_the_hour() {
     );
 }
 
-/// Temperatures after the cycle has been driven again and again, and how far the last drive moved them.
+/// Repeats the cycle until a drive moves no temperature by 2e-5 K, or for so many seconds. Returns the temperatures, and how far the last drive moved
+/// them. A node whose time constant is as long as a thousand drives is then 0.02 K from its end, a fifth of the tolerance.
 fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODES], f64) {
     let trace = cycle.trace_for(car.transmission.is_cvt());
     let mut state = State::at(start_k);
@@ -90,6 +91,9 @@ fn repeated(car: &Car, cycle: &Cycle, start_k: f64, seconds: f64) -> ([f64; NODE
         moved = (0..NODES)
             .map(|k| (state.heat.node_k[k] - before.node_k[k]).abs())
             .fold(0.0, f64::max);
+        if moved < 2e-5 {
+            break;
+        }
     }
     (state.heat.node_k, moved)
 }

@@ -1,4 +1,4 @@
-//! What holds in every row of every drive: the books close, losses are losses, torque in drive and in overrun has the right size.
+//! Laws of every row of every drive: energy balances close, losses are not negative, torque in drive and in overrun has the right size.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -101,7 +101,7 @@ fn torque_in(row: &Row) -> Checked {
     let input_w = row.engine_torque_nm * row.engine_speed_rad_s;
     let losses: f64 = row.loss_w.iter().sum();
     let size = 1e-9 * (input_w.abs() + wheels_w.abs() + losses);
-    // What brakes or a slipping clutch take up of the engine's own rotating energy (SI-4) does not come through the box from the wheels.
+    // Rotating energy of the engine that brakes or a slipping clutch take up (SI-4) does not come through the box from the wheels.
     let rotating_w = wheels_w + losses - input_w;
     prop_assert!(
         rotating_w >= -size,
@@ -259,7 +259,7 @@ fn after(row: &Row, before: &Heat) -> Heat {
     }
 }
 
-/// What was seen over all cases, to be printed.
+/// Extremes over all cases, to be printed.
 #[derive(Default)]
 struct Seen {
     rows: Cell<usize>,

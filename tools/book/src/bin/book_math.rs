@@ -1,7 +1,6 @@
-//! Preprocessor of the book: equations become MathML when the book is built, so that it needs no network to be read, and drawings
-//! become part of their page, so that its theme colours them.
-//!
-//! mdBook starts it (see `docs/book/book.toml`); by hand there is nothing to do but `mdbook build docs/book`.
+//! Preprocessor of the book: converts equations to MathML when the book is built, so that pages need no network, and inlines drawings,
+//! so that the theme colours them.
+//! mdBook starts it (see `docs/book/book.toml`); by hand, run `mdbook build docs/book`.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -16,7 +15,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     if let Some(word) = arguments.next() {
-        // `supports html` is answered by the exit code; other renderers would want other mathematics.
+        // mdBook expects the answer to `supports html` as exit code; other renderers would need other mathematics.
         let html = word == "supports" && arguments.next().as_deref() == Some("html");
         return if html {
             ExitCode::SUCCESS
@@ -47,13 +46,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// A page with its equations as MathML and its drawings inside.
+/// Converts equations of a page to MathML and inlines its drawings.
 fn rendered(text: &str, source: &Path) -> Result<String, Vec<String>> {
     let read = |name: &str| std::fs::read_to_string(source.join(name)).ok();
     pictures::page(&latex::page(text)?, read)
 }
 
-/// Renders the content of every chapter, wherever the version of mdBook keeps its chapters.
+/// Converts the content of every chapter, wherever the version of mdBook keeps its chapters.
 fn chapters(value: &mut Value, source: &Path, problems: &mut Vec<String>) {
     match value {
         Value::Array(list) => list

@@ -2,7 +2,7 @@
 
 use super::reference::{At, HIGH, LOW, RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
-use cvtcycle::model::fluid::{BandFriction, ZERO_DEGC_K};
+use cvtcycle::model::lubricant::{BandFriction, ZERO_DEGC_K};
 use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltState, Formulation, Geometry, sliding_speed_m_s,
 };
@@ -22,7 +22,7 @@ const HIGH_AT: At = At {
     bar: 11.0,
 };
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     vec![
         ("belt_losses", losses(r)),
@@ -37,7 +37,7 @@ pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// The belt's answers over output torque.
+/// Results of the belt over output torque.
 fn over_torque(
     r: &Reference,
     belt: &Belt,
@@ -170,7 +170,7 @@ fn bands(r: &Reference) -> String {
     )
 }
 
-/// Speeds of the film's figures, rpm.
+/// Speeds in the figures of the film, rpm.
 const SPEEDS: [f64; 3] = [1000.0, 2000.0, 4000.0];
 
 fn film_friction(r: &Reference, belt: &Belt, ratio: f64, rpm: f64, degc: f64) -> BandFriction {
@@ -257,7 +257,7 @@ fn slip(r: &Reference) -> String {
         let mut line = over_torque(r, &belt, &format!("{bar:.0} bar"), at, to, |s| {
             100.0 * s.losses.slip_total
         });
-        // Beyond capacity the bound holds: nothing to show.
+        // Values beyond capacity are clamped and not drawn.
         line.points.retain(|&(t, slip)| {
             slip < 6.0
                 && !r
@@ -286,7 +286,7 @@ fn slip(r: &Reference) -> String {
 
 fn deflection(r: &Reference) -> String {
     let belt = r.belt(Formulation::Smooth);
-    // Without an end stop within reach the primary gives way in low as elsewhere.
+    // Without an end stop within reach the primary deflects at low ratio as elsewhere.
     let free = Belt {
         stop_from_ratio: 9.0,
         stop_to_ratio: 10.0,
@@ -333,14 +333,14 @@ fn formulations(r: &Reference) -> String {
     let all = Formulation::NAMES.map(|(name, f)| (name, r.belt(f)));
     let smooth = r.belt(Formulation::Smooth);
     let lines = |at: At, to: f64, less: bool| -> Vec<Line> {
-        let of = |(name, belt): &(&'static str, Belt)| {
+        let curve = |(name, belt): &(&'static str, Belt)| {
             sweep(name, 0.0, to, 160, |output_nm| {
                 let at = At { output_nm, ..at };
                 let loss_nm = |belt: &Belt| r.boundary(belt, at).losses.sum_nm();
                 loss_nm(belt) - if less { loss_nm(&smooth) } else { 0.0 }
             })
         };
-        all.iter().map(of).collect()
+        all.iter().map(curve).collect()
     };
     let high = At {
         rpm: 4000.0,

@@ -4,14 +4,14 @@ use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
 use cvtcycle::config::cycle;
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::maps::{LossMap, MapPoint};
 use cvtcycle::model::math::Grid;
 use cvtcycle::model::prime_mover::PrimeMover;
 use cvtcycle::model::road::{Ambient, Surface};
 use cvtcycle::model::thermal::{BELT, COOLANT, ENGINE_OIL, METAL, SUMP};
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     Ok(vec![
         ("engine_fuel", engine(r)),

@@ -5,7 +5,7 @@ use super::{Line, axes, plot, sweep};
 use cvtcycle::model::transmission::cvt::controller::{ClampLaw, ClampSignals, RatioDemand};
 use cvtcycle::model::transmission::cvt::variator::{BeltAtRatio, Formulation};
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     vec![
         ("ratio_variogram", variogram(r)),

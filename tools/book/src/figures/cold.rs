@@ -1,11 +1,11 @@
-//! Table of the losses in the cold: each component at four oil temperatures, what carries and what bounds it.
+//! Table of cold losses: each component at four oil temperatures, with its basis and its bound.
 
 use super::reference::RPM;
 use cvtcycle::config::setup::{Options, Setup, load};
 use cvtcycle::config::{Override, render};
-use cvtcycle::model::bench::{Bench, BenchPoint};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::prime_mover::PrimeMover;
+use cvtcycle::model::rig::{Bench, BenchPoint};
 use cvtcycle::output::Component;
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 const AT: [f64; 4] = [25.0, 0.0, -10.0, -30.0];
 const SPEED: f64 = 2000.0 * RPM;
 
-/// What takes the bounds away, as `--set` has it.
+/// Overrides that remove the bounds.
 const UNBOUND_CVT: [&str; 4] = [
     "transmission.cvt.final_drive.bearing_heating_w=1e9",
     "transmission.cvt.input_shaft.film_heating_w=1e9",
@@ -22,11 +22,11 @@ const UNBOUND_CVT: [&str; 4] = [
 ];
 const UNBOUND_MANUAL: [&str; 1] = ["transmission.manual.gears.bearing_heating_w=1e9"];
 
-/// A line of the table.
+/// Line of the table.
 struct Line {
     name: &'static str,
     parts: &'static [Component],
-    /// Whether the belt is still as cold as the sump, instead of in steady state over it.
+    /// True if the belt is still as cold as the sump, instead of in steady state above it.
     soaked: bool,
     carries: &'static str,
     bounds: &'static str,
@@ -155,7 +155,7 @@ fn car(name: &str, sets: &[&str]) -> Result<Setup, String> {
     .map_err(|problems| render(&problems, false))
 }
 
-/// The bench in overdrive or fifth gear at 2000 rpm without load.
+/// Bench point in overdrive or fifth gear at 2000 rpm without load.
 fn point(ratio: f64, degc: f64, soaked: bool) -> BenchPoint {
     let sump_k = degc + ZERO_DEGC_K;
     BenchPoint {
@@ -167,7 +167,7 @@ fn point(ratio: f64, degc: f64, soaked: bool) -> BenchPoint {
     }
 }
 
-/// Lines of one car, at its `ratio`, with the sum of those that are not soaked.
+/// Lines of one car at its `ratio`, with the sum of those that are not soaked.
 fn lines(
     text: &mut String,
     name: &str,
@@ -178,15 +178,19 @@ fn lines(
     let shipped = Bench::new(&*car(name, &[])?);
     let unbound = Bench::new(&*car(name, unbound)?);
     let mut sums = [0.0; AT.len() + 1];
-    for of in lines {
+    for line in lines {
         let loss = |bench: &Bench, degc: f64| {
-            let answer = bench.solve(&point(ratio, degc, of.soaked));
-            of.parts
+            let answer = bench.solve(&point(ratio, degc, line.soaked));
+            line.parts
                 .iter()
                 .map(|part| answer.part_nm(*part))
                 .sum::<f64>()
         };
-        let _ = write!(text, "| {} | {} | {} |", of.name, of.carries, of.bounds);
+        let _ = write!(
+            text,
+            "| {} | {} | {} |",
+            line.name, line.carries, line.bounds
+        );
         let last = loss(&unbound, AT[AT.len() - 1]);
         for (sum, nm) in sums.iter_mut().zip(
             AT.map(|degc| loss(&shipped, degc))
@@ -194,9 +198,9 @@ fn lines(
                 .chain([last]),
         ) {
             let _ = write!(text, " {nm:.2} |");
-            *sum += if of.soaked { 0.0 } else { nm };
+            *sum += if line.soaked { 0.0 } else { nm };
         }
-        let _ = writeln!(text, " {} |", of.measured);
+        let _ = writeln!(text, " {} |", line.measured);
     }
     let total = if name.ends_with("cvt") {
         "CVT, all of these"
@@ -208,7 +212,7 @@ fn lines(
     Ok(())
 }
 
-/// The table.
+/// Writes the table.
 pub fn table() -> Result<String, String> {
     let mut text = "<!-- Written by `tools/docs` from the bench at 2000 rpm without load. -->\n\n\
         | part | what carries it below 25 degC | what bounds it | 25 degC | 0 degC | -10 degC | -30 degC | -30 degC without FH-1, PU-5 | measured |\n\

@@ -1,16 +1,16 @@
-//! The belt's path, drawn to scale from the geometry.
+//! Path of the belt, drawn to scale from the geometry.
 
 use super::reference::Reference;
 use crate::sketch::Anchor::{Middle, Start};
 use crate::sketch::{Sketch, colour};
 use cvtcycle::model::transmission::cvt::variator::Geometry;
 
-/// Pixels in a metre.
+/// Pixels per metre.
 const SCALE: f64 = 1300.0;
 /// Centre of the primary, pixels.
 const CENTRE: (f64, f64) = (100.0, 148.0);
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     let (x, l) = (r.cvt().belt.centre_distance_m, r.cvt().belt.length_m);
     let path = |ratio: f64, word: &str| path(&Geometry::new(ratio, x, l), x, word);
@@ -20,7 +20,7 @@ pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// One belt.
+/// Draws one belt.
 fn path(g: &Geometry, distance_m: f64, word: &str) -> String {
     let (cx, cy) = CENTRE;
     let sx = cx + SCALE * distance_m;
@@ -31,13 +31,13 @@ fn path(g: &Geometry, distance_m: f64, word: &str) -> String {
     let (px, py, qx, qy) = (cx - rp * s, rp * c, sx - rs * s, rs * c);
     let large = |wrap: f64| i32::from(wrap > std::f64::consts::PI);
     let (lp, ls) = (large(g.primary_wrap_rad), large(g.secondary_wrap_rad));
-    let mut of = Sketch::new(400.0, 330.0);
+    let mut sketch = Sketch::new(400.0, 330.0);
     let head = format!(
         "$I$ = {:.3} ({word}), strut {:.1} mm",
         g.ratio,
         1e3 * g.strut_m
     );
-    of.text((8.0, 18.0), Start, 14.0, colour::INK, &head);
+    sketch.text((8.0, 18.0), Start, 14.0, colour::INK, &head);
     let belt = format!(
         "M{px:.1} {u:.1}L{qx:.1} {v:.1}A{rs:.1} {rs:.1} 0 {ls} 1 {qx:.1} {w:.1}L{px:.1} {d:.1}A{rp:.1} {rp:.1} 0 {lp} 1 {px:.1} {u:.1}Z",
         u = cy - py,
@@ -45,10 +45,10 @@ fn path(g: &Geometry, distance_m: f64, word: &str) -> String {
         w = cy + qy,
         d = cy + py
     );
-    of.path(&belt, colour::INK, 4.0, "");
-    of.line(&[(cx, cy), (sx, cy)], colour::QUIET, 1.2, "8 4");
+    sketch.path(&belt, colour::INK, 4.0, "");
+    sketch.line(&[(cx, cy), (sx, cy)], colour::QUIET, 1.2, "8 4");
     let middle = (0.5 * (cx + sx), cy - 6.0);
-    of.text(middle, Middle, 15.0, colour::QUIET, "$X$");
+    sketch.text(middle, Middle, 15.0, colour::QUIET, "$X$");
     for (x, r, a, name, index, radius, wrap) in [
         (
             cx,
@@ -69,28 +69,28 @@ fn path(g: &Geometry, distance_m: f64, word: &str) -> String {
             g.secondary_wrap_rad,
         ),
     ] {
-        pulley(&mut of, (x, r, a), [name, index], (radius, wrap));
+        pulley(&mut sketch, (x, r, a), [name, index], (radius, wrap));
     }
-    of.finish(
+    sketch.finish(
         &format!("Path of the belt in {word} ratio"),
         "Both pulleys with running radii, wrap angles and free struts, to scale.",
     )
 }
 
-/// A pulley at `x` with its radius on the drawing, drawn at an angle; its name and index, its radius in m and its wrap in rad.
+/// Draws a pulley at `x` with its radius at an angle, labelled with name and index; radius in m, wrap in rad.
 fn pulley(
-    of: &mut Sketch,
+    sketch: &mut Sketch,
     (x, r, a): (f64, f64, f64),
     [name, index]: [&str; 2],
     (radius, wrap): (f64, f64),
 ) {
     let cy = CENTRE.1;
-    of.dot((x, cy), 3.5, colour::INK);
+    sketch.dot((x, cy), 3.5, colour::INK);
     let end = (x + r * f64::cos(a), cy - r * f64::sin(a));
-    of.line(&[(x, cy), end], colour::FORCE, 2.0, "");
+    sketch.line(&[(x, cy), end], colour::FORCE, 2.0, "");
     let radius = format!("$R_{index}$ = {:.1} mm", 1e3 * radius);
     let wrap = format!("$\\beta_{index}$ = {:.0}\u{b0}", wrap.to_degrees());
-    of.text((x, 284.0), Middle, 13.0, colour::INK, name);
-    of.text((x, 302.0), Middle, 13.0, colour::FORCE, &radius);
-    of.text((x, 320.0), Middle, 13.0, colour::BLUE, &wrap);
+    sketch.text((x, 284.0), Middle, 13.0, colour::INK, name);
+    sketch.text((x, 302.0), Middle, 13.0, colour::FORCE, &radius);
+    sketch.text((x, 320.0), Middle, 13.0, colour::BLUE, &wrap);
 }

@@ -1,4 +1,4 @@
-//! Everything in the book that the program itself writes: figures of its models, tables of its values and labels.
+//! Generated parts of the book: figures of the models, tables of values and labels.
 
 mod belt;
 mod car;
@@ -17,13 +17,13 @@ pub mod worked;
 use cvtcycle::report::charts::lines::{self, LineChart, Look, Points, line_chart};
 use std::path::Path;
 
-/// A page of the book.
+/// Page of the book.
 pub struct Page {
     /// File name without its ending.
     pub stem: &'static str,
-    /// Vehicle whose values it shows.
+    /// Vehicle with the displayed values.
     pub vehicle: &'static str,
-    /// Keys that belong to it in addition to those whose meaning cites one of its labels: a table where it ends in a dot.
+    /// Keys of the page in addition to those whose meaning cites one of its labels; a whole table with a final dot.
     pub keys: &'static [&'static str],
 }
 
@@ -104,8 +104,7 @@ pub const PAGES: [Page; 26] = [
     page("ledgers", &["vehicle."]),
 ];
 
-/// Every generated file, its name below the book's `src`, and its text.
-///
+/// Generated files: name below the book's `src`, and text.
 /// # Errors
 /// A sentence, if a vehicle or a page cannot be read.
 pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
@@ -131,7 +130,7 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
     Ok(files)
 }
 
-/// A line through `f` at `count` + 1 places from `low` to `high`.
+/// Line through `f` at `count` + 1 places from `low` to `high`.
 fn sweep(name: &str, low: f64, high: f64, count: u32, f: impl Fn(f64) -> f64) -> Line {
     let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(count);
     Line {
@@ -140,24 +139,24 @@ fn sweep(name: &str, low: f64, high: f64, count: u32, f: impl Fn(f64) -> f64) ->
     }
 }
 
-/// Points under a name; lines of the same name look the same in every pair of axes.
+/// Points under a name. Lines of equal names look the same in every panel.
 #[derive(Clone)]
 struct Line {
     name: String,
     points: Points,
 }
 
-/// One pair of axes.
+/// Pair of axes.
 struct LinePanel {
     heading: String,
     x: &'static str,
     y: &'static str,
-    /// Values in the range of the vertical axis in addition to those of the lines.
+    /// Values to include in the range of the vertical axis.
     with_y: Vec<f64>,
     lines: Vec<Line>,
 }
 
-/// One pair of axes with its titles; its vertical axis takes in zero.
+/// Pair of axes with titles. The vertical axis includes zero.
 fn axes(heading: &str, x: &'static str, y: &'static str, lines: Vec<Line>) -> LinePanel {
     LinePanel {
         heading: heading.to_owned(),
@@ -168,7 +167,7 @@ fn axes(heading: &str, x: &'static str, y: &'static str, lines: Vec<Line>) -> Li
     }
 }
 
-/// A named plot.
+/// Draws a plot with title and description.
 fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePanel>) -> String {
     let mut names: Vec<String> = Vec::new();
     for line in panels
@@ -184,12 +183,12 @@ fn plot(title: &str, subject: &str, desc: &str, legend: &str, panels: Vec<LinePa
         index: names.iter().position(|other| other == name).unwrap_or(0),
         dotted: false,
     };
-    let panel = |of: LinePanel| lines::LinePanel {
-        heading: of.heading,
-        x_title: of.x,
-        y_title: of.y,
-        with_y: of.with_y,
-        series: of
+    let panel = |panel: LinePanel| lines::LinePanel {
+        heading: panel.heading,
+        x_title: panel.x,
+        y_title: panel.y,
+        with_y: panel.with_y,
+        series: panel
             .lines
             .into_iter()
             .map(|line| (look(&line.name), line.points))

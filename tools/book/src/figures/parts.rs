@@ -2,7 +2,7 @@
 
 use super::reference::{RPM, Reference};
 use super::{Line, LinePanel, axes, plot, sweep};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::transmission::coupling::{Coupling, CouplingLoad};
 use cvtcycle::model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle::model::transmission::cvt::pump::{Pump, PumpKind};
@@ -15,7 +15,7 @@ use cvtcycle::output::Component;
 const SPEED: &str = "Engine speed [rpm]";
 const LITRES_MIN: f64 = 60_000.0;
 
-/// All of them, by file name.
+/// Figures by file name.
 pub fn figures(r: &Reference) -> Vec<(&'static str, String)> {
     vec![
         ("pump_torque", pump(r)),
@@ -207,9 +207,9 @@ fn gear_train(r: &Reference) -> String {
     let oil = r.cvt_car.oils().0;
     let parts = |degc: f64| -> Vec<Line> {
         let state = oil.state(degc + ZERO_DEGC_K);
-        let part = |name: &str, of: fn(&TurningTrain) -> f64| {
+        let part = |name: &str, component: fn(&TurningTrain) -> f64| {
             sweep(name, 200.0, 8000.0, 90, |n| {
-                of(&train.turning(n * RPM, 0.0, state))
+                component(&train.turning(n * RPM, 0.0, state))
             })
         };
         vec![

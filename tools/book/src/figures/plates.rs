@@ -1,4 +1,4 @@
-//! Sketches with numbers of the shipped files: fluids on the axes of their law, the thermal network.
+//! Sketches with numbers of the shipped files: fluids on the axes of their law, thermal network.
 
 use super::reference::Reference;
 use crate::sketch::Anchor::{End, Middle, Start};
@@ -6,10 +6,9 @@ use crate::sketch::{Sketch, colour};
 use cvtcycle::config::render;
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::{Kind, load_lubricant};
-use cvtcycle::model::fluid::{Lubricant, ZERO_DEGC_K};
+use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
 
-/// All of them, by file name.
-///
+/// Figures by file name.
 /// # Errors
 /// A sentence, if a fluid cannot be read or a number of the network has no key.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
@@ -19,7 +18,7 @@ pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     ])
 }
 
-/// Colour and dashes of a line, one a fluid.
+/// Colour and dashes of a line, one for each fluid.
 const LINES: [(&str, &str); 7] = [
     (colour::INK, ""),
     (colour::FORCE, ""),
@@ -34,7 +33,7 @@ const AXES: [f64; 4] = [52.0, 388.0, 330.0, 34.0];
 const DEGC: [f64; 2] = [-40.0, 120.0];
 const NU: [f64; 2] = [3.0, 20_000.0];
 
-/// Place of a temperature and a viscosity, mm2/s, on the axes on which LU-1 is straight.
+/// Place of a temperature and a viscosity, mm2/s, on axes where LU-1 is a straight line.
 fn place(degc: f64, nu: f64) -> (f64, f64) {
     let [left, right, bottom, top] = AXES;
     let x = |degc: f64| (degc + ZERO_DEGC_K).ln();
@@ -105,7 +104,7 @@ fn viscosity() -> Result<String, String> {
     ))
 }
 
-/// The network drawn by hand, with the name of a key in double braces where its value goes.
+/// Drawing of the network, with the name of a key in double braces in place of its value.
 const NETWORK: &str = include_str!("thermal_network.svg");
 
 fn network(r: &Reference) -> Result<String, String> {
@@ -123,7 +122,7 @@ fn network(r: &Reference) -> Result<String, String> {
 
 fn number(r: &Reference, key: &str) -> Result<String, String> {
     if key == "oil_kj_k" {
-        // The sump's heat capacity follows from its volume.
+        // The sump's heat capacity is computed from its volume.
         let (oil, k) = (r.oil(), 20.0 + ZERO_DEGC_K);
         let litres: f64 = number_of(r, "thermal.transmission.oil_l")?;
         let kj_k = 1e-6 * litres * oil.density_kg_m3(k) * oil.heat_capacity_j_kgk(k);

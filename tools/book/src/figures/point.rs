@@ -1,32 +1,30 @@
-//! The operating point that the belt's pages work through, as `cvtcycle belt` computes it.
+//! Operating point of the worked examples of the belt, computed as by `cvtcycle belt`.
 
 use super::reference::Reference;
 use cvtcycle::config::{Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
-use cvtcycle::study::points::{Job, Model, OUTPUTS, Solved, Take, read};
+use cvtcycle::validate::belt::{Job, Model, OUTPUTS, Solved, Take, read};
 
-/// Columns of the table that `cvtcycle belt` reads.
+/// Columns of the table read by `cvtcycle belt`.
 pub const HEAD: &str = "ratio,input_speed_rpm,secondary_pressure_bar,output_torque_nm";
-/// The point: low ratio.
+/// Operating point at low ratio.
 pub const POINT: &str = "2.417,2000,30,100";
 
-/// A point with all that the program says of it.
+/// Operating point with all results.
 pub struct Answer(Solved);
 
 impl Answer {
-    /// The number in a column of `cvtcycle belt`.
-    ///
+    /// Number in a column of `cvtcycle belt`.
     /// # Panics
-    /// Where there is no such column: its name is written in the figures, and a test of the book meets it.
-    pub fn of(&self, column: &str) -> f64 {
-        let found = OUTPUTS.iter().find(|of| of.name == column);
+    /// For an unknown column; the figures contain the names, and a test of the book uses all of them.
+    pub fn column(&self, column: &str) -> f64 {
+        let found = OUTPUTS.iter().find(|output| output.name == column);
         let column = found.unwrap_or_else(|| panic!("`cvtcycle belt` has no column {column}"));
         column.number_of(&(String::new(), self.0))
     }
 }
 
 /// Ratio, speed in rpm, pressure in bar and torque in Nm of a row.
-///
 /// # Errors
 /// A sentence, if the row does not have four numbers.
 pub fn numbers(row: &str) -> Result<[f64; 4], String> {
@@ -49,10 +47,9 @@ impl Take for Rows {
     }
 }
 
-/// Answers to rows under [`HEAD`] for the reference car.
-///
+/// Evaluates rows under [`HEAD`] for the reference car.
 /// # Errors
-/// What is wrong with the rows.
+/// Problems of the rows.
 pub fn answers(r: &Reference, rows: &[&str]) -> Result<Vec<Answer>, String> {
     let table = format!("{HEAD}\n{}\n", rows.join("\n"));
     let mut taken = Rows(Vec::new());

@@ -1,18 +1,18 @@
-//! What each loss of the CVT costs, warm and cold: a picture and a table.
+//! Price of each loss of the CVT, warm and cold: picture and table.
 
+use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::config::cycle::embedded;
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::model::drive::{Conditions, Start, drive};
-use cvtcycle::model::fluid::ZERO_DEGC_K;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::summary::{Driven, RunSummary, Settings, run_summary};
 use cvtcycle::report::charts::price_bars;
-use cvtcycle::study::attribute::{Attribution, Depth, Pairs, attribute};
 use std::fmt::Write as _;
 
 const CAR: &str = "rover_216_cvt";
-/// Ambient temperatures, degC, the one of the picture first.
+/// Ambient temperatures, degC; the first one is that of the picture.
 const AT: [f64; 2] = [25.0, -10.0];
 
 fn priced(ambient_degc: f64) -> Result<RunSummary, String> {
@@ -38,7 +38,7 @@ fn priced(ambient_degc: f64) -> Result<RunSummary, String> {
         pairs: Pairs::Large,
         shapley: false,
     };
-    let of = Attribution {
+    let attribution = Attribution {
         setup,
         cycle,
         conditions,
@@ -46,12 +46,11 @@ fn priced(ambient_degc: f64) -> Result<RunSummary, String> {
         factor: 0.0,
         depth,
     };
-    run.price = Some(attribute(&of, &run));
+    run.price = Some(attribute(&attribution, &run));
     Ok(run)
 }
 
-/// The picture at the first temperature, and the table of all.
-///
+/// Picture at the first temperature, and table of all.
 /// # Errors
 /// A sentence, if the car cannot be read.
 pub fn picture_and_table() -> Result<(String, String), String> {

@@ -1,8 +1,8 @@
-//! The cars and fluids that the figures show.
+//! Cars and fluids of the figures.
 
 use cvtcycle::config::render;
 use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::model::fluid::{BandFriction, Lubricant};
+use cvtcycle::model::lubricant::{BandFriction, Lubricant};
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::Cvt;
 use cvtcycle::model::transmission::cvt::variator::{
@@ -10,13 +10,13 @@ use cvtcycle::model::transmission::cvt::variator::{
 };
 use cvtcycle::model::transmission::manual::Manual;
 
-/// rad/s in one rpm.
+/// 1 rpm in rad/s.
 pub const RPM: f64 = std::f64::consts::PI / 30.0;
 /// Low and high ratio of the thesis's rig.
 pub const LOW: f64 = 2.4169;
 pub const HIGH: f64 = 0.5;
 
-/// The reference cars.
+/// Reference cars.
 pub struct Reference {
     pub cvt_car: Setup,
     pub manual_car: Setup,
@@ -36,7 +36,7 @@ pub struct At {
 }
 
 impl Reference {
-    /// Reads the cars.
+    /// Loads the cars.
     pub fn load() -> Result<Self, String> {
         Ok(Reference {
             cvt_car: car("rover_216_cvt")?,
@@ -44,7 +44,7 @@ impl Reference {
         })
     }
 
-    /// The CVT of the reference car.
+    /// CVT of the reference car.
     pub fn cvt(&self) -> &Cvt {
         match self.cvt_car.transmission() {
             Transmission::Cvt(cvt) => cvt,
@@ -52,7 +52,7 @@ impl Reference {
         }
     }
 
-    /// The manual box of its sister.
+    /// Manual box of its sister model.
     pub fn manual(&self) -> &Manual {
         match self.manual_car.transmission() {
             Transmission::Manual(manual) => manual,
@@ -65,7 +65,7 @@ impl Reference {
         self.cvt_car.oils().0
     }
 
-    /// The belt in a reading of the thesis.
+    /// Belt in a formulation of the thesis.
     pub fn belt(&self, formulation: Formulation) -> Belt {
         Belt {
             formulation,
@@ -73,12 +73,12 @@ impl Reference {
         }
     }
 
-    /// The belt with boundary friction on the bands (no film), at 85 degC.
+    /// Belt at 85 degC with boundary friction on the bands, without film.
     pub fn boundary(&self, belt: &Belt, at: At) -> BeltState {
         self.with_friction(belt, at, BandFriction::dry(self.oil().friction.band))
     }
 
-    /// The belt with a band friction.
+    /// Belt with a given band friction.
     pub fn with_friction(&self, belt: &Belt, at: At, band: BandFriction) -> BeltState {
         let cvt = self.cvt();
         let prepared = BeltAtRatio::new(belt, at.ratio);

@@ -1,4 +1,4 @@
-//! Force against the way round both pulleys, and the chain of losses of the belt at one point.
+//! Force along the path round both pulleys, and the losses of the belt at one point.
 
 use super::point::{Answer, POINT, answers, numbers};
 use super::reference::{RPM, Reference};
@@ -8,10 +8,9 @@ use crate::sketch::{Sketch, colour};
 const CONVENTIONAL: &str = "2.417,2000,30,150";
 const INVERTED: &str = "2.417,2000,30,40";
 
-/// All of them, by file name.
-///
+/// Figures by file name.
 /// # Errors
-/// A sentence, if the belt does not answer.
+/// A sentence, if the belt has no result.
 pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     let rows = answers(r, &[CONVENTIONAL, INVERTED, POINT])?;
     let pitch = r.cvt().belt.segment_thickness_m;
@@ -22,23 +21,24 @@ pub fn figures(r: &Reference) -> Result<Vec<(&'static str, String)>, String> {
     ])
 }
 
-/// Left edge and width of the way round, pixels.
+/// Left edge and width of the path, pixels.
 const WAY: (f64, f64) = (52.0, 338.0);
 /// Zero lines of compression and tension, and height of a panel, pixels.
 const ZEROS: [f64; 2] = [172.0, 316.0];
 const TALL: f64 = 92.0;
 
-/// Lengths of the way round: arc of the primary, strut, arc of the secondary, strut; pixels at their ends, the start first.
+/// Path lengths: arc of the primary, strut, arc of the secondary, strut; pixels at their ends, including the start.
 struct Way {
     ends: [f64; 5],
     per_m: f64,
 }
 
 impl Way {
-    fn new(of: &Answer) -> Self {
-        let strut = of.of("strut_length_m");
+    fn new(answer: &Answer) -> Self {
+        let strut = answer.column("strut_length_m");
         let arc = |pulley: &str| {
-            of.of(&format!("{pulley}_radius_m")) * of.of(&format!("{pulley}_wrap_rad"))
+            answer.column(&format!("{pulley}_radius_m"))
+                * answer.column(&format!("{pulley}_wrap_rad"))
         };
         let parts = [arc("primary"), strut, arc("secondary"), strut];
         let per_m = WAY.1 / parts.iter().sum::<f64>();
@@ -50,7 +50,7 @@ impl Way {
     }
 }
 
-/// Where the pulleys are, and idle and active arc of the loading one; the place at which they meet.
+/// Draws the pulleys, and idle and active arc of the loading one. Returns the place where these meet.
 fn ground(s: &mut Sketch, way: &Way, active: f64, forward: bool) -> f64 {
     let [x0, x1, x2, x3, _] = way.ends;
     for (from, to, word) in [(x0, x1, "primary"), (x2, x3, "secondary")] {
@@ -73,13 +73,13 @@ fn ground(s: &mut Sketch, way: &Way, active: f64, forward: bool) -> f64 {
     split
 }
 
-/// Forces of a point round both pulleys.
-fn round(of: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
+/// Draws the forces of a point round both pulleys.
+fn round(answer: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
     let [.., torque_nm] = numbers(row)?;
-    let way = Way::new(of);
+    let way = Way::new(answer);
     let [x0, x1, x2, x3, x4] = way.ends;
-    let compression = of.of("segment_compression_n");
-    let active = way.per_m * pitch_m * of.of("active_segments");
+    let compression = answer.column("segment_compression_n");
+    let active = way.per_m * pitch_m * answer.column("active_segments");
     let forward = compression > 0.0;
     let mut s = Sketch::new(400.0, 372.0);
     let name = if forward { "conventional" } else { "inverted" };
@@ -117,18 +117,18 @@ fn round(of: &Answer, pitch_m: f64, row: &str) -> Result<String, String> {
     };
     let value = format!("{most:.0} N");
     s.text((place, full - 6.0), Middle, 12.5, colour::FORCE, &value);
-    tension(&mut s, of, &way);
+    tension(&mut s, answer, &way);
     axes(&mut s, &way);
     let desc = "Compression between segments and tension of the bands along the belt, over the arc of the primary, a strut, the arc of the secondary and the other strut.";
     Ok(s.finish(&format!("Forces round both pulleys, {name} loading"), desc))
 }
 
-/// Tension of the bands: large before the primary and small behind it where the step is positive.
-fn tension(s: &mut Sketch, of: &Answer, way: &Way) {
+/// Tension of the bands: large before the primary and small behind it for a positive step.
+fn tension(s: &mut Sketch, answer: &Answer, way: &Way) {
     let [x0, x1, x2, x3, x4] = way.ends;
     let (mean, step) = (
-        0.5 * (of.of("band_tension_1_n") + of.of("band_tension_2_n")),
-        of.of("band_tension_step_n"),
+        0.5 * (answer.column("band_tension_1_n") + answer.column("band_tension_2_n")),
+        answer.column("band_tension_step_n"),
     );
     let ends = [mean + 0.5 * step, mean - 0.5 * step];
     let most = ends[0].max(ends[1]);
@@ -179,7 +179,7 @@ fn axes(s: &mut Sketch, way: &Way) {
     );
 }
 
-/// Losses in the order of the pages: name, label, columns that add up.
+/// Losses in the order of the pages: name, label, columns to add.
 const LOSSES: [(&str, &str, [&str; 2]); 4] = [
     (
         "bands",
@@ -206,13 +206,13 @@ const LOSSES: [(&str, &str, [&str; 2]); 4] = [
     ),
 ];
 
-/// Each loss as a bar that begins where the one before ends.
-fn bars(s: &mut Sketch, of: &Answer, all_nm: f64) {
+/// Draws each loss as a bar that begins where the previous one ends.
+fn bars(s: &mut Sketch, answer: &Answer, all_nm: f64) {
     let (left, wide) = (118.0, 190.0);
     let mut x = left;
     for (k, (name, label, columns)) in LOSSES.into_iter().enumerate() {
         let y = 84.0 + 34.0 * k as f64;
-        let loss: f64 = columns.iter().map(|column| of.of(column)).sum();
+        let loss: f64 = columns.iter().map(|column| answer.column(column)).sum();
         let to = x + wide * loss / all_nm;
         s.text((8.0, y), Start, 13.0, colour::INK, name);
         s.text((8.0, y + 13.0), Start, 11.5, colour::QUIET, label);
@@ -233,21 +233,21 @@ fn bars(s: &mut Sketch, of: &Answer, all_nm: f64) {
     s.line(&[(left, 66.0), (left, 211.0)], colour::QUIET, 0.8, "");
 }
 
-/// The point from its output to its input, each loss as long as it is large.
-fn chain(of: &Answer) -> Result<String, String> {
+/// Draws the path from output to input torque, with a bar for each loss.
+fn chain(answer: &Answer) -> Result<String, String> {
     let mut s = Sketch::new(400.0, 306.0);
     let [ratio, rpm, bar, output_nm] = numbers(POINT)?;
     let head = format!("I = {ratio}, {rpm} rpm, {bar} bar, {output_nm} Nm at the secondary");
     s.text((8.0, 18.0), Start, 13.0, colour::QUIET, &head);
     let rad_s = rpm * RPM;
-    let slip = 0.01 * of.of("slip_percent");
+    let slip = 0.01 * answer.column("slip_percent");
     let arrives_nm = output_nm / ratio * (1.0 - slip);
-    let all_nm = of.of("belt_loss_nm");
+    let all_nm = answer.column("belt_loss_nm");
     let words = format!("leaves the secondary: {:.0} W", arrives_nm * rad_s);
     s.text((8.0, 48.0), Start, 13.0, colour::GREEN, &words);
     let nm = format!("{arrives_nm:.2} Nm");
     s.text((392.0, 48.0), End, 13.0, colour::GREEN, &nm);
-    bars(&mut s, of, all_nm);
+    bars(&mut s, answer, all_nm);
     let all = format!("all of the belt: {:.0} W", all_nm * rad_s);
     s.text((8.0, 228.0), Start, 13.0, colour::FORCE, &all);
     s.text(

@@ -1,10 +1,10 @@
-//! Include files: the values of a page with their status, its labels as the code has them, room for its validation rows.
+//! Include files: values of a page with their status, labels as in the code, validation rows.
 
 use super::{PAGES, Page};
 use cvtcycle::config::setup::assumptions::value;
 use cvtcycle::config::setup::{Options, load};
 use cvtcycle::config::{KeyInfo, render};
-use cvtcycle::study::equations::by_label;
+use cvtcycle::equations::by_label;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -12,18 +12,18 @@ use std::path::Path;
 const MADE_FROM_HEADS: &str =
     "<!-- Written by `tools/docs` from the heads of the model files. -->\n";
 
-/// A labelled equation as a page has it: `**BT-3** (derived)`.
+/// Labelled equation of a page: `**BT-3** (derived)`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Labelled {
     /// Label of the equation or table.
     pub label: String,
     /// Status words in brackets.
     pub status: String,
-    /// Whether a displayed equation follows it.
+    /// True if a displayed equation follows.
     pub displayed: bool,
 }
 
-/// Labelled equations of a page in its order.
+/// Labelled equations of a page in order.
 pub fn labelled(page: &str) -> Vec<Labelled> {
     let mut list = Vec::new();
     let mut lines = page.lines();
@@ -50,7 +50,7 @@ pub fn labelled(page: &str) -> Vec<Labelled> {
     list
 }
 
-/// Values and labels of every page.
+/// Tables of values and labels of every page.
 pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
     let mut files = Vec::new();
     for page in &PAGES {
@@ -71,7 +71,7 @@ pub fn files(source: &Path) -> Result<Vec<(String, String)>, String> {
     Ok(files)
 }
 
-/// Every label with its page, in the order of the book.
+/// Table of all labels with their pages, in the order of the book.
 fn index(source: &Path) -> Result<String, String> {
     let mut text = MADE_FROM_HEADS.to_owned()
         + "\n| label | page | statement in the code | status |\n|---|---|---|---|\n";
@@ -97,7 +97,7 @@ fn index(source: &Path) -> Result<String, String> {
             .unwrap_or_default()
             .trim_start_matches("# ");
         for e in labelled(&page).iter().filter_map(|l| by_label(&l.label)) {
-            // Writing into a String cannot fail, here and below.
+            // Writing to a String is infallible, here and below.
             let _ = writeln!(
                 text,
                 "| [{0}]({stem}.md#{0}) | {title} | {1} | {2} |",
@@ -110,7 +110,7 @@ fn index(source: &Path) -> Result<String, String> {
     Ok(text)
 }
 
-/// Keys of the page's vehicle that belong to it.
+/// Keys of the page in its vehicle.
 pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
     let setup =
         load(page.vehicle, &Options::default()).map_err(|problems| render(&problems, false))?;
@@ -122,7 +122,7 @@ pub fn keys(page: &Page, labels: &[Labelled]) -> Result<Vec<KeyInfo>, String> {
         })
     };
     let of_page = |info: &KeyInfo| labels.iter().any(|l| info.labels.contains(&&*l.label));
-    // The engine oil lends no friction to the belt: its keys of that kind would only confuse.
+    // Leaves out the friction of the engine oil, which the belt does not use.
     let useful = |key: &str| !key.starts_with("engine_oil.friction");
     Ok(setup
         .keys
@@ -172,7 +172,7 @@ fn label_table(labels: &[Labelled]) -> String {
     for Labelled { label, .. } in labels {
         match by_label(label) {
             Some(e) => {
-                // Bars are escaped in the heads already.
+                // Bars are already escaped in the heads.
                 let _ = writeln!(
                     text,
                     "| {} | {} | {} | `{}` |",
@@ -190,7 +190,7 @@ fn label_table(labels: &[Labelled]) -> String {
     text
 }
 
-/// Text whose underlines, stars and angles are no Markdown.
+/// Escapes underlines, stars and angle brackets for Markdown.
 fn plain(text: &str) -> String {
     text.replace('_', "\\_")
         .replace('*', "\\*")

@@ -1,15 +1,15 @@
-//! The belt model.
+//! Belt model.
 
 use std::fmt::Write as _;
 
 use cvtcycle::config::setup::{self, Options};
-use cvtcycle::model::fluid::BandFriction;
+use cvtcycle::model::lubricant::BandFriction;
 use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::point::belt_point;
 use cvtcycle::model::transmission::cvt::variator::{
     Belt, BeltAtRatio, BeltLoad, Formulation, belt_capacity_nm, belt_losses, belt_state,
 };
-use cvtcycle::study::points::NUMBERS;
+use cvtcycle::validate::belt::NUMBERS;
 
 use super::csv::table_of_points;
 use super::range::range;
@@ -28,7 +28,7 @@ pub fn belt(data: &[u8]) {
     }
 }
 
-/// The belt and the load of the shipped car.
+/// Belt and load of the shipped car.
 fn shipped() -> (Belt, BeltLoad) {
     let setup = setup::load("rover_216_cvt", &Options::default())
         .unwrap_or_else(|_| panic!("the shipped car"));
@@ -52,7 +52,7 @@ fn shipped() -> (Belt, BeltLoad) {
     (cvt.belt.clone(), load)
 }
 
-/// A number in place of a shipped one: the same, a multiple of either sign, or any finite one.
+/// Keeps a shipped number, multiplies it by a factor of either sign, or replaces it by any finite number.
 fn moved(value: &mut f64, bytes: &mut Bytes) {
     match bytes.byte() % 4 {
         0 => {}
@@ -66,7 +66,7 @@ fn moved(value: &mut f64, bytes: &mut Bytes) {
     }
 }
 
-/// Whatever the numbers are, the model gives an answer.
+/// For any numbers the model returns a result.
 fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
     thread_local!(static SHIPPED: (Belt, BeltLoad) = shipped());
     let (mut belt, mut load) = SHIPPED.with(Clone::clone);
@@ -122,7 +122,7 @@ fn any_numbers(mut bytes: Bytes, formulation: Formulation) {
     std::hint::black_box((answers, capacity_nm));
 }
 
-/// Numbers within what a table of points allows: losses are then losses, and finite.
+/// For numbers within the ranges of a table of points, losses are finite and non-negative.
 fn numbers_in_range(mut bytes: Bytes, formulation: Formulation) {
     let mut names = String::new();
     let mut row = String::new();
@@ -137,7 +137,7 @@ fn numbers_in_range(mut bytes: Bytes, formulation: Formulation) {
         let comma = if names.is_empty() { "" } else { "," };
         let _ = write!(names, "{comma}{}", name);
         let _ = write!(row, "{comma}");
-        // A number that is not given is the vehicle's own.
+        // Missing numbers are the vehicle's own.
         if name.starts_with("output_torque") || comma.is_empty() || !bytes.one_in(4) {
             let _ = write!(row, "{value:?}");
         }

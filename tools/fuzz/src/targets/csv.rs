@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use cvtcycle::calibrate::data::{self, Form};
 use cvtcycle::config::bounded::ReadError;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{Format, read_columns, read_csv, write};
@@ -10,12 +11,11 @@ use cvtcycle::config::{Problems, render};
 use cvtcycle::model::transmission::cvt::variator::Formulation;
 use cvtcycle::model::transmission::cvt::variator::point::PointStatus;
 use cvtcycle::output::History;
-use cvtcycle::study::fit::data::{self, Form};
-use cvtcycle::study::points::{self, Job, Model, Solved, Take};
+use cvtcycle::validate::belt::{self, Job, Model, Solved, Take};
 
 use super::within_memory;
 
-/// A refusal has at least one problem, and its words can be made.
+/// Asserts that a refusal has at least one problem, and renders it.
 fn checked<T>(answer: Result<T, Problems>) -> Option<T> {
     answer
         .map_err(|problems| {
@@ -25,12 +25,12 @@ fn checked<T>(answer: Result<T, Problems>) -> Option<T> {
         .ok()
 }
 
-/// A table of another program, over time or distance.
+/// Cycle of another program, over time or distance.
 pub fn cycle(data: &[u8]) {
     drivable(data, &Columns::default());
 }
 
-/// The columns that are meant in the first line, and the table below it.
+/// Column mapping in the first line, and the table below it.
 pub fn logger(data: &[u8]) {
     let (list, table) = match data.iter().position(|byte| *byte == b'\n') {
         Some(end) => (&data[..end], &data[end + 1..]),
@@ -42,13 +42,13 @@ pub fn logger(data: &[u8]) {
     }
 }
 
-/// A cycle that was read can be driven, and is the same after it was written in any form and read again.
+/// Asserts that a valid cycle can be driven, and is unchanged after being written in any form and read again.
 fn drivable(data: &[u8], columns: &Columns) {
     within_memory(data.len(), || {
         let Some(cycle) = checked(read_columns("fuzz.csv", data, columns)) else {
             return;
         };
-        // The reader's limits are those of times in s and speeds in km/h; a number that is rounded beyond one of them is refused.
+        // The reader has limits in s and km/h; a number that rounding moves beyond one of them is refused.
         for (name, format) in Format::NAMES {
             let text = write(&cycle, &cycle.manual, format).text;
             let Ok(again) = read_csv("again.csv", text.as_bytes()) else {
@@ -80,17 +80,17 @@ fn drivable(data: &[u8], columns: &Columns) {
     });
 }
 
-/// A file in memory: whatever map a vehicle names, it gets this one.
+/// Single file in memory, returned for any map that a vehicle names.
 #[derive(Debug)]
-struct Only(Arc<[u8]>);
+struct SingleFile(Arc<[u8]>);
 
-impl Files for Only {
+impl Files for SingleFile {
     fn read(&self, _: &str) -> Result<Vec<u8>, ReadError> {
         Ok(self.0.to_vec())
     }
 }
 
-/// A BSFC map or a map of losses, by the first byte.
+/// BSFC map or map of losses, chosen by the first byte.
 pub fn map(data: &[u8]) {
     const USERS: [(usize, &str); 4] = [
         (0, "engine.model.bsfc_map.file=fuzz.csv"),
@@ -118,16 +118,16 @@ pub fn map(data: &[u8]) {
         checked(setup::read(
             "fuzz.toml",
             cars[car],
-            Box::new(Only(Arc::clone(&bytes))),
+            Box::new(SingleFile(Arc::clone(&bytes))),
             &options,
         ))
     });
 }
 
-/// Looks at every row that a table of belt points gives.
-struct Look(bool);
+/// Checks every row of a table of belt points.
+struct CheckPoints(bool);
 
-impl Take for Look {
+impl Take for CheckPoints {
     fn begin(&mut self, _: bool) -> Result<(), Problems> {
         self.0 = true;
         Ok(())
@@ -165,25 +165,25 @@ impl Take for Look {
     }
 }
 
-/// The belt of the shipped car.
+/// Belt of the shipped car.
 fn belt_model() -> Model {
     let setup = setup::load("rover_216_cvt", &Options::default())
         .unwrap_or_else(|_| panic!("the shipped car"));
     Model::new(&setup, None).unwrap_or_else(|| panic!("a car with a belt"))
 }
 
-/// Runs a table of belt points, each line of which may be a point.
+/// Evaluates a table of belt points; each line may be a point.
 pub fn table_of_points(text: &[u8], formulation: Formulation) {
     thread_local!(static MODEL: Model = belt_model());
     let mut model = Some(MODEL.with(Model::clone));
     within_memory(text.len(), || {
-        let mut look = Look(false);
+        let mut look = CheckPoints(false);
         let job = Job {
             model: model.take(),
             formulation,
             rows: &mut look,
         };
-        checked(points::read("fuzz.csv", text, job))
+        checked(belt::read("fuzz.csv", text, job))
     });
 }
 

@@ -1,4 +1,4 @@
-//! Whole short runs of valid cars.
+//! Short runs of valid cars.
 
 use std::cell::RefCell;
 use std::fmt::Write as _;
@@ -15,7 +15,7 @@ use cvtcycle::output::{Component, EnergyTerms, Row};
 use super::range::range;
 use super::{Bytes, within_memory};
 
-/// Cars, and the words that make other parts of them: fuel model, clamping, pump, thrust ratio, cooler, fluids.
+/// Cars with options for other components: fuel model, clamping, pump, thrust ratio, cooler, fluids.
 const CARS: [(&str, &[&str]); 10] = [
     ("rover_216_cvt", &[]),
     (
@@ -71,15 +71,15 @@ const CARS: [(&str, &[&str]); 10] = [
     ("mondeo_20_5mt", &[]),
 ];
 
-/// Most numbers of a car that are moved.
-const MOST: usize = 40;
+/// Maximum number of changed numbers of a car.
+const MAX_CHANGES: usize = 40;
 
-/// Legs of a cycle.
+/// Number of legs of a cycle.
 const LEGS: usize = 8;
 
 struct Car {
     bench: Variant,
-    slots: Vec<(ParameterRef, f64, f64, f64, bool)>,
+    parameters: Vec<(ParameterRef, f64, f64, f64, bool)>,
 }
 
 fn car((name, words): (&str, &[&str])) -> Car {
@@ -97,25 +97,25 @@ fn car((name, words): (&str, &[&str])) -> Car {
         let slot = blueprint.slot(&info.key).ok()?;
         Some((slot, low, high, base, info.allowed.starts_with("integer")))
     };
-    let slots = base.keys.iter().filter_map(slot).collect();
+    let parameters = base.keys.iter().filter_map(slot).collect();
     Car {
         bench: blueprint.bench(),
-        slots,
+        parameters,
     }
 }
 
-/// True if the car and the cycle of an input are printed: `CVTCYCLE_FUZZ_PRINT=1`.
-fn tells() -> bool {
-    static TELLS: OnceLock<bool> = OnceLock::new();
-    *TELLS.get_or_init(|| std::env::var_os("CVTCYCLE_FUZZ_PRINT").is_some())
+/// True if car and cycle of an input are printed: `CVTCYCLE_FUZZ_PRINT=1`.
+fn prints_input() -> bool {
+    static PRINTS_INPUT: OnceLock<bool> = OnceLock::new();
+    *PRINTS_INPUT.get_or_init(|| std::env::var_os("CVTCYCLE_FUZZ_PRINT").is_some())
 }
 
-/// The car with its numbers moved; the first half of the changes, or of that half, where all of them make no possible car.
+/// Applies the changes of the input to the car. If the result is invalid, tries the first half of them, then its first half.
 fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
     let mut changes = Vec::new();
-    for _ in 0..usize::from(bytes.byte()) % (MOST + 1) {
-        let place = usize::from(bytes.short()) % car.slots.len();
-        let (_, low, high, base, whole) = &car.slots[place];
+    for _ in 0..usize::from(bytes.byte()) % (MAX_CHANGES + 1) {
+        let place = usize::from(bytes.short()) % car.parameters.len();
+        let (_, low, high, base, whole) = &car.parameters[place];
         let (way, toward) = (bytes.byte(), 2.0 * bytes.share() - 1.0);
         let end = if toward < 0.0 { low } else { high };
         let number = match way % 4 {
@@ -129,13 +129,13 @@ fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
     loop {
         car.bench.reset();
         for (place, number) in &changes {
-            car.bench.set(&car.slots[*place].0, *number);
+            car.bench.set(&car.parameters[*place].0, *number);
         }
         match car.bench.build() {
             Ok(setup) => {
-                if tells() {
+                if prints_input() {
                     changes.iter().for_each(|(place, number)| {
-                        eprintln!("--set {}={number:?}", car.slots[*place].0.key())
+                        eprintln!("--set {}={number:?}", car.parameters[*place].0.key())
                     });
                 }
                 return Some(setup);
@@ -173,17 +173,17 @@ fn cycle(bytes: &mut Bytes) -> Option<Cycle> {
         kmh = next;
     }
     let _ = writeln!(text, "{},{kmh},0,0", time_s + 1.0);
-    if tells() {
+    if prints_input() {
         eprintln!("{text}");
     }
     // Hard braking or acceleration may be refused.
     read_csv("fuzz.csv", text.as_bytes()).ok()
 }
 
-/// Looks at every row.
-struct Look;
+/// Checks every row.
+struct CheckRows;
 
-impl Recorder for Look {
+impl Recorder for CheckRows {
     fn record(&mut self, row: &Row, terms: &EnergyTerms) {
         assert!(
             terms.power_error() <= 1e-9 && terms.heat_error() <= 1e-9,
@@ -209,7 +209,7 @@ impl Recorder for Look {
             assert!(x >= 0.0 && x.is_finite(), "{x} in {row:?}");
         }
         for k in [row.coolant_k, row.engine_oil_k, row.sump_k] {
-            // How hot is the car's own affair: an engine may make any heat.
+            // There is no upper limit: an engine may produce any heat.
             assert!(k >= 200.0 && k.is_finite(), "{k} K in {row:?}");
         }
     }
@@ -226,10 +226,10 @@ pub fn drive_car(data: &[u8]) {
             1 => Start::At(233.15 + 170.0 * bytes.share()),
             _ => Start::Soak,
         },
-        max_dt_s: bytes.of(&[1.0, 1.0, 0.5, 5.0]),
+        max_dt_s: bytes.pick(&[1.0, 1.0, 0.5, 5.0]),
         keep_rows: true,
     };
-    if tells() {
+    if prints_input() {
         eprintln!("{:?}\n{conditions:?}", CARS[which]);
     }
     MADE.with_borrow_mut(|made| {
@@ -253,9 +253,9 @@ pub fn drive_car(data: &[u8]) {
                 trace,
                 conditions.max_dt_s,
                 State::at(start_k),
-                &mut Look,
+                &mut CheckRows,
             );
-            // The way of the command, with its start and its sums.
+            // Runs like the command, with its start and its sums.
             if matches!(conditions.start, Start::Warm) {
                 let outcome = drive(&setup, &cycle, &conditions);
                 let fuel_kg: f64 = outcome

@@ -1,8 +1,8 @@
-//! A shipped text with some edits, so that what lies behind the parser is reached as well.
+//! Edits of a shipped text, to reach code behind the parser.
 
 use super::Bytes;
 
-/// Values that a number, a text or a list of a file may be mistaken for.
+/// Replacements for a number, a text or a list of a file.
 const VALUES: [&str; 40] = [
     "0",
     "-0.0",
@@ -46,10 +46,10 @@ const VALUES: [&str; 40] = [
     "{ value = 1, status = \"fitted\", source = \"x\" }",
 ];
 
-/// Most edits of a text.
-const MOST: usize = 24;
+/// Maximum number of edits of a text.
+const MAX_EDITS: usize = 24;
 
-/// The rest of the bytes as they are, or a shipped text with edits.
+/// Returns the remaining bytes unchanged, or a shipped text with edits.
 pub fn text(data: &[u8], shipped: &[&str]) -> Vec<u8> {
     let mut bytes = Bytes(data);
     let which = usize::from(bytes.byte()) % (shipped.len() + 1);
@@ -57,7 +57,7 @@ pub fn text(data: &[u8], shipped: &[&str]) -> Vec<u8> {
         return bytes.rest().to_vec();
     }
     let mut lines: Vec<String> = shipped[which - 1].lines().map(str::to_owned).collect();
-    for _ in 0..MOST {
+    for _ in 0..MAX_EDITS {
         if bytes.is_empty() || lines.is_empty() {
             break;
         }
@@ -72,7 +72,7 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
     let other = |bytes: &mut Bytes, lines: &[String]| usize::from(bytes.short()) % lines.len();
     match way % 10 {
         0 | 1 => {
-            let value = bytes.of(&VALUES);
+            let value = bytes.pick(&VALUES);
             set_value(&mut lines[at], value);
         }
         2 => {
@@ -110,8 +110,8 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
             lines[at].insert_str(place, &String::from_utf8_lossy(&junk));
         }
         _ => {
-            // Deep or long, from a few bytes.
-            let unit = bytes.of(&[
+            // Deep nesting or long text from a few bytes.
+            let unit = bytes.pick(&[
                 "[", "{a=", "a.", "(", "1,", "\"", "[[a]]\n", "-", "a=1\n", "{",
             ]);
             let count = usize::from(bytes.short()) % 3000;
@@ -120,7 +120,7 @@ fn edit(lines: &mut Vec<String>, bytes: &mut Bytes) {
     }
 }
 
-/// The nearest end of a character at or before a byte.
+/// Nearest character boundary at or before a byte.
 fn floor(line: &str, at: usize) -> usize {
     (0..=at.min(line.len()))
         .rev()

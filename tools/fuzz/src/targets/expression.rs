@@ -1,14 +1,14 @@
 //! Expressions of rows and calibrations, over two small tables.
 
-use cvtcycle::study::check::expr::{Computed, compute, parse};
+use cvtcycle::validate::expr::{Computed, compute, parse};
 
 use super::small_tables::SmallTables;
 use super::within_memory;
 
-/// Evaluations that an expression may take here.
+/// Limit of evaluations of an expression.
 const EVALUATIONS: u64 = 100_000;
 
-/// An expression is refused at places within it, or has an answer or a reason why it has none.
+/// An expression is refused at places within it, or gives a result or the reason for having none.
 pub fn expression(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else {
         return;

@@ -1,4 +1,4 @@
-//! Files that are read in their folder: Parquet tables, and the journal of files that are being put into place.
+//! Files read in their folder: Parquet tables, and the journal of a pending commit.
 
 use std::fs;
 use std::io::Write;
@@ -13,14 +13,14 @@ use tempfile::{NamedTempFile, TempDir};
 use super::results::checked;
 use super::{Bytes, within_memory};
 
-/// Key of the heads of the columns in the metadata.
+/// Metadata key of the column heads.
 const COLUMNS: &str = "cvtcycle.columns";
-/// Most edits of a table.
-const MOST: usize = 16;
-/// The end of a Parquet file: the length of its footer, and its magic word.
+/// Maximum number of edits of a table.
+const MAX_EDITS: usize = 16;
+/// Length of the end of a Parquet file: the length of the footer, and the magic word.
 const END: usize = 8;
 
-/// A small table with a column of each kind.
+/// Small table with a column of each kind.
 fn table() -> &'static [u8] {
     static TABLE: OnceLock<Vec<u8>> = OnceLock::new();
     TABLE.get_or_init(|| {
@@ -48,7 +48,7 @@ fn table() -> &'static [u8] {
     })
 }
 
-/// The rest of the bytes as they are, or a table with edits, most of them in its footer, whose length stays right.
+/// Returns the remaining bytes unchanged, or a table with edits, most of them in its footer, whose length stays correct.
 fn edited(mut bytes: Bytes) -> Vec<u8> {
     if bytes.one_in(8) {
         return bytes.rest().to_vec();
@@ -57,7 +57,7 @@ fn edited(mut bytes: Bytes) -> Vec<u8> {
     let mut end = body.split_off(body.len() - END);
     let length = u32::from_le_bytes([end[0], end[1], end[2], end[3]]) as usize;
     let mut footer = body.split_off(body.len() - length);
-    for _ in 0..MOST {
+    for _ in 0..MAX_EDITS {
         if bytes.is_empty() {
             break;
         }
@@ -90,7 +90,7 @@ fn edit(part: &mut Vec<u8>, bytes: &mut Bytes) {
     }
 }
 
-/// What is looked at before a page is read: pages are read where the checksum is right only, since the library trusts them.
+/// Reads metadata only. Pages are read after the checksum matches, since the library trusts them.
 pub fn parquet(data: &[u8]) {
     let bytes = edited(Bytes(data));
     let mut file = NamedTempFile::new().expect("a file");
@@ -104,7 +104,7 @@ pub fn parquet(data: &[u8]) {
     });
 }
 
-/// A folder with files of the user within it and next to it, and two files that wait for their names.
+/// Creates a folder with files of the user in it and next to it, and two files that wait for their names.
 fn folder(journal: &[u8]) -> TempDir {
     let outer = TempDir::new().expect("a folder");
     let dir = outer.path().join("dir");
@@ -124,15 +124,15 @@ fn folder(journal: &[u8]) -> TempDir {
     outer
 }
 
-/// The journal of the folder.
+/// Journal of the folder.
 const JOURNAL: &str = "dir/.cvtcycle-commit.json";
 
-/// What is there by one path; none for what is no file.
+/// Contents of a path. None if it is not a file.
 fn text(outer: &Path, name: &str) -> Option<Vec<u8>> {
     fs::read(outer.join(name)).ok()
 }
 
-/// A journal is carried out within its folder, or refused with nothing changed.
+/// A journal is applied within its folder, or refused without changes.
 pub fn journal(data: &[u8]) {
     let outer = folder(data);
     let root = outer.path();

@@ -1,21 +1,21 @@
-//! One function a target: any bytes in, a panic if the program does what it must not.
+//! One function per target: takes any bytes, and panics on forbidden behaviour of the program.
 //!
-//! | target | what the bytes are |
+//! | target | meaning of the bytes |
 //! |---|---|
 //! | `vehicle`, `lubricant`, `study_plan`, `calibration_plan` | a TOML file: the bytes themselves, or edits of a shipped file ([`edits`]) |
 //! | `rows`, `cover`, `levers` | a file of rows, of the cover of a report, or of levers (TOML), likewise |
-//! | `answers` | a file of answers (TOML), likewise, and the car that it makes |
+//! | `answers` | a file of answers (TOML), likewise, and the resulting car |
 //! | `expression` | an expression of rows, over two small tables |
 //! | `overrides` | assignments of `--set`, one a line |
-//! | `logger` | the columns of `--columns` in the first line, and the CSV file that they are of |
-//! | `cycle`, `map`, `points`, `measured`, `history` | a CSV file, after a byte that chooses the form where there are several |
-//! | `summary`, `inputs`, `study_manifest`, `checksums` | a file of results (JSON; a list of checksums), the manifest after a byte that chooses its plan |
-//! | `parquet` | a Parquet table up to its pages: edits of a small one, or the bytes themselves |
-//! | `journal` | the journal of files that are put into place, in a folder with some |
+//! | `logger` | the columns of `--columns` in the first line, and their CSV file |
+//! | `cycle`, `map`, `points`, `measured`, `history` | a CSV file, after a byte that selects one of several forms |
+//! | `summary`, `inputs`, `study_manifest`, `checksums` | a file of results (JSON; a list of checksums), the manifest after a byte that selects its plan |
+//! | `parquet` | a Parquet table without its pages: edits of a small one, or the bytes themselves |
+//! | `journal` | the journal of a pending commit, in a folder with some files |
 //! | `belt` | a belt and its operating point: any finite numbers, or a table row with numbers in their ranges |
-//! | `drive` | a valid car and a short cycle: numbers of a shipped car moved within what their keys allow |
+//! | `drive` | a valid car and a short cycle: numbers of a shipped car changed within the ranges of their keys |
 //!
-//! In all of them: no panic, and no more memory than [`most_bytes`] allows for the size of the input.
+//! All targets: no panic, and at most [`max_bytes`] of memory for the size of the input.
 
 mod belt;
 mod csv;
@@ -30,10 +30,10 @@ mod results;
 mod small_tables;
 mod toml;
 
-/// Does something with any bytes.
+/// Target function.
 pub type Target = fn(&[u8]);
 
-/// The targets by name.
+/// Targets by name.
 pub const TARGETS: [(&str, Target); 24] = [
     ("vehicle", toml::vehicle),
     ("lubricant", toml::lubricant),
@@ -61,17 +61,16 @@ pub const TARGETS: [(&str, Target); 24] = [
     ("drive", drive::drive_car),
 ];
 
-/// Memory that reading an input of so many bytes may hold at any time, bytes: a constant for the program's own files, which it may read
-/// in addition to the input, and a multiple of the input for its values with their places.
+/// Memory limit for reading an input, bytes: a constant for the program's own files, which may be read
+/// too, and a multiple of the input for its values with their places.
 #[must_use]
-pub fn most_bytes(input_len: usize) -> u64 {
+pub fn max_bytes(input_len: usize) -> u64 {
     (16 << 20) + 1200 * input_len as u64
 }
 
 /// Runs a target.
-///
 /// # Panics
-/// If the program does what it must not do for any input; if there is no such target.
+/// On forbidden behaviour of the program; for an unknown target.
 pub fn run(name: &str, data: &[u8]) {
     let Some((_, target)) = TARGETS.iter().find(|(known, _)| *known == name) else {
         panic!("no target {name}");
@@ -79,19 +78,19 @@ pub fn run(name: &str, data: &[u8]) {
     target(data);
 }
 
-/// Reads an input of so many bytes and holds the reading to its memory.
+/// Reads an input of a length and checks the memory used.
 fn within_memory<T>(input_len: usize, mut read: impl FnMut() -> T) -> T {
     let mut answer = None;
     let counted = allocation_counter::measure(|| answer = Some(read()));
     assert!(
-        counted.bytes_max <= most_bytes(input_len),
+        counted.bytes_max <= max_bytes(input_len),
         "{} bytes held for an input of {input_len}",
         counted.bytes_max
     );
     answer.unwrap_or_else(|| unreachable!("the closure has run"))
 }
 
-/// Bytes taken from the front; zeros when there are no more.
+/// Bytes consumed from the front; zeros after the end.
 struct Bytes<'d>(&'d [u8]);
 
 impl<'d> Bytes<'d> {
@@ -111,7 +110,7 @@ impl<'d> Bytes<'d> {
         self.take::<1>()[0]
     }
 
-    /// Whether a byte is a multiple of `n`.
+    /// True if the next byte is a multiple of `n`.
     fn one_in(&mut self, n: u8) -> bool {
         self.byte().is_multiple_of(n)
     }
@@ -120,18 +119,18 @@ impl<'d> Bytes<'d> {
         u16::from_le_bytes(self.take())
     }
 
-    /// From 0 to 1.
+    /// Number from 0 to 1.
     fn share(&mut self) -> f64 {
         f64::from(self.short()) / f64::from(u16::MAX)
     }
 
-    /// Any number.
+    /// Any finite or non-finite number.
     fn number(&mut self) -> f64 {
         f64::from_le_bytes(self.take())
     }
 
-    /// One of a list.
-    fn of<T: Copy>(&mut self, list: &[T]) -> T {
+    /// Element of a list.
+    fn pick<T: Copy>(&mut self, list: &[T]) -> T {
         list[usize::from(self.short()) % list.len()]
     }
 

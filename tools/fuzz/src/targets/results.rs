@@ -1,4 +1,4 @@
-//! Files of results, which may come from strangers.
+//! Files of results, which may have an untrusted origin.
 
 use cvtcycle::config::bounded::json;
 use cvtcycle::config::{Problem, Problems, render};
@@ -9,7 +9,7 @@ use cvtcycle::study::store::Checksums;
 
 use super::within_memory;
 
-/// A refusal has words, and they can be shown.
+/// Asserts that a refusal can be rendered.
 pub(super) fn checked<T>(answer: Result<T, Problem>) -> Option<T> {
     answer
         .map_err(|problem| {
@@ -27,7 +27,7 @@ pub fn inputs(data: &[u8]) {
     within_memory(data.len(), || checked(parse_record("inputs.json", data)));
 }
 
-/// A manifest of a study, after a byte that chooses its plan.
+/// Manifest of a study, after a byte that selects its plan.
 pub fn study_manifest(data: &[u8]) {
     let Some((which, rest)) = data.split_first() else {
         return;
@@ -44,7 +44,7 @@ pub fn study_manifest(data: &[u8]) {
     });
 }
 
-/// A list that is one has one text.
+/// A valid list has a single representation.
 pub fn checksums(data: &[u8]) {
     within_memory(data.len(), || {
         if let Some(list) = Checksums::parse(data) {

@@ -2,30 +2,30 @@
 
 use std::sync::OnceLock;
 
+use cvtcycle::analysis::levers::LeverFile;
+use cvtcycle::calibrate::{embedded_calibrations, plan as calibration};
 use cvtcycle::config::setup::new_car::{self, Answers};
 use cvtcycle::config::setup::{self, Disk, Options, embedded_lubricants, embedded_vehicles};
 use cvtcycle::config::{Override, Problems, decode, render};
 use cvtcycle::report::cover::Cover;
-use cvtcycle::study::check::{self, COMMON, embedded_rows};
-use cvtcycle::study::fit::{embedded_calibrations, plan as calibration};
-use cvtcycle::study::levers::LeverFile;
 use cvtcycle::study::plan::{Plan, embedded_plans};
+use cvtcycle::validate::{self, COMMON, embedded_rows};
 
 use super::{edits, within_memory};
 
-/// A text of at most so many bytes is edited eight times as often as a longer one, which takes as much longer to read.
+/// Texts up to this length are edited eight times as often as longer ones, which take longer to read in proportion.
 const SHORT: usize = 4000;
 
-/// A cover with everything that it may hold.
+/// Cover with all keys.
 const COVER: &str = "title = \"Band offset\"\nsubtitle = \"Review 7\"\nauthor = \"A. Engineer\"\norganisation = \"Example\"\n\
     date = \"2026-11-21\"\nlogo = \"no/such.svg\"\nlogo_words = \"Example\"\n[remarks]\nanswer = \"First.\\nSecond.\"\nlosses = \"...\"\n";
 
-/// Two levers with everything that a lever file may hold.
+/// Two levers with all keys.
 const LEVERS: &str = "[levers]\ntitle = \"Own\"\ntransmission = \"cvt\"\n[[lever]]\nname = \"lighter\"\ntitle = \"Less mass\"\n\
     set = [\"road_load.mass_kg*=0.9\", \"engine.idle.hot_rpm+=50\"]\ngroup = \"mass\"\ncombine = false\nneeds = \"new body\"\n\
     status = \"assumed\"\nsource = \"none\"\n[[lever]]\nname = \"oil\"\nlubricant = \"dexron_iii\"\nengine_oil = \"engine_10w40\"\n";
 
-/// Answers to all questions of a new car, most of which its class has as well.
+/// Answers to all questions about a new car; its class supplies most of them too.
 const ANSWERS: &str = "title = \"Own\"\nclass = \"compact_2020\"\nbox = \"box_cvt_clutch\"\nmass = \"3000lb\"\nf0 = 105\nf1 = \"0.4\"\n\
     f2 = \"0.0189lbf/mph2\"\ntyre = \"215/55 R16\"\ndisplacement = \"1.8l\"\npower = \"104@6400\"\ntorque = \"172@3800-4400\"\nidle = 700\n\
     highest = 6600\nfinal-drive = 5.36\nratio-low = \"2.48\"\nspan = 6.3\ncentre-distance = 168\npump = \"10\"\noil = 7\nfluid = \"dexron_iii\"\n\
@@ -46,7 +46,7 @@ fn texts(
     })
 }
 
-/// What a reader of a text does with bytes; every refusal is put into words as a user would see it.
+/// Reads bytes as text and renders every refusal.
 fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Problems>) {
     within_memory(bytes.len(), || {
         let refused = match decode("fuzz.toml", bytes) {
@@ -57,7 +57,7 @@ fn read<T>(bytes: &[u8], reader: impl Fn(&str) -> Result<T, Problems>) {
     });
 }
 
-/// A refusal has at least one problem, and its words can be made.
+/// Asserts that a refusal has at least one problem, and renders it.
 fn checked(refused: Option<Problems>) {
     if let Some(problems) = refused {
         assert!(!problems.is_empty(), "refused without a word");
@@ -100,7 +100,7 @@ pub fn rows(data: &[u8]) {
     static SHIPPED: Texts = OnceLock::new();
     let text = edits::text(data, texts(&SHIPPED, embedded_rows()));
     read(&text, |text| {
-        check::read(COMMON, &[("fuzz.toml".to_owned(), text.to_owned())])
+        validate::read(COMMON, &[("fuzz.toml".to_owned(), text.to_owned())])
     });
 }
 
@@ -115,7 +115,7 @@ pub fn levers(data: &[u8]) {
     read(&text, |text| LeverFile::read("fuzz.toml", text));
 }
 
-/// A file of answers, and the car that they make.
+/// File of answers, and the resulting car.
 pub fn answers(data: &[u8]) {
     let text = edits::text(data, &[ANSWERS]);
     read(&text, |text| {
@@ -125,7 +125,7 @@ pub fn answers(data: &[u8]) {
     });
 }
 
-/// Overrides of a shipped car: the first byte chooses it.
+/// Overrides of a shipped car, which the first byte selects.
 pub fn overrides(data: &[u8]) {
     let Some((which, rest)) = data.split_first() else {
         return;

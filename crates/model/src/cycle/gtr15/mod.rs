@@ -22,7 +22,7 @@ use self::possible::Possible;
 use self::repair::Schedule;
 use super::GearCommand;
 
-/// What the procedure knows of a car.
+/// Data of a car for the procedure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GtrVehicle {
     /// Test mass, kg.
@@ -62,9 +62,9 @@ pub const SAFETY: f64 = 0.1;
 pub struct GtrGears {
     /// Gear of each second, 0 for none.
     pub gear: Vec<u8>,
-    /// Whether the clutch is open or slips.
+    /// True with the clutch open or slipping.
     pub clutch: Vec<bool>,
-    /// Whether the second is of a deceleration.
+    /// True in a second of a deceleration.
     slows: Vec<bool>,
     /// Highest speed of gears below that of the highest car speed, rpm (GS-1).
     pub n95_rpm: f64,
@@ -77,8 +77,8 @@ pub struct GtrGears {
 /// The gears of a car on a trace of one speed in km/h a second.
 #[must_use]
 pub fn gears(trace_kmh: &[f64], car: &GtrVehicle) -> GtrGears {
-    let phases = Phases::of(trace_kmh);
-    let possible = Possible::of(trace_kmh, car, &phases);
+    let phases = Phases::new(trace_kmh);
+    let possible = Possible::new(trace_kmh, car, &phases);
     let limits = possible.limits;
     let mut schedule = Schedule::new(trace_kmh, possible, &phases);
     // Corrections may open the way for others: twice, as the regulation has it (GS-5).
@@ -106,7 +106,7 @@ pub fn gears(trace_kmh: &[f64], car: &GtrVehicle) -> GtrGears {
 }
 
 impl GtrGears {
-    /// What the driver does in each second. A gear change is driven in the gear that follows it; the last gear before a standstill may be none.
+    /// Action of the driver in each second. A gear change is driven in the gear that follows it; the last gear before a standstill may be none.
     #[must_use]
     pub fn commands(&self, trace_kmh: &[f64]) -> Vec<GearCommand> {
         let mut next = 0;

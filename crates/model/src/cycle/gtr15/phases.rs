@@ -7,7 +7,7 @@ const CONSTANT_KMH: f64 = 1e-3;
 /// A rise or a fall of no more seconds belongs to no phase.
 const SHORT: usize = 2;
 
-/// What the speed does from a second to the next.
+/// Change of speed from a second to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     Rest,
@@ -31,7 +31,7 @@ pub(super) struct Run {
 /// A trace by its phases.
 #[derive(Clone, Debug)]
 pub(super) struct Phases {
-    /// Of each second.
+    /// Change of speed in each second.
     pub change: Vec<Change>,
     /// In their order.
     pub runs: Vec<Run>,
@@ -46,7 +46,7 @@ pub(super) struct Phases {
 }
 
 impl Phases {
-    pub(super) fn of(trace_kmh: &[f64]) -> Phases {
+    pub(super) fn new(trace_kmh: &[f64]) -> Phases {
         let change = |t: usize| {
             let now = trace_kmh[t];
             let by = trace_kmh.get(t + 1).map_or(-now, |next| next - now);

@@ -31,7 +31,7 @@ pub(super) struct Limits {
     pub top_kmh: f64,
 }
 
-/// What is possible in each second.
+/// Possible gears in each second.
 #[derive(Clone, Debug)]
 pub(super) struct Possible {
     pub limits: Limits,
@@ -45,9 +45,9 @@ pub(super) struct Possible {
     pub greatest: Vec<i32>,
     /// First choice (GS-4).
     pub chosen: Vec<i32>,
-    /// Whether first gear is possible.
+    /// True if first gear is possible.
     first: Vec<bool>,
-    /// Whether the clutch is open or slips, by second and gear from first.
+    /// True with a clutch open or slipping, by second and gear from first.
     slips: Vec<bool>,
 }
 
@@ -67,7 +67,7 @@ fn between(points: &[[f64; 3]], x: f64, y: impl Fn(&[f64; 3]) -> f64) -> f64 {
 }
 
 impl Limits {
-    fn of(trace_kmh: &[f64], car: &GtrVehicle) -> Limits {
+    fn new(trace_kmh: &[f64], car: &GtrVehicle) -> Limits {
         let curve = &car.full_load;
         let rated_kw = curve.iter().map(|p| p[1]).fold(0.0, f64::max);
         let nearly = NEARLY_RATED * rated_kw;
@@ -203,7 +203,7 @@ impl Second<'_> {
 }
 
 impl Possible {
-    pub(super) fn of(trace_kmh: &[f64], car: &GtrVehicle, phases: &Phases) -> Possible {
+    pub(super) fn new(trace_kmh: &[f64], car: &GtrVehicle, phases: &Phases) -> Possible {
         let gears = car.rpm_per_kmh.len();
         let rated = car
             .full_load
@@ -211,7 +211,7 @@ impl Possible {
             .fold([0.0; 3], |best, p| if p[1] > best[1] { *p } else { best });
         let at = Second {
             car,
-            limits: Limits::of(trace_kmh, car),
+            limits: Limits::new(trace_kmh, car),
             rated_rpm: rated[0],
         };
         let second = car.rpm_per_kmh.get(1).copied().unwrap_or(f64::INFINITY);
@@ -315,7 +315,7 @@ impl Possible {
         } // GS-4
     }
 
-    /// Whether the clutch is open or slips in a gear (GS-2).
+    /// True if the clutch is open or slips in a gear (GS-2).
     pub(super) fn slips(&self, t: usize, gear: i32) -> bool {
         (1..=self.gears as i32).contains(&gear) && self.slips[t * self.gears + gear as usize - 1]
     }

@@ -12,7 +12,7 @@ const EXCURSION: usize = 4;
 /// A constant phase of so many seconds may be entered two gears higher.
 const LONG_HOLD: usize = 6;
 /// Rounds after which a fixed point is surely there.
-const MOST_ROUNDS: usize = 5000;
+const MAX_ROUNDS: usize = 5000;
 
 /// The gears while they are corrected.
 #[derive(Clone, Debug)]
@@ -22,7 +22,7 @@ pub(super) struct Schedule<'a> {
     pub phases: &'a Phases,
     /// Gear of each second, 0 for none, below 0 where none is possible.
     pub gear: Vec<i32>,
-    /// Whether the clutch is open.
+    /// True with the clutch open.
     pub clutch: Vec<bool>,
     /// Seconds of decelerations that were held down once.
     held_down: Vec<bool>,
@@ -58,7 +58,7 @@ impl<'a> Schedule<'a> {
         for run in self.phases.accelerations() {
             self.accelerate(run);
         }
-        for _ in 0..MOST_ROUNDS {
+        for _ in 0..MAX_ROUNDS {
             let before = self.gear.clone();
             self.drop_peaks();
             self.hold_two_seconds(true);

@@ -77,7 +77,7 @@ pub static MANUAL_BOX: FileTable = FileTable {
 };
 
 /// Least torque of which an efficiency says something, Nm: below it is 0/0.
-const LEAST_NM: f64 = 2.0;
+const MIN_NM: f64 = 2.0;
 /// Largest efficiency of a table whose numbers are likely to be shares.
 const SHARE: f64 = 0.01;
 /// Place of the torque among the axes of a [`LossMap`].
@@ -97,11 +97,11 @@ type Point = ([f64; GRID_AXES], f64);
 /// Why rows are no map: what is allowed, what is wrong, what helps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NoMap {
-    /// What is accepted.
+    /// Accepted values.
     pub allowed: String,
-    /// What is wrong, one sentence.
+    /// Problem, one sentence.
     pub message: String,
-    /// What to do.
+    /// Remedy.
     pub hint: String,
 }
 
@@ -118,7 +118,7 @@ impl NoMap {
 /// The points of a table as loss torque (MP-6); `idle_nm` is the loss without torque, where it is given.
 ///
 /// # Errors
-/// What is wrong with an efficiency or a power.
+/// Problem of an efficiency or a power.
 pub fn points(table: &FileRows, idle_nm: Option<f64>) -> Result<Vec<Point>, NoMap> {
     let axes = AXES.map(|names| names.iter().find_map(|name| table.position(name)));
     let at = |row: &[f64]| {
@@ -169,7 +169,7 @@ fn of_efficiency(
             "multiply a share by 100",
         ));
     }
-    let is_small = |(x, _): &&Point| x[OF_TORQUE].abs() < LEAST_NM;
+    let is_small = |(x, _): &&Point| x[OF_TORQUE].abs() < MIN_NM;
     if !has_torque || rows.iter().any(|point| is_small(&point)) {
         return Err(NoMap::new(
             "input_torque_nm of at least 2 N m, or at most -2",

@@ -17,11 +17,11 @@ const NEAREST: usize = 12;
 /// Farthest point of a node, in shares of the axes.
 const FARTHEST: f64 = 0.25;
 /// Most points: each node looks at all of them.
-const MOST_POINTS: usize = 2000;
+const MAX_POINTS: usize = 2000;
 /// Distance at which a point is on a node.
 const ON_NODE: f64 = 1e-9;
 /// Least part of a sum of squares that the other directions leave of it, where a plane has all of them.
-const LEAST_PIVOT: f64 = 1e-9;
+const MIN_PIVOT: f64 = 1e-9;
 /// Unknowns of a plane: its height and a slope for each axis.
 const UNKNOWNS: usize = GRID_AXES + 1;
 
@@ -36,7 +36,7 @@ struct Axes {
 }
 
 impl Axes {
-    fn of(points: &[Point]) -> Self {
+    fn new(points: &[Point]) -> Self {
         let mut axes = Axes {
             used: Vec::new(),
             low: [0.0; GRID_AXES],
@@ -82,10 +82,10 @@ impl Axes {
 /// # Errors
 /// Too few or too many points, points in one plane, a node far from all points.
 pub fn gridded(points: &[Point]) -> Result<Vec<Point>, NoMap> {
-    let axes = Axes::of(points);
-    if points.len() <= NEAREST || points.len() > MOST_POINTS {
+    let axes = Axes::new(points);
+    if points.len() <= NEAREST || points.len() > MAX_POINTS {
         return Err(NoMap {
-            allowed: format!("{} to {MOST_POINTS} points", NEAREST + 1),
+            allowed: format!("{} to {MAX_POINTS} points", NEAREST + 1),
             message: format!("there are {} scattered points", points.len()),
             hint: "measure more of them, or bring them onto a grid yourself".to_owned(),
         });
@@ -98,7 +98,7 @@ pub fn gridded(points: &[Point]) -> Result<Vec<Point>, NoMap> {
 /// Each point against the plane of the others; none where the others lie in one plane.
 #[must_use]
 pub fn leave_one_out(points: &[Point]) -> Option<Scatter> {
-    let axes = Axes::of(points);
+    let axes = Axes::new(points);
     let (mut squares, mut largest_nm) = (0.0, 0.0f64);
     for k in 0..points.len() {
         let others = [&points[..k], &points[k + 1..]].concat();
@@ -193,7 +193,7 @@ fn solve(rows: &mut [[f64; UNKNOWNS + 1]; UNKNOWNS], size: usize) -> Option<f64>
     // The unknowns from the last one down, so that the first is found at the end.
     for k in (0..size).rev() {
         let scale = rows[k][k];
-        if scale <= LEAST_PIVOT * before[k] {
+        if scale <= MIN_PIVOT * before[k] {
             return None;
         }
         let pivot = rows[k];

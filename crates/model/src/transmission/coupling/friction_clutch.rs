@@ -11,10 +11,10 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Launch};
 use crate::keys::{Values, keys};
-use crate::math::{Left, Mask, Real, gather, ramp};
+use crate::math::{Gather, Mask, Real, physics, ramp};
 
 /// A friction clutch that slips at launch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct FrictionClutch<R: Real = f64> {
     /// Engine speed at which it begins to engage, rad/s.
     pub engage_rad_s: R,
@@ -26,47 +26,35 @@ pub struct FrictionClutch<R: Real = f64> {
     pub release_rad_s: R,
 }
 
-gather!(FrictionClutch {
-    engage_rad_s,
-    gain_nm_s2,
-    creep_nm,
-    release_rad_s
-});
-
 /// Input speed over idle speed from which a coupled clutch does not slip (LC-5).
 const LOCKED_OVER_IDLE: f64 = 1.2;
 /// Width of the transition from creeping to launching, Nm.
 const CREEP_WIDTH_NM: f64 = 5.0;
 /// Speed that rounds off the square root at zero torque, rad/s (200 rpm).
 const ROUND_RAD_S: f64 = 20.944;
-/// Its square.
+/// Square of that speed, (rad/s)2.
 const ROUND_SQUARED: f64 = ROUND_RAD_S * ROUND_RAD_S;
 
-impl<R: Real> Coupling<R> for FrictionClutch<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Coupling<R> for FrictionClutch<R> {
     /// LC-1, LC-5: never below idle nor below the input shaft.
-    #[inline(always)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
         self.steady_rad_s(load)
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         LOCKED_OVER_IDLE * idle_rad_s
     }
 
     /// CV-6: in overrun the power passes unchanged, since a clutch whose engine still slows down from a higher speed can neither give
     /// nor take energy.
-    #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
-        let overruns = output_nm.below(0.0);
+        let overruns = output_nm.lt(0.0);
         let mut engine_nm = output_nm;
         if overruns.any() {
-            engine_nm = R::pick(overruns, output_nm * output_rad_s / engine_rad_s, engine_nm);
+            engine_nm = overruns.select(output_nm * output_rad_s / engine_rad_s, engine_nm);
         }
-        let slipping_nm = R::pick(overruns, output_nm.filled(0.0), output_nm);
+        let slipping_nm = overruns.select(output_nm.splat(0.0), output_nm);
         EngineSide {
             engine_nm,
             engine_rad_s,
@@ -74,43 +62,38 @@ where
         }
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         Some(Launch::clutch(self.of_least_speed()))
     }
 
-    #[inline(always)]
     fn output_nm(&self, engine_nm: R, _output_rad_s: R, _engine_rad_s: R) -> R {
         engine_nm
     }
 
-    #[inline(always)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
-        self.creep_nm * (1.0 - ramp(output_rad_s, idle_rad_s.filled(0.0), idle_rad_s)) // LC-2
+        self.creep_nm * (1.0 - ramp(output_rad_s, idle_rad_s.splat(0.0), idle_rad_s)) // LC-2
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let from = 1.1 * idle_rad_s;
-        let to = self.release_rad_s.most(from);
+        let to = self.release_rad_s.max(from);
         ramp(output_rad_s, from, to + 0.2 * idle_rad_s) // LC-3
     }
 }
 
-impl<R: Real> FrictionClutch<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> FrictionClutch<R> {
     /// The clutch whose engine is never faster than it has to be (LC-7).
     pub(super) fn of_least_speed(&self) -> Self {
         FrictionClutch {
-            engage_rad_s: self.engage_rad_s.filled(0.0),
-            gain_nm_s2: self.gain_nm_s2.filled(f64::INFINITY),
+            engage_rad_s: self.engage_rad_s.splat(0.0),
+            gain_nm_s2: self.gain_nm_s2.splat(f64::INFINITY),
             ..*self
         } // LC-7
     }
 
     /// LC-1, LC-5.
-    #[inline(always)]
+    #[physics]
     fn steady_rad_s(&self, load: &CouplingLoad<R>) -> R {
         let CouplingLoad {
             output_nm,
@@ -118,32 +101,32 @@ where
             idle_rad_s,
             coupled,
         } = *load;
-        let locked = coupled & output_rad_s.reaches(LOCKED_OVER_IDLE * idle_rad_s);
+        let locked = coupled & output_rad_s.ge(LOCKED_OVER_IDLE * idle_rad_s);
         if locked.all() {
             return output_rad_s;
         }
         let above = output_nm - self.creep_nm;
         let mut speed = idle_rad_s;
-        let pulls = above.above(0.0);
+        let pulls = above.gt(0.0);
         if pulls.any() {
-            let lifts = self.engage_rad_s.above(idle_rad_s);
-            let lift = R::pick(lifts, self.engage_rad_s - idle_rad_s, above.filled(0.0));
+            let lifts = self.engage_rad_s.gt(idle_rad_s);
+            let lift = lifts.select(self.engage_rad_s - idle_rad_s, above.splat(0.0));
             let raised = lift * (1.0 - (-above / CREEP_WIDTH_NM).exp())
                 + (above / self.gain_nm_s2 + ROUND_SQUARED).sqrt()
                 - ROUND_RAD_S; // LC-1
-            speed = R::pick(pulls, speed + raised, speed);
+            speed = pulls.select(speed + raised, speed);
         }
-        let slower = locked | speed.at_most(output_rad_s);
+        let slower = locked | speed.le(output_rad_s);
         if slower.all() {
             return output_rad_s;
         }
-        let mut slip_share = above.filled(1.0);
+        let mut slip_share = above.splat(1.0);
         if coupled.any() {
             let stays = ramp(output_rad_s, idle_rad_s, LOCKED_OVER_IDLE * idle_rad_s);
-            slip_share = R::pick(coupled, 1.0 - stays, slip_share);
+            slip_share = coupled.select(1.0 - stays, slip_share);
         }
         let slipping = output_rad_s + slip_share * (speed - output_rad_s); // LC-5
-        R::pick(slower, output_rad_s, slipping)
+        slower.select(output_rad_s, slipping)
     }
 }
 

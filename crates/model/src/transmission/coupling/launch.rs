@@ -4,7 +4,7 @@ use super::{
     Coupling, CouplingLoad, DriverClutch, EngineSide, FrictionClutch, Hold, LockSignals,
     TorqueConverter, Turning,
 };
-use crate::math::{Gather, Left, Mask, Real};
+use crate::math::{Gather, Mask, Real, physics};
 use std::sync::Arc;
 
 /// The coupling of a box.
@@ -15,7 +15,7 @@ pub enum Launch<R: Real = f64> {
     /// A torque converter that loses what its model says.
     Converter(TorqueConverter<R>),
     /// Another device, one for each run, and a one with their lanes.
-    Other(R::Each<Device>, R),
+    Other(R::PerLane<Device>, R),
 }
 
 /// A device of one run.
@@ -76,21 +76,21 @@ impl Gather for Launch {
             Launch::Converter(converter) => Device(Arc::new(converter.clone())),
             Launch::Other(device, _) => device.clone(),
         };
-        Launch::Other(R::every(device), like.filled(1.0))
+        Launch::Other(R::per_lane(device), like.splat(1.0))
     }
 
     fn lane<R: Real>(together: &Launch<R>, lane: usize) -> Self {
         match together {
             Launch::Clutch(clutch) => Launch::Clutch(Gather::lane(clutch, lane)),
             Launch::Converter(converter) => Launch::Converter(Gather::lane(converter, lane)),
-            Launch::Other(devices, _) => Launch::Other(R::one(devices, lane).clone(), 1.0),
+            Launch::Other(devices, _) => Launch::Other(R::get(devices, lane).clone(), 1.0),
         }
     }
 
-    fn alike(&self, other: &Self) -> bool {
+    fn groups_with(&self, other: &Self) -> bool {
         match (self, other) {
-            (Launch::Clutch(own), Launch::Clutch(other)) => own.alike(other),
-            (Launch::Converter(own), Launch::Converter(other)) => own.alike(other),
+            (Launch::Clutch(own), Launch::Clutch(other)) => own.groups_with(other),
+            (Launch::Converter(own), Launch::Converter(other)) => own.groups_with(other),
             (Launch::Other(..), Launch::Other(..)) => {
                 let with_factor = |launch: &Launch| launch.loss_factor().is_some();
                 self.by_command() == other.by_command() && with_factor(self) == with_factor(other)
@@ -101,7 +101,7 @@ impl Gather for Launch {
 }
 
 /// The engine's side of each run.
-#[inline(always)]
+#[physics]
 fn sides<R: Real>(like: R, side: impl Fn(usize) -> EngineSide) -> EngineSide<R> {
     let mut all = EngineSide {
         engine_nm: like,
@@ -118,13 +118,13 @@ fn sides<R: Real>(like: R, side: impl Fn(usize) -> EngineSide) -> EngineSide<R> 
 }
 
 /// The device of a lane.
-#[inline(always)]
-fn one<R: Real>(devices: &R::Each<Device>, lane: usize) -> &dyn Coupling {
-    &*R::one(devices, lane).0
+#[physics]
+fn one<R: Real>(devices: &R::PerLane<Device>, lane: usize) -> &dyn Coupling {
+    &*R::get(devices, lane).0
 }
 
 /// The turning speeds of a lane.
-#[inline(always)]
+#[physics]
 fn turning<R: Real>(at: &Turning<R>, lane: usize) -> Turning {
     Turning {
         output_rad_s: at.output_rad_s.lane(lane),
@@ -134,8 +134,8 @@ fn turning<R: Real>(at: &Turning<R>, lane: usize) -> Turning {
     }
 }
 
-/// What a device of one run holds, in each lane.
-fn holds<R: Real>(devices: &R::Each<Device>, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
+/// Hold of the device of one run, in each lane.
+fn holds<R: Real>(devices: &R::PerLane<Device>, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
     let like = now.output_rad_s;
     let hold = |lane: usize| {
         let now = LockSignals {
@@ -147,9 +147,9 @@ fn holds<R: Real>(devices: &R::Each<Device>, now: &LockSignals<R>, past: R::Mask
         one::<R>(devices, lane).hold(&now, past.lane(lane))
     };
     Hold {
-        coupled: like.ask(|lane| hold(lane).coupled),
-        locked_from_rad_s: like.by_lane(|lane| hold(lane).locked_from_rad_s),
-        slip_rad_s: like.by_lane(|lane| hold(lane).slip_rad_s),
+        coupled: like.mask_lanes(|lane| hold(lane).coupled),
+        locked_from_rad_s: like.map_lanes(|lane| hold(lane).locked_from_rad_s),
+        slip_rad_s: like.map_lanes(|lane| hold(lane).slip_rad_s),
     }
 }
 
@@ -160,17 +160,14 @@ macro_rules! ask {
             Launch::Clutch(clutch) => clutch.$method($($argument),*),
             Launch::Converter(converter) => converter.$method($($argument),*),
             Launch::Other(devices, _) => {
-                $like.by_lane(|$lane| one::<R>(devices, $lane).$method($($own),*))
+                $like.map_lanes(|$lane| one::<R>(devices, $lane).$method($($own),*))
             }
         }
     };
 }
 
-impl<R: Real> Coupling<R> for Launch<R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> Coupling<R> for Launch<R> {
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
         let like = load.output_nm;
         let own = |lane: usize| CouplingLoad {
@@ -182,7 +179,6 @@ where
         ask!(self, like, lane, engine_rad_s(load), &own(lane))
     }
 
-    #[inline(always)]
     fn min_engine_rad_s(&self, output_rad_s: R) -> R {
         ask!(
             self,
@@ -193,7 +189,6 @@ where
         )
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         ask!(
             self,
@@ -204,7 +199,6 @@ where
         )
     }
 
-    #[inline(always)]
     fn by_command(&self) -> bool {
         match self {
             Launch::Clutch(clutch) => clutch.by_command(),
@@ -213,7 +207,6 @@ where
         }
     }
 
-    #[inline(always)]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         match self {
             Launch::Clutch(clutch) => clutch.hold(now, past),
@@ -222,7 +215,6 @@ where
         }
     }
 
-    #[inline(always)]
     fn locked_side(&self, output_nm: R, output_rad_s: R, slip_rad_s: R) -> EngineSide<R> {
         match self {
             Launch::Clutch(clutch) => clutch.locked_side(output_nm, output_rad_s, slip_rad_s),
@@ -236,7 +228,6 @@ where
         }
     }
 
-    #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         match self {
             Launch::Clutch(clutch) => clutch.engine_side(output_nm, output_rad_s, engine_rad_s),
@@ -250,7 +241,6 @@ where
         }
     }
 
-    #[inline(always)]
     fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
         ask!(
             self,
@@ -263,7 +253,6 @@ where
         )
     }
 
-    #[inline(always)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         ask!(
             self,
@@ -275,7 +264,6 @@ where
         )
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         ask!(
             self,
@@ -287,7 +275,6 @@ where
         )
     }
 
-    #[inline(always)]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
         ask!(
             self,
@@ -299,6 +286,7 @@ where
         )
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         match self {
             Launch::Clutch(clutch) => clutch.at_least_speed(),
@@ -312,6 +300,7 @@ where
         }
     }
 
+    #[inline]
     fn device(&self) -> &'static str {
         match self {
             Launch::Clutch(clutch) => clutch.device(),
@@ -320,14 +309,13 @@ where
         }
     }
 
-    #[inline(always)]
     fn loss_factor(&self) -> Option<R> {
         match self {
             Launch::Clutch(clutch) => clutch.loss_factor(),
             Launch::Converter(converter) => converter.loss_factor(),
             Launch::Other(devices, like) => {
                 one::<R>(devices, 0).loss_factor()?;
-                Some(like.by_lane(|lane| one::<R>(devices, lane).loss_factor().unwrap_or(1.0)))
+                Some(like.map_lanes(|lane| one::<R>(devices, lane).loss_factor().unwrap_or(1.0)))
             }
         }
     }

@@ -17,7 +17,7 @@ pub use torque_converter::{LockUp, TorqueConverter};
 use self::friction_clutch::FrictionClutchKeys;
 use self::torque_converter::TorqueConverterKeys;
 use crate::keys::{Choice, Key, Values, spec};
-use crate::math::{Left, Mask, Real, ramp};
+use crate::math::{Mask, Real, physics, ramp};
 use std::fmt::Debug;
 
 const CLUTCH: Choice = Choice::new(
@@ -57,7 +57,7 @@ pub(super) fn drivers_clutch<V: Values>(s: &V, key: &Key<'_>) -> DriverClutch {
     DriverClutch::new(FrictionClutch::from_values(&own, 0.0))
 }
 
-/// What the coupling is to pass on.
+/// Load that the coupling passes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CouplingLoad<R: Real = f64> {
     /// Torque into the box, Nm; negative in overrun.
@@ -70,9 +70,9 @@ pub struct CouplingLoad<R: Real = f64> {
     pub coupled: R::Mask,
 }
 
+#[physics]
 impl<R: Real> CouplingLoad<R> {
     /// A torque into the box, Nm, at its speed over an engine with an idle speed, rad/s.
-    #[inline(always)]
     pub fn new(output_nm: R, output_rad_s: R, idle_rad_s: R, coupled: R::Mask) -> Self {
         CouplingLoad {
             output_nm,
@@ -94,19 +94,19 @@ pub struct EngineSide<R: Real = f64> {
     pub loss_w: R,
 }
 
+#[physics]
 impl<R: Real> EngineSide<R> {
     /// `yes` where the mask says so, else `no`.
-    #[inline(always)]
-    pub(super) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         EngineSide {
-            engine_nm: R::pick(mask, yes.engine_nm, no.engine_nm),
-            engine_rad_s: R::pick(mask, yes.engine_rad_s, no.engine_rad_s),
-            loss_w: R::pick(mask, yes.loss_w, no.loss_w),
+            engine_nm: mask.select(yes.engine_nm, no.engine_nm),
+            engine_rad_s: mask.select(yes.engine_rad_s, no.engine_rad_s),
+            loss_w: mask.select(yes.loss_w, no.loss_w),
         }
     }
 }
 
-/// What a coupling that locks by command looks at before a step.
+/// Inputs of the command of a coupling that locks by command, before a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LockSignals<R: Real = f64> {
     /// Mean road speed of the step, m/s.
@@ -145,31 +145,25 @@ pub struct Turning<R: Real = f64> {
 
 /// 1 where the engine is no faster than the box, falling to 0 at 2 % more: a slipping coupling whose engine is faster cannot take torque from
 /// the box; faded, so that a solve sees no step.
-#[inline(always)]
-fn together<R: Real>(at: &Turning<R>) -> R
-where
-    f64: Left<R>,
-{
-    let one = at.engine_rad_s.filled(1.0);
-    let ahead = at.engine_rad_s.above(at.output_rad_s);
+#[physics]
+fn together<R: Real>(at: &Turning<R>) -> R {
+    let one = at.engine_rad_s.splat(1.0);
+    let ahead = at.engine_rad_s.gt(at.output_rad_s);
     if !ahead.any() {
         return one;
     }
     let over = at.engine_rad_s / at.output_rad_s;
-    let faded = 1.0 - ramp(over, one, one.filled(1.02));
-    R::pick(ahead, faded, one)
+    let faded = 1.0 - ramp(over, one, one.splat(1.02));
+    ahead.select(faded, one)
 }
 
 /// A coupling between engine and box.
-pub trait Coupling<R: Real = f64>: Debug + Send + Sync
-where
-    f64: Left<R>,
-{
+pub trait Coupling<R: Real = f64>: Debug + Send + Sync {
     /// Engine speed in steady state for a torque into the box, rad/s.
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R;
 
     /// Lowest engine speed over a box that turns at a speed, rad/s. A clutch cannot give energy back: its engine is never slower.
-    #[inline(always)]
+    #[physics]
     fn min_engine_rad_s(&self, output_rad_s: R) -> R {
         output_rad_s
     }
@@ -183,19 +177,19 @@ where
     }
 
     /// How it holds engine and box together in a step; `past`: it had locked before.
-    #[inline(always)]
+    #[physics]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
         let idle_rad_s = now.idle_rad_s;
-        let never = idle_rad_s.filled(f64::INFINITY);
+        let never = idle_rad_s.splat(f64::INFINITY);
         Hold {
             coupled: past,
-            locked_from_rad_s: R::pick(past, self.locked_from_rad_s(idle_rad_s), never),
-            slip_rad_s: idle_rad_s.filled(0.0),
+            locked_from_rad_s: past.select(self.locked_from_rad_s(idle_rad_s), never),
+            slip_rad_s: idle_rad_s.splat(0.0),
         }
     }
 
     /// The engine's side where the coupling is locked, with the slip of [`Coupling::hold`].
-    #[inline(always)]
+    #[physics]
     fn locked_side(&self, output_nm: R, output_rad_s: R, _slip_rad_s: R) -> EngineSide<R> {
         self.engine_side(output_nm, output_rad_s, output_rad_s)
     }
@@ -213,16 +207,16 @@ where
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R;
 
     /// Least torque into the box, Nm, with an engine that absorbs `absorbed_nm`: the creep torque below idle speed, the overrun above.
-    #[inline(always)]
+    #[physics]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
-        let creeps = at.output_rad_s.below(at.idle_rad_s);
-        let mut least_nm = absorbed_nm.filled(0.0);
+        let creeps = at.output_rad_s.lt(at.idle_rad_s);
+        let mut least_nm = absorbed_nm.splat(0.0);
         if creeps.any() {
             least_nm = self.creep_nm(at.output_rad_s, at.idle_rad_s);
         }
         if !creeps.all() {
             let share = self.overrun_share(at.output_rad_s, at.idle_rad_s);
-            least_nm = R::pick(creeps, least_nm, -together(at) * share * absorbed_nm);
+            least_nm = creeps.select(least_nm, -together(at) * share * absorbed_nm);
         }
         least_nm
     }
@@ -239,17 +233,17 @@ where
     }
 
     /// Factor on its loss (LC-6); none where it loses what its model says.
-    #[inline(always)]
+    #[physics]
     fn loss_factor(&self) -> Option<R> {
         None
     }
 
     /// The engine's side for a torque into the box, its speed the one of steady state as far as `reach` has it.
-    #[inline(always)]
+    #[physics]
     fn solve(&self, load: &CouplingLoad<R>, reach: &Reach<R>) -> EngineSide<R> {
         let reached = reach.nearest(self.engine_rad_s(load));
         let least = self.min_engine_rad_s(load.output_rad_s);
-        self.engine_side(load.output_nm, load.output_rad_s, reached.most(least))
+        self.engine_side(load.output_nm, load.output_rad_s, reached.max(least))
     }
 }
 
@@ -264,26 +258,22 @@ pub struct Reach<R: Real = f64> {
     pub fastest_rad_s: R,
 }
 
-impl<R: Real> Reach<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Reach<R> {
     /// The nearest speed within reach, rad/s.
-    #[inline(always)]
     pub fn nearest(&self, wanted_rad_s: R) -> R {
-        wanted_rad_s.held(self.slowest_rad_s, self.fastest_rad_s)
+        wanted_rad_s.clamp(self.slowest_rad_s, self.fastest_rad_s)
     }
 
     /// Mean over the step of how much faster the engine is than at its end, to which it slows down as fast as it can, rad/s.
-    #[inline(always)]
     pub fn mean_excess_rad_s(&self, end_rad_s: R) -> R {
         let fall = self.from_rad_s - end_rad_s;
         let most = self.from_rad_s - self.slowest_rad_s;
-        let falls = fall.above(0.0) & most.above(0.0);
-        let none = fall.filled(0.0);
+        let falls = fall.gt(0.0) & most.gt(0.0);
+        let none = fall.splat(0.0);
         if !falls.any() {
             return none;
         }
-        R::pick(falls, 0.5 * fall * (fall / most).least(1.0), none) // EN-12
+        falls.select(0.5 * fall * (fall / most).min(1.0), none) // EN-12
     }
 }

@@ -6,18 +6,16 @@
 
 use super::FrictionClutch;
 use super::{Coupling, CouplingLoad, EngineSide, Hold, Launch, LockSignals, Turning};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 
 /// The clutch of a manual box, which the driver opens, with factors on its loss.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct DriverClutch<R: Real = f64> {
     /// The clutch.
     pub clutch: FrictionClutch<R>,
     /// Factors on its loss, one after the other (LC-6).
     pub factors: Vec<R>,
 }
-
-gather!(DriverClutch { clutch, factors });
 
 impl<R: Real> DriverClutch<R> {
     /// A clutch that loses what its model says.
@@ -38,12 +36,9 @@ impl DriverClutch {
     }
 }
 
-impl<R: Real> DriverClutch<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> DriverClutch<R> {
     /// The engine's side with the first of the factors.
-    #[inline(always)]
     fn side(
         &self,
         factors: usize,
@@ -58,27 +53,21 @@ where
     }
 }
 
-impl<R: Real> Coupling<R> for DriverClutch<R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> Coupling<R> for DriverClutch<R> {
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
         self.clutch.engine_rad_s(load)
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         self.clutch.locked_from_rad_s(idle_rad_s)
     }
 
-    #[inline(always)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
         self.side(self.factors.len(), output_nm, [output_rad_s, engine_rad_s])
     }
 
     /// A clutch without loss does not pass on more at full load; one with more loss passes on less, in proportion.
-    #[inline(always)]
     fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
         let mut most_nm = (self.clutch).output_nm(engine_nm, output_rad_s, engine_rad_s);
         for number in 0..self.factors.len() {
@@ -88,16 +77,15 @@ where
         most_nm
     }
 
-    #[inline(always)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         self.clutch.creep_nm(output_rad_s, idle_rad_s)
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
         self.clutch.overrun_share(output_rad_s, idle_rad_s)
     }
 
+    #[inline]
     fn at_least_speed(&self) -> Option<Launch<R>> {
         Some(Launch::Clutch(DriverClutch {
             clutch: self.clutch.of_least_speed(),
@@ -105,7 +93,6 @@ where
         }))
     }
 
-    #[inline(always)]
     fn loss_factor(&self) -> Option<R> {
         let (first, others) = self.factors.split_first()?;
         let mut product = *first;
@@ -125,7 +112,7 @@ pub(crate) struct PartialLoss {
 
 impl PartialLoss {
     /// A coupling with its loss times a factor; itself for 1.
-    pub fn of(inner: Launch, factor: f64) -> Launch {
+    pub fn scaled(inner: Launch, factor: f64) -> Launch {
         match inner {
             Launch::Clutch(mut clutch) => {
                 clutch.scale(factor);
@@ -142,12 +129,9 @@ impl PartialLoss {
     }
 }
 
-impl<R: Real> EngineSide<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> EngineSide<R> {
     /// The engine's side with the loss times a factor.
-    #[inline(always)]
     fn with_loss_times(self, factor: R) -> Self {
         EngineSide {
             engine_nm: self.engine_nm - (1.0 - factor) * self.loss_w / self.engine_rad_s, // LC-6
@@ -158,10 +142,10 @@ where
 }
 
 /// Torque into the box, Nm, of which the engine gives no more than its own, where it would need another.
-#[inline(always)]
+#[physics]
 fn passed_nm<R: Real>(most_nm: R, needed_nm: R, engine_nm: R) -> R {
-    let lacks = needed_nm.above(engine_nm) & engine_nm.above(engine_nm.filled(0.0));
-    R::pick(lacks, most_nm * engine_nm / needed_nm, most_nm) // LC-6
+    let lacks = needed_nm.gt(engine_nm) & engine_nm.gt(engine_nm.splat(0.0));
+    lacks.select(most_nm * engine_nm / needed_nm, most_nm) // LC-6
 }
 
 impl Coupling for PartialLoss {
@@ -222,7 +206,7 @@ impl Coupling for PartialLoss {
 
     fn at_least_speed(&self) -> Option<Launch> {
         let inner = self.inner.at_least_speed()?;
-        Some(PartialLoss::of(inner, self.factor))
+        Some(PartialLoss::scaled(inner, self.factor))
     }
 
     fn loss_factor(&self) -> Option<f64> {

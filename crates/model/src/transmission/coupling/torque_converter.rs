@@ -16,7 +16,9 @@
 
 use super::{Coupling, CouplingLoad, EngineSide, Hold, LockSignals, Turning, together};
 use crate::keys::{Bound, Quantity, Values, keys};
-use crate::math::{Curve, Left, MOST_LANES, Mask, Real, both, gather, gather_each, larger, places};
+use crate::math::{
+    Curve, Gather, MAX_LANES, Mask, Real, both, gather_each, larger, physics, places,
+};
 use std::sync::Arc;
 
 /// Torque ratio and capacity of the original at a speed ratio: [nu, k, lambda/lambda(0)].
@@ -87,21 +89,19 @@ struct Row {
     coast: f64,
 }
 
+#[physics]
 impl Row {
-    /// Whether it is at or before a speed ratio; it needs no second number.
-    #[inline(always)]
+    /// True at or before a speed ratio; needs no second number.
     fn is_up_to(&self, nu: f64, _: f64) -> bool {
         self.nu <= nu
     }
 
-    /// Whether the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
-    #[inline(always)]
+    /// True if the turbine gets more than a torque, Nm, at a square of its speed, (rad/s)2.
     fn pulls_above(&self, turbine_nm: f64, square: f64) -> bool {
         self.pull * square > turbine_nm
     }
 
-    /// Whether the engine takes more than a torque in overrun, Nm.
-    #[inline(always)]
+    /// True if the engine takes more than a torque in overrun, Nm.
     fn coasts_above(&self, drag_nm: f64, square: f64) -> bool {
         self.coast * square > drag_nm
     }
@@ -114,7 +114,7 @@ struct Rows(Arc<[Row]>);
 gather_each!(Rows);
 
 /// When the lock-up clutch closes, and how.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct LockUp<R: Real = f64> {
     /// Road speed above which it closes, m/s.
     pub from_m_s: R,
@@ -130,31 +130,15 @@ pub struct LockUp<R: Real = f64> {
     pub slip_until_k: R,
 }
 
-gather!(LockUp {
-    from_m_s,
-    until_m_s,
-    from_k,
-    open_rad_s,
-    slip_rad_s,
-    slip_until_k
-});
-
 /// The checked torque converter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct TorqueConverter<R: Real = f64> {
-    rows: R::Each<Rows>,
+    rows: R::PerLane<Rows>,
     /// Torque ratio over speed ratio.
     k: R::Curve,
     neutral_idle: R,
     lockup: Option<LockUp<R>>,
 }
-
-gather!(TorqueConverter {
-    rows,
-    k,
-    neutral_idle,
-    lockup
-});
 
 /// Speed of the turbine from which the lock-up clutch closes, over that below which it opens (TC-7).
 const CLOSES_OVER_OPEN: f64 = 1.1;
@@ -206,65 +190,47 @@ impl TorqueConverter {
 
 /// A piece of the table, for each run: the rows at its ends.
 struct Piece<'a, R: Real> {
-    rows: &'a R::Each<Rows>,
-    first: [usize; MOST_LANES],
+    rows: &'a R::PerLane<Rows>,
+    first: [usize; MAX_LANES],
     like: R,
 }
 
+#[physics]
 impl<R: Real> Piece<'_, R> {
     /// A number of the rows at both ends.
-    #[inline(always)]
     fn ends(&self, of: fn(&Row) -> f64) -> [R; 2] {
-        both!(end => self.like.by_lane(
-            #[inline(always)]
-            |lane| of(&R::one(self.rows, lane).0[self.first[lane] + end]),
+        both!(end => self.like.map_lanes(
+            |lane| of(&R::get(self.rows, lane).0[self.first[lane] + end]),
         ))
     }
 
     /// The numbers of the piece's quadratic equation.
-    #[inline(always)]
     fn quadratic(&self) -> [R; 3] {
-        places!(place in 0, 1, 2 => self.like.by_lane(
-            #[inline(always)]
-            |lane| R::one(self.rows, lane).0[self.first[lane]].quadratic[place],
+        places!(place in 0, 1, 2 => self.like.map_lanes(
+            |lane| R::get(self.rows, lane).0[self.first[lane]].quadratic[place],
         ))
     }
 
-    #[inline(always)]
     fn nu(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.nu,
-        )
+        self.ends(|row| row.nu)
     }
 
-    #[inline(always)]
     fn lambda(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.lambda,
-        )
+        self.ends(|row| row.lambda)
     }
 
-    #[inline(always)]
     fn coast(&self) -> [R; 2] {
-        self.ends(
-            #[inline(always)]
-            |row| row.coast,
-        )
+        self.ends(|row| row.coast)
     }
 }
 
-impl<R: Real> TorqueConverter<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> TorqueConverter<R> {
     /// The piece that begins with the last row for which `before` holds with the numbers of a lane, the first one at least.
-    #[inline(always)]
     fn piece(&self, x: R, y: R, before: fn(&Row, f64, f64) -> bool) -> Piece<'_, R> {
-        let mut first = [0; MOST_LANES];
+        let mut first = [0; MAX_LANES];
         for (lane, first) in first.iter_mut().enumerate().take(R::LANES) {
-            let rows = &R::one(&self.rows, lane).0;
+            let rows = &R::get(&self.rows, lane).0;
             // Plain numbers: the search is a function of its own, which does not have the processor's vectors.
             let (x, y) = (x.lane(lane), y.lane(lane));
             *first = rows[1..rows.len() - 1].partition_point(|row| before(row, x, y));
@@ -277,7 +243,6 @@ where
     }
 
     /// Capacity at a speed ratio from 0 to 1, Nm s2.
-    #[inline(always)]
     fn lambda_nm_s2(&self, nu: R) -> R {
         let p = self.piece(nu, nu, Row::is_up_to);
         let (at, lambda) = (p.nu(), p.lambda());
@@ -286,18 +251,16 @@ where
     }
 
     /// Speed of the engine that drives a turbine with a torque, rad/s (TC-2).
-    #[inline(always)]
     fn driving_rad_s(&self, turbine_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
         let p = self.piece(turbine_nm, square, Row::pulls_above);
         let [double_ac, ad_bc, bd] = p.quadratic();
         let linear = -ad_bc * turbine_rad_s;
         let rest = linear * linear + 2.0 * double_ac * (turbine_nm - bd * square);
-        (linear + rest.most(0.0).sqrt()) / double_ac // TC-2
+        (linear + rest.max(0.0).sqrt()) / double_ac // TC-2
     }
 
     /// Speed of an engine that takes a torque from the turbine, rad/s (TC-6).
-    #[inline(always)]
     fn coasting_rad_s(&self, drag_nm: R, turbine_rad_s: R) -> R {
         let square = turbine_rad_s * turbine_rad_s;
         let p = self.piece(drag_nm, square, Row::coasts_above);
@@ -305,15 +268,11 @@ where
         let share = (coast[0] * square - drag_nm) / ((coast[0] - coast[1]) * square);
         let speed = (nu[0] + share * (nu[1] - nu[0])) * turbine_rad_s; // TC-6
         // No engine at rest takes more.
-        let most = square.by_lane(
-            #[inline(always)]
-            |lane| R::one(&self.rows, lane).0[0].coast,
-        );
-        R::pick((most * square).at_most(drag_nm), speed.filled(0.0), speed)
+        let most = square.map_lanes(|lane| R::get(&self.rows, lane).0[0].coast);
+        (most * square).le(drag_nm).select(speed.splat(0.0), speed)
     }
 
     /// Largest torque that an idling engine's pump wheel takes from the turbine, Nm (TC-6).
-    #[inline(always)]
     fn coast_at_idle_nm(&self, turbine_rad_s: R, idle_rad_s: R) -> R {
         let r = idle_rad_s / turbine_rad_s;
         let p = self.piece(r, r, Row::is_up_to);
@@ -323,21 +282,20 @@ where
     }
 
     /// The engine's side at known speeds.
-    #[inline(always)]
     fn side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
-        let drives = output_nm.reaches(0.0) & engine_rad_s.reaches(output_rad_s);
-        let coasts = output_nm.below(0.0) & engine_rad_s.at_most(output_rad_s);
+        let drives = output_nm.ge(0.0) & engine_rad_s.ge(output_rad_s);
+        let coasts = output_nm.lt(0.0) & engine_rad_s.le(output_rad_s);
         let mut engine_nm = output_nm; // TC-6
         if drives.any() {
-            let driving_nm = output_nm / (output_rad_s / engine_rad_s).along(&self.k); // TC-5
-            engine_nm = R::pick(drives, driving_nm, engine_nm);
+            let driving_nm = output_nm / (output_rad_s / engine_rad_s).interpolate(&self.k); // TC-5
+            engine_nm = drives.select(driving_nm, engine_nm);
         }
-        let mut loss_w = (engine_nm * engine_rad_s - output_nm * output_rad_s).most(0.0); // TC-4
+        let mut loss_w = (engine_nm * engine_rad_s - output_nm * output_rad_s).max(0.0); // TC-4
         let passes = !(drives | coasts);
         if passes.any() {
             let passed_nm = output_nm * output_rad_s / engine_rad_s;
-            engine_nm = R::pick(passes, passed_nm, engine_nm);
-            loss_w = R::pick(passes, loss_w.filled(0.0), loss_w);
+            engine_nm = passes.select(passed_nm, engine_nm);
+            loss_w = passes.select(loss_w.splat(0.0), loss_w);
         }
         EngineSide {
             engine_nm,
@@ -347,92 +305,82 @@ where
     }
 
     /// Torque into the box that the idling engine passes on, Nm.
-    #[inline(always)]
     fn creeping_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
         let nu = output_rad_s / idle_rad_s;
-        let (k, lambda) = (nu.along(&self.k), self.lambda_nm_s2(nu));
-        let turns = output_rad_s.above(0.0);
-        let share = R::pick(turns, nu.filled(1.0), self.neutral_idle);
+        let (k, lambda) = (nu.interpolate(&self.k), self.lambda_nm_s2(nu));
+        let turns = output_rad_s.gt(0.0);
+        let share = turns.select(nu.splat(1.0), self.neutral_idle);
         let creep_nm = share * k * lambda * idle_rad_s * idle_rad_s; // TC-3
-        R::pick(nu.reaches(1.0), nu.filled(0.0), creep_nm)
+        nu.ge(1.0).select(nu.splat(0.0), creep_nm)
     }
 }
 
 /// The parts with a look-up in the table are functions of their own, so that cars with a clutch do not carry them.
-impl<R: Real> Coupling<R> for TorqueConverter<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Coupling<R> for TorqueConverter<R> {
     #[inline(never)]
     fn engine_rad_s(&self, load: &CouplingLoad<R>) -> R {
-        load.output_nm.within(
-            #[inline(always)]
-            || {
-                let (nm, rad_s) = (load.output_nm, load.output_rad_s);
-                let drives = nm.above(0.0);
-                let mut wanted = nm;
-                if drives.any() {
-                    wanted = self.driving_rad_s(nm, rad_s);
-                }
-                if !drives.all() {
-                    wanted = R::pick(drives, wanted, self.coasting_rad_s(-nm, rad_s));
-                }
-                wanted.most(load.idle_rad_s)
-            },
-        )
+        load.output_nm.vectorize(|| {
+            let (nm, rad_s) = (load.output_nm, load.output_rad_s);
+            let drives = nm.gt(0.0);
+            let mut wanted = nm;
+            if drives.any() {
+                wanted = self.driving_rad_s(nm, rad_s);
+            }
+            if !drives.all() {
+                wanted = drives.select(wanted, self.coasting_rad_s(-nm, rad_s));
+            }
+            wanted.max(load.idle_rad_s)
+        })
     }
 
+    #[inline]
     fn device(&self) -> &'static str {
         super::CONVERTER.name
     }
 
     /// The engine may be slower than the turbine that drives it.
-    #[inline(always)]
     fn min_engine_rad_s(&self, output_rad_s: R) -> R {
-        output_rad_s.filled(0.0)
+        output_rad_s.splat(0.0)
     }
 
-    #[inline(always)]
     fn locked_from_rad_s(&self, idle_rad_s: R) -> R {
         match &self.lockup {
-            Some(lockup) => lockup.open_rad_s.most(idle_rad_s),
-            None => idle_rad_s.filled(f64::INFINITY),
+            Some(lockup) => lockup.open_rad_s.max(idle_rad_s),
+            None => idle_rad_s.splat(f64::INFINITY),
         }
     }
 
-    #[inline(always)]
     fn by_command(&self) -> bool {
         true
     }
 
-    #[inline(always)]
     fn hold(&self, now: &LockSignals<R>, past: R::Mask) -> Hold<R> {
-        let zero = now.sump_k.filled(0.0);
+        let zero = now.sump_k.splat(0.0);
         let Some(lockup) = &self.lockup else {
             return Hold {
-                coupled: zero.answer(false),
-                locked_from_rad_s: zero.filled(f64::INFINITY),
+                coupled: zero.splat_mask(false),
+                locked_from_rad_s: zero.splat(f64::INFINITY),
                 slip_rad_s: zero,
             };
         };
         let least_rad_s = self.locked_from_rad_s(now.idle_rad_s);
-        let speed_m_s = R::pick(past, lockup.until_m_s, lockup.from_m_s);
-        let sump_k = R::pick(past, lockup.from_k - COOLER_K, lockup.from_k);
-        let turbine_rad_s = R::pick(past, least_rad_s, CLOSES_OVER_OPEN * least_rad_s);
-        let closes = speed_m_s.below(now.speed_m_s)
-            & now.sump_k.above(sump_k)
-            & now.output_rad_s.above(turbine_rad_s); // TC-7
-        let slips = closes & now.sump_k.at_most(lockup.slip_until_k);
+        let speed_m_s = past.select(lockup.until_m_s, lockup.from_m_s);
+        let sump_k = past.select(lockup.from_k - COOLER_K, lockup.from_k);
+        let turbine_rad_s = past.select(least_rad_s, CLOSES_OVER_OPEN * least_rad_s);
+        let closes = speed_m_s.lt(now.speed_m_s)
+            & now.sump_k.gt(sump_k)
+            & now.output_rad_s.gt(turbine_rad_s); // TC-7
+        let slips = closes & now.sump_k.le(lockup.slip_until_k);
         Hold {
             coupled: closes,
-            locked_from_rad_s: R::pick(closes, zero, zero.filled(f64::INFINITY)),
-            slip_rad_s: R::pick(slips, lockup.slip_rad_s, zero),
+            locked_from_rad_s: closes.select(zero, zero.splat(f64::INFINITY)),
+            slip_rad_s: slips.select(lockup.slip_rad_s, zero),
         }
     }
 
-    #[inline(always)]
     fn locked_side(&self, output_nm: R, output_rad_s: R, slip_rad_s: R) -> EngineSide<R> {
-        let slip_rad_s = slip_rad_s * (output_nm / SLIP_FROM_NM).held(0.0, 1.0); // TC-8
+        let slip_rad_s = slip_rad_s * (output_nm / SLIP_FROM_NM).clamp(0.0, 1.0); // TC-8
         EngineSide {
             engine_nm: output_nm,
             engine_rad_s: output_rad_s + slip_rad_s,
@@ -442,68 +390,55 @@ where
 
     #[inline(never)]
     fn engine_side(&self, output_nm: R, output_rad_s: R, engine_rad_s: R) -> EngineSide<R> {
-        output_nm.within(
-            #[inline(always)]
-            || self.side(output_nm, output_rad_s, engine_rad_s),
-        )
+        output_nm.vectorize(|| self.side(output_nm, output_rad_s, engine_rad_s))
     }
 
     #[inline(never)]
     fn output_nm(&self, engine_nm: R, output_rad_s: R, engine_rad_s: R) -> R {
-        engine_nm.within(
-            #[inline(always)]
-            || {
-                let drags = engine_nm.below(0.0);
-                let drives = !drags & engine_rad_s.reaches(output_rad_s);
-                let mut output_nm = engine_nm;
-                if drives.any() {
-                    let driving_nm = engine_nm * (output_rad_s / engine_rad_s).along(&self.k); // TC-1
-                    output_nm = R::pick(drives, driving_nm, output_nm);
-                }
-                let passes = !(drags | drives);
-                if passes.any() {
-                    let passed_nm = engine_nm * engine_rad_s / output_rad_s;
-                    output_nm = R::pick(passes, passed_nm, output_nm);
-                }
-                output_nm
-            },
-        )
+        engine_nm.vectorize(|| {
+            let drags = engine_nm.lt(0.0);
+            let drives = !drags & engine_rad_s.ge(output_rad_s);
+            let mut output_nm = engine_nm;
+            if drives.any() {
+                let driving_nm = engine_nm * (output_rad_s / engine_rad_s).interpolate(&self.k); // TC-1
+                output_nm = drives.select(driving_nm, output_nm);
+            }
+            let passes = !(drags | drives);
+            if passes.any() {
+                let passed_nm = engine_nm * engine_rad_s / output_rad_s;
+                output_nm = passes.select(passed_nm, output_nm);
+            }
+            output_nm
+        })
     }
 
     #[inline(never)]
     fn creep_nm(&self, output_rad_s: R, idle_rad_s: R) -> R {
-        idle_rad_s.within(
-            #[inline(always)]
-            || self.creeping_nm(output_rad_s, idle_rad_s),
-        )
+        idle_rad_s.vectorize(|| self.creeping_nm(output_rad_s, idle_rad_s))
     }
 
-    #[inline(always)]
     fn overrun_share(&self, output_rad_s: R, idle_rad_s: R) -> R {
-        let one = idle_rad_s.filled(1.0);
-        R::pick(output_rad_s.above(idle_rad_s), one, one.filled(0.0))
+        let one = idle_rad_s.splat(1.0);
+        output_rad_s.gt(idle_rad_s).select(one, one.splat(0.0))
     }
 
     #[inline(never)]
     fn min_output_nm(&self, at: &Turning<R>, absorbed_nm: R) -> R {
-        absorbed_nm.within(
-            #[inline(always)]
-            || {
-                let mut least_nm = -absorbed_nm;
-                let creeps = !at.locked & at.output_rad_s.below(at.idle_rad_s);
-                if creeps.any() {
-                    let creep_nm = self.creeping_nm(at.output_rad_s, at.idle_rad_s);
-                    least_nm = R::pick(creeps, creep_nm, least_nm);
-                }
-                let coasts = !(at.locked | creeps);
-                if coasts.any() {
-                    let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
-                    let coast_nm = -together(at) * absorbed_nm.least(carried_nm); // TC-6
-                    least_nm = R::pick(coasts, coast_nm, least_nm);
-                }
-                least_nm
-            },
-        )
+        absorbed_nm.vectorize(|| {
+            let mut least_nm = -absorbed_nm;
+            let creeps = !at.locked & at.output_rad_s.lt(at.idle_rad_s);
+            if creeps.any() {
+                let creep_nm = self.creeping_nm(at.output_rad_s, at.idle_rad_s);
+                least_nm = creeps.select(creep_nm, least_nm);
+            }
+            let coasts = !(at.locked | creeps);
+            if coasts.any() {
+                let carried_nm = self.coast_at_idle_nm(at.output_rad_s, at.idle_rad_s);
+                let coast_nm = -together(at) * absorbed_nm.min(carried_nm); // TC-6
+                least_nm = coasts.select(coast_nm, least_nm);
+            }
+            least_nm
+        })
     }
 }
 
@@ -532,7 +467,7 @@ impl TorqueConverter {
     /// A converter from the values of its keys.
     pub(super) fn from_values<V: Values>(s: &V) -> Self {
         // Given at 1000 rpm.
-        let thousand_rpm = Quantity::of("_rpm").to_si(1000.0);
+        let thousand_rpm = Quantity::from_key("_rpm").to_si(1000.0);
         let per_square = thousand_rpm * thousand_rpm;
         let capacity_nm_s2 = s.number(&TORQUE_CONVERTER.capacity_nm) / per_square;
         let own = s.rows(&TORQUE_CONVERTER.table).unwrap_or_default();

@@ -4,7 +4,7 @@ use super::Cvt;
 use super::controller::{ClampLaw, PressurePoint};
 use super::floors::Held;
 use super::variator::{BeltAtRatio, BeltLoad, belt_state};
-use crate::math::{Left, Real};
+use crate::math::{Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 
 /// Steps of the slip-limited law's walk from its lowest pressure to the cap.
@@ -20,26 +20,20 @@ pub(super) struct Clamping<'a, R: Real = f64> {
     pub force_log: R,
 }
 
-impl<R: Real> Clamping<'_, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Clamping<'_, R> {
     /// Secondary pressure that a law and PC-5 demand, Pa, not yet below the cap, and the number of the cause.
     #[inline(never)]
     pub fn pressure_pa(&self, law: &ClampLaw<R>) -> (R, R) {
-        self.force_log.within(
-            #[inline(always)]
-            || self.by_law_pa(law),
-        )
+        self.force_log.vectorize(|| self.by_law_pa(law))
     }
 
-    #[inline(always)]
     fn by_law_pa(&self, law: &ClampLaw<R>) -> (R, R) {
         match *law {
             // Looks at the engine only.
             ClampLaw::Map(_) => {
-                let none = self.force_log.filled(f64::NAN);
-                (none, none.filled(ClampCause::Law.number()))
+                let none = self.force_log.splat(f64::NAN);
+                (none, none.splat(ClampCause::Law.number()))
             }
             ClampLaw::TorqueFollowing {
                 safety,
@@ -53,64 +47,62 @@ where
             } => {
                 let (least_pa, cause) = self.for_torque_pa(safety, least_torque_nm);
                 // Run by run: each walks its own way.
-                let pressure_pa = slip.by_lane(|lane| self.for_slip_pa(lane, slip, least_pa));
-                let slips = pressure_pa.above(least_pa);
-                let by_law = cause.filled(ClampCause::Law.number());
+                let pressure_pa = slip.map_lanes(|lane| self.for_slip_pa(lane, slip, least_pa));
+                let slips = pressure_pa.gt(least_pa);
+                let by_law = cause.splat(ClampCause::Law.number());
                 (
-                    R::pick(slips, pressure_pa, least_pa),
-                    R::pick(slips, by_law, cause),
+                    slips.select(pressure_pa, least_pa),
+                    slips.select(by_law, cause),
                 )
             }
         }
     }
 
     /// Pressure of the table, or that of the cause that needs more (PC-6, PC-5); without a table that of the torque.
-    #[inline(always)]
     fn of_table_pa(&self) -> (R, R) {
         let torque_nm = self.load.output_torque_nm;
-        let held = self.held(torque_nm.filled(1.0), torque_nm.abs());
+        let held = self.held(torque_nm.splat(1.0), torque_nm.abs());
         let Some(tables) = &self.cvt.pressure_table else {
-            return held.above(held.of_torque_pa());
+            return held.raised(held.of_torque_pa());
         };
         let ratio = self.at.geometry.ratio;
-        held.above(torque_nm.by_lane(|lane| {
+        held.raised(torque_nm.map_lanes(|lane| {
             let (torque_nm, speed) = (torque_nm.lane(lane), self.secondary_rad_s.lane(lane));
             let at = PressurePoint::of_belt(torque_nm, ratio.lane(lane), speed);
-            R::one(tables, lane).pressure_pa(&at)
+            R::get(tables, lane).pressure_pa(&at)
         })) // PC-6
     }
 
     /// Pressure for the torque with a safety factor, or that of the cause that needs more (PC-3, PC-5).
-    #[inline(always)]
     fn for_torque_pa(&self, safety: R, least_nm: R) -> (R, R) {
-        let torque = self.load.output_torque_nm.abs().most(least_nm);
+        let torque = self.load.output_torque_nm.abs().max(least_nm);
         let held = self.held(safety, torque);
-        held.above(held.of_torque_pa())
+        held.raised(held.of_torque_pa())
     }
 
     /// The belt at a torque with a safety factor, Nm (PC-3).
-    #[inline(always)]
     fn held(&self, safety: R, torque: R) -> Held<'_, R> {
         let (cvt, at, load) = (self.cvt, self.at, self.load);
         let formulation = cvt.belt.formulation;
         let segment = formulation.segment_friction(load.segment_friction);
         let mu = formulation.capacity_friction(segment, load.capacity_friction);
-        let weaker = at.thrust_ratio.least(1.0);
+        let weaker = at.thrust_ratio.min(1.0);
         let force = safety * torque * cvt.belt.cos_wedge
             / (2.0 * mu * at.geometry.secondary_radius_m * weaker); // PC-3
         Held {
             cvt,
             at,
             load,
-            own_n: cvt.secondary_clamp_n(force.filled(0.0), self.secondary_rad_s),
+            own_n: cvt.secondary_clamp_n(force.splat(0.0), self.secondary_rad_s),
             need_n: force,
             force_log: self.force_log,
         }
     }
 
     /// Slip of a run at a pressure, Pa.
+    #[inline]
     fn slip(&self, lane: usize, pressure_pa: f64) -> f64 {
-        let pressure_pa = self.force_log.filled(pressure_pa);
+        let pressure_pa = self.force_log.splat(pressure_pa);
         let load = BeltLoad {
             secondary_clamp_n: self
                 .cvt
@@ -125,6 +117,7 @@ where
     }
 
     /// The pressure of a run, Pa, for its limit of slip.
+    #[inline]
     fn for_slip_pa(&self, lane: usize, limit: R, least_pa: R) -> f64 {
         let (cap_pa, limit) = (self.cvt.cap_pa.lane(lane), limit.lane(lane));
         least_for_slip_pa(limit, (least_pa.lane(lane), cap_pa), |pa| {

@@ -12,13 +12,13 @@
 //! q n_p. Without n_p the drag is T_f at every speed.
 
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Real, physics};
 
 /// Clearance at which `drag_nm` holds, m.
 pub const CLEARANCE_M: f64 = 0.3e-3;
 
 /// The checked reverse clutch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ClutchDrag<R: Real = f64> {
     /// Torque at reference viscosity and clearance, Nm.
     pub drag_nm: R,
@@ -38,33 +38,18 @@ pub struct ClutchDrag<R: Real = f64> {
     pub set_nm_s: R,
 }
 
-gather!(ClutchDrag {
-    drag_nm,
-    exponent,
-    cap_nm,
-    peak_rad_s,
-    clearance_m,
-    oil_share,
-    set_nm,
-    set_nm_s
-});
-
-impl<R: Real> ClutchDrag<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> ClutchDrag<R> {
     /// Torque, Nm, with the power (nu/nu_80)^m known, at a speed of the primary, rad/s (CD-1 to CD-3).
-    #[inline(always)]
     pub fn torque_nm(&self, power: R, primary_rad_s: R) -> R {
         let set_nm = self.set_nm + self.set_nm_s * power * primary_rad_s; // CD-3
         self.film_nm(power, primary_rad_s) + set_nm
     }
 
     /// Torque of the film between the plates, Nm (CD-1, CD-2).
-    #[inline(always)]
     fn film_nm(&self, power: R, primary_rad_s: R) -> R {
         let film_nm = self.drag_nm * power * (CLEARANCE_M / self.clearance_m);
-        let film_nm = film_nm.least(self.cap_nm); // CD-1
+        let film_nm = film_nm.min(self.cap_nm); // CD-1
         let Some(peak_rad_s) = self.peak_rad_s else {
             return film_nm;
         };

@@ -5,9 +5,9 @@ use super::pulley_bearing::PulleyBearing;
 use super::pump::{PumpAtTemperature, PumpState, TurningPump};
 use super::variator::{BeltAtRatio, BeltLoad, BeltLosses, belt_losses};
 use super::{Cvt, LossChanges, viscosity_power};
-use crate::fluid::{Lubricant, OilState};
+use crate::lubricant::{Lubricant, OilState};
 use crate::maps::MapPoint;
-use crate::math::{Left, MOST_LANES, Mask, Real};
+use crate::math::{MAX_LANES, Mask, Real, physics};
 use crate::transmission::component::Component;
 use crate::transmission::gear_train::{TrainLosses, TurningTrain};
 
@@ -54,10 +54,7 @@ pub(crate) struct ViscosityPowers<R: Real = f64> {
     pub clutch: R,
 }
 
-impl<R: Real> ViscosityPowers<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> ViscosityPowers<R> {
     /// The powers at a viscosity.
     pub fn new(cvt: &Cvt<R>, nu_m2_s: R) -> Self {
         ViscosityPowers {
@@ -67,7 +64,7 @@ where
     }
 
     /// Their logarithms, from ln(nu/nu_80).
-    #[inline(always)]
+    #[physics]
     pub fn exponents(cvt: &Cvt<R>, log_nu: R) -> [R; 2] {
         [
             cvt.shaft_drag.exponent * log_nu,
@@ -85,14 +82,12 @@ pub(crate) struct PulleyShafts<R: Real = f64> {
     ring_per_pa: R,
 }
 
-impl<R: Real> PulleyShafts<R>
-where
-    f64: Left<R>,
-{
-    /// What the parts in the box leave of them. The printed forms know neither, and a measured map of the belt holds the bearings.
-    #[inline(always)]
+#[physics]
+impl<R: Real> PulleyShafts<R> {
+    /// Keeps those of the parts in the box. The printed forms have neither, and a measured map of the belt includes the bearings.
+    #[inline]
     pub fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, parts: Parts) -> Self {
-        let none = at.direction.filled(0.0);
+        let none = at.direction.splat(0.0);
         let counted = cvt.belt.formulation.by_statics();
         let pulled = counted && parts.belt && !cvt.has_map(Component::BeltMap);
         PulleyShafts {
@@ -108,6 +103,14 @@ where
             },
         }
     }
+}
+
+/// Inputs of a component's map.
+#[derive(Clone, Copy)]
+struct MapInputs<R> {
+    speed_rad_s: R,
+    torque_nm: R,
+    pressure_pa: R,
 }
 
 /// The CVT at one ratio and oil temperature: what depends on neither torque, pressure nor speed.
@@ -131,7 +134,7 @@ pub(crate) struct Driveline<'a, R: Real = f64> {
     pub changes: Option<&'a LossChanges<R>>,
 }
 
-/// What turns with the engine's shaft, at its speed.
+/// Parts on the engine's shaft, at its speed.
 #[derive(Clone, Copy)]
 pub(crate) struct EngineShaft<'a, R: Real = f64> {
     pub rad_s: R,
@@ -173,14 +176,11 @@ pub(crate) struct PartTorques<R: Real = f64> {
     pub shaft: R,
 }
 
-impl<R: Real> PartTorques<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> PartTorques<R> {
     /// None; `like` has the lanes.
-    #[inline(always)]
     pub fn none(like: R) -> Self {
-        let none = like.filled(0.0);
+        let none = like.splat(0.0);
         PartTorques {
             final_drive: none,
             secondary: none,
@@ -194,7 +194,7 @@ where
                 penetration_nm: none,
                 slip_total: none,
                 capacity_nm: none,
-                gross_slip: like.answer(false),
+                gross_slip: like.splat_mask(false),
             },
             belt_map: None,
             box_map: None,
@@ -206,43 +206,37 @@ where
     }
 
     /// Parts that turn with the primary, the belt apart, Nm at the primary.
-    #[inline(always)]
     pub fn primary_nm(&self) -> R {
         self.clutch + self.bearing[0] + self.ring[0]
     }
 
     /// Slip and loss torque of the belt, Nm at the primary: a map has no slip.
-    #[inline(always)]
     pub fn belt_in_force(&self) -> (R, R) {
         match self.belt_map {
-            Some(loss) => (loss.filled(0.0), loss),
+            Some(loss) => (loss.splat(0.0), loss),
             None => (self.belt.slip_total, self.belt.sum_nm()),
         }
     }
 
     /// Parts that turn with the engine, Nm at the flywheel.
-    #[inline(always)]
     pub fn engine_nm(&self) -> R {
         self.pump + self.shaft + self.alternator + self.box_map_nm()
     }
 
     /// Loss of a box that is a map, Nm at the flywheel; 0 without one.
-    #[inline(always)]
     fn box_map_nm(&self) -> R {
         match self.box_map {
             Some(loss) => loss,
-            None => self.pump.filled(0.0),
+            None => self.pump.splat(0.0),
         }
     }
 
     /// Torque at the flywheel with that of the coupling, Nm.
-    #[inline(always)]
     pub fn flywheel_nm(&self, coupling_nm: R) -> R {
         coupling_nm + self.pump + self.shaft + self.alternator + self.box_map_nm()
     }
 
     /// Gives every loss torque with its component and shaft.
-    #[inline(always)]
     pub fn for_each_loss(&self, mut give: impl FnMut(Component, Shaft, R)) {
         if let Some(loss) = self.box_map {
             return give(Component::BoxMap, Shaft::Engine, loss);
@@ -274,16 +268,13 @@ where
 }
 
 /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
-#[inline(always)]
+#[physics]
 pub(super) fn final_drive<R: Real>(
     cvt: &Cvt<R>,
     secondary_rad_s: R,
     demand_nm: R,
     oil: OilState<R>,
-) -> TurningTrain<R>
-where
-    f64: Left<R>,
-{
+) -> TurningTrain<R> {
     let train = &cvt.final_drive.train;
     let turning = train.turning(secondary_rad_s, demand_nm, oil);
     match cvt.changes.as_deref() {
@@ -294,11 +285,10 @@ where
     }
 }
 
-impl<'a, R: Real> Driveline<'a, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<'a, R: Real> Driveline<'a, R> {
     /// The box with some of its parts at an oil temperature, K.
+    #[inline]
     pub fn new(
         cvt: &'a Cvt<R>,
         at: &'a BeltAtRatio<R>,
@@ -315,7 +305,7 @@ where
             pump: cvt.pump.at(state.dynamic_pa_s),
             shafts: PulleyShafts::new(cvt, at, parts),
             radius_factor: cvt.radius_factor(at),
-            force_log: oil_k.filled(0.0),
+            force_log: oil_k.splat(0.0),
             oil_k,
             oil: state,
             changes: cvt.changes.as_deref(),
@@ -323,47 +313,41 @@ where
     }
 
     /// Loss that a component's map gives at a speed, torque and pressure, times the component's factor, Nm; clears `inside` outside the map.
-    #[inline(always)]
-    fn mapped(
-        &self,
-        component: Component,
-        (rad_s, nm, pa): (R, R, R),
-        inside: &mut R::Mask,
-    ) -> Option<R> {
+    fn mapped(&self, component: Component, at: MapInputs<R>, inside: &mut R::Mask) -> Option<R> {
         let changes = self.changes?;
         let map = changes.maps[component].as_ref()?;
-        // Put together here, so that a car without maps does not store it.
-        let at = (rad_s, nm, pa);
-        let loss = self.looked_up(at, inside, |lane, point| R::one(map, lane).loss_nm(point));
+        // Copied here, so that a car without maps does not store it.
+        let at = MapInputs { ..at };
+        let loss = self.looked_up(at, inside, |lane, point| R::get(map, lane).loss_nm(point));
         Some(changes.factor[component] * loss) // CV-7
     }
 
-    /// What the maps of the runs give at a speed, torque and pressure, one by one; clears `inside` outside a map.
+    /// Looks up the maps of the runs at a speed, torque and pressure, one by one; clears `inside` outside a map.
+    #[inline]
     fn looked_up(
         &self,
-        (speed_rad_s, torque_nm, pressure_pa): (R, R, R),
+        at: MapInputs<R>,
         inside: &mut R::Mask,
         of: impl Fn(usize, &MapPoint) -> (f64, bool),
     ) -> R {
-        let (mut loss, mut within) = (torque_nm, [true; MOST_LANES]);
+        let (mut loss, mut within) = (at.torque_nm, [true; MAX_LANES]);
         for (lane, within) in within.iter_mut().enumerate().take(R::LANES) {
             let point = MapPoint {
                 ratio: self.at.geometry.ratio.lane(lane),
-                input_speed_rad_s: speed_rad_s.lane(lane),
-                torque_nm: torque_nm.lane(lane),
-                pressure_pa: pressure_pa.lane(lane),
+                input_speed_rad_s: at.speed_rad_s.lane(lane),
+                torque_nm: at.torque_nm.lane(lane),
+                pressure_pa: at.pressure_pa.lane(lane),
                 oil_k: self.oil_k.lane(lane),
             };
             let nm;
             (nm, *within) = of(lane, &point);
             loss = loss.with_lane(lane, nm);
         }
-        *inside = *inside & loss.ask(|lane| within[lane]);
+        *inside = *inside & loss.mask_lanes(|lane| within[lane]);
         loss
     }
 
     /// A model's loss torque, Nm, with the component's factor.
-    #[inline(always)]
     fn scaled(&self, component: Component, model_nm: R) -> R {
         match self.changes {
             Some(changes) => changes.factor[component] * model_nm, // CV-7
@@ -372,11 +356,10 @@ where
     }
 
     /// Loss torque of a component, Nm: of its map at a speed, torque and pressure, else of its model.
-    #[inline(always)]
     fn loss_nm(
         &self,
         component: Component,
-        at: (R, R, R),
+        at: MapInputs<R>,
         inside: &mut R::Mask,
         model_nm: impl FnOnce() -> R,
     ) -> R {
@@ -387,7 +370,6 @@ where
     }
 
     /// Losses and slip of the belt.
-    #[inline(always)]
     pub fn belt_losses(&self, load: &BeltLoad<R>) -> BeltLosses<R> {
         let losses = belt_losses(&self.cvt.belt, self.at, load);
         match self.changes {
@@ -397,13 +379,13 @@ where
     }
 
     /// The final drive at a speed of the secondary, for a torque that is demanded behind it, Nm at the secondary (FD-1).
+    #[inline]
     pub fn final_drive(&self, secondary_rad_s: R, demand_nm: R) -> TurningTrain<R> {
         final_drive(self.cvt, secondary_rad_s, demand_nm, self.oil)
     }
 
     /// Sets the torques to those of what turns with the secondary for a torque behind the final drive, Nm: those of the final drive, `drive`,
     /// then bearing and rings of the shaft.
-    #[inline(always)]
     pub fn secondary(
         &self,
         output_nm: R,
@@ -421,7 +403,6 @@ where
     }
 
     /// Torque into the final drive for one behind it, Nm.
-    #[inline(always)]
     pub fn through_nm(
         &self,
         output_nm: R,
@@ -431,7 +412,11 @@ where
         inside: &mut R::Mask,
     ) -> R {
         if self.parts.final_drive && !self.is_mapped() {
-            let at = (primary_rad_s, output_nm, pressure_pa);
+            let at = MapInputs {
+                speed_rad_s: primary_rad_s,
+                torque_nm: output_nm,
+                pressure_pa,
+            };
             match self.mapped(Component::FinalDrive, at, inside) {
                 Some(loss) => output_nm + loss * primary_rad_s / secondary_rad_s,
                 None => drive().input_nm(output_nm), // FD-2
@@ -442,7 +427,6 @@ where
     }
 
     /// Adds bearing and rings of the secondary's shaft to its torque.
-    #[inline(always)]
     pub fn turn_secondary(&self, torques: &mut PartTorques<R>, clamp: &Clamp<R>) {
         if self.parts.belt && !self.is_mapped() {
             torques.bearing[1] = self.bearing_nm(1, clamp);
@@ -455,7 +439,6 @@ where
     }
 
     /// Torque of the bearing on a pulley's shaft, Nm (PB-2).
-    #[inline(always)]
     fn bearing_nm(&self, pulley: usize, clamp: &Clamp<R>) -> R {
         let pull_n = self.shafts.pull_per_clamp * clamp.secondary_n;
         let nm = self.cvt.pulley_bearing.torque_nm(pulley, pull_n);
@@ -463,30 +446,29 @@ where
     }
 
     /// Torque of the primary's rings, Nm, or of those of both pulleys where a map has them (SR-1).
-    #[inline(always)]
     fn primary_ring_nm(&self, primary_rad_s: R, clamp: &Clamp<R>, inside: &mut R::Mask) -> R {
-        let none = primary_rad_s.filled(0.0);
+        let none = primary_rad_s.splat(0.0);
         if !self.parts.pump {
             return none;
         }
-        let at = (primary_rad_s, none, clamp.pressure_pa);
-        self.loss_nm(
-            Component::SealRing,
-            at,
-            inside,
-            #[inline(always)]
-            || self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at),
-        )
+        let at = MapInputs {
+            speed_rad_s: primary_rad_s,
+            torque_nm: none,
+            pressure_pa: clamp.pressure_pa,
+        };
+        self.loss_nm(Component::SealRing, at, inside, || {
+            self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
+        })
     }
 
-    /// Whether a map is in the place of all losses of the box (MP-3).
-    #[inline(always)]
+    /// True if a map replaces all losses of the box (MP-3).
     fn is_mapped(&self) -> bool {
         self.changes
             .is_some_and(|changes| changes.maps[Component::BoxMap].is_some())
     }
 
     /// Sets the loss of a box that is replaced by a map to that at rest, where it is known (MP-3).
+    #[inline]
     pub fn rest(&self, torques: &mut PartTorques<R>) {
         if let (Some(changes), Some(loss)) = (self.changes, &mut torques.box_map)
             && let Some(nm) = changes.at_rest_nm
@@ -496,20 +478,22 @@ where
     }
 
     /// Loss of a box that is replaced by a map, Nm at the flywheel, for a torque behind it at the secondary (MP-3).
-    #[inline(always)]
     fn box_map_nm(&self, secondary_nm: R, engine_rad_s: R, inside: &mut R::Mask) -> Option<R> {
         let changes = self.changes?;
         let map = changes.maps[Component::BoxMap].as_ref()?;
         let factor = changes.factor[Component::BoxMap];
         let behind_nm = secondary_nm * self.at.geometry.inv_ratio;
-        let at = (engine_rad_s, behind_nm, behind_nm.filled(0.0));
+        let at = MapInputs {
+            speed_rad_s: engine_rad_s,
+            torque_nm: behind_nm,
+            pressure_pa: behind_nm.splat(0.0),
+        };
         Some(self.looked_up(at, inside, |lane, behind| {
-            R::one(map, lane).loss_behind_nm(behind, factor.lane(lane))
+            R::get(map, lane).loss_behind_nm(behind, factor.lane(lane))
         })) // MP-3
     }
 
     /// Loss of a belt that is replaced by a map, Nm at the primary.
-    #[inline(always)]
     pub fn belt_map_nm(
         &self,
         secondary_nm: R,
@@ -518,14 +502,17 @@ where
         inside: &mut R::Mask,
     ) -> Option<R> {
         if self.is_mapped() {
-            return Some(secondary_nm.filled(0.0)); // MP-3
+            return Some(secondary_nm.splat(0.0)); // MP-3
         }
-        let at = (primary_rad_s, secondary_nm, pressure_pa);
+        let at = MapInputs {
+            speed_rad_s: primary_rad_s,
+            torque_nm: secondary_nm,
+            pressure_pa,
+        };
         self.mapped(Component::BeltMap, at, inside)
     }
 
     /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed and a clamping force.
-    #[inline(always)]
     pub fn turn_primary(
         &self,
         torques: &mut PartTorques<R>,
@@ -539,20 +526,19 @@ where
         torques.bearing[0] = self.bearing_nm(0, clamp);
         torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
         if self.parts.reverse_clutch {
-            let at = (primary_rad_s, primary_rad_s.filled(0.0), clamp.pressure_pa);
+            let at = MapInputs {
+                speed_rad_s: primary_rad_s,
+                torque_nm: primary_rad_s.splat(0.0),
+                pressure_pa: clamp.pressure_pa,
+            };
             let clutch = &self.cvt.clutch_drag;
-            torques.clutch = self.loss_nm(
-                Component::ClutchDrag,
-                at,
-                inside,
-                #[inline(always)]
-                || clutch.torque_nm(self.viscosity.clutch, primary_rad_s),
-            );
+            torques.clutch = self.loss_nm(Component::ClutchDrag, at, inside, || {
+                clutch.torque_nm(self.viscosity.clutch, primary_rad_s)
+            });
         }
     }
 
-    /// What turns with the engine's shaft at a speed.
-    #[inline(always)]
+    /// Computes the parts on the engine's shaft at a speed.
     pub fn engine_shaft(&self, rad_s: R) -> EngineShaft<'_, R> {
         EngineShaft {
             rad_s,
@@ -562,13 +548,11 @@ where
     }
 
     /// The pump at a speed of the engine.
-    #[inline(always)]
     pub fn turning_pump(&self, engine_rad_s: R) -> TurningPump<'_, R> {
         self.cvt.pump.turning(&self.pump, engine_rad_s)
     }
 
     /// Sets the torques of the parts that turn with the engine, at its speed, a pressure and a flow into the pulleys; the pump's state.
-    #[inline(always)]
     pub fn turn_engine(
         &self,
         torques: &mut PartTorques<R>,
@@ -577,19 +561,17 @@ where
         shift_flow_m3_s: R,
         inside: &mut R::Mask,
     ) -> PumpState<R> {
-        let at = (shaft.rad_s, pressure_pa.filled(0.0), pressure_pa);
+        let at = MapInputs {
+            speed_rad_s: shaft.rad_s,
+            torque_nm: pressure_pa.splat(0.0),
+            pressure_pa,
+        };
         let mut state = PumpState::none(pressure_pa);
         if self.parts.pump {
             let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
             state = shaft.pump.state(pressure_pa, need);
             let by_model = state.torque_nm;
-            state.torque_nm = self.loss_nm(
-                Component::Pump,
-                at,
-                inside,
-                #[inline(always)]
-                || by_model,
-            );
+            state.torque_nm = self.loss_nm(Component::Pump, at, inside, || by_model);
         }
         torques.box_map = self.box_map_nm(torques.secondary, shaft.rad_s, inside);
         if torques.box_map.is_some() {
@@ -597,37 +579,29 @@ where
         }
         torques.pump = state.torque_nm;
         torques.alternator = state.alternator_share * state.torque_nm; // EP-2
-        torques.shaft = self.loss_nm(
-            Component::InputShaft,
-            at,
-            inside,
-            #[inline(always)]
-            || shaft.drag_nm,
-        );
+        torques.shaft = self.loss_nm(Component::InputShaft, at, inside, || shaft.drag_nm);
         state
     }
 
     /// The pressure that the circuit holds of the one that the clamp law sets, Pa, and whether the pump's flow is what limits it (PU-6). A pump
     /// that is a measured map says nothing of its flow: it holds any pressure.
-    #[inline(always)]
     pub fn held_pa(&self, set_pa: R, pump: &TurningPump<R>, shift_flow_m3_s: R) -> (R, R::Mask) {
         let mut short = !pump.surely_holds(set_pa, shift_flow_m3_s);
         if !short.any() {
             return (set_pa, short);
         }
         let most_pa = pump.deliverable_pa(shift_flow_m3_s);
-        short = set_pa.above(most_pa);
+        short = set_pa.gt(most_pa);
         if self.cvt.has_map(Component::Pump) {
             return (set_pa, short);
         }
-        (R::pick(short, most_pa, set_pa), short)
+        (short.select(most_pa, set_pa), short)
     }
 
     /// Oil flow of the pump with the engine at a speed, at a pressure and a flow into the pulleys, m3/s.
-    #[inline(always)]
     pub fn oil_flow_m3_s(&self, engine_rad_s: R, pressure_pa: R, shift_flow_m3_s: R) -> R {
         if !self.parts.pump {
-            return pressure_pa.filled(0.0);
+            return pressure_pa.splat(0.0);
         }
         let need = self.pump.need_m3_s(pressure_pa) + shift_flow_m3_s;
         let pump = self.turning_pump(engine_rad_s);
@@ -635,7 +609,6 @@ where
     }
 
     /// Signals of the clamp law.
-    #[inline(always)]
     pub fn signals(&self, throttle: R, engine_rad_s: R) -> ClampSignals<R> {
         ClampSignals {
             throttle,

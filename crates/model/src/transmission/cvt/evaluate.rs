@@ -8,7 +8,7 @@ use super::Shifting;
 use super::controller::ClampLaw;
 use super::driveline::{Clamp, Driveline, PartTorques};
 use super::variator::BeltLoad;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::coupling::{Coupling, CouplingLoad, EngineSide, Hold, Reach, Turning};
 use crate::transmission::gear_train::TurningTrain;
@@ -30,7 +30,7 @@ pub(super) struct Step<'a, P, R: Real = f64> {
     pub shift_flow_m3_s: R,
     /// True where pump flow held the shift back.
     pub shift_held: R::Mask,
-    /// What the ratio control keeps.
+    /// State of the ratio control.
     pub shifting: Shifting<R>,
     /// Engine speeds within reach.
     pub reach: Reach<R>,
@@ -51,12 +51,9 @@ pub(super) struct Guess<R: Real = f64> {
     pub pressure_pa: R,
 }
 
-impl<R: Real> Guess<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Guess<R> {
     /// The middle between two guesses.
-    #[inline(always)]
     pub(super) fn halfway(&self, other: &Self) -> Self {
         Guess {
             output_nm: 0.5 * (self.output_nm + other.output_nm),
@@ -67,20 +64,18 @@ where
     }
 
     /// `yes` where the mask says so, else `no`.
-    #[inline(always)]
-    pub(super) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+    pub(super) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         Guess {
-            output_nm: R::pick(mask, yes.output_nm, no.output_nm),
-            slip: R::pick(mask, yes.slip, no.slip),
-            engine_rad_s: R::pick(mask, yes.engine_rad_s, no.engine_rad_s),
-            pressure_pa: R::pick(mask, yes.pressure_pa, no.pressure_pa),
+            output_nm: mask.select(yes.output_nm, no.output_nm),
+            slip: mask.select(yes.slip, no.slip),
+            engine_rad_s: mask.select(yes.engine_rad_s, no.engine_rad_s),
+            pressure_pa: mask.select(yes.pressure_pa, no.pressure_pa),
         }
     }
 
     /// All zero; `like` has the lanes.
-    #[inline(always)]
     pub(super) fn none(like: R) -> Self {
-        let none = like.filled(0.0);
+        let none = like.splat(0.0);
         Guess {
             output_nm: none,
             slip: none,
@@ -124,14 +119,11 @@ pub(super) struct Point<R: Real = f64> {
     pub locked: R::Mask,
 }
 
-impl<R: Real> Point<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Point<R> {
     /// Before the first evaluation; `like` has the lanes.
-    #[inline(always)]
     pub(super) fn none(like: R) -> Self {
-        let (none, no) = (like.filled(0.0), like.answer(false));
+        let (none, no) = (like.splat(0.0), like.splat_mask(false));
         Point {
             guess: Guess::none(like),
             slip_guessed: none,
@@ -157,21 +149,19 @@ where
     }
 
     /// Largest change of the unknowns by the evaluation.
-    #[inline(always)]
     pub(super) fn moved(&self) -> R {
         let g = &self.guess;
         let pressure = (g.pressure_pa / self.next_pressure_pa - 1.0).abs();
         let slip = (g.slip - self.slip_guessed).abs();
-        let mut engine = slip.filled(0.0);
+        let mut engine = slip.splat(0.0);
         if !self.locked.all() {
             let moved = (g.engine_rad_s / self.next_engine_rad_s - 1.0).abs();
-            engine = R::pick(self.locked, engine, moved);
+            engine = self.locked.select(engine, moved);
         }
-        engine.most(slip.most(pressure))
+        engine.max(slip.max(pressure))
     }
 
     /// The guess that follows without a secant.
-    #[inline(always)]
     pub(super) fn next(&self) -> Guess<R> {
         Guess {
             engine_rad_s: self.next_engine_rad_s,
@@ -210,9 +200,9 @@ pub(super) struct Limit<M> {
     pub full_load: M,
 }
 
+#[physics]
 impl<M: Mask> Limit<M> {
     /// No limit; `no` in every lane.
-    #[inline(always)]
     pub(super) fn none(no: M) -> Self {
         Limit {
             engine_drag: no,
@@ -221,33 +211,27 @@ impl<M: Mask> Limit<M> {
     }
 
     /// Where there is a limit.
-    #[inline(always)]
     pub(super) fn binds(&self) -> M {
         self.engine_drag | self.full_load
     }
 
     /// `yes` where the mask says so, else `no`.
-    #[inline(always)]
-    pub(super) fn pick(mask: M, yes: &Self, no: &Self) -> Self {
+    pub(super) fn select(mask: M, yes: &Self, no: &Self) -> Self {
         Limit {
-            engine_drag: mask.then(yes.engine_drag, no.engine_drag),
-            full_load: mask.then(yes.full_load, no.full_load),
+            engine_drag: mask.select(yes.engine_drag, no.engine_drag),
+            full_load: mask.select(yes.full_load, no.full_load),
         }
     }
 }
 
-impl<P: PrimeMover<R>, R: Real> Step<'_, P, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// Primary speed at a slip, rad/s (CV-1).
-    #[inline(always)]
     pub(super) fn primary_rad_s(&self, slip: R) -> R {
         self.line.at.geometry.ratio * self.secondary_rad_s / (1.0 - slip) // CV-1
     }
 
     /// Sets the torques of final drive, belt, pulley shafts and reverse clutch at a guess.
-    #[inline(always)]
     fn turn_box(
         &self,
         g: &Guess<R>,
@@ -260,7 +244,6 @@ where
         let line = &self.line;
         line.secondary(
             g.output_nm,
-            #[inline(always)]
             || self.drive,
             (primary_rad_s, self.secondary_rad_s),
             clamp,
@@ -277,7 +260,6 @@ where
     }
 
     /// From the wheels to a launch device in front of the variator.
-    #[inline(always)]
     fn launch_ahead(
         &self,
         g: &Guess<R>,
@@ -312,7 +294,7 @@ where
             primary_nm,
             passed_nm: primary_nm,
             over_rad_s: primary_rad_s,
-            between_nm: primary_nm.filled(0.0),
+            between_nm: primary_nm.splat(0.0),
             side: self.engine_side(g, limit, (primary_nm, primary_rad_s), locked),
             locked,
         }
@@ -324,22 +306,18 @@ where
     /// output torque gives: so the two unknowns do not disturb each other.
     #[inline(never)]
     pub(super) fn evaluate(&self, g: &Guess<R>, limit: &Limit<R::Mask>, point: &mut Point<R>) {
-        g.slip.within(
-            #[inline(always)]
-            || {
-                let mut inside_maps = g.slip.answer(true);
-                let chain = if self.line.cvt.launch_behind {
-                    self.launch_behind(g, limit, &mut inside_maps, &mut point.torques)
-                } else {
-                    self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques)
-                };
-                self.follow(g, limit, chain, inside_maps, point);
-            },
-        );
+        g.slip.vectorize(|| {
+            let mut inside_maps = g.slip.splat_mask(true);
+            let chain = if self.line.cvt.launch_behind {
+                self.launch_behind(g, limit, &mut inside_maps, &mut point.torques)
+            } else {
+                self.launch_ahead(g, limit, &mut inside_maps, &mut point.torques)
+            };
+            self.follow(g, limit, chain, inside_maps, point);
+        });
     }
 
     /// Torque that the coupling passes on under a limit, Nm: that of the chain where there is none.
-    #[inline(always)]
     fn wanted_nm(
         &self,
         limit: &Limit<R::Mask>,
@@ -350,17 +328,16 @@ where
         let mut wanted_nm = passed_nm;
         if limit.engine_drag.any() {
             let least_nm = self.min_passed_nm(turning, spin_nm);
-            wanted_nm = R::pick(limit.engine_drag, least_nm, wanted_nm);
+            wanted_nm = limit.engine_drag.select(least_nm, wanted_nm);
         }
         if limit.full_load.any() {
             let most_nm = self.max_passed_nm(turning, spin_nm);
-            wanted_nm = R::pick(limit.full_load, most_nm, wanted_nm);
+            wanted_nm = limit.full_load.select(most_nm, wanted_nm);
         }
         wanted_nm
     }
 
-    /// What follows from the torques up to the engine, which are in the point: those of its own shaft, and engine speed, throttle and pressure under a limit.
-    #[inline(always)]
+    /// Continues from the torques up to the engine, which are in the point: adds those of the engine's shaft, engine speed, throttle and pressure under a limit.
     fn follow(
         &self,
         g: &Guess<R>,
@@ -391,20 +368,19 @@ where
         if bound.any() {
             let speeds = (over_rad_s, engine_rad_s);
             let (nm, rad_s) = self.under_limit(wanted_nm, speeds, chain.locked, spin_nm);
-            wanted_flywheel_nm = R::pick(bound, nm, wanted_flywheel_nm);
-            next_engine_rad_s = R::pick(bound, rad_s, next_engine_rad_s);
+            wanted_flywheel_nm = bound.select(nm, wanted_flywheel_nm);
+            next_engine_rad_s = bound.select(rad_s, next_engine_rad_s);
             next_pump = line.turning_pump(next_engine_rad_s);
         }
         let crank_nm = wanted_flywheel_nm + engine.accessories_nm(next_engine_rad_s);
         let full_load_nm = engine.full_load_nm(next_engine_rad_s);
-        let throttle = (crank_nm / full_load_nm).held(0.0, 1.0);
+        let throttle = (crank_nm / full_load_nm).clamp(0.0, 1.0);
         let signals = line.signals(throttle, next_engine_rad_s);
         let secondary_nm = torques.secondary;
         let (set_pa, clamp_cause) = cvt.pressure_by(
             self.clamp,
             &signals,
             line.at,
-            #[inline(always)]
             || BeltLoad {
                 output_torque_nm: secondary_nm,
                 ..chain.load
@@ -439,7 +415,6 @@ where
     }
 
     /// Torque at the flywheel, Nm, and engine speed, rad/s, where a limit has the coupling pass on a torque at the speeds of its two sides.
-    #[inline(always)]
     fn under_limit(
         &self,
         passed_nm: R,
@@ -458,15 +433,14 @@ where
         if locked.any() {
             let slip_rad_s = self.hold.slip_rad_s;
             let side = coupling.locked_side(passed_nm, over_rad_s, slip_rad_s);
-            engine_nm = R::pick(locked, side.engine_nm, engine_nm);
-            next = R::pick(locked, engine_rad_s, next);
+            engine_nm = locked.select(side.engine_nm, engine_nm);
+            next = locked.select(engine_rad_s, next);
         }
         (engine_nm + spin_nm, next)
     }
 
     /// The engine's side of the coupling at a guess. A clutch has its engine never slower than the primary, and at the same speed while
     /// locked, so that it cannot give energy back.
-    #[inline(always)]
     pub(super) fn engine_side(
         &self,
         g: &Guess<R>,
@@ -485,27 +459,23 @@ where
             side = self.free_engine(primary_nm, primary_rad_s); // at once: nothing before it feels the engine's speed
         }
         if bound.any() {
-            let engine_rad_s = g
-                .engine_rad_s
-                .most(coupling.min_engine_rad_s(primary_rad_s));
+            let engine_rad_s = g.engine_rad_s.max(coupling.min_engine_rad_s(primary_rad_s));
             let guessed = coupling.engine_side(primary_nm, primary_rad_s, engine_rad_s);
-            side = EngineSide::pick(bound, &guessed, &side);
+            side = EngineSide::select(bound, &guessed, &side);
         }
         if locked.any() {
             let held = coupling.locked_side(primary_nm, primary_rad_s, self.hold.slip_rad_s);
-            side = EngineSide::pick(locked, &held, &side);
+            side = EngineSide::select(locked, &held, &side);
         }
         side
     }
 
     /// True where the coupling holds engine and primary together (LC-5).
-    #[inline(always)]
     pub(super) fn locked(&self, primary_rad_s: R) -> R::Mask {
-        primary_rad_s.reaches(self.hold.locked_from_rad_s)
+        primary_rad_s.ge(self.hold.locked_from_rad_s)
     }
 
     /// Engine over a slipping coupling, within the speeds that its inertia allows.
-    #[inline(always)]
     fn free_engine(&self, primary_nm: R, primary_rad_s: R) -> EngineSide<R> {
         let load = CouplingLoad {
             output_nm: primary_nm,
@@ -517,7 +487,6 @@ where
     }
 
     /// The speeds around the coupling.
-    #[inline(always)]
     pub(super) fn turning(&self, primary_rad_s: R, engine_rad_s: R) -> Turning<R> {
         Turning {
             output_rad_s: primary_rad_s,
@@ -528,7 +497,6 @@ where
     }
 
     /// Least torque that engine and coupling pass on, Nm at the primary, with all between them taking `spin_nm` (CV-3).
-    #[inline(always)]
     pub(super) fn min_passed_nm(&self, at: &Turning<R>, spin_nm: R) -> R {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let absorbed_nm = engine.drag_nm(w) + engine.accessories_nm(w) + spin_nm;
@@ -536,7 +504,6 @@ where
     }
 
     /// Largest torque passed on at full load, Nm at the primary (CV-4).
-    #[inline(always)]
     pub(super) fn max_passed_nm(&self, at: &Turning<R>, spin_nm: R) -> R {
         let (engine, w) = (self.input.engine, at.engine_rad_s);
         let engine_nm = engine.full_load_nm(w) - engine.accessories_nm(w) - spin_nm;
@@ -545,6 +512,6 @@ where
         }
         let coupling = &self.line.cvt.coupling;
         let passed_nm = coupling.output_nm(engine_nm, at.output_rad_s, w);
-        R::pick(at.locked, engine_nm, passed_nm)
+        at.locked.select(engine_nm, passed_nm)
     }
 }

@@ -8,19 +8,17 @@
 //! The bearings of the secondary's own shaft are those of the pulley.
 
 use crate::keys::Values;
-use crate::math::{Real, gather};
+use crate::math::{Gather, Real};
 use crate::transmission::gear_train::{GearParts, GearTrain};
 
 /// The checked final drive.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct FinalDrive<R: Real = f64> {
     /// Speed of the secondary over that of the wheels (CV-1).
     pub ratio: R,
-    /// Its gears, bearings and seals (FD-1, FD-2).
+    /// Gears, bearings and seals (FD-1, FD-2).
     pub train: GearTrain<R>,
 }
-
-gather!(FinalDrive { ratio, train });
 
 impl FinalDrive {
     /// The final drive from the values of its table, its ratio and that of its first stage, in its oil.

@@ -1,4 +1,4 @@
-//! What needs a smallest secondary pressure besides the belt's torque, in a box with one line pressure.
+//! Lower bounds of the secondary pressure other than the belt's torque, in a box with one line pressure.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -11,11 +11,11 @@
 use super::Cvt;
 use super::variator::{BeltAtRatio, BeltLoad};
 use crate::keys::{Values, keys};
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
 
 /// The checked floors.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Floors<R: Real = f64> {
     /// Pressure that valves, cooler and lubrication need, Pa.
     pub control_pa: R,
@@ -42,23 +42,12 @@ impl Floors {
     }
 }
 
-gather!(Floors {
-    control_pa,
-    clutch_return_pa,
-    clutch_pa_per_nm,
-    strand_n,
-    creep_per_rad
-});
-
-impl<R: Real> Floors<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Floors<R> {
     /// Logarithm of the force ratio over tau that shifts ln I at a rate: positive towards low, negative towards high, 0 at rest.
-    #[inline(always)]
     pub fn force_log(&self, rate_per_s: R, primary_rad_s: R) -> R {
         let creep = primary_rad_s * self.creep_per_rad;
-        R::pick(creep.above(0.0), rate_per_s / creep, creep.filled(0.0))
+        creep.gt(0.0).select(rate_per_s / creep, creep.splat(0.0))
     }
 }
 
@@ -75,30 +64,27 @@ pub(super) struct Held<'a, R: Real = f64> {
     pub force_log: R,
 }
 
-impl<R: Real> Held<'_, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Held<'_, R> {
     /// The pressure that each cause needs, Pa (PC-5).
-    #[inline(always)]
     fn each_pa(&self) -> [(R, ClampCause); 5] {
         let (cvt, floors) = (self.cvt, &self.cvt.floors);
-        let zero = self.own_n.filled(0.0);
+        let zero = self.own_n.splat(0.0);
         let primary_nm = self.load.output_torque_nm.abs() * self.at.geometry.inv_ratio;
         let strands_n = floors.strand_n * self.at.geometry.secondary_wrap_rad;
         let (mut down_pa, mut up_pa) = (zero, zero);
-        let (down, up) = (self.force_log.above(0.0), zero.above(self.force_log));
+        let (down, up) = (self.force_log.gt(0.0), zero.gt(self.force_log));
         if down.any() {
             let pressed_pa = self.pressure_pa(self.need_n * self.force_log.exp());
-            down_pa = R::pick(down, pressed_pa, zero);
+            down_pa = down.select(pressed_pa, zero);
         }
         if up.any() {
             let ratio = self.at.thrust_ratio * (-self.force_log).exp();
             let left_m2 = cvt.primary_piston_m2 - ratio * cvt.secondary_piston_m2;
-            let enough = left_m2.above(0.0);
-            let most = zero.filled(f64::INFINITY);
-            let pressed_pa = R::pick(enough, ratio * self.own_n / left_m2, most);
-            up_pa = R::pick(up, pressed_pa, zero);
+            let enough = left_m2.gt(0.0);
+            let most = zero.splat(f64::INFINITY);
+            let pressed_pa = enough.select(ratio * self.own_n / left_m2, most);
+            up_pa = up.select(pressed_pa, zero);
         }
         [
             (floors.control_pa, ClampCause::Control),
@@ -116,25 +102,22 @@ where
     }
 
     /// Pressure for a force, Pa.
-    #[inline(always)]
     fn pressure_pa(&self, force_n: R) -> R {
         (force_n - self.own_n) / self.cvt.secondary_piston_m2
     }
 
     /// Pressure for the force that the torque needs, Pa.
-    #[inline(always)]
     pub fn of_torque_pa(&self) -> R {
         self.pressure_pa(self.need_n)
     }
 
     /// The larger of a law's pressure, Pa, and what each cause needs, with the number of the cause.
-    #[inline(always)]
-    pub fn above(&self, law_pa: R) -> (R, R) {
-        let mut most = (law_pa, law_pa.filled(ClampCause::Law.number()));
+    pub fn raised(&self, law_pa: R) -> (R, R) {
+        let mut most = (law_pa, law_pa.splat(ClampCause::Law.number()));
         for (floor_pa, cause) in self.each_pa() {
-            let binds = floor_pa.above(most.0);
-            most.0 = R::pick(binds, floor_pa, most.0);
-            most.1 = R::pick(binds, most.1.filled(cause.number()), most.1);
+            let binds = floor_pa.gt(most.0);
+            most.0 = binds.select(floor_pa, most.0);
+            most.1 = binds.select(most.1.splat(cause.number()), most.1);
         }
         most
     }

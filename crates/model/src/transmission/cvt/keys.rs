@@ -12,8 +12,8 @@ use super::shaft_drag::{ShaftDrag, ShaftKeys};
 use super::variator::{Belt, BeltKeys, Formulation, Geometry, VARIATOR, VariatorKeys};
 use super::{Cvt, LossChanges};
 use crate::engine::Engine;
-use crate::fluid::Lubricant;
 use crate::keys::{Choice, Kind, Table, Values, keys};
+use crate::lubricant::Lubricant;
 use crate::maps::LossMap;
 use crate::math::asin;
 use crate::transmission::box_map::{self, CVT_BOX, CVT_BOX_POINTS};
@@ -156,7 +156,7 @@ impl Cvt {
     }
 }
 
-/// Whether the launch clutch is behind the variator; a converter there, or a map of the whole box, is reported.
+/// Reads the place of the launch clutch, true behind the variator; a converter there, or a map of the whole box, is reported.
 fn launch_behind<V: Values>(s: &V, launch: &dyn Coupling, changes: Option<&LossChanges>) -> bool {
     let behind = s.word(&CVT.launch_at) == "output";
     if behind && launch.by_command() {

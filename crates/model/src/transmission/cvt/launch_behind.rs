@@ -12,17 +12,14 @@
 use super::driveline::{Clamp, PartTorques};
 use super::evaluate::{Chain, Guess, Limit, Step};
 use super::variator::BeltLoad;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::BELT;
 use crate::transmission::coupling::{Coupling, EngineSide};
 
-impl<P: PrimeMover<R>, R: Real> Step<'_, P, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// From the wheels through a clutch behind the variator to the engine.
-    #[inline(always)]
     pub(super) fn launch_behind(
         &self,
         g: &Guess<R>,
@@ -68,13 +65,13 @@ where
             let least = cvt.coupling.min_engine_rad_s(over_rad_s);
             side = cvt
                 .coupling
-                .engine_side(passed_nm, over_rad_s, w.most(least));
+                .engine_side(passed_nm, over_rad_s, w.max(least));
         }
         if locked.any() {
             let held = cvt
                 .coupling
                 .locked_side(passed_nm, over_rad_s, self.hold.slip_rad_s);
-            side = EngineSide::pick(locked, &held, &side);
+            side = EngineSide::select(locked, &held, &side);
         }
         torques.secondary =
             self.shaft_nm(clutch_nm, &side, slip) + (torques.bearing[1] + torques.ring[1]);
@@ -94,25 +91,18 @@ where
     }
 
     /// Torque at the primary over that at the secondary at a slip, without losses.
-    #[inline(always)]
     fn at_primary(&self, slip: R) -> R {
         (1.0 - slip) * self.line.at.geometry.inv_ratio
     }
 
     /// The torque that the clutch gives to its output: what the final drive takes, or at rest what creeps.
-    #[inline(always)]
     fn behind_clutch(&self, g: &Guess<R>, over_rad_s: R, inside: &mut R::Mask) -> PartTorques<R> {
         // All runs of a group are at rest together.
-        if self.secondary_rad_s.above(0.0).any() {
+        if self.secondary_rad_s.gt(0.0).any() {
             let speeds = (over_rad_s, self.secondary_rad_s);
-            let secondary = self.line.through_nm(
-                g.output_nm,
-                #[inline(always)]
-                || self.drive,
-                speeds,
-                g.pressure_pa,
-                inside,
-            );
+            let secondary =
+                self.line
+                    .through_nm(g.output_nm, || self.drive, speeds, g.pressure_pa, inside);
             return PartTorques {
                 final_drive: secondary - g.output_nm,
                 secondary,
@@ -126,7 +116,7 @@ where
                 .line
                 .cvt
                 .coupling
-                .creep_nm(idle_rad_s.filled(0.0), idle_rad_s); // SE-3
+                .creep_nm(idle_rad_s.splat(0.0), idle_rad_s); // SE-3
         PartTorques {
             secondary: creep_nm / self.at_primary(g.slip), // LO-4
             ..PartTorques::none(creep_nm)
@@ -134,27 +124,24 @@ where
     }
 
     /// True where the engine turns as fast as the locked clutch has it.
-    #[inline(always)]
     fn together(&self, side: &EngineSide<R>, slip: R) -> R::Mask {
-        self.primary_rad_s(slip).reaches(side.engine_rad_s)
+        self.primary_rad_s(slip).ge(side.engine_rad_s)
     }
 
     /// Torque of the clutch at the secondary's shaft, Nm.
-    #[inline(always)]
     fn shaft_nm(&self, clutch_nm: R, side: &EngineSide<R>, slip: R) -> R {
         let slipping_nm = side.engine_nm / self.at_primary(slip);
-        R::pick(self.together(side, slip), clutch_nm, slipping_nm)
+        self.together(side, slip).select(clutch_nm, slipping_nm)
     }
 
     /// Speed of the secondary, rad/s (LO-1).
-    #[inline(always)]
     fn behind_belt_rad_s(&self, side: &EngineSide<R>, slip: R) -> R {
         let slipping = side.engine_rad_s * self.at_primary(slip); // LO-1
-        R::pick(self.together(side, slip), self.secondary_rad_s, slipping)
+        self.together(side, slip)
+            .select(self.secondary_rad_s, slipping)
     }
 
     /// The unloaded belt at the engine's speed.
-    #[inline(always)]
     fn turning_load(&self, side: &EngineSide<R>, slip: R) -> BeltLoad<R> {
         let together = self.together(side, slip);
         if together.all() {
@@ -170,6 +157,6 @@ where
         let band = oil.friction.band(belt_k, oil.dynamic_pa_s(belt_k), sliding);
         let film_area_m2 = line.at.prepared.film_area_m2;
         let slipping = BeltLoad::unloaded(&oil.friction, band, film_area_m2, sliding);
-        BeltLoad::pick(together, &self.load, &slipping)
+        BeltLoad::select(together, &self.load, &slipping)
     }
 }

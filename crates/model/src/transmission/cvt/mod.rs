@@ -55,7 +55,7 @@ use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::{Step, Trace};
 use crate::maps::LossMap;
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{COOLANT, SUMP};
 use std::sync::Arc;
@@ -63,14 +63,11 @@ use std::sync::Arc;
 /// Kinematic viscosity nu_80 to which the constants of the shafts' drags refer, m2/s.
 pub const NU_REFERENCE_M2_S: f64 = 11.0e-6;
 
-/// Its logarithm.
+/// Logarithm of the reference viscosity.
 const LN_NU_REFERENCE: f64 = -11.417_615_285_165_903;
 
 /// The power (nu/nu_80)^m of the shafts' drags (IS-1, CD-1).
-pub fn viscosity_power<R: Real>(nu_m2_s: R, exponent: R) -> R
-where
-    f64: Left<R>,
-{
+pub fn viscosity_power<R: Real>(nu_m2_s: R, exponent: R) -> R {
     (exponent * (nu_m2_s.ln() - LN_NU_REFERENCE)).exp()
 }
 
@@ -80,21 +77,15 @@ fn product_of(torque_nm: f64, speed_rad_s: f64) -> f64 {
 }
 
 /// Losses that are not those of the models.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Gather)]
 pub struct LossChanges<R: Real = f64> {
     /// Measured maps in place of models.
-    pub maps: ByComponent<Option<R::Each<LossMap>>>,
+    pub maps: ByComponent<Option<R::PerLane<LossMap>>>,
     /// Factors on the losses (CV-7).
     pub factor: ByComponent<R>,
     /// Loss of a box that is a map with the car at rest, Nm, where it is known (MP-3).
     pub at_rest_nm: Option<R>,
 }
-
-gather!(LossChanges {
-    maps,
-    factor,
-    at_rest_nm
-});
 
 impl Default for LossChanges {
     fn default() -> Self {
@@ -107,7 +98,7 @@ impl Default for LossChanges {
 }
 
 /// The checked CVT.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Gather)]
 pub struct Cvt<R: Real = f64> {
     /// Final drive.
     pub final_drive: FinalDrive<R>,
@@ -136,7 +127,7 @@ pub struct Cvt<R: Real = f64> {
     /// Clamp law.
     pub clamp: ClampLaw<R>,
     /// Table of the law that is one (PC-6).
-    pub pressure_table: Option<R::Each<Arc<PressureTable>>>,
+    pub pressure_table: Option<R::PerLane<Arc<PressureTable>>>,
     /// Exponent of the primary radius in the clamp map.
     pub radius_exponent: R,
     /// Causes of a smallest secondary pressure.
@@ -148,6 +139,7 @@ pub struct Cvt<R: Real = f64> {
     /// Launch device.
     pub coupling: Launch<R>,
     /// True where that is a clutch behind the variator, so that belt and pulleys turn with the engine (LO-1).
+    #[gather(same)]
     pub launch_behind: bool,
     /// Selector at rest.
     pub selector: Selector<R>,
@@ -159,53 +151,42 @@ pub struct Cvt<R: Real = f64> {
     pub belt_heat_share: R,
 }
 
-gather! {
-    Cvt {
-        final_drive, belt, secondary_piston_m2, primary_piston_m2, spring_n, centrifugal_n_s2, pump, shaft_drag, clutch_drag, pulley_bearing,
-        seal_ring, ratio, clamp, pressure_table, radius_exponent, floors, cap_pa, low_radius_m, coupling, selector, full_load_route, changes,
-        belt_heat_share,
-    } same { launch_behind }
-}
-
-/// What the CVT keeps of the step before.
+/// State of the CVT after the step before.
 #[derive(Clone, Debug)]
 pub struct CvtState<R: Real = f64> {
     /// Belt at the ratio in force.
     pub belt: BeltAtRatio<R>,
     /// Start of the solve.
     pub warm_start: WarmStart<R>,
-    /// What the ratio control keeps of the step before.
+    /// State of the ratio control after the step before.
     pub shifting: Shifting<R>,
-    /// What the next step is held at, if it is.
+    /// Imposed values of the next step, if any.
     pub hold: Option<Hold<R>>,
 }
 
 impl Copy for CvtState {}
 
-/// What is imposed on a CVT in a step, in place of its controller (RC-12).
+/// Values imposed on a CVT in a step, in place of its controller (RC-12).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hold<R: Real = f64> {
     /// Belt ratio at the end of the step; the one before at rest.
     pub ratio: R,
     /// Clamp law; that of the box without one.
     pub clamp: Option<ClampLaw<R>>,
-    /// Whether the ratio is only asked for: the box goes there as fast as it can (RC-4, RC-5).
+    /// True if the ratio is a target: the box goes there as fast as it can (RC-4, RC-5).
     pub paced: bool,
 }
 
-/// What the ratio control keeps of the step before.
+/// State of the ratio control after the step before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shifting<R: Real = f64> {
     /// Direction of the last change of ratio: 1 towards low, -1 towards high, 0 before the first (RC-10).
-    pub direction: R::Each<i8>,
+    pub direction: R::PerLane<i8>,
     /// Share of rated power that gentle driving looks at (RC-9).
     pub share: R,
 }
 
-impl<R: Real> CvtState<R>
-where
-    f64: Left<R>,
-{
+impl<R: Real> CvtState<R> {
     /// A belt at a ratio before its first step.
     pub fn new(belt: BeltAtRatio<R>) -> Self {
         let like = belt.direction;
@@ -213,20 +194,17 @@ where
             belt,
             warm_start: WarmStart::new(like),
             shifting: Shifting {
-                direction: R::every(|_| 0),
-                share: like.filled(0.0),
+                direction: R::per_lane(|_| 0),
+                share: like.splat(0.0),
             },
             hold: None,
         }
     }
 }
 
-impl<R: Real> Cvt<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Cvt<R> {
     /// Clamping force of the secondary at a pressure, N (VA-3).
-    #[inline(always)]
     pub fn secondary_clamp_n(&self, pressure_pa: R, secondary_rad_s: R) -> R {
         pressure_pa * self.secondary_piston_m2
             + self.spring_n
@@ -234,65 +212,62 @@ where
     }
 
     /// Pressure of the primary for a clamping force of the secondary, Pa (TE-1).
-    #[inline(always)]
     pub fn primary_pa(&self, secondary_clamp_n: R, at: &BeltAtRatio<R>) -> R {
         secondary_clamp_n * at.thrust_ratio / self.primary_piston_m2
     }
 
     /// Lowest engine speed at which full load gives a power, rad/s (RC-3). The hot line knows it at once; what air and cold friction leave of
     /// that line falls with speed, so three passes from the speed of greatest power settle it.
-    #[inline(always)]
     pub fn full_load_rad_s<P: PrimeMover<R>>(&self, engine: &P, power_w: R) -> R {
-        let zero = power_w.filled(0.0);
-        let none = zero.reaches(power_w);
+        let zero = power_w.splat(0.0);
+        let none = zero.ge(power_w);
         if none.all() {
-            return zero.along(&self.full_load_route);
+            return zero.interpolate(&self.full_load_route);
         }
         let mut speed = self.ratio.highest_rad_s;
         for _ in 0..3 {
             let before = speed;
             speed = engine
                 .warm_power_w(power_w, before)
-                .along(&self.full_load_route); // RC-3
-            if (none | speed.is_same(before)).all() {
+                .interpolate(&self.full_load_route); // RC-3
+            if (none | speed.bits_eq(before)).all() {
                 break; // settled: another pass gives the same
             }
         }
         if none.any() {
-            let least = zero.along(&self.full_load_route);
-            speed = R::pick(none, least, speed);
+            let least = zero.interpolate(&self.full_load_route);
+            speed = none.select(least, speed);
         }
         speed
     }
 
     /// Speed that the shift map has for a share of rated power, rad/s (RC-14); none without one.
-    #[inline(always)]
     fn mapped_rad_s<P: PrimeMover<R>>(&self, input: &StepInput<P, R>, share: R) -> Option<R> {
         let maps = self.ratio.shift_map.as_ref()?;
         let engine = input.engine;
         let secondary_rad_s = self.final_drive.ratio * input.wheel.wheel_rad_s;
         let power_w = share * engine.rated_w();
-        Some(share.by_lane(|lane| {
+        Some(share.map_lanes(|lane| {
             let at = ShiftPoint {
                 speed_m_s: input.wheel.speed_m_s,
                 secondary_rad_s: secondary_rad_s.lane(lane),
                 power_w: power_w.lane(lane),
                 efficiency: self.ratio.route_efficiency.lane(lane),
             };
-            R::one(maps, lane).target_rad_s(&at, |speed| {
-                let full_load_nm = engine.full_load_nm(share.filled(speed));
+            R::get(maps, lane).target_rad_s(&at, |speed| {
+                let full_load_nm = engine.full_load_nm(share.splat(speed));
                 product_of(full_load_nm.lane(lane), speed)
             })
         }))
     }
 
     /// Factor (r_low/r_p)^a of the clamp map at a ratio (PC-1).
+    #[inline]
     pub fn radius_factor(&self, at: &BeltAtRatio<R>) -> R {
         (self.radius_exponent * (self.low_radius_m / at.geometry.primary_radius_m).ln()).exp()
     }
 
     /// True where a measured map replaces the model of a component.
-    #[inline(always)]
     pub fn has_map(&self, component: Component) -> bool {
         self.changes
             .as_ref()
@@ -300,11 +275,10 @@ where
     }
 
     /// Speed of the primary at the beginning of a step, rad/s, at a ratio over a secondary that has a speed once the clutch has locked.
-    #[inline(always)]
     fn primary_rad_s(&self, ratio: R, secondary_rad_s: R, past: &DrivelineState<R>) -> R {
         let locked = ratio * secondary_rad_s;
         if self.launch_behind {
-            R::pick(past.coupled, locked, past.engine_rad_s.most(locked)) // LO-1
+            past.coupled.select(locked, past.engine_rad_s.max(locked)) // LO-1
         } else {
             locked
         }
@@ -312,7 +286,6 @@ where
 
     /// Share of a step that the box is in neutral after a rest, s, with an engine that has run since its start for a time, s (SE-1, SE-2); none
     /// where the car moves, which is in drive.
-    #[inline(always)]
     pub(super) fn neutral_share_after(
         &self,
         rested_s: f64,
@@ -321,7 +294,7 @@ where
         running_s: f64,
     ) -> R {
         if step.motion.speed_m_s > 0.0 {
-            return self.selector.neutral_after_s.filled(0.0);
+            return self.selector.neutral_after_s.splat(0.0);
         }
         self.selector.neutral_share(&SelectorSignals {
             procedure_s: trace.map_or(0.0, Trace::selector_s),
@@ -332,12 +305,13 @@ where
     }
 
     /// State at the beginning of a cycle: in low at rest, in the ratio of the variogram when rolling.
+    #[inline]
     pub fn start<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
     ) -> (CvtState<R>, DrivelineState<R>) {
         let secondary = self.final_drive.ratio * input.wheel.wheel_rad_s;
-        let zero = secondary.filled(0.0);
+        let zero = secondary.splat(0.0);
         let share = input.wheel.power_w / input.engine.rated_w();
         let demand = controller::RatioDemand {
             secondary_rad_s: secondary,
@@ -354,26 +328,26 @@ where
             ratio_before: self.ratio.low,
             flow_down_per_s: zero,
             flow_up_per_s: zero,
-            coupled: zero.answer(true),
-            last_direction: R::every(|_| 0),
+            coupled: zero.splat_mask(true),
+            last_direction: R::per_lane(|_| 0),
             free_up_to_rad_s: zero,
             dt_s: input.dt_s,
         };
-        let rolls = secondary.above(0.0);
+        let rolls = secondary.gt(0.0);
         let target = self.ratio.target_rad_s(&demand) / secondary;
-        let in_range = target.held(self.ratio.high, self.ratio.low);
-        let ratio = R::pick(rolls, in_range, self.ratio.low);
+        let in_range = target.clamp(self.ratio.high, self.ratio.low);
+        let ratio = rolls.select(in_range, self.ratio.low);
         let idle = input.engine.idle_rad_s();
         let primary = ratio * secondary;
         let mut own = CvtState::new(BeltAtRatio::new(&self.belt, ratio));
         own.shifting.share = share;
         let driveline = DrivelineState {
-            gear: R::every(|_| 0),
-            engine_rad_s: primary.most(idle),
-            throttle: zero.filled(0.1),
+            gear: R::per_lane(|_| 0),
+            engine_rad_s: primary.max(idle),
+            throttle: zero.splat(0.1),
             secondary_pa: self.floors.control_pa,
-            coupled: primary.above(idle),
-            stood: zero.reaches(secondary).all(),
+            coupled: primary.gt(idle),
+            stood: zero.ge(secondary).all(),
             rested_s: 0.0,
         };
         (own, driveline)
@@ -381,7 +355,6 @@ where
 
     /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and the number of the cause that decided it; `load` is called by
     /// the laws that use the belt.
-    #[inline(always)]
     fn pressure_by(
         &self,
         law: &ClampLaw<R>,
@@ -392,7 +365,7 @@ where
     ) -> (R, R) {
         let (wanted, cause) = match law {
             ClampLaw::Map(map) => {
-                let by_law = secondary_rad_s.filled(ClampCause::Law.number());
+                let by_law = secondary_rad_s.splat(ClampCause::Law.number());
                 (map.pressure_pa(signals), by_law)
             }
             law => Clamping {
@@ -404,22 +377,18 @@ where
             }
             .pressure_pa(law),
         };
-        let (capped, open) = (
-            wanted.above(self.cap_pa),
-            wanted.above(self.floors.control_pa),
-        );
-        let by_control = cause.filled(ClampCause::Control.number());
-        let by_cap = cause.filled(ClampCause::Cap.number());
-        let held_pa = R::pick(open, wanted, self.floors.control_pa);
-        let held_by = R::pick(open, cause, by_control);
+        let (capped, open) = (wanted.gt(self.cap_pa), wanted.gt(self.floors.control_pa));
+        let by_control = cause.splat(ClampCause::Control.number());
+        let by_cap = cause.splat(ClampCause::Cap.number());
+        let held_pa = open.select(wanted, self.floors.control_pa);
+        let held_by = open.select(cause, by_control);
         (
-            R::pick(capped, self.cap_pa, held_pa),
-            R::pick(capped, by_cap, held_by),
+            capped.select(self.cap_pa, held_pa),
+            capped.select(by_cap, held_by),
         )
     }
 
     /// Solves one step (CV-1 to CV-5); fills an output at rest.
-    #[inline(always)]
     pub(super) fn solve<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -431,18 +400,15 @@ where
     }
 }
 
-impl<R: Real> super::Driveline<R> for Cvt<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> super::Driveline<R> for Cvt<R> {
     type State = (CvtState<R>, DrivelineState<R>);
 
-    #[inline(always)]
+    #[inline]
     fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> Self::State {
         Cvt::start(self, input)
     }
 
-    #[inline(always)]
     fn solve_into<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -452,17 +418,14 @@ where
         self.solve(input, own, past, output);
     }
 
-    #[inline(always)]
     fn engine_rad_s((_, past): &Self::State) -> R {
         past.engine_rad_s
     }
 
-    #[inline(always)]
     fn is_cvt(&self) -> bool {
         true
     }
 
-    #[inline(always)]
     fn neutral_share(
         &self,
         state: Option<&Self::State>,
@@ -474,14 +437,13 @@ where
         self.neutral_share_after(rested_s, trace, step, running_s)
     }
 
-    #[inline(always)]
     fn coupling_factor(&self) -> Option<R> {
         self.coupling.loss_factor()
     }
 }
 
 impl Cvt {
-    /// Whether a step searches through a law of its own: several cars side by side would each wait for the searches of all.
+    /// True if a step searches through a law of the car: several cars side by side would each wait for the searches of all.
     pub fn searches(&self) -> bool {
         let by_slip = matches!(self.clamp, ClampLaw::SlipLimited { .. });
         by_slip || self.ratio.shift_map.is_some()
@@ -497,7 +459,7 @@ impl Cvt {
     /// Multiplies each loss by a factor (CV-7, LC-6).
     pub fn scale_losses(&mut self, factors: &LossFactors) {
         let launch = factors[Component::LaunchClutch];
-        self.coupling = PartialLoss::of(self.coupling.clone(), launch);
+        self.coupling = PartialLoss::scaled(self.coupling.clone(), launch);
         let mut own = product(&self.loss_factors(), factors);
         own[Component::LaunchClutch] = 1.0; // the coupling has it
         if loss_factor::changes(&own) || self.changes.is_some() {
@@ -506,7 +468,7 @@ impl Cvt {
     }
 
     /// Pressure demand of the clamp law, Pa (PC-1 to PC-5), below the cap, and what decided it; `load` is called by the laws that use the belt.
-    #[inline(always)]
+    #[physics]
     pub fn pressure_pa(
         &self,
         signals: &ClampSignals,
@@ -516,6 +478,6 @@ impl Cvt {
     ) -> (f64, ClampCause) {
         let (pressure_pa, cause) =
             self.pressure_by(&self.clamp, signals, at, load, secondary_rad_s);
-        (pressure_pa, ClampCause::of(cause))
+        (pressure_pa, ClampCause::from_number(cause))
     }
 }

@@ -1,4 +1,4 @@
-//! What a step of the CVT knows before its solve: the ratio after shifting, and everything that depends on ratio and temperature only.
+//! Prepares a step of the CVT: the ratio after shifting, and everything that depends on ratio and temperature only.
 
 use super::controller::{FREE_OVER_IDLE, RatioDemand, direction_after};
 use super::driveline::{Driveline, Parts, PulleyShafts, ViscosityPowers, final_drive};
@@ -6,19 +6,16 @@ use super::evaluate::Step;
 use super::pump::{LN_ETA_REFERENCE, PumpAtTemperature};
 use super::variator::{BeltAtRatio, BeltLoad, Geometry};
 use super::{Cvt, Hold, LN_NU_REFERENCE, Shifting};
-use crate::fluid::OilState;
-use crate::math::{Left, Mask, Real};
+use crate::lubricant::OilState;
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::{BELT, COOLANT, SUMP};
 use crate::transmission::coupling::{Coupling, LockSignals};
 use crate::transmission::step::{DrivelineState, StepInput};
 
 /// Oil volume for a unit of ln I: secondary cylinder towards low, primary cylinder towards high, m3 (PU-3).
-#[inline(always)]
-fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R)
-where
-    f64: Left<R>,
-{
+#[physics]
+fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R) {
     let slope = g.secondary_radius_slope_m();
     let primary = (g.secondary_radius_m - slope) / g.ratio;
     let travel = 2.0 * cvt.belt.tan_wedge;
@@ -31,12 +28,12 @@ where
 /// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
 pub(super) type Before<'a, R> = (&'a Geometry<R>, &'a Shifting<R>, &'a Option<Hold<R>>);
 
-/// What the shift reckons with: the pump's free flow, efficiency for the full-load route.
+/// Inputs of the shift: the pump's free flow, efficiency for the full-load route.
 struct Route<R: Real> {
     pump: PumpAtTemperature<R>,
     efficiency: R,
     /// Direction that a small change must not turn round; 0 in a kick-down (RC-7).
-    last_direction: R::Each<i8>,
+    last_direction: R::PerLane<i8>,
 }
 
 /// Outcome of the shift.
@@ -47,7 +44,7 @@ struct Shift<R: Real> {
     flow_m3_s: R,
     /// True where pump flow held it back.
     held: R::Mask,
-    /// What the control keeps.
+    /// State of the control.
     kept: Shifting<R>,
 }
 
@@ -55,28 +52,25 @@ struct Shift<R: Real> {
 /// passes leave, and is not worked out (ASSUMED; the test of control.rs has cars, temperatures and air for which it holds).
 const AMPLE: f64 = 0.8;
 
-#[inline(always)]
+#[physics]
 fn shift<P: PrimeMover<R>, R: Real>(
     cvt: &Cvt<R>,
     input: &StepInput<P, R>,
     past: &DrivelineState<R>,
     (before, kept, held): Before<R>,
     route: Route<R>,
-) -> Shift<R>
-where
-    f64: Left<R>,
-{
+) -> Shift<R> {
     let asked = input.wheel.power_w / input.engine.rated_w();
     let share = cvt.ratio.filtered_share(kept.share, asked, input.dt_s);
     let secondary_rad_s = cvt.final_drive.ratio * input.wheel.wheel_rad_s;
     let primary_rad_s = cvt.primary_rad_s(before.ratio, secondary_rad_s, past);
-    let zero = share.filled(0.0);
-    if zero.reaches(primary_rad_s).all() {
+    let zero = share.splat(0.0);
+    if zero.ge(primary_rad_s).all() {
         return Shift {
             ratio: before.ratio,
             rate_per_s: zero,
             flow_m3_s: zero,
-            held: zero.answer(false),
+            held: zero.splat_mask(false),
             kept: Shifting {
                 share,
                 direction: kept.direction.clone(),
@@ -88,7 +82,7 @@ where
         .pump
         .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
     let free = drawn - route.pump.need_m3_s(past.secondary_pa);
-    let free = free.most(0.0);
+    let free = free.max(0.0);
     let mut demand = RatioDemand {
         secondary_rad_s,
         primary_rad_s,
@@ -101,7 +95,7 @@ where
         ratio_before: before.ratio,
         flow_down_per_s: free / down_m3, // RC-5
         flow_up_per_s: free / up_m3,     // RC-5
-        coupled: past.coupled | zero.answer(cvt.coupling.by_command()),
+        coupled: past.coupled | zero.splat_mask(cvt.coupling.by_command()),
         last_direction: route.last_direction,
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
@@ -109,7 +103,7 @@ where
     let power_w = input.wheel.power_w / route.efficiency;
     let target_rad_s = cvt.ratio.target_rad_s(&demand);
     let ample_w = AMPLE * input.engine.full_load_nm(target_rad_s) * target_rad_s;
-    if (power_w.above(0.0) & !ample_w.above(power_w)).any() {
+    if (power_w.gt(0.0) & !ample_w.gt(power_w)).any() {
         demand.full_load_rad_s = cvt.full_load_rad_s(input.engine, power_w);
     }
     let (ratio, change, short) = match held {
@@ -117,11 +111,11 @@ where
         Some(hold) => (
             hold.ratio,
             (hold.ratio / before.ratio).ln(),
-            zero.answer(false),
+            zero.splat_mask(false),
         ), // RC-12
         None => cvt.ratio.step(&demand),
     };
-    let volume = R::pick(change.above(0.0), down_m3 * change, -up_m3 * change);
+    let volume = change.gt(0.0).select(down_m3 * change, -up_m3 * change);
     let per_s = input.dt_s.recip();
     Shift {
         ratio,
@@ -142,16 +136,13 @@ struct Powers<R: Real> {
     radius_factor: R,
 }
 
-impl<R: Real> Powers<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Powers<R> {
     /// All of them together.
-    #[inline(always)]
     fn new(cvt: &Cvt<R>, at: &BeltAtRatio<R>, sump: &OilState<R>) -> Self {
         let [shaft, clutch] = ViscosityPowers::exponents(cvt, sump.log_nu - LN_NU_REFERENCE);
         let radius = cvt.low_radius_m * (at.geometry.ratio * at.prepared.inv_secondary_radius); // GE-1
-        let [shaft, clutch, viscous_factor, radius_factor] = R::exp_each([
+        let [shaft, clutch, viscous_factor, radius_factor] = R::exp_array([
             shaft,
             clutch,
             cvt.pump.viscous_exponent * (sump.log_eta - LN_ETA_REFERENCE),
@@ -166,6 +157,7 @@ where
 }
 
 /// Prepares a step: shifts from the geometry and what the control kept `before` it, brings the belt to the new ratio, and evaluates what the solve does not change.
+#[physics]
 #[inline(never)]
 pub(super) fn prepare<'a, P: PrimeMover<R>, R: Real>(
     cvt: &'a Cvt<R>,
@@ -174,17 +166,11 @@ pub(super) fn prepare<'a, P: PrimeMover<R>, R: Real>(
     before: Before<'a, R>,
     belt: &'a mut BeltAtRatio<R>,
     efficiency: R,
-) -> Step<'a, P, R>
-where
-    f64: Left<R>,
-{
-    efficiency.within(
-        #[inline(always)]
-        || prepared(cvt, input, past, before, belt, efficiency),
-    )
+) -> Step<'a, P, R> {
+    efficiency.vectorize(|| prepared(cvt, input, past, before, belt, efficiency))
 }
 
-#[inline(always)]
+#[physics]
 fn prepared<'a, P: PrimeMover<R>, R: Real>(
     cvt: &'a Cvt<R>,
     input: &'a StepInput<'a, P, R>,
@@ -192,37 +178,31 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
     before: Before<'a, R>,
     belt: &'a mut BeltAtRatio<R>,
     efficiency: R,
-) -> Step<'a, P, R>
-where
-    f64: Left<R>,
-{
+) -> Step<'a, P, R> {
     let (oil, friction) = (input.oil, &input.oil.friction);
     let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
     // At rest nothing slides, and the oil of the belt carries nothing.
-    let rests = !input.wheel.wheel_rad_s.above(0.0).any();
+    let rests = !input.wheel.wheel_rad_s.gt(0.0).any();
     let [nu_sump, nu_belt] = match rests {
-        true => [oil.viscosity.kinematic_m2_s(sump_k), sump_k.filled(0.0)],
+        true => [oil.viscosity.kinematic_m2_s(sump_k), sump_k.splat(0.0)],
         false => oil.viscosity.kinematic_each_m2_s([sump_k, belt_k]),
     };
     let sump = OilState::new(nu_sump, oil.density_kg_m3(sump_k));
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
-    let inlet = cvt.pump.with_factor(sump.dynamic_pa_s, sump_k.filled(1.0));
+    let inlet = cvt.pump.with_factor(sump.dynamic_pa_s, sump_k.splat(1.0));
     let route = Route {
         pump: inlet,
         efficiency,
         last_direction: {
-            let kicks = cvt.ratio.route_efficiency.above(efficiency);
-            R::every(
-                #[inline(always)]
-                |lane| match kicks.lane(lane) {
-                    true => 0,
-                    false => *R::one(&before.1.direction, lane),
-                },
-            )
+            let kicks = cvt.ratio.route_efficiency.gt(efficiency);
+            R::per_lane(|lane| match kicks.lane(lane) {
+                true => 0,
+                false => *R::get(&before.1.direction, lane),
+            })
         },
     };
     let shift = shift(cvt, input, past, before, route);
-    if !shift.ratio.is_same(belt.geometry.ratio).all() {
+    if !shift.ratio.bits_eq(belt.geometry.ratio).all() {
         belt.move_to(&cvt.belt, shift.ratio);
     }
     let at = &*belt;
@@ -276,7 +256,7 @@ where
         shift_flow_m3_s: shift.flow_m3_s,
         shift_held: shift.held,
         shifting: shift.kept,
-        reach: input.reach(past.engine_rad_s, sump_k.filled(0.0)),
+        reach: input.reach(past.engine_rad_s, sump_k.splat(0.0)),
         clamp: before
             .2
             .as_ref()

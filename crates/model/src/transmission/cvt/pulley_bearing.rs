@@ -11,10 +11,10 @@
 
 use super::variator::{Belt, BeltAtRatio};
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Real, physics};
 
 /// The checked bearings.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct PulleyBearing<R: Real = f64> {
     /// Friction at the bore.
     pub friction: R,
@@ -22,21 +22,15 @@ pub struct PulleyBearing<R: Real = f64> {
     pub bore_m: [R; 2],
 }
 
-gather!(PulleyBearing { friction, bore_m });
-
-impl<R: Real> PulleyBearing<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> PulleyBearing<R> {
     /// Radial force on each shaft per clamping force of the secondary (PB-1).
-    #[inline(always)]
     pub fn pull_per_clamp(belt: &Belt<R>, at: &BeltAtRatio<R>) -> R {
         let lean = at.geometry.strut_m / belt.centre_distance_m;
         2.0 * belt.tan_wedge * at.prepared.clamps_per_wrap * lean // PB-1
     }
 
     /// Torque on the shaft of the primary (0) or the secondary (1) under a radial force, Nm (PB-2).
-    #[inline(always)]
     pub fn torque_nm(&self, pulley: usize, pull_n: R) -> R {
         self.friction * pull_n * (0.5 * self.bore_m[pulley]) // PB-2
     }

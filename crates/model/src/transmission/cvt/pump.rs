@@ -18,7 +18,7 @@
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{Gather, Left, Real, gather, smooth_ramp};
+use crate::math::{Gather, Mask, Real, physics, smooth_ramp};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 use std::f64::consts::LN_10;
@@ -46,7 +46,7 @@ impl Gather for PumpKind {
     type Together<R: Real> = PumpKind<R>;
 
     fn gather<R: Real>(like: R, of: &[&Self]) -> PumpKind<R> {
-        let number = |f: fn(&PumpKind) -> f64| like.by_lane(|lane| f(of[lane]));
+        let number = |f: fn(&PumpKind) -> f64| like.map_lanes(|lane| f(of[lane]));
         match of[0] {
             PumpKind::Fixed => PumpKind::Fixed,
             PumpKind::DualCavity { .. } => PumpKind::DualCavity {
@@ -76,7 +76,7 @@ impl Gather for PumpKind {
         }
     }
 
-    fn alike(&self, other: &Self) -> bool {
+    fn groups_with(&self, other: &Self) -> bool {
         std::mem::discriminant(self) == std::mem::discriminant(other)
     }
 }
@@ -93,7 +93,7 @@ impl PumpKind {
 }
 
 /// Motor and alternator of an electric pump.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ElectricPump<R: Real = f64> {
     /// Hydraulic over electric power.
     pub efficiency: R,
@@ -103,14 +103,8 @@ pub struct ElectricPump<R: Real = f64> {
     pub fastest_rad_s: R,
 }
 
-gather!(ElectricPump {
-    efficiency,
-    alternator,
-    fastest_rad_s
-});
-
 /// The checked pump.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Pump<R: Real = f64> {
     /// Kind.
     pub kind: PumpKind<R>,
@@ -140,15 +134,8 @@ pub struct Pump<R: Real = f64> {
     pub leakage_m3_s_pa: R,
 }
 
-gather! {
-    Pump {
-        kind, displacement_m3_rad, friction, viscous, viscous_exponent, heating, inlet_pa_s_m3, inlet_depression_pa, constant_nm, line_drop_pa,
-        residual_pa, lubrication_m3_s, leakage_m3_s_pa,
-    }
-}
-
 /// Pressure that is left of a flow that does not cover lubrication and shift, Pa (PU-6).
-const LEAST_PA: f64 = 1e4;
+const MIN_PA: f64 = 1e4;
 
 /// Viscosity above which oil runs into lubrication as through leaks, 1 Pa s, over that at which C_v is defined (PU-2).
 const THICK: f64 = 1.0 / ETA_REFERENCE_PA_S;
@@ -156,10 +143,10 @@ const THICK: f64 = 1.0 / ETA_REFERENCE_PA_S;
 /// Viscosity at which C_v is defined, Pa s.
 pub const ETA_REFERENCE_PA_S: f64 = 0.010;
 
-/// Its logarithm.
+/// Logarithm of the reference viscosity.
 pub(super) const LN_ETA_REFERENCE: f64 = -2.0 * LN_10;
 
-/// What the pump's oil does at one temperature.
+/// Pump quantities of the oil at one temperature.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpAtTemperature<R: Real = f64> {
     /// Factor (eta/eta_r)^m of PU-1.
@@ -174,18 +161,14 @@ pub struct PumpAtTemperature<R: Real = f64> {
     pub inv_leakage: R,
 }
 
-impl<R: Real> PumpAtTemperature<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> PumpAtTemperature<R> {
     /// Flow that is needed without shifting, m3/s (PU-2).
-    #[inline(always)]
     pub fn need_m3_s(&self, secondary_pa: R) -> R {
         self.lubrication_m3_s + secondary_pa * self.leakage_m3_s_pa // PU-2
     }
 
     /// Flow that is drawn of the flow of a displacement, m3/s (PU-5).
-    #[inline(always)]
     pub fn drawn_m3_s(&self, flow_m3_s: R) -> R {
         let x = flow_m3_s * self.inv_inlet_flow;
         let square = x * x;
@@ -204,31 +187,28 @@ pub struct PumpState<R: Real = f64> {
     pub flow_m3_s: R,
     /// Flow drawn by the displacement that works against pressure, m3/s.
     pub working_m3_s: R,
-    /// Whether the flow that the whole displacement draws falls short of the need.
+    /// True where the flow of the whole displacement falls short of the need.
     pub flow_limited: R::Mask,
 }
 
+#[physics]
 impl<R: Real> PumpState<R> {
-    /// Of no pump; `like` has the lanes.
-    #[inline(always)]
+    /// State without a pump; `like` has the lanes.
     pub fn none(like: R) -> Self {
-        let none = like.filled(0.0);
+        let none = like.splat(0.0);
         PumpState {
             torque_nm: none,
             alternator_share: none,
             flow_m3_s: none,
             working_m3_s: none,
-            flow_limited: like.answer(false),
+            flow_limited: like.splat_mask(false),
         }
     }
 }
 
-impl<R: Real> Pump<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Pump<R> {
     /// Flow of the whole displacement with an engine at a speed, m3/s.
-    #[inline(always)]
     pub fn full_flow_m3_s(&self, engine_rad_s: R) -> R {
         let speed_rad_s = match &self.kind {
             PumpKind::Electric(electric) => electric.fastest_rad_s,
@@ -238,13 +218,13 @@ where
     }
 
     /// Flow that is needed without shifting at a viscosity, m3/s (PU-2).
+    #[inline]
     pub fn steady_need_m3_s(&self, secondary_pa: R, eta_pa_s: R) -> R {
-        self.with_factor(eta_pa_s, eta_pa_s.filled(1.0))
+        self.with_factor(eta_pa_s, eta_pa_s.splat(1.0))
             .need_m3_s(secondary_pa)
     }
 
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
-    #[inline(always)]
     pub fn deliverable_pa(
         &self,
         now: &PumpAtTemperature<R>,
@@ -256,7 +236,6 @@ where
     }
 
     /// The pump with an engine at a speed, in its oil.
-    #[inline(always)]
     pub fn turning(&self, now: &PumpAtTemperature<R>, speed_rad_s: R) -> TurningPump<'_, R> {
         let flow_m3_s = self.full_flow_m3_s(speed_rad_s);
         let viscous_nm = self.viscous
@@ -273,43 +252,39 @@ where
         }
     }
 
-    /// What the oil does at a viscosity (PU-1, PU-2, PU-5).
-    #[inline(always)]
+    /// Computes the pump quantities of the oil at a viscosity (PU-1, PU-2, PU-5).
     pub fn at(&self, eta_pa_s: R) -> PumpAtTemperature<R> {
         let log = eta_pa_s.ln() - LN_ETA_REFERENCE;
         self.with_factor(eta_pa_s, (self.viscous_exponent * log).exp())
     }
 
     /// The same with the factor (eta/eta_r)^m of PU-1 known.
-    #[inline(always)]
     pub fn with_factor(&self, eta_pa_s: R, viscous_factor: R) -> PumpAtTemperature<R> {
         let thicker = eta_pa_s * ETA_REFERENCE_PA_S.recip();
         let thinner = 1.0 / thicker;
         PumpAtTemperature {
             viscous_factor,
             inv_inlet_flow: self.inlet_pa_s_m3 * thicker / self.inlet_depression_pa, // PU-5
-            lubrication_m3_s: self.lubrication_m3_s * (THICK * thinner).least(1.0),  // PU-2
+            lubrication_m3_s: self.lubrication_m3_s * (THICK * thinner).min(1.0),    // PU-2
             leakage_m3_s_pa: self.leakage_m3_s_pa * thinner,                         // PU-2
             inv_leakage: thicker / self.leakage_m3_s_pa,
         }
     }
 
     /// Share of the displacement that works against pressure (PU-4), from the flow that all of it draws.
-    #[inline(always)]
     fn share(&self, need_m3_s: R, drawn_m3_s: R) -> R {
-        let whole = drawn_m3_s.filled(1.0);
-        let wanted = R::pick(drawn_m3_s.above(0.0), need_m3_s / drawn_m3_s, whole);
+        let whole = drawn_m3_s.splat(1.0);
+        let wanted = drawn_m3_s.gt(0.0).select(need_m3_s / drawn_m3_s, whole);
         match self.kind {
             PumpKind::Fixed | PumpKind::Electric(_) => whole,
             PumpKind::DualCavity { share } => {
                 share + (1.0 - share) * smooth_ramp(wanted, 0.85 * share, share)
             } // PU-4
-            PumpKind::Variable { least } => wanted.held(least, 1.0), // PU-4
+            PumpKind::Variable { least } => wanted.clamp(least, 1.0), // PU-4
         }
     }
 
     /// Torque and flow (PU-1, PU-4).
-    #[inline(always)]
     pub fn state(
         &self,
         now: &PumpAtTemperature<R>,
@@ -334,45 +309,39 @@ pub struct TurningPump<'a, R: Real = f64> {
     viscous_nm: R,
 }
 
-impl<R: Real> TurningPump<'_, R>
-where
-    f64: Left<R>,
-{
-    /// What the whole displacement draws, m3/s (PU-5). Its roots take longer than all else of the pump: most often they are not needed.
-    #[inline(always)]
+#[physics]
+impl<R: Real> TurningPump<'_, R> {
+    /// Flow of the whole displacement, m3/s (PU-5). The roots take longer than the rest of the pump and are seldom needed.
     fn drawn_m3_s(&self) -> R {
         self.now.drawn_m3_s(self.flow_m3_s)
     }
 
     /// Where a pressure is held with a flow into the pulleys even by the least that PU-5 leaves: (1 + x4)^(-1/4) is at least 1 - x4/4.
-    #[inline(always)]
     pub fn surely_holds(&self, pressure_pa: R, shift_flow_m3_s: R) -> R::Mask {
         let now = &self.now;
         let x = self.flow_m3_s * now.inv_inlet_flow;
         let square = x * x;
         let drawn = self.flow_m3_s * (1.0 - 0.25 * (square * square));
         let spare = drawn - now.lubrication_m3_s - shift_flow_m3_s;
-        spare.above(LEAST_PA * now.leakage_m3_s_pa) & (spare * now.inv_leakage).above(pressure_pa)
+        spare.gt(MIN_PA * now.leakage_m3_s_pa) & (spare * now.inv_leakage).gt(pressure_pa)
     }
 
     /// Largest pressure that the flow of the whole displacement keeps up, with a flow into the pulleys, Pa.
-    #[inline(always)]
     pub fn deliverable_pa(&self, shift_flow_m3_s: R) -> R {
         let now = &self.now;
         let spare = self.drawn_m3_s() - now.lubrication_m3_s - shift_flow_m3_s;
-        let enough = spare.above(LEAST_PA * now.leakage_m3_s_pa);
-        R::pick(enough, spare * now.inv_leakage, spare.filled(LEAST_PA)) // PU-6
+        let enough = spare.gt(MIN_PA * now.leakage_m3_s_pa);
+        enough.select(spare * now.inv_leakage, spare.splat(MIN_PA)) // PU-6
     }
 
     /// Torque and flow at a pressure and a need (PU-1, PU-4).
-    #[inline(always)]
     pub fn state(&self, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
         let (pump, drawn) = (self.pump, self.drawn_m3_s());
         if let PumpKind::Electric(of) = &pump.kind {
             return self.electric(of, secondary_pa, need_m3_s);
         }
         let (share, working) = if matches!(pump.kind, PumpKind::Fixed) {
-            (drawn.filled(1.0), drawn)
+            (drawn.splat(1.0), drawn)
         } else {
             let share = pump.share(need_m3_s, drawn);
             (share, self.now.drawn_m3_s(share * self.flow_m3_s))
@@ -384,25 +353,24 @@ where
             + pump.constant_nm; // PU-1
         PumpState {
             torque_nm: torque,
-            alternator_share: drawn.filled(0.0),
+            alternator_share: drawn.splat(0.0),
             flow_m3_s: self.flow_m3_s,
             working_m3_s: working,
-            flow_limited: need_m3_s.above(drawn),
+            flow_limited: need_m3_s.gt(drawn),
         }
     }
 
     /// An electric pump (EP-2).
-    #[inline(always)]
     fn electric(&self, of: &ElectricPump<R>, secondary_pa: R, need_m3_s: R) -> PumpState<R> {
         let most_m3_s = self.drawn_m3_s();
-        let working_m3_s = need_m3_s.least(most_m3_s);
+        let working_m3_s = need_m3_s.min(most_m3_s);
         let electric_w = (secondary_pa + self.pump.line_drop_pa) * working_m3_s / of.efficiency; // EP-2
         PumpState {
             torque_nm: electric_w / self.speed_rad_s,
             alternator_share: 1.0 / of.alternator - 1.0,
             flow_m3_s: working_m3_s,
             working_m3_s,
-            flow_limited: need_m3_s.above(most_m3_s),
+            flow_limited: need_m3_s.gt(most_m3_s),
         }
     }
 }

@@ -8,11 +8,11 @@
 //! (Gronitzki and Poll 2007): no term of viscosity or speed. Valid for p >= 0.
 
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Real, physics};
 use std::f64::consts::PI;
 
 /// The checked rings of one pulley; both have the same.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct SealRing<R: Real = f64> {
     /// Friction of a ring on its groove.
     pub friction: R,
@@ -26,20 +26,9 @@ pub struct SealRing<R: Real = f64> {
     pub pressed_share: R,
 }
 
-gather!(SealRing {
-    friction,
-    rings,
-    diameter_m,
-    flank_m,
-    pressed_share
-});
-
-impl<R: Real> SealRing<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> SealRing<R> {
     /// Torque over the pressure of a cylinder, Nm/Pa (SR-1).
-    #[inline(always)]
     pub fn torque_per_pa(&self) -> R {
         let flank_m2 = PI * self.diameter_m * self.flank_m;
         self.rings * self.friction * self.pressed_share * flank_m2 * (0.5 * self.diameter_m) // SR-1

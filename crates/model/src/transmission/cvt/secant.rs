@@ -1,7 +1,7 @@
-//! What the solve learns from its evaluations: slopes for the next guess, kept from step to step as a start.
+//! Slopes from the evaluations of a solve for the next guess, kept from step to step as a start.
 
 use super::evaluate::{Guess, Point};
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real, physics};
 
 /// Closer than this two pressures say nothing of a slope, Pa.
 const SECANT_FROM_PA: f64 = 200.0;
@@ -41,7 +41,7 @@ pub struct Trend<R: Real = f64> {
     slip: Series<R>,
 }
 
-/// What a solve begins with, from the step before.
+/// Start of a solve from the step before.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WarmStart<R: Real = f64> {
     /// Losses and slip.
@@ -58,7 +58,7 @@ impl<R: Real> WarmStart<R> {
         WarmStart {
             trend: Trend::new(like),
             slopes: Slopes::new(like),
-            overrun: like.answer(false),
+            overrun: like.splat_mask(false),
         }
     }
 }
@@ -77,10 +77,12 @@ pub(crate) struct Series<R: Real = f64> {
     second: R,
 }
 
+#[physics]
 impl<R: Real> Series<R> {
     /// A value without a past.
+    #[inline]
     fn new(value: R) -> Self {
-        let none = value.filled(0.0);
+        let none = value.splat(0.0);
         Series {
             value,
             first: none,
@@ -89,14 +91,12 @@ impl<R: Real> Series<R> {
     }
 
     /// The value that follows, with as many differences as there are steps alike before the last.
-    #[inline(always)]
     pub fn next(&self, alike: u32) -> R {
-        let none = self.value.filled(0.0);
+        let none = self.value.splat(0.0);
         let first = if alike > 0 { self.first } else { none };
         self.value + first + if alike > 1 { self.second } else { none }
     }
 
-    #[inline(always)]
     pub fn push(&mut self, value: R) {
         let first = value - self.value;
         *self = Series {
@@ -107,10 +107,12 @@ impl<R: Real> Series<R> {
     }
 }
 
+#[physics]
 impl<R: Real> Trend<R> {
     /// Nothing is known; `like` has the lanes.
+    #[inline]
     fn new(like: R) -> Self {
-        let none = Series::new(like.filled(0.0));
+        let none = Series::new(like.splat(0.0));
         Trend {
             accel_m_s2: 0.0,
             alike: 0,
@@ -120,7 +122,6 @@ impl<R: Real> Trend<R> {
     }
 
     /// Steps alike before one with an acceleration, m/s2.
-    #[inline(always)]
     fn alike(&self, accel_m_s2: f64) -> u32 {
         if is_alike(accel_m_s2, self.accel_m_s2) {
             self.alike
@@ -130,13 +131,13 @@ impl<R: Real> Trend<R> {
     }
 
     /// Slip and loss torque in Nm to begin a step with: those of the step before, carried on where the car is driven alike.
-    #[inline(always)]
     pub(super) fn next(&self, accel_m_s2: f64) -> (R, R) {
         let alike = self.alike(accel_m_s2);
         (self.slip.next(alike), self.loss.next(alike))
     }
 
     /// Takes a step at standstill: nothing slips, and what follows is not like it.
+    #[inline]
     pub(super) fn reset_at_standstill(&mut self) {
         *self = Trend {
             loss: Series::new(self.loss.value),
@@ -145,7 +146,6 @@ impl<R: Real> Trend<R> {
     }
 
     /// Takes a solved step.
-    #[inline(always)]
     pub(super) fn push(&mut self, accel_m_s2: f64, slip: R, loss_nm: R) {
         self.alike = if is_alike(accel_m_s2, self.accel_m_s2) {
             self.alike.saturating_add(1)
@@ -158,8 +158,8 @@ impl<R: Real> Trend<R> {
     }
 }
 
-/// Whether two accelerations, m/s2, are the same but for rounding.
-#[inline(always)]
+/// True if two accelerations, m/s2, are equal but for rounding.
+#[physics]
 fn is_alike(a_m_s2: f64, b_m_s2: f64) -> bool {
     (a_m_s2 - b_m_s2).abs() < ALIKE_M_S2
 }
@@ -174,20 +174,17 @@ impl<R: Real> Slopes<R> {
     /// Before anything is known: pressure acts on nothing, torque passes without loss. `like` has the lanes.
     pub fn new(like: R) -> Self {
         Slopes {
-            pressure: like.filled(0.0),
-            slip_per_pa: like.filled(0.0),
-            torque: like.filled(1.0),
+            pressure: like.splat(0.0),
+            slip_per_pa: like.splat(0.0),
+            torque: like.splat(1.0),
         }
     }
 }
 
-impl<R: Real> Slopes<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Slopes<R> {
     /// Takes the slopes between two evaluations, the earlier one given by its guess and the pressure that followed from it. `open`: over a
     /// torque converter that is not locked.
-    #[inline(always)]
     pub(super) fn update(
         &mut self,
         (before, before_next_pa): (&Guess<R>, R),
@@ -195,27 +192,22 @@ where
         open: R::Mask,
     ) {
         let step_pa = now.guess.pressure_pa - before.pressure_pa;
-        let moved = step_pa.abs().above(SECANT_FROM_PA);
+        let moved = step_pa.abs().gt(SECANT_FROM_PA);
         if !moved.any() {
             return;
         }
-        let most_gain = R::pick(
-            open,
-            step_pa.filled(MAX_GAIN_OPEN),
-            step_pa.filled(MAX_GAIN),
-        );
+        let most_gain = open.select(step_pa.splat(MAX_GAIN_OPEN), step_pa.splat(MAX_GAIN));
         let gain = (now.next_pressure_pa - before_next_pa) / step_pa;
-        self.pressure = R::pick(moved, gain.held(-most_gain, most_gain), self.pressure);
-        let alone = moved & now.guess.output_nm.is_same(before.output_nm);
+        self.pressure = moved.select(gain.clamp(-most_gain, most_gain), self.pressure);
+        let alone = moved & now.guess.output_nm.bits_eq(before.output_nm);
         if alone.any() {
             let most = MAX_SLIP_GAIN * now.guess.slip.abs() / now.guess.pressure_pa;
-            let slope = ((now.guess.slip - before.slip) / step_pa).held(-most, most);
-            self.slip_per_pa = R::pick(alone, slope, self.slip_per_pa);
+            let slope = ((now.guess.slip - before.slip) / step_pa).clamp(-most, most);
+            self.slip_per_pa = alone.select(slope, self.slip_per_pa);
         }
     }
 
     /// Pressure at which the line through an evaluation meets its fixed point, Pa (CV-5).
-    #[inline(always)]
     pub(super) fn pressure_pa(&self, now: &Point<R>) -> R {
         let p = now.guess.pressure_pa;
         p + (now.next_pressure_pa - p) / (1.0 - self.pressure)
@@ -231,11 +223,9 @@ pub(super) struct TorqueSecant<R: Real> {
     last: Option<(R, R)>,
 }
 
-impl<R: Real> TorqueSecant<R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> TorqueSecant<R> {
+    #[inline]
     pub fn new(ratio: R, first_nm: R) -> Self {
         TorqueSecant {
             ratio,
@@ -246,7 +236,6 @@ where
 
     /// Next output torque after an evaluation, and whether it moves no more for the bound
     /// of the belt: the belt carries no more than its capacity, whatever the engine could take or give (VA-2). `bound` where the engine binds it.
-    #[inline(always)]
     pub fn next_nm(
         &mut self,
         now: &Point<R>,
@@ -256,18 +245,18 @@ where
     ) -> (R, R::Mask) {
         let (x, miss_nm) = (now.guess.output_nm, now.miss_nm);
         if let Some((x0, miss0)) = self.last {
-            let moved = bound & (x - x0).abs().above(SECANT_FROM_NM);
+            let moved = bound & (x - x0).abs().gt(SECANT_FROM_NM);
             if moved.any() {
-                let slope = ((miss_nm - miss0) / (x - x0) * self.ratio).held(0.5, 2.0);
-                slopes.torque = R::pick(moved, slope, slopes.torque);
+                let slope = ((miss_nm - miss0) / (x - x0) * self.ratio).clamp(0.5, 2.0);
+                slopes.torque = moved.select(slope, slopes.torque);
             }
         }
         self.last = Some((x, miss_nm));
-        let slope = if plain { x.filled(1.0) } else { slopes.torque };
+        let slope = if plain { x.splat(1.0) } else { slopes.torque };
         let carried = 1.05 * now.torques.belt.capacity_nm;
-        let carried = carried.most(self.allowed_nm);
-        let next = (x - miss_nm * self.ratio / slope).held(-carried, carried); // CV-5
-        (next, (1e-9 * carried).reaches((next - x).abs()))
+        let carried = carried.max(self.allowed_nm);
+        let next = (x - miss_nm * self.ratio / slope).clamp(-carried, carried); // CV-5
+        (next, (1e-9 * carried).ge((next - x).abs()))
     }
 }
 

@@ -9,18 +9,19 @@
 //! A car that moves is in drive, so a cycle that begins at once has no neutral.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{Left, Real, clamp, gather};
+use crate::math::{Gather, Real, clamp, physics};
 
 /// The checked selector.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Selector<R: Real = f64> {
     /// True where it is moved when the procedure of the cycle says so.
+    #[gather(same)]
     pub by_cycle: bool,
     /// Time at rest from which the box is in neutral, s; infinite for a box that stays in drive.
     pub neutral_after_s: R,
 }
 
-/// What the selector looks at in a step at rest.
+/// Inputs of the selector in a step at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelectorSignals {
     /// Time from a start of the engine until the cycle has the selector in drive, s.
@@ -33,8 +34,6 @@ pub struct SelectorSignals {
     pub dt_s: f64,
 }
 
-gather!(Selector { neutral_after_s } same { by_cycle });
-
 impl SelectorSignals {
     /// Share of a step for which the procedure of the cycle has the box in neutral, and the time at rest with the step, s.
     fn started(&self) -> (f64, f64) {
@@ -43,17 +42,14 @@ impl SelectorSignals {
     }
 }
 
-impl<R: Real> Selector<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Selector<R> {
     /// Share of a step at rest that the box is in neutral, 0..1.
-    #[inline(always)]
     pub fn neutral_share(&self, now: &SelectorSignals) -> R {
         let (started, rested_s) = now.started();
         let started = if self.by_cycle { started } else { 0.0 };
         let late_s = rested_s - self.neutral_after_s;
-        (late_s / now.dt_s).held(0.0, 1.0).most(started) // SE-2
+        (late_s / now.dt_s).clamp(0.0, 1.0).max(started) // SE-2
     }
 }
 

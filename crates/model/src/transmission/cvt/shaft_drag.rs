@@ -8,11 +8,11 @@
 //! extrapolated, bounded by the heating of its film (FH-1). Unmeasured there.
 
 use crate::keys::{Values, keys};
-use crate::math::{Left, Real, gather};
+use crate::math::{Gather, Real, physics};
 use crate::transmission::viscous_self_heating::{SELF_HEATING, ViscousSelfHeating};
 
 /// The checked input shaft.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ShaftDrag<R: Real = f64> {
     /// Constant c0, Nm.
     pub constant_nm: R,
@@ -24,19 +24,9 @@ pub struct ShaftDrag<R: Real = f64> {
     pub heating: ViscousSelfHeating<R>,
 }
 
-gather!(ShaftDrag {
-    constant_nm,
-    viscous_nm_s,
-    exponent,
-    heating
-});
-
-impl<R: Real> ShaftDrag<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> ShaftDrag<R> {
     /// Torque, Nm, at a speed, rad/s, with the power (nu/nu_80)^m known (IS-1).
-    #[inline(always)]
     pub fn torque_nm(&self, power: R, speed_rad_s: R) -> R {
         self.constant_nm
             + self

@@ -14,7 +14,7 @@ use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
 use crate::flags::Flags;
-use crate::math::{Left, Mask, Real};
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::PrimeMover;
 use crate::transmission::coupling::Coupling;
 use crate::transmission::step::{DrivelineState, StepInput, StepOutput};
@@ -30,56 +30,49 @@ const CLEARLY: f64 = 0.02;
 /// ... and how far it may still be from its fixed point: so near, no torque moves by as much.
 const NEAR: f64 = 0.02;
 
-impl<P: PrimeMover<R>, R: Real> Step<'_, P, R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
     /// The limit that a point at the demanded torque violates; violations within `margin_nm` are ignored.
-    #[inline(always)]
     fn violated(&self, p: &Point<R>, margin_nm: R) -> Limit<R::Mask> {
-        let above_idle = p.over_rad_s.reaches(self.input.engine.idle_rad_s());
-        let partly = p.throttle.filled(1.0).above(p.throttle);
-        let open = !(above_idle & p.passed_nm.reaches(0.0) & partly);
-        let mut limit = Limit::none(margin_nm.answer(false));
+        let above_idle = p.over_rad_s.ge(self.input.engine.idle_rad_s());
+        let partly = p.throttle.splat(1.0).gt(p.throttle);
+        let open = !(above_idle & p.passed_nm.ge(0.0) & partly);
+        let mut limit = Limit::none(margin_nm.splat_mask(false));
         if !open.any() {
             return limit; // CV-3 is below zero here, CV-4 above
         }
         let at = self.turning(p.over_rad_s, p.guess.engine_rad_s);
         let least_nm = self.min_passed_nm(&at, p.spin_nm) - margin_nm;
-        limit.engine_drag = open & least_nm.above(p.passed_nm);
+        limit.engine_drag = open & least_nm.gt(p.passed_nm);
         let open = open & !limit.engine_drag;
         if open.any() {
             let most_nm = self.max_passed_nm(&at, p.spin_nm) + margin_nm;
-            limit.full_load = open & p.passed_nm.above(most_nm);
+            limit.full_load = open & p.passed_nm.gt(most_nm);
         }
         limit
     }
 
     /// The route's efficiency for another try, after one with `efficiency` that full load does not give (RC-7).
-    #[inline(always)]
     fn kick_down(&self, efficiency: R, p: &Point<R>) -> R {
         let w = p.guess.engine_rad_s;
         let asked_w = (p.flywheel_nm + self.input.engine.accessories_nm(w)) * w;
         let had = self.input.wheel.power_w / asked_w;
-        (KICK_DOWN * had.least(efficiency)).most(MIN_ROUTE_EFFICIENCY) // RC-7
+        (KICK_DOWN * had.min(efficiency)).max(MIN_ROUTE_EFFICIENCY) // RC-7
     }
 
     /// Slip and loss torque in Nm that go on as in the steps before.
-    #[inline(always)]
     fn extrapolated(&self, warm_start: &WarmStart<R>) -> (R, R) {
         let (slip, loss_nm) = warm_start.trend.next(self.input.wheel.accel_m_s2);
         (self.possible(slip), loss_nm)
     }
 
     /// The nearest slip that the belt can have: a line through slips leads anywhere, and at a slip of 1 no speed belongs to it (CV-1).
-    #[inline(always)]
     fn possible(&self, slip: R) -> R {
         let most = 2.0 * self.line.cvt.belt.slip_bound;
-        slip.held(-most, most)
+        slip.clamp(-most, most)
     }
 
     /// Where the solve begins: slip and losses of the step before, at the new ratio and demand.
-    #[inline(always)]
     fn first_guess(&self, warm_start: &WarmStart<R>) -> Guess<R> {
         let (slip, loss_nm) = self.extrapolated(warm_start);
         let engine_rad_s = self.first_engine_rad_s(slip);
@@ -87,7 +80,7 @@ where
         let engine = self.input.engine;
         let flywheel = output_nm / self.line.at.geometry.ratio + loss_nm;
         let crank_nm = flywheel + engine.accessories_nm(engine_rad_s);
-        let throttle = (crank_nm / engine.full_load_nm(engine_rad_s)).held(0.0, 1.0);
+        let throttle = (crank_nm / engine.full_load_nm(engine_rad_s)).clamp(0.0, 1.0);
         let signals = self.line.signals(throttle, engine_rad_s);
         let pressure_pa = match self.clamp {
             ClampLaw::SlipLimited { .. } => self.pressure_before_pa,
@@ -98,7 +91,6 @@ where
                     self.clamp,
                     &signals,
                     self.line.at,
-                    #[inline(always)]
                     || BeltLoad {
                         output_torque_nm: output_nm,
                         ..self.load
@@ -116,15 +108,13 @@ where
         }
     }
 
-    #[inline(always)]
     fn first_engine_rad_s(&self, slip: R) -> R {
         let primary = self.primary_rad_s(slip);
         let from = self.reach.from_rad_s;
-        R::pick(self.locked(primary) | primary.above(from), primary, from)
+        (self.locked(primary) | primary.gt(from)).select(primary, from)
     }
 
     /// Output torque at which the engine's least torque is likely to be the limit: its drag with the losses that are expected, Nm.
-    #[inline(always)]
     fn likely_overrun_nm(&self, warm_start: &WarmStart<R>) -> R {
         let engine = self.input.engine;
         let (slip, loss_nm) = self.extrapolated(warm_start);
@@ -145,18 +135,14 @@ where
         runs: R::Mask,
         work: &mut Work<R>,
     ) {
-        first.slip.within(
-            #[inline(always)]
-            || {
-                work.guess = Guess::pick(runs, first, &work.guess);
-                work.limit = Limit::pick(runs, limit, &work.limit);
-                self.iterate(may_leave, runs, work);
-            },
-        );
+        first.slip.vectorize(|| {
+            work.guess = Guess::select(runs, first, &work.guess);
+            work.limit = Limit::select(runs, limit, &work.limit);
+            self.iterate(may_leave, runs, work);
+        });
     }
 
     /// Evaluates until no lane of `busy` moves any more.
-    #[inline(always)]
     fn iterate(&self, may_leave: bool, mut busy: R::Mask, work: &mut Work<R>) {
         let by_command = self.line.cvt.coupling.by_command();
         let mut last: Option<(Guess<R>, R)> = None;
@@ -166,27 +152,27 @@ where
             self.evaluate(&work.guess, &work.limit, &mut work.point);
             let point = &work.point;
             count += 1;
-            work.count = R::pick(busy, work.count + 1.0, work.count);
+            work.count = busy.select(work.count + 1.0, work.count);
             let mut residual = point.moved();
             if let Some((before, before_next_pa)) = &last {
-                let open = !point.locked & residual.answer(by_command);
+                let open = !point.locked & residual.splat_mask(by_command);
                 work.slopes.update((before, *before_next_pa), point, open);
             }
-            let scale = point.full_load_nm.most(1.0);
+            let scale = point.full_load_nm.max(1.0);
             let damped = count > DAMPED_FROM;
             let mut next_nm = work.guess.output_nm;
             let bound = work.limit.binds() & busy;
             if bound.any() {
                 let (bound_nm, stopped) = torque.next_nm(point, &mut work.slopes, damped, bound);
-                next_nm = R::pick(bound, bound_nm, next_nm);
+                next_nm = bound.select(bound_nm, next_nm);
                 let relative = point.miss_nm.abs() / scale;
-                let larger = bound & relative.above(residual) & !stopped;
-                residual = R::pick(larger, relative, residual);
+                let larger = bound & relative.gt(residual) & !stopped;
+                residual = larger.select(relative, residual);
             }
-            work.residual = R::pick(busy, residual, work.residual);
-            busy = busy & residual.above(TOLERANCE); // no where it is no number
+            work.residual = busy.select(residual, work.residual);
+            busy = busy & residual.gt(TOLERANCE); // no where it is no number
             if may_leave && busy.any() {
-                let near = busy & residual.filled(NEAR).above(residual);
+                let near = busy & residual.splat(NEAR).gt(residual);
                 if near.any() {
                     let violated = self.violated(point, CLEARLY * scale).binds();
                     busy = busy & !(near & violated);
@@ -197,12 +183,11 @@ where
             }
             last = Some((point.guess, point.next_pressure_pa));
             let next = self.next_guess(next_nm, damped, point, &work.slopes);
-            work.guess = Guess::pick(busy, &next, &work.guess);
+            work.guess = Guess::select(busy, &next, &work.guess);
         }
     }
 
     /// The guess that follows from an evaluation by the secants, or damped half the way to it.
-    #[inline(always)]
     fn next_guess(
         &self,
         next_nm: R,
@@ -211,8 +196,8 @@ where
         slopes: &Slopes<R>,
     ) -> Guess<R> {
         let cvt = self.line.cvt;
-        let least_pa = cvt.floors.control_pa.least(point.next_pressure_pa);
-        let pressure_pa = slopes.pressure_pa(point).held(least_pa, cvt.cap_pa); // CV-5
+        let least_pa = cvt.floors.control_pa.min(point.next_pressure_pa);
+        let pressure_pa = slopes.pressure_pa(point).clamp(least_pa, cvt.cap_pa); // CV-5
         let slip = point.guess.slip + slopes.slip_per_pa * (pressure_pa - point.guess.pressure_pa);
         let guess = Guess {
             output_nm: next_nm,
@@ -233,7 +218,6 @@ where
     /// it leaves more at the output than the wheels demand, full load when it leaves less; so a limit may be tried before it is certain: in
     /// overrun that of the step before, else that of a run at the demand that ends early. The lanes for which full load is the limit, and is
     /// not wanted yet.
-    #[inline(always)]
     fn limited(
         &self,
         warm_start: &WarmStart<R>,
@@ -243,10 +227,10 @@ where
     ) -> R::Mask {
         let guess = self.first_guess(warm_start);
         let demand_nm = guess.output_nm;
-        let no = demand_nm.answer(false);
+        let no = demand_nm.splat_mask(false);
         let mut short = no;
         let power_w = self.input.wheel.power_w;
-        let overrun = open & warm_start.overrun & power_w.filled(0.0).above(power_w);
+        let overrun = open & warm_start.overrun & power_w.splat(0.0).gt(power_w);
         if overrun.any() {
             let near = Guess {
                 output_nm: self.likely_overrun_nm(warm_start),
@@ -257,12 +241,12 @@ where
                 full_load: no,
             };
             self.run(&near, &drag, false, overrun, work);
-            open = open & !(overrun & work.point.guess.output_nm.above(demand_nm));
+            open = open & !(overrun & work.point.guess.output_nm.gt(demand_nm));
         }
         let mut may_leave = true;
         while open.any() {
             self.run(&guess, &Limit::none(no), may_leave, open, work);
-            let limit = self.violated(&work.point, demand_nm.filled(0.0));
+            let limit = self.violated(&work.point, demand_nm.splat(0.0));
             open = open & limit.binds();
             let lacks = open & limit.full_load & !full_load_wanted;
             if lacks.any() {
@@ -283,7 +267,7 @@ where
             }
             let x = work.point.guess.output_nm;
             let settled =
-                (limit.engine_drag & x.above(demand_nm)) | (limit.full_load & demand_nm.above(x));
+                (limit.engine_drag & x.gt(demand_nm)) | (limit.full_load & demand_nm.gt(x));
             open = open & !settled;
             may_leave = false;
         }
@@ -303,26 +287,22 @@ struct Work<R: Real> {
     slopes: Slopes<R>,
 }
 
-impl<R: Real> Work<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Work<R> {
     /// Before the first evaluation, with the slopes of the step before.
-    #[inline(always)]
     fn new(slopes: Slopes<R>) -> Self {
         let like = slopes.pressure;
         Work {
             point: Point::none(like),
             guess: Guess::none(like),
-            limit: Limit::none(like.answer(false)),
-            count: like.filled(0.0),
-            residual: like.filled(0.0),
+            limit: Limit::none(like.splat_mask(false)),
+            count: like.splat(0.0),
+            residual: like.splat(0.0),
             slopes,
         }
     }
 
     /// How the solve ended.
-    #[inline(always)]
     fn outcome(&self) -> Outcome<R> {
         Outcome {
             limit: self.limit,
@@ -338,33 +318,29 @@ fn engine_off<P: PrimeMover<R>, R: Real>(
     ratio: R,
     past: &mut DrivelineState<R>,
     rest: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
-    let none = ratio.filled(0.0);
+) {
+    let none = ratio.splat(0.0);
     past.engine_rad_s = input.engine.idle_rad_s(); // the starter brings it back there
     past.stood = true;
     past.rested_s = 0.0;
-    past.coupled = none.answer(false);
+    past.coupled = none.splat_mask(false);
     rest.belt_ratio = ratio;
     rest.secondary_pa = none;
     rest.primary_pa = none;
     rest.slip = none;
-    rest.clamp_safety = none.filled(f64::INFINITY);
-    rest.flag(Flags::ENGINE_OFF, none.answer(true));
+    rest.clamp_safety = none.splat(f64::INFINITY);
+    rest.flag(Flags::ENGINE_OFF, none.splat_mask(true));
 }
 
 /// Solves one step of the CVT; the belt of `own` follows the ratio, and an output at rest is filled.
-#[inline(always)]
+#[physics]
 pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     cvt: &Cvt<R>,
     input: &StepInput<P, R>,
     own: &mut CvtState<R>,
     past: &mut DrivelineState<R>,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
+) {
     let CvtState {
         belt,
         warm_start,
@@ -378,14 +354,14 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     }
     let mut begun = None;
     let mut efficiency = cvt.ratio.route_efficiency;
-    let (yes, no) = (efficiency.answer(true), efficiency.answer(false));
-    let mut tried_ratio = efficiency.filled(f64::NAN);
+    let (yes, no) = (efficiency.splat_mask(true), efficiency.splat_mask(false));
+    let mut tried_ratio = efficiency.splat(f64::NAN);
     let mut trying = yes;
     loop {
         let before = (&before, &*shifting, &hold);
         let step = prepare(cvt, input, past, before, belt, efficiency);
         // All runs of a group are at rest together.
-        let rests = !step.secondary_rad_s.above(0.0).any();
+        let rests = !step.secondary_rad_s.gt(0.0).any();
         if rests && !cvt.launch_behind {
             standstill(&step, past, warm_start, output);
             *shifting = step.shifting;
@@ -397,23 +373,23 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
         };
         if rests {
             let guess = Guess {
-                output_nm: efficiency.filled(0.0),
-                slip: efficiency.filled(0.0),
+                output_nm: efficiency.splat(0.0),
+                slip: efficiency.splat(0.0),
                 engine_rad_s: past.engine_rad_s,
                 pressure_pa: past.secondary_pa,
             };
             step.run(&guess, &Limit::none(no), false, yes, work); // LO-4
         } else {
             let ratio = step.line.at.geometry.ratio;
-            let last = ratio.is_same(tried_ratio)
-                | efficiency.filled(MIN_ROUTE_EFFICIENCY).reaches(efficiency)
-                | efficiency.answer(hold.is_some());
+            let last = ratio.bits_eq(tried_ratio)
+                | efficiency.splat(MIN_ROUTE_EFFICIENCY).ge(efficiency)
+                | efficiency.splat_mask(hold.is_some());
             let short = step.limited(warm_start, last, trying, work);
             if short.any() {
                 // Kick-down: losses are larger than RC-3 reckons with, so a higher speed is tried (RC-7).
-                tried_ratio = R::pick(short, ratio, tried_ratio);
+                tried_ratio = short.select(ratio, tried_ratio);
                 let lower = step.kick_down(efficiency, &work.point);
-                efficiency = R::pick(short, lower, efficiency);
+                efficiency = short.select(lower, efficiency);
                 trying = short;
                 continue;
             }

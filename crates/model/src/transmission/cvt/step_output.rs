@@ -6,8 +6,8 @@ use super::driveline::{PartTorques, Shaft};
 use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
 use super::variator::{BeltLoad, belt_capacity_nm};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
-use crate::math::{Left, Mask, Real};
+use crate::lubricant::VALID_K;
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::{BELT, SUMP};
 use crate::transmission::clamp_cause::ClampCause;
@@ -15,7 +15,7 @@ use crate::transmission::component::Component;
 use crate::transmission::coupling::Coupling;
 use crate::transmission::step::{DrivelineState, StepOutput};
 
-/// What pump and clamp law settle on with the car at rest in gear.
+/// Equilibrium of pump and clamp law with the car at rest in gear.
 struct Idling<R: Real> {
     pressure_pa: R,
     /// Number of the cause.
@@ -33,28 +33,25 @@ struct Idling<R: Real> {
 
 /// Fixed point of throttle and pressure with an engine at `w` that passes on `creep_nm` and takes `coupling_nm` for it. A lane that has settled
 /// keeps its throttle, from which all else follows again.
-#[inline(always)]
+#[physics]
 fn idling<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     w: R,
     (creep_nm, coupling_nm): (R, R),
     throttle: R,
-) -> Idling<R>
-where
-    f64: Left<R>,
-{
+) -> Idling<R> {
     let (line, engine, cvt) = (&step.line, step.input.engine, step.line.cvt);
-    let none = w.filled(0.0);
+    let none = w.splat(0.0);
     let mut at = Idling {
         pressure_pa: none,
         clamp_cause: none,
         torques: PartTorques::none(w),
         throttle,
         load_share: none,
-        residual: w.filled(f64::INFINITY),
+        residual: w.splat(f64::INFINITY),
         evaluations: none,
-        inside_maps: w.answer(true),
-        flow_limited: w.answer(false),
+        inside_maps: w.splat_mask(true),
+        flow_limited: w.splat_mask(false),
         oil_flow_m3_s: none,
     };
     let load = BeltLoad {
@@ -66,21 +63,14 @@ where
     let (accessories_nm, full_load_nm) = (engine.accessories_nm(w), engine.full_load_nm(w));
     let mut guess = throttle;
     for _ in 0..MAX_EVALUATIONS {
-        let busy = at.residual.above(TOLERANCE);
+        let busy = at.residual.gt(TOLERANCE);
         if !busy.any() {
             break;
         }
-        guess = R::pick(busy, at.throttle, guess);
+        guess = busy.select(at.throttle, guess);
         let signals = line.signals(guess, w);
         let set_pa;
-        (set_pa, at.clamp_cause) = cvt.pressure_by(
-            step.clamp,
-            &signals,
-            line.at,
-            #[inline(always)]
-            || load,
-            none,
-        );
+        (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
         (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, &shaft.pump, step.shift_flow_m3_s);
         let pump = line.turn_engine(
             &mut at.torques,
@@ -92,60 +82,49 @@ where
         line.rest(&mut at.torques);
         at.oil_flow_m3_s = pump.working_m3_s;
         at.load_share = (at.torques.flywheel_nm(coupling_nm) + accessories_nm) / full_load_nm;
-        let next = at.load_share.held(0.0, 1.0);
+        let next = at.load_share.clamp(0.0, 1.0);
         at.residual = (next - guess).abs();
         at.throttle = next;
-        at.evaluations = R::pick(busy, at.evaluations + 1.0, at.evaluations);
+        at.evaluations = busy.select(at.evaluations + 1.0, at.evaluations);
     }
     at
 }
 
 /// The causes of their numbers.
-#[inline(always)]
-fn causes<R: Real>(number: R) -> R::Each<ClampCause> {
-    R::every(
-        #[inline(always)]
-        |lane| ClampCause::of(number.lane(lane)),
-    )
+#[physics]
+fn causes<R: Real>(number: R) -> R::PerLane<ClampCause> {
+    R::per_lane(|lane| ClampCause::from_number(number.lane(lane)))
 }
 
 /// Evaluations as whole numbers.
-#[inline(always)]
-fn counts<R: Real>(number: R) -> R::Each<u16> {
-    R::every(
-        #[inline(always)]
-        |lane| number.lane(lane) as u16,
-    )
+#[physics]
+fn counts<R: Real>(number: R) -> R::PerLane<u16> {
+    R::per_lane(|lane| number.lane(lane) as u16)
 }
 
 /// The car is at rest in gear: the coupling slips at creep torque, pump and shaft turn. Fills an output at rest.
+#[physics]
 #[inline(never)]
 pub(super) fn standstill<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     past: &mut DrivelineState<R>,
     warm_start: &mut WarmStart<R>,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
-    step.secondary_rad_s.within(
-        #[inline(always)]
-        || rest(step, past, warm_start, output),
-    );
+) {
+    step.secondary_rad_s
+        .vectorize(|| rest(step, past, warm_start, output));
 }
 
-#[inline(always)]
+#[physics]
 fn rest<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     past: &mut DrivelineState<R>,
     warm_start: &mut WarmStart<R>,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
+) {
     let (line, cvt) = (&step.line, step.line.cvt);
     let idle = step.input.engine.idle_rad_s();
-    let none = idle.filled(0.0);
+    let none = idle.splat(0.0);
     let creep = (1.0 - step.input.neutral_share) * cvt.coupling.creep_nm(none, idle); // SE-3
     let w = step.reach.nearest(idle);
     let side = cvt.coupling.engine_side(creep, none, w);
@@ -165,60 +144,52 @@ fn rest<P: PrimeMover<R>, R: Real>(
     output.clamp_cause = causes(at.clamp_cause);
     output.slip = none;
     let safety = capacity / (creep * ratio);
-    output.clamp_safety = R::pick(creep.above(0.0), safety, none.filled(f64::INFINITY));
+    output.clamp_safety = creep.gt(0.0).select(safety, none.splat(f64::INFINITY));
     output.oil_flow_m3_s = at.oil_flow_m3_s;
     output.residual = at.residual;
     output.iterations = counts(at.evaluations);
     output.alternator_w = at.torques.alternator * w;
     output.add_loss(Component::LaunchClutch, side.loss_w);
     add_part_losses(output, &at.torques, [w, none, none, none]);
-    output.flag(Flags::CLUTCH_SLIPPING, none.answer(true));
+    output.flag(Flags::CLUTCH_SLIPPING, none.splat_mask(true));
     output.flag(Flags::FLOW_LIMITED, at.flow_limited);
     output.flag(Flags::NOT_CONVERGED, !converged(at.residual));
-    let carried = at.load_share.filled(FULL_LOAD_LIMIT).reaches(at.load_share);
+    let carried = at.load_share.splat(FULL_LOAD_LIMIT).ge(at.load_share);
     let valid = at.inside_maps & carried & table_holds(step, creep * ratio, none);
     common_flags(step, output, valid);
     remember(past, output, Some(step.input.dt_s));
     warm_start.trend.reset_at_standstill();
-    past.coupled = none.answer(false);
+    past.coupled = none.splat_mask(false);
 }
 
 /// Adds the losses of all parts at the speeds of engine, primary, secondary and the shaft into the final drive, rad/s.
-#[inline(always)]
+#[physics]
 fn add_part_losses<R: Real>(
     output: &mut StepOutput<R>,
     torques: &PartTorques<R>,
     [engine, primary, secondary, output_shaft]: [R; 4],
-) where
-    f64: Left<R>,
-{
-    torques.for_each_loss(
-        #[inline(always)]
-        |component, shaft, torque_nm| {
-            let speed_rad_s = match shaft {
-                Shaft::Engine => engine,
-                Shaft::Primary => primary,
-                Shaft::Secondary => secondary,
-                Shaft::Output => output_shaft,
-            };
-            output.add_loss(component, torque_nm * speed_rad_s);
-        },
-    );
+) {
+    torques.for_each_loss(|component, shaft, torque_nm| {
+        let speed_rad_s = match shaft {
+            Shaft::Engine => engine,
+            Shaft::Primary => primary,
+            Shaft::Secondary => secondary,
+            Shaft::Output => output_shaft,
+        };
+        output.add_loss(component, torque_nm * speed_rad_s);
+    });
 }
 
-#[inline(always)]
-fn primary_pa<P, R: Real>(step: &Step<P, R>, pa: R, secondary_rad_s: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+fn primary_pa<P, R: Real>(step: &Step<P, R>, pa: R, secondary_rad_s: R) -> R {
     let cvt = step.line.cvt;
     cvt.primary_pa(cvt.secondary_clamp_n(pa, secondary_rad_s), step.line.at)
 }
 
 /// True for a residual within tolerance, false for NaN.
-#[inline(always)]
+#[physics]
 fn converged<R: Real>(residual: R) -> R::Mask {
-    residual.filled(TOLERANCE).reaches(residual)
+    residual.splat(TOLERANCE).ge(residual)
 }
 
 /// How the solve ended.
@@ -230,6 +201,7 @@ pub(super) struct Outcome<R: Real> {
 }
 
 /// Fills an output at rest with that of a solved step.
+#[physics]
 #[inline(never)]
 pub(super) fn finish<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
@@ -237,25 +209,19 @@ pub(super) fn finish<P: PrimeMover<R>, R: Real>(
     kept: (&mut DrivelineState<R>, &mut WarmStart<R>),
     outcome: &Outcome<R>,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
-    step.secondary_rad_s.within(
-        #[inline(always)]
-        || finished(step, p, kept, outcome, output),
-    );
+) {
+    step.secondary_rad_s
+        .vectorize(|| finished(step, p, kept, outcome, output));
 }
 
-#[inline(always)]
+#[physics]
 fn finished<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     p: &Point<R>,
     (past, warm_start): (&mut DrivelineState<R>, &mut WarmStart<R>),
     outcome: &Outcome<R>,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
+) {
     let (g, ratio) = (&p.guess, step.line.at.geometry.ratio);
     let (wp, we) = (p.primary_rad_s, g.engine_rad_s);
     output.engine_rad_s = we;
@@ -280,7 +246,7 @@ fn finished<P: PrimeMover<R>, R: Real>(
     give(step, g, outcome.limit.binds(), output);
     solve_flags(step, p, past, outcome, output);
     // All runs of a group are at rest together.
-    let rests = !step.secondary_rad_s.above(0.0).any();
+    let rests = !step.secondary_rad_s.gt(0.0).any();
     if rests {
         warm_start.trend.reset_at_standstill();
     } else {
@@ -289,7 +255,7 @@ fn finished<P: PrimeMover<R>, R: Real>(
         trend.push(step.input.wheel.accel_m_s2, g.slip, loss_nm);
     }
     remember(past, output, rests.then_some(step.input.dt_s));
-    let turns_together = (p.over_rad_s * TOGETHER).reaches(we);
+    let turns_together = (p.over_rad_s * TOGETHER).ge(we);
     past.coupled = if step.line.cvt.coupling.by_command() {
         p.locked
     } else {
@@ -303,125 +269,122 @@ const TOGETHER: f64 = 1.0 + 1e-4;
 const JUST_ABOVE: f64 = 1.0 + 1e-9;
 const JUST_BELOW: f64 = 1.0 - 1e-9;
 
-/// What the wheels get: what they demand, or where a limit binds what there is, and the rest to the brakes or as a deficit.
-#[inline(always)]
+/// Splits the power at the wheels: their demand, or under a limit the power there is, with the rest to the brakes or as a deficit.
+#[physics]
 fn give<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     g: &Guess<R>,
     bound: R::Mask,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
+) {
     let wheel = step.input.wheel;
     output.output_w = wheel.power_w;
     if bound.any() {
         let (brake_w, deficit_w) = (output.brake_w, output.deficit_w);
         output.split_brake_and_shortfall(wheel, g.output_nm * step.secondary_rad_s);
-        output.output_w = R::pick(bound, output.output_w, wheel.power_w);
-        output.brake_w = R::pick(bound, output.brake_w, brake_w);
-        output.deficit_w = R::pick(bound, output.deficit_w, deficit_w);
+        output.output_w = bound.select(output.output_w, wheel.power_w);
+        output.brake_w = bound.select(output.brake_w, brake_w);
+        output.deficit_w = bound.select(output.deficit_w, deficit_w);
     }
 }
 
 /// Flags of a solved step.
-#[inline(always)]
+#[physics]
 fn solve_flags<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     p: &Point<R>,
     past: &DrivelineState<R>,
     outcome: &Outcome<R>,
     output: &mut StepOutput<R>,
-) where
-    f64: Left<R>,
-{
+) {
     let (wp, we) = (p.over_rad_s, p.guess.engine_rad_s);
-    let zero = we.filled(0.0);
-    let rests = !step.secondary_rad_s.above(0.0).any();
+    let zero = we.splat(0.0);
+    let rests = !step.secondary_rad_s.gt(0.0).any();
     let (belt, ratio) = (&p.torques.belt, step.line.at.geometry.ratio);
     output.flag(Flags::MISSED_TRACE, outcome.limit.full_load);
     if p.torques.belt_map.is_none() {
         output.flag(Flags::GROSS_SLIP, belt.gross_slip);
     }
     let carried = p.torques.secondary.abs();
-    output.flag(Flags::LOW_CLAMP, carried.above(belt.capacity_nm));
+    output.flag(Flags::LOW_CLAMP, carried.gt(belt.capacity_nm));
     output.flag(Flags::FLOW_LIMITED, p.flow_limited | step.shift_held);
     let by_command = step.line.cvt.coupling.by_command();
     // A lock-up clutch that closes slips until the engine has come down.
-    let closes = p.locked & !past.coupled & past.engine_rad_s.above(wp);
-    let slips = we.above(wp * JUST_ABOVE) & p.passed_nm.above(0.0);
-    output.flag(Flags::CLUTCH_SLIPPING, slips | closes | zero.answer(rests));
+    let closes = p.locked & !past.coupled & past.engine_rad_s.gt(wp);
+    let slips = we.gt(wp * JUST_ABOVE) & p.passed_nm.gt(0.0);
+    output.flag(
+        Flags::CLUTCH_SLIPPING,
+        slips | closes | zero.splat_mask(rests),
+    );
     if by_command {
         output.flag(Flags::LOCKUP_OPEN, !p.locked);
     } else {
-        let below_idle = step.input.engine.idle_rad_s().above(wp);
+        let below_idle = step.input.engine.idle_rad_s().gt(wp);
         output.flag(Flags::CLUTCH_OPEN, outcome.limit.engine_drag & below_idle);
     }
-    output.flag(Flags::OVERRUN, zero.above(p.passed_nm));
+    output.flag(Flags::OVERRUN, zero.gt(p.passed_nm));
     output.flag(Flags::NOT_CONVERGED, !converged(outcome.residual));
     if past.stood && !rests {
         let in_low = 0.99 * step.line.cvt.ratio.low;
-        output.flag(Flags::LAUNCH_NOT_IN_LOW, in_low.above(ratio));
+        output.flag(Flags::LAUNCH_NOT_IN_LOW, in_low.gt(ratio));
     }
     let share = (p.flywheel_nm + step.input.engine.accessories_nm(we)) / p.full_load_nm;
     let inside = p.inside_maps & table_holds(step, p.torques.secondary, step.secondary_rad_s);
-    let within = share.filled(FULL_LOAD_LIMIT).reaches(share);
+    let within = share.splat(FULL_LOAD_LIMIT).ge(share);
     common_flags(step, output, inside & within);
 }
 
-/// Whether a clamp law that is a table has the belt's ratio, its torque at the secondary, Nm, and its speed, rad/s; of another law true (PC-6).
-#[inline(always)]
-fn table_holds<P, R: Real>(step: &Step<P, R>, secondary_nm: R, secondary_rad_s: R) -> R::Mask
-where
-    f64: Left<R>,
-{
+/// True if the table of a clamp law covers the belt's ratio, its torque at the secondary, Nm, and its speed, rad/s; true for other laws (PC-6).
+#[physics]
+fn table_holds<P, R: Real>(step: &Step<P, R>, secondary_nm: R, secondary_rad_s: R) -> R::Mask {
     let (ClampLaw::Table, Some(tables)) = (step.clamp, &step.line.cvt.pressure_table) else {
-        return secondary_nm.answer(true);
+        return secondary_nm.splat_mask(true);
     };
     let ratio = step.line.at.geometry.ratio;
-    secondary_nm.ask(|lane| {
+    secondary_nm.mask_lanes(|lane| {
         let (nm, rad_s) = (secondary_nm.lane(lane), secondary_rad_s.lane(lane));
         let at = PressurePoint::of_belt(nm, ratio.lane(lane), rad_s);
-        R::one(tables, lane).holds(&at)
+        R::get(tables, lane).holds(&at)
     })
 }
 
 /// Where a temperature, K, is one for which the fluid models hold.
-#[inline(always)]
+#[physics]
 fn is_valid<R: Real>(temp_k: R) -> R::Mask {
     let (least, most) = (*VALID_K.start(), *VALID_K.end());
-    temp_k.reaches(temp_k.filled(least)) & temp_k.filled(most).reaches(temp_k)
+    temp_k.ge(temp_k.splat(least)) & temp_k.splat(most).ge(temp_k)
 }
 
 /// Flags of any step; `valid` from maps and full load.
-#[inline(always)]
+#[physics]
 fn common_flags<P: PrimeMover<R>, R: Real>(
     step: &Step<P, R>,
     output: &mut StepOutput<R>,
     valid: R::Mask,
-) where
-    f64: Left<R>,
-{
+) {
     let t = &step.input.heat.node_k;
     let valid = is_valid(t[SUMP]) & is_valid(t[BELT]) & valid;
     let ratio = step.line.at.geometry.ratio;
     let limits = &step.line.cvt.ratio;
     output.flag(Flags::OUTSIDE_VALIDITY, !valid);
-    let at_end = (limits.high * JUST_ABOVE).reaches(ratio) | ratio.reaches(limits.low * JUST_BELOW);
+    let at_end = (limits.high * JUST_ABOVE).ge(ratio) | ratio.ge(limits.low * JUST_BELOW);
     output.flag(Flags::RATIO_LIMIT, at_end);
     let line_pa = output.secondary_pa + step.line.cvt.pump.line_drop_pa;
-    let short = output.primary_pa.above(line_pa * JUST_ABOVE);
+    let short = output.primary_pa.gt(line_pa * JUST_ABOVE);
     output.flag(Flags::PRIMARY_PRESSURE_SHORT, short);
-    let fast = output.engine_rad_s.above(step.input.engine.max_rad_s());
+    let fast = output.engine_rad_s.gt(step.input.engine.max_rad_s());
     output.flag(Flags::OVERSPEED, fast);
 }
 
 /// Keeps what the next step looks at; `rest_s`: how long a car at rest was.
-#[inline(always)]
+#[physics]
 fn remember<R: Real>(past: &mut DrivelineState<R>, output: &StepOutput<R>, rest_s: Option<f64>) {
     past.engine_rad_s = output.engine_rad_s;
     past.throttle = output.throttle;
     past.secondary_pa = output.secondary_pa;
     past.stood = rest_s.is_some();
-    past.rested_s = rest_s.map_or(0.0, |rest_s| past.rested_s + rest_s);
+    match rest_s {
+        Some(rest_s) => past.rested_s += rest_s,
+        None => past.rested_s = 0.0,
+    }
 }

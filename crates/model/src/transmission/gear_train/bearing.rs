@@ -10,14 +10,14 @@
 //! preloaded bearing loses less torque the faster it turns and the thicker its oil is, down to a third: its rollers lift off. Its power
 //! still rises with speed.
 
-use crate::math::{Left, Real, gather, ln};
+use crate::math::{Gather, Real, ln, physics};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Ends of the mixed friction of a bearing over its boundary friction (BR-2).
 const FULL_FILM: f64 = 0.04 / 0.12;
 const BOUNDARY: f64 = 0.08 / 0.12;
 /// Logarithm of the nu n below which M_0 falls no more, 2000 mm2/s rpm.
-const LEAST_LOG_NU_N: f64 = 7.600_902_459_542_082;
+const MIN_LOG_NU_N: f64 = 7.600_902_459_542_082;
 /// Exponent of nu n in M_0 (BR-1).
 const TWO_THIRDS: f64 = 2.0 / 3.0;
 /// Load of a shaft's bearings over the tangential force of its wheel.
@@ -40,7 +40,7 @@ pub struct Bearing {
     pub preload_nm: f64,
 }
 
-/// What all bearings of a train share.
+/// Data shared by all bearings of a train.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BearingFactors {
     /// Friction under load (BR-3).
@@ -70,7 +70,7 @@ impl Bearing {
         TrainBearing {
             turns,
             unheated_nm: per_power_nm * turns_23,
-            least_nm: per_power_nm * film_powers(LEAST_LOG_NU_N)[0],
+            least_nm: per_power_nm * film_powers(MIN_LOG_NU_N)[0],
             heating: ViscousSelfHeating::halving_at_w(Some(self.count * factors.heating_w)),
             preload_nm: factors.preload * self.preload_nm,
             film: -2.6e-8 * mean_mm * turns_14, // BR-2
@@ -79,17 +79,14 @@ impl Bearing {
 }
 
 /// The powers (nu n)^(2/3) and (nu n)^1.4 from the logarithm of nu n in mm2/s rpm (BR-1, BR-2).
-#[inline(always)]
-pub fn film_powers<R: Real>(log_nu_n: R) -> [R; 2]
-where
-    f64: Left<R>,
-{
-    R::exp_each([TWO_THIRDS * log_nu_n, 1.4 * log_nu_n])
+#[physics]
+pub fn film_powers<R: Real>(log_nu_n: R) -> [R; 2] {
+    R::exp_array([TWO_THIRDS * log_nu_n, 1.4 * log_nu_n])
 }
 
 /// The bearings of one kind in a train: what depends on neither speed nor oil is known. Powers of nu n are those of shaft 0; a shaft with
 /// another speed has a constant times them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct TrainBearing<R: Real = f64> {
     /// Speed of the shaft over that of shaft 0.
     turns: R,
@@ -103,23 +100,11 @@ pub struct TrainBearing<R: Real = f64> {
     film: R,
 }
 
-gather!(TrainBearing {
-    turns,
-    unheated_nm,
-    least_nm,
-    heating,
-    preload_nm,
-    film
-});
-
-impl<R: Real> TrainBearing<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> TrainBearing<R> {
     /// Torque at shaft 0, Nm, at a speed of that shaft and with the powers of its nu n (BR-1, BR-2).
-    #[inline(always)]
     pub fn torque_nm(&self, first_rad_s: R, [power_23, power_14]: [R; 2]) -> R {
-        let unheated_nm = (self.unheated_nm * power_23).most(self.least_nm);
+        let unheated_nm = (self.unheated_nm * power_23).max(self.least_nm);
         let boundary = (self.film * power_14).exp();
         let own_nm = self.heating.torque_nm(unheated_nm, self.turns * first_rad_s) // BR-1
             + self.preload_nm * (FULL_FILM + BOUNDARY * boundary); // BR-2

@@ -7,7 +7,7 @@
 //! Fr = w^2 R/g, Re = w R^2/nu; R radius, D diameter, b width, h immersion, all m; S_m wetted flanks and rim, m2; V oil in the sump, m3;
 //! rho kg/m3. The law of low Reynolds numbers is used at all of them.
 
-use crate::math::{Left, Real, asin, exp, ln, smaller};
+use crate::math::{Real, asin, exp, ln, physics, smaller};
 
 const GRAVITY_M_S2: f64 = 9.81;
 
@@ -38,7 +38,7 @@ impl Churner {
         2.0 * r * r * (half - sin * cos) + 2.0 * half * r * self.face_m
     }
 
-    /// What of CH-1 depends on neither speed nor oil, Nm over density, speed^0.59 and viscosity^0.21, SI.
+    /// Factor of CH-1 without speed and oil, Nm over density, speed^0.59 and viscosity^0.21, SI.
     pub fn factor(&self, oil_m3: f64) -> f64 {
         let r = self.radius_m;
         let d = 2.0 * r;
@@ -65,10 +65,7 @@ pub fn in_train(factor: f64, turns: f64) -> f64 {
 }
 
 /// Torque at a shaft of a churner with its factor, Nm, from the logarithms of the shaft's speed in rad/s and of nu in m2/s (CH-1).
-#[inline(always)]
-pub fn torque_nm<R: Real>(factor: R, density_kg_m3: R, log_rad_s: R, log_nu: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn torque_nm<R: Real>(factor: R, density_kg_m3: R, log_rad_s: R, log_nu: R) -> R {
     factor * density_kg_m3 * (0.59 * log_rad_s + 0.21 * log_nu).exp() // CH-1
 }

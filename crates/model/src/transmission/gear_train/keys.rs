@@ -37,7 +37,7 @@ keys! {
 }
 
 /// Teeth below which a wheel cannot be cut.
-const LEAST_TEETH: f64 = 5.0;
+const MIN_TEETH: f64 = 5.0;
 
 /// Where the reader has reported rows that are none: any pair of wheels.
 const ANY_STAGE: Stage = Stage {
@@ -137,7 +137,7 @@ fn stages<V: Values>(s: &V, ratios: &[[f64; 2]]) -> [Stage; 2] {
     });
     let too_few = |ratios: &[f64; 2]| {
         let teeth = |k: usize| stages[k].pinion_teeth(ratios[k]);
-        teeth(0) < LEAST_TEETH || teeth(1) < LEAST_TEETH
+        teeth(0) < MIN_TEETH || teeth(1) < MIN_TEETH
     };
     if ratios.iter().any(too_few) {
         s.complain(

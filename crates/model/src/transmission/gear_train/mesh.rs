@@ -11,15 +11,15 @@
 //! rho_C in mm, eta in mPa s, Ra in um; X_L 1 for mineral oil. The force is that of the power that is demanded, so that the share is known
 //! before the torques are.
 
-use crate::math::{Left, Real, cos, exp, gather, larger, ln, tan};
+use crate::math::{Gather, Real, cos, exp, larger, ln, physics, tan};
 use std::f64::consts::PI;
 
 /// Normal pressure angle, rad.
 const PRESSURE_ANGLE_RAD: f64 = PI / 9.0;
 /// Least load of the teeth for which GM-2 holds, N/mm.
-const LEAST_LINE_LOAD_N_MM: f64 = 150.0;
+const MIN_LINE_LOAD_N_MM: f64 = 150.0;
 /// Least speed of the pitch circles for which GM-2 holds, m/s.
-const LEAST_PITCH_M_S: f64 = 0.5;
+const MIN_PITCH_M_S: f64 = 0.5;
 /// Largest friction of the teeth.
 const MAX_FRICTION: f64 = 0.15;
 
@@ -46,7 +46,7 @@ pub struct Teeth {
 }
 
 /// A mesh at its ratio, in a train.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Mesh<R: Real = f64> {
     /// H_V (GM-1).
     pub loss_factor: R,
@@ -56,17 +56,9 @@ pub struct Mesh<R: Real = f64> {
     pitch_radius_m: R,
     /// Load of the teeth for a torque at the train's first shaft, N/mm per Nm.
     line_load_per_nm: R,
-    /// What of GM-2 follows from the wheels and the oil's kind.
+    /// Factor of GM-2 from the wheels and the oil's kind.
     friction_factor: R,
 }
-
-gather!(Mesh {
-    loss_factor,
-    pinion_turns,
-    pitch_radius_m,
-    line_load_per_nm,
-    friction_factor
-});
 
 impl Stage {
     /// Ratio of wheel to pinion: an overdrive turned round.
@@ -122,18 +114,16 @@ impl Stage {
     }
 }
 
-impl<R: Real> Mesh<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Mesh<R> {
     /// Mean friction of the teeth at a speed of the train's first shaft and a torque there, with the logarithm of the oil's viscosity in mPa s
     /// (GM-2).
+    #[inline]
     pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::frictions([self], first_rad_s, torque_nm, log_eta)[0]
     }
 
     /// The same of several meshes of a train.
-    #[inline(always)]
     fn frictions<const COUNT: usize>(
         meshes: [&Mesh<R>; COUNT],
         first_rad_s: R,
@@ -144,21 +134,20 @@ where
         for (mesh, log) in meshes.iter().zip(&mut logs) {
             let load = torque_nm.abs() * mesh.line_load_per_nm;
             let pitch_m_s = first_rad_s * mesh.pinion_turns * mesh.pitch_radius_m;
-            *log = load.most(LEAST_LINE_LOAD_N_MM) / pitch_m_s.most(LEAST_PITCH_M_S);
+            *log = load.max(MIN_LINE_LOAD_N_MM) / pitch_m_s.max(MIN_PITCH_M_S);
         }
-        logs = R::ln_each(logs);
+        logs = R::ln_array(logs);
         for log in &mut logs {
             *log = 0.2 * *log - 0.05 * log_eta;
         }
-        let mut frictions = R::exp_each(logs);
+        let mut frictions = R::exp_array(logs);
         for (mesh, friction) in meshes.iter().zip(&mut frictions) {
-            *friction = (mesh.friction_factor * *friction).least(MAX_FRICTION); // GM-2
+            *friction = (mesh.friction_factor * *friction).min(MAX_FRICTION); // GM-2
         }
         frictions
     }
 
     /// Lost shares of the power through several meshes of a train (GM-3).
-    #[inline(always)]
     pub fn shares<const COUNT: usize>(
         meshes: [&Mesh<R>; COUNT],
         first_rad_s: R,
@@ -173,6 +162,7 @@ where
     }
 
     /// Lost share of the power through the mesh (GM-3).
+    #[inline]
     pub fn share(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
         Mesh::shares([self], first_rad_s, torque_nm, log_eta)[0]
     }

@@ -20,8 +20,8 @@ use self::bearing::{Bearing, BearingFactors, TrainBearing, load_share};
 use self::churning::Churner;
 use self::mesh::{Mesh, Stage, Teeth};
 use self::seal::LipSeal;
-use crate::fluid::OilState;
-use crate::math::{Left, Mask, Real, gather, larger};
+use crate::lubricant::OilState;
+use crate::math::{Gather, Mask, Real, larger, physics};
 use std::f64::consts::LN_10;
 
 /// Largest share of the power that a train loses under load.
@@ -40,7 +40,7 @@ pub struct GearParts {
     pub teeth: Teeth,
     /// Bearings.
     pub bearings: Vec<Bearing>,
-    /// What the bearings share.
+    /// Data shared by the bearings.
     pub bearing: BearingFactors,
     /// Wheels in the sump.
     pub churners: Vec<Churner>,
@@ -53,7 +53,7 @@ pub struct GearParts {
 }
 
 /// A train at the ratios of its stages.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct GearTrain<R: Real = f64> {
     meshes: [Mesh<R>; 2],
     bearings: Vec<TrainBearing<R>>,
@@ -64,14 +64,6 @@ pub struct GearTrain<R: Real = f64> {
     /// Lost in the bearings under the load of both stages (BR-3).
     bearing_share: R,
 }
-
-gather!(GearTrain {
-    meshes,
-    bearings,
-    churning,
-    seal_nm,
-    bearing_share
-});
 
 /// A train at a speed, an oil and a demand: what does not depend on the torque that passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -145,20 +137,17 @@ impl GearParts {
     }
 }
 
-impl<R: Real> GearTrain<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> GearTrain<R> {
     /// The train at a speed of shaft 0 in its oil, with the torque at shaft 0 that the demanded power gives (GT-1).
-    #[inline(always)]
     pub fn turning(&self, first_rad_s: R, demand_nm: R, oil: OilState<R>) -> TurningTrain<R> {
-        let rests = first_rad_s.filled(0.0).reaches(first_rad_s);
+        let rests = first_rad_s.splat(0.0).ge(first_rad_s);
         if rests.all() {
             return TurningTrain::at_rest(first_rad_s);
         }
         let log_first = first_rad_s.ln();
         let powers = bearing::film_powers(oil.log_nu + log_first + LN_MICRO_RPM);
-        let mut bearing_nm = first_rad_s.filled(-0.0);
+        let mut bearing_nm = first_rad_s.splat(-0.0);
         for bearing in &self.bearings {
             bearing_nm = bearing_nm + bearing.torque_nm(first_rad_s, powers); // GT-1
         }
@@ -170,16 +159,18 @@ where
         );
         let mesh_share = first + second;
         let share = mesh_share + self.bearing_share;
-        let held = R::pick(share.above(MAX_SHARE), MAX_SHARE / share, share.filled(1.0));
+        let held = share
+            .gt(MAX_SHARE)
+            .select(MAX_SHARE / share, share.splat(1.0));
         let churning_nm =
             churning::torque_nm(self.churning, oil.density_kg_m3, log_first, oil.log_nu);
-        let none = share.filled(0.0);
+        let none = share.splat(0.0);
         TurningTrain {
-            bearing_nm: R::pick(rests, none, bearing_nm),
-            churning_nm: R::pick(rests, none, churning_nm),
-            seal_nm: R::pick(rests, none, self.seal_nm),
-            mesh_share: R::pick(rests, none, held * mesh_share),
-            bearing_share: R::pick(rests, none, held * self.bearing_share),
+            bearing_nm: rests.select(none, bearing_nm),
+            churning_nm: rests.select(none, churning_nm),
+            seal_nm: rests.select(none, self.seal_nm),
+            mesh_share: rests.select(none, held * mesh_share),
+            bearing_share: rests.select(none, held * self.bearing_share),
         }
     }
 }
@@ -196,14 +187,11 @@ impl<R: Real> TrainLosses<R> {
     }
 }
 
-impl<R: Real> TurningTrain<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> TurningTrain<R> {
     /// Nothing is lost; `like` has the lanes.
-    #[inline(always)]
     pub(crate) fn at_rest(like: R) -> Self {
-        let none = like.filled(0.0);
+        let none = like.splat(0.0);
         TurningTrain {
             bearing_nm: none,
             churning_nm: none,
@@ -214,7 +202,6 @@ where
     }
 
     /// Each loss times its factor (CV-7, MB-6).
-    #[inline(always)]
     pub fn times(&self, factor: &TrainLosses<R>) -> Self {
         TurningTrain {
             bearing_nm: factor.bearing * self.bearing_nm,
@@ -226,37 +213,32 @@ where
     }
 
     /// Torque without load, at shaft 0, Nm (GT-1).
-    #[inline(always)]
     pub fn no_load_nm(&self) -> R {
         self.bearing_nm + self.churning_nm + self.seal_nm // GT-1
     }
 
     /// Share of the power that is lost under load (GT-2).
-    #[inline(always)]
     pub fn share(&self) -> R {
         self.mesh_share + self.bearing_share
     }
 
     /// Torque at shaft 0 for a torque behind the train, both at the speed of shaft 0, Nm (GT-2).
-    #[inline(always)]
     pub fn input_nm(&self, output_nm: R) -> R {
         let (through, kept) = (output_nm + self.no_load_nm(), 1.0 - self.share());
-        R::pick(through.reaches(0.0), through / kept, through * kept) // GT-2
+        through.ge(0.0).select(through / kept, through * kept) // GT-2
     }
 
     /// Torque behind the train for a torque at shaft 0: the inverse of GT-2.
-    #[inline(always)]
     pub fn output_nm(&self, input_nm: R) -> R {
         let kept = 1.0 - self.share();
-        let through = R::pick(input_nm.reaches(0.0), input_nm * kept, input_nm / kept);
+        let through = input_nm.ge(0.0).select(input_nm * kept, input_nm / kept);
         through - self.no_load_nm() // GT-2
     }
 
     /// Losses by part for a torque behind the train; their sum is the torque before it less the one behind it.
-    #[inline(always)]
     pub fn losses(&self, output_nm: R) -> TrainLosses<R> {
         let through_nm = (output_nm + self.no_load_nm()).abs();
-        let larger_nm = through_nm.most(self.input_nm(output_nm).abs());
+        let larger_nm = through_nm.max(self.input_nm(output_nm).abs());
         TrainLosses {
             mesh: self.mesh_share * larger_nm,
             bearing: self.bearing_nm + self.bearing_share * larger_nm,

@@ -31,14 +31,14 @@ use super::loss_factor::{self, LossFactors, UNCHANGED, product};
 use super::step::{DrivelineState, StepInput, StepOutput};
 use crate::cycle::{GearCommand, Step, Trace};
 use crate::flags::Flags;
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 use crate::maps::LossMap;
-use crate::math::{Left, Mask, Real, gather, gather_each};
+use crate::math::{Gather, Mask, Real, gather_each, physics};
 use crate::prime_mover::PrimeMover;
 use crate::thermal::SUMP;
 
 /// The checked manual box.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Gather)]
 pub struct Manual<R: Real = f64> {
     /// Overall ratios from first gear, engine speed over wheel speed.
     pub overall: Vec<R>,
@@ -47,39 +47,25 @@ pub struct Manual<R: Real = f64> {
     /// Share of the load-independent losses in top gear that turns in neutral.
     pub neutral_share: R,
     /// Shift speeds where the cycle prescribes no gears.
-    pub shifts: R::Each<ShiftSpeeds>,
+    pub shifts: R::PerLane<ShiftSpeeds>,
     /// Coupling to the engine.
     pub coupling: DriverClutch<R>,
     /// Measured map of the whole box in place of bearings, churning, seals and mesh.
-    pub map: Option<R::Each<LossMap>>,
+    pub map: Option<R::PerLane<LossMap>>,
     /// Factors on the losses (MB-6), if there are any.
     pub factor: Option<Box<ByComponent<R>>>,
 }
 
 gather_each!(ShiftSpeeds, LossMap);
 
-gather!(Manual {
-    overall,
-    trains,
-    neutral_share,
-    shifts,
-    coupling,
-    map,
-    factor
-});
-
-impl<R: Real> Driveline<R> for Manual<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Driveline<R> for Manual<R> {
     type State = DrivelineState<R>;
 
-    #[inline(always)]
     fn start<P: PrimeMover<R>>(&self, input: &StepInput<P, R>) -> DrivelineState<R> {
         self.begin(input)
     }
 
-    #[inline(always)]
     fn solve_into<P: PrimeMover<R>>(
         &self,
         input: &StepInput<P, R>,
@@ -89,17 +75,14 @@ where
         self.solve(input, state, output);
     }
 
-    #[inline(always)]
     fn engine_rad_s(state: &DrivelineState<R>) -> R {
         state.engine_rad_s
     }
 
-    #[inline(always)]
     fn is_cvt(&self) -> bool {
         false
     }
 
-    #[inline(always)]
     fn neutral_share(
         &self,
         _: Option<&DrivelineState<R>>,
@@ -107,17 +90,16 @@ where
         _: &Step,
         _: f64,
     ) -> R {
-        self.neutral_share.filled(0.0)
+        self.neutral_share.splat(0.0)
     }
 
-    #[inline(always)]
     fn coupling_factor(&self) -> Option<R> {
         self.coupling.loss_factor()
     }
 }
 
 /// Speed of the input shaft over idle speed below which the driver of a car that slows down opens the clutch (MB-5).
-const LEAST_OVER_IDLE: f64 = 1.05;
+const MIN_OVER_IDLE: f64 = 1.05;
 
 impl Manual {
     /// Factors on the losses of the box (MB-6), the coupling apart.
@@ -135,7 +117,7 @@ impl Manual {
     }
 }
 
-/// What a driver does with the box in a step.
+/// Action of a driver on the box in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Action {
     /// Drives in a gear.
@@ -155,11 +137,13 @@ impl<R: Real> Manual<R> {
         run: usize,
     ) -> GearCommand {
         let wheel = step.wheel;
-        let shifts = R::one(&self.shifts, run);
+        let shifts = R::get(&self.shifts, run);
         let gear = shifts.for_speed(wheel.speed_m_s, before, self.overall.len());
-        let input = self.overall[usize::from(gear) - 1].lane(run) * wheel.wheel_rad_s.lane(run);
-        let idle = step.engine.idle_rad_s().lane(run);
-        if wheel.power_w.lane(run) <= 0.0 && input < LEAST_OVER_IDLE * idle {
+        let overall = self.overall[usize::from(gear) - 1].lane(run);
+        let idle_rad_s = step.engine.idle_rad_s().lane(run);
+        if wheel.power_w.lane(run) <= 0.0
+            && is_below_idle(overall, wheel.wheel_rad_s.lane(run), idle_rad_s)
+        {
             GearCommand::Declutched(gear)
         } else {
             GearCommand::InGear(gear)
@@ -167,56 +151,56 @@ impl<R: Real> Manual<R> {
     }
 }
 
-impl<R: Real> Manual<R>
-where
-    f64: Left<R>,
-{
+/// True where a closed clutch would turn the engine near or below its idle speed.
+fn is_below_idle(overall: f64, wheel_rad_s: f64, idle_rad_s: f64) -> bool {
+    overall * wheel_rad_s < MIN_OVER_IDLE * idle_rad_s
+}
+
+#[physics]
+impl<R: Real> Manual<R> {
     /// State at the beginning of a cycle.
-    #[inline(always)]
     pub(super) fn begin<P: PrimeMover<R>>(&self, step: &StepInput<P, R>) -> DrivelineState<R> {
         let wheel = step.wheel;
-        let rolls = wheel.wheel_rad_s.above(0.0);
+        let rolls = wheel.wheel_rad_s.gt(0.0);
         let count = self.overall.len();
-        let gear = R::every(|run| {
+        let gear = R::per_lane(|run| {
             if rolls.lane(run) {
-                R::one(&self.shifts, run).for_speed(wheel.speed_m_s, 1, count)
+                R::get(&self.shifts, run).for_speed(wheel.speed_m_s, 1, count)
             } else {
                 0
             }
         });
         let input = self.input_rad_s(&gear, wheel.wheel_rad_s);
         let idle = step.engine.idle_rad_s();
-        let zero = idle.filled(0.0);
+        let zero = idle.splat(0.0);
         DrivelineState {
             gear,
-            engine_rad_s: input.most(idle),
+            engine_rad_s: input.max(idle),
             throttle: zero,
             secondary_pa: zero,
-            coupled: input.above(idle),
+            coupled: input.gt(idle),
             stood: true,
             rested_s: 0.0,
         }
     }
 
     /// Speed of the input shaft in the gear of each run, rad/s; 0 without one.
-    #[inline(always)]
-    fn input_rad_s(&self, gear: &R::Each<u8>, wheel_rad_s: R) -> R {
-        let first = *R::one(gear, 0);
-        if (1..R::LANES).all(|run| *R::one(gear, run) == first) {
+    fn input_rad_s(&self, gear: &R::PerLane<u8>, wheel_rad_s: R) -> R {
+        let first = *R::get(gear, 0);
+        if (1..R::LANES).all(|run| *R::get(gear, run) == first) {
             return match usize::from(first).checked_sub(1) {
                 Some(place) => self.overall[place] * wheel_rad_s,
-                None => wheel_rad_s.filled(0.0),
+                None => wheel_rad_s.splat(0.0),
             };
         }
-        let ratio = wheel_rad_s.by_lane(|run| {
-            let place = usize::from(*R::one(gear, run)).checked_sub(1);
+        let ratio = wheel_rad_s.map_lanes(|run| {
+            let place = usize::from(*R::get(gear, run)).checked_sub(1);
             place.map_or(0.0, |place| self.overall[place].lane(run))
         });
         ratio * wheel_rad_s
     }
 
-    /// What the driver of a run does: what the cycle commands, else what the shift speeds say (MB-5).
-    #[inline(always)]
+    /// Action of the driver of a run: the command of the cycle, else that of the shift speeds (MB-5).
     fn action<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
@@ -246,28 +230,26 @@ where
     }
 
     /// Where the cycle has no gear in force, and one was needed to drive the car faster.
-    #[inline(always)]
     fn is_wrong_gear<P: PrimeMover<R>>(step: &StepInput<P, R>, output: &StepOutput<R>) -> R::Mask {
         let no_gear = matches!(
             step.gear,
             Some(GearCommand::Neutral | GearCommand::Declutched(_))
         );
         if no_gear && step.wheel.accel_m_s2 > 0.0 {
-            !output.has(Flags::CLUTCH_OPEN) & step.wheel.power_w.above(0.0)
+            !output.has(Flags::CLUTCH_OPEN) & step.wheel.power_w.gt(0.0)
         } else {
-            output.engine_rad_s.answer(false)
+            output.engine_rad_s.splat_mask(false)
         }
     }
 
     /// Solves one step; fills an output at rest.
-    #[inline(always)]
     pub(super) fn solve<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
         state: &mut DrivelineState<R>,
         output: &mut StepOutput<R>,
     ) {
-        let yes = step.wheel.wheel_rad_s.answer(true);
+        let yes = step.wheel.wheel_rad_s.splat_mask(true);
         if step.engine_off {
             state.engine_rad_s = step.engine.idle_rad_s(); // the starter brings it back there
             state.stood = true;
@@ -283,25 +265,21 @@ where
             oil: step.oil.state(sump_k),
         };
         // The road speed is that of all runs.
-        let rolls = step.wheel.wheel_rad_s.above(0.0).any();
-        let actions = R::every(
-            #[inline(always)]
-            |run| self.action(step, *R::one(&state.gear, run), rolls, run),
-        );
+        let rolls = step.wheel.wheel_rad_s.gt(0.0).any();
+        let actions = R::per_lane(|run| self.action(step, *R::get(&state.gear, run), rolls, run));
         at.act(&actions, output);
         output.flag(
             Flags::OVERSPEED,
-            output.engine_rad_s.above(step.engine.max_rad_s()),
+            output.engine_rad_s.gt(step.engine.max_rad_s()),
         );
         output.flag(Flags::WRONG_GEAR, Self::is_wrong_gear(step, output));
         let (coldest_k, hottest_k) = (*VALID_K.start(), *VALID_K.end());
-        let valid = sump_k.reaches(coldest_k) & sump_k.at_most(hottest_k);
+        let valid = sump_k.ge(coldest_k) & sump_k.le(hottest_k);
         output.flag(Flags::OUTSIDE_VALIDITY, !valid);
         self.keep(step, state, output);
     }
 
     /// Keeps of a step what the next one needs.
-    #[inline(always)]
     fn keep<P: PrimeMover<R>>(
         &self,
         step: &StepInput<P, R>,
@@ -309,19 +287,21 @@ where
         output: &StepOutput<R>,
     ) {
         for run in 0..R::LANES {
-            let gear = *R::one(&output.gear, run);
-            let kept = R::one_mut(&mut state.gear, run);
+            let gear = *R::get(&output.gear, run);
+            let kept = R::get_mut(&mut state.gear, run);
             *kept = if gear > 0 { gear } else { *kept };
         }
         state.engine_rad_s = output.engine_rad_s;
-        let in_gear = output.residual.ask(|run| *R::one(&output.gear, run) > 0);
+        let in_gear = output
+            .residual
+            .mask_lanes(|run| *R::get(&output.gear, run) > 0);
         let turning = in_gear & !output.has(Flags::CLUTCH_OPEN);
         // A clutch that was locked and slips after a change up only has the engine come down: it is no launch (LC-5), unless the box is slower
         // than the idling engine, where LC-5 lets both slip alike.
         let input_rad_s = self.input_rad_s(&output.gear, step.wheel.wheel_rad_s);
-        let locks = input_rad_s.reaches(step.engine.idle_rad_s());
+        let locks = input_rad_s.ge(step.engine.idle_rad_s());
         let slips = output.has(Flags::CLUTCH_SLIPPING);
         state.coupled = turning & (!slips | (state.coupled & locks));
-        state.stood = step.wheel.wheel_rad_s.at_most(0.0).any(); // the road speed is that of all runs
+        state.stood = step.wheel.wheel_rad_s.le(0.0).any(); // the road speed is that of all runs
     }
 }

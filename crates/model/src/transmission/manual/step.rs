@@ -3,8 +3,8 @@
 use super::engaged::sum_nm;
 use super::{Action, Engaged, Manual, PartLosses};
 use crate::flags::Flags;
-use crate::fluid::OilState;
-use crate::math::{Left, Mask, Real};
+use crate::lubricant::OilState;
+use crate::math::{Mask, Real, physics};
 use crate::prime_mover::{FULL_LOAD_LIMIT, PrimeMover};
 use crate::thermal::SUMP;
 use crate::transmission::component::Component;
@@ -22,28 +22,21 @@ pub(super) struct ManualStep<'a, P, R: Real = f64> {
     pub oil: OilState<R>,
 }
 
-impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R>
-where
-    f64: Left<R>,
-{
-    /// What the drivers do: each kind of it once for all runs, of which those take it over that do it.
-    #[inline(always)]
-    pub fn act(&self, actions: &R::Each<Action>, output: &mut StepOutput<R>) {
+#[physics]
+impl<P: PrimeMover<R>, R: Real> ManualStep<'_, P, R> {
+    /// Computes each kind of action once for all runs and selects it in the runs that take it.
+    pub fn act(&self, actions: &R::PerLane<Action>, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
         if R::LANES == 1 {
-            return self.act_alike(*R::one(actions, 0), output);
+            return self.act_alike(*R::get(actions, 0), output);
         }
-        let mut left = like.answer(true);
+        let mut left = like.splat_mask(true);
         for run in 0..R::LANES {
             if !left.lane(run) {
                 continue;
             }
-            let action = *R::one(actions, run);
-            let alike = left
-                & like.ask(
-                    #[inline(always)]
-                    |run| *R::one(actions, run) == action,
-                );
+            let action = *R::get(actions, run);
+            let alike = left & like.mask_lanes(|run| *R::get(actions, run) == action);
             let mut of_action = StepOutput::like(like);
             self.act_alike(action, &mut of_action);
             if alike.all() {
@@ -55,12 +48,11 @@ where
         }
     }
 
-    /// What all drivers do alike.
-    #[inline(always)]
+    /// Computes one action for all runs.
     fn act_alike(&self, action: Action, output: &mut StepOutput<R>) {
         match action {
             Action::Engaged(gear) => {
-                self.engaged(gear, self.oil.density_kg_m3.answer(true), output);
+                self.engaged(gear, self.oil.density_kg_m3.splat_mask(true), output);
             }
             Action::Coasting(gear) => self.coasting(gear, output),
             Action::Neutral => self.neutral(output),
@@ -68,7 +60,6 @@ where
     }
 
     /// The box in a gear at an input speed and a demanded torque.
-    #[inline(always)]
     fn box_in(&self, gear: u8, input_rad_s: R, demand_nm: R) -> Engaged<'_, R> {
         let oil_k = self.step.heat.node_k[SUMP];
         self.manual
@@ -76,33 +67,31 @@ where
     }
 
     /// The highest gear.
+    #[inline]
     fn top(&self) -> u8 {
         self.manual.overall.len() as u8
     }
 
     /// Speed of the free engine at the end of the step, rad/s.
-    #[inline(always)]
     fn free_engine_rad_s(&self) -> R {
         let before_rad_s = self.state.engine_rad_s;
         self.step
-            .reach(before_rad_s, before_rad_s.filled(0.0))
+            .reach(before_rad_s, before_rad_s.splat(0.0))
             .nearest(self.step.engine.idle_rad_s())
     }
 
     /// Declutched, unless the car would then slow down more than it should: the driver lets the clutch slip in that gear or a lower one.
-    #[inline(always)]
     fn coasting(&self, gear: u8, output: &mut StepOutput<R>) {
         self.declutched(gear, output);
-        let lags = output.deficit_w.above(0.0);
+        let lags = output.deficit_w.gt(0.0);
         if lags.any() {
             self.engaged(gear.max(1), lags, output);
         }
     }
 
-    #[inline(always)]
     fn neutral(&self, output: &mut StepOutput<R>) {
         let w = self.free_engine_rad_s();
-        let losses = self.box_in(self.top(), w, w.filled(0.0)).unloaded_nm();
+        let losses = self.box_in(self.top(), w, w.splat(0.0)).unloaded_nm();
         let share = self.manual.neutral_share;
         output.engine_rad_s = w;
         output.shaft_nm = share * sum_nm(&losses);
@@ -111,15 +100,14 @@ where
     }
 
     /// Clutch open, the wheels turn the box in `gear` (0: its highest), the engine idles.
-    #[inline(always)]
     fn declutched(&self, gear: u8, output: &mut StepOutput<R>) {
         let gear = if gear == 0 { self.top() } else { gear };
         let input = self.manual.overall[usize::from(gear) - 1] * self.step.wheel.wheel_rad_s;
-        let losses = self.box_in(gear, input, input.filled(0.0)).unloaded_nm();
+        let losses = self.box_in(gear, input, input.splat(0.0)).unloaded_nm();
         output.engine_rad_s = self.free_engine_rad_s();
-        output.gear = R::every(|_| gear);
-        output.flag(Flags::CLUTCH_OPEN, input.answer(true));
-        let turns = input.above(0.0);
+        output.gear = R::per_lane(|_| gear);
+        output.flag(Flags::CLUTCH_OPEN, input.splat_mask(true));
+        let turns = input.gt(0.0);
         if turns.any() {
             let output_nm = -sum_nm(&losses);
             lose(output, &losses, input);
@@ -130,58 +118,53 @@ where
     }
 
     /// The box in a gear, or in a lower one where that lacks torque; fills the output of the runs of a mask anew.
+    #[inline]
     fn engaged(&self, gear: u8, runs: R::Mask, output: &mut StepOutput<R>) {
         let like = self.oil.density_kg_m3;
-        like.within(
-            #[inline(always)]
-            || {
-                let (mut gear, mut open) = (gear, runs);
-                loop {
-                    let mut other = StepOutput::like(like);
-                    let alone = R::LANES == 1;
-                    let lacks = self.in_gear(gear, if alone { &mut *output } else { &mut other });
-                    if !alone {
-                        output.take(open, &other);
-                    }
-                    open = open & lacks;
-                    if !open.any() {
-                        break;
-                    }
-                    open = open & self.may_shift_down(gear);
-                    if !open.any() {
-                        break;
-                    }
-                    gear -= 1;
+        like.vectorize(|| {
+            let (mut gear, mut open) = (gear, runs);
+            loop {
+                let mut other = StepOutput::like(like);
+                let alone = R::LANES == 1;
+                let lacks = self.in_gear(gear, if alone { &mut *output } else { &mut other });
+                if !alone {
+                    output.take(open, &other);
                 }
-            },
-        );
+                open = open & lacks;
+                if !open.any() {
+                    break;
+                }
+                open = open & self.may_shift_down(gear);
+                if !open.any() {
+                    break;
+                }
+                gear -= 1;
+            }
+        });
     }
 
     /// Where there is a gear below, and the engine may turn as fast as the wheels would have it there.
-    #[inline(always)]
     fn may_shift_down(&self, gear: u8) -> R::Mask {
         let wheel_rad_s = self.step.wheel.wheel_rad_s;
         match usize::from(gear).checked_sub(2) {
             Some(below) => {
-                (self.manual.overall[below] * wheel_rad_s).below(self.step.engine.max_rad_s())
+                (self.manual.overall[below] * wheel_rad_s).lt(self.step.engine.max_rad_s())
             }
-            None => wheel_rad_s.answer(false),
+            None => wheel_rad_s.splat_mask(false),
         }
     }
 
     /// Sets the throttle, for the engine's full load at its speed.
-    #[inline(always)]
     fn set_throttle(&self, output: &mut StepOutput<R>, full_load_nm: R) {
         let engine = self.step.engine;
         let crank_nm = output.shaft_nm + engine.accessories_nm(output.engine_rad_s);
         let share = crank_nm / full_load_nm;
-        output.throttle = share.held(0.0, 1.0);
-        output.flag(Flags::OUTSIDE_VALIDITY, share.above(FULL_LOAD_LIMIT));
+        output.throttle = share.clamp(0.0, 1.0);
+        output.flag(Flags::OUTSIDE_VALIDITY, share.gt(FULL_LOAD_LIMIT));
     }
 
     /// The box in a gear: the torque demanded, or the one at the engine's limit. Yes where the gear lacks torque; it does too where only an
     /// engine that still comes down from a lower gear has enough.
-    #[inline(always)]
     fn in_gear(&self, gear: u8, output: &mut StepOutput<R>) -> R::Mask {
         let (engine, wheel) = (self.step.engine, self.step.wheel);
         let coupling = &self.manual.coupling;
@@ -196,41 +179,41 @@ where
             output_rad_s: input,
             engine_rad_s: w,
             idle_rad_s: engine.idle_rad_s(),
-            locked: w.answer(false),
+            locked: w.splat_mask(false),
         };
         let least = coupling.min_output_nm(&turning, absorbed_nm);
         let mut full_load_nm = engine.full_load_nm(w);
         let most = self.most_nm(input, w, full_load_nm);
-        let mut lacks_torque = at.input_nm.above(most);
+        let mut lacks_torque = at.input_nm.gt(most);
         let settled = speed.settled_rad_s;
-        if (settled.above(w) | w.above(settled)).any() {
+        if (settled.gt(w) | w.gt(settled)).any() {
             let settled_nm = self.most_nm(input, settled, engine.full_load_nm(settled));
-            lacks_torque = lacks_torque | at.input_nm.above(settled_nm);
+            lacks_torque = lacks_torque | at.input_nm.gt(settled_nm);
         }
-        let below = at.input_nm.below(least);
-        let above = at.input_nm.above(most);
+        let below = at.input_nm.lt(least);
+        let above = at.input_nm.gt(most);
         let limited = below | above;
         *output = StepOutput {
-            gear: R::every(|_| gear),
-            iterations: R::every(|_| 1),
+            gear: R::per_lane(|_| gear),
+            iterations: R::per_lane(|_| 1),
             ..StepOutput::like(input)
         };
         if limited.any() {
             output.flag(Flags::MISSED_TRACE, above);
-            let torque = R::pick(below, least, most);
+            let torque = below.select(least, most);
             let (output_nm, iterations) = engaged.output_for(torque);
             for run in (0..R::LANES).filter(|run| limited.lane(*run)) {
-                *R::one_mut(&mut output.iterations, run) = *R::one(&iterations, run);
+                *R::get_mut(&mut output.iterations, run) = *R::get(&iterations, run);
             }
             let held = engaged.at(output_nm);
             let residual = (held.input_nm - torque).abs() / full_load_nm;
-            output.residual = R::pick(limited, residual, output.residual);
+            output.residual = limited.select(residual, output.residual);
             at = held.or(limited, at);
-            let drags = limited & torque.at_most(least);
+            let drags = limited & torque.le(least);
             if drags.any() {
                 speed = self.engine_speed(torque, input).or(drags, speed);
                 let dragged_nm = engine.full_load_nm(speed.end_rad_s);
-                full_load_nm = R::pick(drags, dragged_nm, full_load_nm);
+                full_load_nm = drags.select(dragged_nm, full_load_nm);
             }
         }
         let w = speed.end_rad_s;
@@ -243,35 +226,33 @@ where
         if limited.any() {
             output.split_of(limited, wheel, at.output_nm * input);
         }
-        let slips = w.above(input * SLIPS_FROM) & at.input_nm.above(0.0);
+        let slips = w.gt(input * SLIPS_FROM) & at.input_nm.gt(0.0);
         output.flag(Flags::CLUTCH_SLIPPING, slips);
-        output.flag(Flags::OVERRUN, at.input_nm.below(0.0));
+        output.flag(Flags::OVERRUN, at.input_nm.lt(0.0));
         output.flag(Flags::OUTSIDE_VALIDITY, !at.inside_map);
-        output.flag(Flags::NOT_CONVERGED, output.residual.above(1e-8));
+        output.flag(Flags::NOT_CONVERGED, output.residual.gt(1e-8));
         self.set_throttle(output, full_load_nm);
         // On its way down the engine is faster than at the end, and the clutch slips more; its rotating energy pays for it. Where that lags at
         // full load nothing else may: no more than full load is passed on.
         let mean_rad_s = w + speed.excess_rad_s;
         let at_mean = coupling.engine_side(at.input_nm, input, mean_rad_s);
         let room_nm = full_load_nm - engine.accessories_nm(w) - side.engine_nm;
-        let on_the_way_w = (at_mean.loss_w - side.loss_w).least(room_nm.most(0.0) * w);
+        let on_the_way_w = (at_mean.loss_w - side.loss_w).min(room_nm.max(0.0) * w);
         output.shaft_nm = output.shaft_nm + on_the_way_w / w;
         output.add_loss(Component::LaunchClutch, on_the_way_w);
         lacks_torque
     }
 
     /// Torque into the box at the engine's full load, Nm, at speeds of box and engine.
-    #[inline(always)]
     fn most_nm(&self, input_rad_s: R, engine_rad_s: R, full_load_nm: R) -> R {
         let engine = self.step.engine;
         // An engine too weak for its own accessories in the cold drives nothing; the row is flagged.
-        let engine_nm = (full_load_nm - engine.accessories_nm(engine_rad_s)).most(0.0);
+        let engine_nm = (full_load_nm - engine.accessories_nm(engine_rad_s)).max(0.0);
         (self.manual.coupling).output_nm(engine_nm, input_rad_s, engine_rad_s)
     }
 
     /// Engine speed over the coupling in this step: at once that of a faster box; over a slower one, as after a change up, the coupling slips
     /// until the engine's rotating energy is spent.
-    #[inline(always)]
     fn engine_speed(&self, input_nm: R, input_rad_s: R) -> EngineSpeed<R> {
         let wanted = self.manual.coupling.engine_rad_s(&CouplingLoad {
             output_nm: input_nm,
@@ -281,13 +262,13 @@ where
         });
         let least = self.manual.coupling.min_engine_rad_s(input_rad_s);
         let before_rad_s = self.state.engine_rad_s;
-        // What passes on at full load is no more than that; the rest of a demand is missing.
-        let passed_nm = input_nm.held(0.0, self.step.engine.full_load_nm(before_rad_s));
+        // Full load bounds the torque that passes; the rest of a demand is missing.
+        let passed_nm = input_nm.clamp(0.0, self.step.engine.full_load_nm(before_rad_s));
         let reach = self.step.reach(before_rad_s, passed_nm);
-        let end_rad_s = reach.nearest(wanted).most(least);
+        let end_rad_s = reach.nearest(wanted).max(least);
         EngineSpeed {
             end_rad_s,
-            settled_rad_s: wanted.most(least),
+            settled_rad_s: wanted.max(least),
             excess_rad_s: reach.mean_excess_rad_s(end_rad_s),
         }
     }
@@ -303,23 +284,20 @@ struct EngineSpeed<R> {
     excess_rad_s: R,
 }
 
+#[physics]
 impl<R: Real> EngineSpeed<R> {
     /// This one where the mask says so, else the other.
-    #[inline(always)]
     fn or(self, chosen: R::Mask, other: EngineSpeed<R>) -> EngineSpeed<R> {
         EngineSpeed {
-            end_rad_s: R::pick(chosen, self.end_rad_s, other.end_rad_s),
-            settled_rad_s: R::pick(chosen, self.settled_rad_s, other.settled_rad_s),
-            excess_rad_s: R::pick(chosen, self.excess_rad_s, other.excess_rad_s),
+            end_rad_s: chosen.select(self.end_rad_s, other.end_rad_s),
+            settled_rad_s: chosen.select(self.settled_rad_s, other.settled_rad_s),
+            excess_rad_s: chosen.select(self.excess_rad_s, other.excess_rad_s),
         }
     }
 }
 
-#[inline(always)]
-fn lose<R: Real>(output: &mut StepOutput<R>, losses_nm: &PartLosses<R>, speed: R)
-where
-    f64: Left<R>,
-{
+#[physics]
+fn lose<R: Real>(output: &mut StepOutput<R>, losses_nm: &PartLosses<R>, speed: R) {
     for (component, nm) in losses_nm {
         output.add_loss(*component, *nm * speed);
     }

@@ -6,23 +6,23 @@ use crate::charts::engine::{
     optional_cell, stroke, text_width,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::fit::outcome::Outcome;
+use cvtcycle_calibrate::outcome::Outcome;
 
-/// Most parameters that are drawn: more could not be read.
+/// Maximum number of drawn parameters: more would be illegible.
 const MAX_DRAWN: usize = 50;
-/// Numbers are written from this correlation on.
+/// Correlation from which on the number is written.
 const STRONG: f64 = 0.5;
-/// Room for names: of few parameters, and of so many that cells need it to hold their numbers, pixels.
+/// Room for names, pixels: of up to `FEW` parameters, and of more, where cells need the room for their numbers.
 const NAMES: [f64; 2] = [300.0, 200.0];
 const FEW: usize = 18;
 const TEXT: f64 = 11.0;
-/// Largest cell, and the smallest one that holds a number, pixels.
+/// Maximum cell size, and minimum size of a cell with a number, pixels.
 const CELL: f64 = 40.0;
 const HOLDS: f64 = 30.0;
 /// Room above the cells for the numbers of the columns, pixels.
 const HEAD: f64 = 20.0;
 const SLICES: usize = 40;
-/// Ink on light cells: no text colour of the page, for the cells keep their colours where a dark page turns those around.
+/// Ink on light cells. Not a text colour of the page, which a dark page inverts while the cells keep their colours.
 const ON_LIGHT: &str = "#111111";
 const ON_DARK: &str = "#ffffff";
 
@@ -89,7 +89,7 @@ fn title(outcome: &Outcome, n: usize) -> String {
 
 /// Writes name and number of a row, and the number of its column.
 fn name(panel: &mut Panel, outcome: &Outcome, i: usize, size: f64) {
-    // Names of rows that are lower than a line of text would run into each other.
+    // Row names in rows lower than a line of text would overlap.
     let every = (13.0 / size).ceil().max(1.0) as usize;
     if !i.is_multiple_of(every) {
         return;
@@ -121,7 +121,7 @@ fn colour(r: f64) -> String {
     between(DIVERGING, 0.5 + 0.5 * r)
 }
 
-/// Adds a cell; only those below the diagonal are in the table, each pair once.
+/// Adds a cell. The table lists each pair once: only cells below the diagonal.
 fn draw(
     panel: &mut Panel,
     outcome: &Outcome,

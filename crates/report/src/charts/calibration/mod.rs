@@ -1,4 +1,4 @@
-//! Pictures of a calibration: what was measured against what is computed, before and after, and what is known of the parameters.
+//! Pictures of a calibration: measured against computed numbers, before and after, and the parameters.
 
 mod correlation;
 mod parameters;
@@ -9,8 +9,8 @@ mod trace;
 use super::engine::{PLOT_LEFT, Symbol, WIDTH, optional_cell, round_step};
 use super::picture::Picture;
 use crate::number::sign;
+use cvtcycle_calibrate::outcome::{Outcome, Residual};
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
 pub use correlation::correlation_plot;
 pub use parameters::parameters_plot;
@@ -22,17 +22,17 @@ pub use trace::trace_plots;
 const RIGHT: f64 = WIDTH - 24.0;
 const TOP: f64 = 58.0;
 const MARGIN: f64 = 12.0;
-/// Left edge and width of what lies below the plots, pixels.
+/// Left edge and width of blocks below the plots, pixels.
 const FOOT: (f64, f64) = (PLOT_LEFT, RIGHT - PLOT_LEFT);
 const WIDE_FOOT: (f64, f64) = (MARGIN, RIGHT - MARGIN);
-/// Most observations that a picture shows; of traces with more, every second or third value and so on is shown.
+/// Maximum number of drawn observations; longer traces are thinned to every second or third value and so on.
 const MAX_SHOWN: usize = 600;
-/// Colours of what is computed: with the files' values, fitted, predicted.
+/// Colours of computed numbers: with the files' values, fitted, predicted.
 const BEFORE: &str = "#777777";
 const AFTER: &str = "#0072b2";
 const LEFT_OUT: &str = "#d55e00";
 
-/// All pictures that the outcome has data for, with names that can be those of files.
+/// Draws all pictures that the outcome has data for, with names that are valid file names.
 pub fn calibration_pictures(outcome: &Outcome) -> Vec<(String, Picture)> {
     let mut list = Vec::new();
     if !outcome.residuals.is_empty() {
@@ -67,17 +67,17 @@ fn groups(outcome: &Outcome) -> Vec<&str> {
     distinct(outcome.residuals.iter().map(|r| r.group.as_str()))
 }
 
-/// The symbol of a group, the same in every picture.
+/// Symbol of a group, the same in every picture.
 fn symbol(groups: &[&str], name: &str) -> (Symbol, &'static str) {
     Symbol::nth(groups.iter().position(|group| *group == name).unwrap_or(0))
 }
 
-/// Indices of the observations that are shown, by group, and a remark on what is left out.
+/// Indices of the shown observations, by group, and a remark on the omitted ones.
 fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
     let all = &outcome.residuals;
     let traced = all.iter().filter(|r| r.time_s.is_some()).count();
     let single = all.len() - traced;
-    // Traces first: their neighbours look alike.
+    // Traces are thinned first: neighbouring values look alike.
     let room = MAX_SHOWN.saturating_sub(single).max(MAX_SHOWN / 2);
     let of_traces = traced.div_ceil(room).max(1);
     let of_single = single.div_ceil(MAX_SHOWN).max(1);
@@ -98,11 +98,11 @@ fn shown(outcome: &Outcome) -> (Vec<usize>, Option<String>) {
     (kept, note)
 }
 
-/// Unit for a bracket.
+/// Formats a unit for a bracket.
 fn unit(unit: &str) -> &str {
     match unit {
         "" => "-",
-        // As keys have it.
+        // Keys spell it this way.
         "N m" => "Nm",
         other => sign(other),
     }
@@ -117,14 +117,14 @@ fn label(r: &Residual) -> String {
     }
 }
 
-/// A number of an observation for a cell, with three digits of its standard deviation.
+/// Formats a number of an observation as a cell, with three digits of its standard deviation.
 fn in_sd(x: Option<f64>, r: &Residual) -> String {
     let known = r.sd > 0.0 && r.sd.is_finite();
     let scale = if known { r.sd } else { 1.0 };
     optional_cell(x, round_step(scale / 200.0))
 }
 
-/// Whether a group has an error in common, and the sentence that has to go with computed numbers then.
+/// Sentence that must accompany the computed numbers if a group has a common error.
 fn common_note(outcome: &Outcome) -> Option<String> {
     let common = outcome.parameters.iter().any(|p| !p.is_key);
     common.then(|| {
@@ -133,7 +133,7 @@ fn common_note(outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// By how much the fit brings computed and measured numbers together.
+/// Title: reduction of the distance between computed and measured numbers by the fit.
 fn rms_title(outcome: &Outcome) -> String {
     match outcome.rms_sd() {
         [Some(before), Some(after), _] => {
@@ -149,7 +149,7 @@ fn rms_title(outcome: &Outcome) -> String {
     }
 }
 
-/// The root mean square of the residuals, for the picture in words.
+/// Root mean square of the residuals, for the picture in words.
 fn rms_in_words(outcome: &Outcome) -> String {
     let number = |x: Option<f64>| x.map_or_else(|| "not known".to_owned(), |x| format!("{x:.2}"));
     let [before, after, left_out] = outcome.rms_sd().map(number);

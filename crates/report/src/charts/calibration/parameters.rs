@@ -1,4 +1,4 @@
-//! Parameters: what was known before and what the fit found, between their bounds.
+//! Parameters: prior and fitted value, between their bounds.
 
 use super::{AFTER, BEFORE, MARGIN, RIGHT, TOP, WIDE_FOOT, subject, unit};
 use crate::charts::engine::{
@@ -7,17 +7,17 @@ use crate::charts::engine::{
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::charts::study::value;
-use cvtcycle_study::fit::outcome::{Outcome, Parameter};
+use cvtcycle_calibrate::outcome::{Outcome, Parameter};
 
 const ROW: f64 = 32.0;
 /// Room for names on the left and for numbers on the right, pixels.
 const NAMES: f64 = 290.0;
 const NUMBERS: f64 = 172.0;
-/// The axis ends so far beyond the bounds, as a share of their distance.
+/// Extension of the axis beyond the bounds, as a share of their distance.
 const BEYOND: f64 = 0.08;
-/// Most rows: more do not fit on a page.
+/// Maximum number of rows that fit on a page.
 const MAX_ROWS: usize = 50;
-/// Errors are drawn to so many standard deviations.
+/// Length of error bars, standard deviations.
 const WIDE: f64 = 2.0;
 const PRIOR: Stroke = stroke(BEFORE, 3.2, &[]);
 const FITTED: Stroke = stroke(AFTER, 2.2, &[]);
@@ -72,7 +72,7 @@ pub fn parameters_plot(outcome: &Outcome) -> Picture {
         .picture(table)
 }
 
-/// The parameter that the data tell most of.
+/// Title: the parameter best determined by the data.
 fn title(all: &[Parameter]) -> String {
     let known = all.iter().filter_map(|p| Some((p, p.prior_share?)));
     match known.min_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -85,7 +85,7 @@ fn title(all: &[Parameter]) -> String {
     }
 }
 
-/// A step that leaves three digits of what a parameter is known to.
+/// Step that leaves three digits of a parameter's standard deviation.
 fn step(p: &Parameter) -> f64 {
     let error = p.standard_error.filter(|x| *x > 0.0 && x.is_finite());
     round_step((error.unwrap_or(p.high - p.low) / 200.0).abs().max(1e-300))
@@ -159,7 +159,7 @@ fn describe_row(panel: &mut Panel, row: usize, p: &Parameter) {
     panel.label(remark.cut(Cut::Middle, room));
 }
 
-/// The unit after a number.
+/// Unit to follow a number.
 fn after(p: &Parameter) -> String {
     match unit(&p.unit) {
         "-" => String::new(),

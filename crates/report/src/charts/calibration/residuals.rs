@@ -9,29 +9,29 @@ use crate::charts::engine::{
     optional_cell, range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
+use cvtcycle_calibrate::outcome::{Outcome, Residual};
 
-/// Residuals within so many standard deviations are no surprise.
+/// Residuals expected to lie within this band, standard deviations.
 const BAND: f64 = 2.0;
 /// Room for names, pixels.
 const NAMES: f64 = 330.0;
-/// Height of an observation where there are few, and of the name of a group; least distance of two names, pixels.
+/// Height of an observation if there are few, and of the name of a group; minimum distance of two names, pixels.
 const ROW: f64 = 15.0;
 const HEADING: f64 = 19.0;
 const APART: f64 = 13.0;
 /// Height of the line above a group of one observation, pixels.
 const SEAM: f64 = 3.0;
-/// Height of all lines at most, pixels.
+/// Maximum height of all lines, pixels.
 const TALL: f64 = 1780.0;
-/// With the files' values residuals beyond so many times the others would squeeze those together.
+/// Ratio beyond which residuals with the files' values are clipped, so that they do not compress the others.
 const CLIP: f64 = 3.0;
-/// Height of a value of a trace, where there are more than a few, pixels.
+/// Height of a value of a trace with more than `FEW` values, pixels.
 const DENSE: f64 = 2.0;
 const FEW: f64 = 40.0;
-/// Most groups that bear their names.
+/// Maximum number of named groups.
 const MAX_NAMED: usize = 24;
 
-/// One line of the picture; a group of one observation has no name above it, only a line.
+/// Line of the picture; a group of one observation has only a line above it, no name.
 enum Line<'a> {
     Group(&'a str),
     Alone,
@@ -47,14 +47,14 @@ impl<'a> Line<'a> {
     }
 }
 
-/// Heights of lines, pixels: single numbers can be read as long as there are not too many, values of a trace follow each other closely.
+/// Heights of lines, pixels: legible for a limited number of single observations, dense for values of a trace.
 struct Pitch {
     single: f64,
     traced: f64,
 }
 
 impl Pitch {
-    fn of(lines: &[Line]) -> Self {
+    fn new(lines: &[Line]) -> Self {
         let count =
             |wanted: fn(&Line) -> bool| lines.iter().filter(|line| wanted(line)).count() as f64;
         let headings = count(|line| matches!(line, Line::Group(_)));
@@ -80,7 +80,7 @@ impl Pitch {
     }
 }
 
-/// How many observations a fit meets, and how many it predicts.
+/// Title: numbers of observations that the fit meets and predicts.
 fn title(outcome: &Outcome) -> String {
     let all = &outcome.residuals;
     let within = |of: fn(&Residual) -> Option<f64>| {
@@ -146,7 +146,7 @@ fn table() -> PictureTable {
     PictureTable::with_columns(names.into_iter().chain(whose).map(|name| (name, "")))
 }
 
-/// Observations by group; where there are not too many groups, each has its name above it, unless it has one observation only.
+/// Observations by group. A group has its name above it if it has several observations and the groups are not too many.
 fn lines<'a>(
     outcome: &Outcome,
     rows: impl Iterator<Item = (&'a Residual, usize)>,
@@ -199,7 +199,7 @@ fn axis(lines: &[Line]) -> Axis {
 
 /// The panel of all lines; its vertical axis counts pixels from the top.
 fn panel(lines: &[Line], x: Axis) -> Panel {
-    let pitches = Pitch::of(lines);
+    let pitches = Pitch::new(lines);
     let heights: f64 = lines.iter().map(|line| pitches.height(line)).sum();
     let tall = heights.max(60.0) + 6.0;
     let rect = Rect::new(MARGIN + NAMES, TOP, RIGHT - MARGIN - NAMES, tall);
@@ -247,7 +247,7 @@ fn marks(panel: &mut Panel, r: &Residual, (row, y): (usize, f64), pitch: f64) {
             let style = Style::line(stroke(BEFORE, 0.5, &[])).stroke_opacity(0.5);
             panel.segment(place(x), place(r.after_sd), style.row(row));
         }
-        // A triangle at the edge, for what lies beyond it.
+        // A triangle at the edge marks a residual beyond it.
         let (symbol, style) = if off(&panel.x, x) {
             (Symbol::edge(x > 0.0), Style::colour(BEFORE))
         } else {

@@ -9,10 +9,10 @@ use crate::charts::engine::{
     range, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
+use cvtcycle_calibrate::outcome::{Outcome, Residual};
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::fit::outcome::{Outcome, Residual};
 
-/// Most panels: more do not fit on a page.
+/// Maximum number of panels that fit on a page.
 const MAX_PANELS: usize = 8;
 const GAP: (f64, f64) = (18.0, 10.0);
 const RADIUS: f64 = 3.4;
@@ -83,7 +83,7 @@ fn cells(r: &Residual) -> impl Iterator<Item = String> {
     words.into_iter().chain(numbers.map(|x| in_sd(x, r)))
 }
 
-/// Place of the mark of an observation on the measured axis: in the middle of a range, or at the end that there is.
+/// Position of an observation on the measured axis: the middle of a range, or its only end.
 fn place(r: &Residual) -> Option<f64> {
     let finite = |x: Option<f64>| x.filter(|x| x.is_finite());
     match (finite(r.low), finite(r.high)) {
@@ -92,7 +92,7 @@ fn place(r: &Residual) -> Option<f64> {
     }
 }
 
-/// What was measured, and what may have been, on the measured axis; an open end is none.
+/// Measured number with its uncertainty on the measured axis; `None` for an open end.
 fn bar(r: &Residual) -> [Option<f64>; 2] {
     match (r.low, r.high) {
         (Some(low), Some(high)) if low.total_cmp(&high).is_eq() => {
@@ -123,7 +123,7 @@ fn draw(rect: Rect, name: &str, rows: &[(&Residual, usize)], groups: &[&str]) ->
         };
         let before = at(x, r.before.unwrap_or(f64::NAN));
         panel.symbol(symbol, before, RADIUS, Symbol::open(colour).row(*row));
-        // An open end goes on to the edge.
+        // An open end extends to the edge.
         let [from, to] = bar(r);
         let from = at(from.unwrap_or(f64::NEG_INFINITY), r.after);
         let to = at(to.unwrap_or(f64::INFINITY), r.after);

@@ -1,4 +1,4 @@
-//! Measured traces against time, with what is computed.
+//! Measured traces against time, with the computed ones.
 
 use super::{AFTER, BEFORE, FOOT, LEFT_OUT, TOP, common_note, in_sd, subject, unit};
 use crate::charts::engine::{
@@ -7,13 +7,13 @@ use crate::charts::engine::{
 use crate::charts::picture::{Picture, PictureTable};
 use crate::charts::study::value;
 use crate::number::words;
-use cvtcycle_study::fit::outcome::{Outcome, Residual, rms};
+use cvtcycle_calibrate::outcome::{Outcome, Residual, rms};
 
 const TALL: f64 = 330.0;
-/// Standard deviations on either side of what was measured.
+/// Half-width of the band around the measurement, standard deviations.
 const BAND: f64 = 2.0;
 const BAND_COLOUR: &str = "#8c8c8c";
-/// Most rows of a table, and most points of the band.
+/// Maximum number of rows of a table, and of points of the band.
 const MAX_ROWS: usize = 600;
 const MAX_BAND: usize = 1500;
 const LINES: [(Stroke, &str); 4] = [
@@ -51,7 +51,7 @@ pub fn trace_plots(outcome: &Outcome) -> Vec<(String, Picture)> {
     found.into_iter().map(picture).collect()
 }
 
-/// A name that can be part of a file's.
+/// Converts a name for use in a file name.
 fn word(name: &str) -> String {
     let plain = |c: char| {
         if c.is_ascii_alphanumeric() {
@@ -103,7 +103,7 @@ fn trace(outcome: &Outcome, group: &str, column: &str, list: &[&Residual]) -> Pi
         .picture(table)
 }
 
-/// How far the computed trace is from the measured one, with the values of the files and fitted.
+/// Title: distance of the computed trace from the measured one, with the values of the files and fitted.
 fn title(column: &str, unit: &str, list: &[&Residual]) -> String {
     let off = |k: usize| {
         let differences = list.iter().filter_map(|r| {
@@ -139,13 +139,13 @@ fn x_axis(list: &[&Residual]) -> Axis {
     Axis::exact("Time [s]", from - room, to + room, 9)
 }
 
-/// The ends of the band.
+/// Ends of the band.
 fn band(r: &Residual) -> [Option<f64>; 2] {
     let sd = if r.sd.is_finite() { r.sd } else { 0.0 };
     [r.low.map(|x| x - BAND * sd), r.high.map(|x| x + BAND * sd)]
 }
 
-/// The band where something was measured, thinned to what can be seen.
+/// Band over the measured points, thinned to the visible resolution.
 fn band_points(list: &[&Residual]) -> Vec<(f64, f64, f64)> {
     let every = list.len().div_ceil(MAX_BAND).max(1);
     let kept = list.iter().enumerate();

@@ -1,4 +1,4 @@
-//! Published numbers and computed ones, in tolerances of the published ones.
+//! Published against computed numbers, in tolerances of the published ones.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -11,17 +11,17 @@ use crate::charts::picture::{Picture, PictureTable};
 const RIGHT: f64 = WIDTH - 110.0;
 const ROW: f64 = 24.0;
 const RADIUS: f64 = 3.4;
-/// What lies farther off is drawn at the edge, tolerances.
+/// Distance beyond which numbers are drawn at the edge, tolerances.
 const FAR: f64 = 4.0;
 
-/// A number that was computed and that nothing was fitted to.
+/// A computed number that nothing was fitted to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckedNumber {
-    /// Where it was published.
+    /// Part of the publication.
     pub part: String,
-    /// Distance from what is published, in tolerances: positive above, zero within the published range.
+    /// Distance from the published number, in tolerances: positive above, zero within the published range.
     pub off: f64,
-    /// Whether that is agreement by the rule of the row.
+    /// True if the distance counts as agreement by the rule of the row.
     pub agrees: bool,
 }
 
@@ -47,7 +47,7 @@ pub fn agreement(subject: &str, numbers: &[CheckedNumber]) -> Picture {
         let agree = own.iter().filter(|of| of.agrees).count();
         panel.row_name(k, Label::new(at(0.0, 0.0), *part).class("row").row(k));
         for (j, of) in own.iter().enumerate() {
-            // Dots at one place lie side by side.
+            // Dots at one place are drawn next to each other.
             let shift = 3.2 * ((j % 5) as f64 - 2.0);
             let place = at(of.off.clamp(-FAR, FAR), row_middle(k)).shift(0.0, shift);
             let colour = if of.agrees { AGREES } else { DIFFERS };

@@ -1,4 +1,4 @@
-//! What knowing one value would leave of the spread: the next test.
+//! Spread that remains when one value is known: the basis of the next test.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -9,19 +9,19 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::grouped;
 use cvtcycle_study::answer::Information;
 
-/// Right edge of the plot, height of a row, pixels; factors at most.
+/// Right edge of the plot, height of a row, pixels; maximum number of factors.
 const RIGHT: f64 = WIDTH - 40.0;
 const ROW: f64 = 24.0;
-const MOST: usize = 5;
+const MAX_FACTORS: usize = 5;
 
-/// Bars of the standard deviation as it is and with each of the foremost factors known, with intervals. `subject` is the output and the study.
-pub fn information(of: &Information, unit: &'static str, subject: &str) -> Picture {
-    let shown = of.factors.iter().take(MOST);
+/// Bars of the standard deviation as it is and with each of the first factors known, with intervals. `subject` names the output and the study.
+pub fn information(data: &Information, unit: &'static str, subject: &str) -> Picture {
+    let shown = data.factors.iter().take(MAX_FACTORS);
     let names = shown.clone().map(|factor| format!("{} known", factor.name));
     let names: Vec<String> = ["as it is".to_owned()].into_iter().chain(names).collect();
     let x = Axis::round(
         &format!("Standard deviation [{unit}]"),
-        [0.0, 1.12 * of.sd].into_iter(),
+        [0.0, 1.12 * data.sd].into_iter(),
         6,
     );
     let left = rows_left(names.iter().map(String::as_str), 11.0);
@@ -36,7 +36,7 @@ pub fn information(of: &Information, unit: &'static str, subject: &str) -> Pictu
     let mut table = PictureTable::new(&columns);
     let first = [
         names[0].clone(),
-        cell(of.sd, 0.01),
+        cell(data.sd, 0.01),
         String::new(),
         String::new(),
         String::new(),
@@ -56,12 +56,12 @@ pub fn information(of: &Information, unit: &'static str, subject: &str) -> Pictu
         )
         .row(k)
     };
-    panel.bar(0, (0.0, of.sd), (-8.0, 8.0), bar(false, 0));
+    panel.bar(0, (0.0, data.sd), (-8.0, 8.0), bar(false, 0));
     let words = |panel: &mut crate::charts::engine::Panel, k: usize, x: f64, right: f64| {
         let place = at(right.max(x), row_middle(k)).shift(6.0, 4.0);
         panel.label(Label::new(place, grouped(x, 1)).size(11.0));
     };
-    words(&mut panel, 0, of.sd, of.sd);
+    words(&mut panel, 0, data.sd, data.sd);
     for (k, factor) in shown.enumerate() {
         let (row, left) = (k + 1, factor.sd_left);
         panel.bar(
@@ -79,17 +79,17 @@ pub fn information(of: &Information, unit: &'static str, subject: &str) -> Pictu
             left.value,
             left.interval.map_or(left.value, |ends| ends[1]),
         );
-        let ends = [0, 1].map(|k| optional_cell(left.interval.map(|of| of[k]), 0.01));
+        let ends = [0, 1].map(|k| optional_cell(left.interval.map(|data| data[k]), 0.01));
         let [from, to] = ends;
         let share = cell(100.0 * factor.share.value, 1.0);
         table.push([names[row].clone(), cell(left.value, 0.01), from, to, share]);
     }
     panel.upright(0.0, stroke(INK, 1.0, &[]));
-    let best = of.causes().next();
-    let best = best.map(|factor| (factor.name.as_str(), of.sd, factor.sd_left.value));
+    let best = data.causes().next();
+    let best = best.map(|factor| (factor.name.as_str(), data.sd, factor.sd_left.value));
     let note = format!(
         "Grey: not above chance. Whiskers: intervals from {} runs.",
-        of.n
+        data.n
     );
     Chart::new(says::information(best, unit), subject, MARGIN)
         .panels([panel])

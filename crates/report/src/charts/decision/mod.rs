@@ -1,5 +1,5 @@
-//! Figures that a decision is made on, each with a title that says what its numbers say: how sure the answer is, where the fuel goes against
-//! a baseline, what the cold costs, what a test would tell, what published numbers agree.
+//! Figures for decisions, each with its result as title: confidence in the answer, fuel against a baseline, cost of the cold, benefit of a test,
+//! agreement with published numbers.
 
 mod agreement;
 mod information;
@@ -15,7 +15,7 @@ pub use says::{against, level};
 pub use strip::{Against, answer_strip};
 pub use waterfall::{PerKm, waterfall};
 
-/// Left edge of titles and of what lies below a plot, pixels.
+/// Left edge of titles and of blocks below a plot, pixels.
 const MARGIN: f64 = 12.0;
 /// Upper edge of the first plot, below title and subject, pixels.
 const TOP: f64 = 58.0;

@@ -1,4 +1,4 @@
-//! The same part of a cycle driven again and again while the oil warms: what the cold costs, and in which part, with nothing else changed.
+//! One part of a cycle driven repeatedly while the oil warms: cost of the cold by group of losses, everything else equal.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -15,7 +15,7 @@ const TALL: f64 = 300.0;
 /// Row of the first group in the table, after those of the oil.
 const FIRST_ROW: usize = 2;
 
-/// One of the drives.
+/// One repetition of the drive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Repeat {
     /// Oil at its beginning and end, degC.
@@ -30,13 +30,13 @@ impl Repeat {
     }
 }
 
-/// A line for each group of losses over the drives, named at its end; `subject` is the car and what it drives.
+/// Draws a line for each group of losses over the drives, named at its end; `subject` is the car with the repeated part.
 pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
     let last = drives.len().saturating_sub(1);
     let places = drives
         .iter()
         .enumerate()
-        .map(|(k, of)| (k as f64, span(of)));
+        .map(|(k, drive)| (k as f64, span(drive)));
     let pad = 0.04 * last.max(1) as f64;
     let x = Axis::labelled(
         "Transmission oil, beginning to end [degC]",
@@ -45,7 +45,7 @@ pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
     );
     let values = drives
         .iter()
-        .flat_map(|of| of.losses_kj.iter().map(|(_, kj)| *kj));
+        .flat_map(|drive| drive.losses_kj.iter().map(|(_, kj)| *kj));
     let y = Axis::round("Loss in one drive [kJ]", values.chain([0.0]), 6);
     let rect = Rect::new(SIDES.0, TOP, SIDES.1 - SIDES.0, TALL);
     let mut panel = Panel::new(rect, x, y)
@@ -55,12 +55,12 @@ pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
         panel.upright(k as f64, RULE);
     }
     let mut parts = Vec::new();
-    let groups = drives.first().map_or(&[][..], |of| &of.losses_kj);
+    let groups = drives.first().map_or(&[][..], |drive| &drive.losses_kj);
     for (g, (group, first)) in groups.iter().enumerate() {
         let points = drives
             .iter()
             .enumerate()
-            .map(|(k, of)| (k as f64, of.losses_kj[g].1));
+            .map(|(k, drive)| (k as f64, drive.losses_kj[g].1));
         let points: Vec<(f64, f64)> = points.collect();
         let end = points.last().map_or(*first, |point| point.1);
         let colour = group_line(*group);
@@ -88,8 +88,8 @@ pub fn repeats(subject: &str, drives: &[Repeat]) -> Picture {
         .picture(table(drives))
 }
 
-fn span(of: &Repeat) -> String {
-    let [from, to] = of.oil_degc.map(|degc| grouped(degc, 0));
+fn span(drive: &Repeat) -> String {
+    let [from, to] = drive.oil_degc.map(|degc| grouped(degc, 0));
     format!("{from} to {to}")
 }
 
@@ -109,16 +109,16 @@ fn table(drives: &[Repeat]) -> PictureTable {
     let heads = (1..=drives.len()).map(|k| (format!("Drive {k}"), ""));
     let columns = [("".to_owned(), "")].into_iter().chain(heads);
     let mut table = PictureTable::with_columns(columns);
-    let mut row = |name: &str, of: &dyn Fn(&Repeat) -> f64| {
-        let cells = drives.iter().map(|drive| cell(of(drive), 0.1));
+    let mut row = |name: &str, value_of: &dyn Fn(&Repeat) -> f64| {
+        let cells = drives.iter().map(|drive| cell(value_of(drive), 0.1));
         table.push([name.to_owned()].into_iter().chain(cells));
     };
-    row("Oil at the beginning [degC]", &|of| of.oil_degc[0]);
-    row("Oil at the end [degC]", &|of| of.oil_degc[1]);
-    let groups = drives.first().map_or(&[][..], |of| &of.losses_kj);
+    row("Oil at the beginning [degC]", &|drive| drive.oil_degc[0]);
+    row("Oil at the end [degC]", &|drive| drive.oil_degc[1]);
+    let groups = drives.first().map_or(&[][..], |drive| &drive.losses_kj);
     for (g, (group, _)) in groups.iter().enumerate() {
-        row(&format!("{} [kJ]", capital(group.name())), &|of| {
-            of.losses_kj[g].1
+        row(&format!("{} [kJ]", capital(group.name())), &|drive| {
+            drive.losses_kj[g].1
         });
     }
     row("All [kJ]", &Repeat::total_kj);

@@ -1,9 +1,9 @@
-//! Titles of figures: sentences with the numbers of their table, each only where it is true.
+//! Titles of figures: sentences with numbers of their table, each used only where it is true.
 
 use crate::number::{grouped, list_of, signed};
-use cvtcycle_study::words::{between, decimals, more_or_less, than};
+use cvtcycle_analysis::words::{between, decimals, more_or_less, than};
 
-/// "7 % more than the baseline", with the digits that an interval leaves.
+/// "7 % more than the baseline", with the digits that the interval supports.
 pub fn against(percent: f64, interval: Option<[f64; 2]>, baseline: &str) -> String {
     let compared = more_or_less(percent, interval.map_or(1, decimals));
     format!("{compared} {} {baseline}", than(&compared))
@@ -35,7 +35,7 @@ pub(super) fn strip(subject: &str, first: Option<(&str, f64, Option<[f64; 2]>)>)
     }
 }
 
-/// Title of the way from the fuel of a baseline to that of the subject, kJ/km; `terms` from the largest on.
+/// Title of the change from the fuel of a baseline to that of the subject, kJ/km; `terms` in descending size.
 pub(super) fn waterfall(names: [&str; 2], difference: f64, terms: &[(String, f64)]) -> String {
     let [subject, baseline] = names;
     let kj = |x: f64| signed(grouped(x, 0), x);
@@ -53,24 +53,24 @@ pub(super) fn waterfall(names: [&str; 2], difference: f64, terms: &[(String, f64
     format!("Per kilometre {subject} burns {size} kJ {more} than {baseline}{rest}")
 }
 
-/// Title of the same part of a cycle driven again and again, from all losses of each drive and those of each group in the first and last one.
+/// Title of the repeated part of a cycle, from all losses of each drive and those of each group in the first and last one.
 pub(super) fn repeats(totals: &[f64], parts: &[(String, [f64; 2])]) -> String {
     let (Some(first), Some(last)) = (totals.first(), totals.last()) else {
         return "No part of the cycle is driven twice".to_owned();
     };
     let word = if last < first { "cuts" } else { "raises" };
     let [first, last] = [first, last].map(|kj| grouped(*kj, 0));
-    let drop = |of: &&(String, [f64; 2])| of.1[0] - of.1[1];
-    let most = parts.iter().max_by(|a, b| drop(a).total_cmp(&drop(b)));
-    let most = most.filter(|of| drop(of) > 0.0);
-    let most = most.map_or_else(String::new, |(name, ends)| {
+    let drop = |part: &&(String, [f64; 2])| part.1[0] - part.1[1];
+    let largest = parts.iter().max_by(|a, b| drop(a).total_cmp(&drop(b)));
+    let largest = largest.filter(|part| drop(part) > 0.0);
+    let largest = largest.map_or_else(String::new, |(name, ends)| {
         let [a, b] = ends.map(|kj| grouped(kj, 0));
         format!(", {name} most ({a} to {b})")
     });
-    format!("Warmer oil {word} the loss of the same drive from {first} to {last} kJ{most}")
+    format!("Warmer oil {word} the loss of the same drive from {first} to {last} kJ{largest}")
 }
 
-/// Title of what knowing a factor would leave of a spread.
+/// Title of the spread that remains when a factor is known.
 pub(super) fn information(best: Option<(&str, f64, f64)>, unit: &str) -> String {
     match best {
         Some((name, sd, left)) => {
@@ -84,7 +84,7 @@ pub(super) fn information(best: Option<(&str, f64, f64)>, unit: &str) -> String 
     }
 }
 
-/// Title of the numbers that were published and computed.
+/// Title of the published and computed numbers.
 pub(super) fn agreement(agree: usize, all: usize) -> String {
     format!(
         "{agree} of {all} published numbers that nothing was fitted to agree within their tolerance"

@@ -1,4 +1,4 @@
-//! How sure the difference to each baseline is: nominal values (those of the files), range of the draws, published number.
+//! Confidence in the difference to each baseline: nominal values (those of the files), range of the draws, published number.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -6,7 +6,7 @@ use crate::charts::engine::{
     optional_cell, row_middle, rows_left, rows_panel, stroke,
 };
 use crate::charts::picture::{Picture, PictureTable};
-use cvtcycle_study::words::decimals;
+use cvtcycle_analysis::words::decimals;
 
 /// Right edge of the plot with room for the numbers in words, height of a row, pixels.
 const RIGHT: f64 = WIDTH - 212.0;
@@ -20,9 +20,9 @@ const RADIUS: f64 = 5.5;
 pub struct Against {
     /// Name of the baseline.
     pub baseline: String,
-    /// Which car that is.
+    /// Full name of that car.
     pub title: String,
-    /// With the nominal values, those of the files.
+    /// Difference with the nominal values, those of the files.
     pub files: Option<f64>,
     /// 5 %, 50 % and 95 % of the draws.
     pub drawn: Option<[f64; 3]>,
@@ -110,7 +110,7 @@ fn nominal() -> Style {
     Style::colour(INK).edge(stroke("#ffffff", 1.0, &[]))
 }
 
-/// Which car each baseline is, where its name does not say it.
+/// Lists the full names of baselines that differ from their names.
 fn titles(rows: &[Against]) -> Vec<String> {
     let named = rows.iter().filter(|row| !row.title.is_empty());
     let named = named.filter(|row| row.title != row.baseline);
@@ -143,7 +143,7 @@ fn legend(rows: &[Against]) -> Vec<Entry> {
     list
 }
 
-/// "+7 % (+1 to +10 %)"; what is published after it.
+/// "+7 % (+1 to +10 %)", followed by the published number.
 fn in_words(row: &Against) -> String {
     let digits = row.interval().map_or(1, decimals);
     let number = |x: f64, digits| cvtcycle_output::number::signed(x, digits);

@@ -1,4 +1,4 @@
-//! From the fuel of a baseline to that of the subject, term by term, per distance.
+//! Waterfall from the fuel of a baseline to that of the subject, term by term, per distance.
 
 use super::{MARGIN, TOP, says};
 use crate::charts::engine::{
@@ -13,7 +13,7 @@ use crate::number::{grouped, signed};
 const RIGHT: f64 = WIDTH - 18.0;
 const ROW: f64 = 25.0;
 const TEXT: f64 = 11.5;
-/// Terms that move the fuel by less than this share of the difference of all are put together.
+/// Share of the total difference below which terms are combined.
 const SMALL: f64 = 0.02;
 
 /// Energies of two cars over their distance, kJ/km.
@@ -23,19 +23,19 @@ pub struct PerKm {
     pub names: [String; 2],
     /// Fuel of subject and baseline.
     pub fuel: [f64; 2],
-    /// What it went to: name, kind, subject's minus baseline's.
+    /// Uses of the fuel: name, kind, subject's minus baseline's.
     pub terms: Vec<(String, Term, f64)>,
 }
 
-/// Bars from the fuel of the baseline to that of the subject, the largest first; small ones together.
-pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
-    let difference = of.fuel[0] - of.fuel[1];
-    let terms = folded(of, difference);
-    let [subject, baseline] = [&of.names[0], &of.names[1]];
+/// Draws bars from the fuel of the baseline to that of the subject, the largest first, small ones combined.
+pub fn waterfall(data: &PerKm, conditions: &str) -> Picture {
+    let difference = data.fuel[0] - data.fuel[1];
+    let terms = folded(data, difference);
+    let [subject, baseline] = [&data.names[0], &data.names[1]];
     let ends = [format!("fuel of {baseline}"), format!("fuel of {subject}")];
     let names = terms.iter().map(|(name, ..)| name.as_str());
     let left = rows_left(ends.iter().map(String::as_str).chain(names), TEXT);
-    let mut level = of.fuel[1];
+    let mut level = data.fuel[1];
     let mut steps = vec![level];
     for (.., kj) in &terms {
         level += kj;
@@ -55,7 +55,10 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
         ("fuel after it", "kJ/km"),
     ]);
     let last = terms.len() + 1;
-    for (row, (name, fuel)) in [(0, (&ends[0], of.fuel[1])), (last, (&ends[1], of.fuel[0]))] {
+    for (row, (name, fuel)) in [
+        (0, (&ends[0], data.fuel[1])),
+        (last, (&ends[1], data.fuel[0])),
+    ] {
         panel.row_name(row, Label::new(at(0.0, 0.0), name).size(TEXT).bold(true));
         let place = at(fuel, row_middle(row));
         panel.symbol(Symbol::DIAMOND, place, 5.5, Symbol::filled(INK).row(row));
@@ -65,7 +68,7 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
         );
         panel.label(text.size(TEXT).bold(true));
     }
-    table.push([ends[0].clone(), String::new(), cell(of.fuel[1], 0.1)]);
+    table.push([ends[0].clone(), String::new(), cell(data.fuel[1], 0.1)]);
     for (k, (name, term, kj)) in terms.iter().enumerate() {
         let (row, from, to) = (k + 1, steps[k], steps[k + 1]);
         panel.row_name(row, Label::new(at(0.0, 0.0), name).size(TEXT));
@@ -88,9 +91,9 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
     table.push([
         ends[1].clone(),
         cell(difference, 0.1),
-        cell(of.fuel[0], 0.1),
+        cell(data.fuel[0], 0.1),
     ]);
-    let mut named: Vec<(String, f64)> = of
+    let mut named: Vec<(String, f64)> = data
         .terms
         .iter()
         .map(|(name, _, kj)| (name.clone(), *kj))
@@ -102,10 +105,10 @@ pub fn waterfall(of: &PerKm, conditions: &str) -> Picture {
         .picture(table)
 }
 
-/// The terms from the largest change on; those that are small next to the difference as one, the last.
-fn folded(of: &PerKm, difference: f64) -> Vec<(String, Term, f64)> {
+/// Terms in descending change; those that are small relative to the difference are combined into the last one.
+fn folded(data: &PerKm, difference: f64) -> Vec<(String, Term, f64)> {
     let limit = SMALL * difference.abs();
-    let (mut large, small): (Vec<_>, Vec<_>) = of
+    let (mut large, small): (Vec<_>, Vec<_>) = data
         .terms
         .iter()
         .cloned()

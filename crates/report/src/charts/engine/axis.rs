@@ -16,12 +16,12 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// An axis over all finite `values`, its ends on round numbers, or half-way between two where data would run along the frame. Data may
-    /// rest on an end at zero.
-    pub fn round(title: &str, values: impl Iterator<Item = f64>, most_ticks: usize) -> Self {
+    /// An axis over all finite `values`, its ends on round numbers, or half-way between two where data would run along the frame. Data may touch
+    /// an end at zero.
+    pub fn round(title: &str, values: impl Iterator<Item = f64>, max_ticks: usize) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
         let (low, high) = widened(low, high);
-        let step = round_step((high - low) / most_ticks.max(2) as f64);
+        let step = round_step((high - low) / max_ticks.max(2) as f64);
         let first = (low / step + 1e-9).floor();
         let last = (high / step - 1e-9).ceil();
         let near = |end: f64, value: f64| value.abs() > 0.0 && (end - value).abs() < 0.1 * step;
@@ -31,11 +31,11 @@ impl Axis {
     }
 
     /// An axis whose ends are those of the data, with ticks on round numbers between them.
-    pub fn exact(title: &str, low: f64, high: f64, most_ticks: usize) -> Self {
+    pub fn exact(title: &str, low: f64, high: f64, max_ticks: usize) -> Self {
         let ordered = low.is_finite() && high.is_finite() && low < high;
         let (low, high) = if ordered { (low, high) } else { (0.0, 1.0) };
         let (low, high) = widened(low, high);
-        let step = round_step((high - low) / most_ticks.max(2) as f64);
+        let step = round_step((high - low) / max_ticks.max(2) as f64);
         Self::with_step(title, low, high, step)
     }
 
@@ -51,7 +51,7 @@ impl Axis {
         Self::labelled(title, (low, high), ticks)
     }
 
-    /// An axis without ticks: what lies along it is named in other ways.
+    /// An axis without ticks, for labels drawn by other means.
     pub fn bare(low: f64, high: f64) -> Self {
         Axis {
             low,
@@ -60,7 +60,7 @@ impl Axis {
         }
     }
 
-    /// An axis with a label at each of some places.
+    /// An axis with labels at given values.
     pub fn labelled(title: &str, (low, high): (f64, f64), ticks: Vec<(f64, String)>) -> Self {
         Axis {
             title: title.to_owned(),
@@ -70,13 +70,13 @@ impl Axis {
         }
     }
 
-    /// Where a value lies between the ends, 0 to 1.
+    /// Relative position of a value between the ends, 0 to 1.
     pub fn share(&self, value: f64) -> f64 {
         (value - self.low) / (self.high - self.low)
     }
 }
 
-/// The least and greatest finite value.
+/// Minimum and maximum finite value.
 pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     values
         .filter(|x| x.is_finite())
@@ -86,13 +86,13 @@ pub(crate) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
         })
 }
 
-/// A number with as many decimals as a step between neighbours needs.
+/// Formats a number with the decimals needed to distinguish neighbours at this step.
 pub(crate) fn number(value: f64, step: f64) -> String {
     if step < 1e-4 && value.abs() < 1e-9 * step {
         return "0".to_owned();
     }
     if value.abs() >= 1e7 || step < 1e-4 {
-        // As many digits as distinguish neighbours.
+        // Digits needed to distinguish neighbours.
         let digits = (value.abs().log10() + 1e-9).floor() - (step.log10() + 1e-9).floor();
         let digits = digits.clamp(1.0, 12.0) as usize;
         return format!("{value:.digits$e}");
@@ -101,7 +101,7 @@ pub(crate) fn number(value: f64, step: f64) -> String {
     minus(&format!("{value:.decimals$}"))
 }
 
-/// A number for a cell, with as many decimals as `step` between neighbours needs; empty if it is not finite.
+/// Formats a cell with the decimals needed at this step; empty if not finite.
 pub fn cell(value: f64, step: f64) -> String {
     if value.is_finite() {
         number(value, step)
@@ -110,7 +110,7 @@ pub fn cell(value: f64, step: f64) -> String {
     }
 }
 
-/// The same of a number that may be missing.
+/// As [`cell`], for a number that may be missing.
 pub(crate) fn optional_cell(value: Option<f64>, step: f64) -> String {
     cell(value.unwrap_or(f64::NAN), step)
 }
@@ -125,7 +125,7 @@ pub(crate) fn round_step(x: f64) -> f64 {
     power * round.unwrap_or(10.0)
 }
 
-/// A range that cannot be divided by is made wide enough to plot.
+/// Widens a range too narrow to divide by.
 fn widened(low: f64, high: f64) -> (f64, f64) {
     let size = low.abs().max(high.abs());
     if high - low > 1e-9 * size {
@@ -157,7 +157,7 @@ mod tests {
         );
         let axis = Axis::round("I", [0.44, 2.31].into_iter(), 5);
         assert_eq!(axis.ticks[0].1, "0.0");
-        // Neighbours differ, however small the step is against the values.
+        // Neighbours differ, even if the step is tiny relative to the values.
         let label = |value, step| number(value, step);
         assert_eq!(
             [label(7.0, 1e-5), label(7.000_01, 1e-5)],
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn every_range_gives_an_axis() {
+    fn any_range_makes_an_axis() {
         for (low, high) in [
             (0.0, 0.0),
             (5.0, 5.0),

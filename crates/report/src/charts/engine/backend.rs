@@ -112,7 +112,7 @@ impl DrawingBackend for Surface<'_> {
         Ok(())
     }
 
-    /// As plotters estimates it without a font; in a browser it would ask the page, which a chart there does not see.
+    /// Estimates as plotters does without a font; in a browser it would ask the page, which a chart there cannot see.
     fn estimate_text_size<S: BackendTextStyle>(
         &self,
         text: &str,
@@ -132,7 +132,7 @@ fn hex(color: BackendColor) -> String {
 
 /// Draws grid, ticks and titles of a panel.
 pub(super) fn frame(svg: &mut Svg, panel: &Panel) {
-    // Drawing into a text has no way to fail; the data would still show without a frame.
+    // Drawing into a text cannot fail; without a frame the data would still show.
     let _ = try_frame(svg, panel);
 }
 
@@ -155,7 +155,7 @@ fn try_frame(svg: &mut Svg, panel: &Panel) -> Result<(), Box<dyn std::error::Err
         .y_label_area_size(units(LEFT) as i32)
         .x_label_area_size(below);
     let mut chart = builder.build_cartesian_2d(Scale(&panel.x), Scale(&panel.y))?;
-    // Plotters takes whole sizes and drops the rest.
+    // Plotters truncates sizes to whole numbers.
     let text = |size: f64| ("sans-serif", (size * UNITS * FONT).ceil());
     let mut mesh = chart.configure_mesh();
     mesh.max_light_lines(0)
@@ -184,7 +184,7 @@ impl Ranged for Scale<'_> {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        // Light points would be lines between the ticks.
+        // Light points would become lines between the ticks.
         if hint.weight().allow_light_points() {
             Vec::new()
         } else {

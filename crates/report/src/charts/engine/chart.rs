@@ -5,7 +5,7 @@ use super::style::{Fill, Stroke, Style};
 use super::svg::Point;
 use super::symbol::Symbol;
 
-/// Width of a picture: on A4 its text can still be read, pixels.
+/// Width of a picture, pixels: its text remains legible on A4.
 pub(crate) const WIDTH: f64 = 880.0;
 /// Room left of a plot for its axis, pixels.
 pub(crate) const LEFT: f64 = 66.0;
@@ -16,18 +16,18 @@ pub(crate) const PLOT_LEFT: f64 = LEFT + 8.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Chart {
     pub title: String,
-    /// Of what, and under which conditions; may be empty.
+    /// Subject and conditions; may be empty.
     pub subject: String,
-    /// First sentence of the picture in words; axes and numbers follow by themselves.
+    /// First sentence of the picture in words; axes and numbers are appended.
     pub lead: String,
-    /// Where the title begins, pixels.
+    /// Left edge of the title, pixels.
     pub left: f64,
     /// Width, pixels; zero is [`WIDTH`].
     pub width: f64,
     pub panels: Vec<Panel>,
-    /// Legends with a place of their own.
+    /// Legends with fixed places.
     pub sides: Vec<Side>,
-    /// What follows below the panels, from the top.
+    /// Blocks below the panels, from the top.
     pub foot: Vec<Block>,
 }
 
@@ -79,7 +79,7 @@ impl Chart {
     }
 }
 
-/// A legend of one column with a place of its own; names may take two lines.
+/// A legend of one column with a fixed place; names may take two lines.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Side {
     /// Upper left corner and width, pixels.
@@ -89,13 +89,13 @@ pub(crate) struct Side {
     pub entries: Vec<Entry>,
 }
 
-/// A part of what follows below the panels.
+/// A block below the panels.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
     /// Left edge and width, pixels.
     pub left: f64,
     pub width: f64,
-    /// Whether the next block lies to the right of it, not below.
+    /// True if the next block lies to the right of it instead of below.
     pub before_next: bool,
     pub content: Content,
 }
@@ -137,7 +137,7 @@ pub(crate) struct Entry {
     pub name: String,
 }
 
-/// What a legend shows next to a name.
+/// Sample shown next to a name in a legend.
 #[derive(Clone, Debug)]
 pub(crate) enum Mark {
     Line(Stroke),
@@ -169,6 +169,6 @@ pub(crate) struct Key {
     pub heading: String,
     /// Colours from left to right.
     pub colours: Vec<String>,
-    /// Labels with their places from 0 to 1; of those that would overlap the last ones are written.
+    /// Labels with their places from 0 to 1; overlapping ones are dropped, the last ones kept.
     pub labels: Vec<(f64, String)>,
 }

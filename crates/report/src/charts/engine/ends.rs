@@ -1,15 +1,15 @@
-//! Names of lines at their right ends, moved apart where they would lie on each other.
+//! Names of lines at their right ends, moved apart to avoid overlaps.
 
 use super::panel::Panel;
 use super::place::{Label, at};
 use super::svg::Point;
 
-/// Least distance of two names, pixels.
+/// Minimum distance of two names, pixels.
 const APART: f64 = 14.0;
-/// Ends so near to the frame are named beyond it, pixels.
+/// Distance from the frame within which names are written beyond it, pixels.
 const NEAR: f64 = 30.0;
 
-/// The right end of a line and what is written there.
+/// Right end of a line, and its label.
 #[derive(Clone, Debug)]
 pub(crate) struct End {
     pub at: Point,
@@ -22,7 +22,7 @@ pub(crate) fn label_ends(panel: &mut Panel, ends: Vec<End>) {
     name_ends(panel, ends, false);
 }
 
-/// The same over cells, where a name within the panel needs a ground of its own.
+/// As [`label_ends`], over cells, where a name within the panel needs a white background.
 pub(crate) fn label_ends_on_cells(panel: &mut Panel, ends: Vec<End>) {
     name_ends(panel, ends, true);
 }
@@ -40,7 +40,7 @@ fn name_ends(panel: &mut Panel, mut ends: Vec<End>, cells: bool) {
         let y = own.max(free).min(room.max(free));
         free = y + APART;
         let corner = at(f64::NEG_INFINITY, f64::INFINITY);
-        // Names of lines that go on to the frame, or nearly so, are drawn beyond it.
+        // Lines that reach the frame, or nearly do, are named beyond it.
         let is_beyond = panel.rect.right - x < NEAR;
         let x = if is_beyond { panel.rect.right } else { x };
         let place = corner.shift(x - panel.rect.left + 7.0, y - panel.rect.top);

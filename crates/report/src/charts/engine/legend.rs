@@ -13,11 +13,11 @@ const MARK_WIDTH: f64 = 30.0;
 /// Room for a mark and the gap to the name, pixels.
 const MARK: f64 = MARK_WIDTH + 8.0;
 const SIZE: f64 = 11.0;
-/// Height of a line of a name that is broken, pixels.
+/// Height of a line of a wrapped name, pixels.
 const LINE: f64 = 13.0;
 /// Height of a line of notes, and room after a note, pixels.
 const NOTE: (f64, f64) = (15.0, 5.0);
-/// Room between columns, and widest name, pixels.
+/// Room between columns, and maximum width of a name, pixels.
 const GUTTER: f64 = 22.0;
 const NAME: f64 = 420.0;
 /// Height of a key with heading and labels, pixels.
@@ -80,7 +80,7 @@ fn legend_below(svg: &mut Svg, (left, mut top): Point, width: f64, title: &str, 
         let y = top + ((k % rows) as f64 + 0.5) * ENTRY;
         draw_mark(svg, mark, (x + MARK_WIDTH / 2.0, y));
         let label = Label::new(at(x + MARK, y + 4.0), name);
-        // Half a pixel more, lest rounding cuts the widest name.
+        // The extra half pixel keeps rounding from cutting the widest name.
         text(svg, label.cut(Cut::Middle, wide - MARK + 0.5));
     }
     svg.close();

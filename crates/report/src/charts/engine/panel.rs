@@ -10,22 +10,22 @@ use super::text::{Cut, text_width};
 /// Room below a plot for its axis, pixels.
 pub(crate) const BELOW: f64 = 40.0;
 
-/// A pair of axes and what is drawn between them.
+/// A pair of axes and the shapes between them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Panel {
     pub heading: String,
     pub rect: Rect,
     pub x: Axis,
     pub y: Axis,
-    /// Whether grid, ticks and a border are drawn.
+    /// True if grid, ticks and a border are drawn.
     pub framed: bool,
-    /// Whether ticks and title of the horizontal axis are written: not in a panel that shares them with the one below.
+    /// True if ticks and title of the horizontal axis are written: false in a panel that shares them with the one below.
     pub x_labels: bool,
-    /// Whether the first column of the table is the horizontal axis.
+    /// True if the first column of the table is the horizontal axis.
     pub over_table: bool,
     /// Columns of the table that the panel draws; all if empty.
     pub columns: Vec<usize>,
-    /// Whether to write that there are no data.
+    /// True to write that there are no data.
     pub no_data: bool,
     /// Room below the panel, pixels.
     pub below: f64,
@@ -86,18 +86,18 @@ impl Panel {
         self.add(Shape::Segment(from, to), style);
     }
 
-    /// Adds a rectangle between two corners, as far as it lies in the panel.
+    /// Adds a rectangle between two corners, clipped to the panel.
     pub fn rectangle(&mut self, from: Place, to: Place, style: Style) {
         self.add(Shape::Rect(from, to), style);
     }
 
-    /// Adds a line at a height from edge to edge.
+    /// Adds a horizontal line from edge to edge.
     pub fn level(&mut self, y: f64, stroke: Stroke) {
         let ends = [f64::NEG_INFINITY, f64::INFINITY].map(|x| at(x, y));
         self.segment(ends[0], ends[1], Style::line(stroke));
     }
 
-    /// Adds a line at a place of the horizontal axis from edge to edge.
+    /// Adds a vertical line from edge to edge.
     pub fn upright(&mut self, x: f64, stroke: Stroke) {
         let ends = [f64::NEG_INFINITY, f64::INFINITY].map(|y| at(x, y));
         self.segment(ends[0], ends[1], Style::line(stroke));
@@ -113,7 +113,7 @@ impl Panel {
         self.add(Shape::Label(label), Style::default());
     }
 
-    /// Where a value of the horizontal axis lies, pixels; infinite ones lie on the edge.
+    /// Pixel position of a value of the horizontal axis; infinite ones are placed on the edge.
     pub fn px(&self, x: f64) -> f64 {
         let rect = self.rect;
         match x {
@@ -123,7 +123,7 @@ impl Panel {
         }
     }
 
-    /// Where a value of the vertical axis lies, pixels; infinite ones lie on the edge.
+    /// Pixel position of a value of the vertical axis; infinite ones are placed on the edge.
     pub fn py(&self, y: f64) -> f64 {
         let rect = self.rect;
         match y {
@@ -133,7 +133,7 @@ impl Panel {
         }
     }
 
-    /// A point in pixels.
+    /// Converts a point to pixels.
     pub fn pixel(&self, (x, y): Point) -> Point {
         (self.px(x), self.py(y))
     }
@@ -186,8 +186,8 @@ pub(crate) fn grid(
     }
 }
 
-/// A panel of `count` rows of a pitch in pixels between an upper left corner and a right edge. Its vertical axis counts the rows from
-/// the top: the middle of the first one is at 0.5.
+/// A panel of `count` rows of a pitch in pixels between an upper left corner and a right edge. Its vertical axis counts the rows from the top;
+/// the middle of the first one is at 0.5.
 pub(crate) fn rows_panel(
     (left, top): Point,
     right: f64,
@@ -202,7 +202,7 @@ pub(crate) fn rows_panel(
     Panel::new(rect, x, Axis::bare(rows + pad, -pad))
 }
 
-/// Left edge of rows with names: as far right as the longest name needs, within reason, pixels.
+/// Left edge of rows with names, pixels: room for the longest name, up to a limit.
 pub(crate) fn rows_left<'n>(names: impl Iterator<Item = &'n str>, size: f64) -> f64 {
     let widest = names.map(|name| text_width(name, size)).fold(0.0, f64::max);
     (widest + 24.0).clamp(74.0, 340.0)
@@ -220,7 +220,7 @@ pub(crate) struct Item {
     pub style: Style,
 }
 
-/// What a panel can show. Shapes at places that are not finite are left out.
+/// A drawable shape. Shapes at positions that are not finite are omitted.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     /// A line with gaps where values are not finite.
@@ -229,19 +229,19 @@ pub(crate) enum Shape {
     Area(Vec<Vec<Point>>),
     /// A straight line.
     Segment(Place, Place),
-    /// A rectangle between two corners, as far as it lies in the panel.
+    /// A rectangle between two corners, clipped to the panel.
     Rect(Place, Place),
     /// A ribbon between two upper ends of a height in pixels.
     Ribbon(Point, Point, f64),
     /// A symbol with a radius in pixels.
     Symbol(Symbol, Place, f64),
     Label(Label),
-    /// Shapes as far as they lie within a polygon, or else within the panel.
+    /// Shapes clipped to a polygon, or to the panel.
     Within(Option<Vec<Point>>, Vec<Item>),
 }
 
 impl Shape {
-    /// The area between two lines over common places: place, lower and upper end.
+    /// The area between two lines with common abscissae: position, lower and upper end.
     pub fn between(points: &[(f64, f64, f64)]) -> Self {
         let upper = points.iter().map(|(x, _, high)| (*x, *high));
         let lower = points.iter().rev().map(|(x, low, _)| (*x, *low));

@@ -19,7 +19,7 @@ pub(crate) fn at(x: f64, y: f64) -> Place {
 }
 
 impl Place {
-    /// The place so many pixels to the right and down.
+    /// Shifts the place by pixels to the right and down.
     pub fn shift(self, dx: f64, dy: f64) -> Self {
         Place { dx, dy, ..self }
     }
@@ -31,15 +31,15 @@ pub(crate) struct Label {
     pub at: Place,
     pub text: String,
     pub size: f64,
-    /// Which part of the text lies at its place, as SVG has it.
+    /// SVG `text-anchor`: part of the text at its place.
     pub anchor: &'static str,
     pub bold: bool,
-    /// Whether it is turned to be read from the right.
+    /// True for text rotated to be read from the right.
     pub turned: bool,
-    /// Whether it has a white ground, so that it can be read on lines and cells.
+    /// True for text on a white background, legible on lines and cells.
     pub ground: bool,
     pub colour: &'static str,
-    /// How a text that is wider than `room` pixels is cut; the full one shows under the pointer.
+    /// Method of cutting a text wider than `room` pixels; the full one shows as a tooltip.
     pub cut: Cut,
     pub room: f64,
     pub class: &'static str,
@@ -65,13 +65,13 @@ impl Label {
         }
     }
 
-    /// The text ends at its place.
+    /// Right-aligns the text.
     pub fn end(mut self) -> Self {
         self.anchor = "end";
         self
     }
 
-    /// The middle of the text lies at its place.
+    /// Centres the text.
     pub fn middle(mut self) -> Self {
         self.anchor = "middle";
         self

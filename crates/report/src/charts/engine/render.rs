@@ -1,4 +1,4 @@
-//! The renderer: a chart becomes a picture.
+//! Renders a chart to a picture.
 
 use super::backend::frame;
 use super::chart::{Chart, WIDTH};
@@ -10,9 +10,9 @@ use super::text::{Cut, text_width};
 use crate::charts::picture::{MAX_SPANS, Picture, PictureTable};
 use cvtcycle_output::table::distinct;
 
-/// Size of the title, at least where it is long, and of the line below it, pixels.
+/// Size of the title, its minimum for a long title, and size of the line below it, pixels.
 const TITLE: f64 = 15.0;
-const LEAST_TITLE: f64 = 12.5;
+const MIN_TITLE: f64 = 12.5;
 const SUBJECT: f64 = 12.0;
 
 impl Chart {
@@ -55,9 +55,9 @@ impl Chart {
         let text = |y: f64, text: &str, size: f64| {
             Label::new(at(self.left, y), Cut::End.apply(text, size, room)).size(size)
         };
-        // A long sentence is written a little smaller before it is cut.
+        // A long sentence is shrunk a little before it is cut.
         let fits = room / text_width(&self.title, 1.0).max(1.0);
-        let size = fits.clamp(LEAST_TITLE, TITLE);
+        let size = fits.clamp(MIN_TITLE, TITLE);
         draw_text(svg, text(24.0, &self.title, size).bold(true));
         draw_text(svg, text(42.0, &self.subject, SUBJECT).quiet());
     }
@@ -79,7 +79,7 @@ impl Chart {
         joined([lead, joined(axes, "; "), numbers], ". ") + "."
     }
 
-    /// The numbers in words; where many lines are drawn, the span of each quantity.
+    /// Key numbers in words; for many lines, the span of each quantity.
     fn key_numbers(&self, table: &PictureTable) -> String {
         let lines = self.panels.iter().flat_map(|panel| &panel.columns);
         if lines.count() <= MAX_SPANS {
@@ -97,7 +97,7 @@ impl Chart {
     }
 }
 
-/// Those texts that are not empty, with a sign between them.
+/// Joins non-empty texts.
 fn joined(parts: impl IntoIterator<Item = String>, sign: &str) -> String {
     let parts = parts.into_iter().filter(|part| !part.is_empty());
     parts.collect::<Vec<_>>().join(sign)
@@ -124,7 +124,7 @@ fn draw_panel(svg: &mut Svg, panel: &Panel) {
         draw_label(svg, panel, &label.size(12.0).middle().quiet());
     }
     if panel.framed {
-        // Over the data, which cover half of the axis lines.
+        // Drawn over the data, which cover half of the axis lines.
         let border = Style::line(stroke(INK, 0.75, &[])).class("plot");
         let mut paint = border.attributes(svg);
         if panel.over_table {
@@ -206,7 +206,7 @@ fn draw_line(svg: &mut Svg, panel: &Panel, points: &[Point], style: &Style) {
     let mut path = Path::default();
     for part in points.split(|(x, y)| !x.is_finite() || !y.is_finite()) {
         let pixels: Vec<Point> = part.iter().map(|point| panel.pixel(*point)).collect();
-        // What turns back on its way is drawn in full.
+        // Lines that turn back are drawn in full.
         let rising = pixels.is_sorted_by(|a, b| a.0 <= b.0);
         path.add_line(if rising { thinned(&pixels) } else { pixels });
     }
@@ -214,7 +214,7 @@ fn draw_line(svg: &mut Svg, panel: &Panel, points: &[Point], style: &Style) {
     svg.path(path, &paint);
 }
 
-/// Points that look the same: of each column of pixels the first, lowest, highest and last.
+/// Thins points without a visible change: of each column of pixels the first, lowest, highest and last.
 fn thinned(points: &[Point]) -> Vec<Point> {
     let mut kept = Vec::new();
     for column in points.chunk_by(|a, b| a.0.floor().total_cmp(&b.0.floor()).is_eq()) {
@@ -239,7 +239,7 @@ pub(super) fn draw_text(svg: &mut Svg, label: Label) {
     draw_label(svg, &panel, &label);
 }
 
-/// Writes a label; of one that is cut the full text shows under the pointer.
+/// Writes a label; the full text of a cut one shows as a tooltip.
 fn draw_label(svg: &mut Svg, panel: &Panel, label: &Label) {
     let Some((x, y)) = pixel(panel, label.at).filter(|_| !label.text.is_empty()) else {
         return;
@@ -273,7 +273,7 @@ fn draw_label(svg: &mut Svg, panel: &Panel, label: &Label) {
     }
 }
 
-/// A place in pixels, if it is finite.
+/// Converts a place to pixels, if it is finite.
 fn pixel(panel: &Panel, place: Place) -> Option<Point> {
     let (x, y) = (panel.px(place.x) + place.dx, panel.py(place.y) + place.dy);
     (x.is_finite() && y.is_finite()).then_some((x, y))

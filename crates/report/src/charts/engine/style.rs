@@ -1,4 +1,4 @@
-//! Lines and fills that stay apart in black and white and for the colour-blind.
+//! Lines and fills distinguishable in black and white and by the colour-blind.
 
 use super::svg::{Svg, UNITS};
 use cvtcycle_model::transmission::component::{Fill as Place, LossGroup};
@@ -6,10 +6,10 @@ use cvtcycle_output::Component;
 
 /// Colour of text and of frames.
 pub(crate) const INK: &str = "#000000";
-/// Colour of what is context only.
+/// Colour of context.
 pub(crate) const QUIET: &str = "#555555";
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stroke {
     /// Colour.
@@ -49,14 +49,14 @@ pub(crate) const STROKES: [Stroke; 7] = [
     stroke("#4b2991", 1.5, &[14.0, 3.0, 2.0, 3.0, 2.0, 3.0]),
 ];
 
-/// Colours of an ordered quantity from its least to its largest value: blue over purple to orange, and ever lighter.
+/// Colours of an ordered quantity from its minimum to its maximum: blue over purple to orange, and ever lighter.
 const ORDERED: [&str; 7] = [
     "#1d3a8f", "#4b3a9c", "#79349a", "#a0338a", "#c23f6d", "#d6574a", "#dc7423",
 ];
-/// Colour of what was published or measured, in every figure that has it.
+/// Colour of published or measured numbers in every figure.
 pub(crate) const PUBLISHED: &str = "#a3311c";
 
-/// What the colours of the lines of a figure mean.
+/// Meaning of the colours of the lines of a figure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Palette {
     /// Things of different kinds.
@@ -69,7 +69,7 @@ pub enum Palette {
 }
 
 impl Palette {
-    /// The line with a number of so many.
+    /// Line style `index` of `count`.
     pub(crate) fn stroke(self, index: usize, count: usize) -> Stroke {
         let of_kind = STROKES[index % STROKES.len()];
         match self {
@@ -80,7 +80,7 @@ impl Palette {
     }
 }
 
-/// Colour of a value of an ordered quantity by its place among so many.
+/// Colour of a value of an ordered quantity by its rank `index` of `count`.
 pub(crate) fn ordered(index: usize, count: usize) -> &'static str {
     let last = count.saturating_sub(1).max(1);
     ORDERED[(index * (ORDERED.len() - 1) + last / 2) / last % ORDERED.len()]
@@ -105,7 +105,7 @@ impl Stroke {
 /// Anchors of a ramp of colours.
 type Ramp = &'static [(f64, f64, f64)];
 
-/// A ramp whose lightness rises evenly, and that the colour-blind see rising too.
+/// Ramp of evenly rising lightness, also for the colour-blind.
 const RAMP: Ramp = &[
     (52.0, 20.0, 94.0),
     (69.0, 74.0, 139.0),
@@ -125,7 +125,7 @@ const WARM: Ramp = &[
     (250.0, 222.0, 150.0),
 ];
 
-/// From -1 over 0 to 1: blue, white, brown, which the colour-blind can distinguish, and the darker the stronger.
+/// Diverging palette from -1 over 0 to 1: blue, white, brown, distinguishable by the colour-blind, and darker with magnitude.
 pub(crate) const DIVERGING: Ramp = &[
     (5.0, 80.0, 150.0),
     (125.0, 180.0, 220.0),
@@ -134,7 +134,7 @@ pub(crate) const DIVERGING: Ramp = &[
     (160.0, 72.0, 5.0),
 ];
 
-/// Colour of an area of what is more, or less: the two sides of the signed palette.
+/// Colour of an area above or below zero: the two sides of the signed palette.
 pub(crate) fn signed_colour(more: bool) -> String {
     between(DIVERGING, if more { 0.82 } else { 0.18 })
 }
@@ -154,7 +154,7 @@ pub(crate) fn between(anchors: &[(f64, f64, f64)], share: f64) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
-/// Cars, the subject first: the subject strongest.
+/// Colours of cars, the subject first and strongest.
 const CARS: [&str; 5] = ["#0b5a8c", "#d58a3c", "#8f8f8f", "#7a4f8f", "#5f8f5a"];
 
 /// Colour of a line for a group of losses, in the hues of [`Fill::component`].
@@ -171,13 +171,13 @@ pub(crate) fn group_line(group: LossGroup) -> &'static str {
     }
 }
 
-/// What an area is filled with: a colour, and a hatch that distinguishes it from its neighbours in print.
+/// Fill of an area: a colour, and a hatch that distinguishes it from its neighbours in print.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Fill {
     colour: String,
-    /// Number of the hatch; zero is none.
+    /// Number of the hatch; zero for none.
     hatch: usize,
-    /// Whether the hatch is white.
+    /// True for a white hatch.
     dark: bool,
 }
 
@@ -200,7 +200,7 @@ impl Fill {
         }
     }
 
-    /// The fill `index` of `count`: lightness rises with the index; neighbours differ in their hatch too.
+    /// Fill `index` of `count`: lightness rises with the index; neighbours also differ in their hatch.
     pub fn nth(index: usize, count: usize) -> Self {
         let last = count.saturating_sub(1) as f64;
         let share = if last > 0.0 { index as f64 / last } else { 0.4 };
@@ -224,7 +224,7 @@ impl Fill {
         }
     }
 
-    /// Its SVG paint; a hatch is defined on first use.
+    /// SVG paint; a hatch is defined on first use.
     fn paint(&self, svg: &mut Svg) -> String {
         let marks = match self.hatch {
             0 => return self.colour.clone(),
@@ -253,11 +253,11 @@ pub(crate) struct Style {
     pub stroke: Option<Stroke>,
     /// Opacity of the stroke; zero is full.
     pub stroke_opacity: f64,
-    /// Whether edges are not to be blended with the ground.
+    /// True for edges that must not be anti-aliased.
     pub crisp: bool,
     /// Class for the style sheet and for tests; may be empty.
     pub class: &'static str,
-    /// Row of the table that has its numbers.
+    /// Row of the table with its numbers.
     pub row: Option<usize>,
 }
 
@@ -319,7 +319,7 @@ impl Style {
         self
     }
 
-    /// Its SVG attributes.
+    /// SVG attributes.
     pub fn attributes(&self, svg: &mut Svg) -> String {
         let mut text = marks(self.class, self.row);
         let fill = self.fill.as_ref().map(|fill| fill.paint(svg));

@@ -1,4 +1,4 @@
-//! The drawing surface: shapes in pixels become SVG text.
+//! Drawing surface: shapes in pixels become SVG text.
 
 use std::fmt::{Display, Write as _};
 
@@ -40,7 +40,7 @@ impl Rect {
     }
 }
 
-/// An SVG document in the making.
+/// An SVG document under construction.
 #[derive(Debug)]
 pub(crate) struct Svg {
     pub width: f64,
@@ -63,7 +63,7 @@ impl Svg {
         }
     }
 
-    /// Adds an element without content; `paint` holds further attributes.
+    /// Adds an empty element; `paint` holds further attributes.
     pub fn element(&mut self, name: &str, place: &[(&str, &dyn Display)], paint: &str) {
         self.tag(name, place, paint);
         self.body.push_str("/>\n");
@@ -91,7 +91,7 @@ impl Svg {
         let _ = writeln!(self.body, "<g {attributes}>");
     }
 
-    /// Opens a group whose full text shows under the pointer.
+    /// Opens a group with a text shown as a tooltip.
     pub fn open_titled(&mut self, title: &str) {
         let _ = writeln!(self.body, "<g><title>{}</title>", xml(&set(title)));
     }
@@ -101,7 +101,7 @@ impl Svg {
         self.body.push_str("</g>\n");
     }
 
-    /// Adds a definition unless one of that id is there.
+    /// Adds a definition unless the id exists.
     pub fn define(&mut self, id: &str, element: impl FnOnce() -> String) {
         if !self.defined.iter().any(|other| other == id) {
             self.defined.push(id.to_owned());
@@ -134,7 +134,7 @@ impl Svg {
         self.element("line", &place, paint);
     }
 
-    /// Adds a path; nothing if it is empty.
+    /// Adds a path, unless it is empty.
     pub fn path(&mut self, path: Path, paint: &str) {
         let data = path.finish();
         if !data.is_empty() {
@@ -148,7 +148,7 @@ impl Svg {
         self.element("circle", &[("cx", &cx), ("cy", &cy), ("r", &r)], paint);
     }
 
-    /// The document with its title and its description for those who cannot see it.
+    /// Completes the document with its title and its description for screen readers.
     pub fn finish(self, title: &str, description: &str) -> String {
         let (width, height) = (self.width, self.height);
         let (w, h) = (units(width), units(height));
@@ -165,12 +165,12 @@ impl Svg {
     }
 }
 
-/// A text as a picture has it: typeset, with plain blanks, since no line of a picture breaks by itself.
+/// Typesets a text for a picture, with plain blanks, since SVG lines do not wrap.
 fn set(text: &str) -> String {
     typeset(text).replace('\u{a0}', " ")
 }
 
-/// Pixels to whole canvas units, limited to what viewers can still compute with.
+/// Converts pixels to whole canvas units, limited to the range that viewers can handle.
 pub(crate) fn units(pixels: f64) -> i64 {
     (pixels * UNITS).clamp(-1e6, 1e6).round() as i64
 }
@@ -251,7 +251,7 @@ impl Path {
         self.text
     }
 
-    /// A stroke of one place would be invisible: it gets the least length there is.
+    /// A stroke without extent would be invisible and gets the minimum length.
     fn finish_dot(&mut self) {
         if self.start {
             self.text.push_str("h1");

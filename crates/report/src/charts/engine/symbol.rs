@@ -1,4 +1,4 @@
-//! Marks of points: shapes that stay apart in black and white and for the colour-blind.
+//! Symbols of points, distinguishable in black and white and by the colour-blind.
 
 use super::style::{STROKES, Style, stroke};
 use super::svg::{Path, Point, Svg};
@@ -37,13 +37,13 @@ const SHAPES: [Corners; 7] = [
     ],
 ];
 
-/// Triangles at the edge of a panel, for what lies beyond it on the left and on the right.
+/// Triangles at the left and right edge of a panel, for points beyond it.
 const EDGES: [Corners; 2] = [
     &[(0.0, 0.0), (2.0, -1.0), (2.0, 1.0)],
     &[(0.0, 0.0), (-2.0, -1.0), (-2.0, 1.0)],
 ];
 
-/// Colours in an order in which neighbours differ most.
+/// Colours ordered for maximum contrast between neighbours.
 const ORDER: [usize; 7] = [2, 1, 3, 4, 0, 6, 5];
 
 /// The shape of the mark of a point.
@@ -54,7 +54,7 @@ impl Symbol {
     pub const CIRCLE: Symbol = Symbol(SHAPES[0]);
     pub const DIAMOND: Symbol = Symbol(SHAPES[3]);
 
-    /// Shape and colour of the group with that number; no two of the first 49 are alike.
+    /// Shape and colour of the group with that number; the first 49 are distinct.
     pub fn nth(index: usize) -> (Self, &'static str) {
         let (turn, k) = (index / SHAPES.len(), index % SHAPES.len());
         let shape = SHAPES[(k + turn) % SHAPES.len()];
@@ -81,7 +81,7 @@ impl Symbol {
         Style::colour("#ffffff").edge(stroke(colour, 1.5, &[]))
     }
 
-    /// Draws it at a place in pixels.
+    /// Draws the symbol at a position in pixels.
     pub(super) fn draw(self, svg: &mut Svg, (x, y): Point, radius: f64, style: &Style) {
         let paint = style.attributes(svg);
         if self.0.is_empty() {
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_two_of_the_first_49_symbols_are_alike() {
+    fn first_49_symbols_are_distinct() {
         let all: Vec<_> = (0..49).map(Symbol::nth).collect();
         for (k, one) in all.iter().enumerate() {
             assert!(!all[..k].contains(one), "{k}: {one:?}");

@@ -1,6 +1,6 @@
-//! Widths of texts, and texts cut or broken to a width.
+//! Widths of texts; cuts and wraps texts to a width.
 
-/// About how wide a text comes out in a wide sans-serif face, in pixels.
+/// Estimates the width of a text in a wide sans-serif face, pixels.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let ems = text.chars().map(|c| match c {
         'i' | 'j' | 'l' | '.' | ',' | ':' | ';' | '|' | '\'' | '!' | '(' | ')' | '[' | ']'
@@ -13,7 +13,7 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     ems.sum::<f64>() * size
 }
 
-/// Which part of a text gives way to an ellipsis where the text is too wide.
+/// Part of a text that an ellipsis replaces if the text is too wide.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Cut {
     #[default]
@@ -23,7 +23,7 @@ pub(crate) enum Cut {
 }
 
 impl Cut {
-    /// The text, or as much of it as fits into a width.
+    /// Cuts the text to a width.
     pub fn apply(self, text: &str, size: f64, width: f64) -> String {
         if text_width(text, size) <= width {
             return text.to_owned();
@@ -47,7 +47,7 @@ impl Cut {
     }
 }
 
-/// The text in at most two lines, broken between words and cut where that is not enough.
+/// Wraps the text to at most two lines between words, and cuts the rest.
 pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut breaks = text.match_indices(' ').map(|(at, _)| at);
     let best = breaks.rfind(|at| text_width(&text[..*at], size) <= width);
@@ -60,10 +60,10 @@ pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     }
 }
 
-/// The text in as many lines as it takes, broken between words; a word that is too long is cut in its middle.
+/// Wraps the text between words; an overlong word is cut in its middle.
 pub(crate) fn lines(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
-    // Not at spaces that bind.
+    // Non-breaking spaces do not match.
     for word in text.split(' ').filter(|word| !word.is_empty()) {
         match lines.last_mut() {
             Some(line) if text_width(&format!("{line} {word}"), size) <= width => {
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cut_texts_keep_the_ends_that_matter() {
+    fn cut_keeps_the_requested_ends() {
         let cut = |text: &str, width| Cut::Middle.apply(text, 11.0, width);
         assert_eq!(cut("friction", 500.0), "friction");
         let long = "lubricant.traction.friction_coefficient_at_40_degc";

@@ -16,7 +16,7 @@ const RIGHT: f64 = WIDTH - 18.0;
 /// Height of a row, pixels.
 const PITCH: f64 = 21.0;
 
-/// An axis over values for bars from `left` on, with room for the longest of the labels at the outer ends of all bars, within reason.
+/// An axis over values for bars that begin at `left`, with room for the longest outer label, up to a limit.
 pub(super) fn axis_with_room(
     title: &str,
     left: f64,
@@ -29,7 +29,7 @@ pub(super) fn axis_with_room(
     for value in values.filter(|x| x.is_finite()) {
         (low, high) = (low.min(value), high.max(value));
     }
-    // A value next to zero needs room for its label like any other.
+    // A value next to zero needs room for its label as well.
     let sides = if low < 0.0 { 2.0 } else { 1.0 };
     let span = (high - low) / (1.0 - sides * label / (RIGHT - left));
     let room = span * label / (RIGHT - left);
@@ -68,14 +68,14 @@ pub(super) fn name(panel: &mut Panel, row: usize, text: &str, bold: bool) {
     panel.row_name(row, Label::new(at(0.0, 0.0), text).size(TEXT).bold(bold));
 }
 
-/// Adds a bar between two values; none if they are the same.
+/// Adds a bar between two values, unless they are equal.
 pub(super) fn bar(panel: &mut Panel, row: usize, (from, to): Point, style: Style) {
     if from < to || to < from {
         panel.bar(row, (from, to), (-7.0, 7.0), style);
     }
 }
 
-/// Writes a text at the outer end of a bar: right of a value, or left of a negative one.
+/// Writes a label at the outer end of a bar: right of a value, or left of a negative one.
 pub(super) fn at_end(panel: &mut Panel, row: usize, value: f64, bold: bool, text: String) {
     let side = if value < 0.0 { -6.0 } else { 6.0 };
     let place = at(value, row_middle(row)).shift(side, 4.0);
@@ -95,7 +95,7 @@ pub struct CarLosses {
 }
 
 impl CarLosses {
-    /// All of them, kJ.
+    /// Total loss, kJ.
     pub fn total_kj(&self) -> f64 {
         self.losses_kj.iter().map(|(_, kj)| finite(*kj)).sum()
     }
@@ -111,7 +111,7 @@ pub fn loss_by_component(cars: &[CarLosses], conditions: &str) -> Picture {
     ]);
     let all = || {
         cars.iter()
-            .flat_map(|car| car.losses_kj.iter().map(move |of| (car, of)))
+            .flat_map(|car| car.losses_kj.iter().map(move |data| (car, data)))
     };
     let names: Vec<String> = all().map(|(_, (c, _))| capital(c.name())).collect();
     let left = rows_left(names.iter().map(String::as_str), TEXT);
@@ -130,7 +130,7 @@ pub fn loss_by_component(cars: &[CarLosses], conditions: &str) -> Picture {
     stacked(chart, (left, TOP), (24.0, 16.0), cars.len().max(1), panel).picture(table)
 }
 
-/// The three largest losses of the first car, and their share.
+/// Title: the three largest losses of the first car, and their share.
 fn largest(cars: &[CarLosses]) -> String {
     let plain = || "Transmission losses by component".to_owned();
     let Some(car) = cars.first().filter(|car| car.total_kj() > 0.0) else {
@@ -198,11 +198,11 @@ pub struct PhaseLosses {
 /// Left edge of the legend, pixels.
 const LEGEND: f64 = 40.0;
 
-/// Loss per distance of each phase group, stacked by group of components in the order of the power flow. A group without any finite loss, such as a
-/// soak, in which no distance is driven, is left out.
-pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
+/// Loss per distance of each phase group, stacked by group of components in the order of the power flow. Groups without a finite loss, such as a
+/// soak without distance, are omitted.
+pub fn loss_by_phase(data: &PhaseLosses) -> Picture {
     let some = |cars: &[CarParts]| cars.iter().flatten().any(|(_, x)| x.is_finite());
-    let (groups, left_out): (Vec<_>, Vec<_>) = of.groups.iter().partition(|(_, cars)| some(cars));
+    let (groups, left_out): (Vec<_>, Vec<_>) = data.groups.iter().partition(|(_, cars)| some(cars));
     let columns = [("phase", ""), ("car", ""), ("parts", ""), ("loss", "kJ/km")];
     let mut table = PictureTable::new(&columns);
     if !left_out.is_empty() {
@@ -210,28 +210,30 @@ pub fn loss_by_phase(of: &PhaseLosses) -> Picture {
         let names = names.join(", ");
         table.note = format!("Left out, for there is no loss per distance: {names}.");
     }
-    let left = rows_left(of.cars.iter().map(String::as_str), TEXT);
+    let left = rows_left(data.cars.iter().map(String::as_str), TEXT);
     let all = || groups.iter().flat_map(|(_, cars)| cars);
     let sum = |parts: &CarParts| parts.iter().map(|(_, loss)| finite(*loss).max(0.0)).sum();
     let labels = all().map(|parts| grouped(sum(parts), 1));
     let title = "Loss of the transmission [kJ/km]";
     let x = axis_with_room(title, left, all().map(sum), labels);
     let panel = |k: usize, corner: Point| match groups.get(k) {
-        Some((group, cars)) => phase_bars(group, of.cars.iter().zip(cars), corner, &x, &mut table),
-        None => bars_panel(corner, of.cars.len(), x.clone()).no_data(true),
+        Some((group, cars)) => {
+            phase_bars(group, data.cars.iter().zip(cars), corner, &x, &mut table)
+        }
+        None => bars_panel(corner, data.cars.len(), x.clone()).no_data(true),
     };
     let used = distinct(all().flatten().map(|(component, _)| component.group()));
     let entries = used
         .into_iter()
         .map(|group| Entry::fill(Fill::plain(group_line(group)), capital(group.name())));
-    let chart = Chart::new(phase_title(of, &groups), &of.subject, MARGIN);
+    let chart = Chart::new(phase_title(data, &groups), &data.subject, MARGIN);
     stacked(chart, (left, TOP), (23.0, 12.0), groups.len().max(1), panel)
         .legend((LEGEND, WIDTH - LEGEND - 20.0), entries)
         .picture(table)
 }
 
-/// What the first car loses in each phase.
-fn phase_title(of: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String {
+/// Title: losses of the first car in each phase.
+fn phase_title(data: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String {
     let sum = |parts: &CarParts| {
         parts
             .iter()
@@ -245,7 +247,7 @@ fn phase_title(of: &PhaseLosses, groups: &[&(String, Vec<CarParts>)]) -> String 
         ))
     };
     let parts: Vec<String> = groups.iter().filter_map(part).collect();
-    match (of.cars.first(), parts.is_empty()) {
+    match (data.cars.first(), parts.is_empty()) {
         (Some(car), false) => format!("{car} loses {}", list_of(&parts)),
         _ => "Transmission losses by phase, per distance".to_owned(),
     }

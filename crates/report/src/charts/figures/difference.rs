@@ -1,4 +1,4 @@
-//! What changed between two runs, term by term: the terms add up to the difference of fuel.
+//! Differences between two runs, term by term: the terms add up to the difference of fuel.
 
 use super::bars::{at_end, axis_with_room, bar, bars_panel, name};
 use super::{MARGIN, TEXT, TOP, Term, energy, finite};
@@ -7,12 +7,12 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital, grouped, signed};
 use cvtcycle_output::Component;
 
-/// Terms that change by less than this share of all changes are put together.
+/// Share of all changes below which terms are combined.
 const SMALL: f64 = 0.01;
 
 /// Two runs A and B, term by term.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Difference {
+pub struct EnergyDifference {
     /// Names of runs A and B.
     pub names: [String; 2],
     /// Energy of a litre of fuel in A and in B, kJ/L.
@@ -21,7 +21,7 @@ pub struct Difference {
     pub distance_km: [f64; 2],
     /// Fuel energy of A and of B, kJ.
     pub fuel_kj: [f64; 2],
-    /// Where it went, each once.
+    /// Uses of the energy, each once.
     pub terms: Vec<DifferenceTerm>,
 }
 
@@ -30,7 +30,7 @@ pub struct Difference {
 pub struct DifferenceTerm {
     /// Name.
     pub name: String,
-    /// What it is, for its fill.
+    /// Kind of term, for its fill.
     pub term: Term,
     /// Energy in runs A and B, kJ; zero if a run has no such term.
     pub kj: [f64; 2],
@@ -38,7 +38,7 @@ pub struct DifferenceTerm {
 
 impl DifferenceTerm {
     /// A component of the transmission.
-    pub fn of(component: Component, kj: [f64; 2]) -> Self {
+    pub fn component(component: Component, kj: [f64; 2]) -> Self {
         Self::term(&capital(component.name()), Term::Component(component), kj)
     }
 
@@ -53,15 +53,15 @@ impl DifferenceTerm {
     }
 }
 
-impl Difference {
+impl EnergyDifference {
     /// Fuel with the energy of a term in A and in B, and the difference, L/100 km.
     fn litres(&self, kj: [f64; 2]) -> [f64; 3] {
-        let of = |k: usize| 100.0 * finite(kj[k]) / (self.fuel_kj_per_l[k] * self.distance_km[k]);
-        let (a, b) = (of(0), of(1));
+        let data = |k: usize| 100.0 * finite(kj[k]) / (self.fuel_kj_per_l[k] * self.distance_km[k]);
+        let (a, b) = (data(0), data(1));
         [a, b, b - a]
     }
 
-    /// The terms that change by a hundredth of all changes at least, and the others, if there are several.
+    /// Splits the terms into those with at least a hundredth of all changes, and the others if there are several.
     fn by_size(&self) -> (Vec<DifferenceTerm>, Vec<DifferenceTerm>) {
         let all: f64 = self.terms.iter().map(|term| term.change().abs()).sum();
         let large = |term: &DifferenceTerm| term.change().abs() >= SMALL * all;
@@ -72,7 +72,7 @@ impl Difference {
         }
     }
 
-    /// The terms that are drawn: the small ones together.
+    /// Terms to draw, small ones combined.
     fn folded(&self) -> Vec<DifferenceTerm> {
         let (mut kept, small) = self.by_size();
         if !small.is_empty() {
@@ -97,7 +97,7 @@ impl Difference {
             .collect()
     }
 
-    /// The terms, with one for what they leave of the fuel if that is more than rounding, and at the end the fuel.
+    /// Terms, with one for the unaccounted rest of the fuel if it exceeds rounding, and the fuel at the end.
     fn complete_terms(&self) -> Vec<DifferenceTerm> {
         let mut terms = self.folded();
         let sum = |k: usize| {
@@ -119,12 +119,12 @@ impl Difference {
 }
 
 /// Difference B - A of every term, in kJ and as fuel of that energy in L/100 km, with the difference of fuel at the end.
-pub fn difference_bars(of: &Difference) -> Picture {
-    let terms = of.complete_terms();
+pub fn difference_bars(data: &EnergyDifference) -> Picture {
+    let terms = data.complete_terms();
     let last = terms.len() - 1;
-    let (kept, small) = of.by_size();
+    let (kept, small) = data.by_size();
     let place_of_others = kept.len();
-    let words = |term: &DifferenceTerm| label(term.change(), of.litres(term.kj)[2]);
+    let words = |term: &DifferenceTerm| label(term.change(), data.litres(term.kj)[2]);
     let left = rows_left(terms.iter().map(|term| term.name.as_str()), TEXT);
     let changes = terms.iter().map(DifferenceTerm::change);
     let title = "B \u{2212} A over the cycle [kJ]";
@@ -134,16 +134,16 @@ pub fn difference_bars(of: &Difference) -> Picture {
     let units = ["kJ", "L/100 km"];
     let columns = units.map(|unit| ["A", "B", "B \u{2212} A"].map(|name| (name, unit)));
     let mut table = PictureTable::new(&[&[("term", "")], &columns.concat()[..]].concat());
-    table.note = explain(of);
+    table.note = explain(data);
     for (row, term) in terms.iter().enumerate() {
         let (sum, change) = (row == last, term.change());
-        // The table has each of the small terms, the figure their sum.
+        // The table lists each small term, the figure their sum.
         let at_row = match term.term {
             Term::Other if !small.is_empty() && row == place_of_others => {
-                table.rows.extend(small.iter().map(|term| of.cells(term)));
+                table.rows.extend(small.iter().map(|term| data.cells(term)));
                 None
             }
-            _ => Some(table.push(of.cells(term))),
+            _ => Some(table.push(data.cells(term))),
         };
         if sum {
             let [start, end] = [f64::NEG_INFINITY, f64::INFINITY].map(|x| at(x, row as f64));
@@ -161,24 +161,24 @@ pub fn difference_bars(of: &Difference) -> Picture {
         bar(&mut panel, row, (0.0, change), style);
         at_end(&mut panel, row, change, sum, words(term));
     }
-    let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);
-    Chart::new(title_of(of), subject, MARGIN)
+    let subject = format!("A: {}; B: {}", data.names[0], data.names[1]);
+    Chart::new(title_of(data), subject, MARGIN)
         .panels([panel])
-        .notes((MARGIN, WIDTH - 40.0), vec![explain(of)])
+        .notes((MARGIN, WIDTH - 40.0), vec![explain(data)])
         .picture(table)
 }
 
-/// What B burns more or less, and where most of that is.
-fn title_of(of: &Difference) -> String {
-    let fuel = finite(of.fuel_kj[1]) - finite(of.fuel_kj[0]);
+/// Title: fuel that B burns more or less, and the largest part of it.
+fn title_of(data: &EnergyDifference) -> String {
+    let fuel = finite(data.fuel_kj[1]) - finite(data.fuel_kj[0]);
     if fuel.abs() < 1e-9 {
         return "B burns as much as A".to_owned();
     }
-    let most = of
+    let largest = data
         .terms
         .iter()
         .max_by(|a, b| a.change().abs().total_cmp(&b.change().abs()));
-    let most = most.map_or_else(String::new, |term| {
+    let largest = largest.map_or_else(String::new, |term| {
         let change = term.change();
         format!(
             ", most of it {} ({})",
@@ -187,7 +187,7 @@ fn title_of(of: &Difference) -> String {
         )
     });
     let more = if fuel < 0.0 { "less" } else { "more" };
-    format!("B burns {} {more} than A{most}", energy(fuel.abs()))
+    format!("B burns {} {more} than A{largest}", energy(fuel.abs()))
 }
 
 fn label(kj: f64, litres: f64) -> String {
@@ -199,8 +199,8 @@ fn label(kj: f64, litres: f64) -> String {
     }
 }
 
-fn explain(of: &Difference) -> String {
-    let [a, b] = of.distance_km;
+fn explain(data: &EnergyDifference) -> String {
+    let [a, b] = data.distance_km;
     let far = if (a - b).abs() > 1e-6 * a.abs().max(b.abs()) {
         format!(
             " The runs differ in distance, {} and {} km: kJ are those driven, L/100 km take the distance in.",
@@ -217,14 +217,14 @@ fn explain(of: &Difference) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::Difference;
+    use super::EnergyDifference;
 
     #[test]
-    fn fuel_of_the_terms_adds_up_to_that_of_the_run() {
-        let of = Difference {
+    fn fuel_of_terms_sums_to_fuel_of_run() {
+        let data = EnergyDifference {
             fuel_kj_per_l: [32_000.0, 31_500.0],
             distance_km: [11.0, 10.9],
-            ..Difference::default()
+            ..EnergyDifference::default()
         };
         let terms = [
             [15_000.0, 14_900.0],
@@ -232,8 +232,8 @@ mod tests {
             [390.0, 520.5],
             [2300.0, 2310.0],
         ];
-        let sum: f64 = terms.iter().map(|kj| of.litres(*kj)[2]).sum();
+        let sum: f64 = terms.iter().map(|kj| data.litres(*kj)[2]).sum();
         let all = [0, 1].map(|k| terms.iter().map(|kj| kj[k]).sum());
-        assert!((sum - of.litres(all)[2]).abs() < 1e-12);
+        assert!((sum - data.litres(all)[2]).abs() < 1e-12);
     }
 }

@@ -1,7 +1,7 @@
-//! The energy flow of one car: all of it from fuel to wheel, and its transmission enlarged.
+//! Energy flow of one car: from fuel to wheel, and its transmission enlarged.
 
 use super::sankey::{Branch, Sankey, Stage, Whole, branch, sankey};
-use super::{Term, finite, of_drive};
+use super::{Term, drive_subtitle, finite};
 use crate::charts::picture::Picture;
 use crate::number::{capital, capital_first, grouped};
 use cvtcycle_output::Component;
@@ -21,7 +21,7 @@ pub struct CarEnergy {
     pub engine_heat_kj_km: f64,
     /// Accessories.
     pub accessories_kj_km: f64,
-    /// Change of rotating energy; negative where it was given back.
+    /// Change of rotating energy; negative where it was returned.
     pub kinetic_kj_km: f64,
     /// Losses of the transmission in the order of the power flow.
     pub losses_kj_km: Vec<(Component, f64)>,
@@ -29,12 +29,12 @@ pub struct CarEnergy {
     pub brake_kj_km: f64,
     /// Net work at the wheels, against rolling and air resistance.
     pub wheels_kj_km: f64,
-    /// Fuel, and work at the flywheel, of the car of the report that has most, kJ/km: all are drawn on one scale.
+    /// Largest fuel, and work at the flywheel, of the report's cars, kJ/km: all are drawn on one scale.
     pub largest_kj_km: [f64; 2],
 }
 
-/// A share of the fuel, or of the work at the flywheel, below which the energy of the rotating parts is drawn with the accessories, and that of a part
-/// of the transmission with the other small ones.
+/// Share of the fuel, or of the work at the flywheel, below which the energy of the rotating parts is drawn with the accessories, and a part of
+/// the transmission with the other small ones.
 const THIN: f64 = 0.005;
 
 impl CarEnergy {
@@ -46,7 +46,7 @@ impl CarEnergy {
             .sum()
     }
 
-    /// Work into the transmission at the flywheel, kJ/km: what leaves it again as losses, at the brakes and at the wheels.
+    /// Work into the transmission at the flywheel, kJ/km: the sum of losses, brakes and wheels.
     pub fn flywheel_kj_km(&self) -> f64 {
         self.transmission_kj_km() + finite(self.brake_kj_km) + finite(self.wheels_kj_km)
     }
@@ -57,14 +57,14 @@ impl CarEnergy {
         Stage::new("Wheels", vec![brakes, rolling])
     }
 
-    /// Of what is at the flywheel, the share that reaches brakes and wheels; none without work.
+    /// Share of the work at the flywheel that reaches brakes and wheels; `None` without work.
     pub fn passed(&self) -> Option<f64> {
         let flywheel = self.flywheel_kj_km();
         let passed = 1.0 - self.transmission_kj_km() / flywheel;
         (flywheel > 0.0 && passed.is_finite()).then_some(passed)
     }
 
-    /// Accessories, and the rotating parts apart where they can be seen.
+    /// Accessories; the rotating parts are separate if large enough to be seen.
     fn crankshaft(&self) -> Vec<Branch> {
         let (accessories, kinetic) = (self.accessories_kj_km, self.kinetic_kj_km);
         if kinetic.abs() < THIN * self.fuel_kj_km {
@@ -77,11 +77,11 @@ impl CarEnergy {
         ]
     }
 
-    /// What is drawn, of which car and in which conditions.
+    /// Names the drawn energy, the car and the conditions.
     fn subtitle(&self) -> String {
         format!(
             "Energy in kJ/km; {}",
-            of_drive(&self.subject, &self.conditions)
+            drive_subtitle(&self.subject, &self.conditions)
         )
     }
 
@@ -90,7 +90,7 @@ impl CarEnergy {
     }
 }
 
-/// From fuel to wheel; the transmission is one branch.
+/// Flow from fuel to wheel; the transmission is one branch.
 pub fn energy_flow(car: &CarEnergy) -> Picture {
     let engine = vec![
         branch("Exhaust", Term::Exhaust, car.exhaust_kj_km),
@@ -120,19 +120,21 @@ pub fn energy_flow(car: &CarEnergy) -> Picture {
     })
 }
 
-/// From the flywheel to the wheels, with a branch for each component.
+/// Flow from the flywheel to the wheels, with a branch for each component.
 pub fn transmission_flow(car: &CarEnergy) -> Picture {
     let source = car.flywheel_kj_km();
     let component = |(c, kj_km): &(Component, f64)| {
         let branch = branch(&capital(c.name()), Term::Component(*c), *kj_km);
         Stage::new("", vec![branch])
     };
-    let is_thin = |of: &&(Component, f64)| of.1.abs() < THIN * source;
+    let is_thin = |loss: &&(Component, f64)| loss.1.abs() < THIN * source;
     let thin: Vec<&(Component, f64)> = car.losses_kj_km.iter().filter(is_thin).collect();
-    // One small part keeps its name: nothing would be gained.
+    // Combining a single small part would only lose its name.
     let folded = thin.len() > 1;
     let shown = car.losses_kj_km.iter();
-    let shown = shown.filter(|of| !folded || !is_thin(of)).map(component);
+    let shown = shown
+        .filter(|loss| !folded || !is_thin(loss))
+        .map(component);
     let names: Vec<&str> = thin.iter().map(|(c, _)| c.title()).collect();
     let rest = folded.then(|| {
         let sum = thin.iter().map(|(_, kj_km)| finite(*kj_km)).sum();
@@ -150,7 +152,7 @@ pub fn transmission_flow(car: &CarEnergy) -> Picture {
     })
 }
 
-/// Which share of the fuel the wheels and the transmission take.
+/// Title: shares of the fuel that reach the wheels and are lost in the transmission.
 fn fuel_title(car: &CarEnergy) -> String {
     let share = |kj_km: f64| 100.0 * kj_km / car.fuel_kj_km;
     let [wheels, lost] = [car.wheels_kj_km, car.transmission_kj_km()].map(share);
@@ -165,7 +167,7 @@ fn fuel_title(car: &CarEnergy) -> String {
     )
 }
 
-/// Which share of the work at the flywheel the transmission passes on.
+/// Title: share of the work at the flywheel that the transmission passes on.
 fn box_title(car: &CarEnergy) -> String {
     match car.passed() {
         Some(share) => format!(

@@ -11,7 +11,7 @@ mod trace_difference;
 mod variogram;
 
 pub use bars::{CarLosses, CarParts, PhaseLosses, loss_by_component, loss_by_phase};
-pub use difference::{Difference, DifferenceTerm, difference_bars};
+pub use difference::{DifferenceTerm, EnergyDifference, difference_bars};
 pub use flow::{CarEnergy, energy_flow, transmission_flow};
 pub use overlay::{Overlay, OverlayPanel, overlay};
 pub use trace_difference::{TraceDifference, trace_difference};
@@ -21,14 +21,14 @@ use super::engine::Fill;
 use crate::number::grouped;
 use cvtcycle_output::Component;
 
-/// Upper edge of what is drawn, below title and subject, pixels.
+/// Upper edge of the drawing, below title and subject, pixels.
 const TOP: f64 = 60.0;
 /// Left edge of titles of figures with rows, pixels.
 const MARGIN: f64 = 14.0;
 /// Size of labels, pixels.
 const TEXT: f64 = 11.5;
 
-/// An energy given in kJ, as a label: MJ from 100 MJ on, with three digits at least where it is small.
+/// Label of an energy given in kJ: in MJ from 100 MJ on, with at least three digits where it is small.
 fn energy(kj: f64) -> String {
     match kj.abs() {
         size if size >= 1e5 => format!("{} MJ", grouped(kj / 1e3, 1)),
@@ -38,12 +38,12 @@ fn energy(kj: f64) -> String {
     }
 }
 
-/// The same over a distance, of an energy in kJ/km.
+/// Label of an energy over a distance, kJ/km.
 fn per_km(kj_km: f64) -> String {
     energy(kj_km) + "/km"
 }
 
-/// A share as a label in per cent; what rounds to zero without being zero is less than a tenth.
+/// Label of a share in per cent; a nonzero share that rounds to zero is given as less than a tenth.
 fn percent(part: f64, whole: f64) -> String {
     match 100.0 * part / whole {
         share if !share.is_finite() => String::new(),
@@ -53,22 +53,22 @@ fn percent(part: f64, whole: f64) -> String {
     }
 }
 
-/// Whose drive a figure is of, for the line below its title: "CVT; NEDC, ambient -10 degC".
-fn of_drive(subject: &str, conditions: &str) -> String {
+/// Car and conditions of a drive, for the line below a title: "CVT; NEDC, ambient -10 degC".
+fn drive_subtitle(subject: &str, conditions: &str) -> String {
     let words = [subject, conditions].into_iter();
     let known: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
     known.join("; ")
 }
 
-/// Finite numbers as they are, everything else as zero.
+/// Replaces numbers that are not finite by zero.
 fn finite(x: f64) -> f64 {
     if x.is_finite() { x } else { 0.0 }
 }
 
-/// Where energy goes.
+/// Uses of energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Term {
-    /// What has not yet left the way to the wheels.
+    /// Energy still on the way to the wheels.
     Trunk,
     /// Heat into the engine.
     EngineHeat,
@@ -108,7 +108,7 @@ impl Term {
     }
 }
 
-/// Terms of the power ledger with their names and what they are; for [`RunSummary::term_kj`](cvtcycle_output::summary::RunSummary::term_kj).
+/// Terms of the power ledger with name, title and kind; for [`RunSummary::term_kj`](cvtcycle_output::summary::RunSummary::term_kj).
 pub(crate) const TERMS: [(&str, &str, Term); 8] = [
     ("wheels", "rolling and air, net", Term::Wheels),
     ("brake", "brakes", Term::Brake),
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_have_the_digits_of_their_size() {
+    fn labels_have_digits_by_magnitude() {
         let kj = [
             27199.14,
             562.15,

@@ -1,4 +1,4 @@
-//! Where along the drive two runs differ: fuel that B has burnt more than A up to each moment, and other quantities of B less those of A.
+//! Differences of two runs along the drive: fuel that B has burnt more than A up to each moment, and other quantities of B minus those of A.
 
 use super::TOP;
 use super::overlay::{OverlayPanel, at};
@@ -18,16 +18,16 @@ pub struct TraceDifference {
     pub speed_kmh: Vec<Point>,
     /// Fuel flow of A and of B, g/s, with the end of each step and its length, s.
     pub fuel_g_s: [Vec<(f64, f64, f64)>; 2],
-    /// Other quantities, of which B less A is drawn.
+    /// Other quantities, drawn as B minus A.
     pub panels: Vec<OverlayPanel>,
 }
 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
 /// Heights of the panel of the fuel, of the others, and of the speed, pixels.
 const TALL: (f64, f64, f64) = (190.0, 100.0, 80.0);
-/// Room between panels, with that for a heading, pixels.
+/// Room between panels, including a heading, pixels.
 const GAP: f64 = 32.0;
-/// Most rows of the table.
+/// Maximum number of rows of the table.
 const ROWS: usize = 600;
 
 /// A panel: title of its axis, points, step of its cells.
@@ -49,14 +49,14 @@ fn summed(flow: &[(f64, f64, f64)]) -> Vec<Point> {
     flow.iter().map(step).collect()
 }
 
-/// B less A at the times of A.
+/// B minus A at the times of A.
 fn less(a: &[Point], b: &[Point]) -> Vec<Point> {
     a.iter().map(|(t, x)| (*t, at(b, *t) - x)).collect()
 }
 
-/// The fuel that B has burnt more up to each moment above the differences of the other quantities, with the vehicle speed for context.
-pub fn trace_difference(of: &TraceDifference) -> Picture {
-    let [a, b] = of.fuel_g_s.each_ref().map(|flow| summed(flow));
+/// Draws the excess fuel of B up to each moment above the differences of the other quantities, with the vehicle speed for context.
+pub fn trace_difference(data: &TraceDifference) -> Picture {
+    let [a, b] = data.fuel_g_s.each_ref().map(|flow| summed(flow));
     let fuel = Line {
         name: "Fuel of B less that of A, so far".to_owned(),
         unit: "g",
@@ -70,7 +70,7 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
         step: 0.1 * panel.digits(),
     };
     let lines: Vec<Line> = std::iter::once(fuel)
-        .chain(of.panels.iter().map(other))
+        .chain(data.panels.iter().map(other))
         .collect();
     let end = range(a.iter().map(|p| p.0)).map_or(1.0, |(_, end)| end);
     let time = Axis::exact("Time [s]", 0.0, end, 10);
@@ -99,23 +99,23 @@ pub fn trace_difference(of: &TraceDifference) -> Picture {
     }
     let y = Axis::round(
         "Speed [km/h]",
-        of.speed_kmh.iter().map(|p| p.1).chain([0.0]),
+        data.speed_kmh.iter().map(|p| p.1).chain([0.0]),
         3,
     );
     let rect = Rect::new(PLOT_LEFT, top, WIDE, TALL.2);
     let mut panel = Panel::new(rect, time, y)
         .over_table()
         .heading("Vehicle speed");
-    panel.series(of.speed_kmh.clone(), CONTEXT);
+    panel.series(data.speed_kmh.clone(), CONTEXT);
     panels.push(panel);
-    let subject = format!("A: {}; B: {}", of.names[0], of.names[1]);
+    let subject = format!("A: {}; B: {}", data.names[0], data.names[1]);
     Chart::new(title(&lines[0].points), subject, PLOT_LEFT)
         .lead("What B has more or less than A at each moment")
         .panels(panels)
-        .picture(table(&lines, &of.speed_kmh))
+        .picture(table(&lines, &data.speed_kmh))
 }
 
-/// What is more and what is less, as areas in the two signed colours.
+/// Draws positive and negative areas in the two signed colours.
 fn areas(panel: &mut Panel, points: &[Point]) {
     for more in [false, true] {
         let part = |y: f64| if more { y.max(0.0) } else { y.min(0.0) };
@@ -128,7 +128,7 @@ fn areas(panel: &mut Panel, points: &[Point]) {
     }
 }
 
-/// How much B burns more or less, and when half of that has come about.
+/// Title: excess fuel of B, and the time by which half of it has been burnt.
 fn title(fuel: &[Point]) -> String {
     let end = fuel.iter().rfind(|p| p.1.is_finite());
     let Some((_, total)) = end.filter(|p| p.1.abs() >= 0.005) else {

@@ -1,6 +1,6 @@
-//! Where the engine runs against road speed: time in cells, over the lines between which the transmission can or wants to run.
+//! Engine speed against road speed: time in cells, over the lines of the transmission's limits and targets.
 
-use super::{TOP, of_drive};
+use super::{TOP, drive_subtitle};
 use crate::charts::engine::{
     Axis, Block, Chart, Cut, End, Entry, Label, PLOT_LEFT, Panel, Point, Rect, STROKES, Shape,
     Stroke, Style, WIDTH, at, cell, label_ends_on_cells, stroke, text_width,
@@ -18,11 +18,11 @@ pub struct Variogram<'a> {
     pub conditions: String,
     /// Vehicle speed of each step, km/h.
     pub speed_kmh: &'a [f64],
-    /// Engine speed of each step, rpm; zero or not finite where the engine is off, and then left out.
+    /// Engine speed of each step, rpm; steps are omitted if it is zero or not finite, with the engine off.
     pub engine_rpm: &'a [f64],
     /// Length of each step, s.
     pub seconds: &'a [f64],
-    /// Lines, up to seven that stay apart: lowest and highest ratio and the controller's targets, or the gears of a manual box.
+    /// Up to seven distinguishable lines: lowest and highest ratio and the controller's targets, or the gears of a manual box.
     pub lines: Vec<GuideLine>,
 }
 
@@ -33,21 +33,21 @@ pub struct GuideLine {
     pub name: String,
     /// Vehicle speed, km/h, and engine speed, rpm, by rising vehicle speed.
     pub points: Vec<(f64, f64)>,
-    /// Whether the vertical axis takes the line in as far as the car drove; otherwise it may run out of the picture.
+    /// True if the vertical axis includes the line over the driven range; otherwise it may leave the picture.
     pub whole: bool,
 }
 
 const WIDE: f64 = WIDTH - 20.0 - PLOT_LEFT;
-/// Room right of the panel for names of lines that go on there, at most, and above it for names of those that leave there, pixels.
+/// Maximum room right of the panel for names of lines that leave there, and above it, pixels.
 const NAMES: f64 = 190.0;
 const ABOVE: f64 = 16.0;
-/// Size of a name, and least distance of two names next to each other, pixels.
+/// Size of a name, and minimum distance of two names next to each other, pixels.
 const NAME: f64 = 11.0;
 const APART: f64 = 8.0;
 const TALL: f64 = 400.0;
-/// Most cells along each axis.
+/// Maximum number of cells along each axis.
 const CELLS: (usize, usize) = (80, 40);
-/// Width of the light seam along a line, which parts it from dark cells, pixels.
+/// Width of the light seam that separates a line from dark cells, pixels.
 const SEAM: f64 = 1.6;
 
 impl Variogram<'_> {
@@ -60,14 +60,14 @@ impl Variogram<'_> {
 }
 
 /// Engine speed against vehicle speed: time spent in each cell, with lines over it.
-pub fn variogram(of: &Variogram) -> Picture {
-    let (x, y) = axes(of);
+pub fn variogram(data: &Variogram) -> Picture {
+    let (x, y) = axes(data);
     let cells = Density::size_for(&x, &y, CELLS);
-    // Held speeds lie on round numbers, which are the middles of cells.
+    // Constant speeds lie on round numbers; these become the middles of cells.
     let half = 0.5 * cells.1;
-    let steps = of.steps().map(|(v, n, dt)| (v, n + half, dt));
+    let steps = data.steps().map(|(v, n, dt)| (v, n + half, dt));
     let density = Density::new(cells, steps).lowered(half);
-    let (seen, outside) = seen(of, &x, &y);
+    let (seen, outside) = seen(data, &x, &y);
     let columns = ["speed from", "to", "engine speed from", "to", "time"];
     let units = ["km/h", "km/h", "rpm", "rpm", "s"];
     let columns: Vec<_> = columns.into_iter().zip(units).collect();
@@ -89,13 +89,13 @@ pub fn variogram(of: &Variogram) -> Picture {
     let wide = WIDE - room.fold(0.0, f64::max);
     let rect = Rect::new(PLOT_LEFT, TOP + ABOVE, wide, TALL);
     let mut panel = Panel::new(rect, x, y).no_data(density.total_s() <= 0.0);
-    panel.items = density.items(|of| {
+    panel.items = density.items(|data| {
         let step = |(low, high): (f64, f64)| if high - low < 1.0 { 0.01 } else { 1.0 };
         let ends = |x: (f64, f64)| [x.0, x.1].map(|end| cell(end, step(x)));
-        let ends = ends(of.x).into_iter().chain(ends(of.y));
-        table.push(ends.chain([cell(of.seconds, 0.01)]))
+        let ends = ends(data.x).into_iter().chain(ends(data.y));
+        table.push(ends.chain([cell(data.seconds, 0.01)]))
     });
-    // All seams below all lines; the first of the list ends up on top.
+    // All seams lie below all lines; the first of the list is on top.
     for (_, points, line) in &seen {
         let seam = Style::line(stroke("#ffffff", line.width + 2.0 * SEAM, &[]));
         let seam = seam.stroke_opacity(0.75).class("seam");
@@ -106,13 +106,13 @@ pub fn variogram(of: &Variogram) -> Picture {
     }
     name_above(&mut panel, above);
     label_ends_on_cells(&mut panel, at_right);
-    // A legend for names that were cut.
-    let is_cut = |of: &&SeenLine| text_width(of.0, NAME) > NAMES - 10.0;
+    // A legend repeats names that were cut.
+    let is_cut = |data: &&SeenLine| text_width(data.0, NAME) > NAMES - 10.0;
     let entries = seen.iter().filter(is_cut);
     let entries = entries.map(|(name, _, line)| Entry::line(*line, *name));
-    let drive = of_drive(&of.subject, &of.conditions);
+    let drive = drive_subtitle(&data.subject, &data.conditions);
     let subtitle = format!("Time in each cell in s; {drive}");
-    Chart::new(title(of, &density), &subtitle, PLOT_LEFT)
+    Chart::new(title(data, &density), &subtitle, PLOT_LEFT)
         .lead("Cells are coloured by the time spent in them")
         .panels([panel])
         .legend((PLOT_LEFT, WIDE), entries)
@@ -123,7 +123,7 @@ pub fn variogram(of: &Variogram) -> Picture {
         .picture(table)
 }
 
-/// Writes names of lines above the places where they leave the panel, each as far as there is room before the next one.
+/// Writes names of lines above the places where they leave the panel, each cut to the room before the next one.
 fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
     ends.sort_by(|a, b| a.at.0.total_cmp(&b.at.0));
     let lefts: Vec<f64> = ends.iter().map(|end| panel.px(end.at.0) - 4.0).collect();
@@ -150,8 +150,8 @@ fn name_above(panel: &mut Panel, mut ends: Vec<End>) {
     }
 }
 
-/// The row of cells with most of the time.
-fn title(of: &Variogram, density: &Density) -> String {
+/// Title: the row of cells with the largest share of time.
+fn title(data: &Variogram, density: &Density) -> String {
     let mut rows: Vec<((f64, f64), f64)> = Vec::new();
     for cell in density.cells() {
         match rows
@@ -162,11 +162,11 @@ fn title(of: &Variogram, density: &Density) -> String {
             None => rows.push((cell.y, cell.seconds)),
         }
     }
-    let most = rows.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
-    match most.filter(|_| density.total_s() > 0.0) {
+    let longest = rows.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    match longest.filter(|_| density.total_s() > 0.0) {
         Some(((from, to), seconds)) => format!(
             "The engine of {} runs at {} to {} rpm for {} % of its time",
-            of.subject,
+            data.subject,
             grouped(from, 0),
             grouped(to, 0),
             grouped(100.0 * seconds / density.total_s(), 0)
@@ -175,14 +175,14 @@ fn title(of: &Variogram, density: &Density) -> String {
     }
 }
 
-/// Axes over the steps in which the engine ran, and over those lines that are to be seen as a whole as far as the car drove.
-fn axes(of: &Variogram) -> (Axis, Axis) {
+/// Axes over the steps with the engine running, and over the lines to be included as far as the car drove.
+fn axes(data: &Variogram) -> (Axis, Axis) {
     let finite = |p: &(f64, f64, f64)| p.0.is_finite() && p.1.is_finite() && p.2 > 0.0;
-    let steps = of.steps().filter(finite).map(|p| (p.0, p.1));
+    let steps = data.steps().filter(finite).map(|p| (p.0, p.1));
     let (mut speeds, mut revs): (Vec<f64>, Vec<f64>) = steps.unzip();
     let alone = speeds.is_empty();
     let points = || {
-        let lines = of.lines.iter().filter(|line| line.whole || alone);
+        let lines = data.lines.iter().filter(|line| line.whole || alone);
         lines.flat_map(|line| &line.points).copied()
     };
     if alone {
@@ -194,13 +194,13 @@ fn axes(of: &Variogram) -> (Axis, Axis) {
     (x, y)
 }
 
-/// A line with its name, the points that can be seen, and its look.
+/// A line with its name, visible points and look.
 type SeenLine<'a> = (&'a str, Vec<Point>, Stroke);
 
-/// Lines of which a part lies within the axes, and a remark on the others.
-fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String) {
+/// Lines that are partly within the axes, and a remark on the others.
+fn seen<'a>(data: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String) {
     let (mut seen, mut others) = (Vec::new(), Vec::new());
-    for (line, stroke) in of.lines.iter().zip(STROKES.into_iter().cycle()) {
+    for (line, stroke) in data.lines.iter().zip(STROKES.into_iter().cycle()) {
         let points = within((x, y), &line.points);
         if points.is_empty() {
             others.push(line.name.as_str());
@@ -219,7 +219,7 @@ fn seen<'a>(of: &'a Variogram, x: &Axis, y: &Axis) -> (Vec<SeenLine<'a>>, String
     )
 }
 
-/// The parts of a line within the axes, with gaps between them.
+/// Parts of a line within the axes, with gaps between them.
 fn within(axes: (&Axis, &Axis), points: &[Point]) -> Vec<Point> {
     let mut out: Vec<Point> = Vec::new();
     for pair in points.windows(2) {
@@ -236,13 +236,13 @@ fn within(axes: (&Axis, &Axis), points: &[Point]) -> Vec<Point> {
     out
 }
 
-/// The part of a piece of line that lies within the axes.
+/// Clips a segment to the axes.
 fn clipped((x, y): (&Axis, &Axis), a: Point, b: Point) -> Option<(Point, Point)> {
     if ![a.0, a.1, b.0, b.1].iter().all(|value| value.is_finite()) {
         return None;
     }
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    // Liang and Barsky: each side of the panel shortens the piece.
+    // Liang and Barsky: each side of the panel shortens the segment.
     for (start, change, low, high) in [
         (a.0, b.0 - a.0, x.low, x.high),
         (a.1, b.1 - a.1, y.low, y.high),
@@ -264,7 +264,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_is_cut_at_the_frame() {
+    fn line_is_clipped_to_the_frame() {
         let axes = (
             &Axis::exact("", 0.0, 10.0, 5),
             &Axis::exact("", 0.0, 10.0, 5),

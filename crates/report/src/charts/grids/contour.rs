@@ -1,5 +1,4 @@
-//! Lines of equal value on a grid, by marching squares, and their labels: apart from each other, within the panel, and clear of other
-//! things where possible.
+//! Contour lines on a grid, by marching squares, and their labels: separate, within the panel, and clear of other items where possible.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +11,7 @@ pub(crate) struct Grid<'a> {
     pub values: &'a [Vec<f64>],
 }
 
-/// An edge of the grid: its lower node, and whether it runs along y.
+/// An edge of the grid: its lower node, and true if it runs along y.
 type Edge = (usize, usize, bool);
 
 impl Grid<'_> {
@@ -24,8 +23,7 @@ impl Grid<'_> {
             .unwrap_or(f64::NAN)
     }
 
-    /// The connected lines on which the values are `level`. Cells with a corner that is not finite
-    /// have none.
+    /// Connected lines on which the values are `level`. Cells with a corner that is not finite have none.
     pub fn lines(&self, level: f64) -> Vec<Vec<Point>> {
         let mut next: BTreeMap<Edge, Vec<Edge>> = BTreeMap::new();
         for i in 1..self.x.len() {
@@ -37,7 +35,7 @@ impl Grid<'_> {
             }
         }
         let mut lines = Vec::new();
-        // Open lines from one of their ends first; what then is left are rings.
+        // Open lines are traced first, from one of their ends; the remaining ones are rings.
         for open in [true, false] {
             loop {
                 let start = next
@@ -56,7 +54,7 @@ impl Grid<'_> {
         lines
     }
 
-    /// The pieces of line in one cell, each from edge to edge.
+    /// Pieces of line in one cell, each from edge to edge.
     fn cell(&self, i: usize, j: usize, level: f64) -> Vec<(Edge, Edge)> {
         let corners = [
             self.at(i, j),
@@ -79,7 +77,7 @@ impl Grid<'_> {
         match crossed[..] {
             [a, b] => vec![(edges[a], edges[b])],
             [_, _, _, _] => {
-                // A saddle: the middle decides which corners belong together.
+                // In a saddle, the middle decides the pairing of the corners.
                 let middle = corners.iter().sum::<f64>() / 4.0 >= level;
                 if middle == above[0] {
                     vec![(edges[0], edges[1]), (edges[2], edges[3])]
@@ -91,7 +89,7 @@ impl Grid<'_> {
         }
     }
 
-    /// Where the level lies on an edge.
+    /// Intersection of the level with an edge.
     fn crossing(&self, (i, j, along_y): Edge, level: f64) -> Point {
         let (i1, j1) = if along_y { (i, j + 1) } else { (i + 1, j) };
         let (a, b) = (self.at(i, j), self.at(i1, j1));
@@ -103,7 +101,7 @@ impl Grid<'_> {
     }
 }
 
-/// Follows a line to its other end, and takes its pieces out of `next`.
+/// Follows a line to its other end, and removes its pieces from `next`.
 fn walk(next: &mut BTreeMap<Edge, Vec<Edge>>, start: Edge) -> Vec<Edge> {
     let mut edges = vec![start];
     let mut here = start;
@@ -119,14 +117,14 @@ fn walk(next: &mut BTreeMap<Edge, Vec<Edge>>, start: Edge) -> Vec<Edge> {
     edges
 }
 
-/// Places along a line at which its label may lie, per cent of its length: from the middle outwards.
+/// Candidate positions of a label along its line, per cent of its length: from the middle outwards.
 const PLACES: [usize; 15] = [50, 60, 40, 70, 30, 80, 20, 90, 10, 65, 35, 75, 25, 5, 95];
 
-/// The labels of a panel in the making.
+/// Labels of a panel under construction.
 pub(super) struct LineLabels {
     rect: Rect,
     size: f64,
-    /// What labels are to keep clear of.
+    /// Areas that labels must avoid.
     taken: Vec<Rect>,
     placed: Vec<(Point, String)>,
 }
@@ -188,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cone_gives_one_ring_at_its_radius() {
+    fn cone_has_one_ring_contour() {
         let axis: Vec<f64> = (0..41).map(|i| -2.0 + 0.1 * f64::from(i)).collect();
         let values: Vec<Vec<f64>> = axis
             .iter()
@@ -208,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slope_gives_one_open_line_and_gaps_where_values_miss() {
+    fn slope_has_one_open_contour_with_gaps_at_nan() {
         let axis: Vec<f64> = (0..11).map(f64::from).collect();
         let mut values: Vec<Vec<f64>> = axis.iter().map(|_| axis.clone()).collect();
         let grid = Grid {
@@ -237,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_saddle_is_cut_without_crossing() {
+    fn saddle_contours_do_not_cross() {
         let values = vec![vec![0.0, 1.0], vec![1.0, 0.0]];
         let grid = Grid {
             x: &[0.0, 1.0],

@@ -1,10 +1,10 @@
-//! Time spent in the cells of a grid, coloured by its seconds: little is light, much is dark.
+//! Time spent in the cells of a grid, coloured by duration: short is light, long is dark.
 
 use std::collections::BTreeMap;
 
 use crate::charts::engine::{Axis, Item, Key, Shape, Style, at, number, ramp, round_step};
 
-/// Time spans beyond this ratio are coloured by their logarithm.
+/// Ratio of durations beyond which colours are logarithmic.
 const LINEAR_UP_TO: f64 = 100.0;
 const SLICES: usize = 64;
 
@@ -19,7 +19,7 @@ pub(crate) struct DensityCell {
     pub seconds: f64,
 }
 
-/// Both ends of a cell, so much lower.
+/// Shifts both ends of a cell down.
 fn lowered((from, to): (f64, f64), by: f64) -> (f64, f64) {
     (from - by, to - by)
 }
@@ -28,15 +28,15 @@ fn lowered((from, to): (f64, f64), by: f64) -> (f64, f64) {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Density {
     size: (f64, f64),
-    /// How far below the multiples of its size a cell lies on the vertical axis.
+    /// Offset of cells below the multiples of their size on the vertical axis.
     lower: f64,
-    /// Least and largest amount that the colours span; those of the own cells where it is none.
+    /// Minimum and maximum amount that the colours span; by default of the own cells.
     span: Option<(f64, f64)>,
     seconds: BTreeMap<(i64, i64), f64>,
 }
 
 impl Density {
-    /// Adds up points of x, y and seconds in cells of that size. Points without finite place or positive time are ignored.
+    /// Sums seconds of points x, y in cells of that size. Points with a position that is not finite, or without positive time, are ignored.
     pub(crate) fn new(size: (f64, f64), points: impl Iterator<Item = (f64, f64, f64)>) -> Self {
         let mut seconds: BTreeMap<(i64, i64), f64> = BTreeMap::new();
         for (x, y, dt) in points {
@@ -54,26 +54,26 @@ impl Density {
         }
     }
 
-    /// Round sizes with at most `max` cells along each axis.
+    /// Round cell sizes with at most `max` cells along each axis.
     pub(crate) fn size_for(x: &Axis, y: &Axis, max: (usize, usize)) -> (f64, f64) {
         let size = |axis: &Axis, max: usize| round_step((axis.high - axis.low) / max.max(1) as f64);
         (size(x, max.0), size(y, max.1))
     }
 
-    /// Least and largest amount in a cell.
+    /// Minimum and maximum amount in a cell.
     pub(crate) fn ends(&self) -> (f64, f64) {
-        let most = self.seconds.values().copied().fold(0.0, f64::max);
-        let least = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
-        (least, most)
+        let max_s = self.seconds.values().copied().fold(0.0, f64::max);
+        let min_s = self.seconds.values().copied().fold(f64::INFINITY, f64::min);
+        (min_s, max_s)
     }
 
-    /// The same with colours over the cells of all, so that figures side by side can be compared.
+    /// Sets a colour span common to several figures, which makes them comparable.
     pub(crate) fn on_scale(mut self, span: (f64, f64)) -> Self {
         self.span = Some(span);
         self
     }
 
-    /// What a cell holds, by a point in it; zero for an empty one.
+    /// Amount in the cell that contains a point; zero for an empty one.
     pub(crate) fn within(&self, (x, y): (f64, f64)) -> f64 {
         let key = (
             (x / self.size.0).floor() as i64,
@@ -87,13 +87,13 @@ impl Density {
         self.seconds.values().sum()
     }
 
-    /// The same cells, so much lower on the vertical axis.
+    /// Shifts the cells down on the vertical axis.
     pub(crate) fn lowered(mut self, by: f64) -> Self {
         self.lower = by;
         self
     }
 
-    /// The cells in which time was spent, by x and then y.
+    /// Non-empty cells, by x and then y.
     pub(crate) fn cells(&self) -> impl Iterator<Item = DensityCell> {
         let edges = |k: i64, size: f64| (k as f64 * size, (k + 1) as f64 * size);
         let cells = self.seconds.iter();
@@ -104,7 +104,7 @@ impl Density {
         })
     }
 
-    /// The cells as shapes; `row` gives the row of the table that has a cell's numbers.
+    /// Shapes of the cells; `row` gives the table row of a cell's numbers.
     pub(crate) fn items(&self, mut row: impl FnMut(&DensityCell) -> usize) -> Vec<Item> {
         let scale = self.scale();
         let item = |cell: DensityCell| {
@@ -119,7 +119,7 @@ impl Density {
         self.cells().map(item).collect()
     }
 
-    /// The key of the colours; `what` with its unit is what cells hold.
+    /// Key of the colours; `what` names the amount in cells with its unit.
     pub(crate) fn key(&self, what: &str) -> Key {
         let scale = self.scale();
         let colour = |k: usize| scale.colour(scale.seconds((k as f64 + 0.5) / SLICES as f64));
@@ -136,14 +136,14 @@ impl Density {
         }
     }
 
-    /// How seconds become a colour.
+    /// Colour scale of the durations.
     fn scale(&self) -> TimeScale {
         let (min, max) = self.span.unwrap_or_else(|| self.ends());
         TimeScale::new(min, max)
     }
 }
 
-/// How seconds become a colour: in proportion, or by the logarithm over more than two decades.
+/// Maps seconds to a colour: linearly, or logarithmically over more than two decades.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TimeScale {
     low: f64,
@@ -152,7 +152,7 @@ struct TimeScale {
 }
 
 impl TimeScale {
-    /// A scale for times from `least` to `max`, s; several panels share one made of the extremes of all.
+    /// A scale for times from `least` to `max`, s; several panels share one over all of them.
     pub(crate) fn new(least: f64, most: f64) -> Self {
         let some = most.is_finite() && most > 0.0;
         let high = if some { most } else { 1.0 };
@@ -161,7 +161,7 @@ impl TimeScale {
         TimeScale { low, high, log }
     }
 
-    /// Where a time lies on the scale, 0 to 1.
+    /// Relative position of a time on the scale, 0 to 1.
     fn share(&self, seconds: f64) -> f64 {
         let share = if self.log {
             (seconds / self.low).ln() / (self.high / self.low).ln()
@@ -171,7 +171,7 @@ impl TimeScale {
         share.clamp(0.0, 1.0)
     }
 
-    /// The time at a place on the scale, s.
+    /// Time at a relative position on the scale, s.
     fn seconds(&self, share: f64) -> f64 {
         if self.log {
             self.low * (self.high / self.low).powf(share)
@@ -182,11 +182,11 @@ impl TimeScale {
 
     /// The colour of a time.
     fn colour(&self, seconds: f64) -> String {
-        // The ends of the ramp are left out: as yellow as paper, as dark as lines.
+        // The ends of the ramp are omitted: too close to paper and lines.
         ramp(0.97 - 0.9 * self.share(seconds))
     }
 
-    /// Times that are marked on the key: its ends and round numbers between.
+    /// Marked times of the key: its ends and round numbers between.
     fn marks(&self) -> Vec<f64> {
         let step = round_step(self.high / 5.0);
         let round: Vec<f64> = if self.log {
@@ -206,7 +206,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_time_is_in_the_cells_and_borders_belong_to_one_cell() {
+    fn cells_hold_all_time_and_own_their_borders() {
         let points = [
             (0.0, 0.0, 1.0),
             (9.99, 4.9, 0.5),
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn more_time_is_darker_and_marks_lie_on_the_key() {
+    fn longer_time_is_darker_and_marks_lie_on_key() {
         let light = |colour: &str| {
             let part =
                 |at: usize| f64::from(u8::from_str_radix(&colour[at..at + 2], 16).unwrap_or(0));
@@ -268,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn no_time_at_all_still_has_a_key() {
+    fn empty_density_has_a_key() {
         let key = Density::new((1.0, 1.0), std::iter::empty()).key("Time spent in a cell [s]");
         assert!(
             key.labels

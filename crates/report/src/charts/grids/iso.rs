@@ -9,12 +9,12 @@ use cvtcycle_model::drive::FuelMap;
 /// kg/J in g/kWh.
 const G_KWH: f64 = 3.6e9;
 
-/// A line of equal consumption; it lies on a wider one in the colour of the paper.
+/// Contour of equal consumption; drawn on a wider one in the colour of the paper.
 pub(crate) const ISO: Stroke = stroke("#555555", 1.0, &[]);
-/// Under a line, so that it is seen on every colour.
+/// Halo that keeps a line visible on every colour.
 const HALO: Stroke = stroke("#ffffff", 2.6, &[]);
 
-/// Adds the lines of equal consumption below full load. Returns their labels: apart from each other and clear of `cells` where possible.
+/// Adds the contours of equal consumption below full load. Returns their labels, separate and clear of `cells` where possible.
 pub(crate) fn iso_lines(
     panel: &mut Panel,
     map: &FuelMap,
@@ -61,7 +61,7 @@ fn outline(full_load: &[Point]) -> Vec<Point> {
     outline
 }
 
-/// Whether a point lies below the full-load line.
+/// Tests that a point lies below the full-load line.
 fn below(full_load: &[Point], (x, y): Point) -> bool {
     full_load.windows(2).any(|pair| {
         let ((x0, y0), (x1, y1)) = (pair[0], pair[1]);
@@ -69,8 +69,8 @@ fn below(full_load: &[Point], (x, y): Point) -> bool {
     })
 }
 
-/// The map with the holes above full load filled from below: lines then reach the full-load line instead of ending in steps one cell
-/// before it. What is drawn above it is cut off.
+/// Fills the map above full load from below, so that contours reach the full-load line instead of ending in steps one cell before it. The excess
+/// is clipped.
 fn extended(map: &FuelMap) -> Vec<Vec<f64>> {
     let mut values = map.bsfc_kg_j.clone();
     for column in &mut values {
@@ -88,7 +88,7 @@ fn extended(map: &FuelMap) -> Vec<Vec<f64>> {
     values
 }
 
-/// Round levels that lie closer where the map is flat: around the best point.
+/// Round levels, denser where the map is flat: around the best point.
 fn levels(map: &FuelMap) -> Vec<f64> {
     let all = map.bsfc_kg_j.iter().flatten().map(|value| value * G_KWH);
     let Some((best, worst)) = range(all.filter(|x| *x > 0.0)) else {

@@ -10,9 +10,9 @@ use crate::charts::picture::PictureTable;
 /// A picture of one quantity over two axes.
 #[derive(Clone, Debug)]
 pub(crate) struct MapFigure<'a> {
-    /// What it shows.
+    /// Title.
     pub title: &'a str,
-    /// Of what.
+    /// Subject.
     pub subject: &'a str,
     /// Title of the colour bar, with the unit.
     pub value: &'a str,
@@ -20,36 +20,36 @@ pub(crate) struct MapFigure<'a> {
     pub x: (&'a str, &'a [f64]),
     /// Title and values of the vertical axis, ascending.
     pub y: (&'a str, &'a [f64]),
-    /// Panels: what is held constant in each, and the values by x, then by y.
+    /// Panels: constant quantities of each, and the values by x, then by y.
     pub panels: Vec<(String, Vec<Vec<f64>>)>,
 }
 
-/// Heights of panels by the number of their columns, and room between columns besides that of the axis, pixels.
+/// Heights of panels by the number of their columns, and room between columns in addition to the axis, pixels.
 const TALL: [f64; 3] = [420.0, 220.0, 180.0];
 const GAP: f64 = 12.0;
 const TOP: f64 = 58.0;
 /// Room above a panel for its title, pixels.
 const ABOVE: f64 = 24.0;
-/// Height of the colour bar of several panels, pixels: the labels of its bands stay apart.
+/// Height of the colour bar of several panels, pixels: keeps the labels of its bands separate.
 const BAR: f64 = 202.0;
 /// Room right of the panels for the colour bar, pixels.
 const STRIP: f64 = 110.0;
 /// Height of the stripes that make up the filled bands, pixels.
 const STRIPE: f64 = 1.5;
-/// Distance of the places along a stripe at which the values are looked up, pixels.
+/// Sampling distance along a stripe, pixels.
 const LOOK: f64 = 1.0;
-/// Most bands of the colour bar.
+/// Maximum number of bands of the colour bar.
 const BANDS: f64 = 12.0;
 const LINE: Stroke = stroke(INK, 0.8, &[]);
 
-/// The bands in common to all panels.
+/// Bands common to all panels.
 struct Scale {
     step: f64,
     first: f64,
     count: usize,
 }
 
-/// Step between lines of values from `low` to `high`: few wide bands where a quantity hardly changes.
+/// Step between contours from `low` to `high`: few wide bands where a quantity hardly changes.
 fn step(low: f64, high: f64, count: f64) -> f64 {
     round_step(((high - low) / count).max(0.02 * high.abs()).max(1e-9))
 }
@@ -72,19 +72,19 @@ impl Scale {
     }
 
     fn style(&self, band: usize) -> Style {
-        // Much is dark, as in cells of time and fuel.
+        // Large values are dark, as in cells of time and fuel.
         Style::colour(&ramp(1.0 - (band as f64 + 0.5) / self.count as f64))
     }
 }
 
-/// Draws the picture. Where values are not finite the panel stays white.
-pub(crate) fn map_figure(of: &MapFigure) -> String {
-    let several = of.panels.len() > 1;
-    let (columns, size, pitch) = panels_left_of(STRIP, of.panels.len());
-    let titled = several || of.panels.iter().any(|(title, _)| !title.is_empty());
+/// Draws the picture. The panel stays white where values are not finite.
+pub(crate) fn map_figure(figure: &MapFigure) -> String {
+    let several = figure.panels.len() > 1;
+    let (columns, size, pitch) = panels_left_of(STRIP, figure.panels.len());
+    let titled = several || figure.panels.iter().any(|(title, _)| !title.is_empty());
     let top = TOP + if titled { ABOVE } else { 0.0 };
     let place = grid((PLOT_LEFT, top), size, pitch, columns);
-    let found = range(of.panels.iter().flat_map(|p| &p.1).flatten().copied());
+    let found = range(figure.panels.iter().flat_map(|p| &p.1).flatten().copied());
     let (low, high) = found.unwrap_or((0.0, 1.0));
     let scale = Scale::new(low, high);
     let axis = |(title, values): (&str, &[f64]), ticks| {
@@ -92,28 +92,28 @@ pub(crate) fn map_figure(of: &MapFigure) -> String {
     };
     let ticks = if several { (4, 5) } else { (8, 8) };
     let panel = |(k, (title, values)): (usize, &(String, Vec<Vec<f64>>))| {
-        let (x, y) = (axis(of.x, ticks.0), axis(of.y, ticks.1));
+        let (x, y) = (axis(figure.x, ticks.0), axis(figure.y, ticks.1));
         let mut panel = Panel::new(place(k), x, y)
             .heading(title)
             .no_data(found.is_none());
-        panel.items = bands(&panel, of, values, &scale);
-        add_lines(&mut panel, of, values, &scale);
+        panel.items = bands(&panel, figure, values, &scale);
+        add_lines(&mut panel, figure, values, &scale);
         panel
     };
     let edge = place(columns - 1).right;
     let tall = if several { BAR } else { size.1 - 18.0 };
     let bar = Rect::new(edge + 20.0, top + 18.0, 20.0, tall);
     let span = number(low, (high - low) / 100.0) + " to " + &number(high, (high - low) / 100.0);
-    Chart::new(of.title, of.subject, PLOT_LEFT)
-        .lead(format!("{} from {span}", of.value))
+    Chart::new(figure.title, figure.subject, PLOT_LEFT)
+        .lead(format!("{} from {span}", figure.value))
         .width(edge + STRIP)
-        .panels(of.panels.iter().enumerate().map(panel))
-        .panels([colour_bar(&scale, of.value, bar)])
+        .panels(figure.panels.iter().enumerate().map(panel))
+        .panels([colour_bar(&scale, figure.value, bar)])
         .picture(PictureTable::default())
         .svg
 }
 
-/// Columns, size of a panel and distance of two of so many panels that fill the width of a picture but for a strip on the right.
+/// Number of columns, panel size and pitch that fill the width of a picture, except a strip on the right.
 pub(crate) fn panels_left_of(strip: f64, panels: usize) -> (usize, Point, Point) {
     let columns = match panels {
         0 | 1 => 1,
@@ -127,19 +127,19 @@ pub(crate) fn panels_left_of(strip: f64, panels: usize) -> (usize, Point, Point)
     (columns, size, pitch)
 }
 
-/// Value between the grid's points, bilinear; NaN next to a point without value.
-fn interpolated(of: &MapFigure, values: &[Vec<f64>], x: f64, y: f64) -> f64 {
+/// Interpolates bilinearly between the grid's points; NaN next to a missing one.
+fn interpolated(figure: &MapFigure, values: &[Vec<f64>], x: f64, y: f64) -> f64 {
     let cell = |axis: &[f64], v: f64| {
         let i = axis.partition_point(|a| *a <= v).clamp(1, axis.len() - 1) - 1;
         (i, ((v - axis[i]) / (axis[i + 1] - axis[i])).clamp(0.0, 1.0))
     };
-    let ((i, s), (j, t)) = (cell(of.x.1, x), cell(of.y.1, y));
+    let ((i, s), (j, t)) = (cell(figure.x.1, x), cell(figure.y.1, y));
     let side = |column: &[f64]| column[j] * (1.0 - t) + column[j + 1] * t;
     side(&values[i]) * (1.0 - s) + side(&values[i + 1]) * s
 }
 
-/// Stripes in the colours of the bands, each as long as its band goes on.
-fn bands(panel: &Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> Vec<Item> {
+/// Stripes in the colours of the bands, each as long as its band.
+fn bands(panel: &Panel, figure: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> Vec<Item> {
     let rect = panel.rect;
     let value = |axis: &Axis, share: f64| axis.low + share * (axis.high - axis.low);
     let count = (rect.width() / LOOK).round() as usize;
@@ -150,7 +150,8 @@ fn bands(panel: &Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> V
         let top = rect.top + j as f64 * STRIPE;
         let low = (top + STRIPE).min(rect.bottom);
         let middle = y_at(0.5 * (top + low));
-        let band_at = |i: usize| scale.band(interpolated(of, values, x_at(i as f64 + 0.5), middle));
+        let band_at =
+            |i: usize| scale.band(interpolated(figure, values, x_at(i as f64 + 0.5), middle));
         let mut from = 0;
         while from < count {
             let band = band_at(from);
@@ -166,19 +167,19 @@ fn bands(panel: &Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) -> V
     }
     let item = |(band, stripes): (usize, Vec<Vec<Point>>)| Item {
         shape: Shape::Area(stripes),
-        // The renderer must not blend the edges of neighbouring stripes with the ground.
+        // Anti-aliasing would show seams between neighbouring stripes.
         style: scale.style(band).crisp().class("band"),
     };
     stripes.into_iter().enumerate().map(item).collect()
 }
 
-/// Lines between the bands; in a panel whose values span few bands, finer ones.
-fn add_lines(panel: &mut Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Scale) {
+/// Adds contours between the bands; finer ones in a panel whose values span few bands.
+fn add_lines(panel: &mut Panel, figure: &MapFigure, values: &[Vec<f64>], scale: &Scale) {
     let Some((low, high)) = range(values.iter().flatten().copied()) else {
         return;
     };
     let step = step(low, high, 6.0).min(scale.step);
-    let (x, y) = (of.x.1, of.y.1);
+    let (x, y) = (figure.x.1, figure.y.1);
     let grid = Grid { x, y, values };
     let mut labels = LineLabels::new(panel.rect, 10.0, Vec::new());
     for k in (low / step).ceil() as i64..=(high / step).floor() as i64 {
@@ -199,7 +200,7 @@ fn add_lines(panel: &mut Panel, of: &MapFigure, values: &[Vec<f64>], scale: &Sca
     }
 }
 
-/// A line with a point every few pixels: one between grid points far apart has none where a label could lie.
+/// Adds points every few pixels, so that a line between distant grid points has places for a label.
 fn dense(line: &[Point]) -> Vec<Point> {
     let mut out = Vec::new();
     for pair in line.windows(2) {

@@ -1,6 +1,6 @@
 //! Line charts: one or more panels in rows of two with one legend; lines or stacked areas.
 //!
-//! Everything that is a line over a quantity and not over time is drawn here: ambient temperatures, tests of rigs, figures of the book.
+//! Draws every line over a quantity other than time: ambient temperatures, tests of rigs, figures of the book.
 
 mod printed;
 mod table;
@@ -23,22 +23,22 @@ const HEADING: f64 = 22.0;
 const GAP: (f64, f64) = (14.0, 8.0);
 /// Heights of a lone panel, and of one of several, pixels.
 const TALL: [f64; 2] = [340.0, 210.0];
-/// Ticks of the axes at most: of a lone panel, and of one of several.
+/// Maximum number of ticks of the axes of a lone panel, and of one of several.
 const TICKS: [(usize, usize); 2] = [(9, 8), (6, 7)];
 
-/// Size of names at the ends of lines, pixels; of more lines than these a legend has the names.
+/// Size of names at the ends of lines, pixels; beyond this number of lines a legend has the names.
 const NAME: f64 = 11.0;
-const MOST_DIRECT: usize = 8;
+const MAX_DIRECT: usize = 8;
 
 /// A series' points in the units of its axes.
 pub type Points = Vec<(f64, f64)>;
 
-/// How a series looks: the same number looks the same in all panels of a chart.
+/// Appearance of a series: one index looks the same in all panels of a chart.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Look {
-    /// Number of the colour and dash pattern; the eighth begins again with the first.
+    /// Index of the colour and dash pattern; repeats after seven.
     pub index: usize,
-    /// A thin dotted line of that colour, for a reference.
+    /// True for a thin dotted line of that colour, for a reference.
     pub dotted: bool,
 }
 
@@ -47,13 +47,13 @@ pub struct Look {
 pub struct LinePanel {
     /// Name of the panel; may be empty.
     pub heading: String,
-    /// Title of its horizontal axis as `Quantity [unit]`; that of the chart if empty.
+    /// Title of the horizontal axis as `Quantity [unit]`; that of the chart if empty.
     pub x_title: &'static str,
     /// Title of the vertical axis as `Quantity [unit]`.
     pub y_title: &'static str,
-    /// Values that the vertical axis includes in addition to those of the series; a line marks zero where it is one of them.
+    /// Values that the vertical axis includes in addition to those of the series; a line marks zero if it is one of them.
     pub with_y: Vec<f64>,
-    /// Whether series are stacked areas, from the bottom; else lines.
+    /// True for stacked areas, from the bottom; false for lines.
     pub stacked: bool,
     /// Look and points of each series, with a gap where a value is not finite; stacked ones share their horizontal values.
     pub series: Vec<(Look, Points)>,
@@ -64,67 +64,67 @@ pub struct LinePanel {
 /// A chart of lines.
 #[derive(Clone, Debug, Default)]
 pub struct LineChart {
-    /// What it shows.
+    /// Title.
     pub title: String,
-    /// Of what, and under which conditions.
+    /// Subject and conditions.
     pub subject: String,
-    /// First sentence of the picture in words; axes and numbers follow by themselves. May be empty.
+    /// First sentence of the picture in words; axes and numbers are appended. May be empty.
     pub description: String,
     /// Title of the horizontal axes as `Quantity [unit]`.
     pub x_title: &'static str,
     /// Panels, in rows of two.
     pub panels: Vec<LinePanel>,
-    /// Whether every panel has a horizontal range of its own, else all have one.
+    /// True if every panel has its own horizontal range, false for a common one.
     pub own_x: bool,
-    /// Whether all panels of one quantity have one vertical range.
+    /// True if all panels of one quantity share a vertical range.
     pub same_y: bool,
-    /// Whether vertical axes are only as wide as the data, else they end on round numbers.
+    /// True for vertical axes as wide as the data, false for ends on round numbers.
     pub tight: bool,
-    /// Whether points are marked: where there are few of them, and what lies between is only a line.
+    /// True to mark points: for few points whose connecting line is only a guide.
     pub marked: bool,
     /// Heading of the legend; may be empty.
     pub legend: String,
     /// Look and name of each series.
     pub names: Vec<(Look, String)>,
-    /// What the colours of the lines mean.
+    /// Meaning of the colours of the lines.
     pub palette: Palette,
     /// Remarks below the legend.
     pub notes: Vec<String>,
-    /// The component that each stacked series is the loss of, by the number of its look; none where they are something else.
+    /// Component whose loss each stacked series is, by the index of its look; empty for other quantities.
     pub parts: Vec<Component>,
 }
 
 /// Draws a chart of lines.
-pub fn line_chart(of: &LineChart) -> Picture {
-    let (table, columns) = table::table(of);
-    let direct = of.is_direct();
-    let mut rects = layout(of);
+pub fn line_chart(data: &LineChart) -> Picture {
+    let (table, columns) = table::table(data);
+    let direct = data.is_direct();
+    let mut rects = layout(data);
     if let Some(rect) = rects.first_mut().filter(|_| direct) {
-        let widths = of.names.iter().map(|(_, name)| text_width(name, NAME));
+        let widths = data.names.iter().map(|(_, name)| text_width(name, NAME));
         rect.right -= widths.fold(0.0, f64::max) + 12.0;
     }
-    let panels = of.panels.iter().zip(&rects).zip(columns);
-    let panels = panels.map(|((panel, rect), columns)| draw(of, panel, *rect, columns));
-    let stacked = of.panels.iter().any(|panel| panel.stacked);
+    let panels = data.panels.iter().zip(&rects).zip(columns);
+    let panels = panels.map(|((panel, rect), columns)| draw(data, panel, *rect, columns));
+    let stacked = data.panels.iter().any(|panel| panel.stacked);
     let entry = |(look, name): &(Look, String)| match stacked {
-        true => Entry::fill(of.fill(look.index), name),
-        false => Entry::line(of.stroke(*look), name),
+        true => Entry::fill(data.fill(look.index), name),
+        false => Entry::line(data.stroke(*look), name),
     };
-    let named = of.names.iter().filter(|_| !direct);
+    let named = data.names.iter().filter(|_| !direct);
     let mut entries: Vec<Entry> = named.map(entry).collect();
     if stacked {
         entries.reverse(); // listed as they lie
     }
     entries.extend(printed_entries(
-        of.panels.iter().flat_map(|panel| &panel.printed),
+        data.panels.iter().flat_map(|panel| &panel.printed),
     ));
-    let chart = Chart::new(&of.title, &of.subject, PLOT_LEFT)
-        .lead(&of.description)
+    let chart = Chart::new(&data.title, &data.subject, PLOT_LEFT)
+        .lead(&data.description)
         .panels(panels);
     let heading = if direct {
         String::new()
     } else {
-        of.legend.clone()
+        data.legend.clone()
     };
     let side = Side {
         heading,
@@ -135,16 +135,16 @@ pub fn line_chart(of: &LineChart) -> Picture {
         Ok(side) => chart.side(side),
         Err((heading, entries)) => chart.foot(Block::legend((PLOT_LEFT, WIDE), &heading, entries)),
     };
-    let chart = match of.notes.is_empty() {
+    let chart = match data.notes.is_empty() {
         true => chart,
-        false => chart.notes((PLOT_LEFT, WIDE), of.notes.clone()),
+        false => chart.notes((PLOT_LEFT, WIDE), data.notes.clone()),
     };
     chart.picture(table)
 }
 
 /// Rectangles of the panels.
-fn layout(of: &LineChart) -> Vec<Rect> {
-    let several = of.panels.len() > 1;
+fn layout(data: &LineChart) -> Vec<Rect> {
+    let several = data.panels.len() > 1;
     let columns = 1 + usize::from(several);
     let wide = if several {
         (WIDE - LEFT - GAP.0) / 2.0
@@ -152,14 +152,14 @@ fn layout(of: &LineChart) -> Vec<Rect> {
         WIDE
     };
     let tall = TALL[usize::from(several)];
-    let headed = of.panels.iter().any(|panel| !panel.heading.is_empty());
+    let headed = data.panels.iter().any(|panel| !panel.heading.is_empty());
     let heading = if headed { HEADING } else { 0.0 };
     let pitch = (wide + LEFT + GAP.0, tall + heading + BELOW + GAP.1);
     let place = grid((PLOT_LEFT, TOP + heading), (wide, tall), pitch, columns);
-    (0..of.panels.len()).map(place).collect()
+    (0..data.panels.len()).map(place).collect()
 }
 
-/// The legend in the place that an odd number of panels leaves free, or its heading and entries if it does not fit in there.
+/// Legend in the place that an odd number of panels leaves free, or its heading and entries if it does not fit.
 fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, (String, Vec<Entry>)> {
     if let [first, .., last] = rects
         && rects.len() % 2 == 1
@@ -174,16 +174,16 @@ fn free_place(rects: &[Rect], mut side: Side) -> Result<Side, (String, Vec<Entry
 }
 
 impl LineChart {
-    /// Whether the lines have their names at their ends: of a lone panel with more lines than one, and not too many.
+    /// True if lines are named at their ends: in a lone panel with several lines, up to a limit.
     fn is_direct(&self) -> bool {
-        let lone = self.panels.len() == 1 && (2..=MOST_DIRECT).contains(&self.names.len());
+        let lone = self.panels.len() == 1 && (2..=MAX_DIRECT).contains(&self.names.len());
         lone && self
             .panels
             .iter()
             .all(|panel| !panel.stacked && panel.series.len() == self.names.len())
     }
 
-    /// The line of a look.
+    /// Line style of a look.
     fn stroke(&self, look: Look) -> Stroke {
         let count = self.names.iter().map(|(look, _)| look.index + 1).max();
         let full = self.palette.stroke(look.index, count.unwrap_or(1));
@@ -191,7 +191,7 @@ impl LineChart {
         if look.dotted { dotted } else { full }
     }
 
-    /// What a stacked series is filled with: a component with its own colours.
+    /// Fill of a stacked series: components have their own colours.
     fn fill(&self, index: usize) -> Fill {
         match self.parts.get(index) {
             Some(part) => Fill::component(*part),
@@ -199,7 +199,7 @@ impl LineChart {
         }
     }
 
-    /// The name of a line at its right end.
+    /// Name of a line at its right end.
     fn end(&self, (look, points): &(Look, Points)) -> Option<End> {
         let (_, name) = self.names.iter().find(|(other, _)| other == look)?;
         let finite = points
@@ -221,7 +221,7 @@ impl LineChart {
         }
     }
 
-    /// Whether all panels share one quantity as horizontal axis.
+    /// True if all panels share one quantity as horizontal axis.
     fn one_x(&self) -> bool {
         let mut titles = self.panels.iter().map(|panel| self.x_title(panel));
         let first = titles.next();
@@ -230,38 +230,38 @@ impl LineChart {
 }
 
 impl Look {
-    /// The solid line of that number.
+    /// Solid line of that index.
     pub fn solid(index: usize) -> Self {
         let dotted = false;
         Look { index, dotted }
     }
 }
 
-fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> Panel {
-    let ticks = TICKS[usize::from(of.panels.len() > 1)];
+fn draw(data: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> Panel {
+    let ticks = TICKS[usize::from(data.panels.len() > 1)];
     let own = std::slice::from_ref(panel);
-    let x_of = if of.own_x { own } else { &of.panels };
+    let x_of = if data.own_x { own } else { &data.panels };
     let alike = |other: &&LinePanel| other.y_title == panel.y_title;
-    let y_of: Vec<LinePanel> = match of.same_y {
-        true => of.panels.iter().filter(alike).cloned().collect(),
+    let y_of: Vec<LinePanel> = match data.same_y {
+        true => data.panels.iter().filter(alike).cloned().collect(),
         false => own.to_vec(),
     };
-    let x = x_axis(of.x_title(panel), x_of, of.marked, ticks.0);
-    let y = y_axis(panel.y_title, &y_of, of.tight, ticks.1);
+    let x = x_axis(data.x_title(panel), x_of, data.marked, ticks.0);
+    let y = y_axis(panel.y_title, &y_of, data.tight, ticks.1);
     let mut drawn = Panel::new(rect, x, y).heading(&panel.heading);
-    (drawn.over_table, drawn.columns) = (of.one_x(), columns);
+    (drawn.over_table, drawn.columns) = (data.one_x(), columns);
     let y = &drawn.y;
     if y.low < 0.0 && y.high > 0.0 && panel.with_y.iter().any(|y| y.abs() <= 0.0) {
         drawn.level(0.0, CONTEXT);
     }
     if panel.stacked {
-        stack_layers(&mut drawn, panel.series.clone(), |k| of.fill(k));
+        stack_layers(&mut drawn, panel.series.clone(), |k| data.fill(k));
     } else {
-        // The first of the list ends up on top.
+        // The first of the list is on top.
         for (look, points) in panel.series.iter().rev() {
-            let stroke = of.stroke(*look);
+            let stroke = data.stroke(*look);
             drawn.series(points.clone(), stroke);
-            for (x, y) in points.iter().filter(|_| of.marked) {
+            for (x, y) in points.iter().filter(|_| data.marked) {
                 let style = Style::colour(stroke.colour).class("mark");
                 drawn.symbol(Symbol::CIRCLE, at(*x, *y), 2.6, style);
             }
@@ -270,8 +270,8 @@ fn draw(of: &LineChart, panel: &LinePanel, rect: Rect, columns: Vec<usize>) -> P
     for mark in &panel.printed {
         mark.draw(&mut drawn, panel.stacked);
     }
-    if of.is_direct() {
-        let ends = panel.series.iter().filter_map(|series| of.end(series));
+    if data.is_direct() {
+        let ends = panel.series.iter().filter_map(|series| data.end(series));
         label_ends(&mut drawn, ends.collect());
     }
     let finite = |(x, y): &(f64, f64)| x.is_finite() && y.is_finite();
@@ -283,7 +283,7 @@ fn x_axis(title: &str, panels: &[LinePanel], marked: bool, ticks: usize) -> Axis
     let series = panels.iter().flat_map(|panel| &panel.series);
     let points = series.flat_map(|(_, points)| points);
     let (low, high) = range(points.map(|p| p.0)).unwrap_or((0.0, 1.0));
-    // A first step of a second ends at one: the axis begins where the drive did.
+    // A step of a second ends at one: the axis begins at the start of the drive.
     let from_zero = title.starts_with("Time") && low > 0.0 && low < 0.02 * high;
     let low = if from_zero { 0.0 } else { low };
     let room = match high - low {
@@ -298,7 +298,7 @@ fn x_axis(title: &str, panels: &[LinePanel], marked: bool, ticks: usize) -> Axis
 fn y_axis(title: &str, panels: &[LinePanel], tight: bool, ticks: usize) -> Axis {
     let all = || panels.iter().flat_map(heights);
     match range(all()) {
-        // So narrow that lines keep off the frame.
+        // The margin keeps lines off the frame.
         Some((low, high)) if tight && high - low > 1e-9 * high.abs() => {
             let room = 0.04 * (high - low);
             Axis::exact(title, low - room, high + room, ticks)
@@ -307,7 +307,7 @@ fn y_axis(title: &str, panels: &[LinePanel], tight: bool, ticks: usize) -> Axis 
     }
 }
 
-/// Every height that has to fit into a panel.
+/// All heights that must fit into a panel.
 fn heights(panel: &LinePanel) -> Vec<f64> {
     let mut all = panel.with_y.clone();
     all.extend(panel.printed.iter().flat_map(|mark| mark.y));
@@ -324,7 +324,7 @@ fn heights(panel: &LinePanel) -> Vec<f64> {
     all
 }
 
-/// Adds the series of a panel as areas upon each other; a value that is not finite counts as nothing.
+/// Adds the series of a panel as stacked areas; values that are not finite count as zero.
 pub(crate) fn stack_layers(
     drawn: &mut Panel,
     series: Vec<(Look, Points)>,

@@ -1,8 +1,8 @@
-//! Published numbers in a panel: a band where a range was printed over a span, a line where one number was, a diamond at a point.
+//! Published numbers in a panel: a band for a range over a span, a line for one number over a span, a diamond at a point.
 
 use super::super::engine::{Entry, Fill, PUBLISHED, Panel, Style, Symbol, at, stroke};
 
-/// Colour of a band in the legend: that of the published on white.
+/// Colour of a band in the legend: the colour of published numbers on white.
 const BAND: &str = "#f6eae8";
 
 /// A published number or range over a place or a span of the horizontal axis, in the units of the axes.
@@ -15,7 +15,7 @@ pub struct PrintedMark {
 }
 
 impl PrintedMark {
-    /// Over areas the band has edges alone, lest it hides them.
+    /// Draws the mark. Over areas a band has edges only, so that it does not hide them.
     pub(crate) fn draw(&self, panel: &mut Panel, over_areas: bool) {
         let ([from, to], [low, high]) = (self.x, self.y);
         if self.is_band() && !over_areas {
@@ -38,13 +38,13 @@ impl PrintedMark {
         }
     }
 
-    /// A range over a span has no point.
+    /// True for a range over a span.
     fn is_band(&self) -> bool {
         self.x[1] > self.x[0] && self.y[1] > self.y[0]
     }
 }
 
-/// What the legend says of them.
+/// Entries of the legend.
 pub(crate) fn entries<'m>(marks: impl Iterator<Item = &'m PrintedMark> + Clone) -> Vec<Entry> {
     let mut list = Vec::new();
     if marks.clone().any(PrintedMark::is_band) {

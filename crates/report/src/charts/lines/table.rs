@@ -1,18 +1,17 @@
-//! The numbers behind a chart: a column for each line, a row for each value of the horizontal axis.
+//! Numbers of a chart: a column for each line, a row for each value of the horizontal axis.
 
 use super::super::engine::{cell, range, round_step};
 use super::super::picture::PictureTable;
 use super::{LineChart, LinePanel, Look};
 use cvtcycle_output::table::distinct;
 
-/// Rows at most, and cells: a table of many columns has fewer rows.
+/// Maximum number of rows, and of cells: a table of many columns has fewer rows.
 const MAX_ROWS: usize = 600;
 const MAX_CELLS: usize = 8000;
 
-/// A chart's table, and for each panel the columns that it draws.
+/// Builds a chart's table, and lists for each panel the columns that it draws.
 ///
-/// Panels over one quantity share its column, the first one. Where a chart has panels over several quantities, each quantity has a column
-/// and rows of its own.
+/// Panels over one quantity share its column, the first one. In a chart over several quantities, each has its own column and rows.
 pub(super) fn table(chart: &LineChart) -> (PictureTable, Vec<Vec<usize>>) {
     let quantities = distinct(chart.panels.iter().map(|panel| chart.x_title(panel)));
     let mut table = PictureTable::with_columns(quantities.iter().map(|title| split(title)));
@@ -39,14 +38,14 @@ pub(super) fn table(chart: &LineChart) -> (PictureTable, Vec<Vec<usize>>) {
     (table, columns)
 }
 
-/// Adds the rows of panels over one quantity, each with its first column; one in so many as are returned.
+/// Adds the rows of panels over one quantity, each with its first column; returns the thinning factor.
 fn rows(table: &mut PictureTable, place: usize, panels: &[(&LinePanel, usize)]) -> usize {
     let series = || {
         panels
             .iter()
             .flat_map(|(panel, first)| panel.series.iter().zip(*first..))
     };
-    // Adding zero turns a negative zero into a plain one, its equal.
+    // Adding zero turns a negative zero into a plain one, which compares equal.
     let mut xs: Vec<f64> = series()
         .flat_map(|((_, points), _)| points.iter().map(|p| p.0 + 0.0))
         .filter(|x| x.is_finite())
@@ -67,13 +66,13 @@ fn rows(table: &mut PictureTable, place: usize, panels: &[(&LinePanel, usize)]) 
             }
         }
     }
-    let most = (MAX_CELLS / width.max(1)).clamp(1, MAX_ROWS);
-    let every = cells.len().div_ceil(most).max(1);
+    let max_rows = (MAX_CELLS / width.max(1)).clamp(1, MAX_ROWS);
+    let every = cells.len().div_ceil(max_rows).max(1);
     table.rows.extend(cells.into_iter().step_by(every));
     every
 }
 
-/// "Torque loss [Nm]" as name and unit; `-` is none.
+/// Splits "Torque loss [Nm]" into name and unit; a unit of `-` becomes empty.
 fn split(title: &'static str) -> (String, &'static str) {
     let inside = title.strip_suffix(']');
     match inside.and_then(|rest| rest.rsplit_once(" [")) {
@@ -100,7 +99,7 @@ fn column(chart: &LineChart, panel: &LinePanel, look: Look) -> (String, &'static
     (parts.join(": "), unit)
 }
 
-/// About a five-hundredth of what values span: what the eye could distinguish in the drawing.
+/// About a five-hundredth of the span of the values: the visible resolution of the drawing.
 fn step_of(values: impl Iterator<Item = f64>) -> f64 {
     let Some((low, high)) = range(values) else {
         return 1.0;
@@ -113,7 +112,7 @@ fn step_of(values: impl Iterator<Item = f64>) -> f64 {
     }
 }
 
-/// A step with as few decimals as write all values exactly, or else that of [`step_of`].
+/// Step with the fewest decimals that write all values exactly, or that of [`step_of`].
 fn exact_step(values: &[f64]) -> f64 {
     let exact = |step: &f64| {
         values

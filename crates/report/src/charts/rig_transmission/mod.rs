@@ -1,21 +1,21 @@
-//! Pictures of the transmission rig's tests, after the figures of thesis chapter 5; titles are sentences with the numbers of the picture,
-//! and what the thesis prints is drawn next to it.
+//! Pictures of the transmission rig's tests, after the figures of thesis chapter 5, with the numbers of the thesis next to the computed ones;
+//! titles are sentences with numbers of the picture.
 
 mod says;
 
 use super::lines::{LineChart, LinePanel, Look, Palette, Points, PrintedMark, line_chart};
 use super::printed::{RigNumber, rig};
-use cvtcycle_model::bench::BenchPoint;
-use cvtcycle_model::bench::transmission::{
+use cvtcycle_model::keys;
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::rig::BenchPoint;
+use cvtcycle_model::rig::transmission::{
     Branch, Conditions, Loop, Moment, Piece, Stage, SteadyPoint, StripDown, TwoBoxes,
 };
-use cvtcycle_model::fluid::ZERO_DEGC_K;
-use cvtcycle_model::keys;
 use cvtcycle_output::Component;
 use cvtcycle_output::rig::{given, oil_degc, rpm};
 
 /// File name and SVG text.
-pub type Picture = (String, String);
+pub type NamedSvg = (String, String);
 
 const SPEED: &str = "Input speed [rpm]";
 const LOSS: &str = "Torque loss [Nm]";
@@ -29,13 +29,13 @@ type Lines = Vec<(Look, Points)>;
 pub struct Subject<'a> {
     /// Name of the vehicle.
     pub vehicle: &'a str,
-    /// What the rig is set to.
+    /// Settings of the rig.
     pub conditions: &'a Conditions,
 }
 
 impl Subject<'_> {
     /// A chart of one ratio against speed, unless it has another axis, with its file name.
-    fn picture(&self, kind: &str, ratio: f64, more: &str, mut chart: LineChart) -> Picture {
+    fn picture(&self, kind: &str, ratio: f64, more: &str, mut chart: LineChart) -> NamedSvg {
         let name = self.conditions.ratio_name(ratio);
         let named = name != format!("{ratio}");
         let words = if named {
@@ -60,9 +60,9 @@ impl Subject<'_> {
         }
     }
 
-    /// What the thesis prints of a quantity at a ratio.
-    fn printed(&self, ratio: f64, of: RigNumber) -> Vec<PrintedMark> {
-        rig(self.vehicle, &self.conditions.ratio_name(ratio), of)
+    /// Numbers of the thesis for a quantity at a ratio.
+    fn printed(&self, ratio: f64, quantity: RigNumber) -> Vec<PrintedMark> {
+        rig(self.vehicle, &self.conditions.ratio_name(ratio), quantity)
     }
 }
 
@@ -74,9 +74,9 @@ struct Sheet<'a, T> {
 
 impl<T> Sheet<'_, T> {
     /// Distinct values in the order of the rows.
-    fn distinct(&self, of: impl Fn(&BenchPoint) -> f64) -> Vec<f64> {
+    fn distinct(&self, quantity: impl Fn(&BenchPoint) -> f64) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::new();
-        for x in self.rows.iter().map(|row| of((self.set)(row))) {
+        for x in self.rows.iter().map(|row| quantity((self.set)(row))) {
             if !values.iter().any(|y| same(x, *y)) {
                 values.push(x);
             }
@@ -97,7 +97,7 @@ impl<T> Sheet<'_, T> {
         names(self.temperatures().iter().map(|t| format!("{t} \u{b0}C")))
     }
 
-    /// A value against speed, over the rows of one ratio and temperature, and of those that `keep` chooses.
+    /// A value against speed, over the rows of one ratio and temperature that `keep` selects.
     fn line(
         &self,
         (ratio, degc): (f64, f64),
@@ -124,7 +124,7 @@ impl<T> Sheet<'_, T> {
         temperatures.map(panel).collect()
     }
 
-    /// The first and the last temperature, between which the others lie.
+    /// First and last temperature, which enclose the others.
     fn ends(&self) -> Vec<f64> {
         let all = self.temperatures();
         let last = all.last().copied().filter(|_| all.len() > 1);
@@ -179,7 +179,7 @@ fn chart(
 }
 
 /// Torque loss and secondary pressure against speed, a line for each temperature (Figs 5-1 to 5-4).
-pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
+pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
@@ -222,8 +222,8 @@ pub fn steady(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
     sheet.ratios().into_iter().flat_map(of_ratio).collect()
 }
 
-/// What a load adds to the torque loss, against speed: a line for each torque, a panel for each temperature.
-pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
+/// Torque loss added by a load, against speed: a line for each torque, a panel for each temperature.
+pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
@@ -270,8 +270,8 @@ pub fn loaded(rows: &[SteadyPoint], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss against bulk oil temperature, warming and cooling (Figs 5-5 and 5-6).
-pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
-    // The looks of the second and the third line.
+pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<NamedSvg> {
+    // Looks of the second and the third line.
     let branches = [
         (Look::solid(1), Branch::Warming),
         (Look::solid(2), Branch::Cooling),
@@ -318,7 +318,7 @@ pub fn transients(loops: &[Loop], subject: &Subject) -> Vec<Picture> {
 }
 
 /// Torque loss of both boxes against speed, a panel for each temperature (Figs 5-7 to 5-14).
-pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
+pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.first.set,
@@ -347,7 +347,7 @@ pub fn second_box(rows: &[TwoBoxes], subject: &Subject) -> Vec<Picture> {
 }
 
 /// The strip-down: stages (Figs 5-17 to 5-27), contributions (5-33 to 5-40), components (5-41 to 5-45).
-pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
+pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<NamedSvg> {
     let sheet = Sheet {
         rows,
         set: |r| &r.set,
@@ -355,7 +355,7 @@ pub fn strip_down(rows: &[StripDown], subject: &Subject) -> Vec<Picture> {
     let corrected = ", corrected for pressure";
     let of_ratio = |ratio: f64| {
         let place = subject.place(ratio);
-        let printed = |of: RigNumber| subject.printed(ratio, of);
+        let printed = |quantity: RigNumber| subject.printed(ratio, quantity);
         let stages = stages(&sheet, ratio, &place);
         let contributions = contributions(&sheet, ratio, &place, &printed(RigNumber::Sum));
         let components = components(&sheet, ratio, &place, &printed);
@@ -388,7 +388,10 @@ const PIECES: [(Piece, &str, Component); 5] = [
 /// Torque loss and pressure of each stage: a line for each, between the coldest and the warmest oil.
 fn stages(sheet: &Sheet<StripDown>, ratio: f64, place: &str) -> LineChart {
     let line = |degc: f64, y: &dyn Fn(&StripDown, Stage) -> f64, keep: &dyn Fn(Stage) -> bool| {
-        let stages = STAGES.into_iter().enumerate().filter(|(_, of)| keep(of.0));
+        let stages = STAGES
+            .into_iter()
+            .enumerate()
+            .filter(|(_, named)| keep(named.0));
         let line = |(k, (stage, _)): (usize, (Stage, &str))| {
             (
                 Look::solid(k),
@@ -455,18 +458,18 @@ fn contributions(
     chart
 }
 
-/// Each component from the strip-down, and dotted its own loss in the complete box.
+/// Each component from the strip-down, with its own loss in the complete box as a dotted line.
 fn components(
     sheet: &Sheet<StripDown>,
     ratio: f64,
     place: &str,
     printed: &dyn Fn(RigNumber) -> Vec<PrintedMark>,
 ) -> LineChart {
-    fn dotted<T>((mut look, of): (Look, T)) -> (Look, T) {
+    fn dotted<T>((mut look, rest): (Look, T)) -> (Look, T) {
         look.dotted = true;
-        (look, of)
+        (look, rest)
     }
-    let of = |(piece, words, _): (Piece, &str, Component)| {
+    let piece_panel = |(piece, words, _): (Piece, &str, Component)| {
         let mut series = sheet.by_temperature(ratio, |r| r.piece(piece).corrected_nm);
         let own = sheet.by_temperature(ratio, |r| r.piece(piece).true_nm);
         series.extend(own.into_iter().map(dotted));
@@ -478,7 +481,7 @@ fn components(
     let mut names = sheet.temperature_names();
     let own = names.clone().into_iter().map(dotted);
     names.extend(own.map(|(look, name)| (look, name + ", true")));
-    let panels = PIECES.into_iter().map(of).collect();
+    let panels = PIECES.into_iter().map(piece_panel).collect();
     let more = |r: &StripDown| {
         let piece = r.piece(Piece::FinalDrive);
         piece.corrected_nm - piece.true_nm

@@ -1,33 +1,33 @@
-//! Titles of the rig's figures: sentences with numbers of the points that are drawn.
+//! Titles of the rig's figures: sentences with numbers of the drawn points.
 
 use super::PrintedMark;
 use crate::charts::engine;
 use crate::number::grouped;
-use cvtcycle_model::bench::BenchPoint;
+use cvtcycle_model::rig::BenchPoint;
 use cvtcycle_output::number::signed;
 use cvtcycle_output::rig::rpm;
 
-/// The speed at which a single number is given, if it was tested, rpm: that of the transients of thesis 5.3.2.
+/// Preferred speed of single numbers, rpm: that of the transients of thesis 5.3.2.
 const SHOWN_RPM: f64 = 2500.0;
 
-/// How far a point is from that speed, rpm.
+/// Distance of a point from that speed, rpm.
 pub(super) fn from_shown(set: &BenchPoint) -> f64 {
     (rpm(set) - SHOWN_RPM).abs()
 }
 
-/// The least and the largest of finite values.
+/// Minimum and maximum of the finite values.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     engine::range(values)
 }
 
-/// The mean of finite values; NaN of none.
+/// Mean of the finite values; NaN if there are none.
 pub(super) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let finite = values.filter(|x| x.is_finite());
     let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), x| (sum + x, count + 1.0));
     sum / count
 }
 
-/// How far values at one place lie apart at most.
+/// Maximum distance of values at one place.
 pub(super) fn apart(points: impl Iterator<Item = (f64, f64)>) -> f64 {
     let mut points: Vec<(f64, f64)> = points.filter(|p| p.1.is_finite()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -68,13 +68,13 @@ pub(super) fn pressure(range: Option<(f64, f64)>, apart: f64, place: &str) -> St
     )
 }
 
-pub(super) fn load(added: Option<(f64, f64)>, most_nm: f64, place: &str) -> String {
+pub(super) fn load(added: Option<(f64, f64)>, max_nm: f64, place: &str) -> String {
     let Some((low, high)) = added else {
         return "One torque alone was tested".to_owned();
     };
     let [low, high] = [low, high].map(|x| signed(x, 2));
-    let most = cvtcycle_output::number::plain(most_nm);
-    format!("{most} Nm at the output change the loss by {low} to {high} Nm {place}")
+    let max = cvtcycle_output::number::plain(max_nm);
+    format!("{max} Nm at the output change the loss by {low} to {high} Nm {place}")
 }
 
 pub(super) fn transient(widest: Option<(f64, f64)>, place: &str) -> String {
@@ -97,7 +97,7 @@ pub(super) fn second_box(pressure: f64, gap_nm: f64, place: &str) -> String {
     )
 }
 
-/// `left`: speed, temperature and what each stage still loses.
+/// `left`: speed, temperature and the remaining loss of each stage.
 pub(super) fn stages(left: Option<(f64, f64, [f64; 5])>, place: &str) -> String {
     let Some((rpm, degc, losses)) = left else {
         return NOTHING.to_owned();
@@ -109,7 +109,7 @@ pub(super) fn stages(left: Option<(f64, f64, [f64; 5])>, place: &str) -> String 
     )
 }
 
-/// `sums` of each piece over the points that are drawn.
+/// `sums` of each piece over the drawn points.
 pub(super) fn contributions(sums: &[(&str, f64)], place: &str) -> String {
     let all: f64 = sums.iter().map(|(_, nm)| nm).sum();
     let mut order = sums.to_vec();

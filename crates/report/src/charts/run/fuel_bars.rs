@@ -7,24 +7,24 @@ use crate::charts::engine::{
 };
 use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{list_of, phase};
+use cvtcycle_analysis::words::{more_or_less, than};
 use cvtcycle_output::table::distinct;
-use cvtcycle_study::words::{more_or_less, than};
 
 const TOP: f64 = 58.0;
 const TALL: f64 = 340.0;
-/// Widths of the plot: room for names, and no more than fits on a page.
+/// Minimum and maximum width of the plot: room for names, and the width of a page.
 const WIDTHS: (f64, f64) = (660.0, 786.0);
 const LABEL: f64 = 11.0;
-/// Bars thinner than this have their values in the table alone, pixels.
+/// Width below which bars have their values in the table only, pixels.
 const TURNED: f64 = 15.0;
-/// Width of a group's share that stays empty.
+/// Empty share of a group's width.
 const GAP: f64 = 0.28;
 
 /// Fuel in L/100 km by phase group and in total, one bar per vehicle.
 pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
     let groups = groups(runs);
     let bars = (groups.len() * runs.len()).max(1) as f64;
-    // Wide enough for the values over the bars, as long as the page is.
+    // Wide enough for the values over the bars, up to the width of the page.
     let plot = (bars * 40.0 / (1.0 - GAP)).clamp(WIDTHS.0, WIDTHS.1);
     let x = Axis::bare(0.0, groups.len().max(1) as f64);
     let rect = Rect::new(PLOT_LEFT, TOP, plot, TALL);
@@ -71,14 +71,14 @@ fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> Pictur
     table
 }
 
-/// The group that is the headline: weighted where the cycle is, else the whole cycle.
+/// Headline group: weighted where the cycle is, else the whole cycle.
 fn headline(groups: &[String]) -> &str {
     let mut names = ["weighted", "total"].into_iter();
     let there = |name: &&str| groups.iter().any(|group| group == name);
     names.find(there).unwrap_or("total")
 }
 
-/// What the first car uses, and how much more or less than the others.
+/// Title: fuel of the first car, and its difference to the others.
 fn title(runs: &[PlotRun]) -> String {
     let name = headline(&groups(runs)).to_owned();
     let Some((first, own)) = runs
@@ -105,10 +105,10 @@ fn title(runs: &[PlotRun]) -> String {
     format!("{} uses {own:.2} L/100 km{weighted}{rest}", first.name)
 }
 
-/// Other cars that the title names.
+/// Number of other cars named in the title.
 const NAMED: usize = 2;
 
-/// From zero, with room for the values over the highest bar.
+/// Axis from zero, with room for the values over the highest bar.
 fn axis(runs: &[PlotRun]) -> Axis {
     let groups = runs.iter().flat_map(|run| &run.group_fuel);
     let values = groups.map(|(_, fuel)| *fuel);
@@ -123,12 +123,12 @@ fn bar(panel: &mut Panel, (from, to): (f64, f64), value: f64, style: Style) {
     if text_width(&text, LABEL) < wide {
         panel.label(Label::new(top.shift(0.0, -4.0), text).middle());
     } else if wide >= TURNED {
-        // Turned where the bars are thinner than their values are wide.
+        // Turned if the bars are thinner than their values are wide.
         panel.label(Label::new(top.shift(3.5, -4.0), text).turned());
     }
 }
 
-/// Finite and not negative, or there is no bar.
+/// Finite and non-negative fuel; `None` draws no bar.
 fn value_of(run: &PlotRun, group: &str) -> Option<f64> {
     let (_, fuel) = run.group_fuel.iter().find(|(name, _)| name == group)?;
     (fuel.is_finite() && *fuel >= 0.0).then_some(*fuel)

@@ -12,7 +12,7 @@ use cvtcycle_model::transmission::component::LossGroup;
 use cvtcycle_output::table::distinct;
 use cvtcycle_output::{Component, History};
 
-/// Most bins in a plot: more cannot be distinguished, and the file stays small.
+/// Maximum number of bins in a plot: more are indistinguishable, and would enlarge the file.
 const BINS: usize = 300;
 /// Heights of a lone panel, and of one of several, pixels.
 const TALL: [f64; 2] = [340.0, 165.0];
@@ -23,7 +23,7 @@ pub type Means = [f64; Component::COUNT];
 /// Loss power averaged over stretches of a trace.
 #[derive(Clone, Debug, Default)]
 pub struct LossBins {
-    /// Where the bins begin and end, s: one more than there are bins.
+    /// Edges of the bins, s: one more than there are bins.
     pub edges_s: Vec<f64>,
     /// Time covered by the rows of each bin, s.
     pub seconds: Vec<f64>,
@@ -41,8 +41,8 @@ impl LossBins {
 
 /// Averages the losses over at most `bins` stretches of about the same length.
 ///
-/// Steps are never divided, and means are weighted by time: the energy of every component stays the
-/// same. Losses that are not finite count as nothing.
+/// Steps are never divided, and means are weighted by time, which preserves the energy of every component. Losses that are not finite count as
+/// zero.
 pub fn bin_losses(history: &History, bins: usize) -> LossBins {
     let mut out = LossBins::default();
     let (time, steps) = (history.time_s(), history.dt_s());
@@ -61,7 +61,7 @@ pub fn bin_losses(history: &History, bins: usize) -> LossBins {
             let loss = watts.get(i).copied().unwrap_or(0.0);
             *sum += if loss.is_finite() { loss * dt } else { 0.0 };
         }
-        // Ends are multiples of the length, so that errors do not add up to a bin too many.
+        // Edges are multiples of the length, so that errors do not accumulate to an extra bin.
         let full = elapsed >= length * (out.seconds.len() + 1) as f64 * (1.0 - 1e-12);
         if bin > 0.0 && (full || i + 1 == time.len()) {
             out.edges_s.push(*end);
@@ -106,8 +106,8 @@ impl<'a> Binned<'a> {
         self.energy_j(&self.run.history.components())
     }
 
-    /// The group that loses most, and its energy.
-    fn most(&self) -> Option<(LossGroup, f64)> {
+    /// Group with the largest loss, and its energy.
+    fn largest_group(&self) -> Option<(LossGroup, f64)> {
         let groups = self.groups.iter();
         let energies = groups.map(|(group, parts)| (*group, self.energy_j(parts)));
         energies.max_by(|a, b| a.1.total_cmp(&b.1))
@@ -174,7 +174,7 @@ pub fn losses(runs: &[PlotRun]) -> Picture {
         );
         Entry::fill(Fill::plain(group_line(group)), name)
     };
-    // Listed from the top, as they lie in the stack.
+    // Listed from the top, as in the stack.
     let entries: Vec<Entry> = groups.iter().rev().map(|group| entry(*group)).collect();
     let lead = cars.iter().map(in_words).collect::<Vec<_>>().join(". ");
     let mut panels = panels;
@@ -192,7 +192,7 @@ pub fn losses(runs: &[PlotRun]) -> Picture {
         .picture(table(&cars))
 }
 
-/// What each car loses, and the first one most of it in.
+/// Title: losses of each car, and the largest group of the first one.
 fn title(cars: &[Binned]) -> String {
     let some = |car: &&Binned| car.total_j() > 0.0;
     let Some(first) = cars.first().filter(some) else {
@@ -203,7 +203,7 @@ fn title(cars: &[Binned]) -> String {
     let others: Vec<String> = others
         .map(|car| format!("{} {}", car.run.name, kilojoule(car.total_j())))
         .collect();
-    match (first.most(), others.is_empty()) {
+    match (first.largest_group(), others.is_empty()) {
         (Some((group, joule)), true) => {
             format!(
                 "{own}, most of it in {} ({})",
@@ -227,7 +227,7 @@ fn in_words(car: &Binned) -> String {
     )
 }
 
-/// The bins of the first car with the means of each car's groups; a car whose bins lie elsewhere has no cells.
+/// Bins of the first car with the means of each car's groups; cells of a car with other bins are empty.
 fn table(cars: &[Binned]) -> PictureTable {
     let mut table = PictureTable::new(&[("Middle of the stretch", "s"), ("Length", "s")]);
     for car in cars {
@@ -265,7 +265,7 @@ fn table(cars: &[Binned]) -> PictureTable {
     ))
 }
 
-/// Adds the groups upon each other.
+/// Adds the groups as stacked layers.
 fn layers(panel: &mut Panel, car: &Binned) {
     let mut base = vec![0.0; car.bins.mean_w.len()];
     for (g, (group, _)) in car.groups.iter().enumerate() {

@@ -17,24 +17,24 @@ use cvtcycle_model::drive::FuelMap;
 use cvtcycle_output::History;
 use cvtcycle_output::summary::RunSummary;
 
-/// A run and what else its pictures show.
+/// A run and the additional data of its pictures.
 #[derive(Clone, Debug)]
 pub struct PlotRun<'a> {
     /// Name of the car in the picture.
     pub name: &'a str,
-    /// Its trace.
+    /// Trace.
     pub history: &'a History,
-    /// Its engine, for the operating points.
+    /// Engine, for the operating points.
     pub fuel_map: Option<FuelMap>,
     /// Fuel in L/100 km of each phase group and of the `total`, in the order of the plot.
     pub group_fuel: Vec<(String, f64)>,
-    /// What was published of this drive.
+    /// Published numbers of this drive.
     pub published: PublishedDrive,
 }
 
 /// Fuel of each phase group, of the cycle, and weighted where the cycle is, L/100 km: for [`PlotRun::group_fuel`].
 pub fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
-    // The only group of a cycle is its total.
+    // The only group of an undivided cycle is its total.
     let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
     let phases = phases.map(|phase| (phase.name.as_str(), phase.fuel_l_per_100km));
     let weighted = run.weighted_fuel_l_per_100km.map(Some);

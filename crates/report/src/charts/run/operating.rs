@@ -1,5 +1,5 @@
-//! Where the engine burns its fuel: fuel at torque and speed, on its map, with lines of equal power and the line of least consumption; a
-//! panel for each car, all on one scale.
+//! Operating points: fuel burnt by torque and speed, on the engine's map, with lines of equal power and the line of minimum consumption; a panel
+//! for each car, all on one scale.
 
 use super::PlotRun;
 use crate::charts::engine::{
@@ -20,22 +20,21 @@ const TOP: f64 = 58.0;
 /// Room for the heading of a panel, and between rows, pixels.
 const HEADING: f64 = 22.0;
 const PITCH: f64 = 74.0;
-/// Cells along an axis at most: small enough to show where fuel goes, large enough to be seen.
+/// Maximum number of cells along an axis: small enough for detail, large enough to be seen.
 const CELLS: (usize, usize) = (60, 50);
 const FULL_LOAD: Stroke = stroke(INK, 2.0, &[]);
-/// The line of least consumption for each power.
+/// Line of minimum consumption for each power.
 const BEST: Stroke = stroke("#c0392b", 1.8, &[7.0, 3.0]);
 const POWER: Stroke = stroke("#b9b9b9", 0.8, &[2.0, 2.0]);
 /// Powers of the lines of equal power, kW.
 const POWERS_KW: [f64; 6] = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0];
-/// Width of the stretch of engine speed that a title names, rpm.
+/// Width of the speed range named in a title, rpm.
 const STRETCH: f64 = 500.0;
 
 /// A step with the engine running: speed in rpm, torque in Nm, length in s, fuel in g.
 type Moment = (f64, f64, f64, f64);
 
-/// Engine torque against engine speed: fuel burnt in the cells of a grid, on the fuel map. Times in which the engine is off or burns nothing
-/// are left out.
+/// Engine torque against engine speed: fuel burnt in the cells of a grid, on the fuel map. Omits times with the engine off or burning no fuel.
 pub fn operating_points(runs: &[PlotRun]) -> Picture {
     let cars: Vec<(&PlotRun, Vec<Moment>)> =
         runs.iter().map(|run| (run, moments(run.history))).collect();
@@ -52,7 +51,7 @@ pub fn operating_points(runs: &[PlotRun]) -> Picture {
     let span = ends.fold((f64::INFINITY, 0.0_f64), |a, b| {
         (a.0.min(b.0), a.1.max(b.1))
     });
-    // What is a thousandth of the most cannot be seen.
+    // A thousandth of the maximum is invisible.
     let span = (span.0.max(1e-3 * span.1), span.1);
     let mut key = None;
     let mut panels = Vec::new();
@@ -109,15 +108,18 @@ fn legend(chart: Chart, is_mapped: bool, key: Option<Key>) -> Chart {
     }
 }
 
-/// Where each car burns most of its fuel.
+/// Title: operating range in which each car burns the largest part of its fuel.
 fn title(cars: &[(&PlotRun, Vec<Moment>)]) -> String {
     let most = |(run, moments): &(&PlotRun, Vec<Moment>)| {
         let all: f64 = moments.iter().map(|m| m.3).sum();
         let mut stretches: Vec<(i64, f64)> = Vec::new();
         for moment in moments {
             let stretch = (moment.0 / STRETCH).floor() as i64;
-            match stretches.iter_mut().find(|of| of.0 == stretch) {
-                Some(of) => of.1 += moment.3,
+            match stretches
+                .iter_mut()
+                .find(|density_cell| density_cell.0 == stretch)
+            {
+                Some(density_cell) => density_cell.1 += moment.3,
                 None => stretches.push((stretch, moment.3)),
             }
         }
@@ -138,12 +140,12 @@ fn title(cars: &[(&PlotRun, Vec<Moment>)]) -> String {
     }
 }
 
-/// Lines of equal consumption, full load, and the line of least consumption.
+/// Adds contours of equal consumption, full load, and the line of minimum consumption.
 fn mapped(panel: &mut Panel, map: &FuelMap, fuel: &Density) {
     let full_load = full_load(map);
     let taken = occupied(panel, fuel);
     let labels = iso_lines(panel, map, &full_load, taken);
-    // The map goes on beyond the speeds that were driven.
+    // The map extends beyond the driven speeds.
     if let Some(lines) = panel.items.pop() {
         panel.add(Shape::Within(None, vec![lines]), Style::default());
     }
@@ -174,7 +176,7 @@ fn lines_of_power(panel: &mut Panel) {
             shape: Shape::Line(points.filter(|p| p.1 <= panel.y.high).collect()),
             style: Style::line(POWER),
         });
-        // Beyond the frame, where no other label is; the legend has the unit.
+        // Beyond the frame, clear of other labels; the legend has the unit.
         let place = at(high, torque(high)).shift(3.0, 4.0);
         panel.label(Label::new(place, cvtcycle_output::number::plain(kw)).colour(QUIET));
     }
@@ -188,7 +190,7 @@ fn full_load(map: &FuelMap) -> Vec<Point> {
     points.map(|(w, t)| (w * RAD_S, *t)).collect()
 }
 
-/// The point of least consumption at each power, between the points of the map by straight lines.
+/// Point of minimum consumption at each power, by linear interpolation between the points of the map.
 fn best(map: &FuelMap, full_load: &[Point]) -> Vec<Point> {
     let Some((_, most)) = range(full_load.iter().map(|(n, t)| n / RAD_S * t)) else {
         return Vec::new();
@@ -211,7 +213,7 @@ fn best(map: &FuelMap, full_load: &[Point]) -> Vec<Point> {
     (0..=48).map(at).filter_map(least).collect()
 }
 
-/// Consumption between four points of the map; none outside it, or where one of them is not known.
+/// Consumption between four points of the map; `None` outside it, or next to an unknown one.
 fn consumption(map: &FuelMap, rad_s: f64, nm: f64) -> Option<f64> {
     let below = |axis: &[f64], x: f64| {
         let i = axis.partition_point(|a| *a <= x).checked_sub(1)?;
@@ -225,7 +227,7 @@ fn consumption(map: &FuelMap, rad_s: f64, nm: f64) -> Option<f64> {
     (mixed > 0.0 && mixed.is_finite()).then_some(mixed)
 }
 
-/// Both axes: all points with a fifth more speed, full load as far as that, and zero torque.
+/// Axes over all points with a fifth more speed, full load over that range, and zero torque.
 fn axes(cars: &[(&PlotRun, Vec<Moment>)]) -> (Axis, Axis) {
     let moments = || cars.iter().flat_map(|(_, moments)| moments);
     let lines: Vec<Point> = cars
@@ -264,17 +266,29 @@ fn table(cars: &[(&PlotRun, Vec<Moment>)]) -> PictureTable {
     ))
 }
 
-fn cells(car: &str, of: &DensityCell, [fuel, seconds]: [f64; 2], total: f64) -> [String; 6] {
+fn cells(
+    car: &str,
+    density_cell: &DensityCell,
+    [fuel, seconds]: [f64; 2],
+    total: f64,
+) -> [String; 6] {
     let span = |(from, to): (f64, f64)| {
         let step = to - from;
         format!("{} to {}", number(from, step), number(to, step))
     };
     let [time, fuel_g] = [seconds, fuel].map(|x| cell(x, 0.01));
     let share = cell(100.0 * fuel / total, 0.01);
-    [span(of.x), span(of.y), time, fuel_g, share, car.to_owned()]
+    [
+        span(density_cell.x),
+        span(density_cell.y),
+        time,
+        fuel_g,
+        share,
+        car.to_owned(),
+    ]
 }
 
-/// Where the cells are, pixels: labels keep clear of them if they can.
+/// Rectangles of the cells, pixels: labels avoid them if possible.
 fn occupied(panel: &Panel, density: &Density) -> Vec<Rect> {
     let rect = |x: (f64, f64), y: (f64, f64)| Rect {
         left: panel.px(x.0),

@@ -1,4 +1,4 @@
-//! Pictures over time: panels below each other over one axis, and the steps as a table.
+//! Pictures over time: stacked panels over one axis, and the steps as a table.
 
 use super::PlotRun;
 use crate::charts::engine::{
@@ -18,15 +18,15 @@ pub(super) const PLOT_TOP: f64 = 72.0;
 const GAP: f64 = 16.0;
 /// Room above a panel for its heading, pixels.
 pub(super) const HEADED: f64 = 22.0;
-/// Rows of a table at most.
+/// Maximum number of rows of a table.
 const MAX_ROWS: usize = 600;
 /// The line of a marked value.
 const LEVEL: Stroke = stroke(QUIET, 0.8, &[4.0, 2.0]);
-/// The line where a phase begins.
+/// Line at the beginning of a phase.
 const PHASE: Stroke = stroke(QUIET, 0.75, &[1.0, 2.5]);
 const PHASE_TEXT: f64 = 11.0;
 
-/// A unit, and what is drawn of a value.
+/// Unit, and conversion of a value to it.
 pub(super) type Shown = (&'static str, fn(f64) -> f64);
 
 /// A column of the trace as a line.
@@ -34,7 +34,7 @@ pub(super) struct Series {
     pub column: &'static str,
     pub title: &'static str,
     pub stroke: Stroke,
-    /// Unit where it is not that of the column, and what is drawn of a value.
+    /// Unit other than that of the column, with the conversion.
     pub shown: Option<Shown>,
 }
 
@@ -69,23 +69,23 @@ pub(super) struct Strip {
     pub title: &'static str,
     /// Height, pixels.
     pub tall: f64,
-    /// Its lines, all in one unit; the first ends up on top.
+    /// Lines, all in one unit; the first is on top.
     pub lines: Vec<Series>,
     /// Values that the axis includes in addition to the data.
     pub with: &'static [f64],
-    /// Beyond this value lines leave the panel.
+    /// Upper limit beyond which lines leave the panel.
     pub max: f64,
-    /// A value that is marked with a thin line, and its name in the legend.
+    /// Value marked with a thin line, and its name in the legend.
     pub mark: Option<(f64, &'static str)>,
-    /// Whether its lines are named at their ends.
+    /// True to name lines at their ends.
     pub named: bool,
-    /// Published numbers: from and to on the time axis, s, and on the vertical one.
+    /// Published numbers: ranges on the time axis, s, and on the vertical one.
     pub printed: Vec<([f64; 2], [f64; 2])>,
 }
 
 impl Strip {
     /// A panel of one line that begins at zero.
-    pub fn of(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
+    pub fn single(column: &'static str, title: &'static str, tall: f64, stroke: Stroke) -> Self {
         Strip {
             title,
             tall,
@@ -98,7 +98,7 @@ impl Strip {
         }
     }
 
-    /// Room that the names at the ends of its lines need, pixels.
+    /// Room for the names at the ends of its lines, pixels.
     fn names(&self) -> f64 {
         let names = self.lines.iter().filter(|_| self.named);
         let widest = names
@@ -112,7 +112,7 @@ impl Strip {
         lines.flat_map(|line| history.column(line.column).iter().map(|x| line.value(*x)))
     }
 
-    /// Every value that has to fit into the panel.
+    /// All values that must fit into the panel.
     fn heights(&self, history: &History) -> impl Iterator<Item = f64> {
         let values = self.values(history).map(|y| y.min(self.max));
         let values = values.filter(|y| y.is_finite());
@@ -187,7 +187,7 @@ pub(super) fn timeline(run: &PlotRun, title: impl Into<String>, strips: &[Strip]
         .picture(table(&[(run, lines)]))
 }
 
-/// One panel for each car, below each other on one scale; the lines are named at their ends.
+/// Draws one panel for each car, below each other on one scale; the lines are named at their ends.
 pub(super) fn side_by_side(cars: &[(&PlotRun, Strip)], title: String, subject: &str) -> Picture {
     let axes = cars.iter().map(|(run, strip)| strip.axis(run.history));
     let title_of = axes.map(|axis| axis.title).next().unwrap_or_default();
@@ -226,7 +226,7 @@ pub(super) fn side_by_side(cars: &[(&PlotRun, Strip)], title: String, subject: &
         .picture(table(&listed.collect::<Vec<_>>()))
 }
 
-/// Marked values and what was published, for the legend; lines are named by their axis or at their ends.
+/// Legend entries of marked values and published numbers; lines are named by their axis or at their ends.
 fn entries<'s>(strips: impl IntoIterator<Item = &'s Strip>) -> Vec<Entry> {
     let strips: Vec<&Strip> = strips.into_iter().collect();
     let levels = strips.iter().filter_map(|strip| strip.mark);
@@ -241,7 +241,7 @@ fn unit(name: &str) -> &'static str {
     sign(column(name).map_or("", |column| column.unit))
 }
 
-/// The points of a column: means lie in the middle of their step, temperatures at its end, a gear holds for the whole of it.
+/// Points of a column: means at the middle of their step, temperatures at its end, a gear over all of it.
 fn points(history: &History, of: &Series) -> Vec<(f64, f64)> {
     let name = of.column;
     let times = history.time_s().iter().zip(history.dt_s());
@@ -257,19 +257,19 @@ fn points(history: &History, of: &Series) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Beginning of a trace, s.
+/// Start of a trace, s.
 fn start_s(history: &History) -> Option<f64> {
     let first = history.time_s().first().zip(history.dt_s().first());
     first.map(|(end, dt)| end - dt)
 }
 
-/// The time axis of a trace: all of it, no more.
+/// Time axis over exactly a trace.
 pub(super) fn time_axis(history: &History) -> Axis {
     let end = history.time_s().last().copied().unwrap_or(1.0);
     Axis::exact("Time [s]", start_s(history).unwrap_or(0.0), end, 10)
 }
 
-/// Marks where phases begin, with their names above the plot where these fit.
+/// Marks the beginnings of phases, with names above the plot where these fit.
 pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
     let Some(mut from) = start_s(history) else {
         return;
@@ -287,7 +287,7 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
         let name = history.phases().get(history.phase(first));
         let name = name.map_or("", String::as_str);
         let short = Cut::End.apply(name, PHASE_TEXT, wide - 4.0);
-        // A name cut to a few letters says nothing.
+        // A name cut to a few letters is useless.
         let readable = short == name || text_width(&short, PHASE_TEXT) > 40.0;
         if named && parts.len() > 1 && readable {
             let place = at(from, f64::INFINITY).shift(0.5 * wide, -5.0);
@@ -297,7 +297,7 @@ pub(super) fn phases(panel: &mut Panel, history: &History, named: bool) {
     }
 }
 
-/// Every so many steps of the first run with all columns that are drawn; of the others the steps that end at the same time.
+/// Table of thinned steps of the first run with all drawn columns; of the others the steps that end at the same time.
 fn table(runs: &[(&PlotRun, Vec<&Series>)]) -> PictureTable {
     let plain = |unit: &'static str| if unit == "-" { "" } else { unit };
     let several = runs.len() > 1;
@@ -315,7 +315,7 @@ fn table(runs: &[(&PlotRun, Vec<&Series>)]) -> PictureTable {
     };
     let history = first.history;
     let every = history.len().div_ceil(MAX_ROWS).max(1);
-    // Steps are hardly ever shorter than a hundredth of a second; times differ in any case.
+    // Steps are rarely shorter than a hundredth of a second; distinct times stay distinct in any case.
     let step_s = range(history.dt_s().iter().copied()).map_or(1.0, |(least, _)| {
         if least >= 0.999_999 { 0.1 } else { 0.01 }
     });

@@ -1,4 +1,4 @@
-//! The quantities of a run over time.
+//! Quantities of a run over time.
 
 use super::PlotRun;
 use super::timeline::{Series, Strip, side_by_side, timeline};
@@ -9,11 +9,11 @@ use cvtcycle_output::History;
 
 /// Secondary and primary pressure.
 const PRESSURES: [Stroke; 2] = [stroke(INK, 1.6, &[]), stroke("#d55e00", 1.3, &[4.0, 2.0])];
-/// Height of the panel of temperatures of a car by itself, and of one of several, pixels.
+/// Height of the temperature panel of a lone car, and of one of several, pixels.
 const TALL: [f64; 2] = [400.0, 190.0];
 
-/// The largest finite value of a column.
-fn most(history: &History, column: &str) -> Option<f64> {
+/// Maximum finite value of a column.
+fn column_max(history: &History, column: &str) -> Option<f64> {
     Some(range(history.column(column).iter().copied())?.1)
 }
 
@@ -30,8 +30,8 @@ pub fn driveline(run: &PlotRun) -> Picture {
         ("engine_speed_rpm", "Engine speed"),
         ("throttle", "Throttle"),
     ]
-    .map(|(column, title)| Strip::of(column, title, 140.0, PLAIN));
-    let title = match most(run.history, "engine_speed_rpm") {
+    .map(|(column, title)| Strip::single(column, title, 140.0, PLAIN));
+    let title = match column_max(run.history, "engine_speed_rpm") {
         Some(rpm) => format!("{} needs up to {} rpm", run.name, grouped(rpm, 0)),
         None => "Vehicle speed, ratio, engine speed and throttle".to_owned(),
     };
@@ -47,7 +47,7 @@ pub fn pressure(run: &PlotRun) -> Picture {
     let lines = pressures.into_iter().zip(PRESSURES);
     let lines = lines.map(|((column, title), stroke)| Series::new(column, title, stroke));
     let safety = range(run.history.column("clamp_safety").iter().copied());
-    let title = match (safety, most(run.history, "secondary_pressure_bar")) {
+    let title = match (safety, column_max(run.history, "secondary_pressure_bar")) {
         (Some((least, _)), Some(bar)) if least > 0.0 => format!(
             "The belt of {} carries {} % of what its clamping holds at most; up to {} bar clamp it",
             run.name,
@@ -56,7 +56,7 @@ pub fn pressure(run: &PlotRun) -> Picture {
         ),
         _ => "Pulley pressures, slip and clamp safety".to_owned(),
     };
-    // Of a belt without torque the safety has no bound: its inverse is what the clamping is used for.
+    // The safety of a belt without torque is unbounded; its inverse is the used share of the clamping.
     let used = Series {
         shown: Some(("%", |safety| 100.0 / safety)),
         ..Series::new("clamp_safety", "Clamping used", PLAIN)
@@ -66,18 +66,18 @@ pub fn pressure(run: &PlotRun) -> Picture {
             lines: lines.collect(),
             named: true,
             printed: run.published.pressure_bar.clone(),
-            ..Strip::of("", "Pressure", 220.0, PLAIN)
+            ..Strip::single("", "Pressure", 220.0, PLAIN)
         },
-        Strip::of("slip_percent", "Belt slip", 130.0, PLAIN),
+        Strip::single("slip_percent", "Belt slip", 130.0, PLAIN),
         Strip {
             lines: vec![used],
             with: &[0.0, 100.0],
             mark: Some((100.0, "All of the clamping used: the belt is at its limit")),
-            ..Strip::of("clamp_safety", "Clamping used", 130.0, PLAIN)
+            ..Strip::single("clamp_safety", "Clamping used", 130.0, PLAIN)
         },
         Strip {
             title: "Speed",
-            ..Strip::of("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
+            ..Strip::single("speed_kmh", "Vehicle speed", 100.0, CONTEXT)
         },
     ];
     timeline(run, title, &strips)
@@ -133,6 +133,6 @@ fn nodes(run: &PlotRun, tall: f64) -> Strip {
         with: &[],
         named: true,
         printed: run.published.end_degc.clone(),
-        ..Strip::of("coolant_degc", "Temperature", tall, PLAIN)
+        ..Strip::single("coolant_degc", "Temperature", tall, PLAIN)
     }
 }

@@ -14,40 +14,44 @@ use cvtcycle_study::statistics::{Confidence, Estimate, RankSensitivity, SobolInd
 /// A factor with its two measures.
 type FactorBars<'a> = (&'a str, [Estimate; 2]);
 
-/// The texts of a picture.
+/// Texts of a picture.
 struct Texts<'a> {
     title: String,
     axis: &'a str,
     kinds: [&'a str; 2],
-    /// The same for columns.
+    /// Short names, for columns.
     short: [&'a str; 2],
-    /// Which of the two measures sorts, and how many rows are drawn.
+    /// Index of the measure that sorts, and maximum number of rows.
     key: usize,
-    most: usize,
+    max_rows: usize,
     notes: Vec<String>,
 }
 
 /// Draws first-order and total Sobol indices of factors by name with their intervals, the largest total index first.
-pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture {
-    let factors = names.iter().zip(&of.factors);
+pub fn sobol_plot(shown: &Shown, names: &[String], sensitivity: &SobolIndices) -> Picture {
+    let factors = names.iter().zip(&sensitivity.factors);
     let rows = factors.map(|(name, f)| (name.as_str(), [f.first, f.total]));
-    let mut notes = vec![format!("{} samples{}", of.samples, left_out(of.missing))];
-    if of.samples > 1 && of.variance <= 0.0 {
+    let mut notes = vec![format!(
+        "{} samples{}",
+        sensitivity.samples,
+        left_out(sensitivity.missing)
+    )];
+    if sensitivity.samples > 1 && sensitivity.variance <= 0.0 {
         notes.push("The output does not vary: it has no indices.".to_owned());
     } else {
         notes.push(format!(
             "Sum of first-order indices {}. What remains to 1 is due to interactions.",
-            with_interval(&of.sum_first)
+            with_interval(&sensitivity.sum_first)
         ));
         notes.push(format!(
             "Bars: estimates. Whiskers: intervals of {} % from {} resamples.",
             shown.confidence.percent(),
-            of.resamples
+            sensitivity.resamples
         ));
     }
     let texts = Texts {
-        title: sobol_title(names, of, shown),
-        most: MOST_SOBOL,
+        title: sobol_title(names, sensitivity, shown),
+        max_rows: MAX_SOBOL,
         axis: "Share of the variance [-]",
         kinds: ["First order: alone", "Total: also with others"],
         short: ["First order", "Total"],
@@ -57,16 +61,16 @@ pub fn sobol_plot(shown: &Shown, names: &[String], of: &SobolIndices) -> Picture
     draw(rows.collect(), shown, texts)
 }
 
-/// Factors of Sobol indices that are drawn: what lies behind them is noise.
-const MOST_SOBOL: usize = 6;
+/// Maximum number of drawn factors of Sobol indices; further ones are noise.
+const MAX_SOBOL: usize = 6;
 
-/// The factor that decides, where its interval lies above that of the next one.
-fn sobol_title(names: &[String], of: &SobolIndices, shown: &Shown) -> String {
+/// Title: the dominant factor, if its interval lies above that of the next one.
+fn sobol_title(names: &[String], sensitivity: &SobolIndices, shown: &Shown) -> String {
     let mut totals: Vec<(&String, &Estimate)> = names
         .iter()
-        .zip(of.factors.iter().map(|f| &f.total))
+        .zip(sensitivity.factors.iter().map(|f| &f.total))
         .collect();
-    by_size(&mut totals, |of| of.1.value);
+    by_size(&mut totals, |sensitivity| sensitivity.1.value);
     let ends = |estimate: &Estimate| estimate.interval.unwrap_or([estimate.value; 2]);
     match totals.as_slice() {
         [(name, first), (_, second), ..] if ends(first)[0] > ends(second)[1] => format!(
@@ -78,19 +82,19 @@ fn sobol_title(names: &[String], of: &SobolIndices, shown: &Shown) -> String {
         ),
         _ => format!(
             "{} samples single out no factor for the {}",
-            of.samples, shown.output
+            sensitivity.samples, shown.output
         ),
     }
 }
 
-/// The factor that goes most with the output.
-fn rank_title(names: &[String], of: &RankSensitivity, shown: &Shown) -> String {
+/// Title: the factor with the strongest rank correlation.
+fn rank_title(names: &[String], sensitivity: &RankSensitivity, shown: &Shown) -> String {
     let mut all: Vec<(&String, f64)> = names
         .iter()
-        .zip(of.factors.iter().map(|f| f.spearman.value))
+        .zip(sensitivity.factors.iter().map(|f| f.spearman.value))
         .collect();
-    by_size(&mut all, |of| of.1.abs());
-    match all.first().filter(|of| of.1.is_finite()) {
+    by_size(&mut all, |sensitivity| sensitivity.1.abs());
+    match all.first().filter(|sensitivity| sensitivity.1.is_finite()) {
         Some((name, rank)) => format!(
             "The {} follows {name} most: rank correlation {}",
             shown.output,
@@ -101,22 +105,22 @@ fn rank_title(names: &[String], of: &RankSensitivity, shown: &Shown) -> String {
 }
 
 /// Draws rank correlations and rank regression coefficients with their intervals, the strongest correlation first.
-pub fn rank_plot(shown: &Shown, names: &[String], of: &RankSensitivity) -> Picture {
-    let factors = names.iter().zip(&of.factors);
+pub fn rank_plot(shown: &Shown, names: &[String], sensitivity: &RankSensitivity) -> Picture {
+    let factors = names.iter().zip(&sensitivity.factors);
     let rows = factors.map(|(name, f)| (name.as_str(), [f.spearman, f.regression]));
-    let fit = match of.r_squared {
+    let fit = match sensitivity.r_squared {
         r if r.is_finite() => format!("R\u{b2} of the regression on ranks: {r:.3}"),
         _ => "No regression: too few rows, or factors that follow from each other.".to_owned(),
     };
     let texts = Texts {
-        title: rank_title(names, of, shown),
-        most: MAX_ROWS,
+        title: rank_title(names, sensitivity, shown),
+        max_rows: MAX_ROWS,
         axis: "Coefficient [-]",
         kinds: ["Rank correlation", "Rank regression coefficient"],
         short: ["Correlation", "Regression"],
         key: 0,
         notes: vec![
-            format!("{} rows{}", of.n, left_out(of.missing)),
+            format!("{} rows{}", sensitivity.n, left_out(sensitivity.missing)),
             fit,
             format!("Whiskers: intervals of {} %", shown.confidence.percent()),
         ],
@@ -129,12 +133,12 @@ fn draw(mut rows: Vec<FactorBars>, shown: &Shown, texts: Texts) -> Picture {
     by_size(&mut rows, size);
     let table = table(&rows, &texts, shown.confidence);
     let mut notes = texts.notes.clone();
-    if rows.len() > texts.most + 1 {
-        let rest = rows.split_off(texts.most);
+    if rows.len() > texts.max_rows + 1 {
+        let rest = rows.split_off(texts.max_rows);
         let largest = rest.first().map_or(0.0, size);
-        let (more, most) = (rest.len(), value(largest, 0.9));
+        let (more, max_rows) = (rest.len(), value(largest, 0.9));
         notes.push(format!(
-            "{more} more factors in the table, each at most {most}."
+            "{more} more factors in the table, each at most {max_rows}."
         ));
     }
     let estimates = rows.iter().flat_map(|row| &row.1);

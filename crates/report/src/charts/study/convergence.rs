@@ -1,4 +1,4 @@
-//! Sobol indices against the number of samples: whether they have settled.
+//! Convergence of Sobol indices with the number of samples.
 
 use super::{FOOT, Shown, WIDE, by_size, estimate_cells, estimate_columns, value};
 use crate::charts::engine::{
@@ -13,14 +13,14 @@ type Steps<'a> = (&'a [String], &'a [SobolIndices]);
 const TOP: f64 = 58.0;
 const TALL: f64 = 230.0;
 const GAP: f64 = 20.0;
-/// Bands of at least the last number of samples over 2 to this power lie in the plot in full.
+/// Bands from the last number of samples over 2 to this power on lie in the plot in full.
 const SEEN: f64 = 2.5;
 
-/// One of the two indices of a factor at a number of samples.
+/// Selects one of the two indices of a factor at a number of samples.
 type Pick = fn(&SobolIndices, usize) -> Option<Estimate>;
 
-/// Draws first-order indices over total ones against the number of samples, with their intervals as bands. Of more than seven factors
-/// those with the seven largest total indices.
+/// Draws first-order indices over total ones against the number of samples, with their intervals as bands; of more than seven factors those with
+/// the seven largest total indices.
 pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices]) -> Picture {
     let chosen = chosen((names, steps));
     let level = shown.confidence.percent();
@@ -56,7 +56,7 @@ pub fn convergence_plot(shown: &Shown, names: &[String], steps: &[SobolIndices])
         .picture(table((names, steps), shown.confidence))
 }
 
-/// The largest total index with its interval at the last number of samples.
+/// Title: the largest total index with its interval at the last number of samples.
 fn title_of((names, steps): Steps, chosen: &[usize], shown: &Shown) -> String {
     let of = || {
         let (first, last) = (*chosen.first()?, steps.last()?);
@@ -93,12 +93,12 @@ fn table((names, steps): Steps, confidence: Confidence) -> PictureTable {
     table
 }
 
-/// Place of a number of samples: doublings are equally far apart.
+/// Logarithmic position of a number of samples.
 fn place_of(step: &SobolIndices) -> f64 {
     (step.samples.max(1) as f64).log2()
 }
 
-/// The factors that are drawn, the largest total index of the last step first.
+/// Factors to draw, in descending total index of the last step.
 fn chosen((names, steps): Steps) -> Vec<usize> {
     let total = |i: usize| {
         let last = steps.last().and_then(|s| s.factors.get(i));
@@ -117,7 +117,7 @@ fn draw((names, steps): Steps, chosen: &[usize], title: &str, pick: Pick) -> Pan
     };
     let first = steps.first().map_or(0.0, place_of);
     let last = steps.last().map_or(1.0, place_of);
-    // The bands of few samples are so wide that nothing else would be seen: they may leave the plot.
+    // Bands of few samples may leave the plot: they would compress everything else.
     let seen = |(_, x, e): (usize, f64, Estimate)| {
         let ends = e.interval.filter(|_| x > last - SEEN);
         ends.into_iter().flatten().chain([e.value, 0.0])

@@ -1,4 +1,4 @@
-//! How an output, or a difference of pairs, is distributed: a dot for each equal share of the runs.
+//! Distribution of an output, or of a difference of pairs: a dot for each equal share of the runs.
 
 use super::{MARGIN, RIGHT, Shown, WIDE_FOOT, percent, value};
 use crate::charts::engine::{
@@ -14,16 +14,16 @@ use cvtcycle_study::statistics::{Confidence, Numbers, Share, Summary, quantiles}
 pub struct DistributionSeries<'a, P: ?Sized = [f64]> {
     /// Name of its row.
     pub name: &'a str,
-    /// Values; those that are not finite are missing.
+    /// Values; missing if not finite.
     pub values: &'a P,
-    /// What is known of it besides the values.
+    /// Numbers known independently of the values.
     pub known: KnownValue,
 }
 
-/// Numbers of the same quantity that are none of the values.
+/// Numbers of the same quantity from other sources than the values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KnownValue {
-    /// With the nominal values, those of the files.
+    /// Result with the nominal values, those of the files.
     pub nominal: Option<f64>,
     /// A published range.
     pub published: Option<[f64; 2]>,
@@ -33,7 +33,7 @@ pub struct KnownValue {
 struct Drawn<'a> {
     name: &'a str,
     known: KnownValue,
-    /// Values at the middles of equal shares, ascending.
+    /// Quantiles at the middles of equal shares, ascending.
     dots: Vec<f64>,
     summary: Summary,
     above: Share,
@@ -47,7 +47,7 @@ impl Drawn<'_> {
         [low, 0.5, high].map(|p| self.summary.quantile(p))
     }
 
-    /// Everything that has to lie on the axis.
+    /// All numbers that must lie on the axis.
     fn seen(&self) -> Vec<f64> {
         let known = self.known.published.into_iter().flatten();
         let known = known.chain(self.known.nominal);
@@ -58,23 +58,24 @@ impl Drawn<'_> {
 const TOP: f64 = 58.0;
 /// Height of the row of a lone series, and of one of several, pixels.
 const ROWS: [f64; 2] = [150.0, 110.0];
-/// Most dots of a series: each is a hundredth of its runs.
+/// Maximum number of dots of a series: each is a hundredth of its runs.
 const DOTS: usize = 100;
-/// Stacks of dots over the width of the plot, at most.
+/// Maximum number of stacks of dots over the width of the plot.
 const STACKS: f64 = 55.0;
-/// Largest radius of a dot, and of a mark on the base line, pixels.
+/// Maximum radius of a dot, and of a mark on the base line, pixels.
 const DOT: f64 = 5.0;
 const MARK: f64 = 5.5;
-/// Of fewer pairs than these only the counts are given.
+/// Number of pairs below which only counts are given.
 const FEW: usize = 200;
-/// Most series that the picture in words describes.
+/// Maximum number of series described in the picture in words.
 const IN_WORDS: usize = 2;
 
-/// Draws the values of each series as dots of equal shares of the runs, stacked where they lie together, over an interval with the median and the two
-/// ends of its confidence; of more than seven series the first seven. Of differences of pairs the part below zero is shaded and its share written.
+/// Draws the values of each series as dots of equal shares of the runs, stacked where they coincide, over an interval with the median and the
+/// two ends of its confidence; of more than seven series the first seven. For differences of pairs the part below zero is shaded and labelled
+/// with its share.
 ///
 /// # Errors
-/// Values that cannot be had.
+/// The values cannot be read.
 pub fn distribution_plot<P: Numbers + ?Sized>(
     shown: &Shown,
     all: &[DistributionSeries<P>],
@@ -153,10 +154,10 @@ fn legend(series: &[Drawn], differences: bool) -> Vec<Entry> {
     list.into_iter().flatten().collect()
 }
 
-/// Which of the lines has the colour of dots.
+/// Index of the line style with the colour of dots.
 const DOTTED: usize = 2;
 
-/// Dots that lie together by the place of their stack on the axis.
+/// Stacks of coinciding dots, with their positions on the axis.
 fn stacks<'a>(x: &Axis, dots: &'a [f64]) -> impl Iterator<Item = (f64, &'a [f64])> {
     let (low, step) = (x.low, (x.high - x.low) / STACKS);
     let place = move |x: f64| ((x - low) / step).floor();
@@ -164,7 +165,7 @@ fn stacks<'a>(x: &Axis, dots: &'a [f64]) -> impl Iterator<Item = (f64, &'a [f64]
     together.map(move |stack| (low + (place(stack[0]) + 0.5) * step, stack))
 }
 
-/// The radius with which the highest stack fits in its row, pixels.
+/// Maximum radius at which the highest stack fits in its row, pixels.
 fn radius(panel: &Panel, series: &[Drawn], tall: f64) -> f64 {
     let all = series.iter().flat_map(|s| stacks(&panel.x, &s.dots));
     let highest = all.map(|(_, stack)| stack.len()).max().unwrap_or(1);
@@ -176,7 +177,7 @@ fn radius(panel: &Panel, series: &[Drawn], tall: f64) -> f64 {
 /// Height of the base line of the dots over the lower end of their row, pixels.
 const BELOW_DOTS: f64 = 30.0;
 
-/// Adds the dots of a series, its interval and what is known of it, each with its row of the table.
+/// Adds the dots of a series, its interval and its known numbers, each with its row of the table.
 fn dots(
     panel: &mut Panel,
     table: &mut PictureTable,
@@ -229,7 +230,7 @@ fn dots(
     }
 }
 
-/// A sentence on one series, else what is drawn.
+/// Title: a sentence on a lone series, else a description.
 fn sentence(shown: &Shown, series: &[Drawn], differences: bool) -> String {
     match series {
         [s, ..] if differences && s.above.n > 0 => {

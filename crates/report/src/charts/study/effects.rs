@@ -1,4 +1,4 @@
-//! Main effects: the mean over everything else, level by level, a panel for each factor.
+//! Main effects: mean over all other factors, level by level, a panel for each factor.
 
 use super::{FOOT, RIGHT, Shown, by_size, value};
 use crate::charts::engine::{
@@ -14,9 +14,9 @@ use cvtcycle_study::statistics::{Group, Groups};
 pub struct EffectFactor<'a> {
     /// Name.
     pub name: &'a str,
-    /// Its unit; `-` or empty without one.
+    /// Unit; `-` or empty without one.
     pub unit: &'a str,
-    /// Where the levels lie, in the order of the groups; empty if they are words.
+    /// Positions of the levels, in the order of the groups; empty for words.
     pub at: Vec<f64>,
     /// Means and spreads of the output.
     pub groups: &'a Groups,
@@ -24,17 +24,17 @@ pub struct EffectFactor<'a> {
 
 const TOP: f64 = 58.0;
 const GAP: f64 = 14.0;
-/// Widest panel, pixels.
+/// Maximum width of a panel, pixels.
 const WIDEST: f64 = 480.0;
 /// Room below a panel whose words are turned, pixels.
 const TURNED: f64 = 108.0;
 const LEVEL: f64 = 11.0;
 const TITLE: f64 = 12.0;
-/// Most factors that are drawn: more do not fit on a page.
+/// Maximum number of drawn factors that fit on a page.
 const MAX_FACTORS: usize = 12;
 
-/// Draws the mean of the output at each level of each factor with its spread over all others (the deviation of draws, the ends of a grid), the factor with the largest effect first. All
-/// panels have one vertical axis, so that effects can be compared.
+/// Draws the mean of the output at each level of each factor with its spread over all others (the deviation of draws, the ends of a grid), in
+/// descending effect. A common vertical axis makes effects comparable.
 pub fn effects_plot(shown: &Shown, factors: &[EffectFactor]) -> Picture {
     let mut factors: Vec<&EffectFactor> = factors.iter().collect();
     by_size(&mut factors, |f| f.groups.range);
@@ -133,7 +133,7 @@ fn table(shown: &Shown, factors: &[&EffectFactor]) -> PictureTable {
     table
 }
 
-/// The largest range of means; NaN without one.
+/// Maximum range of means; NaN without one.
 fn widest(factors: &[&EffectFactor]) -> f64 {
     let ranges = factors.iter().map(|f| f.groups.range);
     ranges.filter(|r| *r > 0.0).fold(f64::NAN, f64::max)
@@ -147,7 +147,7 @@ fn unit_after(factor: &EffectFactor) -> String {
     }
 }
 
-/// Ends of the band: a deviation either way, or the least and the largest value of what is no sample.
+/// Ends of the band: a deviation either way, or minimum and maximum of values that are not a sample.
 fn band(group: &Group) -> [f64; 2] {
     match group.sd.is_finite() {
         true => [group.mean - group.sd, group.mean + group.sd],
@@ -164,19 +164,19 @@ fn words(factor: &EffectFactor) -> bool {
     factor.at.len() != factor.groups.groups.len() || factor.at.iter().any(|x| !x.is_finite())
 }
 
-/// Room for the word of a level, pixels.
-fn slot(factor: &EffectFactor, wide: f64) -> f64 {
+/// Width available for the word of a level, pixels.
+fn level_width(factor: &EffectFactor, wide: f64) -> f64 {
     wide / factor.groups.groups.len().max(1) as f64
 }
 
-/// Whether words have to be turned: they do not fit next to each other, and cut they would say too little.
+/// True if words must be turned: they do not fit next to each other, and cutting would lose too much.
 fn turned(factor: &EffectFactor, wide: f64) -> bool {
-    let room = slot(factor, wide) - 6.0;
+    let room = level_width(factor, wide) - 6.0;
     let mut labels = factor.groups.groups.iter().map(|g| &g.label);
     room < 60.0 && labels.any(|label| text_width(label, LEVEL) > room)
 }
 
-/// Place of each level on the horizontal axis.
+/// Position of each level on the horizontal axis.
 fn places(factor: &EffectFactor) -> Vec<f64> {
     if words(factor) {
         (0..factor.groups.groups.len()).map(|k| k as f64).collect()
@@ -189,7 +189,7 @@ fn x_axis(factor: &EffectFactor, wide: f64) -> Axis {
     let places = places(factor);
     let low = places.iter().copied().min_by(f64::total_cmp).unwrap_or(0.0);
     let high = places.iter().copied().max_by(f64::total_cmp).unwrap_or(1.0);
-    // Half a slot next to words; a little next to numbers, more next to a lone one.
+    // Half a cell next to words; a small margin next to numbers, a larger one next to a lone one.
     match high - low {
         _ if words(factor) => Axis::bare(low - 0.5, high + 0.5),
         span => {
@@ -201,10 +201,10 @@ fn x_axis(factor: &EffectFactor, wide: f64) -> Axis {
     }
 }
 
-/// Place of a level, its row in the table, and its numbers.
+/// Position of a level, its row in the table, and its numbers.
 type Level<'a> = (f64, usize, &'a Group);
 
-/// Draws a factor, whose levels are in the table from a row on.
+/// Draws a factor; `row` is the table row of its first level.
 fn draw(rect: Rect, factor: &EffectFactor, y: Axis, row: usize) -> Panel {
     let (words, places) = (words(factor), places(factor));
     let x = x_axis(factor, rect.width());
@@ -217,7 +217,7 @@ fn draw(rect: Rect, factor: &EffectFactor, y: Axis, row: usize) -> Panel {
     panel.no_data = levels.is_empty();
     let style = Style::colour(PLAIN.colour).fill_opacity(0.14).class("band");
     if words || levels.len() < 2 {
-        // A box of the spread at each word, for there is nothing between words.
+        // A box of the spread at each word, since nothing lies between words.
         for (x, row, g) in &levels {
             let [low, high] = band(g);
             let (low, high) = (at(*x, low).shift(-5.0, 0.0), at(*x, high).shift(5.0, 0.0));
@@ -228,7 +228,7 @@ fn draw(rect: Rect, factor: &EffectFactor, y: Axis, row: usize) -> Panel {
         let ends: Vec<_> = levels.iter().map(ends).collect();
         panel.add(Shape::between(&ends), style);
     }
-    // Words have no order: the line between them only leads the eye.
+    // Words are unordered: the line between them only guides the eye.
     let line = if words {
         stroke(PLAIN.colour, 0.7, &[2.0, 2.5])
     } else {
@@ -271,7 +271,7 @@ fn level_names(panel: &mut Panel, factor: &EffectFactor) {
         let (label, room) = if turned(factor, wide) {
             (label(4.0, 8.0).turned().end(), TURNED - 30.0)
         } else {
-            (label(0.0, 16.0).middle(), slot(factor, wide) - 6.0)
+            (label(0.0, 16.0).middle(), level_width(factor, wide) - 6.0)
         };
         panel.label(label.cut(Cut::Middle, room));
     }

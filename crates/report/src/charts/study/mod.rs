@@ -1,6 +1,6 @@
 //! Pictures of the statistics of studies.
 //!
-//! Data come in the units that the axes name. Names that do not fit are cut in the middle; the full name shows up under the pointer.
+//! Data are in the units of the axes. Names that do not fit are cut in the middle; the full name shows as a tooltip.
 
 mod bars;
 mod convergence;
@@ -21,31 +21,31 @@ use cvtcycle_study::statistics::{Confidence, Estimate};
 /// Right edge of the plots, and their width, pixels.
 const RIGHT: f64 = WIDTH - 28.0;
 const WIDE: f64 = RIGHT - PLOT_LEFT;
-/// Left edge and width of what lies below plots, and below rows, pixels.
+/// Left edge and width of blocks below plots, and below rows, pixels.
 const FOOT: Point = (PLOT_LEFT, WIDE);
 const WIDE_FOOT: Point = (MARGIN, RIGHT - MARGIN);
 /// Left edge of titles, legends and notes of pictures with rows, pixels.
 const MARGIN: f64 = 12.0;
 /// Height of a row, pixels.
 const ROW: f64 = 27.0;
-/// Most rows that fit on a page.
+/// Maximum number of rows that fit on a page.
 const MAX_ROWS: usize = 30;
 
-/// What a picture shows.
+/// Subject of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shown<'a> {
-    /// The output, as people name it: `Fuel, total`.
+    /// Name of the output for people: `Fuel, total`.
     pub output: &'a str,
-    /// Its unit; `-` or empty without one.
+    /// Unit; `-` or empty without one.
     pub unit: &'a str,
     /// The study: cars, cycle, number of runs.
     pub subject: &'a str,
-    /// Of all intervals.
+    /// Confidence of all intervals.
     pub confidence: Confidence,
 }
 
 impl Shown<'_> {
-    /// Title of an axis of this output, or of something else of its unit.
+    /// Axis title of this output, or of another quantity in its unit.
     fn axis(&self, what: &str) -> String {
         with_unit(what, self.unit)
     }
@@ -65,7 +65,7 @@ impl Shown<'_> {
     }
 }
 
-/// Name and unit of a column; a unit that no output of the program has is part of the name.
+/// Name and unit of a column; an unknown unit becomes part of the name.
 fn column(name: String, unit: &str) -> (String, &'static str) {
     const KNOWN: [&str; 11] = [
         "L/100 km", "%", "g/km", "km", "s", "g", "kJ", "\u{b0}C", "rpm", "bar", "Nm",
@@ -80,7 +80,7 @@ fn column(name: String, unit: &str) -> (String, &'static str) {
     }
 }
 
-/// Columns of an estimate of that name: the estimate and the two ends of its interval.
+/// Columns of an estimate: the estimate and the two ends of its interval.
 fn estimate_columns(name: &str, confidence: Confidence) -> [(String, &'static str); 3] {
     let level = confidence.percent();
     let ends = [format!("{name}: {level} % from"), format!("{name}: to")];
@@ -88,14 +88,14 @@ fn estimate_columns(name: &str, confidence: Confidence) -> [(String, &'static st
     [(name.to_owned(), ""), from, to]
 }
 
-/// An estimate and the two ends of its interval as cells; empty without one.
-fn estimate_cells(of: &Estimate) -> [String; 3] {
-    let ends = of.interval;
+/// Cells of an estimate and the two ends of its interval; empty without one.
+fn estimate_cells(estimate: &Estimate) -> [String; 3] {
+    let ends = estimate.interval;
     let [from, to] = [0, 1].map(|k| ends.map(|ends| ends[k]));
-    [Some(of.value), from, to].map(|x| optional_cell(x, 1e-3))
+    [Some(estimate.value), from, to].map(|x| optional_cell(x, 1e-3))
 }
 
-/// Places of values by their size, the largest first and those that are not known last.
+/// Sorts by descending size, unknown sizes last.
 fn by_size<T>(list: &mut [T], size: impl Fn(&T) -> f64) {
     list.sort_by(|a, b| {
         let last = size(a).is_nan().cmp(&size(b).is_nan());
@@ -103,7 +103,7 @@ fn by_size<T>(list: &mut [T], size: impl Fn(&T) -> f64) {
     });
 }
 
-/// A value with the digits that a spread of that size leaves meaningful.
+/// Formats a value with the digits that its spread supports.
 pub(crate) fn value(x: f64, spread: f64) -> String {
     if !x.is_finite() {
         return "not known".to_owned();
@@ -113,7 +113,7 @@ pub(crate) fn value(x: f64, spread: f64) -> String {
     number(x, round_step(scale / 200.0))
 }
 
-/// A share of 0 to 1 in percent, with a decimal; more where it is close to an end.
+/// Formats a share of 0 to 1 in percent, with one decimal; more close to an end.
 fn percent(share: f64) -> String {
     let off = share.min(1.0 - share);
     let decimals = if off > 0.0 && off < 0.001 { 3 } else { 1 };
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_the_digits_of_their_spread() {
+    fn digits_follow_the_spread() {
         assert_eq!(value(7.214_3, 0.9), "7.214");
         assert_eq!(value(-0.5, 0.0), "\u{2212}0.500");
         assert_eq!(value(1234.0, 800.0), "1234");

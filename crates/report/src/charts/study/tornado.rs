@@ -1,4 +1,4 @@
-//! Tornado: the effect of each factor on an output when it alone leaves its base.
+//! Tornado: effect of each factor on an output when it alone is changed from its base.
 
 use super::{MARGIN, MAX_ROWS, RIGHT, ROW, Shown, WIDE_FOOT, value};
 use crate::charts::engine::{
@@ -9,7 +9,7 @@ use crate::charts::picture::{Picture, PictureTable};
 use crate::number::{capital_first, signed};
 use cvtcycle_study::statistics::{Tornado, TornadoBar, TornadoEnd};
 
-/// Size of the values at the ends of bars, and widest such value, pixels.
+/// Size of the values at the ends of bars, and their maximum width, pixels.
 const END: (f64, f64) = (11.0, 120.0);
 
 /// Mark of a level between the ends.
@@ -93,7 +93,7 @@ fn draw(panel: &mut Panel, row: usize, bar: &TornadoBar) {
         (Some(a), Some(b)) => a.effect * b.effect > 0.0,
         _ => false,
     };
-    // Ends on one side of the base would hide each other: then each has half of the row.
+    // Ends on one side of the base would hide each other: each gets half of the row.
     let halves = [(-12.0, 0.0), (0.0, 12.0)];
     let places = if apart { halves } else { [(-8.0, 8.0); 2] };
     let both = || [&bar.low, &bar.high].into_iter().zip(places).enumerate();
@@ -118,7 +118,7 @@ fn draw(panel: &mut Panel, row: usize, bar: &TornadoBar) {
     }
 }
 
-/// The effects of all factors.
+/// Table of the effects of all factors.
 fn table(shown: &Shown, tornado: &Tornado, spread: f64) -> PictureTable {
     let columns = [
         ("Factor".to_owned(), ""),
@@ -163,7 +163,7 @@ fn ends(bar: &TornadoBar) -> impl Iterator<Item = &TornadoEnd> {
     bar.low.iter().chain(&bar.high)
 }
 
-/// Whether the label of an end lies to the left of it: an end without an effect gives way to the other one.
+/// True if the label of an end lies to its left: an end without an effect leaves room for the other one.
 fn leftward(bar: &TornadoBar, first: bool) -> bool {
     let effect = |end: &Option<TornadoEnd>| end.as_ref().map_or(0.0, |end| end.effect);
     let (low, high) = (effect(&bar.low), effect(&bar.high));

@@ -1,4 +1,4 @@
-//! Bands, deflection of the pulleys, and the sum.
+//! Steps for bands, deflection of the pulleys, and the sum.
 
 use super::super::reference::{At, RPM};
 use super::{Forces, Point, Step};
@@ -53,7 +53,10 @@ impl Point<'_> {
                 format!("{force:.1} \\cdot {spread:.4} \\cdot {lever:.6}"),
                 f.band_nm,
             )
-            .is(self.answer.of("band_loss_primary_nm") + self.answer.of("band_loss_secondary_nm"))
+            .compare_value(
+                self.answer.column("band_loss_primary_nm")
+                    + self.answer.column("band_loss_secondary_nm"),
+            )
             .unit("Nm"),
         ]
     }
@@ -80,7 +83,7 @@ impl Point<'_> {
                 format!("\\frac{{1}}{{{}}} {mu} \\cdot \\frac{{{np:.1}}}{{2}} \\cdot \\frac{{{:.3}}}{{{:.2}}} \\cdot {:.6}", self.ratio, 1e3 * chord, 1e3 * pitch, slide),
                 wedge,
             )
-            .is(self.answer.of("wedge_loss_primary_nm") + self.answer.of("wedge_loss_secondary_nm"))
+            .compare_value(self.answer.column("wedge_loss_primary_nm") + self.answer.column("wedge_loss_secondary_nm"))
             .unit("Nm"),
             self.step(
                 "T_\\text{pen}",
@@ -88,17 +91,17 @@ impl Point<'_> {
                 format!("2 \\cdot {mu} \\cdot {ns:.1} \\cdot {:.3} \\cdot 10^{{-6}} \\cdot {:.5} / {pitch}", 1e6 * delta, g.primary_radius_m),
                 pushed,
             )
-            .is(self.answer.of("penetration_loss_primary_nm") + self.answer.of("penetration_loss_secondary_nm"))
+            .compare_value(self.answer.column("penetration_loss_primary_nm") + self.answer.column("penetration_loss_secondary_nm"))
             .unit("Nm"),
         ]
     }
 
     pub(super) fn sum(&self, f: &Forces) -> Vec<Step> {
-        let of = |name: &str| self.answer.of(name);
-        let slip = 0.01 * of("slip_percent");
+        let value = |name: &str| self.answer.column(name);
+        let slip = 0.01 * value("slip_percent");
         let slip_nm = slip * self.output_nm / self.ratio;
-        let wedge = of("wedge_loss_primary_nm") + of("wedge_loss_secondary_nm");
-        let pen = of("penetration_loss_primary_nm") + of("penetration_loss_secondary_nm");
+        let wedge = value("wedge_loss_primary_nm") + value("wedge_loss_secondary_nm");
+        let pen = value("penetration_loss_primary_nm") + value("penetration_loss_secondary_nm");
         let all = f.band_nm + slip_nm + wedge + pen;
         let net = self.output_nm / self.ratio;
         let input = net * (1.0 - slip) + all;
@@ -119,7 +122,7 @@ impl Point<'_> {
                 ),
                 all,
             )
-            .of("belt_loss_nm", self, 1.0)
+            .compare("belt_loss_nm", self, 1.0)
             .unit("Nm"),
             self.step(
                 "T_\\text{in}",
@@ -134,14 +137,14 @@ impl Point<'_> {
                 format!("{net:.3} + {:.4} + {wedge:.4} + {pen:.4}", f.band_nm),
                 net + f.band_nm + wedge + pen,
             )
-            .is(input)
+            .compare_value(input)
             .unit("Nm"),
         ];
         steps.extend(self.worth(all, input));
         steps
     }
 
-    /// What the losses are in W and of the input, and what the clamping carries.
+    /// Losses in W and relative to the input, and the torque capacity of the clamping.
     fn worth(&self, all: f64, input: f64) -> [Step; 3] {
         let rs = self.at.geometry.secondary_radius_m;
         let least = self.clamps()[0].min(self.clamps()[1]);
@@ -170,12 +173,12 @@ impl Point<'_> {
                 ),
                 2.0 * mu * rs * least / self.belt.cos_wedge,
             )
-            .is(self.capacity_nm())
+            .compare_value(self.capacity_nm())
             .unit("Nm"),
         ]
     }
 
-    /// Torque capacity as the program has it, Nm.
+    /// Torque capacity computed by the program, Nm.
     fn capacity_nm(&self) -> f64 {
         let at = At {
             ratio: self.ratio,

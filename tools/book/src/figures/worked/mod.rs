@@ -1,46 +1,45 @@
-//! One operating point worked through the pages of the belt: each equation with its numbers, worked out here by the page's own
-//! equations, next to what the program gives.
+//! Worked example of the belt's pages at one operating point: each equation with its numbers, evaluated here by the page's
+//! equations, next to the program's result.
 
 mod losses;
 mod slip;
 
 use super::point::{Answer, HEAD, POINT, answers, numbers};
 use super::reference::{RPM, Reference};
-use cvtcycle::model::fluid::Friction;
+use cvtcycle::model::lubricant::Friction;
 use cvtcycle::model::transmission::cvt::variator::{Belt, BeltAtRatio};
 use std::fmt::Write as _;
 
-/// A line of a worked example.
+/// Line of a worked example.
 #[derive(Clone)]
 struct Step {
     /// Symbol, in LaTeX.
     symbol: &'static str,
-    /// Label of the equation, or where the number is from.
+    /// Label of the equation, or source of the number.
     by: &'static str,
     /// The equation with its numbers, in LaTeX.
     worked: String,
-    /// Result of the equation as the page has it.
+    /// Result of the equation on the page.
     value: f64,
-    /// The same from the program, where it prints it.
+    /// Result of the program, if it prints one.
     program: Option<f64>,
-    /// Factor to the unit that is shown, and the unit.
+    /// Factor to the displayed unit, and the unit.
     shown: (f64, &'static str),
 }
 
-/// A result of the pages' equations, and the same of the program.
+/// Result of the page's equations, and of the program.
 pub struct Checked {
     /// Page and symbol.
     pub name: String,
-    /// By the equations of the page.
+    /// Result of the equations of the page.
     pub worked: f64,
-    /// By the program.
+    /// Result of the program.
     pub program: f64,
 }
 
-/// Every result that the program has as well.
-///
+/// All results that the program prints too.
 /// # Errors
-/// A sentence, if the belt does not answer.
+/// A sentence, if the belt has no result.
 pub fn checked() -> Result<Vec<Checked>, String> {
     let pages = pages(&Reference::load()?)?;
     let of_page = |(page, steps): (&'static str, Vec<Step>)| {
@@ -59,22 +58,21 @@ pub fn checked() -> Result<Vec<Checked>, String> {
 
 /// Worked pages: name, steps.
 fn pages(r: &Reference) -> Result<Vec<(&'static str, Vec<Step>)>, String> {
-    let of = Point::new(r)?;
-    let forces = of.forces();
+    let point = Point::new(r)?;
+    let forces = point.forces();
     Ok(vec![
-        ("geometry", of.geometry()),
-        ("tension", of.tension(&forces)),
-        ("slip", of.slip(&forces)),
-        ("bands", of.bands(&forces)),
-        ("deflection", of.deflection()),
-        ("belt", of.sum(&forces)),
+        ("geometry", point.geometry()),
+        ("tension", point.tension(&forces)),
+        ("slip", point.slip(&forces)),
+        ("bands", point.bands(&forces)),
+        ("deflection", point.deflection()),
+        ("belt", point.sum(&forces)),
     ])
 }
 
-/// The include files: a table a page, and the table of the exercise.
-///
+/// Include files: one table per page, and the table of the exercise.
 /// # Errors
-/// A sentence, if the belt does not answer.
+/// A sentence, if the belt has no result.
 pub fn files(r: &Reference) -> Result<Vec<(String, String)>, String> {
     let mut files = Vec::new();
     for (page, steps) in pages(r)? {
@@ -89,7 +87,7 @@ fn table(steps: &[Step]) -> String {
         | symbol | result | with the numbers | by |\n|---|---:|---|---|\n"
         .to_owned();
     for step in steps {
-        // Writing into a String cannot fail.
+        // Writing to a String is infallible.
         let _ = writeln!(
             text,
             "| ${}$ | {} | ${}$ | {} |",
@@ -102,7 +100,7 @@ fn table(steps: &[Step]) -> String {
     text
 }
 
-/// A label as a link to its page.
+/// Links a label to its page.
 fn linked(by: &str) -> String {
     let page = match by.get(..2) {
         Some("GE") => "geometry",
@@ -116,14 +114,14 @@ fn linked(by: &str) -> String {
     format!("[{by}]({page}.md#{by})")
 }
 
-/// Four significant digits.
+/// Formats four significant digits.
 fn digits(x: f64) -> String {
     let whole = x.abs().max(1e-9).log10().floor() as i32 + 1;
     let places = usize::try_from(4 - whole).unwrap_or(0);
     format!("{x:.places$}").replace('-', "\u{2212}")
 }
 
-/// The point with what its pages start from.
+/// Operating point with the initial values of its pages.
 struct Point<'r> {
     r: &'r Reference,
     belt: &'r Belt,
@@ -136,7 +134,7 @@ struct Point<'r> {
     rad_s: f64,
 }
 
-/// Forces that later pages need, by the equations of the earlier ones.
+/// Forces from the equations of earlier pages, used by later ones.
 struct Forces {
     /// Mean tension without compression, N: A of TE-7.
     bare_n: f64,
@@ -167,11 +165,11 @@ impl<'r> Point<'r> {
         })
     }
 
-    /// Forces of clamping from the wraps, N: primary, secondary.
+    /// Clamping forces from the wraps, N: primary, secondary.
     fn clamps(&self) -> [f64; 2] {
-        let of = |name: &str| self.answer.of(name);
-        let secondary = of("secondary_clamp_n");
-        let wraps = [of("primary_wrap_rad"), of("secondary_wrap_rad")];
+        let value = |name: &str| self.answer.column(name);
+        let secondary = value("secondary_clamp_n");
+        let wraps = [value("primary_wrap_rad"), value("secondary_wrap_rad")];
         [secondary * wraps[0] / wraps[1], secondary]
     }
 
@@ -188,7 +186,7 @@ impl<'r> Point<'r> {
         ]
     }
 
-    /// The smaller wrap, rad.
+    /// Smaller wrap angle, rad.
     fn small_rad(&self) -> f64 {
         let g = &self.at.geometry;
         g.primary_wrap_rad.min(g.secondary_wrap_rad)
@@ -242,7 +240,7 @@ impl<'r> Point<'r> {
         let root = format!("f({rs:.2}\\ \\text{{mm}}) = 0, \\quad X = {x:.1}, \\ L = {l:.1}");
         let mut steps = vec![
             self.step("R_s", "GE-4", root, rs)
-                .of("secondary_radius_m", self, 1e3)
+                .compare("secondary_radius_m", self, 1e3)
                 .mm(),
             self.step(
                 "R_p",
@@ -250,7 +248,7 @@ impl<'r> Point<'r> {
                 format!("{rs:.2} / {}", self.ratio),
                 rs / self.ratio,
             )
-            .of("primary_radius_m", self, 1e3)
+            .compare("primary_radius_m", self, 1e3)
             .mm(),
         ];
         steps.extend(self.wraps(alpha, wraps, [rp, rs, x]));
@@ -261,7 +259,7 @@ impl<'r> Point<'r> {
                 format!("\\sqrt{{{x:.1}^2 - {:.2}^2}}", rs - rp),
                 strut,
             )
-            .of("strut_length_m", self, 1e3)
+            .compare("strut_length_m", self, 1e3)
             .mm(),
             self.step(
                 "L",
@@ -272,13 +270,13 @@ impl<'r> Point<'r> {
                 ),
                 sum,
             )
-            .is(l)
+            .compare_value(l)
             .mm(),
         ]);
         steps
     }
 
-    /// Lean of the struts and wraps, from both radii and the centre distance, mm.
+    /// Inclination of the struts and wraps, from both radii and the centre distance, mm.
     fn wraps(&self, alpha: f64, wraps: [f64; 2], [rp, rs, x]: [f64; 3]) -> [Step; 3] {
         [
             self.step(
@@ -294,7 +292,7 @@ impl<'r> Point<'r> {
                 format!("\\pi - 2 \\cdot {alpha:.4}"),
                 wraps[0],
             )
-            .of("primary_wrap_rad", self, 1.0)
+            .compare("primary_wrap_rad", self, 1.0)
             .unit("rad"),
             self.step(
                 "\\beta_s",
@@ -302,7 +300,7 @@ impl<'r> Point<'r> {
                 format!("\\pi + 2 \\cdot {alpha:.4}"),
                 wraps[1],
             )
-            .of("secondary_wrap_rad", self, 1.0)
+            .compare("secondary_wrap_rad", self, 1.0)
             .unit("rad"),
         ]
     }
@@ -313,7 +311,7 @@ impl<'r> Point<'r> {
         steps
     }
 
-    /// From the pressure to the mean tension without compression.
+    /// Steps from the pressure to the mean tension without compression.
     fn clamping(&self, f: &Forces) -> [Step; 4] {
         let (g, belt) = (&self.at.geometry, self.belt);
         let ([fp, fs], tan) = (self.clamps(), belt.tan_wedge);
@@ -327,7 +325,7 @@ impl<'r> Point<'r> {
                 "p_s A_s + F_\\text{spring} + \\ldots".to_owned(),
                 fs,
             )
-            .of("secondary_clamp_n", self, 1.0)
+            .compare("secondary_clamp_n", self, 1.0)
             .unit("N"),
             self.step(
                 "F_p",
@@ -335,7 +333,7 @@ impl<'r> Point<'r> {
                 format!("{fs:.0} \\cdot {bp:.3} / {bs:.3}"),
                 fp,
             )
-            .of("primary_clamp_n", self, 1.0)
+            .compare("primary_clamp_n", self, 1.0)
             .unit("N"),
             self.step(
                 "v",
@@ -343,7 +341,7 @@ impl<'r> Point<'r> {
                 format!("{:.2} \\cdot {:.5}", self.rad_s, g.primary_radius_m),
                 f.speed_m_s,
             )
-            .of("belt_speed_m_s", self, 1.0)
+            .compare("belt_speed_m_s", self, 1.0)
             .unit("m/s"),
             self.step(
                 "A",
@@ -358,7 +356,7 @@ impl<'r> Point<'r> {
         ]
     }
 
-    /// Compression and tension step.
+    /// Steps for compression and tension step.
     fn compression(&self, f: &Forces) -> [Step; 4] {
         let g = &self.at.geometry;
         let (mu, small) = (self.friction.band, self.small_rad());
@@ -381,7 +379,7 @@ impl<'r> Point<'r> {
                 format!("{z:.1} / (1 + {c:.4})"),
                 f.compression_n,
             )
-            .of("segment_compression_n", self, 1.0)
+            .compare("segment_compression_n", self, 1.0)
             .unit("N"),
             self.step(
                 "T_m",
@@ -389,7 +387,10 @@ impl<'r> Point<'r> {
                 format!("{:.1} + {:.1} / 2", f.bare_n, f.compression_n),
                 f.mean_n,
             )
-            .is(0.5 * (self.answer.of("band_tension_1_n") + self.answer.of("band_tension_2_n")))
+            .compare_value(
+                0.5 * (self.answer.column("band_tension_1_n")
+                    + self.answer.column("band_tension_2_n")),
+            )
             .unit("N"),
             self.step(
                 "\\Delta T",
@@ -397,20 +398,20 @@ impl<'r> Point<'r> {
                 format!("{mu} \\cdot {small:.3} \\cdot {:.1}", f.mean_n),
                 f.step_n,
             )
-            .of("band_tension_step_n", self, 1.0)
+            .compare("band_tension_step_n", self, 1.0)
             .unit("N"),
         ]
     }
 }
 
 impl Step {
-    /// Held against a column of `cvtcycle belt`, times a factor.
-    fn of(self, column: &str, point: &Point, factor: f64) -> Self {
-        self.is(factor * point.answer.of(column))
+    /// Compares with a column of `cvtcycle belt`, times a factor.
+    fn compare(self, column: &str, point: &Point, factor: f64) -> Self {
+        self.compare_value(factor * point.answer.column(column))
     }
 
-    /// Held against a number of the program.
-    fn is(self, program: f64) -> Self {
+    /// Compares with a number of the program.
+    fn compare_value(self, program: f64) -> Self {
         Step {
             program: Some(program),
             ..self
@@ -436,7 +437,7 @@ impl Step {
     }
 }
 
-/// The exercise: a table that a reader can make, and its answers.
+/// Exercise: a table that a reader can make, and its solution.
 fn exercise(r: &Reference) -> Result<String, String> {
     let rows = [
         POINT,
@@ -463,7 +464,7 @@ fn exercise(r: &Reference) -> Result<String, String> {
     for (row, answer) in rows.iter().zip(answers(r, &rows)?) {
         let cells: Vec<String> = columns
             .iter()
-            .map(|(column, _)| digits(answer.of(column)))
+            .map(|(column, _)| digits(answer.column(column)))
             .collect();
         let _ = writeln!(
             text,

@@ -1,18 +1,18 @@
-//! Slip: both branches and their blend.
+//! Steps for slip: both branches and their blend.
 
 use super::{Forces, Point, Step};
 
 /// Forces on a segment, N; pairs are primary, secondary.
 struct Contact {
-    /// Friction that the flanks can give.
+    /// Maximum friction of the flanks.
     grip: [f64; 2],
-    /// What the bands pull on the shoulder.
+    /// Pull of the bands on the shoulder.
     shoulder: [f64; 2],
-    /// Segments in the arc.
+    /// Number of segments in the arc.
     count: [f64; 2],
 }
 
-/// Slip by one branch, over the belt's speed.
+/// Slip of one branch, relative to the belt's speed.
 struct Branch {
     gap: f64,
     idle: f64,
@@ -21,7 +21,7 @@ struct Branch {
 }
 
 impl Contact {
-    /// The branch with gaps of a sum over an idle arc, m, loading pulley `p`, and the compression that the other takes (SL-5, SL-6).
+    /// Branch with a sum of gaps over an idle arc, m, loading pulley `p`, and the compression carried by the other (SL-5, SL-6).
     fn branch(&self, gaps: f64, idle_arc: f64, p: usize, compression: f64) -> Branch {
         let (sign, o) = (if p == 0 { 1.0 } else { -1.0 }, 1 - p);
         let gap = gaps / idle_arc;
@@ -57,7 +57,7 @@ impl Point<'_> {
         }
     }
 
-    /// Arcs of both pulleys, m.
+    /// Arc lengths of both pulleys, m.
     fn arcs(&self) -> [f64; 2] {
         let g = &self.at.geometry;
         [
@@ -78,7 +78,7 @@ impl Point<'_> {
             * (g.strut_m / belt.strut_area_m2 + (k * pitch + arcs[1]) / (2.0 * area));
         let (slack, idle_arc) = (stretch + belt.initial_gap_m, arcs[0] - k * pitch);
         let conventional = c.branch(slack + squeeze, idle_arc, 0, cx);
-        // Without compression of its own the inverted branch has all of the secondary's arc idle.
+        // Without own compression the inverted branch idles on the whole arc of the secondary.
         let inverted = c.branch(slack, arcs[1], 1, 0.0);
         let squeezed = format!(
             "A_\\text{{arc}} = {:.3}\\ \\text{{mm²}} \\text{{ in SL-3}}",
@@ -102,7 +102,7 @@ impl Point<'_> {
         let mut steps = self.on_a_segment(f, np, dp).to_vec();
         steps.extend([
             self.step("k", "SL-4", count, k)
-                .of("active_segments", self, 1.0)
+                .compare("active_segments", self, 1.0)
                 .unit("segments"),
             self.step("e_\\text{band}", "SL-1", band, um(stretch))
                 .unit("µm"),
@@ -116,7 +116,7 @@ impl Point<'_> {
         steps
     }
 
-    /// Forces on a segment in the primary.
+    /// Steps for the forces on a segment in the primary.
     fn on_a_segment(&self, f: &Forces, normal_n: f64, shoulder_n: f64) -> [Step; 2] {
         let (belt, fp) = (self.belt, self.clamps()[0]);
         let (pitch, radius) = (belt.segment_thickness_m, self.at.geometry.primary_radius_m);
@@ -136,24 +136,26 @@ impl Point<'_> {
         ]
     }
 
-    /// Slip of the conventional branch.
-    fn conventional(&self, c: &Contact, of: &Branch, cx: f64) -> [Step; 3] {
+    /// Steps for the slip of the conventional branch.
+    fn conventional(&self, c: &Contact, branch: &Branch, cx: f64) -> [Step; 3] {
         let (n, [dp, ds], [gp, gs]) = (c.count[1], c.shoulder, c.grip);
-        let idle = format!("{} \\cdot {dp:.2} / {gp:.2}", percent(of.gap));
-        let load = format!("{} + {}", percent(of.gap), percent(of.idle));
+        let idle = format!("{} \\cdot {dp:.2} / {gp:.2}", percent(branch.gap));
+        let load = format!("{} + {}", percent(branch.gap), percent(branch.idle));
         let other = format!(
             "{} \\cdot \\frac{{{cx:.1} + {n:.1} \\cdot {ds:.2}}}{{{n:.1} \\cdot {gs:.2}}}",
-            percent(of.load)
+            percent(branch.load)
         );
         [
-            self.step("s_\\text{idle}", "SL-6", idle, of.idle).percent(),
-            self.step("s_\\text{load}", "SL-6", load, of.load).percent(),
-            self.step("s_\\text{other}", "SL-6", other, of.other)
+            self.step("s_\\text{idle}", "SL-6", idle, branch.idle)
+                .percent(),
+            self.step("s_\\text{load}", "SL-6", load, branch.load)
+                .percent(),
+            self.step("s_\\text{other}", "SL-6", other, branch.other)
                 .percent(),
         ]
     }
 
-    /// The blend with the inverted branch, and the loss.
+    /// Steps for the blend with the inverted branch, and the loss.
     fn blended(&self, f: &Forces, conventional: &Branch, inverted: &Branch) -> Vec<Step> {
         let (cx, width) = (f.compression_n, self.belt.blend_n);
         let w = 0.5 * (1.0 + (cx / width).tanh());
@@ -170,7 +172,7 @@ impl Point<'_> {
             )
         };
         let slip = primary + secondary;
-        let speed = |column: &str| self.answer.of(column) / f.speed_m_s;
+        let speed = |column: &str| self.answer.column(column) / f.speed_m_s;
         let lost = format!("{slip:.6} \\cdot {} / {}", self.output_nm, self.ratio);
         let lost_nm = slip * self.output_nm / self.ratio;
         let weight = format!("(1 + \\tanh({cx:.1}/{width:.0}))/2");
@@ -180,17 +182,19 @@ impl Point<'_> {
         vec![
             self.step("w", "SL-8", weight, w).unit(""),
             self.step("s_p", "SL-8", of_primary, primary)
-                .is(speed("primary_slip_m_s"))
+                .compare_value(speed("primary_slip_m_s"))
                 .percent(),
             self.step("s_s", "SL-8", of_secondary, secondary)
-                .is(speed("secondary_slip_m_s"))
+                .compare_value(speed("secondary_slip_m_s"))
                 .percent(),
             self.step("s", "VA-1", sum, slip)
-                .of("slip_percent", self, 0.01)
+                .compare("slip_percent", self, 0.01)
                 .percent(),
             self.step("T_\\text{slip}", "SL-11", lost, lost_nm)
-                .is(self.answer.of("slip_loss_primary_nm")
-                    + self.answer.of("slip_loss_secondary_nm"))
+                .compare_value(
+                    self.answer.column("slip_loss_primary_nm")
+                        + self.answer.column("slip_loss_secondary_nm"),
+                )
                 .unit("Nm"),
         ]
     }

@@ -11,11 +11,11 @@
 
 use super::pressure_table::{PressureTable, TableKeys, pressure_table};
 use crate::keys::{Choice, Key, Values, keys};
-use crate::math::{Gather, Left, Real, gather, ramp};
+use crate::math::{Gather, Mask, Real, physics, ramp};
 use std::sync::Arc;
 
 /// The Rover's law.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct MapLaw<R: Real = f64> {
     /// Pressure in low at closed throttle, Pa.
     pub base_pa: R,
@@ -57,16 +57,6 @@ pub enum ClampLaw<R: Real = f64> {
     /// PC-6, with the table of the box.
     Table,
 }
-
-gather!(MapLaw {
-    base_pa,
-    throttle_pa,
-    cold_per_k,
-    slow_factor,
-    slow_rad_s,
-    full_rad_s,
-    fall_s
-});
 
 /// The numbers of a law that looks at the belt: its slip, safety and least torque.
 fn numbers(law: &ClampLaw) -> [f64; 3] {
@@ -137,12 +127,12 @@ impl Gather for ClampLaw {
         }
     }
 
-    fn alike(&self, other: &Self) -> bool {
+    fn groups_with(&self, other: &Self) -> bool {
         std::mem::discriminant(self) == std::mem::discriminant(other)
     }
 }
 
-/// What the law looks at.
+/// Inputs of the law.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClampSignals<R: Real = f64> {
     /// Throttle 0..1.
@@ -157,20 +147,17 @@ pub struct ClampSignals<R: Real = f64> {
     pub force_log: R,
 }
 
-impl<R: Real> MapLaw<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> MapLaw<R> {
     /// Pressure before the cap, Pa (PC-1, PC-2).
-    #[inline(always)]
     pub fn pressure_pa(&self, s: &ClampSignals<R>) -> R {
         let rise = self.slow_factor
             + (1.0 - self.slow_factor) * ramp(s.engine_rad_s, self.slow_rad_s, self.full_rad_s);
         let over = s.engine_rad_s - self.full_rad_s;
-        let is_over = over.above(0.0);
-        let fallen = R::pick(is_over, rise - self.fall_s * over, rise);
-        let falls = fallen.above(self.slow_factor) | over.filled(0.0).reaches(over);
-        let fast = R::pick(falls, fallen, self.slow_factor); // PC-2
+        let is_over = over.gt(0.0);
+        let fallen = is_over.select(rise - self.fall_s * over, rise);
+        let falls = fallen.gt(self.slow_factor) | over.splat(0.0).ge(over);
+        let fast = falls.select(fallen, self.slow_factor); // PC-2
         fast * (self.base_pa + self.throttle_pa * s.throttle)
             * s.radius_factor
             * (1.0 + self.cold_per_k * (353.15 - s.oil_k)) // PC-1

@@ -106,7 +106,7 @@ impl PressureTable {
         self.read(at).0 // PC-6
     }
 
-    /// Whether the table has the point: a ratio within it, torque and speed not beyond its last ones. Less torque or speed than its first needs no more
+    /// True if the table covers the point: a ratio within it, torque and speed not beyond its last ones. Less torque or speed than its first needs no more
     /// pressure than that.
     #[must_use]
     pub fn holds(&self, at: &PressurePoint) -> bool {

@@ -1,4 +1,4 @@
-//! Which ratio the box takes: a variogram with a limited shift rate.
+//! Ratio control: a variogram with a limited shift rate.
 //!
 //! | label | statement | status |
 //! |---|---|---|
@@ -21,11 +21,11 @@
 
 use super::shift_map::{ShiftMap, shift_map};
 use crate::keys::{Bound, Choice, Values, curve, keys};
-use crate::math::{Left, Mask, Real, gather, ramp};
+use crate::math::{Gather, Mask, Real, physics, ramp};
 use std::sync::Arc;
 
 /// The checked controller.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct RatioControl<R: Real = f64> {
     /// Lowest gear: largest belt ratio.
     pub low: R,
@@ -56,28 +56,19 @@ pub struct RatioControl<R: Real = f64> {
     /// Lines in place of gentle driving, if there are any.
     pub line: Option<Box<OperatingLine<R>>>,
     /// A table in place of gentle driving, if there is one; lines come before it.
-    pub shift_map: Option<R::Each<Arc<ShiftMap>>>,
-    /// What a cold car adds to the target.
+    pub shift_map: Option<R::PerLane<Arc<ShiftMap>>>,
+    /// Rise of the target in a cold car.
     pub cold: ColdRise<R>,
 }
 
-gather! {
-    RatioControl {
-        low, high, gentle_rad_s, gentle_share, rise_rad_s, overrun_rad_s, highest_rad_s, route_efficiency, up_per_s, down_per_s,
-        rate_speed_rad_s, hysteresis, filter_s, line, shift_map, cold,
-    }
-}
-
 /// Target speeds in place of RC-1 and RC-2 (RC-13).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct OperatingLine<R: Real = f64> {
     /// Engine speed over the share of rated power asked for, rad/s.
     pub drive: Option<R::Curve>,
     /// Engine speed over road speed in m/s while no power is asked for, rad/s.
     pub overrun: Option<R::Curve>,
 }
-
-gather!(OperatingLine { drive, overrun });
 
 impl Default for OperatingLine {
     fn default() -> Self {
@@ -88,31 +79,28 @@ impl Default for OperatingLine {
     }
 }
 
-impl<R: Real> OperatingLine<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> OperatingLine<R> {
     /// The target at a demand, rad/s, where a line has it, else `other`.
-    #[inline(always)]
     fn target_rad_s(&self, d: &RatioDemand<R>, other: R) -> R {
         let locked_rad_s = ABOVE_LOCK * d.free_up_to_rad_s;
-        let drives = d.power_w.above(0.0);
+        let drives = d.power_w.gt(0.0);
         let mut target = other;
         if let Some(line) = &self.drive {
-            let own = d.share.along(line).most(locked_rad_s); // RC-13
-            target = R::pick(drives, own, target);
+            let own = d.share.interpolate(line).max(locked_rad_s); // RC-13
+            target = drives.select(own, target);
         }
         if let Some(line) = &self.overrun {
-            let speed = d.share.filled(d.speed_m_s);
-            let own = speed.along(line).most(locked_rad_s); // RC-13
-            target = R::pick(drives, target, own);
+            let speed = d.share.splat(d.speed_m_s);
+            let own = speed.interpolate(line).max(locked_rad_s); // RC-13
+            target = drives.select(target, own);
         }
         target
     }
 }
 
-/// What a cold car adds to the target of engine speed (RC-11).
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Rise of the target of engine speed in a cold car (RC-11).
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct ColdRise<R: Real = f64> {
     /// Rise in full, rad/s.
     pub rise_rad_s: R,
@@ -121,6 +109,7 @@ pub struct ColdRise<R: Real = f64> {
     /// Temperature from which there is none, K.
     pub to_k: R,
     /// True where the sump's temperature counts, false for the coolant's.
+    #[gather(same)]
     pub by_sump: bool,
 }
 
@@ -134,21 +123,16 @@ impl ColdRise {
     };
 }
 
-gather!(ColdRise { rise_rad_s, from_k, to_k } same { by_sump });
-
-impl<R: Real> ColdRise<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> ColdRise<R> {
     /// The rise at the temperatures of coolant and sump, K, rad/s.
-    #[inline(always)]
     pub fn at(&self, coolant_k: R, sump_k: R) -> R {
         let temp_k = if self.by_sump { sump_k } else { coolant_k };
         self.rise_rad_s * (1.0 - ramp(temp_k, self.from_k, self.to_k)) // RC-11
     }
 }
 
-/// What the controller looks at.
+/// Inputs of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RatioDemand<R: Real = f64> {
     /// Speed of the secondary once the clutch has locked, rad/s.
@@ -163,9 +147,9 @@ pub struct RatioDemand<R: Real = f64> {
     pub share: R,
     /// Lowest speed at which full load gives the power asked for, rad/s.
     pub full_load_rad_s: R,
-    /// What the shift map has for it, rad/s (RC-14); none without one.
+    /// Engine speed of the shift map, rad/s (RC-14); `None` without one.
     pub mapped_rad_s: Option<R>,
-    /// What a cold car adds to the target, rad/s.
+    /// Rise of the target in a cold car, rad/s.
     pub cold_rad_s: R,
     /// Ratio before the step.
     pub ratio_before: R,
@@ -173,98 +157,91 @@ pub struct RatioDemand<R: Real = f64> {
     pub flow_down_per_s: R,
     /// Limit from pump flow towards high, 1/s.
     pub flow_up_per_s: R,
-    /// Whether the launch clutch has locked.
+    /// True with the launch clutch locked.
     pub coupled: R::Mask,
     /// Direction of the last change: 1 towards low, -1 towards high, 0 before the first.
-    pub last_direction: R::Each<i8>,
+    pub last_direction: R::PerLane<i8>,
     /// Primary speed up to which the ratio turns round at once, rad/s.
     pub free_up_to_rad_s: R,
     /// Step, s.
     pub dt_s: f64,
 }
 
-impl<R: Real> RatioControl<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> RatioControl<R> {
     /// Target primary speed, rad/s (RC-1 to RC-3, RC-11, RC-13, RC-14).
-    #[inline(always)]
     pub fn target_rad_s(&self, d: &RatioDemand<R>) -> R {
         let mut speed = match d.mapped_rad_s {
-            Some(mapped) => mapped.most(ABOVE_LOCK * d.free_up_to_rad_s), // RC-14
+            Some(mapped) => mapped.max(ABOVE_LOCK * d.free_up_to_rad_s), // RC-14
             None => self.gentle_target_rad_s(d.share),
         };
         if let Some(line) = &self.line {
             speed = line.target_rad_s(d, speed);
         }
-        let cold = d.cold_rad_s.above(0.0);
+        let cold = d.cold_rad_s.gt(0.0);
         if cold.any() {
-            let raised = speed + d.cold_rad_s * (d.share / LEAST_GENTLE_SHARE).held(0.0, 1.0); // RC-11
-            speed = R::pick(cold, raised, speed);
+            let raised = speed + d.cold_rad_s * (d.share / MIN_GENTLE_SHARE).clamp(0.0, 1.0); // RC-11
+            speed = cold.select(raised, speed);
         }
-        let binds = d.power_w.above(0.0) & d.full_load_rad_s.above(speed);
-        R::pick(binds, d.full_load_rad_s, speed) // RC-3
-            .least(self.highest_rad_s)
+        let binds = d.power_w.gt(0.0) & d.full_load_rad_s.gt(speed);
+        binds
+            .select(d.full_load_rad_s, speed) // RC-3
+            .min(self.highest_rad_s)
     }
 
     /// Target at a share of rated power, rad/s.
-    #[inline(always)]
     fn gentle_target_rad_s(&self, share: R) -> R {
-        let drive = (share / self.gentle_share.most(LEAST_GENTLE_SHARE)).held(0.0, 1.0);
+        let drive = (share / self.gentle_share.max(MIN_GENTLE_SHARE)).clamp(0.0, 1.0);
         let speed = self.overrun_rad_s + drive * (self.gentle_rad_s - self.overrun_rad_s); // RC-2
         let risen = speed + self.rise_rad_s * (share - self.gentle_share); // RC-1
-        R::pick(share.above(self.gentle_share), risen, speed)
+        share.gt(self.gentle_share).select(risen, speed)
     }
 
     /// Share of rated power that RC-1 and RC-2 look at after a step, from that before and the one asked for (RC-9).
-    #[inline(always)]
     pub fn filtered_share(&self, before: R, asked: R, dt_s: f64) -> R {
-        let filters = self.filter_s.above(0.0);
+        let filters = self.filter_s.gt(0.0);
         if !filters.any() {
             return asked;
         }
         let filtered = before + (asked - before) * (1.0 - (-dt_s / self.filter_s).exp()); // RC-9
-        R::pick(filters, filtered, asked)
+        filters.select(filtered, asked)
     }
 
     /// Ratio after the step and its change in ln I (RC-4, RC-5), and whether pump flow held it back.
-    #[inline(always)]
     pub fn step(&self, d: &RatioDemand<R>) -> (R, R, R::Mask) {
         let before = d.ratio_before;
-        let zero = before.filled(0.0);
-        let rests = zero.reaches(d.primary_rad_s); // RC-4
+        let zero = before.splat(0.0);
+        let rests = zero.ge(d.primary_rad_s); // RC-4
         if rests.all() {
-            return (before, zero, before.answer(false));
+            return (before, zero, before.splat_mask(false));
         }
-        let wanted = (self.target_rad_s(d) / d.secondary_rad_s).held(self.high, self.low);
-        let too_early = !d.coupled & before.above(wanted); // RC-6
-        let wanted = R::pick(too_early, before, wanted);
-        let mut stays = rests | wanted.is_same(before);
+        let wanted = (self.target_rad_s(d) / d.secondary_rad_s).clamp(self.high, self.low);
+        let too_early = !d.coupled & before.gt(wanted); // RC-6
+        let wanted = too_early.select(before, wanted);
+        let mut stays = rests | wanted.bits_eq(before);
         if stays.all() {
-            return (before, zero, before.answer(false));
+            return (before, zero, before.splat_mask(false));
         }
         let change = (wanted / before).ln();
         stays = stays | self.stays(d, wanted, change); // RC-10
         if stays.all() {
-            return (before, zero, before.answer(false));
+            return (before, zero, before.splat_mask(false));
         }
         self.limited(d, (wanted, change), stays)
     }
 
     /// The same towards a ratio that is asked for from outside (RC-15).
-    #[inline(always)]
     pub fn paced(&self, d: &RatioDemand<R>, asked: R) -> (R, R, R::Mask) {
         let before = d.ratio_before;
-        let wanted = asked.held(self.high, self.low);
-        let stays = wanted.is_same(before);
+        let wanted = asked.clamp(self.high, self.low);
+        let stays = wanted.bits_eq(before);
         if stays.all() {
-            return (wanted, before.filled(0.0), before.answer(false));
+            return (wanted, before.splat(0.0), before.splat_mask(false));
         }
         self.limited(d, (wanted, (wanted / before).ln()), stays)
     }
 
     /// As much of a change of ln I, to a wanted ratio, as the rates allow (RC-4, RC-5); none where the ratio stays.
-    #[inline(always)]
     fn limited(
         &self,
         d: &RatioDemand<R>,
@@ -272,42 +249,37 @@ where
         stays: R::Mask,
     ) -> (R, R, R::Mask) {
         let before = d.ratio_before;
-        let zero = before.filled(0.0);
-        let pace = (d.primary_rad_s / self.rate_speed_rad_s).held(0.0, 1.0);
+        let zero = before.splat(0.0);
+        let pace = (d.primary_rad_s / self.rate_speed_rad_s).clamp(0.0, 1.0);
         let (up, down) = (self.up_per_s * pace, self.down_per_s * pace); // RC-4
         let (flow_up, flow_down) = (d.flow_up_per_s, d.flow_down_per_s);
-        let short_down =
-            change.above(0.0) & down.above(flow_down) & change.above(flow_down * d.dt_s);
-        let short_up = zero.above(change) & up.above(flow_up) & (-change).above(flow_up * d.dt_s);
-        let (up, down) = (flow_up.least(up), flow_down.least(down)); // RC-5
+        let short_down = change.gt(0.0) & down.gt(flow_down) & change.gt(flow_down * d.dt_s);
+        let short_up = zero.gt(change) & up.gt(flow_up) & (-change).gt(flow_up * d.dt_s);
+        let (up, down) = (flow_up.min(up), flow_down.min(down)); // RC-5
         let (least, most) = (-up * d.dt_s, down * d.dt_s);
-        let free = change.reaches(least) & most.reaches(change);
+        let free = change.ge(least) & most.ge(change);
         let (mut ratio, mut made) = (wanted, change);
         if !(free | stays).all() {
-            let held = change.held(least, most);
-            let moved = (before * held.exp()).held(self.high, self.low);
-            ratio = R::pick(free, wanted, moved);
-            made = R::pick(free, change, held);
+            let held = change.clamp(least, most);
+            let moved = (before * held.exp()).clamp(self.high, self.low);
+            ratio = free.select(wanted, moved);
+            made = free.select(change, held);
         }
         (
-            R::pick(stays, before, ratio),
-            R::pick(stays, zero, made),
+            stays.select(before, ratio),
+            stays.select(zero, made),
             !stays & (short_down | short_up),
         )
     }
 
     /// True where a change of ln I is a reversal too small to be made (RC-10).
-    #[inline(always)]
     fn stays(&self, d: &RatioDemand<R>, wanted: R, change: R) -> R::Mask {
-        let direction = change.by_lane(
-            #[inline(always)]
-            |lane| f64::from(*R::one(&d.last_direction, lane)),
-        );
-        change.filled(0.0).above(direction * change)
-            & self.hysteresis.reaches(change.abs())
-            & wanted.above(self.high)
-            & self.low.above(wanted)
-            & (d.ratio_before * d.secondary_rad_s).above(d.free_up_to_rad_s)
+        let direction = change.map_lanes(|lane| f64::from(*R::get(&d.last_direction, lane)));
+        change.splat(0.0).gt(direction * change)
+            & self.hysteresis.ge(change.abs())
+            & wanted.gt(self.high)
+            & self.low.gt(wanted)
+            & (d.ratio_before * d.secondary_rad_s).gt(d.free_up_to_rad_s)
     }
 }
 
@@ -318,22 +290,19 @@ pub const FREE_OVER_IDLE: f64 = 1.2;
 const ABOVE_LOCK: f64 = 1.006;
 
 /// Least share of rated power over which the target rises from that without power, so that it does not jump (RC-2, RC-11).
-const LEAST_GENTLE_SHARE: f64 = 0.01;
+const MIN_GENTLE_SHARE: f64 = 0.01;
 
 /// Change of ln I that counts as one (RC-10).
-const LEAST_CHANGE: f64 = 1e-4;
+const MIN_CHANGE: f64 = 1e-4;
 
 /// Direction of the last change, after a change of ln I (RC-10).
-#[inline(always)]
-pub fn direction_after<R: Real>(change: R, last_direction: &R::Each<i8>) -> R::Each<i8> {
-    R::every(
-        #[inline(always)]
-        |lane| match change.lane(lane) {
-            change if change > LEAST_CHANGE => 1,
-            change if change < -LEAST_CHANGE => -1,
-            _ => *R::one(last_direction, lane),
-        },
-    )
+#[physics]
+pub fn direction_after<R: Real>(change: R, last_direction: &R::PerLane<i8>) -> R::PerLane<i8> {
+    R::per_lane(|lane| match change.lane(lane) {
+        change if change > MIN_CHANGE => 1,
+        change if change < -MIN_CHANGE => -1,
+        _ => *R::get(last_direction, lane),
+    })
 }
 
 keys! {

@@ -38,7 +38,7 @@ const HALVINGS: usize = 60;
 /// Relative width at which they end.
 const CLOSE: f64 = 1e-10;
 
-/// What the demand of a table is.
+/// Quantity of a table's demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Demand {
     /// Share of the power at full load at the target speed.

@@ -1,10 +1,10 @@
 //! The belt at one ratio: what every operating point there has in common.
 
 use super::{Belt, Geometry, bands, deflection};
-use crate::math::{Left, Real, both, gather, ramp};
+use crate::math::{Gather, Real, both, physics, ramp};
 
 /// The belt at one ratio: everything that does not depend on torque or pressure.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct BeltAtRatio<R: Real = f64> {
     /// Geometry.
     pub geometry: Geometry<R>,
@@ -12,14 +12,14 @@ pub struct BeltAtRatio<R: Real = f64> {
     pub direction: R,
     /// Primary clamp over secondary clamp (TE-1).
     pub thrust_ratio: R,
-    /// What the loss equations need of the belt, whatever its ratio.
+    /// Constants of the loss equations at any ratio.
     pub fixed: Fixed<R>,
-    /// What they need of this ratio, worked out once.
+    /// Constants of the loss equations at this ratio.
     pub prepared: Prepared<R>,
 }
 
 /// Coefficients of a belt at every ratio, so that a new one costs few divisions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Fixed<R: Real = f64> {
     /// One over the segments' thickness, 1/m.
     pub inv_pitch: R,
@@ -48,7 +48,7 @@ pub struct Fixed<R: Real = f64> {
 }
 
 /// Coefficients of one ratio, so that an operating point costs few divisions; pairs are primary, secondary.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Prepared<R: Real = f64> {
     /// Contact arcs, m.
     pub arc_m: [R; 2],
@@ -86,33 +86,9 @@ pub struct Prepared<R: Real = f64> {
     pub capacity_m: R,
 }
 
-gather!(BeltAtRatio {
-    geometry,
-    direction,
-    thrust_ratio,
-    fixed,
-    prepared
-});
-
-gather! {
-    Fixed {
-        inv_pitch, normal_per_clamp, band_gap_m_n, strut_per_n, mean_offset_m, outer_part, coated_part, wedge_half_cot, wedge_per_m,
-        penetration_per_m, inv_unity_width, per_blend_n,
-    }
-}
-
-gather! {
-    Prepared {
-        arc_m, count, normal_per_clamp, shoulder_per_step, band_gap_m_n, strut_gap_m_n, slide_m, shoulder_rad,
-        film_area_m2, film_levers_m, stop, wedge_per_m, penetration, inv_segments, inv_secondary_radius, clamps_per_wrap, capacity_m,
-    }
-}
-
-impl<R: Real> Fixed<R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> Fixed<R> {
+    #[inline]
     fn new(belt: &Belt<R>) -> Self {
         let inv_pitch = 1.0 / belt.segment_thickness_m;
         Fixed {
@@ -132,11 +108,8 @@ where
     }
 }
 
-impl<R: Real> Prepared<R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<R: Real> Prepared<R> {
     fn new(
         belt: &Belt<R>,
         fixed: &Fixed<R>,
@@ -152,8 +125,8 @@ where
         let inv_radius = [g.ratio * inv_secondary_radius, inv_secondary_radius]; // GE-1
         let inv_wrap = [1.0 / g.primary_wrap_rad, 1.0 / g.secondary_wrap_rad];
         let inv_segments = both!(i => pitch * (inv_radius[i] * inv_wrap[i]));
-        let least = g.primary_wrap_rad.least(g.secondary_wrap_rad);
-        let inv_least = inv_wrap[0].most(inv_wrap[1]);
+        let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
+        let inv_least = inv_wrap[0].max(inv_wrap[1]);
         Prepared {
             arc_m,
             count: both!(i => arc_m[i] * fixed.inv_pitch),
@@ -178,31 +151,25 @@ where
     }
 }
 
-impl<R: Real> BeltAtRatio<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> BeltAtRatio<R> {
     /// Prepares a ratio.
+    #[inline]
     pub fn new(belt: &Belt<R>, ratio: R) -> Self {
-        ratio.within(
-            #[inline(always)]
-            || Self::prepare(belt, Fixed::new(belt), ratio),
-        )
+        ratio.vectorize(|| Self::prepare(belt, Fixed::new(belt), ratio))
     }
 
     /// Takes the belt, which is the same, to another ratio.
-    #[inline(always)]
     pub fn move_to(&mut self, belt: &Belt<R>, ratio: R) {
         *self = Self::prepare(belt, self.fixed, ratio);
     }
 
-    #[inline(always)]
     fn prepare(belt: &Belt<R>, fixed: Fixed<R>, ratio: R) -> Self {
         let geometry = Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
         let log = ratio.ln();
         let direction = -(log * fixed.inv_unity_width).tanh(); // TE-6
         let thrust_ratio = match &belt.thrust_ratio {
-            Some(curve) => log.along(curve),
+            Some(curve) => log.interpolate(curve),
             None => geometry.primary_wrap_rad / geometry.secondary_wrap_rad, // TE-1
         };
         BeltAtRatio {

@@ -16,23 +16,20 @@
 //! No loss at I = 1, exactly (thesis 8.3). Losses carry no sign of torque: they are positive in drive and overrun.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry, Tension};
-use crate::fluid::{BandFriction, Friction};
-use crate::math::{Left, Real, both};
+use crate::lubricant::{BandFriction, Friction};
+use crate::math::{Mask, Real, both, physics};
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 
 /// Friction-weighted sliding of the band pack on each pulley per turn of the primary, m: on both with the wrap factor (BT-2 to BT-4), or on
 /// the smaller wrap alone, with the part of the one force that a `direction` of the tension step leaves (BT-6, BT-7).
-#[inline(always)]
-pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, mean_offset_m: R, direction: R) -> [R; 2]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn slide_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, mean_offset_m: R, direction: R) -> [R; 2] {
     let slide = (g.inv_ratio - 1.0).abs() * mean_offset_m;
     if belt.formulation.by_statics() {
         return on_smaller_wrap(g, direction.abs() * slide);
     }
     let wraps = [g.primary_wrap_rad, g.secondary_wrap_rad];
-    let least = wraps[0].least(wraps[1]);
+    let least = wraps[0].min(wraps[1]);
     if belt.formulation.scales_band_force() {
         both!(i => 0.5 * slide * least / wraps[i]) // BT-4
     } else {
@@ -41,63 +38,48 @@ where
 }
 
 /// A value of the pulley of smaller wrap, where the bands slide, and nothing of the other (BT-7).
-#[inline(always)]
+#[physics]
 fn on_smaller_wrap<R: Real>(g: &Geometry<R>, value: R) -> [R; 2] {
     let (primary, none) = (
-        g.secondary_wrap_rad.above(g.primary_wrap_rad),
-        value.filled(0.0),
+        g.secondary_wrap_rad.gt(g.primary_wrap_rad),
+        value.splat(0.0),
     );
-    [R::pick(primary, value, none), R::pick(primary, none, value)]
+    [primary.select(value, none), primary.select(none, value)]
 }
 
 /// Offset of the bands above the rocking edge, weighted by their normal forces, m (BT-2).
-#[inline(always)]
-pub fn mean_offset_m<R: Real>(belt: &Belt<R>) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn mean_offset_m<R: Real>(belt: &Belt<R>) -> R {
     belt.band_offset_m + belt.band_thickness_m * (belt.band_count - 1.0) / 2.0
 }
 
 /// Part of the bands' sliding, weighted by friction, that is not at the innermost interface (BT-2).
-#[inline(always)]
-pub fn outer_part<R: Real>(belt: &Belt<R>) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn outer_part<R: Real>(belt: &Belt<R>) -> R {
     let outer = belt.band_thickness_m * (belt.band_count - 1.0) / 2.0;
     let part = outer / mean_offset_m(belt);
-    R::pick(outer.above(0.0), part, outer.filled(0.0))
+    outer.gt(0.0).select(part, outer.splat(0.0))
 }
 
 /// Part of the bands' sliding that a coating of the shoulders takes away (BT-8).
-#[inline(always)]
-pub fn coated_part<R: Real>(belt: &Belt<R>) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn coated_part<R: Real>(belt: &Belt<R>) -> R {
     (1.0 - belt.shoulder_friction) * (1.0 - outer_part(belt)) // BT-8
 }
 
 /// Contact area of a film, on the smaller wrap, m2 (FI-1).
-#[inline(always)]
-pub fn film_area_m2<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn film_area_m2<R: Real>(belt: &Belt<R>, g: &Geometry<R>) -> R {
     let arcs_m = [
         g.primary_radius_m * g.primary_wrap_rad,
         g.secondary_radius_m * g.secondary_wrap_rad,
     ];
-    belt.band_width_m * arcs_m[0].least(arcs_m[1])
+    belt.band_width_m * arcs_m[0].min(arcs_m[1])
 }
 
 /// Levers of the films' forces, at the primary shaft, m: innermost interface, all others together (FI-1).
-#[inline(always)]
-pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn film_levers_m<R: Real>(belt: &Belt<R>, g: &Geometry<R>, direction: R) -> [R; 2] {
     let turns = direction.abs() * (g.inv_ratio - 1.0).abs();
     [
         turns * belt.band_offset_m,
@@ -106,22 +88,19 @@ where
 }
 
 /// Forces of the films on the innermost interface and on each other one, N (FI-1, FH-1).
-#[inline(always)]
+#[physics]
 pub fn film_n<R: Real>(
     friction: &Friction<R>,
     band: &BandFriction<R>,
     area_m2: R,
     sliding_m_s: [R; 2],
-) -> [R; 2]
-where
-    f64: Left<R>,
-{
+) -> [R; 2] {
     let heating = ViscousSelfHeating::halving(friction.film_heating_w);
     both!(i => heating.torque_nm(band.shear_pa[i] * area_m2, sliding_m_s[i])) // FI-1
 }
 
 /// Adopted band speed of a formulation as `travel_m` takes it (BT-1, BT-7).
-#[inline(always)]
+#[physics]
 pub fn speed_share<R: Real>(belt: &Belt<R>) -> f64 {
     if belt.formulation.by_statics() {
         -0.5
@@ -142,11 +121,8 @@ pub fn travel_m(belt: &Belt, g: &Geometry, speed_share: f64) -> [f64; 2] {
 }
 
 /// Sliding speed at the innermost interface and at each other one where the bands slide, m/s (BT-1, BT-7).
-#[inline(always)]
-pub fn sliding_speed_m_s<R: Real>(belt: &Belt<R>, ratio: R, primary_speed_rad_s: R) -> [R; 2]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn sliding_speed_m_s<R: Real>(belt: &Belt<R>, ratio: R, primary_speed_rad_s: R) -> [R; 2] {
     let share = if belt.formulation.by_statics() {
         1.0 // BT-7
     } else {
@@ -168,11 +144,12 @@ pub fn pulley_sliding_m_s(belt: &Belt, g: &Geometry, primary_speed_rad_s: f64) -
 }
 
 /// Boundary friction loss of the bands on the arcs of primary and secondary, Nm at the primary shaft (BT-3, BT-6).
-#[inline(always)]
-pub fn band_loss_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, band: &BandFriction<R>) -> [R; 2]
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn band_loss_nm<R: Real>(
+    at: &BeltAtRatio<R>,
+    t: &Tension<R>,
+    band: &BandFriction<R>,
+) -> [R; 2] {
     let shoulder_n = [t.primary_shoulder_n, t.secondary_shoulder_n];
     let [inner, outer] = band.film_share;
     let lifted = inner + (outer - inner) * at.fixed.outer_part;
@@ -182,7 +159,7 @@ where
 }
 
 /// Viscous shear of the films, torque at the primary shaft, Nm (FI-1).
-#[inline(always)]
+#[physics]
 pub fn film_loss_nm<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     let [inner, outer] = at.prepared.film_levers_m;
     load.film_n[0] * inner + load.film_n[1] * outer // FI-1

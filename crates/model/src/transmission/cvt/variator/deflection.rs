@@ -11,7 +11,7 @@
 //! N is the resultant normal force on a segment (both flanks), t the segment thickness. Always positive; zero at zero clamping force.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{Left, Real, both};
+use crate::math::{Real, both, physics};
 
 /// Wedge and penetration losses at the primary shaft, Nm; pairs are primary, secondary.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -23,45 +23,36 @@ pub struct Deflection<R: Real = f64> {
 }
 
 /// 2/t times depth over deflection, 1/m, with 1/t known (PE-1).
-#[inline(always)]
-pub fn penetration_per_m<R: Real>(belt: &Belt<R>, inv_thickness: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn penetration_per_m<R: Real>(belt: &Belt<R>, inv_thickness: R) -> R {
     let depth = if belt.formulation.radial_penetration() {
         0.5 / belt.tan_wedge
     } else {
-        belt.tan_wedge.filled(1.0)
+        belt.tan_wedge.splat(1.0)
     };
     2.0 * depth * inv_thickness
 }
 
 /// Wedge and penetration losses, both pulleys side by side (WE-1 to PE-1).
-#[inline(always)]
+#[physics]
 pub fn deflection<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
     t: &Tension<R>,
     mu_flank: R,
-) -> Deflection<R>
-where
-    f64: Left<R>,
-{
+) -> Deflection<R> {
     let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
     clamped(belt, at, clamp_n, mu_flank)
 }
 
 /// The same from the clamping forces, N.
-#[inline(always)]
+#[physics]
 fn clamped<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
     clamp_n: [R; 2],
     mu_flank: R,
-) -> Deflection<R>
-where
-    f64: Left<R>,
-{
+) -> Deflection<R> {
     let (g, prepared) = (&at.geometry, &at.prepared);
     let radius_m = [g.primary_radius_m, g.secondary_radius_m];
     let friction_n = both!(i => mu_flank * clamp_n[i] * prepared.normal_per_clamp[i]);

@@ -4,9 +4,9 @@
 //! the rows below.
 
 use crate::keys::Choice;
-use crate::math::{Real, tan};
+use crate::math::{Real, physics, tan};
 
-/// Which reading of the belt model is used.
+/// Reading of the belt model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Formulation {
     /// For driving: Appendix C, with chapter 8's sign of the primary slip in inverted loading and the end-stop ramp.
@@ -18,6 +18,7 @@ pub enum Formulation {
     Chapter8,
 }
 
+#[physics]
 impl Formulation {
     /// Names as on the command line.
     pub const NAMES: [(&'static str, Formulation); 3] = [
@@ -36,7 +37,7 @@ impl Formulation {
         Choice::word(Self::NAMES[2].0, "as the equations of chapter 8"),
     ];
 
-    /// Its name.
+    /// Name of the formulation.
     pub fn name(self) -> &'static str {
         let own = Self::NAMES.iter().find(|(_, other)| *other == self);
         own.map_or("", |(name, _)| name)
@@ -49,17 +50,15 @@ impl Formulation {
     }
 
     /// Segment friction where the formulation prescribes it; the fluid's otherwise.
-    #[inline(always)]
     pub fn segment_friction<R: Real>(self, fluid: R) -> R {
         match self {
             Formulation::Smooth => fluid,
-            Formulation::AppendixC => fluid.filled(0.125),
-            Formulation::Chapter8 => fluid.filled(0.13),
+            Formulation::AppendixC => fluid.splat(0.125),
+            Formulation::Chapter8 => fluid.splat(0.13),
         }
     }
 
     /// Friction that bounds the torque: of macro slip (VA-4), in the printed forms that of micro slip (VA-2).
-    #[inline(always)]
     pub fn capacity_friction<R: Real>(self, segment: R, macro_slip: R) -> R {
         match self {
             Formulation::Smooth => macro_slip,
@@ -67,7 +66,7 @@ impl Formulation {
         }
     }
 
-    /// Whether the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
+    /// True if the bands may ride on oil: the film is no part of the thesis's two readings (LU-4, FI-1).
     #[inline]
     pub fn has_film(self) -> bool {
         self == Formulation::Smooth
@@ -127,26 +126,23 @@ impl Formulation {
     }
 
     /// tan of the angle in the wedge terms: the program has a literal 11 degrees.
-    #[inline(always)]
     pub fn wedge_tan<R: Real>(self, own: R) -> R {
         if self == Formulation::AppendixC {
-            own.filled(tan(11.0f64.to_radians()))
+            own.splat(tan(11.0f64.to_radians()))
         } else {
             own
         }
     }
 
     /// Part of the primary's deflection left near its end stop, from the ramp's value (1 away from the stop).
-    #[inline(always)]
     pub fn primary_stop<R: Real>(self, ramp: R) -> R {
         match self {
-            Formulation::AppendixC => ramp.filled(1.0),
+            Formulation::AppendixC => ramp.splat(1.0),
             Formulation::Smooth | Formulation::Chapter8 => ramp,
         }
     }
 
     /// Segment compression as the slip equations take it: the program lifts \|C_x\| < 30 N to +30 N, the chapter to 30 N with its sign.
-    #[inline(always)]
     pub fn compression_n<R: Real>(self, cx: R) -> R {
         let lifted = |cx: f64| match self {
             Formulation::AppendixC if cx.abs() < 30.0 => 30.0,
@@ -155,7 +151,7 @@ impl Formulation {
         };
         match self {
             Formulation::Smooth => cx,
-            Formulation::AppendixC | Formulation::Chapter8 => cx.each(lifted),
+            Formulation::AppendixC | Formulation::Chapter8 => cx.map(lifted),
         }
     }
 }

@@ -10,11 +10,11 @@
 //! Symbols: X centre distance, L belt length, all m; angles rad. Valid for ratios 0.3 to 3.3 of the shipped belt; the configured
 //! limits lie within. f is convex and rising in R, so Newton from the series start needs at most three steps.
 
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use std::f64::consts::PI;
 
 /// Geometry of the belt at one ratio.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Gather, PartialEq)]
 pub struct Geometry<R: Real = f64> {
     /// Belt ratio I = R_sec / R_pri.
     pub ratio: R,
@@ -32,25 +32,12 @@ pub struct Geometry<R: Real = f64> {
     pub strut_m: R,
 }
 
-gather!(Geometry {
-    ratio,
-    inv_ratio,
-    primary_radius_m,
-    secondary_radius_m,
-    primary_wrap_rad,
-    secondary_wrap_rad,
-    strut_m
-});
-
 /// Square of pi.
 const PI_SQUARED: f64 = PI * PI;
 
-impl<R: Real> Geometry<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Geometry<R> {
     /// Solves the belt's geometry for a ratio, centre distance and belt length (GE-1 to GE-4).
-    #[inline(always)]
     pub fn new(ratio: R, centre_distance_m: R, belt_length_m: R) -> Self {
         let (x, l) = (centre_distance_m, belt_length_m);
         let (inv_ratio, inv_x) = (1.0 / ratio, 1.0 / x); // g is 0 at I = 1 to the bit
@@ -60,14 +47,14 @@ where
         let mut r = 2.0 * free / (PI * h + root);
         let mut alpha = (g * r * inv_x).asin();
         let mut strut = (x * x - g * r * g * r).sqrt();
-        let mut open = !r.above(r); // in every lane
+        let mut open = !r.gt(r); // in every lane
         for _ in 0..4 {
             let f = PI * h * r + 2.0 * alpha * g * r + 2.0 * strut - l;
             let step = f / (PI * h + 2.0 * alpha * g); // GE-4
-            r = R::pick(open, r - step, r);
+            r = open.select(r - step, r);
             alpha = (g * r * inv_x).asin();
             strut = (x * x - g * r * g * r).sqrt();
-            open = open & step.abs().above(1e-9 * r);
+            open = open & step.abs().gt(1e-9 * r);
             if !open.any() {
                 break;
             }
@@ -84,7 +71,6 @@ where
     }
 
     /// Change of the secondary radius with the logarithm of the ratio, m (derived from GE-3 at constant length).
-    #[inline(always)]
     pub fn secondary_radius_slope_m(&self) -> R {
         // dL = beta_p dR_p + beta_s dR_s = 0 along the constraint, with dR_p = (dR_s - R_s dlnI)/I.
         let bp = self.primary_wrap_rad * self.inv_ratio;
@@ -93,7 +79,7 @@ where
 }
 
 impl Geometry {
-    /// Whether a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
+    /// True if a belt of this length runs so: GE-3 holds, and each pulley carries at least one segment.
     pub fn is_real(&self, belt_length_m: f64, segment_thickness_m: f64) -> bool {
         let arcs = [
             self.primary_radius_m * self.primary_wrap_rad,

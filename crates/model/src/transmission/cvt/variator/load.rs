@@ -1,10 +1,10 @@
-//! What acts on the belt: speed, torque, clamping force, and the friction that its fluid lends.
+//! Load of the belt: speed, torque, clamping force and the friction of its lubricant.
 
 use super::{Belt, Geometry, bands};
-use crate::fluid::{BandFriction, Friction, Lubricant};
-use crate::math::{Left, Real};
+use crate::lubricant::{BandFriction, Friction, Lubricant};
+use crate::math::{Mask, Real, physics};
 
-/// What acts on the belt at one operating point.
+/// Load of the belt at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeltLoad<R: Real = f64> {
     /// Primary speed, rad/s.
@@ -25,19 +25,16 @@ pub struct BeltLoad<R: Real = f64> {
     pub flank_friction: R,
 }
 
-impl<R: Real> BeltLoad<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> BeltLoad<R> {
     /// The lubricated belt without speed, torque and clamping force, for a band friction in a contact area, m2, that slides at speeds, m/s.
-    #[inline(always)]
     pub fn unloaded(
         friction: &Friction<R>,
         band: BandFriction<R>,
         film_area_m2: R,
         sliding_m_s: [R; 2],
     ) -> Self {
-        let none = film_area_m2.filled(0.0);
+        let none = film_area_m2.splat(0.0);
         BeltLoad {
             primary_speed_rad_s: none,
             output_torque_nm: none,
@@ -51,11 +48,11 @@ where
     }
 }
 
+#[physics]
 impl<R: Real> BeltLoad<R> {
     /// `yes` where the mask says so, else `no`: loads of the same fluid.
-    #[inline(always)]
-    pub(in crate::transmission::cvt) fn pick(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let of = |yes: R, no: R| R::pick(mask, yes, no);
+    pub(in crate::transmission::cvt) fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
+        let of = |yes: R, no: R| mask.select(yes, no);
         let pair = |yes: [R; 2], no: [R; 2]| [of(yes[0], no[0]), of(yes[1], no[1])];
         BeltLoad {
             primary_speed_rad_s: of(yes.primary_speed_rad_s, no.primary_speed_rad_s),

@@ -32,12 +32,12 @@ pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
 
-use crate::math::{Left, Mask, Real, gather};
+use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::component::{ByComponent, Component};
 use crate::transmission::loss_factor::LossFactors;
 
 /// The checked belt and pulleys.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Gather, PartialEq)]
 pub struct Belt<R: Real = f64> {
     /// Centre distance of the pulleys, m.
     pub centre_distance_m: R,
@@ -86,45 +86,33 @@ pub struct Belt<R: Real = f64> {
     /// Thrust ratio F_p/F_s over ln I, or none for the wrap ratio.
     pub thrust_ratio: Option<R::Curve>,
     /// Reading of the thesis.
+    #[gather(same)]
     pub formulation: Formulation,
 }
 
-gather! {
-    Belt {
-        centre_distance_m, length_m, segment_thickness_m, cos_wedge, tan_wedge, band_count, band_thickness_m, band_width_m, band_offset_m,
-        shoulder_friction, mass_kg_m, band_mass_kg_m, youngs_pa, strut_area_m2, initial_gap_m, primary_compliance_per_n,
-        secondary_compliance_per_n, stop_from_ratio, stop_to_ratio, unity_width, blend_n, slip_bound, thrust_ratio,
-    } same { formulation }
-}
-
-impl<R: Real> Belt<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Belt<R> {
     /// Cross-section of both band packs, m2.
-    #[inline(always)]
     pub fn band_area_m2(&self) -> R {
         self.band_count * self.band_width_m * self.band_thickness_m
     }
 
     /// Mass per length that presses on the bands, and that of the bands where they carry themselves, kg/m (TE-8).
-    #[inline(always)]
     pub fn masses_kg_m(&self) -> [R; 2] {
         let bands = if self.formulation.by_statics() {
             self.band_mass_kg_m
         } else {
-            self.mass_kg_m.filled(0.0)
+            self.mass_kg_m.splat(0.0)
         };
         [self.mass_kg_m - bands, bands] // TE-8
     }
 
     /// Sliding speeds that can carry a film, at the innermost interface and at each other one, m/s; 0 for formulations without a film.
-    #[inline(always)]
     pub fn sliding_m_s(&self, ratio: R, primary_rad_s: R) -> [R; 2] {
         if self.formulation.has_film() {
             sliding_speed_m_s(self, ratio, primary_rad_s)
         } else {
-            [ratio.filled(0.0); 2]
+            [ratio.splat(0.0); 2]
         }
     }
 }
@@ -146,7 +134,7 @@ pub struct BeltState<R: Real = f64> {
     pub losses: BeltLosses<R>,
 }
 
-/// What the driveline needs of the belt: losses as torques at the primary shaft, Nm, never negative.
+/// Losses of the belt as torques at the primary shaft, Nm, never negative.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BeltLosses<R: Real = f64> {
     /// Boundary friction of the bands.
@@ -167,17 +155,17 @@ pub struct BeltLosses<R: Real = f64> {
     pub gross_slip: R::Mask,
 }
 
+#[physics]
 impl<R: Real> BeltLosses<R> {
     /// All belt losses, Nm at the primary shaft.
-    #[inline(always)]
     pub fn sum_nm(&self) -> R {
         self.band_nm + self.film_nm + self.slip_nm + self.wedge_nm + self.penetration_nm
     }
 }
 
+#[physics]
 impl<R: Real> BeltLosses<R> {
     /// Each loss times its factor, slip with the loss that it makes (CV-7).
-    #[inline(always)]
     pub fn times(self, factor: &ByComponent<R>) -> Self {
         let slips = factor[Component::BeltSlip];
         BeltLosses {
@@ -197,7 +185,7 @@ impl BeltState {
     pub fn times(self, factor: &LossFactors, output_nm: f64, ratio: f64) -> Self {
         let losses = self.losses.times(factor);
         let slips = factor[Component::BeltSlip];
-        // What a printed sum holds besides VA-1 stays as it is.
+        // Parts of a printed sum other than VA-1 stay as they are.
         let own_nm = |l: &BeltLosses| output_nm / ratio * (1.0 - l.slip_total) + l.sum_nm(); // VA-1
         BeltState {
             input_torque_nm: self.input_torque_nm + own_nm(&losses) - own_nm(&self.losses),
@@ -219,9 +207,9 @@ impl BeltState {
 }
 
 /// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
-#[inline(always)]
+#[physics]
 fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, friction: R) -> R {
-    let weaker = t.primary_clamp_n.least(t.secondary_clamp_n);
+    let weaker = t.primary_clamp_n.min(t.secondary_clamp_n);
     weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
@@ -235,11 +223,8 @@ struct Parts<R: Real> {
     capacity_nm: R,
 }
 
-#[inline(always)]
-fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Parts<R> {
     let tension = Tension::driving(belt, at, load);
     let mu_segment = belt.formulation.segment_friction(load.segment_friction);
     let band_nm = bands::band_loss_nm(at, &tension, &load.band);
@@ -265,42 +250,36 @@ where
     }
 }
 
-#[inline(always)]
+#[physics]
 fn sum<R: Real>(pair: [R; 2]) -> R {
     pair[0] + pair[1]
 }
 
-#[inline(always)]
-fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
     let (slip, capacity_nm) = (&parts.slip, parts.capacity_nm);
     let share_nm = slip.primary_loss_nm + slip.secondary_loss_nm;
     // Slip against the torque relieves bands and film, both by the same share (SL-11).
     let sliding_nm = sum(parts.band_nm) + parts.film_nm;
-    let is_relieved = share_nm.filled(0.0).above(share_nm);
-    let mut left = share_nm.filled(1.0);
+    let is_relieved = share_nm.splat(0.0).gt(share_nm);
+    let mut left = share_nm.splat(1.0);
     if is_relieved.any() {
-        left = R::pick(is_relieved, (1.0 + share_nm / sliding_nm).most(0.0), left);
+        left = is_relieved.select((1.0 + share_nm / sliding_nm).max(0.0), left);
     }
     BeltLosses {
         band_nm: left * sum(parts.band_nm),
         film_nm: left * parts.film_nm,
-        slip_nm: share_nm.most(0.0),
+        slip_nm: share_nm.max(0.0),
         wedge_nm: sum(parts.deflection.wedge_nm),
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
         capacity_nm,
-        gross_slip: slip.held | load.output_torque_nm.abs().above(capacity_nm),
+        gross_slip: slip.held | load.output_torque_nm.abs().gt(capacity_nm),
     }
 }
 
-#[inline(always)]
-fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> BeltState<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+fn state<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>, parts: &Parts<R>) -> BeltState<R> {
     let losses = losses(load, parts);
     BeltState {
         input_torque_nm: load.output_torque_nm / at.geometry.ratio * (1.0 - losses.slip_total)
@@ -314,24 +293,18 @@ where
 }
 
 /// Slip, losses and capacity at one operating point: the sums of [`belt_state`] without its detail.
-#[inline(always)]
+#[physics]
 pub fn belt_losses<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
     load: &BeltLoad<R>,
-) -> BeltLosses<R>
-where
-    f64: Left<R>,
-{
+) -> BeltLosses<R> {
     losses(load, &parts(belt, at, load))
 }
 
 /// Torque capacity at the secondary for a clamping force of the secondary, Nm (VA-2, VA-4).
-#[inline(always)]
-pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     belt_losses(belt, at, load).capacity_nm
 }
 
@@ -339,7 +312,7 @@ where
 ///
 /// ```
 /// use cvtcycle_config::setup::{Options, load};
-/// use cvtcycle_model::bench::Bench;
+/// use cvtcycle_model::rig::Bench;
 /// use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
 ///
 /// let bench = Bench::new(&load("rover_216_cvt", &Options::default()).expect("a shipped car"));
@@ -352,10 +325,11 @@ where
 /// let state = belt_state(belt, &BeltAtRatio::new(belt, 2.0), &load);
 /// assert!(state.losses.slip_total > 0.0 && !state.losses.gross_slip);
 /// ```
-#[inline(always)]
-pub fn belt_state<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> BeltState<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn belt_state<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    load: &BeltLoad<R>,
+) -> BeltState<R> {
     state(at, load, &parts(belt, at, load))
 }

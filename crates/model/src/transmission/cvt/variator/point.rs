@@ -6,7 +6,7 @@ use super::slip::{Contact, MAX_AREA_N};
 use super::{
     Belt, BeltAtRatio, BeltLoad, Formulation, Geometry, Tension, capacity_nm, parts, printed, state,
 };
-use crate::fluid::VALID_K;
+use crate::lubricant::VALID_K;
 
 /// How the solution of a point ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ impl BeltPoint {
 /// A ratio may lie outside the vehicle's limits by this share before it is flagged: the printed 2.417 against the derived 2.4169.
 pub const LIMIT_SLACK: f64 = 1e-3;
 
-/// What limits a vehicle's variator, for the flags of a point.
+/// Limits of a vehicle's variator, for the flags of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointLimits {
     /// Belt ratios of the highest and of the lowest gear.
@@ -178,7 +178,7 @@ impl PointFlags {
         )
     }
 
-    /// Whether the flag of that place in [`PointFlags::NAMES`] is set.
+    /// True if the flag at that index in [`PointFlags::NAMES`] is set.
     pub fn has(self, place: usize) -> bool {
         self.0 >> place & 1 == 1
     }

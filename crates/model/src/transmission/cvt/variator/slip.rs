@@ -19,7 +19,7 @@
 //! defined at standstill.
 
 use super::{Belt, BeltAtRatio, Tension};
-use crate::math::{Left, Mask, Real, both};
+use crate::math::{Mask, Real, both, physics};
 
 /// Slip and its loss.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -38,7 +38,7 @@ pub struct Slip<R: Real = f64> {
     pub secondary_loss_nm: R,
     /// Segments in the active arc of the branch in force.
     pub active_segments: R,
-    /// Whether the bound of SL-9 holds the slip.
+    /// True where the bound of SL-9 limits the slip.
     pub held: R::Mask,
 }
 
@@ -46,7 +46,7 @@ pub struct Slip<R: Real = f64> {
 const MIN_GRIP: f64 = 0.05;
 
 /// Least lambda of an idle segment (SL-10).
-const LEAST_LAMBDA: f64 = MIN_GRIP - 1.0;
+const MIN_LAMBDA: f64 = MIN_GRIP - 1.0;
 
 /// Grip never below this force, N (ASSUMED; negligible against any real one): without clamping slip is at its bound and not 0/0.
 const NO_GRIP_N: f64 = 1e-6;
@@ -58,25 +58,19 @@ const ALONE: f64 = 9.0;
 pub(super) const MAX_AREA_N: f64 = 4492.0;
 
 /// Contact area between segments in an arc for a compression \|C_x\| as printed, m2: falls again above [`MAX_AREA_N`] (SL-3 without holding).
-#[inline(always)]
-pub(super) fn printed_area_m2<R: Real>(compression_n: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+pub(super) fn printed_area_m2<R: Real>(compression_n: R) -> R {
     let c = compression_n;
     1.74142e-6 + 1.56364e-9 * c - 1.74032e-13 * c * c // SL-3
 }
 
 /// Contact area between segments in an arc for a compression \|C_x\|, m2 (SL-3).
-#[inline(always)]
-fn arc_area_m2<R: Real>(compression_n: R) -> R
-where
-    f64: Left<R>,
-{
-    printed_area_m2(compression_n.least(MAX_AREA_N))
+#[physics]
+fn arc_area_m2<R: Real>(compression_n: R) -> R {
+    printed_area_m2(compression_n.min(MAX_AREA_N))
 }
 
-/// What the slip equations of both branches look at; pairs are primary, secondary.
+/// Inputs of the slip equations of both branches; pairs are primary, secondary.
 #[derive(Clone, Copy)]
 pub(super) struct Contact<'a, R: Real = f64> {
     pub belt: &'a Belt<R>,
@@ -91,16 +85,13 @@ pub(super) struct Contact<'a, R: Real = f64> {
     pub compression_n: R,
 }
 
-impl<'a, R: Real> Contact<'a, R>
-where
-    f64: Left<R>,
-{
-    #[inline(always)]
+#[physics]
+impl<'a, R: Real> Contact<'a, R> {
     pub fn new(belt: &'a Belt<R>, at: &'a BeltAtRatio<R>, t: &Tension<R>, mu_segment: R) -> Self {
         let prepared = &at.prepared;
         let clamp_n = [t.primary_clamp_n, t.secondary_clamp_n];
         let grip_n =
-            both!(i => (mu_segment * clamp_n[i] * prepared.normal_per_clamp[i]).most(NO_GRIP_N));
+            both!(i => (mu_segment * clamp_n[i] * prepared.normal_per_clamp[i]).max(NO_GRIP_N));
         Contact {
             belt,
             at,
@@ -131,32 +122,29 @@ struct Branches<R> {
 }
 
 /// Works out both branches (SL-2 to SL-7, SL-9, SL-10). One of them carries no compression; processors do two at once for one.
-#[inline(always)]
-fn branches<R: Real>(c: &Contact<'_, R>) -> Branches<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+fn branches<R: Real>(c: &Contact<'_, R>) -> Branches<R> {
     let (belt, prepared, f) = (c.belt, &c.at.prepared, c.belt.formulation);
     let pitch = belt.segment_thickness_m;
     let arc = prepared.arc_m;
     let arc_other = [arc[1], arc[0]];
-    let cx = [c.compression_n.most(0.0), (-c.compression_n).most(0.0)];
+    let cx = [c.compression_n.max(0.0), (-c.compression_n).max(0.0)];
     let shoulder = [c.shoulder_n[0], -c.shoulder_n[1]];
-    let grip = both!(i => (c.grip_n[i] - shoulder[i]).most(MIN_GRIP * c.grip_n[i]));
+    let grip = both!(i => (c.grip_n[i] - shoulder[i]).max(MIN_GRIP * c.grip_n[i]));
     let k = both!(i => cx[i] / grip[i]); // SL-4
-    let segments = both!(i => k[i].least(prepared.count[i]));
+    let segments = both!(i => k[i].min(prepared.count[i]));
     let active = both!(i => segments[i] * pitch);
     let arcs = both!(i => 0.5 * (active[i] + arc_other[i]) / (belt.youngs_pa * arc_area_m2(cx[i])));
     let e_segs = both!(i => cx[i] * (prepared.strut_gap_m_n + arcs[i])); // SL-2
     let idle_arc = both!(i => arc[i] - active[i]);
     let gap = both!(i => (c.slack_m + e_segs[i]) / (idle_arc[i] + 1e-9)); // SL-5
     let per_grip = both!(i => 1.0 / c.grip_n[i]);
-    let lambda = both!(i => (shoulder[i] * per_grip[i]).most(LEAST_LAMBDA)); // SL-10
+    let lambda = both!(i => (shoulder[i] * per_grip[i]).max(MIN_LAMBDA)); // SL-10
     // Conventional loading takes the magnitude: the larger of the number and its opposite.
     let turned = [if f.signed_idle_slip() { 1.0 } else { -1.0 }, 1.0];
-    let idle = both!(i => gap[i] * (turned[i] * lambda[i]).most(lambda[i])); // SL-6
+    let idle = both!(i => gap[i] * (turned[i] * lambda[i]).max(lambda[i])); // SL-6
     let free = both!(i => gap[i] + idle[i]); // not below zero (SL-10)
-    let loaded = both!(i => belt.slip_bound.least(free[i])); // SL-9
+    let loaded = both!(i => belt.slip_bound.min(free[i])); // SL-9
     // The other pulley of each branch: the secondary of conventional loading, the primary of inverted loading.
     let total_other = [
         cx[0] + c.shoulder_n[1] * prepared.count[1],
@@ -167,14 +155,14 @@ where
         prepared.inv_segments[0] * per_grip[0],
     ];
     let other_free = both!(i => loaded[i] * (total_other[i] * per_other[i]));
-    let other = both!(i => other_free[i].held(-belt.slip_bound, belt.slip_bound)); // SL-9
+    let other = both!(i => other_free[i].clamp(-belt.slip_bound, belt.slip_bound)); // SL-9
     let mut branches = Branches {
         loaded,
         other,
         free,
         gap,
-        loss_loaded_nm: [c.slack_m.filled(0.0); 2],
-        loss_other_nm: [c.slack_m.filled(0.0); 2],
+        loss_loaded_nm: [c.slack_m.splat(0.0); 2],
+        loss_other_nm: [c.slack_m.splat(0.0); 2],
         active_segments: k,
     };
     if f.by_statics() {
@@ -183,8 +171,8 @@ where
     let r = c.at.geometry.primary_radius_m;
     let mut loaded_n = both!(i => loaded[i] * c.grip_n[i] * segments[i]);
     if f.counts_idle_arc() {
-        let held = both!(i => free[i].above(loaded[i]));
-        let share = both!(i => R::pick(held[i], loaded[i] / free[i], free[i].filled(1.0)));
+        let held = both!(i => free[i].gt(loaded[i]));
+        let share = both!(i => held[i].select(loaded[i] / free[i], free[i].splat(1.0)));
         let idle_n = both!(i => (idle[i] * share[i] * shoulder[i]).abs());
         loaded_n = both!(i => loaded_n[i] + idle_n[i] * (idle_arc[i] / pitch));
     }
@@ -193,19 +181,16 @@ where
     branches
 }
 
-impl<R: Real> Slip<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Slip<R> {
     /// The slip with its share of the loss by statics: `net_nm` is the output torque at the primary shaft, `sliding_nm` what bands and film
     /// lose before it (SL-11, SL-12).
-    #[inline(always)]
     pub(super) fn by_statics(self, net_nm: R, sliding_nm: R) -> Self {
         let share_nm = (self.primary + self.secondary) * net_nm;
-        let beyond = (-sliding_nm).above(share_nm);
-        let mut kept = share_nm.filled(1.0);
+        let beyond = (-sliding_nm).gt(share_nm);
+        let mut kept = share_nm.splat(1.0);
         if beyond.any() {
-            kept = R::pick(beyond, -sliding_nm / share_nm, kept); // SL-12
+            kept = beyond.select(-sliding_nm / share_nm, kept); // SL-12
         }
         let (primary, secondary) = (kept * self.primary, kept * self.secondary);
         Slip {
@@ -221,37 +206,36 @@ where
 }
 
 /// A value of both branches by the weight of the first (SL-8).
-#[inline(always)]
-fn mixed<R: Real>(weight: R, conventional: R, inverted: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+fn mixed<R: Real>(weight: R, conventional: R, inverted: R) -> R {
     weight * conventional + (1.0 - weight) * inverted
 }
 
 /// Slip of both pulleys and its loss (SL-1 to SL-9).
-#[inline(always)]
-pub fn slip<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, t: &Tension<R>, mu_segment: R) -> Slip<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+pub fn slip<R: Real>(
+    belt: &Belt<R>,
+    at: &BeltAtRatio<R>,
+    t: &Tension<R>,
+    mu_segment: R,
+) -> Slip<R> {
     let contact = Contact::new(belt, at, t, mu_segment);
     let b = branches(&contact);
     let x = contact.compression_n * at.fixed.per_blend_n;
     // SL-8: (1 + tanh x)/2
-    let (blends, zero) = (!x.abs().above(ALONE), x.filled(0.0));
-    let mut w = R::pick(x.above(0.0), x.filled(1.0), zero);
+    let (blends, zero) = (!x.abs().gt(ALONE), x.splat(0.0));
+    let mut w = x.gt(0.0).select(x.splat(1.0), zero);
     if blends.any() {
-        w = R::pick(blends, 1.0 / (1.0 + (-2.0 * x).exp()), w);
+        w = blends.select(1.0 / (1.0 + (-2.0 * x).exp()), w);
     }
     let other = if belt.formulation.flips_inverted_primary() {
         b.other[1]
     } else {
         -b.other[1]
     }; // SL-6
-    let held = both!(i => b.free[i].above(b.loaded[i]));
-    let gap = both!(i => R::pick(held[i], b.gap[i] * (b.loaded[i] / b.free[i]), b.gap[i])); // SL-9
-    let is_inverted = zero.above(x);
+    let held = both!(i => b.free[i].gt(b.loaded[i]));
+    let gap = both!(i => held[i].select(b.gap[i] * (b.loaded[i] / b.free[i]), b.gap[i])); // SL-9
+    let is_inverted = zero.gt(x);
     Slip {
         primary: mixed(w, b.loaded[0], other),
         secondary: mixed(w, b.other[0].abs(), -b.loaded[1]),
@@ -259,11 +243,9 @@ where
         idle: mixed(w, b.loaded[0] - gap[0], b.loaded[1] - gap[1]),
         primary_loss_nm: mixed(w, b.loss_loaded_nm[0], b.loss_other_nm[1]),
         secondary_loss_nm: mixed(w, b.loss_other_nm[0], b.loss_loaded_nm[1]),
-        active_segments: R::pick(is_inverted, b.active_segments[1], b.active_segments[0]),
-        held: R::pick(is_inverted, b.free[1], b.free[0]).above(R::pick(
-            is_inverted,
-            b.loaded[1],
-            b.loaded[0],
-        )),
+        active_segments: is_inverted.select(b.active_segments[1], b.active_segments[0]),
+        held: is_inverted
+            .select(b.free[1], b.free[0])
+            .gt(is_inverted.select(b.loaded[1], b.loaded[0])),
     }
 }

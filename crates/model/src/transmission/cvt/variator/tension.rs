@@ -16,7 +16,7 @@
 //! true for mu_b < 0.53; TE-7 mu_b beta / 2 < 1, true for mu_b < 0.64.
 
 use super::{Belt, BeltAtRatio, BeltLoad, Geometry};
-use crate::math::{Left, Real};
+use crate::math::{Mask, Real, physics};
 
 /// Band pack and segment forces at one operating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,21 +38,15 @@ pub struct Tension<R: Real = f64> {
 }
 
 /// Compression C_x for the step that it has without one, Z, and the rise of the step with it, s c (TE-5, TE-7).
-#[inline(always)]
-fn compression_n<R: Real>(z: R, sc: R) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+fn compression_n<R: Real>(z: R, sc: R) -> R {
     // The divisors are known before the torque is: nothing waits for a division.
-    z * R::pick(z.reaches(0.0), 1.0 / (1.0 - sc), 1.0 / (1.0 + sc))
+    z * z.ge(0.0).select(1.0 / (1.0 - sc), 1.0 / (1.0 + sc))
 }
 
 /// Clamping forces of primary and secondary (TE-1), and the flows of momentum m v2 of what presses and of bands that carry themselves (TE-8), N.
-#[inline(always)]
-fn forces_n<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> ([R; 2], [R; 2])
-where
-    f64: Left<R>,
-{
+#[physics]
+fn forces_n<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> ([R; 2], [R; 2]) {
     let v = load.primary_speed_rad_s * at.geometry.primary_radius_m;
     let clamp_n = [
         load.secondary_clamp_n * at.thrust_ratio,
@@ -63,7 +57,7 @@ where
 }
 
 /// Shoulder force per angle of wrap without compression, A, N (TE-7).
-#[inline(always)]
+#[physics]
 fn bare_mean_n<R: Real>(
     belt: &Belt<R>,
     at: &BeltAtRatio<R>,
@@ -74,21 +68,15 @@ fn bare_mean_n<R: Real>(
 }
 
 /// Boundary friction of the innermost interface per mean tension: of the part that is not on a film, on the smaller wrap (TE-7).
-#[inline(always)]
-fn grip<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R
-where
-    f64: Left<R>,
-{
+#[physics]
+fn grip<R: Real>(at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     let dry = 1.0 - load.band.film_share[0];
     load.band.mu * dry * at.prepared.shoulder_rad
 }
 
-impl<R: Real> Tension<R>
-where
-    f64: Left<R>,
-{
+#[physics]
+impl<R: Real> Tension<R> {
     /// The belt's tension by its formulation, with the smoothed direction of the step (TE-6).
-    #[inline(always)]
     pub fn driving(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Self {
         if belt.formulation.by_statics() {
             Tension::one_force(belt, at, load)
@@ -98,7 +86,6 @@ where
     }
 
     /// Solves tension and compression with one force between bands and segments on both pulleys (TE-7).
-    #[inline(always)]
     pub fn one_force(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Self {
         let (g, s) = (&at.geometry, at.direction);
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);
@@ -121,6 +108,7 @@ where
     }
 
     /// Step of tension without compression, N: the torque at which compression changes sign gives it (TE-5, TE-7 with Z = 0).
+    #[inline]
     pub fn bare_step_n(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
         let (clamp_n, [centrifugal_n, _]) = forces_n(belt, at, load);
         let g = &at.geometry;
@@ -133,7 +121,6 @@ where
     }
 
     /// Solves tension and compression for a direction s of the tension step, -1 in low, +1 in high (TE-2 to TE-5).
-    #[inline(always)]
     pub fn new(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>, s: R) -> Self {
         let (g, mu, bp) = (&at.geometry, load.band.mu, at.geometry.primary_wrap_rad);
         let (clamp_n, [centrifugal_n, ring_n]) = forces_n(belt, at, load);

@@ -1,7 +1,7 @@
-//! Where energy goes: a trunk from a source through stages, each of which branches off its flows. Widths are in proportion to energy.
+//! Sankey diagram: a trunk from a source through stages, each of which branches off its flows. Widths are proportional to energy.
 //!
-//! Branches leave the trunk downwards and end in one column at the right, the last stage on top: so none crosses another, and the ends
-//! are far enough apart for one line of text each. What is negative flows in: it begins at the left above the source.
+//! Branches leave the trunk downwards and end in one column at the right, the last stage on top, so that none cross, and the ends leave room for
+//! one line of text each. Negative energies flow in, and begin at the left above the source.
 
 mod layout;
 
@@ -19,12 +19,12 @@ use crate::charts::picture::{Picture, PictureTable};
 pub(super) struct Sankey<'a> {
     pub title: String,
     pub subject: &'a str,
-    /// The largest source of the figures on this scale, kJ/km; the own one if it is smaller.
+    /// Largest source of the figures on this scale, kJ/km; ignored if the own one is larger.
     pub largest_kj_km: f64,
-    /// What the trunk begins with.
+    /// Source of the trunk.
     pub source: Whole,
     pub stages: Vec<Stage>,
-    /// What shares of energies refer to; one or two.
+    /// References of the shares; one or two.
     pub shares_of: Vec<Whole>,
 }
 
@@ -41,11 +41,11 @@ impl Whole {
     }
 }
 
-/// A place along the trunk; one without a name is not marked.
+/// A position along the trunk; marked if it has a name.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stage {
     pub name: &'static str,
-    /// What leaves here.
+    /// Flows that leave here.
     pub branches: Vec<Branch>,
 }
 
@@ -68,9 +68,9 @@ pub(super) fn branch(name: &str, term: Term, kj_km: f64) -> Branch {
     Branch { name, kj_km, term }
 }
 
-/// Height of all that flows in, pixels.
+/// Height of all inflows, pixels.
 const TALL: f64 = 300.0;
-/// Where what flows in begins: its label lies left of it, pixels.
+/// Left end of inflows, with their labels left of it, pixels.
 const LEFT: f64 = 118.0;
 /// Height of the names of stages above the trunk, pixels.
 const BAND: f64 = 62.0;
@@ -80,13 +80,13 @@ const LINE: f64 = 14.0;
 const SHARE: f64 = 76.0;
 
 /// Draws an energy flow.
-pub(super) fn sankey(of: Sankey) -> Picture {
-    let of = balanced(of);
-    let flows = lay_out(&of);
+pub(super) fn sankey(flow: Sankey) -> Picture {
+    let flow = balanced(flow);
+    let flows = lay_out(&flow);
     let mut table = PictureTable::new(&[("flow", ""), ("way", ""), ("energy", "kJ/km")]).note(
         "Widths are in proportion to energy. What enters and what leaves add up to the same sum.",
     );
-    let shares = of.shares_of.iter();
+    let shares = flow.shares_of.iter();
     let shares = shares.map(|whole| (format!("share of {}", whole.name), "%"));
     table.columns.extend(shares);
     let mut panel = free(Rect::new(0.0, 0.0, WIDTH, flows.bottom)).below(16.0);
@@ -97,41 +97,41 @@ pub(super) fn sankey(of: Sankey) -> Picture {
     for ribbon in &flows.leaving {
         flows.draw_leaving(&mut panel, ribbon, &mut table);
     }
-    if of.scale() <= 0.0 {
+    if flow.scale() <= 0.0 {
         let place = at(0.5 * (LEFT + flows.end), TOP + BAND + 80.0);
         let label = Label::new(place, "no energy flows").size(12.0);
         panel.label(label.middle().quiet());
     }
     flows.stage_names(&mut panel);
     flows.headings(&mut panel);
-    Chart::new(of.title, of.subject, MARGIN)
+    Chart::new(flow.title, flow.subject, MARGIN)
         .panels([panel])
         .picture(table)
 }
 
-/// The same flow with a source that is not negative, finite numbers, and nothing left over at the end of the trunk.
-fn balanced(mut of: Sankey) -> Sankey {
-    if of.stages.is_empty() {
-        of.stages.push(Stage::default());
+/// Copy with a source that is not negative, finite numbers, and a trunk without remainder.
+fn balanced(mut flow: Sankey) -> Sankey {
+    if flow.stages.is_empty() {
+        flow.stages.push(Stage::default());
     }
-    of.source.kj_km = finite(of.source.kj_km);
-    for branch in of.stages.iter_mut().flat_map(|stage| &mut stage.branches) {
+    flow.source.kj_km = finite(flow.source.kj_km);
+    for branch in flow.stages.iter_mut().flat_map(|stage| &mut stage.branches) {
         branch.kj_km = finite(branch.kj_km);
     }
     let mut last = Vec::new();
-    if of.source.kj_km < 0.0 {
-        last.push(branch(of.source.name, Term::Trunk, -of.source.kj_km));
-        of.source.kj_km = 0.0;
+    if flow.source.kj_km < 0.0 {
+        last.push(branch(flow.source.name, Term::Trunk, -flow.source.kj_km));
+        flow.source.kj_km = 0.0;
     }
-    let branches = || of.branches().chain(&last).map(|branch| branch.kj_km);
-    let left_over = of.source.kj_km - branches().sum::<f64>();
-    if left_over.abs() > 1e-6 * (of.source.kj_km + branches().map(f64::abs).sum::<f64>()) {
+    let branches = || flow.branches().chain(&last).map(|branch| branch.kj_km);
+    let left_over = flow.source.kj_km - branches().sum::<f64>();
+    if left_over.abs() > 1e-6 * (flow.source.kj_km + branches().map(f64::abs).sum::<f64>()) {
         last.push(branch("Not accounted for", Term::Other, left_over));
     }
-    if let Some(stage) = of.stages.last_mut() {
+    if let Some(stage) = flow.stages.last_mut() {
         stage.branches.extend(last);
     }
-    of
+    flow
 }
 
 impl Sankey<'_> {
@@ -139,7 +139,7 @@ impl Sankey<'_> {
         self.stages.iter().flat_map(|stage| &stage.branches)
     }
 
-    /// Pixels per kJ/km; zero where nothing flows.
+    /// Pixels per kJ/km; zero without any flow.
     fn scale(&self) -> f64 {
         let inflow = self.source.kj_km + self.branches().map(|b| (-b.kj_km).max(0.0)).sum::<f64>();
         let scale = TALL / inflow.max(finite(self.largest_kj_km));
@@ -163,11 +163,11 @@ impl Sankey<'_> {
 }
 
 impl Flows<'_> {
-    /// Place of a stage along the trunk, pixels.
+    /// Position of a stage along the trunk, pixels.
     fn stage_x(&self, stage: usize) -> f64 {
         let first = LEFT + 0.09 * (self.end - LEFT);
         let last = self.end - 0.2 * (self.end - LEFT);
-        let share = match self.of.stages.len() {
+        let share = match self.sankey.stages.len() {
             0 | 1 => 0.5,
             count => stage as f64 / (count - 1) as f64,
         };
@@ -175,15 +175,15 @@ impl Flows<'_> {
     }
 
     fn draw_trunk(&self, panel: &mut Panel, table: &mut PictureTable) {
-        let Whole { name, kj_km } = self.of.source;
-        let source = self.of.push(table, name, "enters", kj_km);
+        let Whole { name, kj_km } = self.sankey.source;
+        let source = self.sankey.push(table, name, "enters", kj_km);
         let mut from = LEFT;
-        for (s, (stage, trunk)) in self.of.stages.iter().zip(&self.trunk).enumerate() {
+        for (s, (stage, trunk)) in self.sankey.stages.iter().zip(&self.trunk).enumerate() {
             let to = self.stage_x(s);
             let row = if s == 0 || stage.name.is_empty() {
                 source
             } else {
-                self.of.push(table, stage.name, "arrives", trunk.kj_km)
+                self.sankey.push(table, stage.name, "arrives", trunk.kj_km)
             };
             if trunk.bottom > trunk.top {
                 let style = Style::fill(Term::Trunk.fill()).crisp().class("trunk");
@@ -196,16 +196,20 @@ impl Flows<'_> {
     }
 
     fn draw_entering(&self, panel: &mut Panel, ribbon: &Ribbon, table: &mut PictureTable) {
-        let of = ribbon.of;
-        let row = self.of.push(table, &of.name, "enters", -of.kj_km);
+        let branch = ribbon.branch;
+        let row = self
+            .sankey
+            .push(table, &branch.name, "enters", -branch.kj_km);
         let to = (self.stage_x(ribbon.stage), ribbon.at_trunk);
         draw_ribbon(panel, (LEFT, ribbon.at_end), to, ribbon, row);
-        self.source_label(panel, &of.name, -of.kj_km, ribbon.middle());
+        self.source_label(panel, &branch.name, -branch.kj_km, ribbon.middle());
     }
 
     fn draw_leaving(&self, panel: &mut Panel, ribbon: &Ribbon, table: &mut PictureTable) {
-        let of = ribbon.of;
-        let row = self.of.push(table, &of.name, "leaves", of.kj_km.abs());
+        let branch = ribbon.branch;
+        let row = self
+            .sankey
+            .push(table, &branch.name, "leaves", branch.kj_km.abs());
         let from = (self.stage_x(ribbon.stage), ribbon.at_trunk);
         draw_ribbon(panel, from, (self.end, ribbon.at_end), ribbon, row);
         let (middle, end) = (ribbon.middle(), self.end);
@@ -213,23 +217,23 @@ impl Flows<'_> {
         panel.segment(at(end + 2.0, middle), at(end + 10.0, middle), tick);
         let text = |x: f64, text: &str| Label::new(at(x, middle + 4.0), text).size(TEXT);
         let room = self.energy - 72.0 - end - 14.0;
-        panel.label(text(end + 14.0, &of.name).cut(Cut::End, room));
-        panel.label(text(self.energy, &per_km(of.kj_km)).end());
-        for (x, whole) in self.shares.iter().zip(&self.of.shares_of) {
-            panel.label(text(*x, &percent(of.kj_km, whole.kj_km)).end());
+        panel.label(text(end + 14.0, &branch.name).cut(Cut::End, room));
+        panel.label(text(self.energy, &per_km(branch.kj_km)).end());
+        for (x, whole) in self.shares.iter().zip(&self.sankey.shares_of) {
+            panel.label(text(*x, &percent(branch.kj_km, whole.kj_km)).end());
         }
     }
 
-    /// Energy and share of the first whole.
+    /// Energy, and share of the first reference.
     fn size(&self, kj_km: f64) -> impl Iterator<Item = String> {
-        let whole = self.of.shares_of.first();
+        let whole = self.sankey.shares_of.first();
         let share = whole
             .map(|whole| percent(kj_km, whole.kj_km))
             .filter(|share| !share.is_empty());
         [per_km(kj_km)].into_iter().chain(share)
     }
 
-    /// Name, energy and share left of where a flow begins.
+    /// Writes name, energy and share left of the beginning of a flow.
     fn source_label(&self, panel: &mut Panel, name: &str, kj_km: f64, middle: f64) {
         let room = LEFT - 8.0 - MARGIN;
         // Bold letters are wider than plain ones.
@@ -245,9 +249,9 @@ impl Flows<'_> {
         }
     }
 
-    /// Names of the stages above the trunk, with the energy that arrives at each.
+    /// Writes the names of the stages above the trunk, with the energy that arrives at each.
     fn stage_names(&self, panel: &mut Panel) {
-        let stages = || self.of.stages.iter().enumerate();
+        let stages = || self.sankey.stages.iter().enumerate();
         for (s, stage) in stages().filter(|(_, stage)| !stage.name.is_empty()) {
             let x = self.stage_x(s);
             let next = stages().find(|(k, stage)| *k > s && !stage.name.is_empty());
@@ -267,13 +271,13 @@ impl Flows<'_> {
         }
     }
 
-    /// What the shares refer to, above their columns.
+    /// Writes the references of the shares above their columns.
     fn headings(&self, panel: &mut Panel) {
         let Some(first) = self.leaving.first() else {
             return;
         };
         let foot = first.middle() - 18.0;
-        for (x, whole) in self.shares.iter().zip(&self.of.shares_of) {
+        for (x, whole) in self.shares.iter().zip(&self.sankey.shares_of) {
             let lines = lines(&format!("of {}", whole.name), 11.0, SHARE - 2.0);
             for (k, line) in lines.into_iter().rev().enumerate() {
                 let place = at(*x, foot - 13.0 * k as f64);
@@ -283,10 +287,10 @@ impl Flows<'_> {
     }
 }
 
-/// One flow: its height is the same all along.
-fn draw_ribbon(panel: &mut Panel, from: Point, to: Point, of: &Ribbon, row: usize) {
-    if of.wide > 0.0 {
-        let style = Style::edged(of.of.term.fill(), 0.25).class("ribbon");
-        panel.add(Shape::Ribbon(from, to, of.wide), style.row(row));
+/// Draws a flow of constant height.
+fn draw_ribbon(panel: &mut Panel, from: Point, to: Point, ribbon: &Ribbon, row: usize) {
+    if ribbon.wide > 0.0 {
+        let style = Style::edged(ribbon.branch.term.fill(), 0.25).class("ribbon");
+        panel.add(Shape::Ribbon(from, to, ribbon.wide), style.row(row));
     }
 }

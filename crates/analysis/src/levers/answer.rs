@@ -1,0 +1,369 @@
+//! From the table of a lever study to what each lever saves, how sure that is, and what it does besides.
+//!
+//! | label | statement | status |
+//! |---|---|---|
+//! | PV-1 | d_k = B_lever(x_k)/B_reference(x_k) - 1: of one draw x_k, the same value of every factor in both cars | derived |
+//! | PV-2 | the two quantiles of d between which that share of the draws is, 90 % by default (DS-3), each with its own interval (IV-3) | source: Hyndman and Fan 1996 |
+//! | PV-3 | a lever saves in k of n draws; the share of all cases from it by IV-2 | source: Clopper and Pearson 1934 |
+//! | PV-4 | interaction of a combination: its median d less the sum of those of its levers | derived |
+//!
+//! Draws of which one of the two runs failed are left out of d and counted.
+
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use super::request::{ColumnNote, LeverNotes};
+use cvtcycle_config::{Problem, ProblemKind};
+use cvtcycle_study::answer::{Ended, Status, StudyTable, counted, ended};
+use cvtcycle_study::execute::manifest::SCHEMA;
+use cvtcycle_study::execute::outputs::FUEL;
+use cvtcycle_study::execute::side_effects::{FLOOR, LOCKED, LUGGING, RESERVE};
+use cvtcycle_study::statistics::{
+    Confidence, Enough, Quantile, Share, Summary, quantile_of_sorted,
+};
+
+/// Change of fuel, %, up to which a lever saves nothing: half of the last digit that is printed.
+const NOTHING_PERCENT: f64 = 0.005;
+
+/// Share of the draws above which failed ones make that a lever does not work in a car, or a car not in its draws.
+const MOST_FAILED: f64 = 0.5;
+
+/// Column of the carbon dioxide.
+const CO2: &str = "co2_g_per_km";
+
+/// Columns of side effects, with whether the largest value is the worst.
+const EFFECTS: [(&str, &str, bool); 8] = [
+    ("min_clamp_safety", "-", false),
+    (FLOOR, "s", true),
+    ("flow_limited_s", "s", true),
+    (LUGGING, "s", true),
+    (LOCKED, "rpm", false),
+    (RESERVE, "%", false),
+    ("launch_not_in_low_s", "s", true),
+    ("end_transmission_sump_degc", "degC", true),
+];
+
+/// What a lever study says.
+#[derive(Clone, Debug, Serialize)]
+pub struct LeverAnswer {
+    /// Version of this object.
+    pub schema: u32,
+    /// Name of the study.
+    pub title: String,
+    /// Plan whose factors are drawn; none without draws.
+    pub plan: Option<String>,
+    /// Draws.
+    pub draws: u64,
+    /// Draws whose runs are there.
+    pub draws_done: u64,
+    /// How sure the intervals are.
+    pub confidence: Confidence,
+    /// What the number of draws can tell.
+    pub enough: Enough,
+    /// Engine speed below which a loaded engine behind a closed clutch is heard and felt, rpm.
+    pub heard_rpm: f64,
+    /// How the runs ended.
+    pub runs: Ended,
+    /// By car and ambient temperature.
+    pub blocks: Vec<LeverBlock>,
+    /// What a reader should know, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// One car at one ambient temperature.
+#[derive(Clone, Debug, Serialize)]
+pub struct LeverBlock {
+    /// Name of the car.
+    pub vehicle: String,
+    /// Ambient temperature, degC.
+    pub ambient_degc: f64,
+    /// Fuel of the car as it is, median, L/100 km.
+    pub fuel_l_per_100km: f64,
+    /// Draws in which the car as it is fails a check or cannot be driven.
+    pub failed: usize,
+    /// Of how many.
+    pub n: usize,
+    /// Checks that it fails there with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
+    /// Levers, then combinations, each from the largest saving on.
+    pub rows: Vec<LeverRow>,
+}
+
+/// One lever of a car.
+#[derive(Clone, Debug, Serialize)]
+pub struct LeverRow {
+    /// What it is.
+    #[serde(flatten)]
+    pub of: ColumnNote,
+    /// Draws with both runs.
+    pub n: usize,
+    /// Draws in which its own run fails a check or cannot be driven and that of the reference can.
+    pub failed: usize,
+    /// Checks that its own run fails there with their counts, the commonest first.
+    pub reasons: Vec<(String, usize)>,
+    /// Median change of the fuel, %.
+    pub fuel_percent: Quantile,
+    /// The lower end of the draws.
+    pub low_percent: Quantile,
+    /// The upper end of the draws.
+    pub high_percent: Quantile,
+    /// In how many draws it saves fuel.
+    pub saves: Share,
+    /// Median change of the fuel, L/100 km.
+    pub fuel_l_per_100km: f64,
+    /// Median change of carbon dioxide, g/km.
+    pub co2_g_per_km: f64,
+    /// Of a combination the sum of the medians of its levers, %.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sum_percent: Option<f64>,
+    /// What it does besides.
+    pub effects: Vec<SideEffect>,
+}
+
+/// A number that a lever moves besides the fuel.
+#[derive(Clone, Debug, Serialize)]
+pub struct SideEffect {
+    /// Column of the table of runs.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Worst of all draws.
+    pub worst: f64,
+    /// Worst of the reference.
+    pub reference_worst: f64,
+    /// Median of the change.
+    pub change: f64,
+}
+
+impl LeverAnswer {
+    /// Whether a car as it is fails in most of its draws; without draws, whether any run fails.
+    pub fn is_failed(&self) -> bool {
+        match self.plan {
+            Some(_) => self
+                .blocks
+                .iter()
+                .any(|block| is_most(block.failed, block.n)),
+            None => self.runs.failed + self.runs.not_run > 0,
+        }
+    }
+}
+
+/// Whether failed draws are too many for the others to speak for all.
+fn is_most(failed: usize, n: usize) -> bool {
+    failed as f64 > MOST_FAILED * n as f64
+}
+
+impl LeverRow {
+    /// Whether it fails in most of the draws in which its reference does not.
+    pub fn does_not_work(&self) -> bool {
+        is_most(self.failed, self.failed + self.n)
+    }
+
+    /// The worst value of a side effect; NaN where there is none.
+    pub fn worst(&self, name: &str) -> f64 {
+        let found = self.effects.iter().find(|effect| effect.name == name);
+        found.map_or(f64::NAN, |effect| effect.worst)
+    }
+
+    /// Whether it is a combination.
+    pub fn is_combination(&self) -> bool {
+        self.of.kind == "combination"
+    }
+}
+
+/// The numbers of a study, by column and point.
+struct Numbers {
+    fuel: Vec<Vec<f64>>,
+    co2: Vec<Vec<f64>>,
+    effects: Vec<Vec<Vec<f64>>>,
+    ok: Vec<Vec<bool>>,
+    /// Reasons of failed runs; none of a column without one.
+    reasons: Vec<Vec<Arc<str>>>,
+}
+
+impl Numbers {
+    /// The checks that a column fails at some points.
+    fn reasons(&self, column: usize, at: &[bool]) -> Vec<(String, usize)> {
+        let of_points = self.reasons[column].iter().zip(at);
+        let texts = of_points.filter(|(_, at)| **at);
+        counted(texts.flat_map(|(text, _)| names(text)))
+    }
+}
+
+/// The first words of the reasons of a run, which are the names of its failed checks: what follows differs from run to run.
+fn names(reason: &str) -> impl Iterator<Item = String> {
+    let all = reason.split("; ");
+    all.filter_map(|one| Some(one.split(' ').next()?.to_owned()))
+}
+
+/// Computes what a lever study says from the parts that are there.
+///
+/// # Errors
+/// A part that cannot be read, or a study that is none of levers.
+pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverAnswer, Problem> {
+    let outline = frame.outline;
+    let about = outline.levers.clone().unwrap_or_default();
+    let about: LeverNotes = serde_json::from_value(about).map_err(|error| {
+        let message = format!("the study is none of levers: {error}");
+        Problem::new(ProblemKind::Damaged, message)
+    })?;
+    if about.columns.len() != outline.cars.len() {
+        let message = "the study has other columns than its levers";
+        return Err(Problem::new(ProblemKind::Damaged, message));
+    }
+    let names = EFFECTS.map(|(name, ..)| name);
+    let wanted: Vec<&str> = [FUEL, CO2].into_iter().chain(names).collect();
+    // A column that a cycle or its cars do not have has no numbers.
+    let known = |name: &&str| outline.columns.iter().any(|(column, _)| column == name);
+    let there: Vec<&str> = wanted.iter().copied().filter(known).collect();
+    let found = frame.by_car(&there)?;
+    let of = |name: &str| match there.iter().position(|other| *other == name) {
+        Some(k) => found[k].clone(),
+        None => vec![Vec::new(); outline.cars.len()],
+    };
+    let is_ok = |car: usize| -> Result<Vec<bool>, Problem> {
+        let status = frame.status(car)?.into_iter();
+        Ok(status.map(|status| status == Status::Ok).collect())
+    };
+    let bad = |car: usize| {
+        let counts = [Status::Failed, Status::NotRun].map(|status| frame.count_of(car, status));
+        counts.iter().sum::<usize>()
+    };
+    let reasons = (0..outline.cars.len()).map(|car| match bad(car) > 0 {
+        true => frame.words("reason", car),
+        false => Ok(Vec::new()),
+    });
+    let numbers = Numbers {
+        reasons: reasons.collect::<Result<_, _>>()?,
+        fuel: of(FUEL),
+        co2: of(CO2),
+        effects: names.iter().map(|name| of(name)).collect(),
+        ok: (0..outline.cars.len())
+            .map(is_ok)
+            .collect::<Result<_, _>>()?,
+    };
+    let points = usize::try_from(outline.points).unwrap_or(usize::MAX);
+    let done = points - frame.count_of(0, Status::Missing);
+    Ok(LeverAnswer {
+        schema: SCHEMA,
+        title: outline.title.clone(),
+        draws: outline.points,
+        draws_done: done as u64,
+        confidence,
+        enough: Enough::of(if about.plan.is_some() { done } else { 0 }, confidence),
+        plan: about.plan,
+        heard_rpm: about.heard_rpm,
+        runs: ended(frame)?,
+        blocks: blocks(&about.columns, &numbers, confidence),
+        notes: about.notes,
+    })
+}
+
+/// The columns by car and ambient temperature, in their order.
+fn blocks(columns: &[ColumnNote], numbers: &Numbers, confidence: Confidence) -> Vec<LeverBlock> {
+    let mut blocks: Vec<LeverBlock> = Vec::new();
+    for (k, column) in columns.iter().enumerate() {
+        if column.kind == "reference" {
+            if column.name == "reference" {
+                let failed = numbers.ok[k].iter().map(|ok| !ok);
+                let failed: Vec<bool> = failed.collect();
+                blocks.push(LeverBlock {
+                    vehicle: column.vehicle.clone(),
+                    ambient_degc: column.ambient_degc,
+                    fuel_l_per_100km: median(numbers.fuel[k].iter().copied()),
+                    failed: failed.iter().filter(|failed| **failed).count(),
+                    n: failed.len(),
+                    reasons: numbers.reasons(k, &failed),
+                    rows: Vec::new(),
+                });
+            }
+            continue;
+        }
+        if let Some(block) = blocks.last_mut() {
+            block.rows.push(row(k, column, numbers, confidence));
+        }
+    }
+    for block in &mut blocks {
+        let single = block.rows.clone();
+        for row in block.rows.iter_mut().filter(|row| row.is_combination()) {
+            let of = |name: &String| single.iter().find(|other| other.of.name == *name);
+            let medians = row
+                .of
+                .members
+                .iter()
+                .map(|name| Some(of(name)?.fuel_percent.value));
+            row.sum_percent = medians.sum(); // PV-4
+        }
+        let key = |row: &LeverRow| (row.is_combination(), row.fuel_percent.value);
+        block.rows.sort_by(|a, b| {
+            let ((a_last, a), (b_last, b)) = (key(a), key(b));
+            a_last.cmp(&b_last).then(a.total_cmp(&b))
+        });
+    }
+    blocks
+}
+
+fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confidence) -> LeverRow {
+    let reference = note.reference;
+    let pairs = |of: &[Vec<f64>]| -> Vec<(f64, f64)> {
+        of[column]
+            .iter()
+            .copied()
+            .zip(of[reference].iter().copied())
+            .collect()
+    };
+    let fuel = pairs(&numbers.fuel);
+    let percent: Vec<f64> = fuel.iter().map(|(x, of)| 100.0 * (x / of - 1.0)).collect(); // PV-1
+    let summary = Summary::of(&percent, confidence);
+    let quantile = |p: f64| {
+        let found = summary.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9);
+        found.copied().unwrap_or(Quantile {
+            p,
+            value: f64::NAN,
+            interval: [None; 2],
+        })
+    };
+    let [low, high] = confidence.ends();
+    let differences = |of: &[Vec<f64>]| median(pairs(of).into_iter().map(|(x, of)| x - of));
+    let both = numbers.ok[column].iter().zip(&numbers.ok[reference]);
+    let failed: Vec<bool> = both.map(|(own, reference)| !own && *reference).collect();
+    let effects = EFFECTS.iter().zip(&numbers.effects);
+    LeverRow {
+        of: note.clone(),
+        n: summary.n,
+        failed: failed.iter().filter(|failed| **failed).count(),
+        reasons: numbers.reasons(column, &failed),
+        fuel_percent: quantile(0.5),
+        low_percent: quantile(low),   // PV-2
+        high_percent: quantile(high), // PV-2
+        saves: Share::of(&percent, Some(confidence), |x| x < -NOTHING_PERCENT), // PV-3
+        fuel_l_per_100km: differences(&numbers.fuel),
+        co2_g_per_km: differences(&numbers.co2),
+        sum_percent: None,
+        effects: effects
+            .map(|((name, unit, largest), of)| SideEffect {
+                name,
+                unit,
+                worst: worst(&of[column], *largest),
+                reference_worst: worst(&of[reference], *largest),
+                change: differences(of),
+            })
+            .collect(),
+    }
+}
+
+/// The largest or the least of the values; NaN without one.
+fn worst(values: &[f64], largest: bool) -> f64 {
+    let all = values.iter().copied();
+    match largest {
+        true => all.fold(f64::NAN, f64::max),
+        false => all.fold(f64::NAN, f64::min),
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sorted: Vec<f64> = values.filter(|x| x.is_finite()).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    quantile_of_sorted(&sorted, 0.5)
+}

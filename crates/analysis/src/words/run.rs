@@ -1,0 +1,269 @@
+//! What a run says of its subject: fuel, difference to each baseline with what is known of it, the price of its losses, and the published
+//! numbers that contradict it.
+
+use std::borrow::Cow;
+use std::cell::OnceCell;
+
+use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::decimal;
+use cvtcycle_config::setup::{Kind, Options, Setup, load};
+use cvtcycle_output::number::{fixed, signed};
+use cvtcycle_output::provenance::car_sha256;
+use cvtcycle_output::summary::{
+    Comparison, Contradiction, Driven, MapLeft, RunSummary, StartWord, Summary,
+};
+
+use super::intervals as drawn;
+use super::{against_print, between, decimals, more_or_less, of_difference, than};
+use crate::attribute::answer as price;
+use cvtcycle_study::statistics::{Confidence, Enough};
+use cvtcycle_validate::rule::Printed;
+use cvtcycle_validate::{About, ValidationRow, published};
+
+/// Distance of the ambient temperatures up to which a published number is one of this run, K.
+const NEAR_K: f64 = 5.0;
+
+/// Looks up how sure the differences of a run are, and which published numbers it contradicts. Both are only said of cars as they are shipped.
+pub fn assess(
+    summary: &mut Summary,
+    cycle: &Cycle,
+    driven: &[Driven],
+    known: Option<&[ValidationRow]>,
+) {
+    let usual = summary.settings.dt_s >= 1.0 && summary.settings.formulation == "smooth";
+    let names = driven.iter().map(|car| car.name);
+    let StartWord::Word(start) = summary.start.clone() else {
+        return;
+    };
+    if !usual
+        || !names
+            .clone()
+            .all(|name| Kind::Vehicle.names().contains(&name))
+    {
+        return;
+    }
+    summary.contradicted = contradicted(summary, &start, driven, known);
+    let ambient_degc = summary.ambient_degc;
+    let Some((subject, baselines)) = driven.split_first() else {
+        return;
+    };
+    let (cycle_sha256, subject_sha256) = (OnceCell::new(), OnceCell::new());
+    for (comparison, baseline) in summary.comparison.iter_mut().zip(baselines) {
+        comparison.interval = drawn::known(&drawn::Pair {
+            cycle,
+            ambient_degc,
+            start: &start,
+            cars: [subject.setup, baseline.setup],
+            cycle_sha256: &cycle_sha256,
+            subject_sha256: &subject_sha256,
+        });
+    }
+}
+
+/// Whether a car is that of its file, unchanged. One with an override may be so all the same.
+fn is_shipped(name: &str, setup: &Setup) -> bool {
+    if setup.origin.is_shipped && setup.name == name {
+        return true;
+    }
+    load(name, &Options::default()).is_ok_and(|own| car_sha256(&own) == car_sha256(setup))
+}
+
+fn contradicted(
+    summary: &Summary,
+    start: &str,
+    driven: &[Driven],
+    known: Option<&[ValidationRow]>,
+) -> Vec<Contradiction> {
+    let Some(subject) = driven.first() else {
+        return Vec::new();
+    };
+    let rows = match known {
+        Some(rows) => Cow::Borrowed(rows),
+        None => Cow::Owned(published(subject.name, &summary.cycle)),
+    };
+    // A car is read again once at most, and only where a row is about it.
+    let shipped: Vec<OnceCell<bool>> = vec![OnceCell::new(); driven.len()];
+    let is_shipped = |k: usize| {
+        let car = &driven[k];
+        *shipped[k].get_or_init(|| is_shipped(car.name, car.setup))
+    };
+    let of_run = |about: &About| {
+        about.start == start && (about.ambient_degc - summary.ambient_degc).abs() <= NEAR_K
+    };
+    let found = rows.iter().filter_map(|row| {
+        let about = row.about.clone().filter(of_run)?;
+        let baseline = about.baseline.as_deref();
+        let other = match baseline {
+            None => None,
+            Some(name) => Some(driven.iter().skip(1).position(|car| car.name == name)?),
+        };
+        let computed = number(summary, &about, other)?;
+        let of_cars = || is_shipped(0) && other.is_none_or(|k| is_shipped(k + 1));
+        (row.contradicts(computed) && of_cars()).then(|| Contradiction {
+            row: row.id.clone(),
+            baseline: about.baseline.clone(),
+            phase: about.phase.clone(),
+            computed,
+            unit: row.unit.clone(),
+            printed: row.printed_text.clone(),
+            between: match row.printed {
+                Some(Printed::Range(low, high)) if low.is_finite() && high.is_finite() => {
+                    Some([low, high])
+                }
+                _ => None,
+            },
+            condition: row.condition.clone(),
+        })
+    });
+    found.collect()
+}
+
+/// The number of a run that a row is about.
+fn number(summary: &Summary, about: &About, baseline: Option<usize>) -> Option<f64> {
+    let run = summary.runs.first()?;
+    match (about.baseline.is_some(), &about.phase) {
+        (true, None) => summary.comparison.get(baseline?)?.fuel_percent,
+        (true, Some(phase)) => {
+            let comparison = summary.comparison.get(baseline?)?;
+            comparison.phases_percent.get(phase)
+        }
+        (false, None) => run.headline_fuel(),
+        (false, Some(phase)) => {
+            let mut phases = run.phases.iter();
+            phases.find(|of| of.name == *phase)?.fuel_l_per_100km
+        }
+    }
+}
+
+/// The first lines of a run, a sentence each.
+pub fn sentences(summary: &Summary) -> Vec<String> {
+    let run = summary.runs.first();
+    let Some((run, fuel)) = run.and_then(|run| run.headline_fuel().map(|fuel| (run, fuel))) else {
+        return Vec::new();
+    };
+    // What a run of an interval is, is said of the first one.
+    let mut explained = false;
+    let against = summary.comparison.iter().filter_map(|of| {
+        let said = against(of, explained);
+        explained |= of.interval.is_some();
+        said
+    });
+    let against: String = against.collect();
+    let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
+    let lines = [Some(first), price(run)].into_iter().flatten();
+    let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
+    lines.chain(contradictions(summary)).collect()
+}
+
+/// Share of the distance between the ends of the draws by which the car as it is may be from their median. ASSUMED: half of the draws of any bell
+/// are nearer, so that beyond it the draws are about other cars.
+const NEAR_MEDIAN: f64 = 0.25;
+
+/// Where draws say less of a difference than their interval looks like: too few, or the difference of the cars as they are not among them.
+fn draw_doubts(summary: &Summary) -> Vec<String> {
+    let confidence = Confidence::default();
+    let drawn = summary.comparison.iter().filter_map(|comparison| {
+        let (of, percent) = (comparison.interval.as_ref()?, comparison.fuel_percent?);
+        let [low, median, high] = of.percent;
+        let n = usize::try_from(of.draws).ok()?;
+        let mut doubts = Enough::of(n, confidence).doubts(confidence);
+        if (percent - median).abs() > NEAR_MEDIAN * (high - low) {
+            let decimals = decimals([low, high]);
+            let [median, percent] = [median, percent].map(|x| signed(x, decimals));
+            doubts.push(format!(
+                "the median of the varied runs is {median} %, the cars as they are have {percent} %: the ranges of the plan are not centred on these cars"
+            ));
+        }
+        let baseline = &comparison.baseline;
+        (!doubts.is_empty()).then(|| format!("Varied runs against {baseline}: {}.", doubts.join("; ")))
+    });
+    drawn.collect()
+}
+
+/// The measured maps that a car left for a large part of the run, a sentence each.
+pub fn maps_left(summary: &Summary) -> Vec<String> {
+    let of = |run: &RunSummary| {
+        let maps = run.maps_left.iter();
+        maps.map(|map| left_map(run, map)).collect::<Vec<_>>()
+    };
+    summary.runs.iter().flat_map(of).collect()
+}
+
+/// A measured map that a car left: "mycar: pump.csv was left for 78 % of the time with the engine on, most of it with …".
+fn left_map(run: &RunSummary, map: &MapLeft) -> String {
+    let end = map
+        .end
+        .map_or_else(String::new, |end| format!(" {}", decimal(end)));
+    format!(
+        "{}: {} was left for {} % of the time with the engine on, most by {} {}{end}; the value of its edge is held there.",
+        run.vehicle,
+        map.file,
+        fixed(map.percent, 0),
+        map.column,
+        map.side
+    )
+}
+
+/// The published numbers that a run contradicts, a sentence each.
+pub fn contradictions(summary: &Summary) -> Vec<String> {
+    let Some(run) = summary.runs.first() else {
+        return Vec::new();
+    };
+    let all = summary.contradicted.iter();
+    all.map(|of| contradiction(run, of)).collect()
+}
+
+/// How sure the differences to the baselines are, a sentence for each of which it is known.
+pub fn intervals(summary: &Summary) -> Vec<String> {
+    let drawn = summary.comparison.iter().filter_map(|comparison| {
+        let of = comparison.interval.as_ref()?;
+        let ends = [of.percent[0], of.percent[2]];
+        let median = signed(of.percent[1], decimals(ends));
+        let ends = between(ends, "%");
+        let (baseline, plan, draws, more) = (&comparison.baseline, &of.plan, of.draws, of.more);
+        Some(format!(
+            "Difference to {baseline} over {draws} runs with the uncertain values of the plan {plan} varied: 90 % of them are {ends}, the median is {median} %; the subject uses more in {more}."
+        ))
+    });
+    drawn.chain(draw_doubts(summary)).collect()
+}
+
+/// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
+fn against(comparison: &Comparison, explained: bool) -> Option<String> {
+    let percent = comparison.fuel_percent?;
+    let baseline = &comparison.baseline;
+    let Some(drawn) = &comparison.interval else {
+        let compared = more_or_less(percent, 1);
+        let than = than(&compared);
+        return Some(format!(", {compared} {than} {baseline} (no interval)"));
+    };
+    let ends = [drawn.percent[0], drawn.percent[2]];
+    let compared = more_or_less(percent, decimals(ends));
+    let (than, ends) = (than(&compared), between(ends, "%"));
+    let (draws, more) = (drawn.draws, drawn.more);
+    let left_out = match drawn.left_out {
+        0 => String::new(),
+        n => format!("; {n} left out"),
+    };
+    let runs = match explained {
+        false => format!("{draws} runs with uncertain values varied"),
+        true => format!("{draws} runs"),
+    };
+    Some(format!(
+        ", {compared} {than} {baseline} (90 % of {runs}: {ends}; more in {more}{left_out})"
+    ))
+}
+
+/// A published number against that of the run.
+fn contradiction(run: &RunSummary, of: &Contradiction) -> String {
+    let computed = match &of.baseline {
+        Some(baseline) => of_difference(of.computed, baseline, of.phase.as_deref()),
+        None => {
+            let phase = of.phase.as_deref();
+            let phase = phase.map_or_else(String::new, |phase| format!(" in {phase}"));
+            let (car, unit) = (&run.vehicle, &of.unit);
+            format!("{} {unit} of {car}{phase}", fixed(of.computed, 2))
+        }
+    };
+    against_print(&computed, &of.printed, &of.condition, &of.row)
+}

@@ -1,0 +1,334 @@
+//! The cars of a plan: loaded, with their problems at their places in the plan.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::plan::{CalibrationPlan, FreeParameter, Observable, problem};
+use crate::solve::Parameter;
+use cvtcycle_config::ProblemKind::{Conflict, Missing, OutOfRange};
+use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
+use cvtcycle_config::setup::{Setup, load};
+use cvtcycle_config::{Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems};
+use cvtcycle_model::rig::transmission::Conditions;
+use cvtcycle_validate::source::Source;
+
+/// A car of the plan with parameters that the fit changes.
+pub struct FittedCar {
+    pub template: VehicleTemplate,
+    /// The parameters in it.
+    pub slots: Vec<ParameterRef>,
+    pub keys: Vec<KeyInfo>,
+}
+
+/// Settings of the transmission rig and their keys.
+pub type RigConditions = (Conditions, Vec<KeyInfo>);
+
+/// All cars of a plan.
+pub struct Cars<'p> {
+    plan: &'p CalibrationPlan,
+    /// Cars that the fit changes, the plan's own without changes of a source first.
+    pub fitted: Vec<FittedCar>,
+    /// Index of the fitted car by [`Cars::name`].
+    by_name: HashMap<String, usize>,
+    /// Cars that the fit does not change, by the same.
+    fixed: HashMap<String, Setup>,
+    conditions: HashMap<String, RigConditions>,
+}
+
+/// Car of a source.
+pub enum Car<'a> {
+    /// Index of a car that the fit changes.
+    Fitted(usize),
+    /// A car that the fit does not change.
+    Fixed(&'a Setup),
+}
+
+impl<'p> Cars<'p> {
+    /// Loads the cars of a plan; with the parameters of the fit.
+    pub fn load(plan: &'p CalibrationPlan) -> Result<(Self, Vec<Parameter>), Problems> {
+        let mut cars = Cars {
+            plan,
+            fitted: Vec::new(),
+            by_name: HashMap::new(),
+            fixed: HashMap::new(),
+            conditions: HashMap::new(),
+        };
+        let mut problems: Problems = cars.add(None).err().unwrap_or_default();
+        problems = problems.map(|p| in_plan(plan, p));
+        problems.extend(cars.set_and_free(&plan.car.set, &plan.places[3]));
+        let mut parameters = Vec::new();
+        if let Some(car) = cars.fitted.first() {
+            let mut bench = car.template.bench();
+            for free in &plan.parameters {
+                // The problem of one that is not found is known already.
+                let slot = |slot: &&ParameterRef| slot.key() == free.key.trim();
+                if let Some(slot) = car.slots.iter().find(slot) {
+                    problems.extend(at_bounds(free, slot, &mut bench));
+                    parameters.push(parameter(free, slot, &mut problems));
+                }
+            }
+        }
+        let rig = plan.car.conditions(None).err().unwrap_or_default();
+        problems.extend(rig.map(|p| in_plan(plan, p)));
+        for source in used(plan) {
+            let mut found = cars.add_source(source, &problems);
+            found.retain(|problem| !problems.contains(problem));
+            problems.extend(found);
+        }
+        if problems.is_empty() {
+            Ok((cars, parameters))
+        } else {
+            Err(problems)
+        }
+    }
+
+    /// The car of a source, loaded before.
+    pub fn of(&self, source: Option<&Source>) -> Car<'_> {
+        let name = self.name(source);
+        let fitted = || Car::Fitted(self.by_name.get(&name).copied().unwrap_or(0));
+        self.fixed.get(&name).map_or_else(fitted, Car::Fixed)
+    }
+
+    /// Settings of the transmission rig for a source.
+    pub fn conditions(&self, source: Option<&Source>) -> Result<RigConditions, Problems> {
+        let name = format!("{:?}", self.plan.car.overrides(source));
+        let known = self.conditions.get(&name).cloned();
+        known.map_or_else(|| self.plan.car.conditions(source), Ok)
+    }
+
+    /// Vehicle and options of a source as one text.
+    fn name(&self, source: Option<&Source>) -> String {
+        let car = &self.plan.car;
+        let own = source.is_none_or(|source| source.vehicle.is_none());
+        format!("{own} {} {:?}", car.vehicle_of(source), car.options(source))
+    }
+
+    fn add(&mut self, source: Option<&Source>) -> Result<(), Problems> {
+        let name = self.name(source);
+        if self.by_name.contains_key(&name) || self.fixed.contains_key(&name) {
+            return Ok(());
+        }
+        let car = &self.plan.car;
+        let options = car.options(source);
+        if let Some(vehicle) = source.and_then(|source| source.vehicle.as_deref()) {
+            self.fixed.insert(name, load(vehicle, &options)?);
+            return Ok(());
+        }
+        let loaded = VehicleTemplate::load(&car.vehicle, &options);
+        let (template, setup) = loaded?;
+        let mut problems = Problems::new();
+        let mut slots = Vec::new();
+        for free in &self.plan.parameters {
+            match template.slot(&free.key) {
+                Ok(slot) => slots.push(slot),
+                Err(found) => problems.push(not_free(free, found, &car.vehicle)),
+            }
+        }
+        // With the parameters that were found more can be checked; nothing is computed after a problem.
+        self.by_name.insert(name, self.fitted.len());
+        let keys = setup.keys;
+        self.fitted.push(FittedCar {
+            template,
+            slots,
+            keys,
+        });
+        if problems.is_empty() {
+            Ok(())
+        } else {
+            Err(problems)
+        }
+    }
+
+    /// Loads the car and rig of a source; returns its problems except those of the plan's own car, which are `known`.
+    fn add_source(&mut self, source: &Source, known: &[Problem]) -> Problems {
+        let context = format!("source `{}`: ", source.name);
+        let at = |found: Problem| {
+            let own = Some(&found.place).filter(|place| place.line > 0);
+            let place = own.unwrap_or(&source.place).clone();
+            let found = match found.place.is_argument(Argument::Lubricant) {
+                true => found.key("lubricant"),
+                false => found,
+            };
+            assigned(found, place).with_context(&context)
+        };
+        let is_new = |found: &Problem| {
+            let same = |old: &Problem| old.message == found.message && old.value == found.value;
+            !known.iter().any(same)
+        };
+        let mut problems = Problems::new();
+        if source.vehicle.is_none() {
+            problems.extend(self.set_and_free(&source.set, &source.place).map(at));
+            problems.extend(self.fitted_fluid(source));
+        }
+        // Without the plan's own car there is none with a source's changes either.
+        if source.vehicle.is_some() || !self.fitted.is_empty() {
+            let found = self.add(Some(source)).err().unwrap_or_default();
+            problems.extend(found.into_iter().filter(is_new).map(at));
+        }
+        match self.plan.car.conditions(Some(source)) {
+            Ok(found) => {
+                let name = format!("{:?}", self.plan.car.overrides(Some(source)));
+                self.conditions.insert(name, found);
+            }
+            Err(found) => problems.extend(found.into_iter().filter(is_new).map(at)),
+        }
+        problems
+    }
+
+    /// A fluid of a source's own, where one is fitted.
+    fn fitted_fluid(&self, source: &Source) -> Option<Problem> {
+        source.lubricant.as_ref()?;
+        let of_fluid = |free: &&FreeParameter| free.key.starts_with("lubricant.");
+        let free = self.plan.parameters.iter().find(of_fluid)?;
+        let message = format!(
+            "source `{}` has a fluid of its own, in which `{}` would be another value",
+            source.name, free.key
+        );
+        let hint = "fit the two fluids in plans of their own";
+        Some(problem(
+            Conflict,
+            &source.place,
+            "lubricant",
+            "",
+            message,
+            hint,
+        ))
+    }
+
+    /// Parameters that an override sets.
+    fn set_and_free(&self, set: &[Override], place: &Place) -> Problems {
+        let both = self.plan.parameters.iter();
+        let both = both.filter(|free| set.iter().any(|by| by.key() == free.key));
+        both.map(|free| {
+            let message = format!("`{}` is set and free", free.key);
+            let hint = "what is set is held: remove it from `set`, or remove its [[parameter]]";
+            problem(
+                Conflict,
+                &place.clone().of_item(&free.key),
+                "set",
+                "",
+                message,
+                hint,
+            )
+        })
+        .collect()
+    }
+}
+
+/// The problem of a key that cannot be fitted, at its place in the plan.
+fn not_free(free: &FreeParameter, found: Problem, vehicle: &str) -> Problem {
+    let hint = match found.kind {
+        ProblemKind::WrongTransmission | ProblemKind::NotSingle => {
+            format!("`cvtcycle show {vehicle}` prints its keys; words and lists are held, in `set`")
+        }
+        _ => found.hint.clone(),
+    };
+    let allowed = if found.allowed.is_empty() {
+        "the key of a single number of the vehicle or of its fluids".to_owned()
+    } else {
+        found.allowed.clone()
+    };
+    found
+        .at(free.place.clone())
+        .key("key")
+        .value(free.key.clone())
+        .allowed(allowed)
+        .hint(hint)
+}
+
+/// Bounds at which the car is invalid.
+fn at_bounds(free: &FreeParameter, slot: &ParameterRef, bench: &mut Variant) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let ends = [("low", free.low), ("high", free.high)];
+    for ((word, value), place) in ends.into_iter().zip(&free.bounds) {
+        bench.reset();
+        bench.set(slot, value);
+        if bench.build().is_ok() {
+            continue;
+        }
+        let first = bench.problems().into_iter().next().unwrap_or_default();
+        let message = format!(
+            "parameter {}: the car is refused at `{word}`: {}",
+            free.key, first.message
+        );
+        // The problem may be another key that depends on this one.
+        let own = first.key.is_empty() || slot.key().ends_with(&first.key);
+        let hint = if own || first.hint.is_empty() {
+            "bounds are in the unit of the key; the search may go to both"
+        } else {
+            &first.hint
+        };
+        let allowed = if first.allowed.is_empty() {
+            slot.allowed()
+        } else {
+            &first.allowed
+        };
+        let problem = problem(first.kind, place, word, allowed, message, hint).names_key();
+        problems.push(problem.value(value.to_string()));
+    }
+    problems
+}
+
+/// The parameter of the fit.
+fn parameter(free: &FreeParameter, slot: &ParameterRef, problems: &mut Problems) -> Parameter {
+    let start = free.start.unwrap_or(slot.base());
+    let mut refuse = |kind, allowed: &str, message: &str, hint: &str| {
+        let message = format!("parameter {}: {message}", free.key);
+        problems.push(problem(kind, &free.place, "start", allowed, message, hint));
+    };
+    if start.is_nan() {
+        let hint = "add `start`, in the unit of the key";
+        refuse(
+            Missing,
+            "a number",
+            "the file has no value to start from",
+            hint,
+        );
+    } else if !(free.low..=free.high).contains(&start) {
+        let allowed = format!("{} to {}", free.low, free.high);
+        let message = format!("the file's value {start} is outside the bounds");
+        refuse(
+            OutOfRange,
+            &allowed,
+            &message,
+            "widen the bounds, or add `start`",
+        );
+    }
+    Parameter {
+        prior: free.prior,
+        ..Parameter::new(free.key.clone(), start, free.low, free.high)
+    }
+}
+
+/// A problem of the plan's own car at its place in the plan, unless its place is in a file.
+fn in_plan(plan: &CalibrationPlan, found: Problem) -> Problem {
+    let [vehicle, lubricant, engine_oil, set] = &plan.places;
+    let (place, key) = match &found.place.input {
+        Input::Argument(Argument::Lubricant) => (lubricant, "lubricant"),
+        Input::Argument(Argument::EngineOil) => (engine_oil, "engine_oil"),
+        Input::Argument(_) => (vehicle, "vehicle"),
+        Input::Override(_) => (set, "set"),
+        Input::File(_) => return found,
+    };
+    assigned(found.key(key), place.clone())
+}
+
+/// A problem moved to a place in the plan: to the assignment of a list, where it is in that line.
+fn assigned(found: Problem, place: Place) -> Problem {
+    let place = place.of_item(found.place.assignment().unwrap_or_default());
+    found.at(place)
+}
+
+/// All sources of the observations, each once.
+fn used(plan: &CalibrationPlan) -> Vec<&Source> {
+    let benches = plan.benches.iter().map(|bench| &bench.source);
+    let mut found: Vec<&Source> = benches.chain(&plan.runs).collect();
+    for observation in &plan.observations {
+        if let Observable::Expression { view, expr } = &observation.observable {
+            let sources = expr.sources().into_iter().flatten();
+            found.extend(sources.filter_map(|k| plan.views[*view].get(k)));
+        }
+    }
+    let mut seen = HashSet::new();
+    found.retain(|s| seen.insert((&s.name, s.place.file_name(), s.place.line, s.place.column)));
+    found
+}

@@ -1,0 +1,100 @@
+//! One `[[parameter]]` of a plan.
+
+use super::FreeParameter;
+use super::keys::{PARAMETER, PRIOR};
+use crate::solve::Prior;
+use cvtcycle_config::ProblemKind;
+use cvtcycle_config::{Document, Problems, Reader, Section};
+use cvtcycle_model::keys::Values;
+use cvtcycle_model::transmission::loss_factor;
+
+/// Reads a parameter.
+///
+/// # Errors
+/// All its problems.
+pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
+    let reader = Reader::new(document);
+    let s = reader.root();
+    let key = Values::text(&s, &PARAMETER.key);
+    if !key.is_empty() && !key.contains('.') {
+        let allowed = "a dotted key of the vehicle's files";
+        let message = format!("`{key}` is no dotted key");
+        s.unknown_key(
+            "key",
+            allowed,
+            &message,
+            "`cvtcycle show VEHICLE` lists the keys",
+        );
+    }
+    if loss_factor::is_key(&key) {
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "key",
+            "a parameter of the model",
+            "a factor on a loss is no parameter of the physics",
+            "fit what the loss depends on: `cvtcycle explain KEY` names the equations",
+        );
+    }
+    let [low, high] = [&PARAMETER.low, &PARAMETER.high].map(|key| Values::number(&s, key));
+    if low >= high {
+        let hint = "swap them, or leave the parameter out to hold it";
+        s.complain_by_name(
+            ProblemKind::Conflict,
+            "low",
+            "below `high`",
+            "`low` is not below `high`",
+            hint,
+        );
+    }
+    let start = s.optional(&PARAMETER.start);
+    let inside = |x: f64| low <= x && x <= high;
+    if start.is_some_and(|x| !inside(x) && low < high && x.is_finite()) {
+        let (allowed, hint) = (format!("{low} to {high}"), "move it, or widen the bounds");
+        s.complain_by_name(
+            ProblemKind::OutOfRange,
+            "start",
+            &allowed,
+            "`start` is outside the bounds",
+            hint,
+        );
+    }
+    let prior = prior(&s);
+    let status = s.word(&PARAMETER.status);
+    if prior.is_some() && !s.has("status") {
+        let allowed = PARAMETER.status.allowed();
+        let hint = "add `status = \"assumed\"`";
+        s.missing("status", &allowed, "a prior needs a status", hint);
+    }
+    let free = FreeParameter {
+        low,
+        high,
+        start,
+        status: prior.map_or("", |_| status),
+        prior,
+        source: Values::text(&s, &PARAMETER.source),
+        place: s.place("key"),
+        bounds: ["low", "high"].map(|key| s.place(key)),
+        key,
+    };
+    let context = match free.key.as_str() {
+        "" => String::new(),
+        key => format!("parameter {key}: "),
+    };
+    let read = reader.finish();
+    read.map(|_| free)
+        .map_err(|problems| problems.map(|p| p.with_context(&context)))
+}
+
+fn prior(s: &Section) -> Option<Prior> {
+    let s = s.table("prior");
+    if !s.exists() {
+        return None;
+    }
+    let [mean, sd] = [&PRIOR.mean, &PRIOR.sd].map(|key| Values::number(&s, key));
+    if sd <= 0.0 {
+        let message = "the standard deviation is not above 0";
+        let hint = "leave the parameter out to hold it at its value";
+        s.out_of_range("sd", "above 0", message, hint);
+    }
+    Some(Prior { mean, sd })
+}
