@@ -19,11 +19,18 @@ const SET: (&str, &str) = ("set", "command line");
 
 impl KeyInfo {
     /// With a number in the key's unit, and its value in SI units, as an override would set it.
-    pub(crate) fn set(&mut self, number: f64, si: f64) {
+    pub(crate) fn set_number(&mut self, number: f64, si: f64) {
         (self.value, self.si) = (number.to_string(), Some(si));
+        self.set_by_key(false);
+    }
+
+    /// As set by an override of its own key, or of a key in its table, which the file may have.
+    pub(crate) fn set_by_key(&mut self, has_table: bool) {
         (self.status, self.source) = (SET.0.to_owned(), SET.1.to_owned());
         self.note.clear();
-        self.from = OVERRIDE.to_owned();
+        if !has_table {
+            self.from = OVERRIDE.to_owned();
+        }
     }
 }
 

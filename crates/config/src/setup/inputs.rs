@@ -3,8 +3,8 @@
 use super::like::resolve;
 use super::twin::{TwinTable, twin};
 use super::{
-    Files, Kind, NamedBy, Options, Origin, is_path, is_twin, load_lubricant, read_lubricant, stem,
-    text_of,
+    Files, Kind, NamedBy, Options, Origin, ParamSet, is_path, is_twin, load_lubricant,
+    read_lubricant, stem, text_of,
 };
 use crate::files::TableCache;
 use crate::reader::recorded::Recorded;
@@ -19,7 +19,7 @@ use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// A document and what is wrong with it so far.
 #[derive(Clone, Debug, Default)]
@@ -184,6 +184,7 @@ impl Inputs {
             inputs: self,
             keys,
             recorded,
+            chosen: Mutex::default(),
         };
         Ok((read, assembled))
     }
@@ -199,6 +200,8 @@ pub(super) struct Validated {
     pub index: HashMap<String, usize>,
     /// The values of each file, in the order of [`Target::CAR`].
     pub recorded: [Recorded; 3],
+    /// The last set that chooses other options, and the keys that choose them.
+    pub chosen: Mutex<Option<(Vec<String>, ParamSet)>>,
 }
 
 /// The car that a reading makes.

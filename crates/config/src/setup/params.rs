@@ -5,14 +5,15 @@
 //! cannot do (words, files, keys of an option that is not chosen, values that the car refuses) goes through the documents: the value is put into
 //! them as an override, and they are validated again, so that every problem has the words and the place that `--set` gives it.
 
-use std::sync::{Arc, Weak};
+use std::cell::Cell;
+use std::sync::{Arc, PoisonError, Weak};
 
 use super::inputs::{Assembled, Inputs, Validated, head, wrong_keys};
 use super::{Files, Options, Setup};
+use crate::document::target::path_of;
 use crate::reader::recorded::RecordedTable;
 use crate::{Input, KeyInfo, Override, Problem, Problems, Reader, Target, unit_of};
 use cvtcycle_model::drive::{ChangedParts, Vehicle};
-use std::cell::Cell;
 
 /// The checked values of a car, each with its origin.
 ///
@@ -174,11 +175,24 @@ impl ParamSet {
             let Some((file, index)) = self.place(param) else {
                 continue;
             };
-            if let Some(info) = keys.iter_mut().find(|info| info.key == param.key()) {
-                info.set(*number, self.numbers[file][index]);
+            for info in &mut keys {
+                if info.key == param.key() {
+                    info.set_number(*number, self.numbers[file][index]);
+                } else if is_within(param.key(), &info.key) {
+                    // The choice to which the number belongs.
+                    info.set_by_key(self.has_table(file, info));
+                }
             }
         }
         keys
+    }
+
+    /// True where the file of a choice has a table for the option that is chosen.
+    fn has_table(&self, file: usize, choice: &KeyInfo) -> bool {
+        let document = self.read.inputs.files[file].document.as_ref();
+        let path = path_of(&format!("{}.{}", file_of(&choice.key).1, choice.value));
+        let path: Vec<&str> = path.iter().map(|name| &**name).collect();
+        document.is_some_and(|document| document.root.node(&path).is_some())
     }
 
     /// The car with its keys and origin, as [`super::load`] gives it.
@@ -302,12 +316,37 @@ impl ParamSet {
     /// # Errors
     /// As of [`ParamSet::with`].
     pub fn with_numbers(&self, numbers: &[(&Param, f64)]) -> Result<ParamSet, Problems> {
-        if let Some(set) = self.rebuilt(numbers) {
+        let known = self.rebuilt(numbers);
+        if let Some(set) = known.or_else(|| self.of_option(numbers)) {
             return Ok(set);
         }
-        let set = numbers.iter();
-        let set = set.map(|(param, number)| Override::number(param.key(), *number));
-        self.validated_with(set)
+        self.validated_with(overrides(numbers))
+    }
+
+    /// As [`ParamSet::rebuilt`], for numbers of options that these files do not choose. The last choice is kept: the points of a study make the
+    /// same one.
+    fn of_option(&self, numbers: &[(&Param, f64)]) -> Option<ParamSet> {
+        let mut of_option = numbers.to_vec();
+        of_option.retain(|(param, _)| self.place(param).is_none());
+        let keys: Vec<&str> = of_option.iter().map(|(param, _)| param.key()).collect();
+        if keys.is_empty() {
+            return None;
+        }
+        let mut last = self
+            .read
+            .chosen
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        if last.as_ref().is_none_or(|(of, _)| *of != keys) {
+            let files = self.read.inputs.with(&overrides(&of_option));
+            let set = ParamSet::of(files.validate().ok()?);
+            let keys = keys.into_iter().map(str::to_owned);
+            *last = Some((keys.collect(), set));
+        }
+        let (_, set) = last.as_ref()?;
+        let changes = self.changes.iter().map(|(param, number)| (param, *number));
+        let all: Vec<(&Param, f64)> = changes.chain(numbers.iter().copied()).collect();
+        set.rebuilt(&all)
     }
 
     /// Index of the file and of the number of a parameter, which may be that of another set.
@@ -365,10 +404,10 @@ impl ParamSet {
         &self,
         set: impl IntoIterator<Item = Override>,
     ) -> Result<ParamSet, Problems> {
-        let changes = self.changes.iter();
-        let changes = changes.map(|(param, number)| Override::number(param.key(), *number));
+        let changes = self.changes.iter().map(|(param, number)| (param, *number));
+        let changes = overrides(&changes.collect::<Vec<_>>());
         let mut all: Vec<Override> = Vec::new();
-        for by in changes.chain(set) {
+        for by in changes.into_iter().chain(set) {
             // The last value of a key, at the place of its first.
             match all.iter_mut().find(|old| old.key() == by.key()) {
                 Some(old) => *old = by,
@@ -379,6 +418,19 @@ impl ParamSet {
         let changed = self.read.inputs.with(&all);
         changed.validate().map(ParamSet::of)
     }
+}
+
+/// True for a key in the table of another one.
+fn is_within(key: &str, table: &str) -> bool {
+    let rest = key.strip_prefix(table);
+    rest.is_some_and(|rest| rest.starts_with('.'))
+}
+
+/// Numbers as overrides of the files.
+fn overrides(numbers: &[(&Param, f64)]) -> Vec<Override> {
+    let numbers = numbers.iter();
+    let number = |(param, number): &(&Param, f64)| Override::number(param.key(), *number);
+    numbers.map(number).collect()
 }
 
 /// Index of the file of a key in [`Target::CAR`], and the key in it.
