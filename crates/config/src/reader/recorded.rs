@@ -1,10 +1,9 @@
 //! The values of one file as the parts of the model have read them: parts are built again from them with other numbers, without the document.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::HashMap;
 use std::sync::Arc;
-
-use rustc_hash::FxHashMap;
 
 use super::log::join;
 use super::maps::MapTable;
@@ -49,12 +48,46 @@ impl NumberRow {
     }
 }
 
+/// Values by their names, in the order of reading.
+#[derive(Clone, Debug)]
+struct InOrder<T>(Vec<(Name, T)>);
+
+/// The name of a key: most are found by their address, since the rows of the model are statics.
+type Name = Cow<'static, str>;
+
+impl<T> Default for InOrder<T> {
+    fn default() -> Self {
+        InOrder(Vec::new())
+    }
+}
+
+impl<T> InOrder<T> {
+    /// The value of a name. `next` is the place after the last one found: parts read their keys again in the order in which they first read
+    /// them, so that most names are found at once.
+    #[inline]
+    fn find(&self, name: &str, next: &Cell<usize>) -> Option<&T> {
+        let index = match self.0.get(next.get()) {
+            Some((own, _)) if std::ptr::eq(&**own, name) => next.get(),
+            _ => self.0.iter().position(|(own, _)| **own == *name)?,
+        };
+        next.set(index + 1);
+        Some(&self.0[index].1)
+    }
+
+    fn set(&mut self, name: Name, value: T) {
+        match self.0.iter_mut().find(|(own, _)| *own == name) {
+            Some((_, old)) => *old = value,
+            None => self.0.push((name, value)),
+        }
+    }
+}
+
 /// A table of the file.
 #[derive(Clone, Debug, Default)]
 struct Table {
-    numbers: FxHashMap<Box<str>, usize>,
-    others: FxHashMap<Box<str>, Typed>,
-    tables: FxHashMap<Box<str>, usize>,
+    numbers: InOrder<usize>,
+    others: InOrder<Typed>,
+    tables: InOrder<usize>,
     /// True where a part takes another form because the file does not have the table.
     is_absent: bool,
     /// Keys on which a part takes another form, and whether the file has them.
@@ -89,7 +122,9 @@ impl Recorded {
         self.tables.push(Table::default());
         self.paths.insert(path.to_owned(), index);
         if let Some((around, name)) = around {
-            self.tables[around].tables.insert(name.into(), index);
+            self.tables[around]
+                .tables
+                .set(name.to_owned().into(), index);
         }
         index
     }
@@ -100,7 +135,7 @@ impl Recorded {
     }
 
     /// Records a number in SI units.
-    pub fn number(&mut self, path: &str, key: &Key<'_>, si: f64) {
+    pub fn number(&mut self, path: &str, key: &Key<'static>, si: f64) {
         let own = join(path, key.name);
         let index = match self.keys.get(&own) {
             Some(index) => *index,
@@ -119,13 +154,13 @@ impl Recorded {
         });
         self.keys.insert(own, index);
         let table = self.table_mut(path);
-        table.numbers.insert(key.name.into(), index);
+        table.numbers.set(key.name.into(), index);
     }
 
     /// Records a value that is no single number.
-    pub fn other(&mut self, path: &str, key: &Key<'_>, value: Typed) {
+    pub fn other(&mut self, path: &str, key: &Key<'static>, value: Typed) {
         let table = self.table_mut(path);
-        table.others.insert(key.name.into(), value);
+        table.others.set(key.name.into(), value);
     }
 
     /// Records that a part looked whether there is a table.
@@ -149,12 +184,13 @@ impl Recorded {
 }
 
 /// A table of recorded values, with numbers in place of those that were read.
-#[derive(Clone, Copy)]
 pub(crate) struct RecordedTable<'r> {
     recorded: &'r Recorded,
     numbers: &'r [f64],
     table: Option<&'r Table>,
     refused: &'r Cell<bool>,
+    /// Places at which the next number, other value and table are looked for.
+    next: [Cell<usize>; 3],
 }
 
 impl<'r> RecordedTable<'r> {
@@ -165,6 +201,7 @@ impl<'r> RecordedTable<'r> {
             numbers,
             table: recorded.tables.first(),
             refused,
+            next: Default::default(),
         }
     }
 
@@ -174,7 +211,7 @@ impl<'r> RecordedTable<'r> {
     }
 
     fn other(&self, key: &Key<'_>) -> Option<&'r Typed> {
-        self.table?.others.get(key.name)
+        self.table?.others.find(key.name, &self.next[1])
     }
 }
 
@@ -190,9 +227,13 @@ macro_rules! other {
 
 impl Values for RecordedTable<'_> {
     fn table(&self, name: &str) -> Self {
-        let index = self.table.and_then(|table| table.tables.get(name));
-        let table = index.map(|index| &self.recorded.tables[*index]);
-        RecordedTable { table, ..*self }
+        let tables = self.table.map(|table| &table.tables);
+        let index = tables.and_then(|tables| tables.find(name, &self.next[2]));
+        RecordedTable {
+            table: index.map(|index| &self.recorded.tables[*index]),
+            next: Default::default(),
+            ..*self
+        }
     }
 
     fn exists(&self) -> bool {
@@ -202,7 +243,7 @@ impl Values for RecordedTable<'_> {
         }
     }
 
-    fn has(&self, key: &Key<'_>) -> bool {
+    fn has(&self, key: &Key<'static>) -> bool {
         let given = self.table.and_then(|table| {
             let mut given = table.given.iter();
             given.find(|(name, _)| **name == *key.name)
@@ -213,69 +254,70 @@ impl Values for RecordedTable<'_> {
         }
     }
 
-    fn number(&self, key: &Key<'_>) -> f64 {
-        match self.table.and_then(|table| table.numbers.get(key.name)) {
+    fn number(&self, key: &Key<'static>) -> f64 {
+        let numbers = self.table.map(|table| &table.numbers);
+        match numbers.and_then(|numbers| numbers.find(key.name, &self.next[0])) {
             Some(index) => self.numbers[*index],
             None => self.refuse(f64::NAN),
         }
     }
 
-    fn number_or(&self, key: &Key<'_>, _: f64) -> f64 {
+    fn number_or(&self, key: &Key<'static>, _: f64) -> f64 {
         self.number(key)
     }
 
-    fn optional(&self, key: &Key<'_>) -> Option<f64> {
+    fn optional(&self, key: &Key<'static>) -> Option<f64> {
         Some(self.number(key)).filter(|x| !x.is_nan())
     }
 
-    fn integer(&self, key: &Key<'_>) -> i64 {
+    fn integer(&self, key: &Key<'static>) -> i64 {
         self.number(key) as i64
     }
 
-    fn flag(&self, key: &Key<'_>) -> bool {
+    fn flag(&self, key: &Key<'static>) -> bool {
         other!(self, key, Flag, value => *value, false)
     }
 
-    fn text(&self, key: &Key<'_>) -> String {
+    fn text(&self, key: &Key<'static>) -> String {
         other!(self, key, Text, value => value.clone(), String::new())
     }
 
-    fn text_or(&self, key: &Key<'_>, _: &str) -> String {
+    fn text_or(&self, key: &Key<'static>, _: &str) -> String {
         self.text(key)
     }
 
-    fn texts(&self, key: &Key<'_>) -> Vec<String> {
+    fn texts(&self, key: &Key<'static>) -> Vec<String> {
         other!(self, key, Texts, value => value.clone(), Vec::new())
     }
 
-    fn word(&self, key: &Key<'_>) -> &'static str {
+    fn word(&self, key: &Key<'static>) -> &'static str {
         other!(self, key, Word, value => value, "")
     }
 
-    fn choose(&self, key: &Key<'_>) -> (&'static str, Self) {
+    fn choose(&self, key: &Key<'static>) -> (&'static str, Self) {
         let option = self.word(key);
         (option, self.table(key.name).table(option))
     }
 
-    fn numbers(&self, key: &Key<'_>) -> Vec<f64> {
+    fn numbers(&self, key: &Key<'static>) -> Vec<f64> {
         other!(self, key, Numbers, value => value.clone(), Vec::new())
     }
 
-    fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>> {
+    fn rows(&self, key: &Key<'static>) -> Option<Vec<Vec<f64>>> {
         other!(self, key, Rows, value => Some(value.clone()), None)
     }
 
-    fn loss_map(&self, key: &Key<'_>, _: &'static str) -> Option<LossMap> {
+    fn loss_map(&self, key: &Key<'static>, _: &'static str) -> Option<LossMap> {
         other!(self, key, LossMap, value => value.clone(), None)
     }
 
-    fn file_table(&self, key: &Key<'_>, _: &'static FileTable) -> Option<FileRows> {
+    fn file_table(&self, key: &Key<'static>, _: &'static FileTable) -> Option<FileRows> {
         other!(self, key, FileRows, value => value.clone(), None)
     }
 
     fn bsfc_map(
         &self,
-        key: &Key<'_>,
+        key: &Key<'static>,
         heating_value_j_kg: f64,
         displacement_m3: f64,
     ) -> Option<BsfcMap> {

@@ -22,14 +22,14 @@ impl<'r> Values for Section<'r> {
         exists
     }
 
-    fn has(&self, key: &Key<'_>) -> bool {
+    fn has(&self, key: &Key<'static>) -> bool {
         let has = Section::has(self, key.name);
         self.reader
             .record(|log| log.values.given(&self.path, key.name, has));
         has
     }
 
-    fn number(&self, key: &Key<'_>) -> f64 {
+    fn number(&self, key: &Key<'static>) -> f64 {
         match key.presence {
             Presence::Number(default) => Values::number_or(self, key, default),
             _ => {
@@ -45,7 +45,7 @@ impl<'r> Values for Section<'r> {
         }
     }
 
-    fn number_or(&self, key: &Key<'_>, default: f64) -> f64 {
+    fn number_or(&self, key: &Key<'static>, default: f64) -> f64 {
         debug_assert!(key.range().contains(default), "default of {}", key.name);
         let number = self.read_number(key, key.range());
         let number = number.unwrap_or_else(|absent| {
@@ -59,7 +59,7 @@ impl<'r> Values for Section<'r> {
         self.keep_number(key, number)
     }
 
-    fn optional(&self, key: &Key<'_>) -> Option<f64> {
+    fn optional(&self, key: &Key<'static>) -> Option<f64> {
         let number = self.read_number(key, key.range());
         self.keep_number(key, number.unwrap_or(f64::NAN));
         match number {
@@ -68,17 +68,17 @@ impl<'r> Values for Section<'r> {
         }
     }
 
-    fn integer(&self, key: &Key<'_>) -> i64 {
+    fn integer(&self, key: &Key<'static>) -> i64 {
         let integer = self.read_integer(key);
         self.keep_number(key, integer as f64);
         integer
     }
 
-    fn flag(&self, key: &Key<'_>) -> bool {
+    fn flag(&self, key: &Key<'static>) -> bool {
         self.keep(key, self.read_flag(key), Typed::Flag)
     }
 
-    fn text(&self, key: &Key<'_>) -> String {
+    fn text(&self, key: &Key<'static>) -> String {
         let default = match key.presence {
             Presence::Required | Presence::RequiredIf(_) => None,
             Presence::Word(default) => Some(default),
@@ -98,7 +98,7 @@ impl<'r> Values for Section<'r> {
         self.keep(key, text, Typed::Text)
     }
 
-    fn text_or(&self, key: &Key<'_>, default: &str) -> String {
+    fn text_or(&self, key: &Key<'static>, default: &str) -> String {
         let text = self.read_text(key).unwrap_or_else(|absent| {
             if !absent {
                 return String::new();
@@ -109,25 +109,25 @@ impl<'r> Values for Section<'r> {
         self.keep(key, text, Typed::Text)
     }
 
-    fn texts(&self, key: &Key<'_>) -> Vec<String> {
+    fn texts(&self, key: &Key<'static>) -> Vec<String> {
         self.keep(key, self.read_texts(key), Typed::Texts)
     }
 
-    fn word(&self, key: &Key<'_>) -> &'static str {
+    fn word(&self, key: &Key<'static>) -> &'static str {
         let default = default_option(key).unwrap_or_default();
         self.keep(key, self.read_word(key, default), Typed::Word)
     }
 
-    fn choose(&self, key: &Key<'_>) -> (&'static str, Self) {
+    fn choose(&self, key: &Key<'static>) -> (&'static str, Self) {
         let (option, section) = self.choose_option(key);
         (self.keep(key, option, Typed::Word), section)
     }
 
-    fn numbers(&self, key: &Key<'_>) -> Vec<f64> {
+    fn numbers(&self, key: &Key<'static>) -> Vec<f64> {
         self.keep(key, self.read_numbers(key), Typed::Numbers)
     }
 
-    fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>> {
+    fn rows(&self, key: &Key<'static>) -> Option<Vec<Vec<f64>>> {
         let before = self.reader.problem_count();
         let rows = self.read_rows(key);
         if self.reader.problem_count() > before {
@@ -140,13 +140,13 @@ impl<'r> Values for Section<'r> {
         Some(self.keep(key, rows, Typed::Rows))
     }
 
-    fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap> {
+    fn loss_map(&self, key: &Key<'static>, first: &'static str) -> Option<LossMap> {
         let file = self.read_csv_name(key).ok();
         let map = file.and_then(|file| maps::loss_map(self, key.name, file.into(), first));
         self.keep(key, map, Typed::LossMap)
     }
 
-    fn file_table(&self, key: &Key<'_>, table: &'static FileTable) -> Option<FileRows> {
+    fn file_table(&self, key: &Key<'static>, table: &'static FileTable) -> Option<FileRows> {
         let rows = match self.read_csv_name(key) {
             Ok(file) => maps::file_table(self, key.name, file.into(), table),
             Err(absent) => {
@@ -161,7 +161,7 @@ impl<'r> Values for Section<'r> {
 
     fn bsfc_map(
         &self,
-        key: &Key<'_>,
+        key: &Key<'static>,
         heating_value_j_kg: f64,
         displacement_m3: f64,
     ) -> Option<BsfcMap> {
@@ -186,14 +186,14 @@ impl<'r> Values for Section<'r> {
 
 impl Section<'_> {
     /// Records a value, and returns it.
-    fn keep<T: Clone>(&self, key: &Key<'_>, value: T, typed: impl FnOnce(T) -> Typed) -> T {
+    fn keep<T: Clone>(&self, key: &Key<'static>, value: T, typed: impl FnOnce(T) -> Typed) -> T {
         self.reader
             .record(|log| log.values.other(&self.path, key, typed(value.clone())));
         value
     }
 
     /// Records a number in SI units, and returns it.
-    fn keep_number(&self, key: &Key<'_>, si: f64) -> f64 {
+    fn keep_number(&self, key: &Key<'static>, si: f64) -> f64 {
         self.reader
             .record(|log| log.values.number(&self.path, key, si));
         si

@@ -364,29 +364,26 @@ impl ParamSet {
     /// The set with numbers in place of recorded ones and the parts that they concern built again; none where that is no possible car, or
     /// not all of it.
     fn rebuilt(&self, numbers: &[(&Param, f64)]) -> Option<ParamSet> {
-        let mut set = self.clone();
+        let mut values = self.numbers.clone();
         let (mut parts, mut is_head) = (ChangedParts::default(), false);
         for (param, number) in numbers {
             let (file, index) = self.place(param)?;
             let row = &self.read.recorded[file].rows[index];
             let si = row.to_si(*number)?;
-            Arc::make_mut(&mut set.numbers[file])[index] = si;
+            Arc::make_mut(&mut values[file])[index] = si;
             match Target::CAR[file] {
                 Target::Lubricant => parts.oil = true,
                 Target::EngineOil => parts.engine_oil = true,
-                _ => is_head |= !parts.add_table(row.key.split('.').next().unwrap_or_default()),
+                _ => is_head |= !parts.add_key(&row.key),
             }
         }
-        let changes = numbers.iter();
-        set.changes
-            .extend(changes.map(|(param, number)| ((*param).clone(), *number)));
         let (frame, refused) = (&self.read.inputs.frame, Cell::new(false));
-        let root = |file: usize| {
-            RecordedTable::root(&self.read.recorded[file], &set.numbers[file], &refused)
+        let root =
+            |file: usize| RecordedTable::root(&self.read.recorded[file], &values[file], &refused);
+        let head = match is_head {
+            true => Arc::new(head(&root(0), &frame.name)),
+            false => Arc::clone(&self.assembled.head),
         };
-        if is_head {
-            set.assembled.head = Arc::new(head(&root(0), &frame.name));
-        }
         let base = &self.assembled.vehicle;
         let mut oils = base.shared_oils();
         for (k, changed) in [parts.oil, parts.engine_oil].into_iter().enumerate() {
@@ -394,9 +391,18 @@ impl ParamSet {
                 oils[k] = frame.lubricant(&root(1 + k), k);
             }
         }
-        let base = Some((base, &parts));
-        set.assembled.vehicle = frame.vehicle(&root(0), oils, base);
-        (!refused.get()).then_some(set)
+        let vehicle = frame.vehicle(&root(0), oils, Some((base, &parts)));
+        if refused.get() {
+            return None;
+        }
+        let new = numbers.iter();
+        let new = new.map(|(param, number)| ((*param).clone(), *number));
+        Some(ParamSet {
+            read: Arc::clone(&self.read),
+            changes: self.changes.iter().cloned().chain(new).collect(),
+            numbers: values,
+            assembled: Assembled { head, vehicle },
+        })
     }
 
     /// The set with overrides, from its documents.

@@ -11,6 +11,7 @@ use crate::road::RoadLoadInput;
 use crate::thermal::Network;
 use crate::transmission::Transmission;
 use crate::transmission::cvt::Cvt;
+use crate::transmission::cvt::final_drive::FinalDrive;
 use crate::transmission::cvt::variator::Formulation;
 use crate::transmission::loss_factor::LossFactors;
 use crate::transmission::manual::Manual;
@@ -35,8 +36,10 @@ pub struct ChangedParts {
     pub road_load: bool,
     /// Engine.
     pub engine: bool,
-    /// Transmission.
+    /// Transmission, its final drive apart.
     pub transmission: bool,
+    /// Final drive of a CVT, whose gears are the dearest part of it to build.
+    pub final_drive: bool,
     /// Thermal network.
     pub thermal: bool,
     /// Transmission oil.
@@ -50,15 +53,18 @@ const ROAD_LOAD: &str = "road_load";
 const ENGINE: &str = "engine";
 const TRANSMISSION: &str = "transmission";
 const THERMAL: &str = "thermal";
+/// Start of the keys of a final drive: its table and its ratios.
+const FINAL_DRIVE: &str = "transmission.cvt.final_drive";
 
 impl ChangedParts {
-    /// Adds the part of a table at the top of a vehicle's file; false where the table belongs to none.
-    pub fn add_table(&mut self, table: &str) -> bool {
-        let part = match table {
-            ROAD_LOAD => &mut self.road_load,
-            ENGINE => &mut self.engine,
-            TRANSMISSION => &mut self.transmission,
-            THERMAL => &mut self.thermal,
+    /// Adds the part of a key of a vehicle's file; false where the key belongs to none.
+    pub fn add_key(&mut self, key: &str) -> bool {
+        let part = match key.split('.').next() {
+            Some(ROAD_LOAD) => &mut self.road_load,
+            Some(ENGINE) => &mut self.engine,
+            Some(TRANSMISSION) if key.starts_with(FINAL_DRIVE) => &mut self.final_drive,
+            Some(TRANSMISSION) => &mut self.transmission,
+            Some(THERMAL) => &mut self.thermal,
             _ => return false,
         };
         *part = true;
@@ -70,9 +76,13 @@ impl ChangedParts {
         self.thermal || self.oil
     }
 
-    /// True where the transmission differs apart from the oil level: its control is limited by the engine.
+    /// True where the transmission differs apart from oil level and final drive: its control is limited by the engine.
     fn transmission(&self) -> bool {
         self.transmission || self.engine || self.oil
+    }
+
+    fn driveline(&self) -> bool {
+        self.network() || self.transmission() || self.final_drive
     }
 }
 
@@ -98,31 +108,9 @@ impl Vehicle {
             Some(base) => Arc::clone(&base.engine),
             None => Arc::new(Engine::from_values(&root.table(ENGINE))),
         };
-        let (network, transmission) = match kept(|parts| parts.network() || parts.transmission()) {
+        let (network, transmission) = match kept(ChangedParts::driveline) {
             Some(base) => (base.network.clone(), Arc::clone(&base.transmission)),
-            None => {
-                let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
-                let network = match kept(ChangedParts::network) {
-                    Some(base) => base.network.clone(),
-                    None => Network::from_values(&root.table(THERMAL), kind == "cvt", &oil),
-                };
-                // The gears of the transmission turn in the oil of the network's sump.
-                let oil_m3 = network.sump_oil_m3;
-                let as_full = |of: &&Vehicle| of.network.sump_oil_m3.to_bits() == oil_m3.to_bits();
-                let transmission = match kept(ChangedParts::transmission).filter(as_full) {
-                    Some(base) => Arc::clone(&base.transmission),
-                    None => Arc::new(match kind {
-                        "cvt" => Transmission::Cvt(Box::new(Cvt::from_values(
-                            &section,
-                            &engine,
-                            (&oil, oil_m3),
-                            formulation,
-                        ))),
-                        _ => Transmission::Manual(Box::new(Manual::from_values(&section, oil_m3))),
-                    }),
-                };
-                (network, transmission)
-            }
+            None => driveline(root, &engine, &oil, formulation, base),
         };
         Vehicle {
             name: base.map_or_else(|| name.into(), |(base, _)| Arc::clone(&base.name)),
@@ -188,4 +176,46 @@ impl Vehicle {
     pub fn shared_oils(&self) -> [Arc<Lubricant>; 2] {
         [Arc::clone(&self.oil), Arc::clone(&self.engine_oil)]
     }
+}
+
+/// Thermal network and transmission of a vehicle, of which `base` may give the parts that are as they were.
+fn driveline<V: Values>(
+    root: &V,
+    engine: &Engine,
+    oil: &Lubricant,
+    formulation: Formulation,
+    base: Option<(&Vehicle, &ChangedParts)>,
+) -> (Network, Arc<Transmission>) {
+    let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
+    let network = match base.filter(|(_, parts)| !parts.network()) {
+        Some((base, _)) => base.network.clone(),
+        None => Network::from_values(&root.table(THERMAL), kind == "cvt", oil),
+    };
+    // The gears of the transmission turn in the oil of the network's sump.
+    let oil_m3 = network.sump_oil_m3;
+    let base = base.filter(|(base, _)| base.network.sump_oil_m3.to_bits() == oil_m3.to_bits());
+    let transmission = match base.filter(|(_, parts)| !parts.transmission()) {
+        Some((base, parts)) if !parts.final_drive => {
+            return (network, Arc::clone(&base.transmission));
+        }
+        Some((base, _)) => {
+            let mut transmission = Transmission::clone(&base.transmission);
+            if let Transmission::Cvt(cvt) = &mut transmission {
+                cvt.final_drive = FinalDrive::from_cvt_values(&section, oil_m3);
+            }
+            transmission
+        }
+        None if kind == "cvt" => {
+            let known = base.filter(|(_, parts)| !parts.final_drive);
+            let known = known.and_then(|(base, _)| match &*base.transmission {
+                Transmission::Cvt(cvt) => Some(&cvt.final_drive),
+                Transmission::Manual(_) => None,
+            });
+            let oil = (oil, oil_m3);
+            let cvt = Cvt::from_values(&section, engine, oil, formulation, known);
+            Transmission::Cvt(Box::new(cvt))
+        }
+        None => Transmission::Manual(Box::new(Manual::from_values(&section, oil_m3))),
+    };
+    (network, Arc::new(transmission))
 }
