@@ -10,7 +10,7 @@ impl Document {
     /// Puts in one override, whose key is one of this document.
     ///
     /// # Errors
-    /// Its path leads through a value, or it changes a value that there is not.
+    /// A path that leads through a value, or a relative override without a value to change.
     pub fn set(&mut self, by: &Override) -> Result<(), Problem> {
         let by = &by.over(self)?;
         let path = by.path();
@@ -90,7 +90,7 @@ fn make_room(node: &mut Node) {
     }
 }
 
-/// Whether the value is a word, in either of the two forms of a value.
+/// True if the value is a word, in either of the two forms of a value.
 fn is_word(node: &Node) -> bool {
     matches!(node.inner().value, Value::Text(_))
 }

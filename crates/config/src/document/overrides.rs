@@ -15,7 +15,7 @@ use cvtcycle_model::keys::{Key, Presence};
 /// Tables that a key may be nested in; more than any input has, few enough to recurse over.
 const MAX_DEPTH: usize = 32;
 
-/// What a number does with the value of a file.
+/// Effect of a number on the value of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Acts {
@@ -28,7 +28,7 @@ pub enum Acts {
 }
 
 impl Acts {
-    /// What a number makes of a value.
+    /// Result of the number acting on a value.
     #[must_use]
     pub fn resolved(self, base: f64, number: f64) -> f64 {
         match self {
@@ -85,7 +85,7 @@ impl Override {
     #[must_use]
     pub fn number(key: &str, number: f64) -> Override {
         let (value, text) = one(number);
-        Override::of(
+        Override::from_parts(
             format!("{key}={text}"),
             (key.trim(), Acts::Value),
             &text,
@@ -118,11 +118,21 @@ impl Override {
             let message = format!("`{value}` after `{}` is no number", acts.sign());
             return Err(no_override(text, key, message));
         }
-        Ok(Override::of(text.to_owned(), (key, acts), value, parsed))
+        Ok(Override::from_parts(
+            text.to_owned(),
+            (key, acts),
+            value,
+            parsed,
+        ))
     }
 
-    fn of(text: String, (key, acts): (&str, Acts), value_text: &str, value: Value) -> Override {
-        let (target, own) = Target::of(key);
+    fn from_parts(
+        text: String,
+        (key, acts): (&str, Acts),
+        value_text: &str,
+        value: Value,
+    ) -> Override {
+        let (target, own) = Target::from_key(key);
         Override {
             text,
             key: key.to_owned(),
@@ -141,7 +151,7 @@ impl Override {
         &self.key
     }
 
-    /// What its value does with that of the file.
+    /// Effect of the value on that of the file.
     #[must_use]
     pub fn acts(&self) -> Acts {
         self.acts
@@ -261,7 +271,7 @@ fn one(number: f64) -> (Value, String) {
         true => "nan".to_owned(),
         false => number.to_string(),
     };
-    (Value::of(number), text)
+    (Value::from_number(number), text)
 }
 
 /// Numbers as a list, each with its place in the text of the list, and that text.

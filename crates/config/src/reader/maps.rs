@@ -56,7 +56,7 @@ const GRID_RULES: Rules = Rules {
     is_grid: true,
 };
 
-/// What a table has to be.
+/// Requirements on a table.
 struct Wanted {
     kind: &'static str,
     columns: Vec<Column>,
@@ -198,7 +198,7 @@ pub(crate) fn file_table(
     Some(FileRows { columns, rows })
 }
 
-/// What helps with a BSFC map that does not hang together.
+/// Hint for a BSFC map that is inconsistent.
 const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
 
 /// The table of a BSFC map from CSV; none after a problem.

@@ -116,7 +116,7 @@ impl<'d> Reader<'d> {
         let mut log = self.log.into_inner();
         let mut unknown = Vec::new();
         unread(&log, &document.root, "", &mut unknown);
-        // What a car inherits and, with another box or engine model, has no use for, is no mistake of its file.
+        // Inherited keys that another box or engine model leaves unused are no mistake of the file.
         let useless = |(path, entry): &(String, &Entry)| {
             document.parent(&entry.key).is_some() && is_row(path)
         };

@@ -8,7 +8,7 @@ use crate::problem::near::{did_you_mean, one_of, suggest};
 use crate::reader::log::{KeyInfo, join};
 use crate::reader::section::Section;
 
-/// What a value's status may be in a file.
+/// Allowed statuses of a value in a file.
 pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 /// Fields of a value with its origin.
 const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
@@ -81,7 +81,7 @@ impl<'r> Found<'r> {
     }
 }
 
-/// What a value says about itself; empty where it does not.
+/// Status, source and note that a value states; empty if not stated.
 #[derive(Default)]
 pub(super) struct Origin<'r> {
     status: &'r str,

@@ -14,7 +14,7 @@ pub struct Section<'r> {
     pub(crate) table: Option<&'r Table>,
     /// Header of the table, or of the nearest one around it that exists.
     pub(crate) header: Option<Span>,
-    /// Whether missing keys go without saying, after a problem with the table itself.
+    /// True if missing keys go without saying, after a problem with the table itself.
     pub(crate) muted: bool,
 }
 
@@ -37,12 +37,12 @@ impl<'r> Section<'r> {
         &self.path
     }
 
-    /// Whether the table is present.
+    /// True if the table is present.
     pub fn exists(&self) -> bool {
         self.table.is_some()
     }
 
-    /// Whether the key is present, as a value or as a table.
+    /// True if the key is present, as a value or as a table.
     pub fn has(&self, key: &str) -> bool {
         self.table
             .is_some_and(|table| table.entries.contains_key(key))

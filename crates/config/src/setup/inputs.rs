@@ -24,7 +24,7 @@ use std::sync::{Arc, Mutex};
 /// A document and what is wrong with it so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CarFile {
-    /// None if it could not be read.
+    /// `None` if it could not be read.
     pub document: Option<Document>,
     pub problems: Problems,
 }
@@ -39,7 +39,7 @@ pub(super) struct Inputs {
     is_shipped: bool,
 }
 
-/// What a reading of a car's documents needs besides them.
+/// Context for reading a car's documents.
 #[derive(Debug)]
 pub(super) struct Frame {
     /// Name of the car.
@@ -60,7 +60,7 @@ impl Inputs {
     pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
         let is_twin = is_twin(word);
-        let inputs = Inputs::of(&file, &text, Box::new(disk), options, is_twin)?;
+        let inputs = Inputs::parse(&file, &text, Box::new(disk), options, is_twin)?;
         Ok(Inputs {
             is_shipped: !is_twin && !is_path(word) && options.change_nothing(),
             ..inputs
@@ -71,7 +71,7 @@ impl Inputs {
     ///
     /// # Errors
     /// As there.
-    pub fn of(
+    pub fn parse(
         file: &str,
         text: &str,
         files: Box<dyn Files>,
@@ -265,7 +265,7 @@ impl Frame {
         Vehicle::from_values(root, oils, self.formulation, &self.name, base)
     }
 
-    /// What a reader of the results of a car should know.
+    /// Notes for readers of the results of a car.
     pub fn notes(&self, vehicle: &Vehicle) -> Vec<String> {
         let transmission = vehicle.transmission();
         let same = self.own_friction == Some(vehicle.oils().0.friction);
@@ -305,7 +305,7 @@ fn scattered_maps(transmission: &Transmission) -> impl Iterator<Item = String> {
     transmission.maps().filter_map(of)
 }
 
-/// What a comparison of fluids does not tell.
+/// Limit of a comparison of fluids.
 const SAME_FRICTION: &str = "this oil has the friction of the vehicle's own one: the comparison moves viscosity, density and heat capacity only";
 
 /// Name or path of a fluid as a vehicle's file has it: a path is relative to that file.
@@ -338,7 +338,7 @@ fn friction(file: &str, fluid: &str) -> Option<Friction> {
     Some(own.friction)
 }
 
-/// What names a fluid.
+/// Name of a fluid and its origin.
 struct FluidWord {
     word: String,
     by: Option<NamedBy>,
@@ -393,7 +393,7 @@ fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bo
         .collect()
 }
 
-/// What the `[vehicle]` table says.
+/// Values of the `[vehicle]` table.
 #[derive(Clone, Debug)]
 pub(super) struct Head {
     pub title: String,

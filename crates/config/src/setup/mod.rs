@@ -42,11 +42,11 @@ pub struct Options {
     pub set: Vec<Override>,
     /// Reading of the belt model.
     pub formulation: Formulation,
-    /// What gives the names of vehicle and fluids.
+    /// Origin of the names of vehicle and fluids.
     pub named_by: NamedBy,
 }
 
-/// What names an input file.
+/// Origin of the name of an input file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NamedBy {
     /// The caller.
@@ -71,7 +71,7 @@ pub struct Setup {
     pub vehicle: Vehicle,
     /// Every key that was read, vehicle first, then `lubricant.` and `engine_oil.`.
     pub keys: Vec<KeyInfo>,
-    /// What a reader of its results should know, a sentence each.
+    /// Notes for readers of the results, a sentence each.
     pub notes: Vec<String>,
     /// The files that its own inherits from, and the words by which its fluids were found.
     pub origin: Origin,
@@ -84,7 +84,7 @@ pub struct Origin {
     pub parents: Vec<(String, String)>,
     /// Name or path of transmission oil and engine oil.
     pub fluids: [String; 2],
-    /// Whether the program carries all of its files, and nothing else was asked for.
+    /// True if the program carries all of its files, and nothing else was asked for.
     pub is_shipped: bool,
 }
 
@@ -106,7 +106,7 @@ impl Setup {
         }
     }
 
-    /// What looks like a slip in its values, a sentence each.
+    /// Likely slips in the values, a sentence each.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         doubts::doubts(self)
@@ -130,7 +130,7 @@ pub enum Kind {
     Class,
     /// A lubricant.
     Lubricant,
-    /// What a test rig is set to.
+    /// Settings of a test rig.
     Rig,
     /// The plan of a study.
     Plan,
@@ -214,7 +214,7 @@ pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, D
 pub const TWIN: &str = "twin";
 
 impl Options {
-    /// Whether they change nothing of a car.
+    /// True if they change nothing of a car.
     #[must_use]
     pub fn change_nothing(&self) -> bool {
         let own = Options::default();
@@ -222,7 +222,7 @@ impl Options {
         files && self.set.is_empty() && self.formulation == own.formulation
     }
 
-    /// Those of the twin of a car with these: it has another transmission oil, and all else of the car.
+    /// Options of the car's twin: it has another transmission oil, and all else of the car.
     #[must_use]
     pub fn of_twin(&self, named_by: NamedBy) -> Options {
         let own = self.set.iter();
@@ -236,7 +236,7 @@ impl Options {
     }
 }
 
-/// Whether the word is that of a twin.
+/// True if the word is that of a twin.
 #[must_use]
 pub fn is_twin(word: &str) -> bool {
     word.starts_with(twin::MARK)

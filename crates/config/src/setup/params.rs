@@ -74,7 +74,7 @@ impl Param {
         unit_of(&self.of.key)
     }
 
-    /// What the key accepts, in words.
+    /// Allowed values, in words.
     #[must_use]
     pub fn allowed(&self) -> &str {
         &self.of.allowed
@@ -120,7 +120,9 @@ impl ParamSet {
     /// # Errors
     /// All problems of the files and of the overrides.
     pub fn load(word: &str, options: &Options) -> Result<ParamSet, Problems> {
-        Ok(ParamSet::of(Inputs::gather(word, options)?.validate()?))
+        Ok(ParamSet::from_reading(
+            Inputs::gather(word, options)?.validate()?,
+        ))
     }
 
     /// As [`ParamSet::load`], for a vehicle's text, as [`super::read`] takes it.
@@ -133,8 +135,8 @@ impl ParamSet {
         files: Box<dyn Files>,
         options: &Options,
     ) -> Result<ParamSet, Problems> {
-        let inputs = Inputs::of(file, text, files, options, false)?;
-        Ok(ParamSet::of(inputs.validate()?))
+        let inputs = Inputs::parse(file, text, files, options, false)?;
+        Ok(ParamSet::from_reading(inputs.validate()?))
     }
 
     /// As [`ParamSet::read`], for the twin of the vehicle: the same car with a manual box.
@@ -147,11 +149,11 @@ impl ParamSet {
         files: Box<dyn Files>,
         options: &Options,
     ) -> Result<ParamSet, Problems> {
-        let inputs = Inputs::of(file, text, files, options, true)?;
-        Ok(ParamSet::of(inputs.validate()?))
+        let inputs = Inputs::parse(file, text, files, options, true)?;
+        Ok(ParamSet::from_reading(inputs.validate()?))
     }
 
-    fn of((read, assembled): (Validated, Assembled)) -> ParamSet {
+    fn from_reading((read, assembled): (Validated, Assembled)) -> ParamSet {
         let numbers = read.recorded.each_ref();
         ParamSet {
             numbers: numbers.map(|recorded| Arc::new(recorded.numbers.clone())),
@@ -317,7 +319,7 @@ impl ParamSet {
     /// As of [`ParamSet::with`].
     pub fn with_numbers(&self, numbers: &[(&Param, f64)]) -> Result<ParamSet, Problems> {
         let known = self.rebuilt(numbers);
-        if let Some(set) = known.or_else(|| self.of_option(numbers)) {
+        if let Some(set) = known.or_else(|| self.with_other_options(numbers)) {
             return Ok(set);
         }
         self.validated_with(overrides(numbers))
@@ -325,7 +327,7 @@ impl ParamSet {
 
     /// As [`ParamSet::rebuilt`], for numbers of options that these files do not choose. The last choice is kept: the points of a study make the
     /// same one.
-    fn of_option(&self, numbers: &[(&Param, f64)]) -> Option<ParamSet> {
+    fn with_other_options(&self, numbers: &[(&Param, f64)]) -> Option<ParamSet> {
         let mut of_option = numbers.to_vec();
         of_option.retain(|(param, _)| self.place(param).is_none());
         let keys: Vec<&str> = of_option.iter().map(|(param, _)| param.key()).collect();
@@ -339,7 +341,7 @@ impl ParamSet {
             .unwrap_or_else(PoisonError::into_inner);
         if last.as_ref().is_none_or(|(of, _)| *of != keys) {
             let files = self.read.inputs.with(&overrides(&of_option));
-            let set = ParamSet::of(files.validate().ok()?);
+            let set = ParamSet::from_reading(files.validate().ok()?);
             let keys = keys.into_iter().map(str::to_owned);
             *last = Some((keys.collect(), set));
         }
@@ -422,7 +424,7 @@ impl ParamSet {
         }
         self.wrong_keys(&all).finish()?;
         let changed = self.read.inputs.with(&all);
-        changed.validate().map(ParamSet::of)
+        changed.validate().map(ParamSet::from_reading)
     }
 }
 
@@ -441,7 +443,7 @@ fn overrides(numbers: &[(&Param, f64)]) -> Vec<Override> {
 
 /// Index of the file of a key in [`Target::CAR`], and the key in it.
 fn file_of(key: &str) -> (usize, &str) {
-    let (target, own) = Target::of(key);
+    let (target, own) = Target::from_key(key);
     let file = Target::CAR.iter().position(|of| *of == target);
     (file.unwrap_or(0), own)
 }
