@@ -13,8 +13,7 @@ use cvtcycle::analysis::attribute::{Attribution, Depth, Pairs, attribute};
 use cvtcycle::analysis::levers::{Combine, LeverFile, LeverRequest, prepare};
 use cvtcycle::analysis::optimum::{self, Clamp, Limits, Task};
 use cvtcycle::config::cycle::{Cycle, embedded, read_csv};
-use cvtcycle::config::setup::template::VehicleTemplate;
-use cvtcycle::config::setup::{Options, Setup, load};
+use cvtcycle::config::setup::{Options, ParamSet, Setup, load};
 use cvtcycle::config::{Override, Problem, render};
 use cvtcycle::model::drive::{Car, Recorder, State, simulate};
 use cvtcycle::model::drive::{Conditions, Start, drive};
@@ -353,20 +352,23 @@ fn parse_user_cycle(bencher: Bencher) {
         .bench_local(|| read_csv("user.csv", black_box(text.as_bytes())).map_err(|p| p.len()));
 }
 
-/// Builds a car with two changed numbers from its parsed files, as at the start of each run of a study.
-#[divan::bench(args = CARS)]
-fn blueprint_build(bencher: Bencher, name: &str) {
-    let (blueprint, _) = VehicleTemplate::load(name, &Options::default())
+/// Builds a car with one changed number, as at the start of each run of a study: of road load, oil, engine and CVT.
+#[divan::bench(args = [
+    "road_load.mass_kg",
+    "lubricant.kv40_mm2_s",
+    "engine.idle.hot_rpm",
+    "transmission.cvt.pump.displacement_cc_rev",
+    "transmission.cvt.belt.band_offset_mm",
+    "transmission.cvt.final_drive.oil_factor",
+])]
+fn car_from_params(bencher: Bencher, key: &str) {
+    let base = ParamSet::load(CARS[0], &Options::default())
         .unwrap_or_else(|p| panic!("{}", render(&p, false)));
-    let slots =
-        ["road_load.mass_kg", "lubricant.kv40_mm2_s"].map(|key| blueprint.slot(key).unwrap());
-    let mut bench = blueprint.bench();
+    let param = base.param(key).unwrap();
     bencher.bench_local(|| {
-        bench.reset();
-        for slot in &slots {
-            bench.set(slot, black_box(slot.base() * 1.01));
-        }
-        bench.build().unwrap()
+        let number = black_box(param.base() * 1.01);
+        let set = base.with_numbers(&[(&param, number)]).unwrap();
+        Setup::from_params(&set)
     });
 }
 

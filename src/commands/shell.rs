@@ -136,5 +136,5 @@ impl SchemaKind {
 /// Runs `schema`.
 pub fn schema(args: &SchemaArgs) -> CommandResult {
     let (word, keys) = args.kind.keys();
-    CommandOutput::json(&schema::of(word, &keys))
+    CommandOutput::json(&schema::json_schema(word, &keys))
 }

@@ -43,11 +43,11 @@ fn read(document: &Document) -> Result<Vec<KeyInfo>, Problems> {
     if lists.exists() {
         lists.numbers("ratios", Bound::positive(), 2..=4, "Ratios");
         lists.numbers("radii_mm", Bound::positive(), 0..=usize::MAX, "Radii");
-        let columns = [
+        const COLUMNS: [(&str, Bound); 2] = [
             ("temperature_degc", Bound::any()),
             ("viscosity_mm2_s", Bound::positive()),
         ];
-        lists.rows("points", &columns, "Viscosity");
+        lists.rows("points", &COLUMNS, "Viscosity");
     }
     let default = (!root.has("clamp")).then_some("torque_following");
     let (option, clamp) = root.choose("clamp", &["torque_following", "map"], default, "Clamping");

@@ -112,7 +112,7 @@ fn parsed(text: &str) -> Value {
 }
 
 fn checked(keys: &Table, text: &str) -> Vec<String> {
-    mistakes(&schema::of("", keys), &parsed(text), "")
+    mistakes(&schema::json_schema("", keys), &parsed(text), "")
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn mistakes_are_seen() {
     ] {
         let mut car = parsed(rover);
         car["road_load"][key] = value;
-        let found = mistakes(&schema::of("", &files::VEHICLE), &car, "");
+        let found = mistakes(&schema::json_schema("", &files::VEHICLE), &car, "");
         assert!(
             found.iter().any(|m| m.starts_with(mistake)),
             "{mistake}: {found:?}"

@@ -57,7 +57,7 @@ const OUTSIDE: &[(&str, &str)] = &[
 /// Submodules of those above that read input files.
 const INSIDE: &[&str] = &[
     "config::setup::like",
-    "config::setup::template",
+    "config::setup::params",
     "config::setup::twin",
 ];
 

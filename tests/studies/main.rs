@@ -21,7 +21,6 @@ mod titles;
 mod tree;
 
 mod attribute;
-mod blueprint;
 mod calibrate;
 mod calibrate_cli;
 mod calibrate_solve;
@@ -30,6 +29,7 @@ mod equations;
 mod optimum;
 mod levers;
 mod order_of_factors;
+mod param_set;
 mod parquet_readers;
 mod parts;
 mod sensitivity;

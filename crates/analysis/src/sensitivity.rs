@@ -6,8 +6,7 @@
 use rayon::prelude::*;
 
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
-use cvtcycle_config::setup::{Options, Setup};
+use cvtcycle_config::setup::{Options, Param, ParamSet, Setup};
 use cvtcycle_config::{Problems, unit_of};
 use cvtcycle_model::drive::{Conditions, MAX_TOGETHER, Outcome, Run, drive, drive_each};
 use cvtcycle_model::transmission::loss_factor;
@@ -51,41 +50,37 @@ pub fn sensitivity(
     };
     let mut effects = Vec::new();
     for car in cars {
-        let (blueprint, setup) = VehicleTemplate::load(&car.word, &car.options)?;
-        let base = fuel(&setup, cycle, &conditions);
-        let keys = setup
-            .keys
-            .iter()
+        let own = ParamSet::load(&car.word, &car.options)?;
+        let base = fuel(&Setup::from_params(&own), cycle, &conditions);
+        let keys = own.keys().into_iter();
+        let keys = keys
             .filter(|info| info.si.is_some() && info.status != "choice")
             .filter(|info| !loss_factor::is_key(&info.key));
-        let slots: Vec<ParameterRef> = keys
-            .filter_map(|info| blueprint.slot(&info.key).ok())
-            .filter(|slot| slot.base().abs() > 0.0)
+        let params: Vec<Param> = keys
+            .filter_map(|info| own.param(&info.key).ok())
+            .filter(|param| param.base().abs() > 0.0)
             .collect();
-        let of_slots = |bench: &mut Variant, slots: &[ParameterRef]| -> Vec<Effect> {
-            let mut changed_car = |slot: &ParameterRef, sign: f64| {
-                bench.reset();
-                bench.set(slot, changed(slot.key(), slot.base(), sign));
-                bench.build().ok()
+        let of_params = |params: &[Param]| -> Vec<Effect> {
+            let changed_car = |param: &Param, sign: f64| {
+                let number = changed(param.key(), param.base(), sign);
+                let set = own.with_numbers(&[(param, number)]);
+                set.ok().map(|set| Setup::from_params(&set))
             };
-            let cars: Vec<Option<Setup>> = (slots.iter())
-                .flat_map(|slot| [-1.0, 1.0].map(|sign| changed_car(slot, sign)))
+            let cars: Vec<Option<Setup>> = (params.iter())
+                .flat_map(|param| [-1.0, 1.0].map(|sign| changed_car(param, sign)))
                 .collect();
             let fuels = fuels(&cars, cycle, &conditions);
             let percent = |now: Option<f64>| finite(100.0 * (now? / base? - 1.0));
-            let effect = |(slot, sides): (&ParameterRef, &[Option<f64>])| Effect {
+            let effect = |(param, sides): (&Param, &[Option<f64>])| Effect {
                 car: car.name.clone(),
-                key: slot.key().to_owned(),
+                key: param.key().to_owned(),
                 lowered_percent: sides.first().copied().and_then(percent),
                 raised_percent: sides.last().copied().and_then(percent),
             };
-            slots.iter().zip(fuels.chunks(2)).map(effect).collect()
+            params.iter().zip(fuels.chunks(2)).map(effect).collect()
         };
         // Both sides of some values are driven together.
-        let found: Vec<Vec<Effect>> = slots
-            .par_chunks(MAX_TOGETHER / 2)
-            .map_init(|| blueprint.bench(), of_slots)
-            .collect();
+        let found: Vec<Vec<Effect>> = params.par_chunks(MAX_TOGETHER / 2).map(of_params).collect();
         let found = found.into_iter().flatten();
         effects.extend(found);
     }

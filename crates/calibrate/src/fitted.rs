@@ -69,13 +69,13 @@ impl Job<'_> {
             self.put_override(document, by);
         }
         for p in self.fitted(target) {
-            self.put_fitted(document, Target::of(&p.name).1, p);
+            self.put_fitted(document, Target::from_key(&p.name).1, p);
         }
     }
 
     fn fitted(&self, target: Target) -> impl Iterator<Item = &Parameter> {
         let parameters = self.outcome.parameters.iter().filter(|p| p.is_key);
-        parameters.filter(move |p| Target::of(&p.name).0 == target)
+        parameters.filter(move |p| Target::from_key(&p.name).0 == target)
     }
 
     /// The file of a fluid with its values, named in the vehicle file; none if nothing of it changes.
@@ -126,7 +126,7 @@ impl Job<'_> {
 
     /// Puts the value of an override of the plan.
     fn put_override(&self, document: &mut DocumentMut, by: &Override) {
-        let (_, key) = Target::of(by.key());
+        let (_, key) = Target::from_key(by.key());
         let path: Vec<&str> = key.split('.').map(str::trim).collect();
         let value = match by.acts() {
             Acts::Value => by.value().parse::<Value>().ok(),

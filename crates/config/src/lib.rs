@@ -1,6 +1,9 @@
 //! Text to checked input: values in SI units, each with its origin, and every problem with its place.
 //!
-//! A [`Document`] is the parsed text with its places, a [`Reader`] one pass over it. The
+//! A [`Document`] is the parsed text with its places, a [`Reader`] one pass over it, a [`setup::ParamSet`] the checked values of a car, of which
+//! `with(key, value)` gives another one. A *vehicle* is a file, and the model's car before an ambient temperature is known
+//! (`cvtcycle_model::drive::Vehicle`); a *car* is a vehicle that is ready to drive at one; a *setup* is a vehicle with its fluids, its names and
+//! the origin of each value. The
 //! keys of vehicles, lubricants and rigs are rows of the model (`cvtcycle_model::keys`); messages,
 //! `explain`, the schema and the book of assumptions come from the same rows as the reading.
 //!
@@ -9,9 +12,9 @@
 //! | `problem` | what is wrong, where, and its text |
 //! | `files` | files that an input names, limits of their size, the files that the program carries |
 //! | `csv` | CSV tables against a schema |
-//! | `document` | TOML text to a tree with places; overrides and changed numbers over it |
-//! | `reader` | values of keys in SI units with their origin: numbers, lists, choices, maps |
-//! | `setup` | vehicles, lubricants, rig; the catalogue of keys, the book of assumptions |
+//! | `document` | TOML text to a tree with places; overrides over it |
+//! | `reader` | values of keys in SI units with their origin: numbers, lists, choices, maps; a record of them for the parts of the model |
+//! | `setup` | vehicles, lubricants, rig; sets of values; the catalogue of keys, the book of assumptions |
 //! | `cycle` | drive cycles |
 //! | `schema` | JSON Schema of the files |
 pub mod csv;
@@ -27,7 +30,6 @@ pub use cvtcycle_model::keys::Bound;
 use cvtcycle_model::keys::Quantity;
 pub use document::Document;
 pub use document::overrides::{Acts, Override};
-pub use document::patched::PatchedDocument;
 pub use document::syntax::decode;
 pub use document::target::{KeyPath, Target};
 pub use files::{bounded, carried, embedded};

@@ -13,17 +13,17 @@ use crate::reader::origin::{COLUMNS, STATUSES};
 /// ```
 /// use cvtcycle_config::schema;
 /// use cvtcycle_model::files::VEHICLE;
-/// let vehicle = schema::of("vehicle", &VEHICLE);
+/// let vehicle = schema::json_schema("vehicle", &VEHICLE);
 /// let belt = &vehicle["properties"]["transmission"]["anyOf"][2]["properties"]["cvt"]["properties"]["belt"];
 /// assert_eq!(belt["properties"]["band_offset_mm"]["anyOf"][0]["maximum"], 20.0);
 /// ```
 #[must_use]
-pub fn of(file: &str, keys: &Table) -> Value {
+pub fn json_schema(file: &str, keys: &Table) -> Value {
     let is_head = |table: &&Table| table.name == HeadKeys::TABLE.name;
     let head = keys.tables.iter().find(is_head);
     let mut schema = table(keys, head.is_none());
     if let Some(head) = head {
-        // What is required may be inherited.
+        // Required keys may be inherited.
         let like = open(json!({ "required": [HEAD.like.name] }));
         schema["if"] = open(json!({ "required": [head.name], "properties": { head.name: like } }));
         schema["else"] = requirements(keys);
@@ -103,7 +103,7 @@ fn open(mut table: Value) -> Value {
     table
 }
 
-/// Whether a table has a key that is always required.
+/// True if a table has a key that is always required.
 fn is_required(table: &Table) -> bool {
     let required = |key: &&Key<'_>| matches!(key.presence, Presence::Required);
     table.repeat == Repeat::Once

@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use cvtcycle::config::setup::template::VehicleTemplate;
-use cvtcycle::config::setup::{self, Disk, NamedBy, Options, Setup, baseline_of};
+use cvtcycle::config::setup::{self, Disk, NamedBy, Options, ParamSet, Setup, baseline_of};
 use cvtcycle::config::{Override, Problem, Problems};
 use cvtcycle::explain::key_json;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
@@ -25,6 +24,8 @@ struct Source {
 #[pyclass(frozen)]
 pub struct Car {
     pub setup: Arc<Setup>,
+    /// Its values, for repeated changes.
+    pub params: ParamSet,
     /// Name or path of its file, or the name of its text in problems.
     pub word: String,
     pub options: Options,
@@ -57,37 +58,23 @@ fn options(
 
 impl Car {
     fn load(word: String, options: Options, source: Option<Source>) -> Result<Self, Problems> {
-        let setup = match &source {
-            None => setup::load(&word, &options)?,
+        let params = match &source {
+            None => ParamSet::load(&word, &options)?,
             Some(source) => {
                 let read = match source.is_twin {
-                    true => setup::read_twin,
-                    false => setup::read,
+                    true => ParamSet::read_twin,
+                    false => ParamSet::read,
                 };
                 read(&word, &source.text, source.files(), &options)?
             }
         };
         Ok(Car {
-            setup: Arc::new(setup),
+            setup: Arc::new(params.setup()),
+            params,
             word,
             options,
             source,
         })
-    }
-
-    /// Builds a template for repeated changes.
-    /// # Errors
-    /// Files that changed since they were read; the twin of a text.
-    pub fn template(&self) -> Result<(VehicleTemplate, Setup), Problems> {
-        match &self.source {
-            None => VehicleTemplate::load(&self.word, &self.options),
-            Some(source) if source.is_twin => Err(self
-                .needs_file_problem("the twin of a text is no template")
-                .into()),
-            Some(source) => {
-                VehicleTemplate::read(&self.word, &source.text, source.files(), &self.options)
-            }
-        }
     }
 
     /// Problem of an operation that needs a car with a file.

@@ -53,8 +53,8 @@ impl Family {
         let arguments = RunArguments::new(ambient_degc, start, dt_s, false)?;
         let cycle = cycle.for_car(car);
         let made = py.detach(|| {
-            let template = car.template()?;
-            CoreFamily::new(template, (*cycle).clone(), arguments.conditions, &keys)
+            let params = car.params.clone();
+            CoreFamily::new(params, (*cycle).clone(), arguments.conditions, &keys)
         });
         made.map(|family| Family(Arc::new(family))).map_err(refused)
     }
@@ -92,14 +92,14 @@ impl Family {
         }
         let (family, places) = (Arc::clone(&self.0), wanted.clone());
         let drive = move |stop: &crate::job::Stop| -> Vec<FamilyPoint> {
-            let some = |worker: &mut _, numbers: &[f64]| match stop.stopped() {
+            let some = |numbers: &[f64]| match stop.stopped() {
                 // After an interruption the results are dropped.
                 true => Vec::new(),
-                false => family.points(worker, numbers.chunks(width), &places),
+                false => family.points(numbers.chunks(width), &places),
             };
             numbers
                 .par_chunks(width * MAX_TOGETHER)
-                .map_init(|| family.worker(), some)
+                .map(some)
                 .flatten_iter()
                 .collect()
         };

@@ -68,7 +68,7 @@ pub fn schema(kind: &str) -> PyResult<String> {
         ("levers", LEVER_FILE),
     ];
     match kinds.iter().find(|(name, _)| *name == kind) {
-        Some((name, keys)) => text(&json_schema::of(name, keys)).map_err(refused),
+        Some((name, keys)) => text(&json_schema::json_schema(name, keys)).map_err(refused),
         None => {
             let allowed = kinds.map(|(name, _)| name).join(", ");
             Err(bad("kind", kind, &allowed, "there is no such kind"))

@@ -3,8 +3,7 @@
 //! Points are driven side by side as those of a study are, and fail as a run of a study fails.
 
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
-use cvtcycle_config::setup::{AMBIENT, Setup};
+use cvtcycle_config::setup::{AMBIENT, Param, ParamSet, Setup};
 use cvtcycle_config::{Problem, Problems};
 use cvtcycle_model::drive::{self, Conditions, Outcome, drive_each};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
@@ -20,7 +19,7 @@ const AMBIENT_DEGC: &str = "ambient_degc";
 /// Target of a number of a point.
 enum Argument {
     /// A number of the car's files.
-    Number(ParameterRef),
+    Number(Param),
     /// Ambient temperature, degC.
     Ambient,
 }
@@ -28,31 +27,26 @@ enum Argument {
 /// A car, a cycle, and the keys whose values are the arguments.
 ///
 /// ```
-/// use cvtcycle_config::{cycle, setup::{Options, template::VehicleTemplate}};
+/// use cvtcycle_config::{cycle, setup::{Options, ParamSet}};
 /// use cvtcycle_model::drive::{Conditions, Start};
 /// use cvtcycle_study::family::Family;
-/// let car = VehicleTemplate::load("rover_216_cvt", &Options::default())?;
+/// let car = ParamSet::load("rover_216_cvt", &Options::default())?;
 /// let conditions = Conditions { ambient_k: 298.15, start: Start::Soak, max_dt_s: 1.0, keep_rows: false };
 /// let family = Family::new(car, cycle::find("ece15")?, conditions, &["road_load.mass_kg"])?;
 /// let fuel = family.outputs_of(&["fuel_l_per_100km"])?;
-/// let mut worker = family.worker();
 /// let masses_kg: [&[f64]; 3] = [&[1300.0], &[1100.0], &[-1.0]];
-/// let points = family.points(&mut worker, masses_kg, &fuel);
+/// let points = family.points(masses_kg, &fuel);
 /// assert!(points[0].numbers > points[1].numbers);
 /// assert!(points[2].numbers[0].is_nan() && !points[2].reason.is_empty());
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub struct Family {
-    template: VehicleTemplate,
-    setup: Setup,
+    params: ParamSet,
     cycle: Cycle,
     conditions: Conditions,
     arguments: Vec<Argument>,
     outputs: Vec<Column<Run>>,
 }
-
-/// The documents of a family's car, for one thread.
-pub struct FamilyWorker(Variant);
 
 /// Results of a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +63,7 @@ impl Family {
     /// # Errors
     /// Keys that the car does not have, or that hold no single number.
     pub fn new<S: AsRef<str>>(
-        (template, setup): (VehicleTemplate, Setup),
+        params: ParamSet,
         cycle: Cycle,
         conditions: Conditions,
         keys: &[S],
@@ -77,7 +71,7 @@ impl Family {
         let mut problems = Problems::new();
         let argument = |key: &S| match key.as_ref() {
             AMBIENT_DEGC => Some(Argument::Ambient),
-            key => problems.take(template.slot(key)).map(Argument::Number),
+            key => problems.take(params.param(key)).map(Argument::Number),
         };
         let arguments: Vec<Argument> = keys.iter().filter_map(argument).collect();
         problems.finish()?;
@@ -86,9 +80,8 @@ impl Family {
         let phases: Vec<String> = phases.collect();
         let phases = if phases.len() > 1 { phases } else { Vec::new() };
         Ok(Family {
-            outputs: outputs(&phases, &setup.transmission().components()),
-            template,
-            setup,
+            outputs: outputs(&phases, &params.vehicle().transmission().components()),
+            params,
             cycle,
             conditions: Conditions {
                 keep_rows: false,
@@ -101,7 +94,7 @@ impl Family {
     /// Name and unit of each argument.
     pub fn arguments(&self) -> Vec<(String, &'static str)> {
         let argument = |argument: &Argument| match argument {
-            Argument::Number(slot) => (slot.key().to_owned(), slot.unit()),
+            Argument::Number(param) => (param.key().to_owned(), param.unit()),
             Argument::Ambient => (AMBIENT_DEGC.to_owned(), "degC"),
         };
         self.arguments.iter().map(argument).collect()
@@ -110,7 +103,7 @@ impl Family {
     /// The value of each argument in the car as it is.
     pub fn base(&self) -> Vec<f64> {
         let base = |argument: &Argument| match argument {
-            Argument::Number(slot) => slot.base(),
+            Argument::Number(param) => param.base(),
             Argument::Ambient => self.conditions.ambient_k - ZERO_DEGC_K,
         };
         self.arguments.iter().map(base).collect()
@@ -148,21 +141,15 @@ impl Family {
         problems.finish().map(|()| found)
     }
 
-    /// Documents for a thread.
-    pub fn worker(&self) -> FamilyWorker {
-        FamilyWorker(self.template.bench())
-    }
-
     /// Drives the car at points, rows of values of the arguments in the units of their keys: side by side,
     /// [`MAX_TOGETHER`](cvtcycle_model::drive::MAX_TOGETHER) at a time, each with the numbers that it has alone.
     pub fn points<'n>(
         &self,
-        worker: &mut FamilyWorker,
         points: impl IntoIterator<Item = &'n [f64]>,
         wanted: &[usize],
     ) -> Vec<FamilyPoint> {
         let points = points.into_iter();
-        let cars: Vec<_> = points.map(|numbers| self.car_at(worker, numbers)).collect();
+        let cars: Vec<_> = points.map(|numbers| self.car_at(numbers)).collect();
         let mut runs = Vec::with_capacity(cars.len());
         for (setup, conditions) in cars.iter().flatten() {
             runs.push(drive::Run {
@@ -187,16 +174,12 @@ impl Family {
     }
 
     /// The car at a point and how it is driven, or why there is none.
-    fn car_at(
-        &self,
-        FamilyWorker(variant): &mut FamilyWorker,
-        numbers: &[f64],
-    ) -> Result<(Setup, Conditions), String> {
+    fn car_at(&self, numbers: &[f64]) -> Result<(Setup, Conditions), String> {
         let mut conditions = self.conditions;
-        variant.reset();
+        let mut values = Vec::with_capacity(numbers.len());
         for (argument, number) in self.arguments.iter().zip(numbers) {
             match argument {
-                Argument::Number(slot) => variant.set(slot, *number),
+                Argument::Number(param) => values.push((param, *number)),
                 Argument::Ambient if AMBIENT.contains(*number) => {
                     conditions.ambient_k = number + ZERO_DEGC_K;
                 }
@@ -208,15 +191,15 @@ impl Family {
                 }
             }
         }
-        let built = variant.build();
-        let setup = built.map_err(|_| reason(&variant.problems()))?;
-        Ok((setup, conditions))
+        let set = self.params.with_numbers(&values);
+        let set = set.map_err(|problems| reason(&problems))?;
+        Ok((Setup::from_params(&set), conditions))
     }
 
     /// Collects the results of a car that has been driven.
     fn finished(&self, setup: &Setup, outcome: &Outcome, wanted: &[usize]) -> FamilyPoint {
         let driven = Driven {
-            name: &self.setup.name,
+            name: &setup.name,
             setup,
             outcome,
         };

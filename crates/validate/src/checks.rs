@@ -16,7 +16,7 @@ use cvtcycle_model::keys::{Key, Values};
 const VALUE_OR_ENDS: &str = "value, or low and high";
 
 /// A number or range: `value`, or `low` and `high`, of which one may be absent.
-pub fn number_or_range(s: &Section, keys: [&Key; 3]) -> Option<(f64, f64)> {
+pub fn number_or_range(s: &Section, keys: [&Key<'static>; 3]) -> Option<(f64, f64)> {
     let [value, low, high] = keys.map(|key| s.optional(key));
     if value.is_some() && (low.is_some() || high.is_some()) {
         let message = "`value` with `low` or `high`";

@@ -159,7 +159,10 @@ pub(super) fn lists(known: &KnownCars) -> [Vec<Perturbation>; 2] {
     let is_meant = |info: &&KeyInfo| {
         info.is_number
             && info.status != "choice"
-            && matches!(Target::of(&info.key).0, Target::Vehicle | Target::Lubricant)
+            && matches!(
+                Target::from_key(&info.key).0,
+                Target::Vehicle | Target::Lubricant
+            )
     };
     let numbers = known.values().flatten().filter(is_meant);
     let numbers: BTreeSet<&str> = numbers.map(|info| info.key.as_str()).collect();

@@ -172,7 +172,7 @@ impl<'a> View<'a> {
             number_of(info, item)
                 .ok_or_else(|| format!("`{path}` is no number here: {}", info.value))
         };
-        if Target::of(path).0 == Target::Rig {
+        if Target::from_key(path).0 == Target::Rig {
             return of_keys("rig", &self.store.rig(spec)?.1);
         }
         let setup = self.store.cars.setup(spec);

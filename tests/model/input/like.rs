@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use cvtcycle_config::bounded::ReadError;
-use cvtcycle_config::setup::template::VehicleTemplate;
-use cvtcycle_config::setup::{Files, Kind, Options, Setup, load, read};
+use cvtcycle_config::setup::{Files, Kind, Options, ParamSet, Setup, load, read};
 use cvtcycle_config::{KeyInfo, Override, Problems};
 
 /// Files in memory.
@@ -224,10 +223,11 @@ fn files_that_a_parent_names_are_found_from_its_folder() {
     let child = load(word, &Options::default()).unwrap();
     assert_eq!(child.transmission().maps().count(), 1);
     assert_eq!(child.oils().0.title, shipped_oil());
-    // A study, which builds the car from its documents again.
-    let (template, _) = VehicleTemplate::load(word, &Options::default()).unwrap();
-    let built = template.bench().build().unwrap();
-    assert_eq!(built.transmission().maps().count(), 1);
+    // A study, which builds the car again from its values.
+    let params = ParamSet::load(word, &Options::default()).unwrap();
+    let built = params.with("transmission.cvt.belt.band_offset_mm", 2.0);
+    let built = built.unwrap();
+    assert_eq!(built.vehicle().transmission().maps().count(), 1);
     // The record of a run has all files.
     let parents: Vec<&str> = child
         .origin
@@ -263,12 +263,12 @@ fn overrides_belong_to_the_car_and_studies_see_what_it_inherits() {
         (&*info.status, &*info.from, &*info.value),
         ("set", "override", "1")
     );
-    let (template, _) = VehicleTemplate::load(word, &Options::default()).unwrap();
-    let slot = template.slot(set.key()).unwrap();
-    assert!((slot.base() - 3.0).abs() < 1e-12);
-    let mut variant = template.bench();
-    variant.set(&slot, 1.0);
-    let built = variant.build().unwrap();
+    let params = ParamSet::load(word, &Options::default()).unwrap();
+    let param = params.param(set.key()).unwrap();
+    assert!((param.base() - 3.0).abs() < 1e-12);
+    let built = params.with_numbers(&[(&param, 1.0)]).unwrap();
+    assert_eq!(built.keys(), changed.keys);
+    let built = Setup::from_params(&built);
     let offset = |setup: &Setup| match setup.transmission() {
         cvtcycle_model::transmission::Transmission::Cvt(cvt) => cvt.belt.band_offset_m,
         cvtcycle_model::transmission::Transmission::Manual(_) => f64::NAN,

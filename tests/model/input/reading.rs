@@ -147,16 +147,16 @@ fn kinds_of_values() {
         root.numbers("list_mm", Bound::positive(), 1..=2, ""),
         [1e-3, 2.5 * 1e-3]
     );
-    let columns = [
+    const COLUMNS: [(&str, Bound); 2] = [
         ("temperature_degc", Bound::any()),
         ("viscosity_mm2_s", Bound::positive()),
     ];
-    let rows = root.rows("points", &columns, "");
+    let rows = root.rows("points", &COLUMNS, "");
     assert_eq!(
         rows,
         [[-40.0 + 273.15, 9000.0 * 1e-6], [273.15, 250.0 * 1e-6]]
     );
-    assert!(root.rows("points2", &columns, "").is_empty());
+    assert!(root.rows("points2", &COLUMNS, "").is_empty());
     assert_eq!(root.optional_number("x_mm", OFFSET, ""), None);
     assert!((root.number_or("x_m", OFFSET, 1.0, "") - 1.0).abs() < 1e-15);
     assert!(root.has("n") && !root.has("x_mm") && root.exists() && !root.table("t").exists());

@@ -86,7 +86,7 @@ fn every_problem_of_an_override_is_reported() {
     let problems = rig::load(&set).unwrap_err();
     assert_eq!(problems.len(), 3, "{problems:#?}");
     for problem in &problems {
-        let of_rig = |key: &str| Target::of(key).0 == Target::Rig;
+        let of_rig = |key: &str| Target::from_key(key).0 == Target::Rig;
         assert!(of_rig(&problem.key) && problem.place.assignment().is_some_and(of_rig));
     }
     assert!(

@@ -5,18 +5,16 @@ use std::collections::{HashMap, HashSet};
 use crate::plan::{CalibrationPlan, FreeParameter, Observable, problem};
 use crate::solve::Parameter;
 use cvtcycle_config::ProblemKind::{Conflict, Missing, OutOfRange};
-use cvtcycle_config::setup::template::{ParameterRef, Variant, VehicleTemplate};
-use cvtcycle_config::setup::{Setup, load};
+use cvtcycle_config::setup::{Param, ParamSet, Setup, load};
 use cvtcycle_config::{Argument, Input, KeyInfo, Override, Place, Problem, ProblemKind, Problems};
 use cvtcycle_model::rig::transmission::Conditions;
 use cvtcycle_validate::source::Source;
 
 /// A car of the plan with parameters that the fit changes.
 pub struct FittedCar {
-    pub template: VehicleTemplate,
+    pub base: ParamSet,
     /// The parameters in it.
-    pub slots: Vec<ParameterRef>,
-    pub keys: Vec<KeyInfo>,
+    pub params: Vec<Param>,
 }
 
 /// Settings of the transmission rig and their keys.
@@ -57,13 +55,12 @@ impl<'p> Cars<'p> {
         problems.extend(cars.set_and_free(&plan.car.set, &plan.places[3]));
         let mut parameters = Vec::new();
         if let Some(car) = cars.fitted.first() {
-            let mut bench = car.template.bench();
             for free in &plan.parameters {
                 // The problem of one that is not found is known already.
-                let slot = |slot: &&ParameterRef| slot.key() == free.key.trim();
-                if let Some(slot) = car.slots.iter().find(slot) {
-                    problems.extend(at_bounds(free, slot, &mut bench));
-                    parameters.push(parameter(free, slot, &mut problems));
+                let is_it = |param: &&Param| param.key() == free.key.trim();
+                if let Some(param) = car.params.iter().find(is_it) {
+                    problems.extend(at_bounds(free, param, &car.base));
+                    parameters.push(parameter(free, param, &mut problems));
                 }
             }
         }
@@ -113,24 +110,18 @@ impl<'p> Cars<'p> {
             self.fixed.insert(name, load(vehicle, &options)?);
             return Ok(());
         }
-        let loaded = VehicleTemplate::load(&car.vehicle, &options);
-        let (template, setup) = loaded?;
+        let base = ParamSet::load(&car.vehicle, &options)?;
         let mut problems = Problems::new();
-        let mut slots = Vec::new();
+        let mut params = Vec::new();
         for free in &self.plan.parameters {
-            match template.slot(&free.key) {
-                Ok(slot) => slots.push(slot),
+            match base.param(&free.key) {
+                Ok(param) => params.push(param),
                 Err(found) => problems.push(not_free(free, found, &car.vehicle)),
             }
         }
         // With the parameters that were found more can be checked; nothing is computed after a problem.
         self.by_name.insert(name, self.fitted.len());
-        let keys = setup.keys;
-        self.fitted.push(FittedCar {
-            template,
-            slots,
-            keys,
-        });
+        self.fitted.push(FittedCar { base, params });
         if problems.is_empty() {
             Ok(())
         } else {
@@ -236,29 +227,27 @@ fn not_free(free: &FreeParameter, found: Problem, vehicle: &str) -> Problem {
 }
 
 /// Bounds at which the car is invalid.
-fn at_bounds(free: &FreeParameter, slot: &ParameterRef, bench: &mut Variant) -> Vec<Problem> {
+fn at_bounds(free: &FreeParameter, param: &Param, base: &ParamSet) -> Vec<Problem> {
     let mut problems = Vec::new();
     let ends = [("low", free.low), ("high", free.high)];
     for ((word, value), place) in ends.into_iter().zip(&free.bounds) {
-        bench.reset();
-        bench.set(slot, value);
-        if bench.build().is_ok() {
+        let Err(found) = base.with_numbers(&[(param, value)]) else {
             continue;
-        }
-        let first = bench.problems().into_iter().next().unwrap_or_default();
+        };
+        let first = found.into_iter().next().unwrap_or_default();
         let message = format!(
             "parameter {}: the car is refused at `{word}`: {}",
             free.key, first.message
         );
         // The problem may be another key that depends on this one.
-        let own = first.key.is_empty() || slot.key().ends_with(&first.key);
+        let own = first.key.is_empty() || param.key().ends_with(&first.key);
         let hint = if own || first.hint.is_empty() {
             "bounds are in the unit of the key; the search may go to both"
         } else {
             &first.hint
         };
         let allowed = if first.allowed.is_empty() {
-            slot.allowed()
+            param.allowed()
         } else {
             &first.allowed
         };
@@ -269,8 +258,8 @@ fn at_bounds(free: &FreeParameter, slot: &ParameterRef, bench: &mut Variant) -> 
 }
 
 /// The parameter of the fit.
-fn parameter(free: &FreeParameter, slot: &ParameterRef, problems: &mut Problems) -> Parameter {
-    let start = free.start.unwrap_or(slot.base());
+fn parameter(free: &FreeParameter, param: &Param, problems: &mut Problems) -> Parameter {
+    let start = free.start.unwrap_or(param.base());
     let mut refuse = |kind, allowed: &str, message: &str, hint: &str| {
         let message = format!("parameter {}: {message}", free.key);
         problems.push(problem(kind, &free.place, "start", allowed, message, hint));

@@ -7,8 +7,7 @@ use std::rc::Rc;
 use super::cars::{Car, Cars, RigConditions};
 use crate::plan::{CalibrationPlan, Observable, Observation};
 use cvtcycle_config::setup::Setup;
-use cvtcycle_config::setup::template::Variant;
-use cvtcycle_config::{Problem, Problems, to_si};
+use cvtcycle_config::{Problem, Problems};
 use cvtcycle_validate::expr::{Computed, Table, compute};
 use cvtcycle_validate::source::{Kind, Source};
 use cvtcycle_validate::store::{self, Store, View, once};
@@ -23,21 +22,14 @@ pub struct Prediction {
     pub doubtful: Vec<usize>,
 }
 
-/// Computes all observations; returns the benches for the next evaluation.
-pub fn predict(
-    cars: &Cars,
-    plan: &CalibrationPlan,
-    values: &[f64],
-    benches: Vec<Variant>,
-) -> (Result<Prediction, String>, Vec<Variant>) {
+/// Computes all observations.
+pub fn predict(cars: &Cars, plan: &CalibrationPlan, values: &[f64]) -> Result<Prediction, String> {
     let cars = WithValues {
         cars,
         values,
-        benches: RefCell::new(benches),
         built: RefCell::default(),
     };
-    let prediction = observe(&cars, plan);
-    (prediction, cars.benches.into_inner())
+    observe(&cars, plan)
 }
 
 fn observe(cars: &WithValues, plan: &CalibrationPlan) -> Result<Prediction, String> {
@@ -161,28 +153,19 @@ fn between(table: &Table, [time, column]: [usize; 2], time_s: f64) -> (f64, usiz
 struct WithValues<'m> {
     cars: &'m Cars<'m>,
     values: &'m [f64],
-    benches: RefCell<Vec<Variant>>,
     built: RefCell<HashMap<usize, Result<Rc<Setup>, String>>>,
 }
 
 impl WithValues<'_> {
     fn build(&self, index: usize) -> Result<Rc<Setup>, String> {
         let car = &self.cars.fitted[index];
-        let bench = &mut self.benches.borrow_mut()[index];
-        let values = || car.slots.iter().zip(self.values);
-        bench.reset();
-        for (slot, value) in values() {
-            bench.set(slot, *value);
-        }
-        let Ok(mut setup) = bench.build() else {
-            return Err(first(&bench.problems()));
+        let numbers = car.params.iter().zip(self.values.iter().copied());
+        let set = car.base.with_numbers(&numbers.collect::<Vec<_>>());
+        let set = set.map_err(|problems| first(&problems))?;
+        let setup = Setup {
+            keys: set.keys(),
+            ..Setup::from_params(&set)
         };
-        setup.keys.clone_from(&car.keys);
-        for (slot, value) in values() {
-            if let Some(info) = setup.keys.iter_mut().find(|info| info.key == slot.key()) {
-                (info.value, info.si) = (value.to_string(), Some(to_si(&info.key, *value)));
-            }
-        }
         Ok(Rc::new(setup))
     }
 }

@@ -9,13 +9,11 @@ mod cars;
 mod evaluation;
 mod known;
 
-use std::sync::{Mutex, PoisonError};
-
 use super::plan::{CalibrationPlan, Observation};
 use super::solve::{Parameter, Prior, Residuals};
 use cars::Cars;
 use cvtcycle_config::Problems;
-use cvtcycle_config::setup::template::{ParameterRef, Variant};
+use cvtcycle_config::setup::Param;
 use known::Known;
 
 pub use evaluation::Prediction;
@@ -30,7 +28,6 @@ pub struct Model<'p> {
     parameters: Vec<Parameter>,
     /// Index of the common error of each group among the parameters.
     common: Vec<Option<usize>>,
-    pool: Mutex<Vec<Vec<Variant>>>,
     known: Known,
 }
 
@@ -57,7 +54,6 @@ impl<'p> Model<'p> {
             cars,
             parameters,
             common,
-            pool: Mutex::default(),
             known: Known::default(),
         })
     }
@@ -77,7 +73,7 @@ impl<'p> Model<'p> {
     /// Values of the files; the first start unless the plan has another.
     #[must_use]
     pub fn file_values(&self) -> Vec<f64> {
-        let own = self.cars.fitted[0].slots.iter().map(ParameterRef::base);
+        let own = self.cars.fitted[0].params.iter().map(Param::base);
         let common = &self.parameters[self.plan.parameters.len()..];
         own.chain(common.iter().map(|parameter| parameter.start))
             .collect()
@@ -86,8 +82,8 @@ impl<'p> Model<'p> {
     /// Units of the parameters.
     #[must_use]
     pub fn units(&self) -> Vec<String> {
-        let slots = self.cars.fitted[0].slots.iter();
-        let own = slots.map(|slot| slot.unit().to_owned());
+        let params = self.cars.fitted[0].params.iter();
+        let own = params.map(|param| param.unit().to_owned());
         let groups = self.plan.groups.iter().enumerate();
         let common = groups.filter(|(_, group)| group.common_sd.is_some());
         let unit_of = |group: usize| {
@@ -105,19 +101,9 @@ impl<'p> Model<'p> {
     pub fn predict(&self, values: &[f64]) -> Result<Prediction, String> {
         let cars = &values[..self.plan.parameters.len().min(values.len())];
         let count = self.plan.observations.len();
-        self.known.once(cars, count, || self.compute(cars))
-    }
-
-    fn compute(&self, values: &[f64]) -> Result<Prediction, String> {
-        let pool = || self.pool.lock().unwrap_or_else(PoisonError::into_inner);
-        let taken = pool().pop();
-        let benches = taken.unwrap_or_else(|| {
-            let cars = self.cars.fitted.iter();
-            cars.map(|car| car.template.bench()).collect()
-        });
-        let (prediction, benches) = evaluation::predict(&self.cars, self.plan, values, benches);
-        pool().push(benches);
-        prediction
+        self.known.once(cars, count, || {
+            evaluation::predict(&self.cars, self.plan, cars)
+        })
     }
 
     /// Distance of each computed observation from the measured one, in its own unit, common errors included (CM-1).

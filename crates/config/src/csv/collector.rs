@@ -26,11 +26,11 @@ pub struct Line<'t> {
 /// One value in its column.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell<'t> {
-    /// Its line.
+    /// Line.
     pub line: Line<'t>,
-    /// Its column.
+    /// Column.
     pub key: &'t str,
-    /// Its value.
+    /// Value.
     pub field: Field,
 }
 
@@ -41,7 +41,7 @@ impl<'t> Line<'t> {
         self.text.get(field.start..field.end).unwrap_or_default()
     }
 
-    /// Whether it is neither blank nor a comment, which begins with `#`.
+    /// True if it is neither blank nor a comment, which begins with `#`.
     pub(super) fn has_content(&self) -> bool {
         let text = self.text.trim_start();
         !text.is_empty() && !text.starts_with('#')
@@ -57,7 +57,7 @@ impl<'t> Line<'t> {
 }
 
 impl<'t> Cell<'t> {
-    /// Its value.
+    /// Value.
     #[must_use]
     pub fn text(&self) -> &'t str {
         self.line.text_of(self.field)
@@ -73,7 +73,7 @@ pub struct Collector<'f> {
 }
 
 impl<'f> Collector<'f> {
-    /// None yet, of a file of that name.
+    /// An empty collection for a file of that name.
     #[must_use]
     pub fn new(file: &'f str) -> Self {
         Self {
@@ -191,7 +191,7 @@ impl<'f> Collector<'f> {
             start: 0,
             end: line.text.len(),
         };
-        self.push(|file| problem().at(place(file, line, whole)).of(key));
+        self.push(|file| problem().at(place(file, line, whole)).for_key(key));
     }
 
     /// Reports a problem of one value of the column `key`.
@@ -205,7 +205,7 @@ impl<'f> Collector<'f> {
         self.push(|file| {
             problem()
                 .at(place(file, line, field))
-                .of(key)
+                .for_key(key)
                 .value(shortened(line.text_of(field), MAX_VALUE_LEN))
         });
     }

@@ -19,7 +19,7 @@ impl Delimiter {
         Some(fields.len())
     }
 
-    /// Of a line of column names and the lines below it: the only sign that splits the names, or the one of several that splits most of
+    /// Separator of a line of column names and the lines below it: the only sign that splits the names, or the one of several that splits most of
     /// the lines below into as many fields.
     ///
     /// # Errors
@@ -101,7 +101,7 @@ pub(super) fn with_point(text: &str) -> String {
     text.replacen(',', ".", 1)
 }
 
-/// Whether the numbers of a table have decimal commas; only the columns of numbers count. None where they can be read in two ways,
+/// True if the numbers of a table have decimal commas; only the columns of numbers count. None where they can be read in two ways,
 /// which is reported at the cell that shows it.
 pub(super) fn decimal_comma<'t>(
     rows: impl Iterator<Item = Line<'t>>,

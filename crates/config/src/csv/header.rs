@@ -16,9 +16,9 @@ const MAX_NAME_LEN: usize = 60;
 /// The lines above the rows, understood.
 #[derive(Debug)]
 pub(super) struct Header {
-    /// What separates the columns.
+    /// Separator of the columns.
     pub delimiter: Delimiter,
-    /// Whether numbers have decimal commas.
+    /// True if numbers have decimal commas.
     pub decimal_comma: bool,
     /// Index in the schema of each column of the file.
     pub columns: Vec<Option<usize>>,
@@ -95,7 +95,7 @@ impl Schema {
         Columns::parse(columns).ok()
     }
 
-    /// Whether a first line is a title: it has no name of a column, and the line below it has some.
+    /// True if a first line is a title: it has no name of a column, and the line below it has some.
     fn is_title<'t>(&self, line: Line<'t>, below: impl Iterator<Item = Line<'t>> + Clone) -> bool {
         let mut next = below.clone();
         let Some(second) = next.next() else {
@@ -147,8 +147,8 @@ impl Schema {
         if !named.is_empty() {
             let units = units.map(|(line, fields)| (*line, &**fields));
             let before = problems.count();
-            let found = named.of_file(*line, fields, units, self, problems);
-            // What is wrong with the columns that are named may be why one is missing.
+            let found = named.match_columns(*line, fields, units, self, problems);
+            // A problem of the named columns may explain a missing one.
             if problems.count() == before {
                 self.require((*line, &[]), &found, &[], problems);
             }
@@ -240,7 +240,7 @@ impl Schema {
         let text = line.text_of(field);
         if let Found::OtherUnit(word) = found {
             let units = self.units_of(word).join(", ");
-            meant.extend(self.of_word(word).map(|(_, own)| name(own)));
+            meant.extend(self.with_word(word).map(|(_, own)| name(own)));
             problems.value(line, field, text, || {
                 Problem::unknown_key(format!("{word} is not read in the unit of this column"))
                     .names_key()

@@ -65,7 +65,7 @@ pub(super) fn unit_named(text: &str) -> Option<&'static str> {
     found.map(|(_, unit)| *unit)
 }
 
-/// What a table of another program has for its columns.
+/// Column names of tables of other programs.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Foreign {
     /// Whole names, or beginnings before a `*`, and the column of the schema; an empty one where the column is passed over.

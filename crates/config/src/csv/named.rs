@@ -4,7 +4,7 @@ use super::heading::unit_named;
 use super::text::split;
 use crate::{Argument, Problem};
 
-/// What an entry looks like.
+/// Form of an entry.
 const FORM: &str = "QUANTITY=NAME:UNIT with a comma between columns, or QUANTITY:UNIT for each column of a file without names";
 
 /// The columns that are meant; all that have a name of the schema if there are none.
@@ -16,7 +16,7 @@ pub struct Columns(pub(super) Vec<Entry>);
 pub(super) struct Entry {
     /// A quantity, such as `speed`, or a column of the schema.
     pub quantity: String,
-    /// Its name in the file; none where the columns are given in their order.
+    /// Name in the file; none where the columns are given in their order.
     pub name: Option<String>,
     pub unit: Option<String>,
 }
@@ -73,7 +73,7 @@ impl Columns {
         self.0.iter().any(|entry| entry.name.is_none())
     }
 
-    /// Whether a name of the file is one of them.
+    /// True if a name of the file is one of them.
     pub(super) fn has(&self, text: &str) -> bool {
         self.0
             .iter()

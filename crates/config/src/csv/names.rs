@@ -1,4 +1,4 @@
-//! What the names of a file's columns mean: the column of a schema that has a name, a word and a unit, or that the user names.
+//! Meaning of the names of a file's columns: the column of a schema that has a name, a word and a unit, or that the user names.
 
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ use crate::{Argument, Problem, near, suggestion};
 /// A longer name is none with words and a unit.
 const MAX_LEN: usize = 80;
 
-/// What a name of a column was found to mean.
+/// Meaning found for the name of a column.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Found {
     /// This column of the schema.
@@ -23,12 +23,12 @@ pub(super) enum Found {
     OtherUnit(String),
     /// One of another program that is passed over.
     PassedOver,
-    /// None of them.
+    /// No known column.
     Nothing,
 }
 
 impl Schema {
-    /// What a name of a column means, with the unit below it where there is a row of units.
+    /// Meaning of the name of a column, with the unit below it where there is a row of units.
     pub(super) fn find(&self, text: &str, below: Option<&str>) -> Found {
         let named = |name: &str| self.columns.iter().position(|own| own.name == name);
         if let Some(exact) = named(text) {
@@ -65,7 +65,7 @@ impl Schema {
 
     /// The column of a quantity, by its word, in a unit. Without a unit a quantity that has one is not found.
     pub(super) fn quantity(&self, word: &str, unit: Option<&str>) -> Found {
-        let of_word: Vec<(usize, &Column)> = self.of_word(word).collect();
+        let of_word: Vec<(usize, &Column)> = self.with_word(word).collect();
         let Some(unit) = unit else {
             // A grade may be a share or in percent.
             return match of_word.as_slice() {
@@ -81,7 +81,7 @@ impl Schema {
     }
 
     /// The columns of a word, which is a name without its unit or another word for it.
-    pub(super) fn of_word(&self, word: &str) -> impl Iterator<Item = (usize, &Column)> {
+    pub(super) fn with_word(&self, word: &str) -> impl Iterator<Item = (usize, &Column)> {
         let own = self.foreign.own_word(word.to_owned());
         let columns = self.columns.iter().enumerate();
         columns
@@ -92,7 +92,7 @@ impl Schema {
     pub(super) fn units_of(&self, quantity: &str) -> Vec<&'static str> {
         let word = bare(stem(quantity));
         let mut units: Vec<&str> = self
-            .of_word(&word)
+            .with_word(&word)
             .map(|(_, column)| unit_of(column))
             .collect();
         units.dedup();
@@ -100,7 +100,7 @@ impl Schema {
     }
 }
 
-/// Whether a column is in the unit that a text means.
+/// True if a column is in the unit that a text means.
 pub(super) fn is_in(unit: &str, column: &Column) -> bool {
     unit_named(unit) == Some(unit_of(column))
 }
@@ -112,7 +112,7 @@ fn unit_of(column: &Column) -> &'static str {
 
 impl Columns {
     /// The column of the schema for each column of the file.
-    pub(super) fn of_file(
+    pub(super) fn match_columns(
         &self,
         line: Line<'_>,
         fields: &[Field],
@@ -157,7 +157,7 @@ impl Entry {
         };
         match found {
             Found::Column(k) => Ok(k),
-            Found::Nothing if schema.of_word(&own).next().is_none() => {
+            Found::Nothing if schema.with_word(&own).next().is_none() => {
                 let words = schema.read().map(|column| stem(&column.name));
                 let close = near(&self.quantity, words);
                 Err(

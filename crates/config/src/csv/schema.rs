@@ -7,7 +7,7 @@ use super::heading::{Foreign, bare};
 use super::named::Columns;
 use crate::{Bound, Problem, Setting, suggestion, unit_of};
 
-/// What the cells of a column hold.
+/// Content of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cells {
     /// Numbers in the unit at the end of the column's name.
@@ -23,9 +23,9 @@ pub enum Cells {
 /// One column that a table may have.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: Cow<'static, str>,
-    /// What its cells hold.
+    /// Content of the cells.
     pub cells: Cells,
     /// A table has just one column of a group; each column without a group is one of its own.
     pub group: &'static str,
@@ -79,7 +79,7 @@ impl Column {
         }
     }
 
-    /// Its cells may be empty.
+    /// Allows empty cells.
     #[must_use]
     pub fn or_empty(self) -> Self {
         Column {
@@ -106,7 +106,7 @@ impl Column {
         Column { hint, ..self }
     }
 
-    /// Whether a table has just one of the two.
+    /// True if a table has just one of the two.
     pub(crate) fn is_same(&self, other: &Column) -> bool {
         self.name == other.name || !self.group.is_empty() && self.group == other.group
     }
@@ -171,14 +171,14 @@ impl Column {
     }
 }
 
-/// What a table may hold.
+/// Allowed content of a table.
 #[derive(Clone, Debug)]
 pub struct Schema {
     /// All columns.
     pub columns: Vec<Column>,
     /// The columns in words where their list would be too long.
     pub names: Cow<'static, str>,
-    /// What the table is, if columns that are not known are passed over, and a hint: a file without any known column is something else.
+    /// Name of the table and a hint, if unknown columns are ignored: a file without any known column is something else.
     pub lenient: Option<(&'static str, &'static str)>,
     /// Largest number of rows, and what helps beyond it.
     pub max_rows: (usize, &'static str),
@@ -188,7 +188,7 @@ pub struct Schema {
     pub rows: &'static str,
     /// Names of the columns in the tables of other programs.
     pub foreign: Foreign,
-    /// Which column is which, as the user says; none: the names say so themselves. With `None` the user cannot say so.
+    /// Columns as named by the user; empty if the names of the file decide. With `None` the user cannot name them.
     pub named: Option<Columns>,
 }
 

@@ -6,7 +6,7 @@ use super::schema::{Cells, Column, Schema};
 use super::text::{Delimiter, Field, split};
 use crate::Problem;
 
-/// What was read from a cell.
+/// Content of a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// A number.
@@ -79,7 +79,7 @@ impl<'s> Table<'s> {
     }
 
     /// The column of a group that the file has, as index of the schema.
-    pub fn of_group(&self, group: &str) -> Option<usize> {
+    pub fn group_column(&self, group: &str) -> Option<usize> {
         let is_in = |index: &usize| self.schema.columns[*index].group == group;
         self.header.columns.iter().flatten().copied().find(is_in)
     }
@@ -148,7 +148,7 @@ fn read_cell(
 #[derive(Clone, Copy, Debug)]
 pub struct Row<'a, 't> {
     table: &'a Table<'a>,
-    /// Its line.
+    /// Line.
     pub line: Line<'t>,
 }
 

@@ -81,7 +81,7 @@ fn line_of(bytes: &[u8], at: usize) -> usize {
     bytes.iter().take(at).filter(|&&byte| byte == b'\n').count() + 1
 }
 
-/// What separates the columns.
+/// Separator of the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Delimiter {
     Comma,
@@ -151,7 +151,7 @@ pub fn split(line: &str, sign: char, fields: &mut Vec<Field>) -> Result<(), usiz
 
 /// The same of a line without quotes and letters beyond ASCII, as most lines are.
 fn split_plain(line: &[u8], sign: u8, fields: &mut Vec<Field>) {
-    // Those of `char::is_whitespace`; the standard library's own for bytes leaves one out.
+    // The characters of `char::is_whitespace`; the standard library's own for bytes leaves one out.
     let is_blank = |byte: &u8| matches!(byte, b'\t'..=b'\r' | b' ');
     let mut at = 0;
     loop {

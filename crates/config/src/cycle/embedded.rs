@@ -8,7 +8,7 @@ use super::gears::GearCommand;
 use super::plain::plain_trace;
 use super::{Cycle, Interval, Trace, Weighting};
 
-/// What an automatic or CVT drives.
+/// Cycle variant for an automatic or CVT.
 #[derive(Clone, Copy)]
 enum Automatic {
     /// The trace of the manual car.

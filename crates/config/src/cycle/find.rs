@@ -141,7 +141,7 @@ fn find_named(word: &str) -> Result<Option<Cycle>, Problems> {
     Err(problem.hint(question + hint).into())
 }
 
-/// Whether a word is surely a file, though it may begin like the name of a constant speed.
+/// True if a word is surely a file, though it may begin like the name of a constant speed.
 #[must_use]
 pub fn is_csv(word: &str) -> bool {
     word.contains(['/', '\\']) || word.to_lowercase().ends_with(".csv")

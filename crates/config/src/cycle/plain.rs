@@ -8,7 +8,7 @@ use super::gears::Note;
 use super::read::{interval, trace};
 use super::row::{Row, speed};
 
-/// What a column of such a table is.
+/// Kind of a column of such a table.
 #[derive(Clone, Copy)]
 enum Column {
     Time,
@@ -22,7 +22,7 @@ enum Column {
 }
 
 impl Column {
-    fn of(name: &str) -> Option<Column> {
+    fn from_name(name: &str) -> Option<Column> {
         Some(match name {
             "time_s" => Column::Time,
             "speed_km_h" => Column::Speed,
@@ -51,7 +51,7 @@ fn phase(name: &str, phases: &mut Vec<String>) -> Option<u16> {
 pub(super) fn plain_trace(text: &str, phases: &mut Vec<String>) -> Option<Trace> {
     let mut lines = text.lines();
     let columns: Vec<Column> = (lines.next()?.split(','))
-        .map(Column::of)
+        .map(Column::from_name)
         .collect::<Option<_>>()?;
     let has = [0, 1, 2].map(|gear| {
         let is = |column: &Column| matches!(column, Column::Gear(own) if *own == gear);

@@ -80,16 +80,17 @@ pub(super) fn read_trace(
         );
     }
     // A table over distance has a time only when it is whole.
-    let (intervals, row_of) = match problems.is_empty() && Over::of(&table) == Over::Distance {
-        true => over_distance(&rows),
-        false => {
-            let pairs = rows.windows(2);
-            (
-                pairs.map(|pair| interval(&pair[0], &pair[1])).collect(),
-                None,
-            )
-        }
-    };
+    let (intervals, row_of) =
+        match problems.is_empty() && Over::from_table(&table) == Over::Distance {
+            true => over_distance(&rows),
+            false => {
+                let pairs = rows.windows(2);
+                (
+                    pairs.map(|pair| interval(&pair[0], &pair[1])).collect(),
+                    None,
+                )
+            }
+        };
     let duration_s = intervals.last().map_or(0.0, |last| last.end_s);
     if problems.is_empty() && !(duration_s > 0.0 && duration_s <= MAX_DURATION_S) {
         let duration = readable(duration_s, 1);
@@ -129,7 +130,7 @@ fn over_distance(rows: &[Row]) -> (Vec<Interval>, Option<Vec<usize>>) {
 
 /// How a table was read, where it is not as the program writes its own.
 fn read_as(table: &Table) -> Option<String> {
-    let over = match Over::of(table) {
+    let over = match Over::from_table(table) {
         Over::Time => None,
         Over::Distance => Some("over distance, with 1.0 m/s2 up and 1.5 m/s2 down (CY-1)"),
         Over::Seconds => Some("a row a second"),

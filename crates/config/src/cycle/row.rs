@@ -169,7 +169,7 @@ pub(super) struct Row {
     pub(super) note: Note,
 }
 
-/// What the rows of a table are in order of.
+/// Order of the rows of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Over {
     Time,
@@ -180,7 +180,7 @@ pub(super) enum Over {
 
 impl Over {
     /// Time goes before distance, as in VECTO.
-    pub(super) fn of(table: &Table<'_>) -> Over {
+    pub(super) fn from_table(table: &Table<'_>) -> Over {
         match (table.has(TIME), table.has(DISTANCE)) {
             (true, _) => Over::Time,
             (false, true) => Over::Distance,
@@ -221,7 +221,7 @@ impl<'p> Rows<'p> {
     pub(super) fn add(&mut self, cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) {
         self.phases_before = self.phases.len();
         let table = cells.table();
-        let over = Over::of(table);
+        let over = Over::from_table(table);
         let at = match over {
             Over::Time => cells.number(TIME),
             Over::Distance => cells.number(DISTANCE),
@@ -236,7 +236,7 @@ impl<'p> Rows<'p> {
             stop_s: cells.number(STOP).unwrap_or_default(),
             speed_m_s: speed_m_s(cells, problems),
             phase: self.phase(cells, problems),
-            grade: table.of_group(GRADE).map_or(0.0, |column| {
+            grade: table.group_column(GRADE).map_or(0.0, |column| {
                 let percent = table.name(column) == "grade_percent";
                 cells.number(column).unwrap_or_default() / if percent { 100.0 } else { 1.0 }
             }),
@@ -324,7 +324,7 @@ fn check_distance(
             .hint("sort the rows by distance and remove doubled ones");
         cells.report(DISTANCE, problems, problem);
     }
-    // Of the row above: the last one of a table may end at rest without a time.
+    // Refers to the row above: the last one of a table may end at rest without a time.
     let at_rest = before.filter(|before| before.speed_m_s.is_some_and(|v| v <= 0.0));
     if at_rest.is_some_and(|before| before.stop_s <= 0.0) {
         let problem =
@@ -348,7 +348,7 @@ fn check_distance(
 }
 
 fn speed_m_s(cells: &csv::Row<'_, '_>, problems: &mut Collector<'_>) -> Option<f64> {
-    let column = cells.table().of_group(SPEED)?;
+    let column = cells.table().group_column(SPEED)?;
     let value = cells.number(column)?;
     let name = cells.table().name(column);
     let (kmh, m_s) = speed(name, value);
@@ -409,7 +409,7 @@ fn check_jump(
     };
     let accel_m_s2 = (to - from) / dt_s;
     if !(-MAX_ACCEL_M_S2..=MAX_ACCEL_M_S2).contains(&accel_m_s2)
-        && let Some(column) = cells.table().of_group(SPEED)
+        && let Some(column) = cells.table().group_column(SPEED)
     {
         let hint = match cells.table().name(column) {
             "speed_kmh" | "speed_km_h" => {
@@ -443,7 +443,7 @@ fn check_engine_off(
             .hint("only a standing car can have its engine off");
         cells.report(ENGINE_OFF, problems, problem);
     } else if before.engine_off
-        && let Some(column) = cells.table().of_group(SPEED)
+        && let Some(column) = cells.table().group_column(SPEED)
     {
         let problem = Problem::conflict("the car starts with its engine off")
             .allowed("0 up to the end of engine_off")

@@ -156,7 +156,7 @@ fn at(trace: &Trace, k: usize) -> (f64, f64) {
     }
 }
 
-/// What holds from a row on; at the last one as before it.
+/// Values from a row on; at the last one as before it.
 fn held(trace: &Trace, k: usize) -> &super::Interval {
     &trace.intervals[k.min(trace.intervals.len() - 1)]
 }

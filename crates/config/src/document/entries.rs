@@ -23,12 +23,12 @@ impl Entries {
         self.0.get_mut(name)
     }
 
-    /// Whether there is an entry of a name.
+    /// True if there is an entry of a name.
     pub fn contains_key(&self, name: &str) -> bool {
         self.0.contains_key(name)
     }
 
-    /// Whether there is none at all.
+    /// True if there is none at all.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -1,8 +1,8 @@
 //! A parsed text in which every value knows its place (`shape`, `syntax`: what is no TOML; `units`: numbers with units), and the overrides put into it.
 
+mod assigned;
 mod entries;
 pub(crate) mod overrides;
-pub(crate) mod patched;
 mod shape;
 pub(crate) mod syntax;
 pub(crate) mod target;
@@ -20,17 +20,20 @@ use crate::problem::place::{Input, Place};
 use crate::problem::source::{MAX_VALUE, Parent, Source, shortened};
 use crate::problem::{Problem, Problems};
 
+/// Origin of a value that an override has set.
+pub(crate) const OVERRIDE: &str = "override";
+
 /// A stretch of one source, in bytes.
 #[derive(Clone, Debug)]
 pub(crate) struct Span {
     pub source: usize,
-    /// Whether that source is an override rather than a file.
+    /// True if that source is an override rather than a file.
     pub is_override: bool,
     pub range: Range<usize>,
 }
 
 impl Span {
-    /// Whether it comes from an override rather than from a file.
+    /// True if it comes from an override rather than from a file.
     pub fn is_set(&self) -> bool {
         self.is_override
     }
@@ -72,7 +75,7 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    /// What it is, for "expected …, found …".
+    /// Name of the type, for "expected …, found …".
     pub fn kind(&self) -> &'static str {
         match self {
             Value::Text(_) => "text",
@@ -86,7 +89,7 @@ impl Value {
     }
 
     /// A number as a file would have it: a whole one as an integer.
-    pub fn of(number: f64) -> Value {
+    pub fn from_number(number: f64) -> Value {
         const MAX: f64 = 9e18; // below the largest integer
         let whole = number.trunc();
         if whole.to_bits() == number.to_bits() && (-MAX..=MAX).contains(&whole) {
@@ -151,7 +154,7 @@ impl Table {
         })
     }
 
-    /// Whether an override reaches into it.
+    /// True if an override reaches into it.
     pub fn is_touched(&self) -> bool {
         self.entries.values().any(|entry| match &entry.node.value {
             Value::Table(table) => entry.node.span.is_set() || table.is_touched(),
@@ -185,14 +188,14 @@ impl Document {
     /// All places where the text is not valid TOML, at most one per line; beyond some number the rest is counted. One problem where the
     /// text has more tables or is nested deeper than any input could be.
     pub fn parse(file: &str, text: &str) -> Result<Document, Problems> {
-        Document::of(Source::new(Input::File(file.to_owned()), text))
+        Document::from_source(Source::new(Input::File(file.to_owned()), text))
     }
 
     /// Parses the text of a source.
     ///
     /// # Errors
     /// As [`Document::parse`].
-    pub(crate) fn of(source: Source) -> Result<Document, Problems> {
+    pub(crate) fn from_source(source: Source) -> Result<Document, Problems> {
         if let Some(excess) = shape::excess(&source.text) {
             return Err(too_much(&source, excess).into());
         }
@@ -248,7 +251,7 @@ impl Document {
         self.sources[span.source].place(span.range.clone())
     }
 
-    /// What the source of a span is to the file, where it is another one that it inherits from.
+    /// Relation of the source of a span to the file, if the file inherits from it.
     pub(crate) fn parent(&self, span: &Span) -> Option<&Parent> {
         self.sources[span.source].parent.as_ref()
     }
@@ -256,7 +259,7 @@ impl Document {
     /// From where a value comes: its line in the file, the class or car that it is inherited from, or an override.
     pub(crate) fn from(&self, span: &Span) -> String {
         match self.parent(span) {
-            _ if span.is_set() => "override".to_owned(),
+            _ if span.is_set() => OVERRIDE.to_owned(),
             Some(parent) => parent.from.clone(),
             None => {
                 let line = self.sources[span.source].line_number(&span.range);
@@ -347,7 +350,7 @@ impl Levels {
     }
 
     fn node(&self, value: &toml::Spanned<DeValue<'_>>, level: usize) -> Node {
-        let span = of_file(value.span());
+        let span = file_span(value.span());
         let value = if level < shape::MAX_LEVELS {
             self.value(value.get_ref(), level + 1)
         } else {
@@ -361,7 +364,7 @@ impl Levels {
     fn table(&self, table: &DeTable<'_>, level: usize) -> Table {
         let entries = table.iter().map(|(key, value)| {
             let entry = Entry {
-                key: of_file(key.span()),
+                key: file_span(key.span()),
                 node: self.node(value, level),
             };
             (key.get_ref().to_string(), entry)
@@ -373,7 +376,7 @@ impl Levels {
     }
 }
 
-fn of_file(range: Range<usize>) -> Span {
+fn file_span(range: Range<usize>) -> Span {
     Span {
         source: 0,
         is_override: false,

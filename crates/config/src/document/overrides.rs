@@ -15,7 +15,7 @@ use cvtcycle_model::keys::{Key, Presence};
 /// Tables that a key may be nested in; more than any input has, few enough to recurse over.
 const MAX_DEPTH: usize = 32;
 
-/// What a number does with the value of a file.
+/// Effect of a number on the value of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Acts {
@@ -28,7 +28,7 @@ pub enum Acts {
 }
 
 impl Acts {
-    /// What a number makes of a value.
+    /// Result of the number acting on a value.
     #[must_use]
     pub fn resolved(self, base: f64, number: f64) -> f64 {
         match self {
@@ -84,17 +84,12 @@ impl Override {
     /// Sets a key to a number in the key's unit.
     #[must_use]
     pub fn number(key: &str, number: f64) -> Override {
-        // TOML has its own word for what is no number.
-        let text = if number.is_nan() {
-            "nan".to_owned()
-        } else {
-            number.to_string()
-        };
-        Override::of(
+        let (value, text) = one(number);
+        Override::from_parts(
             format!("{key}={text}"),
             (key.trim(), Acts::Value),
             &text,
-            Value::of(number),
+            value,
         )
     }
 
@@ -123,11 +118,21 @@ impl Override {
             let message = format!("`{value}` after `{}` is no number", acts.sign());
             return Err(no_override(text, key, message));
         }
-        Ok(Override::of(text.to_owned(), (key, acts), value, parsed))
+        Ok(Override::from_parts(
+            text.to_owned(),
+            (key, acts),
+            value,
+            parsed,
+        ))
     }
 
-    fn of(text: String, (key, acts): (&str, Acts), value_text: &str, value: Value) -> Override {
-        let (target, own) = Target::of(key);
+    fn from_parts(
+        text: String,
+        (key, acts): (&str, Acts),
+        value_text: &str,
+        value: Value,
+    ) -> Override {
+        let (target, own) = Target::from_key(key);
         Override {
             text,
             key: key.to_owned(),
@@ -146,7 +151,7 @@ impl Override {
         &self.key
     }
 
-    /// What its value does with that of the file.
+    /// Effect of the value on that of the file.
     #[must_use]
     pub fn acts(&self) -> Acts {
         self.acts
@@ -185,22 +190,19 @@ impl Override {
         let path: Vec<&str> = self.path.iter().map(|name| &**name).collect();
         let node = document.root.node(&path).map(Node::inner);
         let number = |node: &Node| self.number_over(Some(number_of(&node.value)?));
-        let value_text = match node.map(|node| (node, &node.value)) {
+        let (value, value_text) = match node.map(|node| (node, &node.value)) {
             Some((_, Value::List(items))) => {
                 let numbers: Option<Vec<f64>> = items.iter().map(number).collect();
-                format!("{:?}", numbers.ok_or_else(|| self.no_number())?)
+                list_of(&numbers.ok_or_else(|| self.no_number())?)
             }
-            Some((node, _)) => number(node).ok_or_else(|| self.no_number())?.to_string(),
+            Some((node, _)) => one(number(node).ok_or_else(|| self.no_number())?),
             // For the reading to say that there is no such key.
-            None if self.row.is_none() => self.value_text.clone(),
-            None => {
-                let number = self.number_over(None);
-                number.ok_or_else(|| self.no_value())?.to_string()
-            }
+            None if self.row.is_none() => (self.value.clone(), self.value_text.clone()),
+            None => one(self.number_over(None).ok_or_else(|| self.no_value())?),
         };
         Ok(Override {
             acts: Acts::Value,
-            value: convert_text(&value_text),
+            value,
             value_text,
             ..self.clone()
         })
@@ -260,6 +262,39 @@ impl Override {
         node.each_span(&|span| (span.source, span.is_override) = (source, true));
         node
     }
+}
+
+/// A number as a value, and its text.
+fn one(number: f64) -> (Value, String) {
+    // TOML has its own word for what is no number.
+    let text = match number.is_nan() {
+        true => "nan".to_owned(),
+        false => number.to_string(),
+    };
+    (Value::from_number(number), text)
+}
+
+/// Numbers as a list, each with its place in the text of the list, and that text.
+fn list_of(numbers: &[f64]) -> (Value, String) {
+    let mut text = String::from("[");
+    let mut items = Vec::with_capacity(numbers.len());
+    for number in numbers {
+        if !items.is_empty() {
+            text += ", ";
+        }
+        let start = text.len();
+        text += &format!("{number:?}");
+        items.push(Node {
+            value: Value::Float(*number),
+            span: Span {
+                source: 0,
+                is_override: true,
+                range: start..text.len(),
+            },
+        });
+    }
+    text.push(']');
+    (Value::List(items), text)
 }
 
 fn number_of(value: &Value) -> Option<f64> {

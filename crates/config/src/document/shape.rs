@@ -13,7 +13,7 @@ pub(crate) const MAX_NAMES: usize = 16;
 /// Most levels of a value that is kept: all that is read has fewer than ten.
 pub(crate) const MAX_LEVELS: usize = 64;
 
-/// What a text has too much of, and the byte at which it has.
+/// Excess of a text, and the byte at which it begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Excess {
     Tables(usize),
@@ -43,7 +43,7 @@ pub(crate) fn excess(text: &str) -> Option<Excess> {
     let bytes = text.as_bytes();
     let (mut at, mut tables, mut keys) = (0, 0, 0);
     let (mut line_start, mut header) = (true, false);
-    // Of the dotted word under way: dots, and whether it can be a number such as 1.5.
+    // The current dotted word: dots, and true if it can be a number such as 1.5.
     let (mut dots, mut number) = (0, true);
     while at < bytes.len() {
         let (word, length) = next(&bytes[at..]);

@@ -26,7 +26,7 @@ impl Target {
     /// The files of a car.
     pub const CAR: [Target; 3] = [Target::Vehicle, Target::Lubricant, Target::EngineOil];
 
-    /// What its keys begin with, besides their path in the file.
+    /// Prefix of the keys, before their path in the file.
     #[must_use]
     pub const fn prefix(self) -> &'static str {
         match self {
@@ -38,7 +38,7 @@ impl Target {
 
     /// The file of a key, and the key in it.
     #[must_use]
-    pub fn of(key: &str) -> (Target, &str) {
+    pub fn from_key(key: &str) -> (Target, &str) {
         let fluid = |target: Target| Some((target, key.strip_prefix(target.prefix())?));
         let fluids = fluid(Target::Lubricant).or_else(|| fluid(Target::EngineOil));
         fluids.unwrap_or(match key.starts_with("rig.") {

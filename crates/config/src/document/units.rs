@@ -86,12 +86,12 @@ const OF_KEYS: [&Units; 15] = [
     &SHARE,
 ];
 
-/// What to write instead of a number with its unit, for a key whose unit is `of`.
+/// Hint for a number written with its unit, for a key in the unit `of`.
 ///
 /// The figure is only repeated where it is that of the key's own unit, or is converted to it.
 pub(crate) fn number_hint(figure: &str, unit: &str, of: &str) -> String {
     let figure = match decimal_comma(figure) {
-        // Of 3,125 nothing says whether the comma is a point.
+        // The comma of 3,125 may be a point or part thousands.
         Some((length, point)) if length == figure.len() && !parts_thousands(&point) => point,
         _ => figure.to_owned(),
     };
@@ -141,7 +141,7 @@ pub(crate) fn decimal_comma(text: &str) -> Option<(usize, String)> {
     (whole > 0 && fraction > 0).then(|| (length, text[..length].replace(',', ".")))
 }
 
-/// Whether the comma of a number, here its point, may part thousands.
+/// True if the comma of a number, here its point, may part thousands.
 pub(crate) fn parts_thousands(point: &str) -> bool {
     point
         .split_once('.')

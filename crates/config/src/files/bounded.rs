@@ -9,7 +9,7 @@
 //! | [`CHECKSUMS`] | 1 MiB | ten thousand files |
 //! | [`LOGO`] | 500 kB | it is copied into the report |
 //!
-//! What is kept is counted before it is computed or built:
+//! Sizes are counted before anything is computed or built:
 //!
 //! | limit | number | of |
 //! |---|---|---|
@@ -35,7 +35,7 @@ use std::path::Path;
 pub struct Limit {
     /// Most bytes.
     pub bytes: u64,
-    /// What helps where a file has more.
+    /// Hint for a file that exceeds the limit.
     pub hint: &'static str,
 }
 
@@ -156,7 +156,7 @@ fn nodes(bytes: &[u8]) -> usize {
 }
 
 impl Limit {
-    /// What is allowed, in words.
+    /// Limit in words.
     #[must_use]
     pub fn allowed(&self) -> String {
         format!("up to {}", self.size())
@@ -182,7 +182,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// What would be accepted: the limit where the file is too large, else `usual`.
+    /// Accepted input: the limit if the file is too large, else `usual`.
     #[must_use]
     pub fn allowed(&self, usual: &str) -> String {
         match self {
@@ -191,7 +191,7 @@ impl ReadError {
         }
     }
 
-    /// What helps: less of it where the file is too large, else `usual`.
+    /// Hint: a smaller file if it is too large, else `usual`.
     #[must_use]
     pub fn hint<'h>(&self, usual: &'h str) -> &'h str {
         match self {

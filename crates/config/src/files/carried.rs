@@ -16,7 +16,7 @@ thread_local! {
     static NOTED: RefCell<Option<Files>> = const { RefCell::new(None) };
 }
 
-/// What `read` makes, and every file that it has read on this thread.
+/// Result of `read`, and every file that it has read on this thread.
 pub fn reading<T>(read: impl FnOnce() -> T) -> (T, Files) {
     let before = NOTED.replace(Some(Files::new()));
     let made = read();

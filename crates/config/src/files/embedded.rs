@@ -50,7 +50,7 @@ pub fn text(files: &'static [File], name: &str) -> Option<&'static str> {
     found.map(|(_, text)| *text)
 }
 
-/// Whether a word given by the user is meant as a path.
+/// True if a word given by the user is meant as a path.
 #[must_use]
 pub fn is_path(word: &str) -> bool {
     word.contains(['/', '\\']) || std::path::Path::new(word).extension().is_some()

@@ -13,7 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use self::bounded::ReadError;
 
-/// What was made of a file.
+/// Object made of a file.
 pub type Made = Arc<dyn Any + Send + Sync>;
 
 /// Reads files that an input names; the only way in which loading touches the disk.
@@ -24,7 +24,7 @@ pub trait Files: Debug + Send + Sync {
     /// The operating system's words, or more bytes than a table may have.
     fn read(&self, path: &str) -> Result<Vec<u8>, ReadError>;
 
-    /// What `make` makes of a file of a kind. A cache calls `make` once only.
+    /// Object that `make` makes of a file of a kind. A cache calls `make` once only.
     fn made(
         &self,
         _kind: &'static str,

@@ -1,4 +1,4 @@
-//! What is wrong with an input, as data: kind, place, value, allowed range and a hint; and all problems of an input, which are collected
+//! Problems of an input, as data: kind, place, value, allowed range and a hint; and all problems of an input, which are collected
 //! before any is shown.
 //!
 //! | file | content |
@@ -84,7 +84,7 @@ pub enum Setting {
 /// One problem of an input.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Problem {
-    /// What kind of problem it is.
+    /// Kind of problem.
     pub kind: ProblemKind,
     /// Where it is.
     pub place: Place,
@@ -92,11 +92,11 @@ pub struct Problem {
     pub key: String,
     /// The offending value as written; empty where something is missing.
     pub value: String,
-    /// What would be accepted, in words or as a range with its unit; empty where there is no range.
+    /// Accepted values, in words or as a range with its unit; empty where there is no range.
     pub allowed: String,
-    /// What is wrong, one sentence without the place.
+    /// Message, one sentence without the place.
     pub message: String,
-    /// What to do about it; empty if nothing useful can be said.
+    /// Remedy; empty if nothing useful can be said.
     pub hint: String,
     /// Settings that the hint speaks about.
     pub settings: &'static [Setting],
@@ -150,12 +150,12 @@ impl Problem {
         self.message(message)
     }
 
-    /// Of this key or column. The message names it only if it was made for it: see [`Problem::names_key`].
+    /// Sets the key or column. The message names it only if it was made for it: see [`Problem::names_key`].
     #[must_use]
     pub fn key(self, key: impl Into<String>) -> Self {
         let key = key.into();
         let names_key = self.names_key && self.key == key;
-        Problem { names_key, ..self }.of(key)
+        Problem { names_key, ..self }.for_key(key)
     }
 
     /// With a message that names the key, which is given before or with the place.
@@ -165,8 +165,8 @@ impl Problem {
         Problem { names_key, ..self }
     }
 
-    /// Of this key or column, which the message names or not, as before.
-    pub(crate) fn of(self, key: impl Into<String>) -> Self {
+    /// Sets the key or column, which the message names or not, as before.
+    pub(crate) fn for_key(self, key: impl Into<String>) -> Self {
         let key = key.into();
         Problem { key, ..self }
     }

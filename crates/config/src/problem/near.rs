@@ -18,7 +18,7 @@ pub(crate) fn similarity(a: &str, b: &str) -> f64 {
     // Truncated and extended names ("mass" for "mass_kg") cost many edits; their common start
     // counts only when the similarity is high, since names of one table often begin alike.
     let start = strsim::jaro_winkler(a, b);
-    // Of a name in several words the first one is enough.
+    // The first word of a name is enough.
     let is_first_word =
         a.len() >= LEAST_WORD && b.strip_prefix(a).is_some_and(|b| b.starts_with('_'));
     match is_first_word || start > 0.9 {
@@ -27,7 +27,7 @@ pub(crate) fn similarity(a: &str, b: &str) -> f64 {
     }
 }
 
-/// Whether a similarity is high enough to suggest the name.
+/// True if a similarity is high enough to suggest the name.
 pub(crate) fn is_suggestion(similarity: f64) -> bool {
     similarity >= MIN_SIMILARITY
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-/// What a place is in. As text: the file's name, `override KEY=VALUE`, or the argument's name.
+/// Input that contains a place. As text: the file's name, `override KEY=VALUE`, or the argument's name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Input {
@@ -38,12 +38,12 @@ pub enum Argument {
     File,
     /// The columns of a table that are meant.
     Columns,
-    /// What is written.
+    /// Written value.
     Output,
 }
 
 impl Argument {
-    /// Its name, such as "engine oil".
+    /// Name, such as "engine oil".
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -80,7 +80,7 @@ impl fmt::Display for Input {
 /// Location in an input. As JSON: `{"file": "car.toml", "line": 7, ..}`, `{"override": "KEY=VALUE", ..}` or `{"argument": "vehicle", ..}`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Place {
-    /// What it is in.
+    /// Input that contains it.
     #[serde(flatten)]
     pub input: Input,
     /// Line, counted from 1; 0 where the input has no lines.

@@ -15,7 +15,7 @@ pub(crate) const MAX_VALUE: usize = 200;
 pub(crate) struct Source {
     pub input: Input,
     pub text: String,
-    /// What it is to the file that inherits from it.
+    /// Relation to the file that inherits from it.
     pub parent: Option<Parent>,
     /// Bytes of the line ends; found when the first place is needed.
     ends: OnceLock<Vec<usize>>,
@@ -30,7 +30,7 @@ pub(crate) struct Parent {
     pub from: String,
     /// Source of its values in the file that inherits them.
     pub words: String,
-    /// Its folder, relative to that of the file.
+    /// Folder, relative to that of the file.
     pub folder: PathBuf,
 }
 

@@ -194,7 +194,7 @@ impl<'r> Section<'r> {
     }
 }
 
-/// Whether an assignment concerns the table of an option.
+/// True if an assignment concerns the table of an option.
 fn is_touched(node: &Node) -> bool {
     node.span.is_set()
         || matches!(&node.value, Value::Table(table) if table.is_touched() || table.choice.is_some())

@@ -154,7 +154,7 @@ impl<'r> Section<'r> {
         texts
     }
 
-    /// What `read` makes of the texts of a list; empty if the key is absent.
+    /// Results of `read` for the texts of a list; empty if the key is absent.
     fn list<T: fmt::Debug>(
         &self,
         key: &Key<'_>,

@@ -1,10 +1,11 @@
-//! What a reading session writes down.
+//! Records of a reading session.
 use std::collections::{BTreeSet, HashMap};
 
 use crate::problem::Problem;
+use crate::reader::recorded::Recorded;
 use cvtcycle_model::keys::with_labels;
 
-/// What is known about one key after reading it.
+/// Information about one key after reading it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KeyInfo {
     /// Dotted path.
@@ -26,7 +27,7 @@ pub struct KeyInfo {
     pub from: String,
     /// Allowed range or words.
     pub allowed: String,
-    /// Whether the value is a single number.
+    /// True if the value is a single number.
     pub is_number: bool,
     /// Meaning of the key.
     pub doc: String,
@@ -35,6 +36,12 @@ pub struct KeyInfo {
 }
 
 impl KeyInfo {
+    /// With the prefix of its file before its key.
+    pub(crate) fn prefixed(mut self, prefix: &str) -> Self {
+        self.key.insert_str(0, prefix);
+        self
+    }
+
     /// Meaning and labels as they are printed: "displacement (PU-1, PU-4)".
     pub fn meaning(&self) -> String {
         with_labels(&self.doc, self.labels)
@@ -52,6 +59,8 @@ pub(crate) struct Log {
     /// Problems beyond those that are shown.
     pub more: usize,
     pub keys: Vec<KeyInfo>,
+    /// Values for the parts of the model.
+    pub values: Recorded,
     /// Index of `keys` by their dotted path.
     pub index: HashMap<String, usize>,
     /// Paths whose whole content counts as read.
@@ -63,12 +72,12 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// Whether another problem is to be put into words.
+    /// True if another problem is to be put into words.
     pub fn has_room(&self) -> bool {
         self.problems.len() + self.missing.len() < MAX_SHOWN
     }
 
-    /// What is known about the key at a path.
+    /// Information about the key at a path.
     pub fn info(&mut self, path: &str) -> Option<&mut KeyInfo> {
         self.keys.get_mut(*self.index.get(path)?)
     }

@@ -22,7 +22,7 @@ use cvtcycle_model::math::{GRID_AXES, Grid};
 
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
 #[derive(Debug)]
-struct Table {
+pub(crate) struct MapTable {
     /// Indices of the columns in the schema.
     columns: Vec<usize>,
     rows: Vec<Vec<f64>>,
@@ -31,7 +31,7 @@ struct Table {
     bsfc: Mutex<Option<([u64; 2], BsfcMap)>>,
 }
 
-impl Table {
+impl MapTable {
     /// Index of a column of the schema in each row.
     fn index(&self, column: usize) -> Option<usize> {
         self.columns.iter().position(|k| *k == column)
@@ -56,7 +56,7 @@ const GRID_RULES: Rules = Rules {
     is_grid: true,
 };
 
-/// What a table has to be.
+/// Requirements on a table.
 struct Wanted {
     kind: &'static str,
     columns: Vec<Column>,
@@ -64,7 +64,7 @@ struct Wanted {
     foreign: Foreign,
 }
 
-fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<Table>> {
+fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<MapTable>> {
     let file = named.file.as_str();
     if file.trim().is_empty() {
         let problem = Problem::missing("the name of the map is empty").allowed("a CSV file");
@@ -102,7 +102,7 @@ fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<Tab
             None => Cow::Owned(bytes_of(s.reader.files, file).map_err(unreadable).ok()?),
         };
         match grid::read(file, &bytes, &schema, wanted.rules) {
-            Ok((columns, rows)) => Some(Arc::new(Table {
+            Ok((columns, rows)) => Some(Arc::new(MapTable {
                 columns,
                 rows,
                 loss: OnceLock::new(),
@@ -198,17 +198,11 @@ pub(crate) fn file_table(
     Some(FileRows { columns, rows })
 }
 
-/// What helps with a BSFC map that does not hang together.
+/// Hint for a BSFC map that is inconsistent.
 const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
 
-/// A BSFC map from CSV, without friction; none after a problem.
-pub(crate) fn bsfc_map(
-    s: &Section,
-    key: &str,
-    file: Named,
-    heating_value_j_kg: f64,
-    displacement_m3: f64,
-) -> Option<BsfcMap> {
+/// The table of a BSFC map from CSV; none after a problem.
+pub(crate) fn bsfc_table(s: &Section, key: &str, file: Named) -> Option<Arc<MapTable>> {
     let column = |name, low, high| Column::number(name, Bound::closed(low, high)).required();
     let columns = vec![
         column("speed_rpm", 100.0, 20_000.0),
@@ -222,33 +216,47 @@ pub(crate) fn bsfc_map(
         rules: GRID_RULES,
         foreign: Foreign::default(),
     };
-    let table = read(s, key, &file, wanted)?;
-    let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
-    let mut made = table.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
-        return Some(map.clone());
+    read(s, key, &file, wanted)
+}
+
+/// The problem of a BSFC map that does not hang together.
+pub(crate) fn no_bsfc_map(why: String) -> Problem {
+    let problem = Problem::conflict(why).allowed("a map of fuel over speed and load");
+    problem.hint(GRID)
+}
+
+impl MapTable {
+    /// A BSFC map without friction; none of a table without its columns. The last one is kept: few cars differ in what it depends on.
+    ///
+    /// # Errors
+    /// Why the rows make no map.
+    pub fn bsfc_map(
+        &self,
+        heating_value_j_kg: f64,
+        displacement_m3: f64,
+    ) -> Result<Option<BsfcMap>, String> {
+        let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
+        let mut made = self.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
+            return Ok(Some(map.clone()));
+        }
+        let (speed, bsfc) = (self.index(0), self.index(3));
+        let load = self.index(1).map(|i| (i, 1e5));
+        let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
+        let load = load.or_else(|| self.index(2).map(|i| (i, per_torque)));
+        let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
+            return Ok(None);
+        };
+        let rpm = Quantity::from_key("speed_rpm");
+        let rows: Vec<(f64, f64, f64)> = self
+            .rows
+            .iter()
+            .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
+            .collect();
+        let map = BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))?;
+        *made = Some((scale, map.clone()));
+        Ok(Some(map))
     }
-    let (speed, bsfc) = (table.index(0), table.index(3));
-    let load = table.index(1).map(|i| (i, 1e5));
-    let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
-    let load = load.or_else(|| table.index(2).map(|i| (i, per_torque)));
-    let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
-        return None;
-    };
-    let rpm = Quantity::from_key("speed_rpm");
-    let rows: Vec<(f64, f64, f64)> = table
-        .rows
-        .iter()
-        .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
-        .collect();
-    let map = BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))
-        .map_err(|why| {
-            let problem = Problem::conflict(why).allowed("a map of fuel over speed and load");
-            s.report_at(key, problem.hint(GRID));
-        })
-        .ok()?;
-    *made = Some((scale, map.clone()));
-    Some(map)
 }
 
 /// Columns of a loss map without that of the loss, of a CVT or of a manual box.

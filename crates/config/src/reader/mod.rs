@@ -7,6 +7,7 @@ pub(crate) mod log;
 pub mod maps;
 pub(crate) mod origin;
 pub(crate) mod raw_value;
+pub(crate) mod recorded;
 pub(crate) mod section;
 pub(crate) mod unknown;
 pub(crate) mod value;
@@ -19,16 +20,13 @@ use crate::files::Files;
 use crate::problem::place::Place;
 use crate::problem::{Problem, Problems};
 use crate::reader::log::{KeyInfo, Log, parent};
+use crate::reader::recorded::Recorded;
 use crate::reader::unknown::{is_row, unread};
 
 /// One reading session. It collects all problems and what is known about every key that is read.
-///
-/// A check-only session checks the same and writes no text: it counts problems without describing them, and knows nothing about
-/// keys. Code that reads a section is the same for both: all texts are made inside `record` and `report`.
 pub struct Reader<'d> {
     pub(crate) document: &'d Document,
-    /// None in a check-only session.
-    log: Option<RefCell<Log>>,
+    log: RefCell<Log>,
     /// Problems so far.
     problem_count: Cell<usize>,
     /// Files that the document names.
@@ -39,17 +37,8 @@ impl<'d> Reader<'d> {
     /// Starts to read `document`.
     pub fn new(document: &'d Document) -> Self {
         Reader {
-            log: Some(RefCell::default()),
-            ..Reader::check_only(document)
-        }
-    }
-
-    /// Starts a check-only session: [`Reader::finish`] then gives no keys, and problems without words. Keys that are present but
-    /// not known are not looked for.
-    pub fn check_only(document: &'d Document) -> Self {
-        Reader {
             document,
-            log: None,
+            log: RefCell::default(),
             problem_count: Cell::new(0),
             files: None,
         }
@@ -64,19 +53,12 @@ impl<'d> Reader<'d> {
         }
     }
 
-    /// True in check-only mode.
-    pub(crate) fn is_check_only(&self) -> bool {
-        self.log.is_none()
-    }
-
-    /// Writes something down, except in a check-only session.
+    /// Writes something down.
     pub(crate) fn record(&self, write: impl FnOnce(&mut Log)) {
-        if let Some(log) = &self.log {
-            write(&mut log.borrow_mut());
-        }
+        write(&mut self.log.borrow_mut());
     }
 
-    /// Counts a problem; `message` describes it, except in a check-only session or after many.
+    /// Counts a problem; `message` describes it, except after many.
     pub(crate) fn report(&self, message: impl FnOnce() -> Problem) {
         self.count(|log| &mut log.problems, message);
     }
@@ -113,31 +95,28 @@ impl<'d> Reader<'d> {
 
     /// Every key that was looked up so far, whatever is wrong with its value.
     pub fn known(&self) -> Vec<KeyInfo> {
-        self.log
-            .as_ref()
-            .map(|log| log.borrow().keys.clone())
-            .unwrap_or_default()
+        self.log.borrow().keys.clone()
     }
 
     /// Ends the session with every key that was read, in the order of reading.
     ///
     /// # Errors
     /// All problems, in the order of their places, including keys that are present but were never read; of a great many the last entry states
-    /// how many more there are. After a check-only session as many empty problems as were counted.
+    /// how many more there are.
     pub fn finish(self) -> Result<Vec<KeyInfo>, Problems> {
+        self.finish_with_values().map(|(keys, _)| keys)
+    }
+
+    /// As [`Reader::finish`], with the values that the parts of the model have read.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn finish_with_values(self) -> Result<(Vec<KeyInfo>, Recorded), Problems> {
         let document = self.document;
-        let Some(log) = self.log else {
-            let problem_count = self.problem_count.get();
-            return if problem_count == 0 {
-                Ok(Vec::new())
-            } else {
-                Err(std::iter::repeat_n(Problem::default(), problem_count).collect())
-            };
-        };
-        let mut log = log.into_inner();
+        let mut log = self.log.into_inner();
         let mut unknown = Vec::new();
         unread(&log, &document.root, "", &mut unknown);
-        // What a car inherits and, with another box or engine model, has no use for, is no mistake of its file.
+        // Inherited keys that another box or engine model leaves unused are no mistake of the file.
         let useless = |(path, entry): &(String, &Entry)| {
             document.parent(&entry.key).is_some() && is_row(path)
         };
@@ -159,7 +138,7 @@ impl<'d> Reader<'d> {
         }
         log.problems.append(&mut log.missing);
         if log.problems.is_empty() {
-            return Ok(log.keys);
+            return Ok((log.keys, log.values));
         }
         let rank = |place: &Place| {
             document

@@ -2,13 +2,13 @@
 
 use std::borrow::Cow;
 
-use crate::document::{Document, Entry, Node, Table, Value};
+use crate::document::{Document, Entry, Node, OVERRIDE, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{did_you_mean, one_of, suggest};
-use crate::reader::log::join;
+use crate::reader::log::{KeyInfo, join};
 use crate::reader::section::Section;
 
-/// What a value's status may be in a file.
+/// Allowed statuses of a value in a file.
 pub(crate) const STATUSES: [&str; 4] = ["source", "derived", "fitted", "assumed"];
 /// Fields of a value with its origin.
 const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
@@ -16,6 +16,23 @@ const FIELDS: [&str; 5] = ["value", "status", "source", "note", COLUMNS];
 pub(crate) const COLUMNS: &str = "columns";
 /// Status and source of what an override gives.
 const SET: (&str, &str) = ("set", "command line");
+
+impl KeyInfo {
+    /// With a number in the key's unit, and its value in SI units, as an override would set it.
+    pub(crate) fn set_number(&mut self, number: f64, si: f64) {
+        (self.value, self.si) = (number.to_string(), Some(si));
+        self.set_by_key(false);
+    }
+
+    /// As set by an override of its own key, or of a key in its table, which the file may have.
+    pub(crate) fn set_by_key(&mut self, has_table: bool) {
+        (self.status, self.source) = (SET.0.to_owned(), SET.1.to_owned());
+        self.note.clear();
+        if !has_table {
+            self.from = OVERRIDE.to_owned();
+        }
+    }
+}
 
 /// A value as found, with its origin.
 pub(crate) struct Found<'r> {
@@ -64,7 +81,7 @@ impl<'r> Found<'r> {
     }
 }
 
-/// What a value says about itself; empty where it does not.
+/// Status, source and note that a value states; empty if not stated.
 #[derive(Default)]
 pub(super) struct Origin<'r> {
     status: &'r str,

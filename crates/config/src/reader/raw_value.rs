@@ -53,19 +53,19 @@ impl<'r> RawValue<'r> {
         self.section.reader.document.written(&self.node.span)
     }
 
-    /// Its place.
+    /// Place of the value.
     #[must_use]
     pub fn place(&self) -> Place {
         self.section.reader.document.place(&self.node.span)
     }
 
-    /// Whether it is a number, finite or not.
+    /// True if it is a number, finite or not.
     #[must_use]
     pub fn is_number(&self) -> bool {
         matches!(self.node.value, Value::Integer(_) | Value::Float(_))
     }
 
-    /// Whether it is a table.
+    /// True if it is a table.
     #[must_use]
     pub fn is_table(&self) -> bool {
         matches!(self.node.value, Value::Table(_))
@@ -80,7 +80,7 @@ impl<'r> RawValue<'r> {
         }
     }
 
-    /// Its items, where it is a list.
+    /// Items of a list.
     #[must_use]
     pub fn items(&self) -> Option<Vec<RawValue<'r>>> {
         match &self.node.value {

@@ -14,7 +14,7 @@ pub struct Section<'r> {
     pub(crate) table: Option<&'r Table>,
     /// Header of the table, or of the nearest one around it that exists.
     pub(crate) header: Option<Span>,
-    /// Whether missing keys go without saying, after a problem with the table itself.
+    /// True if missing keys go without saying, after a problem with the table itself.
     pub(crate) muted: bool,
 }
 
@@ -37,12 +37,12 @@ impl<'r> Section<'r> {
         &self.path
     }
 
-    /// Whether the table is present.
+    /// True if the table is present.
     pub fn exists(&self) -> bool {
         self.table.is_some()
     }
 
-    /// Whether the key is present, as a value or as a table.
+    /// True if the key is present, as a value or as a table.
     pub fn has(&self, key: &str) -> bool {
         self.table
             .is_some_and(|table| table.entries.contains_key(key))
@@ -78,6 +78,7 @@ impl<'r> Section<'r> {
     pub fn table(&self, name: &str) -> Section<'r> {
         let mut section = self.below(name);
         self.reader.record(|log| {
+            log.values.add_table(&section.path);
             log.tables.insert(section.path.clone());
         });
         match self
@@ -103,13 +104,9 @@ impl<'r> Section<'r> {
         section
     }
 
-    /// The table `name` within this one, before it is known whether there is one. Silent readings know no paths.
+    /// The table `name` within this one, before it is known whether there is one.
     pub(crate) fn below(&self, name: &str) -> Section<'r> {
-        let path = if self.reader.is_check_only() {
-            String::new()
-        } else {
-            join(&self.path, name)
-        };
+        let path = join(&self.path, name);
         Section {
             reader: self.reader,
             path,

@@ -48,21 +48,21 @@ const REPLACED: [(&str, &str); 16] = [
     ),
 ];
 
-/// What became of the part of the final drive's loss that fell with speed.
+/// Successor of the part of the final drive's loss that fell with speed.
 const BY_PRELOAD: &str =
     "give the preload in the rows of `bearings`, with `preload_factor` on all of them (BR-2)";
 
-/// What became of its viscous part.
+/// Successor of the viscous part of that loss.
 const BY_BEARINGS: &str =
     "give the rows of `bearings`, with `bearing_factor` on their torque without load (BR-1)";
 
-/// What became of efficiencies.
+/// Successor of efficiencies.
 const BY_TEETH: &str = "give the wheels as the rows of `stages`; `oil_factor` acts on the friction of their teeth (GM-1, GM-2)";
 
-/// What became of the torques of a manual box.
+/// Successor of the torques of a manual box.
 const BY_GEARS: &str = "give `[transmission.manual.gears]` with `stages`, `bearings`, `churners` and `seals` (MB-1 to MB-4)";
 
-/// What became of the bounds of band friction.
+/// Successor of the bounds of band friction.
 const WITHOUT_BOUNDS: &str =
     "remove it: band friction follows `band_rise_per_k` at any temperature, without bounds (LU-4)";
 
@@ -197,7 +197,7 @@ impl Log {
     }
 }
 
-/// Whether a vehicle file may have this key or table, whatever options it chooses.
+/// True if a vehicle file may have this key or table, whatever options it chooses.
 pub(crate) fn is_row(path: &str) -> bool {
     static ROWS: OnceLock<BTreeSet<String>> = OnceLock::new();
     let rows = ROWS.get_or_init(|| {

@@ -1,4 +1,4 @@
-//! What the readings of all kinds of values have in common: look-up, origin, registration, complaints.
+//! Common parts of reading any kind of value: look-up, origin, registration, problems.
 use std::fmt::Display;
 
 use crate::document::syntax::number_with_unit;
@@ -20,7 +20,7 @@ pub(crate) enum Lookup<'r> {
     Found(Found<'r>),
 }
 
-/// What to write instead of a number in quotes, for a key of a unit.
+/// Hint for a number in quotes, for a key with a unit.
 fn text_hint(text: &str, of: &str) -> String {
     if let Some((_, point)) = decimal_comma(text).filter(|(length, _)| *length == text.len()) {
         format!("write {point} with a decimal point and without quotes")
@@ -151,11 +151,9 @@ impl<'r> Section<'r> {
             return Lookup::Bad;
         };
         found.node = value;
-        if !self.reader.is_check_only() {
-            let own = self.origin(key, table, is_csv);
-            let is_inherited = self.reader.document.parent(&node.span).is_some();
-            found.add(own, is_inherited && found.status != "set");
-        }
+        let own = self.origin(key, table, is_csv);
+        let is_inherited = self.reader.document.parent(&node.span).is_some();
+        found.add(own, is_inherited && found.status != "set");
         Lookup::Found(found)
     }
 
@@ -224,7 +222,7 @@ impl<'r> Section<'r> {
             .fold(self.path.clone(), |path, name| join(&path, name))
     }
 
-    /// What to write instead of a value of another kind.
+    /// Hint for a value of another type.
     fn type_hint(&self, (key, unit): (&str, &str), node: &Node, expected: &str) -> String {
         let written = self.reader.document.written(&node.span);
         match &node.value {
@@ -279,7 +277,7 @@ impl<'r> Section<'r> {
         let header = self.header.as_ref();
         problem
             .at(header.map_or_else(whole, |span| document.place(span)))
-            .of(join(&self.path, key))
+            .for_key(join(&self.path, key))
     }
 
     /// Reports a problem of a value of this table.
@@ -288,7 +286,7 @@ impl<'r> Section<'r> {
         self.reader.report(|| {
             problem
                 .at(document.place(span))
-                .of(self.dotted(key))
+                .for_key(self.dotted(key))
                 .value(document.shown(span))
         });
     }

@@ -36,10 +36,10 @@ pub fn book(equations: &[Equation]) -> String {
     text.push_str("How far the assumed and fitted values may be off, and what that does to the comparison: `docs/uncertainty.md`.\n\n");
     counts(&mut text, &files);
     for file in &files {
-        of_file(&mut text, file);
+        file_section(&mut text, file);
     }
     defaults(&mut text, &files);
-    of_equations(&mut text, equations);
+    equations_section(&mut text, equations);
     text
 }
 
@@ -66,7 +66,7 @@ fn counts(text: &mut String, files: &[File]) {
     }
 }
 
-fn of_file(text: &mut String, file: &File) {
+fn file_section(text: &mut String, file: &File) {
     let is_title = |info: &&KeyInfo| info.key.ends_with("title");
     let title = file.keys.iter().find(is_title);
     let title = title.map_or("", |info| &info.value);
@@ -110,7 +110,7 @@ const ASSUMED: &str = "with an assumed part";
 const FITTED: &str = "with a fitted part";
 const SOURCED: &str = "source or derived";
 
-fn of_equations(text: &mut String, equations: &[Equation]) {
+fn equations_section(text: &mut String, equations: &[Equation]) {
     text.push_str("\n## Equations and what is built into them\n");
     for title in [ASSUMED, FITTED, SOURCED] {
         *text += &format!("\n### {title}\n\n");
@@ -125,7 +125,7 @@ fn of_equations(text: &mut String, equations: &[Equation]) {
     }
 }
 
-/// What the equation rests on, by the words of its status.
+/// Basis of the equation, by the words of its status.
 fn origin(equation: &Equation) -> &'static str {
     let says = |word| equation.status.contains(word);
     if says("ASSUMED") || equation.statement.contains("ASSUMED") {

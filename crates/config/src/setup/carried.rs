@@ -14,7 +14,7 @@ use crate::{Override, Problem, Problems, decode};
 /// Name of the list of the files.
 pub const LIST: &str = "car.json";
 
-/// What a car was read from.
+/// Files that a car was read from.
 #[derive(Clone, Debug)]
 pub struct CarriedCar {
     list: List,
@@ -22,11 +22,11 @@ pub struct CarriedCar {
     files: Vec<(String, Vec<u8>)>,
 }
 
-/// Which file is which.
+/// Roles of the files.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct List {
     vehicle: String,
-    /// Whether the car is the twin of the vehicle.
+    /// True if the car is the twin of the vehicle.
     twin: bool,
     lubricant: String,
     engine_oil: String,

@@ -2,15 +2,16 @@
 //!
 //! The keys are the rows of the model's tables; the values come from reading the files.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
-use super::inputs::{head, parts};
+use super::inputs::head;
 use super::like::resolve;
 use super::{Disk, Kind};
 use crate::document::target::{rows, rows_of};
 use crate::files::embedded;
 use crate::setup::rig;
 use crate::{Document, KeyInfo, Reader, Target};
+use cvtcycle_model::drive::Vehicle;
 use cvtcycle_model::keys::{Key, Table};
 use cvtcycle_model::lubricant::Lubricant;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -109,14 +110,10 @@ fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
         Kind::Plan | Kind::Levers | Kind::Calibration => {}
     }
     if let (Kind::Vehicle | Kind::Class, Some(oil)) = (kind, oil()) {
-        let oils = [oil.clone(), oil];
-        drop(parts(
-            &root,
-            oils,
-            Formulation::default(),
-            name.to_owned(),
-            None,
-        ));
+        let oil = Arc::new(oil);
+        let oils = [Arc::clone(&oil), oil];
+        let formulation = Formulation::default();
+        drop(Vehicle::from_values(&root, oils, formulation, name, None));
     }
     let mut keys = reader.known();
     if kind == Kind::Class {

@@ -1,4 +1,4 @@
-//! What looks like a slip in the values of a car, though each is within its range: `new`, `check` and `run` have the same sentences.
+//! Likely slips in the values of a car, though each is within its range: `new`, `check` and `run` have the same sentences.
 //!
 //! The limits leave every shipped car and every class without a doubt. Power over displacement has wide ones: the mean of the 257 midsize
 //! cars of a class, turbo engines among them, is 70 kW per litre, so that 78 is no slip.
@@ -55,28 +55,28 @@ const SLOW_RAD_S: f64 = 100.0;
 pub(super) fn doubts(setup: &Setup) -> Vec<String> {
     let all = [
         of_road_load(setup),
-        of_mass(setup),
-        of_size(setup),
+        mass_doubt(setup),
+        size_doubt(setup),
         of_full_load(setup),
-        of_torque(setup),
-        of_idle(setup),
-        of_wheel(setup),
+        torque_doubt(setup),
+        idle_doubt(setup),
+        wheel_doubt(setup),
         of_top_gear(setup),
-        of_stall(setup),
+        stall_doubt(setup),
     ];
     let of_box = match setup.transmission() {
         Transmission::Cvt(cvt) => [
-            of_span(cvt),
-            of_overrun(setup, cvt),
-            of_radius(cvt),
-            of_grip(setup, cvt),
+            span_doubt(cvt),
+            overrun_doubt(setup, cvt),
+            radius_doubt(cvt),
+            grip_doubt(setup, cvt),
         ],
         Transmission::Manual(_) => [None, None, None, None],
     };
     all.into_iter().chain(of_box).flatten().collect()
 }
 
-/// Whether a value is that of a class or of another car.
+/// True if a value is that of a class or of another car.
 fn is_inherited(setup: &Setup, key: &str) -> bool {
     let mut keys = setup.keys.iter();
     keys.any(|info| info.key == key && ["class", "like"].contains(&info.status.as_str()))
@@ -110,7 +110,7 @@ fn of_road_load(setup: &Setup) -> Option<String> {
 }
 
 /// Highest torque over displacement, and what looks like a diesel: the engine of the program has a throttle and spark ignition.
-fn of_torque(setup: &Setup) -> Option<String> {
+fn torque_doubt(setup: &Setup) -> Option<String> {
     let engine = setup.engine();
     let points = || engine.full_load.points();
     let highest_nm = points().map(|(_, nm)| nm).fold(0.0, f64::max);
@@ -129,14 +129,14 @@ fn of_torque(setup: &Setup) -> Option<String> {
     })
 }
 
-fn of_idle(setup: &Setup) -> Option<String> {
+fn idle_doubt(setup: &Setup) -> Option<String> {
     let idle_rpm = rpm(setup.engine().idle_hot_rad_s);
     (!IDLE_RPM.contains(&idle_rpm)).then(|| {
         format!("the warm engine idles at {idle_rpm:.0} rpm, engines of cars at 500 to 1100 rpm")
     })
 }
 
-fn of_wheel(setup: &Setup) -> Option<String> {
+fn wheel_doubt(setup: &Setup) -> Option<String> {
     let radius_mm = 1e3 * setup.road_load.base.wheel_radius_m;
     (!WHEEL_MM.contains(&radius_mm)).then(|| {
         format!("the wheels roll on {radius_mm:.0} mm, those of cars on 240 to 400 mm: is it the radius, in the unit of its key?")
@@ -157,7 +157,7 @@ fn of_top_gear(setup: &Setup) -> Option<String> {
 }
 
 /// Speed at which full load holds the engine against a converter at rest.
-fn of_stall(setup: &Setup) -> Option<String> {
+fn stall_doubt(setup: &Setup) -> Option<String> {
     let coupling = setup.transmission().coupling();
     if !coupling.by_command() {
         return None; // a friction clutch has none
@@ -186,7 +186,7 @@ fn of_stall(setup: &Setup) -> Option<String> {
 }
 
 /// Least running radius of the belt at the ends of the ratio.
-fn of_radius(cvt: &Cvt) -> Option<String> {
+fn radius_doubt(cvt: &Cvt) -> Option<String> {
     let belt = &cvt.belt;
     let at = |ratio: f64| Geometry::new(ratio, belt.centre_distance_m, belt.length_m);
     let least_m = (at(cvt.ratio.low).primary_radius_m).min(at(cvt.ratio.high).secondary_radius_m);
@@ -199,7 +199,7 @@ fn of_radius(cvt: &Cvt) -> Option<String> {
 }
 
 /// Highest torque of the engine in low against what the largest pressure grips.
-fn of_grip(setup: &Setup, cvt: &Cvt) -> Option<String> {
+fn grip_doubt(setup: &Setup, cvt: &Cvt) -> Option<String> {
     let oil = setup.car(WARM_K).oil;
     let at = BeltAtRatio::new(&cvt.belt, cvt.ratio.low);
     let load = BeltLoad {
@@ -217,12 +217,12 @@ fn of_grip(setup: &Setup, cvt: &Cvt) -> Option<String> {
     })
 }
 
-fn of_mass(setup: &Setup) -> Option<String> {
+fn mass_doubt(setup: &Setup) -> Option<String> {
     let mass_kg = setup.road_load.base.mass_kg;
     (mass_kg > MOST_KG).then(|| format!("the mass is {mass_kg:.0} kg: is it in lb?"))
 }
 
-fn of_size(setup: &Setup) -> Option<String> {
+fn size_doubt(setup: &Setup) -> Option<String> {
     let engine = setup.engine();
     let per_litre = engine.rated_w / 1e3 / (engine.displacement_m3 * 1e3);
     (!KW_PER_LITRE.contains(&per_litre)).then(|| {
@@ -246,7 +246,7 @@ fn of_full_load(setup: &Setup) -> Option<String> {
     })
 }
 
-fn of_span(cvt: &Cvt) -> Option<String> {
+fn span_doubt(cvt: &Cvt) -> Option<String> {
     let (low, high) = (cvt.ratio.low, cvt.ratio.high);
     if low > MOST_SPAN * high {
         return Some(format!(
@@ -262,7 +262,7 @@ fn of_span(cvt: &Cvt) -> Option<String> {
     })
 }
 
-fn of_overrun(setup: &Setup, cvt: &Cvt) -> Option<String> {
+fn overrun_doubt(setup: &Setup, cvt: &Cvt) -> Option<String> {
     let engine = setup.engine();
     let [overrun, all, none] = [
         cvt.ratio.overrun_rad_s,

@@ -3,31 +3,28 @@
 use super::like::resolve;
 use super::twin::{TwinTable, twin};
 use super::{
-    Files, Kind, NamedBy, Options, Origin, Setup, is_path, is_twin, load_lubricant, read_lubricant,
-    stem, text_of,
+    Files, Kind, NamedBy, Options, Origin, ParamSet, is_path, is_twin, load_lubricant,
+    read_lubricant, stem, text_of,
 };
 use crate::files::TableCache;
+use crate::reader::recorded::Recorded;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
-use cvtcycle_model::drive::{Car, Vehicle};
-use cvtcycle_model::engine::Engine;
-use cvtcycle_model::files::{HEAD, TwinKeys, VEHICLE_FILE};
+use cvtcycle_model::drive::{ChangedParts, Vehicle};
+use cvtcycle_model::files::{HEAD, TwinKeys};
 use cvtcycle_model::keys::Values;
 use cvtcycle_model::lubricant::{Friction, Lubricant};
 use cvtcycle_model::maps::LossMap;
-use cvtcycle_model::road::RoadLoadInput;
-use cvtcycle_model::thermal::Network;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
-use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-use cvtcycle_model::transmission::manual::Manual;
+use std::collections::HashMap;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// A document and what is wrong with it so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CarFile {
-    /// None if it could not be read.
+    /// `None` if it could not be read.
     pub document: Option<Document>,
     pub problems: Problems,
 }
@@ -42,7 +39,7 @@ pub(super) struct Inputs {
     is_shipped: bool,
 }
 
-/// What a reading of a car's documents needs besides them.
+/// Context for reading a car's documents.
 #[derive(Debug)]
 pub(super) struct Frame {
     /// Name of the car.
@@ -63,28 +60,18 @@ impl Inputs {
     pub fn gather(word: &str, options: &Options) -> Result<Self, Problems> {
         let (file, text, disk) = text_of(word, Kind::Vehicle, options.named_by)?;
         let is_twin = is_twin(word);
-        let inputs = Inputs::of(&file, &text, Box::new(disk), options, is_twin)?;
+        let inputs = Inputs::parse(&file, &text, Box::new(disk), options, is_twin)?;
         Ok(Inputs {
             is_shipped: !is_twin && !is_path(word) && options.change_nothing(),
             ..inputs
         })
     }
 
-    /// As [`Inputs::gather`], for the text of a vehicle; `file` is its name or path, `files` where the maps are that it names.
+    /// As [`Inputs::gather`], for the text of a vehicle or of its twin; `file` is its name or path, `files` where the maps are that it names.
     ///
     /// # Errors
     /// As there.
-    pub fn of_text(
-        file: &str,
-        text: &str,
-        files: Box<dyn Files>,
-        options: &Options,
-    ) -> Result<Self, Problems> {
-        Inputs::of(file, text, files, options, false)
-    }
-
-    /// Of the car of a text, or of its twin.
-    pub fn of(
+    pub fn parse(
         file: &str,
         text: &str,
         files: Box<dyn Files>,
@@ -102,7 +89,7 @@ impl Inputs {
             document = twin(document, file, &files)?;
             name += "_twin";
         }
-        let own = head(&Reader::check_only(&document).root(), "");
+        let own = head(&Reader::new(&document).root(), "");
         let written_in = |key: &str| written_in(&document, key, file);
         let files_of_fluids = FLUIDS.map(written_in);
         let own_friction = options
@@ -141,8 +128,15 @@ impl Inputs {
         })
     }
 
-    /// The same car with other documents.
-    pub fn with_files(&self, files: [CarFile; 3]) -> Self {
+    /// The files with more overrides.
+    pub fn with(&self, set: &[Override]) -> Self {
+        let mut files = self.files.clone();
+        for (file, target) in files.iter_mut().zip(Target::CAR) {
+            if let Some(document) = &mut file.document {
+                file.problems
+                    .extend(apply(document, set, |of| of == target));
+            }
+        }
         Inputs {
             frame: Arc::clone(&self.frame),
             files,
@@ -154,46 +148,72 @@ impl Inputs {
     ///
     /// # Errors
     /// All problems of its files and of the overrides.
-    pub fn read(&self) -> Result<Setup, Problems> {
+    pub fn validate(self) -> Result<(Validated, Assembled), Problems> {
         let documents = self.files.each_ref().map(|input| input.document.as_ref());
         let reader = |document| Reader::new(document).with_files(&self.frame.files);
         let readers = documents.map(|document| document.map(reader));
-        let assembled = self.frame.assemble(&readers, None);
+        let assembled = self.frame.assemble(&readers);
         let mut problems = Problems::new();
         let mut keys = Vec::new();
+        let mut recorded = <[Recorded; 3]>::default();
         for (k, (reader, input)) in readers.into_iter().zip(&self.files).enumerate() {
-            let answer = match (k, reader) {
-                (0, Some(reader)) => reader.finish(),
-                (_, Some(reader)) => fluid_keys(reader, Target::CAR[k]),
+            let answer = match reader {
+                Some(reader) => reader.finish_with_values(),
                 // A fluid that the vehicle does not name is missing there already.
-                (_, None) if !problems.is_empty() && self.frame.fluids[k - 1].is_empty() => {
+                None if k > 0 && !problems.is_empty() && self.frame.fluids[k - 1].is_empty() => {
                     continue;
                 }
-                (_, None) => Ok(Vec::new()),
+                None => Ok(Default::default()),
             };
             match answer {
-                Ok(mut read) => keys.append(&mut read),
+                Ok((read, values)) => {
+                    let prefix = Target::CAR[k].prefix();
+                    keys.extend(read.into_iter().map(|info| info.prefixed(prefix)));
+                    recorded[k] = values;
+                }
                 Err(found) => problems.extend(found),
             }
             problems.extend(input.problems.iter().cloned());
         }
-        let setup = assembled?;
-        if problems.is_empty() {
-            let origin = self.origin();
-            Ok(Setup {
-                keys,
-                origin,
-                ..setup
-            })
-        } else {
-            Err(problems)
-        }
+        let assembled = assembled?;
+        problems.finish()?;
+        let index = keys.iter().enumerate();
+        let index = index.map(|(k, info): (usize, &KeyInfo)| (info.key.clone(), k));
+        let read = Validated {
+            index: index.collect(),
+            inputs: self,
+            keys,
+            recorded,
+            chosen: Mutex::default(),
+        };
+        Ok((read, assembled))
     }
+}
+
+/// A reading of a car's documents that found nothing wrong.
+#[derive(Debug)]
+pub(super) struct Validated {
+    pub inputs: Inputs,
+    /// Every key that was read, vehicle first, with the prefixes of the fluids.
+    pub keys: Vec<KeyInfo>,
+    /// Places in `keys`.
+    pub index: HashMap<String, usize>,
+    /// The values of each file, in the order of [`Target::CAR`].
+    pub recorded: [Recorded; 3],
+    /// The last set that chooses other options, and the keys that choose them.
+    pub chosen: Mutex<Option<(Vec<String>, ParamSet)>>,
+}
+
+/// The car that a reading makes.
+#[derive(Clone, Debug)]
+pub(super) struct Assembled {
+    pub head: Arc<Head>,
+    pub vehicle: Vehicle,
 }
 
 impl Inputs {
     /// The files that are read besides the vehicle's own.
-    fn origin(&self) -> Origin {
+    pub fn origin(&self) -> Origin {
         let sources = self.files[0].document.iter().flat_map(|of| &of.sources);
         let parents = sources.filter(|source| source.parent.is_some());
         Origin {
@@ -207,62 +227,55 @@ impl Inputs {
 }
 
 impl Frame {
-    /// Puts a car together from readings of vehicle, transmission oil and engine oil, which take what is wrong with it. Of an earlier
-    /// reading, which found nothing wrong, those parts are taken whose values are the same.
+    /// Puts a car together from readings of vehicle, transmission oil and engine oil, which take what is wrong with it.
     ///
     /// # Errors
     /// Not for what is wrong with the car.
-    pub fn assemble(
-        &self,
-        readers: &[Option<Reader<'_>>; 3],
-        earlier: Option<&Earlier<'_>>,
-    ) -> Result<Setup, Problems> {
+    pub fn assemble(&self, readers: &[Option<Reader<'_>>; 3]) -> Result<Assembled, Problems> {
         let [vehicle, oil, engine_oil] = readers;
         let Some(vehicle) = vehicle else {
             return Err(Problems::new());
         };
         let root = vehicle.root();
-        let head = match kept(earlier, |anew| anew.vehicle) {
-            Some(of) => of.head.clone(),
-            None => head(&root, &self.name),
-        };
+        let head = head(&root, &self.name);
         let fluid = |reader: &Option<Reader>, k: usize| match reader {
-            Some(reader) => Ok(Lubricant::from_values(
-                &reader.root(),
-                &stem(&self.fluids[k]),
-            )),
+            Some(reader) => Ok(self.lubricant(&reader.root(), k)),
             // Some fluid, so that the reading goes on.
-            None => load_lubricant("cvtf_ezl799_class").map(|found| found.0),
+            None => load_lubricant("cvtf_ezl799_class").map(|found| Arc::new(found.0)),
         };
-        let fluids = [
-            match kept(earlier, |anew| anew.oil) {
-                Some(of) => of.car.oil.clone(),
-                None => fluid(oil, 0)?,
-            },
-            match kept(earlier, |anew| anew.engine_oil) {
-                Some(of) => of.car.engine_oil.clone(),
-                None => fluid(engine_oil, 1)?,
-            },
-        ];
-        let same = self.own_friction == Some(fluids[0].friction);
-        let name = self.name.clone();
-        let (road_load, car) = parts(&root, fluids, self.formulation, name, earlier);
-        let mut notes = match car.transmission.is_cvt() && same {
+        let fluids = [fluid(oil, 0)?, fluid(engine_oil, 1)?];
+        Ok(Assembled {
+            head: Arc::new(head),
+            vehicle: self.vehicle(&root, fluids, None),
+        })
+    }
+
+    /// Transmission oil (0) or engine oil (1) from the values of its file.
+    pub fn lubricant<V: Values>(&self, root: &V, k: usize) -> Arc<Lubricant> {
+        Arc::new(Lubricant::from_values(root, &stem(&self.fluids[k])))
+    }
+
+    /// The vehicle from the values of its file, and from another one of which some parts have other values.
+    pub fn vehicle<V: Values>(
+        &self,
+        root: &V,
+        oils: [Arc<Lubricant>; 2],
+        base: Option<(&Vehicle, &ChangedParts)>,
+    ) -> Vehicle {
+        Vehicle::from_values(root, oils, self.formulation, &self.name, base)
+    }
+
+    /// Notes for readers of the results of a car.
+    pub fn notes(&self, vehicle: &Vehicle) -> Vec<String> {
+        let transmission = vehicle.transmission();
+        let same = self.own_friction == Some(vehicle.oils().0.friction);
+        let mut notes = match transmission.is_cvt() && same {
             true => vec![SAME_FRICTION.to_owned()],
             false => Vec::new(),
         };
-        notes.extend(changed_losses(&car.transmission));
-        notes.extend(scattered_maps(&car.transmission));
-        Ok(Setup {
-            name: self.name.clone(),
-            title: head.title,
-            short: head.short,
-            baselines: head.baselines,
-            vehicle: Vehicle::new(car, road_load),
-            keys: Vec::new(),
-            notes,
-            origin: Origin::default(),
-        })
+        notes.extend(changed_losses(transmission));
+        notes.extend(scattered_maps(transmission));
+        notes
     }
 }
 
@@ -292,7 +305,7 @@ fn scattered_maps(transmission: &Transmission) -> impl Iterator<Item = String> {
     transmission.maps().filter_map(of)
 }
 
-/// What a comparison of fluids does not tell.
+/// Limit of a comparison of fluids.
 const SAME_FRICTION: &str = "this oil has the friction of the vehicle's own one: the comparison moves viscosity, density and heat capacity only";
 
 /// Name or path of a fluid as a vehicle's file has it: a path is relative to that file.
@@ -325,7 +338,7 @@ fn friction(file: &str, fluid: &str) -> Option<Friction> {
     Some(own.friction)
 }
 
-/// What names a fluid.
+/// Name of a fluid and its origin.
 struct FluidWord {
     word: String,
     by: Option<NamedBy>,
@@ -372,18 +385,6 @@ fn fluid_file(of: &FluidWord, options: &Options, target: Target) -> (CarFile, St
     (file, of.word.clone())
 }
 
-/// Ends the reading of a fluid; its keys with their prefix.
-///
-/// # Errors
-/// All problems.
-fn fluid_keys(reader: Reader, target: Target) -> Result<Vec<KeyInfo>, Problems> {
-    let mut keys = reader.finish()?;
-    for info in &mut keys {
-        info.key.insert_str(0, target.prefix());
-    }
-    Ok(keys)
-}
-
 /// Puts in the overrides of some files; their problems.
 fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bool) -> Problems {
     set.iter()
@@ -392,101 +393,12 @@ fn apply(document: &mut Document, set: &[Override], is_of: impl Fn(Target) -> bo
         .collect()
 }
 
-/// The car of an earlier reading of the same files, in which nothing was wrong.
-#[derive(Clone, Debug)]
-pub(super) struct Read {
-    head: Head,
-    road_load: RoadLoadInput,
-    car: Car,
-}
-
-impl Read {
-    /// The parts of a car.
-    pub fn of(setup: &Setup) -> Self {
-        Read {
-            head: Head {
-                title: setup.title.clone(),
-                short: setup.short.clone(),
-                baselines: setup.baselines.clone(),
-                fluid: String::new(),
-                engine_oil: String::new(),
-            },
-            road_load: setup.road_load,
-            car: setup.car(cvtcycle_model::road::REFERENCE_K),
-        }
-    }
-}
-
-/// Which parts of a car have other values than in an earlier reading.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Anew {
-    road_load: bool,
-    engine: bool,
-    transmission: bool,
-    thermal: bool,
-    /// Any other table of the vehicle's file.
-    vehicle: bool,
-    oil: bool,
-    engine_oil: bool,
-}
-
-impl Anew {
-    /// Adds the value at a path in a file, by its place in [`Target::CAR`].
-    pub fn add(&mut self, file: usize, path: &[Box<str>]) {
-        let table = path.first().map_or("", |name| &**name);
-        let part = match (Target::CAR[file], table) {
-            (Target::Lubricant, _) => &mut self.oil,
-            (Target::EngineOil, _) => &mut self.engine_oil,
-            (_, ROAD_LOAD) => &mut self.road_load,
-            (_, ENGINE) => &mut self.engine,
-            (_, TRANSMISSION) => &mut self.transmission,
-            (_, THERMAL) => &mut self.thermal,
-            _ => &mut self.vehicle,
-        };
-        *part = true;
-    }
-
-    /// Whether the thermal network has other values, which the oil fills.
-    fn network(&self) -> bool {
-        self.vehicle || self.thermal || self.oil
-    }
-
-    /// Whether the transmission has other values than the oil in the sump: the same oil is in it, and the engine limits the control.
-    fn transmission(&self) -> bool {
-        self.vehicle || self.transmission || self.engine || self.oil
-    }
-
-    fn driveline(&self) -> bool {
-        self.network() || self.transmission()
-    }
-}
-
-/// An earlier reading, and what has changed since.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Earlier<'e> {
-    pub read: &'e Read,
-    pub anew: Anew,
-}
-
-/// The earlier reading where a part is as it was.
-fn kept<'e>(earlier: Option<&Earlier<'e>>, is_new: impl Fn(&Anew) -> bool) -> Option<&'e Read> {
-    earlier
-        .filter(|earlier| !is_new(&earlier.anew))
-        .map(|earlier| earlier.read)
-}
-
-/// Tables of a vehicle's file that are a part of the car by themselves.
-const ROAD_LOAD: &str = "road_load";
-const ENGINE: &str = "engine";
-const TRANSMISSION: &str = "transmission";
-const THERMAL: &str = "thermal";
-
-/// What the `[vehicle]` table says.
+/// Values of the `[vehicle]` table.
 #[derive(Clone, Debug)]
 pub(super) struct Head {
-    title: String,
-    short: String,
-    baselines: Vec<String>,
+    pub title: String,
+    pub short: String,
+    pub baselines: Vec<String>,
     fluid: String,
     engine_oil: String,
 }
@@ -506,71 +418,6 @@ pub(super) fn head<V: Values>(root: &V, name: &str) -> Head {
         fluid: head.text(&HEAD.transmission_oil),
         engine_oil: head.text(&HEAD.engine_oil),
     }
-}
-
-pub(super) fn parts<V: Values>(
-    root: &V,
-    [oil, engine_oil]: [Lubricant; 2],
-    formulation: Formulation,
-    name: String,
-    earlier: Option<&Earlier<'_>>,
-) -> (RoadLoadInput, Car) {
-    let road_load = match kept(earlier, |anew| anew.road_load) {
-        Some(of) => of.road_load,
-        None => RoadLoadInput::from_values(&root.table(ROAD_LOAD)),
-    };
-    let engine = match kept(earlier, |anew| anew.engine) {
-        Some(of) => of.car.engine.clone(),
-        None => Engine::from_values(&root.table(ENGINE)),
-    };
-    let (network, transmission) = match kept(earlier, Anew::driveline) {
-        Some(of) => (of.car.network.clone(), of.car.transmission.clone()),
-        None => driveline(root, &engine, &oil, formulation, earlier),
-    };
-    let belt_heat_share = match &transmission {
-        Transmission::Cvt(cvt) => cvt.belt_heat_share,
-        Transmission::Manual(_) => 0.0,
-    };
-    let car = Car {
-        name,
-        road_load: road_load.base,
-        tyre: road_load.tyre,
-        transmission,
-        engine,
-        network,
-        oil,
-        engine_oil,
-        ambient_k: cvtcycle_model::road::REFERENCE_K,
-        charge: 1.0,
-        belt_heat_share,
-    };
-    (road_load, car)
-}
-
-fn driveline<V: Values>(
-    root: &V,
-    engine: &Engine,
-    oil: &Lubricant,
-    formulation: Formulation,
-    earlier: Option<&Earlier<'_>>,
-) -> (Network, Transmission) {
-    let (kind, section) = root.choose(&VEHICLE_FILE.transmission);
-    let network = match kept(earlier, Anew::network) {
-        Some(of) => of.car.network.clone(),
-        None => Network::from_values(&root.table(THERMAL), kind == "cvt", oil),
-    };
-    // The gears of the transmission turn in the oil of the network's sump.
-    let sump_oil_m3 = network.sump_oil_m3;
-    let as_full = |of: &&Read| of.car.network.sump_oil_m3.to_bits() == sump_oil_m3.to_bits();
-    let transmission = match kept(earlier, Anew::transmission).filter(as_full) {
-        Some(of) => of.car.transmission.clone(),
-        None if kind == "cvt" => {
-            let cvt = Cvt::from_values(&section, engine, (oil, sump_oil_m3), formulation);
-            Transmission::Cvt(Box::new(cvt))
-        }
-        None => Transmission::Manual(Box::new(Manual::from_values(&section, sump_oil_m3))),
-    };
-    (network, transmission)
 }
 
 /// The kinds of box with their words.

@@ -126,7 +126,7 @@ impl<'f> Resolver<'f> {
         }
         let folder = parent.folder.clone();
         let source = Source::new(Input::File(name.clone()), &text).inherited(Some(parent));
-        let document = Document::of(source)?;
+        let document = Document::from_source(source)?;
         let is_vehicle = document.root.entries.keys().any(|key| is_row(key));
         if !document.root.entries.is_empty() && !is_vehicle {
             let problem = Problem::invalid(format!("`{name}` is no vehicle file"))
@@ -300,7 +300,7 @@ fn table(node: &mut Node) -> Option<&mut Table> {
     }
 }
 
-/// Whether an option is chosen at a path.
+/// True if an option is chosen at a path.
 fn is_choice(path: &str) -> bool {
     static CHOICES: OnceLock<BTreeSet<String>> = OnceLock::new();
     let choices = CHOICES.get_or_init(|| {

@@ -7,12 +7,13 @@ pub mod carried;
 pub mod catalogue;
 mod doubts;
 pub mod new_car;
-pub mod template;
 mod inputs;
 mod like;
+mod params;
 pub mod rig;
 mod twin;
 
+pub use self::params::{Param, ParamSet, ParamValue};
 pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
 };
@@ -41,11 +42,11 @@ pub struct Options {
     pub set: Vec<Override>,
     /// Reading of the belt model.
     pub formulation: Formulation,
-    /// What gives the names of vehicle and fluids.
+    /// Origin of the names of vehicle and fluids.
     pub named_by: NamedBy,
 }
 
-/// What names an input file.
+/// Origin of the name of an input file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum NamedBy {
     /// The caller.
@@ -70,7 +71,7 @@ pub struct Setup {
     pub vehicle: Vehicle,
     /// Every key that was read, vehicle first, then `lubricant.` and `engine_oil.`.
     pub keys: Vec<KeyInfo>,
-    /// What a reader of its results should know, a sentence each.
+    /// Notes for readers of the results, a sentence each.
     pub notes: Vec<String>,
     /// The files that its own inherits from, and the words by which its fluids were found.
     pub origin: Origin,
@@ -83,12 +84,29 @@ pub struct Origin {
     pub parents: Vec<(String, String)>,
     /// Name or path of transmission oil and engine oil.
     pub fluids: [String; 2],
-    /// Whether the program carries all of its files, and nothing else was asked for.
+    /// True if the program carries all of its files, and nothing else was asked for.
     pub is_shipped: bool,
 }
 
 impl Setup {
-    /// What looks like a slip in its values, a sentence each.
+    /// The car of a set of values; its keys and its origin, which take as long as all the rest, are left out ([`ParamSet::setup`] has them).
+    #[must_use]
+    pub fn from_params(params: &ParamSet) -> Self {
+        let head = &params.assembled.head;
+        let frame = &params.read.inputs.frame;
+        Setup {
+            name: frame.name.clone(),
+            title: head.title.clone(),
+            short: head.short.clone(),
+            baselines: head.baselines.clone(),
+            vehicle: params.vehicle().clone(),
+            keys: Vec::new(),
+            notes: frame.notes(params.vehicle()),
+            origin: Origin::default(),
+        }
+    }
+
+    /// Likely slips in the values, a sentence each.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
         doubts::doubts(self)
@@ -112,7 +130,7 @@ pub enum Kind {
     Class,
     /// A lubricant.
     Lubricant,
-    /// What a test rig is set to.
+    /// Settings of a test rig.
     Rig,
     /// The plan of a study.
     Plan,
@@ -196,7 +214,7 @@ pub fn text_of(word: &str, kind: Kind, by: NamedBy) -> Result<(String, String, D
 pub const TWIN: &str = "twin";
 
 impl Options {
-    /// Whether they change nothing of a car.
+    /// True if they change nothing of a car.
     #[must_use]
     pub fn change_nothing(&self) -> bool {
         let own = Options::default();
@@ -204,7 +222,7 @@ impl Options {
         files && self.set.is_empty() && self.formulation == own.formulation
     }
 
-    /// Those of the twin of a car with these: it has another transmission oil, and all else of the car.
+    /// Options of the car's twin: it has another transmission oil, and all else of the car.
     #[must_use]
     pub fn of_twin(&self, named_by: NamedBy) -> Options {
         let own = self.set.iter();
@@ -218,7 +236,7 @@ impl Options {
     }
 }
 
-/// Whether the word is that of a twin.
+/// True if the word is that of a twin.
 #[must_use]
 pub fn is_twin(word: &str) -> bool {
     word.starts_with(twin::MARK)
@@ -327,7 +345,7 @@ pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load(word: &str, options: &Options) -> Result<Setup, Problems> {
-    inputs::Inputs::gather(word, options)?.read()
+    Ok(ParamSet::load(word, options)?.setup())
 }
 
 /// As [`load`], for a vehicle's text that need not be on disk. `file` is its name or path, which problems cite and from which paths of
@@ -349,7 +367,7 @@ pub fn read(
     files: Box<dyn Files>,
     options: &Options,
 ) -> Result<Setup, Problems> {
-    inputs::Inputs::of_text(file, text, files, options)?.read()
+    Ok(ParamSet::read(file, text, files, options)?.setup())
 }
 
 /// As [`read`], for the twin of the vehicle: the same car with a manual box.
@@ -362,7 +380,7 @@ pub fn read_twin(
     files: Box<dyn Files>,
     options: &Options,
 ) -> Result<Setup, Problems> {
-    inputs::Inputs::of(file, text, files, options, true)?.read()
+    Ok(ParamSet::read_twin(file, text, files, options)?.setup())
 }
 
 /// Range of the temperature of all parts at the start, degC.

@@ -1,4 +1,4 @@
-//! What the transmission rig was set to, as data with a status: `rigs/rig_transmission.toml`.
+//! Settings of the transmission rig, as data with a status: `rigs/rig_transmission.toml`.
 
 use cvtcycle_model::rig::transmission::Conditions;
 pub use cvtcycle_model::rig::transmission::{OIL, TORQUE};

@@ -53,7 +53,7 @@ const UP: (f64, f64) = (0.47, 0.03);
 /// Down-shift speed over up-shift speed (TW-3).
 const DOWN: f64 = 0.72;
 
-/// What `[twin]` says.
+/// Values of `[twin]`.
 pub(super) struct TwinTable {
     set: &'static GearSet,
     first_per_m: f64,
@@ -123,13 +123,13 @@ impl TwinTable {
         let shares = self.set.shares.iter();
         let ratios = shares.map(|share| first * exp(-share * ln(span))); // TW-2
         let words = format!("TW-1, TW-2: {f:.1} rpm per km/h in first, span {span}");
-        (ratios.collect(), Origin::of("derived", words))
+        (ratios.collect(), Origin::new("derived", words))
     }
 
     /// Road speeds at which the gears change up and down, km/h, and where they come from.
     fn shifts(&self, overall: &[f64], radius_m: f64, rated_rad_s: f64) -> ([Vec<f64>; 2], Origin) {
         if self.shift_m_s.is_empty() {
-            let origin = Origin::of("assumed", "TW-3".to_owned());
+            let origin = Origin::new("assumed", "TW-3".to_owned());
             return (shifts_kmh(overall, radius_m, rated_rad_s), origin);
         }
         let up: Vec<f64> = self.shift_m_s.iter().map(|v| 3.6 * v).collect();
@@ -156,7 +156,7 @@ fn with_down(up: Vec<f64>) -> [Vec<f64>; 2] {
 struct Origin(String);
 
 impl Origin {
-    fn of(status: &str, source: String) -> Self {
+    fn new(status: &str, source: String) -> Self {
         Origin(format!("status = \"{status}\", source = \"{source}\""))
     }
 
@@ -178,7 +178,7 @@ pub(super) fn twin(
     file: &str,
     files: &dyn Files,
 ) -> Result<Document, Problems> {
-    let reader = Reader::check_only(&document);
+    let reader = Reader::new(&document);
     let root = reader.root();
     let refused = |problem: Problem| {
         let place = root.table("vehicle").place(HEAD.baselines.name);
@@ -205,7 +205,7 @@ pub(super) fn twin(
         })
     })?;
     let source = Source::new(Input::File(format!("{MARK}{file}")), &text);
-    let mut twin = Document::of(source)?;
+    let mut twin = Document::from_source(source)?;
     take(&mut twin, parts);
     let mut car = document.clone();
     remove(&mut car.root, &["transmission", "twin"]);
@@ -236,7 +236,7 @@ fn remove(table: &mut Table, names: &[&str]) {
     table.entries.retain(|name| !names.contains(&name));
 }
 
-/// What is the twin's own, as a file; none where the car has not the values for it.
+/// The twin's own values as a file; `None` if the car lacks the values for it.
 fn text(table: &TwinTable, root: &Section<'_>) -> Option<String> {
     let radius_m = root.table("road_load").number(&ROAD_LOAD.wheel_radius_m);
     let line = root.table("engine").rows(&ENGINE.full_load)?;

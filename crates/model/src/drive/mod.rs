@@ -28,4 +28,4 @@ pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};
 pub use together::{MAX_TOGETHER, Run, drive_each, drive_each_on};
 pub use totals::{Extreme, PhaseTotals, Totals};
-pub use vehicle::Vehicle;
+pub use vehicle::{ChangedParts, Vehicle};

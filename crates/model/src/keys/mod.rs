@@ -243,55 +243,55 @@ pub trait Values: Sized {
     fn exists(&self) -> bool;
 
     /// True if the key is given.
-    fn has(&self, key: &Key<'_>) -> bool;
+    fn has(&self, key: &Key<'static>) -> bool;
 
     /// A number in SI units: the value given or the key's default.
-    fn number(&self, key: &Key<'_>) -> f64;
+    fn number(&self, key: &Key<'static>) -> f64;
 
     /// A number in SI units with a computed default in the key's unit.
-    fn number_or(&self, key: &Key<'_>, default: f64) -> f64;
+    fn number_or(&self, key: &Key<'static>, default: f64) -> f64;
 
     /// A number in SI units that may be absent.
-    fn optional(&self, key: &Key<'_>) -> Option<f64>;
+    fn optional(&self, key: &Key<'static>) -> Option<f64>;
 
     /// An integer; the default also after a problem.
-    fn integer(&self, key: &Key<'_>) -> i64;
+    fn integer(&self, key: &Key<'static>) -> i64;
 
     /// A truth value; the default also after a problem.
-    fn flag(&self, key: &Key<'_>) -> bool;
+    fn flag(&self, key: &Key<'static>) -> bool;
 
     /// A text: the value given, or the key's default; empty without one, and after a problem.
-    fn text(&self, key: &Key<'_>) -> String;
+    fn text(&self, key: &Key<'static>) -> String;
 
     /// A text with a default; empty after a problem.
-    fn text_or(&self, key: &Key<'_>, default: &str) -> String;
+    fn text_or(&self, key: &Key<'static>, default: &str) -> String;
 
     /// Texts, written as one with commas or as a list; none where the key is absent.
-    fn texts(&self, key: &Key<'_>) -> Vec<String>;
+    fn texts(&self, key: &Key<'static>) -> Vec<String>;
 
     /// One of the key's words.
-    fn word(&self, key: &Key<'_>) -> &'static str;
+    fn word(&self, key: &Key<'static>) -> &'static str;
 
     /// The chosen option of the key, and its table.
-    fn choose(&self, key: &Key<'_>) -> (&'static str, Self);
+    fn choose(&self, key: &Key<'static>) -> (&'static str, Self);
 
     /// Numbers in SI units; as many as the key allows, NaN after a problem.
-    fn numbers(&self, key: &Key<'_>) -> Vec<f64>;
+    fn numbers(&self, key: &Key<'static>) -> Vec<f64>;
 
     /// Rows in SI units by column; none after a problem, empty where the key may be absent and is.
-    fn rows(&self, key: &Key<'_>) -> Option<Vec<Vec<f64>>>;
+    fn rows(&self, key: &Key<'static>) -> Option<Vec<Vec<f64>>>;
 
     /// A measured loss map from the file that the key names; `first` is the name of its first axis.
-    fn loss_map(&self, key: &Key<'_>, first: &'static str) -> Option<LossMap>;
+    fn loss_map(&self, key: &Key<'static>, first: &'static str) -> Option<LossMap>;
 
     /// The rows of the CSV table that the key names; none where it is absent and may be, and after a problem.
-    fn file_table(&self, key: &Key<'_>, table: &'static FileTable) -> Option<FileRows>;
+    fn file_table(&self, key: &Key<'static>, table: &'static FileTable) -> Option<FileRows>;
 
     /// A BSFC map from the file that the key names, for a heating value and a displacement; the
     /// caller gives it its friction.
     fn bsfc_map(
         &self,
-        key: &Key<'_>,
+        key: &Key<'static>,
         heating_value_j_kg: f64,
         displacement_m3: f64,
     ) -> Option<BsfcMap>;

@@ -60,7 +60,7 @@ pub const SELF_HEATING: spec::Spec = spec::optional(spec::number(1.0, 1e9));
 
 impl ViscousSelfHeating {
     /// The heating that a part's `film_heating_w` gives; none where it is absent.
-    pub fn from_values<V: Values>(s: &V, key: &Key<'_>) -> Self {
+    pub fn from_values<V: Values>(s: &V, key: &Key<'static>) -> Self {
         ViscousSelfHeating::halving_at_w(s.optional(key))
     }
 }

@@ -2,8 +2,7 @@
 
 use cvtcycle_analysis::levers::{Lever, LeverFile};
 use cvtcycle_analysis::words::drawn::PLAN;
-use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
-use cvtcycle_config::setup::{Kind as FileKind, Options, Setup, load};
+use cvtcycle_config::setup::{Kind as FileKind, Options, Param, ParamSet, Setup, load};
 use cvtcycle_config::{Acts, Bound, Override, Problems};
 use cvtcycle_study::execute::relative;
 use cvtcycle_study::plan::{Factor, FactorValues, Plan};
@@ -76,7 +75,8 @@ const CANDIDATES: [Candidate; 14] = [
 /// # Errors
 /// Problems of the car.
 pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>, Problems> {
-    let (template, setup) = VehicleTemplate::load(word, options)?;
+    let params = ParamSet::load(word, options)?;
+    let setup = params.setup();
     let (plan, _) = relative(Plan::open(PLAN)?)?;
     let mut shipped = Vec::new();
     for name in FileKind::Levers.names() {
@@ -90,9 +90,9 @@ pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>
     let control = |candidate: &Candidate| {
         let (name, title, kind) = match candidate {
             Number(name, title, key) => {
-                let slot = template.slot(key).ok();
-                let slot = slot.filter(|slot| slot.is_active() && slot.base().is_finite())?;
-                let slider = slider(key, &slot, &shipped, &plan.factors)?;
+                let param = params.param(key).ok();
+                let param = param.filter(|of| of.is_active() && of.base().is_finite())?;
+                let slider = slider(key, &param, &shipped, &plan.factors)?;
                 (format!("l.{name}"), *title, ControlKind::Slider(slider))
             }
             Group(name, title) => {
@@ -117,11 +117,11 @@ pub(super) fn car_controls(word: &str, options: &Options) -> Result<Vec<Control>
 
 fn slider(
     key: &'static str,
-    slot: &ParameterRef,
+    param: &Param,
     shipped: &[Lever],
     factors: &[Factor],
 ) -> Option<Slider> {
-    let base = slot.base();
+    let base = param.base();
     let row = Override::number(key, base).row()?;
     let of_levers = shipped.iter().flat_map(|lever| &lever.set);
     let of_levers = of_levers.filter(|by| by.key() == key);
@@ -142,7 +142,11 @@ fn slider(
     let (ends, step) = positions([known[0] - beyond, known[1] + beyond], bound)?;
     Some(Slider {
         key,
-        unit: if slot.unit() == "-" { "" } else { slot.unit() },
+        unit: if param.unit() == "-" {
+            ""
+        } else {
+            param.unit()
+        },
         base,
         ends,
         step,

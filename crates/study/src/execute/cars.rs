@@ -6,8 +6,7 @@
 use std::sync::{Arc, OnceLock};
 
 use crate::plan::{Acts, Base, Cars, Factor, FactorValue, Plan, RUN_OPTIONS};
-use cvtcycle_config::setup::template::{ParameterRef, VehicleTemplate};
-use cvtcycle_config::setup::{NamedBy, Options, Setup, is_twin};
+use cvtcycle_config::setup::{NamedBy, Options, Param, ParamSet, Setup, is_twin};
 use cvtcycle_config::{Bound, Override, Problem, ProblemKind, Problems};
 use cvtcycle_model::keys::Kind;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
@@ -40,9 +39,9 @@ pub(super) enum Binding {
 
 /// A car in one combination of words: checked documents, and the places of the numbers in them.
 pub(super) struct CarVariant {
-    pub blueprint: VehicleTemplate,
+    pub base: ParamSet,
     /// By factor; none for factors that are no number of this car.
-    pub slots: Vec<Option<ParameterRef>>,
+    pub params: Vec<Option<Param>>,
     /// Keys of factors that this car does not know, with what is to be said of them.
     pub unknown: Vec<(usize, Problem)>,
     /// The car with all numbers as its files have them.
@@ -158,14 +157,13 @@ impl StudyCar {
     /// With the way in which each factor reaches it.
     fn bound(mut self, plan: &Plan, subject: bool, left_out: &[usize]) -> Result<Self, Problems> {
         let own = match plan.skip_missing || plan.by_box.is_some() {
-            true => Some(VehicleTemplate::load(&self.word, &self.options)?),
+            true => Some(ParamSet::load(&self.word, &self.options)?),
             false => None,
         };
-        let is_cvt = |(_, setup): &(_, Setup)| setup.transmission().is_cvt();
+        let is_cvt = |own: &ParamSet| own.vehicle().transmission().is_cvt();
         let by_box = plan.by_box.zip(own.as_ref().map(is_cvt));
         let subject = by_box.map_or(subject, |(of, is_cvt)| of == is_cvt);
-        let template = own.map(|(template, _)| template);
-        let template = template.filter(|_| plan.skip_missing);
+        let own = own.filter(|_| plan.skip_missing);
         let mut stride = 1_usize;
         for (index, factor) in plan.factors.iter().enumerate() {
             let mut binding = match left_out.contains(&index) {
@@ -173,9 +171,8 @@ impl StudyCar {
                 false => binding(factor, subject, stride),
             };
             let acts = binding != Binding::Not;
-            if let Some(template) = template.as_ref().filter(|_| acts)
-                && (self.is_missing(factor, template)
-                    || is_share_of_zero(binding, factor, template))
+            if let Some(own) = own.as_ref().filter(|_| acts)
+                && (self.is_missing(factor, own) || is_share_of_zero(binding, factor, own))
             {
                 binding = Binding::Not;
                 self.idle.push(index);
@@ -193,21 +190,20 @@ impl StudyCar {
     }
 
     /// True if the car lacks the key of a factor: unknown, of an option that is not chosen, or without a value to act on.
-    fn is_missing(&self, factor: &Factor, template: &VehicleTemplate) -> bool {
+    fn is_missing(&self, factor: &Factor, own: &ParamSet) -> bool {
         if RUN_OPTIONS.contains(&factor.key.as_str()) {
             return false;
         }
         if factor.values.are_numbers() {
-            let slot = template.slot(&factor.key);
-            let is_there = |slot: &ParameterRef| slot.is_active() && !slot.base().is_nan();
-            return !slot.is_ok_and(|slot| is_there(&slot));
+            let param = own.param(&factor.key);
+            return !param.is_ok_and(|param| param.is_active() && !param.base().is_nan());
         }
         // A twin has keys that no word can be set for: they follow from its car.
         let word = words(factor).into_iter().next();
         let set = word.and_then(|word| Override::new(&factor.key, &word).ok());
         let mut options = self.options.clone();
         options.set.extend(set);
-        !template.has(&factor.key) || VehicleTemplate::load(&self.word, &options).is_err()
+        !own.has(&factor.key) || ParamSet::load(&self.word, &options).is_err()
     }
 
     /// Computes the value from a number of a factor and the file's value, before it is clamped to the range of its key.
@@ -272,19 +268,19 @@ impl StudyCar {
 
     fn make(&self, index: usize, factors: &[Factor]) -> Result<CarVariant, Problems> {
         let options = self.options_of(index, factors)?;
-        let (blueprint, setup) = VehicleTemplate::load(&self.word, &options)?;
+        let base = ParamSet::load(&self.word, &options)?;
         let mut variant = CarVariant {
-            blueprint,
-            slots: Vec::with_capacity(factors.len()),
+            setup: base.setup(),
+            base,
+            params: Vec::with_capacity(factors.len()),
             unknown: Vec::new(),
-            setup,
         };
         for (index, (factor, binding)) in factors.iter().zip(&self.bindings).enumerate() {
-            let slot = match binding {
-                Binding::Number(_) => variant.blueprint.slot(&factor.key).map(Some),
+            let param = match binding {
+                Binding::Number(_) => variant.base.param(&factor.key).map(Some),
                 _ => Ok(None),
             };
-            variant.slots.push(slot.unwrap_or_else(|problem| {
+            variant.params.push(param.unwrap_or_else(|problem| {
                 variant.unknown.push((index, self.unknown(factor, problem)));
                 None
             }));
@@ -388,8 +384,8 @@ fn binding(factor: &Factor, subject: bool, stride: usize) -> Binding {
 }
 
 /// True if the factor scales a value that is 0 in the car's file.
-fn is_share_of_zero(binding: Binding, factor: &Factor, template: &VehicleTemplate) -> bool {
-    let base = || template.slot(&factor.key).map(|slot| slot.base());
+fn is_share_of_zero(binding: Binding, factor: &Factor, own: &ParamSet) -> bool {
+    let base = || own.param(&factor.key).map(|param| param.base());
     binding == Binding::Number(Acts::Scale) && base().is_ok_and(|base| base == 0.0)
 }
 

@@ -37,7 +37,6 @@ use cvtcycle_config::{Place, Problem};
 use cvtcycle_model::drive::MAX_TOGETHER;
 use cvtcycle_output::progress::Progress;
 use manifest::{RUNS, TRACES};
-use point::Worker;
 use rows::{Filler, Traces};
 
 /// Least number of points that a thread takes at a time: those that are driven side by side; and the number of such takings that a larger part is
@@ -247,10 +246,9 @@ impl Study {
         (sink, send): (&dyn PartWriter, Option<&SyncSender<Part>>),
         progress: &dyn Progress,
     ) -> Result<End, Problem> {
-        let mut worker = Worker::default();
         while let Some((part, points)) = queue.take() {
             let from = points.start;
-            let Some(piece) = self.piece(points, queue.trace_rows, &mut worker, progress) else {
+            let Some(piece) = self.piece(points, queue.trace_rows, progress) else {
                 queue.clear();
                 return Ok(End::Stopped);
             };
@@ -278,13 +276,7 @@ impl Study {
     }
 
     /// Drives some points; nothing if the progress has stopped it.
-    fn piece(
-        &self,
-        points: Range<u64>,
-        trace_rows: u64,
-        worker: &mut Worker,
-        progress: &dyn Progress,
-    ) -> Option<Piece> {
+    fn piece(&self, points: Range<u64>, trace_rows: u64, progress: &dyn Progress) -> Option<Piece> {
         let (count, cars) = (points.end - points.start, self.cars.len() as u64);
         let rows_of = |per_point| usize::try_from(count.saturating_mul(per_point)).unwrap_or(0);
         let filler = Filler::new(self);
@@ -296,7 +288,7 @@ impl Study {
                 return None;
             }
             let to = points.end.min(from.saturating_add(MAX_TOGETHER as u64));
-            let of_points = self.points(from..to, worker, traces.as_mut());
+            let of_points = self.points(from..to, traces.as_mut());
             for (point, of_point) in (from..to).zip(&of_points) {
                 filler.push(point, of_point, &mut runs);
                 progress.advance(cars);

@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::time::Instant;
 
-use super::point::Worker;
 use super::prepare::Study;
 use super::rows::{Filler, Traces};
 use crate::store::{Head, Rows, write_parquet};
@@ -39,14 +38,14 @@ impl Study {
         let point = |k: u64| u128::from(k) * u128::from(self.points) / u128::from(count);
         let points = (0..count).filter_map(|k| u64::try_from(point(k)).ok());
         let filler = Filler::new(self);
-        let (mut worker, mut runs) = (Worker::default(), Rows::with_capacity(&self.columns, 0));
+        let mut runs = Rows::with_capacity(&self.columns, 0);
         let mut traces = Traces::new(self, || 0);
         let mut half = None;
         // The first point of a thread reads the files of its cars, which is no part of the rest.
-        self.points(0..1, &mut worker, None);
+        self.points(0..1, None);
         let begun = Instant::now();
         for (k, point) in points.enumerate() {
-            let of_points = self.points(point..point + 1, &mut worker, traces.as_mut());
+            let of_points = self.points(point..point + 1, traces.as_mut());
             for of_point in &of_points {
                 filler.push(point, of_point, &mut runs);
             }

@@ -1,6 +1,5 @@
 //! One point of a study: every car with the point's draw, and the rows that come of it.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use super::cars::{Binding, StudyCar, bound_of};
@@ -10,22 +9,14 @@ use super::side_effects::SideEffects;
 use crate::plan::{Acts, Factor, FactorValue, Plan};
 use cvtcycle_config::Problem;
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_config::setup::Setup;
-use cvtcycle_config::setup::template::{ParameterRef, Variant};
+use cvtcycle_config::setup::{Param, Setup};
 use cvtcycle_model::drive::{Conditions, Outcome, Row, Run, Start, drive_each, drive_into};
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{Driven, Failure, RunSummary, Settings, compare, run_summary};
 
-/// Vehicle variants reused by one thread from point to point, one for each variant of each car.
-#[derive(Default)]
-pub(super) struct Worker {
-    benches: HashMap<(usize, usize), Variant>,
-}
-
 /// A car at a point, with the values of the factors there.
 struct CarAtPoint<'a> {
     study: &'a Study,
-    index: usize,
     car: &'a StudyCar,
     values: &'a [Option<FactorValue>],
 }
@@ -35,7 +26,6 @@ impl Study {
     pub(super) fn points(
         &self,
         points: Range<u64>,
-        worker: &mut Worker,
         mut traces: Option<&mut Traces>,
     ) -> Vec<Vec<PointRun>> {
         let Plan {
@@ -59,8 +49,7 @@ impl Study {
                         traces.begin(point, car);
                     }
                     let at = self.car_at(index, &values[k]);
-                    let (run, summary) =
-                        at.run(worker, subjects[k].as_ref(), traces.as_deref_mut());
+                    let (run, summary) = at.run(subjects[k].as_ref(), traces.as_deref_mut());
                     if index == 0 && self.sides.is_none() {
                         subjects[k] = summary;
                     }
@@ -71,7 +60,7 @@ impl Study {
         }
         for index in 0..self.cars.len() {
             let ready: Vec<Ready> = (values.iter())
-                .map(|values| self.car_at(index, values).ready(worker))
+                .map(|values| self.car_at(index, values).ready())
                 .collect();
             let outcomes = self.drive_ready(&ready);
             for (k, (ready, outcome)) in ready.into_iter().zip(outcomes).enumerate() {
@@ -91,14 +80,13 @@ impl Study {
 
     /// Drives a point.
     fn point(&self, point: u64) -> Vec<PointRun> {
-        let runs = self.points(point..point + 1, &mut Worker::default(), None);
+        let runs = self.points(point..point + 1, None);
         runs.into_iter().flatten().collect()
     }
 
     fn car_at<'a>(&'a self, index: usize, values: &'a [Option<FactorValue>]) -> CarAtPoint<'a> {
         CarAtPoint {
             study: self,
-            index,
             car: &self.cars[index],
             values,
         }
@@ -158,8 +146,8 @@ impl Study {
             return Vec::new();
         };
         let count = |(f, factor): (usize, &Factor)| {
-            let (Binding::Number(acts), Some(slot), Some(bound)) =
-                (car.bindings[f], &variant.slots[f], bound_of(factor))
+            let (Binding::Number(acts), Some(param), Some(bound)) =
+                (car.bindings[f], &variant.params[f], bound_of(factor))
             else {
                 return None;
             };
@@ -167,7 +155,7 @@ impl Study {
                 let value = factor.value(design.level(factors, point, f))?;
                 value.number()
             });
-            let outside = |x: &f64| !bound.contains(car.drawn(f, acts, slot.base(), *x));
+            let outside = |x: &f64| !bound.contains(car.drawn(f, acts, param.base(), *x));
             let held = draws.filter(outside).count();
             (held > 0).then_some((f, held))
         };
@@ -178,11 +166,10 @@ impl Study {
 impl CarAtPoint<'_> {
     fn run(
         &self,
-        worker: &mut Worker,
         subject: Option<&RunSummary>,
         traces: Option<&mut Traces>,
     ) -> (PointRun, Option<RunSummary>) {
-        let ready = self.ready(worker);
+        let ready = self.ready();
         let cycle = &self.study.cycles[ready.cycle];
         let Ok(setup) = &ready.built else {
             return (self.refused(ready), None);
@@ -196,8 +183,8 @@ impl CarAtPoint<'_> {
     }
 
     /// The car at the point, with what is asked of it.
-    fn ready(&self, worker: &mut Worker) -> Ready {
-        let (factors, built) = self.build(worker);
+    fn ready(&self) -> Ready {
+        let (factors, built) = self.build();
         Ready {
             factors,
             built,
@@ -253,18 +240,18 @@ impl CarAtPoint<'_> {
     }
 
     /// Resolves the factors in the car; builds the car with these values, or gives the reason why it is refused.
-    fn build(&self, worker: &mut Worker) -> (Vec<Option<FactorValue>>, Result<Setup, String>) {
+    fn build(&self) -> (Vec<Option<FactorValue>>, Result<Setup, String>) {
         let all = &self.study.plan.factors;
         let weight =
             |(f, value): (usize, &Option<FactorValue>)| self.car.weight(f, &all[f], value.as_ref());
         let index = self.values.iter().enumerate().map(weight).sum();
         let variant = self.car.variant(index, all);
         let resolve = |f: usize| {
-            let slot = variant
+            let param = variant
                 .as_ref()
                 .ok()
-                .and_then(|variant| variant.slots[f].as_ref());
-            self.resolve(f, slot.map(ParameterRef::base))
+                .and_then(|variant| variant.params[f].as_ref());
+            self.resolve(f, param.map(Param::base))
         };
         let factors: Vec<_> = (0..all.len()).map(resolve).collect();
         let variant = match variant {
@@ -275,16 +262,15 @@ impl CarAtPoint<'_> {
             let reason = reason(std::slice::from_ref(problem));
             return (factors, Err(reason));
         }
-        let bench = worker.benches.entry((self.index, index));
-        let bench = bench.or_insert_with(|| variant.blueprint.bench());
-        bench.reset();
-        for ((slot, value), given) in variant.slots.iter().zip(&factors).zip(self.values) {
+        let params = variant.params.iter().zip(&factors).zip(self.values);
+        let numbers = params.filter_map(|((param, value), given)| match (param, value, given) {
             // Values that the design leaves alone are not set again: the file may not give them.
-            if let (Some(slot), Some(FactorValue::Number(x)), Some(_)) = (slot, value, given) {
-                bench.set(slot, *x);
-            }
-        }
-        let built = bench.build().map_err(|_| reason(&bench.problems()));
+            (Some(param), Some(FactorValue::Number(x)), Some(_)) => Some((param, *x)),
+            _ => None,
+        });
+        let set = variant.base.with_numbers(&numbers.collect::<Vec<_>>());
+        let built = set.map(|set| Setup::from_params(&set));
+        let built = built.map_err(|problems| reason(&problems));
         (factors, built)
     }
 

@@ -37,19 +37,19 @@ fn numbers(plan: &Plan, index: usize, car: &StudyCar, acts: Acts, problems: &mut
         .iter()
         .filter(|(unknown, _)| *unknown == index);
     problems.extend(unknown.map(|(_, problem)| problem.clone()));
-    let Some(slot) = &variant.slots[index] else {
+    let Some(param) = &variant.params[index] else {
         return;
     };
-    let mut bench = variant.blueprint.bench();
     for (entry, number) in extremes(plan, index) {
-        let value = car.drawn(index, acts, slot.base(), number);
-        bench.reset();
-        bench.set(slot, value);
-        if bench.build().is_ok() || goes_with_another(plan, index, car, variant, value) {
+        let value = car.drawn(index, acts, param.base(), number);
+        let Err(found) = variant.base.with_numbers(&[(param, value)]) else {
+            continue;
+        };
+        if goes_with_another(plan, index, car, variant, value) {
             continue;
         }
         let of_value = |problem| of_value(factor, (entry, number), car, value, problem);
-        problems.extend(bench.problems().map(of_value));
+        problems.extend(found.map(of_value));
     }
 }
 
@@ -61,18 +61,16 @@ fn goes_with_another(
     variant: &CarVariant,
     value: f64,
 ) -> bool {
-    let mut bench = variant.blueprint.bench();
-    let mut possible = |other: usize| {
-        let slots = (&variant.slots[index], &variant.slots[other]);
-        let ((Some(slot), Some(partner)), Binding::Number(acts)) = (slots, car.bindings[other])
+    let possible = |other: usize| {
+        let params = (&variant.params[index], &variant.params[other]);
+        let ((Some(param), Some(partner)), Binding::Number(acts)) = (params, car.bindings[other])
         else {
             return false;
         };
         extremes(plan, other).into_iter().any(|(_, number)| {
-            bench.reset();
-            bench.set(slot, value);
-            bench.set(partner, car.drawn(other, acts, partner.base(), number));
-            bench.build().is_ok()
+            let of_partner = car.drawn(other, acts, partner.base(), number);
+            let numbers = [(param, value), (partner, of_partner)];
+            variant.base.with_numbers(&numbers).is_ok()
         })
     };
     (0..plan.factors.len()).any(|other| other != index && possible(other))

@@ -4,8 +4,7 @@ use super::prepare::{folder_of, in_folder};
 use crate::plan::{
     Acts, Cars, Distribution, Factor, FactorValue, FactorValues, Plan, RUN_OPTIONS, unit,
 };
-use cvtcycle_config::setup::template::VehicleTemplate;
-use cvtcycle_config::setup::{NamedBy, Options, TWIN, baseline_of};
+use cvtcycle_config::setup::{NamedBy, Options, ParamSet, Setup, TWIN, baseline_of};
 use cvtcycle_config::{Problems, unit_of};
 
 /// Share of the largest value of a factor below which the value of its car is too near to zero to be a measure of it.
@@ -26,14 +25,15 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
         ..Options::default()
     };
     let word = in_folder(folder, &plan.base.vehicle);
-    let (subject, setup) = VehicleTemplate::load(&word, &options(&plan.base.lubricant))?;
-    let named = plan.base.baselines.as_ref().unwrap_or(&setup.baselines);
+    let subject = ParamSet::load(&word, &options(&plan.base.lubricant))?;
+    let own = Setup::from_params(&subject).baselines;
+    let named = plan.base.baselines.as_ref().unwrap_or(&own);
     let baseline = named.first().map(|name| match plan.base.baselines {
         Some(_) if name != TWIN => in_folder(folder, name),
         _ => baseline_of(&word, name),
     });
     let baseline = match baseline {
-        Some(word) => Some(VehicleTemplate::load(&word, &options(&None))?.0),
+        Some(word) => Some(ParamSet::load(&word, &options(&None))?),
         None => None,
     };
     let of = |factor: &Factor| match factor.cars {
@@ -41,9 +41,9 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
         Cars::Subject | Cars::All => Some(&subject),
     };
     let over = |factor: &Factor| {
-        let slot = of(factor)?.slot(&factor.key).ok()?;
-        let is_known = slot.is_active() && slot.base().is_finite();
-        is_known.then(|| over(factor, slot.base()))
+        let param = of(factor)?.param(&factor.key).ok()?;
+        let is_known = param.is_active() && param.base().is_finite();
+        is_known.then(|| over(factor, param.base()))
     };
     let is_value = |factor: &Factor| {
         let is_option = RUN_OPTIONS.contains(&factor.key.as_str());
@@ -60,7 +60,7 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
         clip: true,
         ..plan
     };
-    Ok((relative, setup.transmission().is_cvt()))
+    Ok((relative, subject.vehicle().transmission().is_cvt()))
 }
 
 /// A factor over the value of its car.

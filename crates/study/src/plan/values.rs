@@ -265,7 +265,7 @@ fn distribution(s: &Section, of: Of, places: &mut Places) -> Option<Distribution
     let (name, t) = Values::choose(s, &FACTOR.distribution);
     places.add("distribution", s.place("distribution"));
     of.no_numbers(s, "distribution");
-    let mut number = |row: &Key| {
+    let mut number = |row: &Key<'static>| {
         places.add_given(&t, row.name, &format!("distribution.{}", row.name));
         Values::number(&t, row)
     };

@@ -3,8 +3,7 @@
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use cvtcycle_config::setup::template::{Variant, VehicleTemplate};
-use cvtcycle_config::setup::{Options, Setup};
+use cvtcycle_config::setup::{Options, ParamSet, Setup};
 use cvtcycle_config::{KeyInfo, Override};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -146,18 +145,12 @@ impl Recipe {
             ..Options::default()
         };
         let name = CARS[self.vehicle];
-        let loaded = VehicleTemplate::load(name, &options);
-        let (blueprint, base) =
-            loaded.unwrap_or_else(|problems| panic!("{name} {options:?}: {}", problems[0].message));
-        let numbers: Vec<KeyInfo> = base
-            .keys
-            .iter()
-            .filter(|info| info.si.is_some())
-            .cloned()
-            .collect();
-        let mut bench = blueprint.bench();
+        let base = ParamSet::load(name, &options)
+            .unwrap_or_else(|problems| panic!("{name} {options:?}: {}", problems[0].message));
+        let numbers = base.keys().into_iter().filter(|info| info.si.is_some());
+        let numbers: Vec<KeyInfo> = numbers.collect();
         let mut kept: Vec<(&str, f64)> = Vec::new();
-        let mut setup = bench.build().unwrap();
+        let mut setup = Setup::from_params(&base);
         for group in self.changes.chunks(GROUP) {
             let moved: Vec<(&str, f64)> = group
                 .iter()
@@ -165,7 +158,7 @@ impl Recipe {
                 .collect();
             let all: Vec<(&str, f64)> = kept.iter().copied().chain(moved).collect();
             OFFERED.fetch_add(1, Ordering::Relaxed);
-            if let Some(accepted) = built(&blueprint, &mut bench, &all) {
+            if let Some(accepted) = built(&base, &all) {
                 ACCEPTED.fetch_add(1, Ordering::Relaxed);
                 (kept, setup) = (all, accepted);
             }
@@ -187,21 +180,15 @@ impl Recipe {
     }
 }
 
-fn built(
-    blueprint: &VehicleTemplate,
-    bench: &mut Variant,
-    numbers: &[(&str, f64)],
-) -> Option<Setup> {
-    bench.reset();
-    for (key, number) in numbers {
-        bench.set(
-            &blueprint
-                .slot(key)
-                .unwrap_or_else(|problem| panic!("{key}: {}", problem.message)),
-            *number,
-        );
-    }
-    bench.build().ok()
+fn built(base: &ParamSet, numbers: &[(&str, f64)]) -> Option<Setup> {
+    let param = |key: &str| {
+        let param = base.param(key);
+        param.unwrap_or_else(|problem| panic!("{key}: {}", problem.message))
+    };
+    let params: Vec<_> = numbers.iter().map(|(key, x)| (param(key), *x)).collect();
+    let numbers: Vec<_> = params.iter().map(|(param, x)| (param, *x)).collect();
+    let set = base.with_numbers(&numbers).ok()?;
+    Some(Setup::from_params(&set))
 }
 
 /// The key and its new value; nothing for a key that is the truth of another one, or whose range has no ends.

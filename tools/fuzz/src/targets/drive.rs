@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use std::sync::OnceLock;
 
 use cvtcycle::config::cycle::{Cycle, read_csv};
-use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
-use cvtcycle::config::setup::{Options, Setup};
+use cvtcycle::config::setup::{Options, Param, ParamSet, Setup};
 use cvtcycle::config::{KeyInfo, Override};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use cvtcycle::model::drive::{Recorder, State, simulate};
@@ -78,8 +77,8 @@ const MAX_CHANGES: usize = 40;
 const LEGS: usize = 8;
 
 struct Car {
-    bench: Variant,
-    parameters: Vec<(ParameterRef, f64, f64, f64, bool)>,
+    base: ParamSet,
+    parameters: Vec<(Param, f64, f64, f64, bool)>,
 }
 
 fn car((name, words): (&str, &[&str])) -> Car {
@@ -87,21 +86,23 @@ fn car((name, words): (&str, &[&str])) -> Car {
         set: Override::parse_all(words).unwrap_or_else(|p| panic!("{p}")),
         ..Options::default()
     };
-    let loaded = VehicleTemplate::load(name, &options);
-    let (blueprint, base) =
-        loaded.unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
-    let slot = |info: &KeyInfo| {
+    let base = ParamSet::load(name, &options)
+        .unwrap_or_else(|problems| panic!("{name} {words:?}: {}", problems[0].message));
+    let parameter = |info: &KeyInfo| {
         info.si?;
         let (low, high) = range(&info.allowed)?;
-        let base: f64 = info.value.parse().ok()?;
-        let slot = blueprint.slot(&info.key).ok()?;
-        Some((slot, low, high, base, info.allowed.starts_with("integer")))
+        let number: f64 = info.value.parse().ok()?;
+        let param = base.param(&info.key).ok()?;
+        Some((
+            param,
+            low,
+            high,
+            number,
+            info.allowed.starts_with("integer"),
+        ))
     };
-    let parameters = base.keys.iter().filter_map(slot).collect();
-    Car {
-        bench: blueprint.bench(),
-        parameters,
-    }
+    let parameters = base.keys().iter().filter_map(parameter).collect();
+    Car { base, parameters }
 }
 
 /// True if car and cycle of an input are printed: `CVTCYCLE_FUZZ_PRINT=1`.
@@ -111,7 +112,7 @@ fn prints_input() -> bool {
 }
 
 /// Applies the changes of the input to the car. If the result is invalid, tries the first half of them, then its first half.
-fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
+fn setup(car: &Car, bytes: &mut Bytes) -> Option<Setup> {
     let mut changes = Vec::new();
     for _ in 0..usize::from(bytes.byte()) % (MAX_CHANGES + 1) {
         let place = usize::from(bytes.short()) % car.parameters.len();
@@ -127,18 +128,16 @@ fn setup(car: &mut Car, bytes: &mut Bytes) -> Option<Setup> {
         changes.push((place, number.clamp(*low, *high)));
     }
     loop {
-        car.bench.reset();
-        for (place, number) in &changes {
-            car.bench.set(&car.parameters[*place].0, *number);
-        }
-        match car.bench.build() {
-            Ok(setup) => {
+        let numbers = changes.iter();
+        let numbers = numbers.map(|(place, number)| (&car.parameters[*place].0, *number));
+        match car.base.with_numbers(&numbers.collect::<Vec<_>>()) {
+            Ok(set) => {
                 if prints_input() {
                     changes.iter().for_each(|(place, number)| {
                         eprintln!("--set {}={number:?}", car.parameters[*place].0.key())
                     });
                 }
-                return Some(setup);
+                return Some(Setup::from_params(&set));
             }
             Err(_) if changes.is_empty() => return None,
             Err(_) => changes.truncate(changes.len() / 2),

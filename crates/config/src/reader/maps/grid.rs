@@ -12,12 +12,12 @@ pub(super) const MAX_ROWS: (usize, &str) = (
     "a coarser grid will do: between its points a map is interpolated",
 );
 
-/// What must hold between the rows of a map.
+/// Conditions between the rows of a map.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
     /// Group of columns along which the value may not fall.
     pub rises_with: Option<&'static str>,
-    /// Whether the rows fill a grid.
+    /// True if the rows fill a grid.
     pub is_grid: bool,
 }
 
@@ -33,7 +33,7 @@ pub(super) fn read(
     rules: Rules,
 ) -> Result<(Vec<usize>, Vec<Vec<f64>>), Problems> {
     let mut problems = Collector::new(file);
-    let (columns, rows) = match Wide::of(schema, bytes) {
+    let (columns, rows) = match Wide::detect(schema, bytes) {
         Some(wide) => wide.read(schema, bytes, &mut problems),
         None => long(schema, bytes, &mut problems),
     };
@@ -155,7 +155,7 @@ fn hole(
     );
 }
 
-/// Whether a column of the schema is the value of the map.
+/// True if a column of the schema is the value of the map.
 fn is_value(schema: &Schema, column: usize) -> bool {
     let last = schema.columns.len() - 1;
     let [own, last] = [column, last].map(|k| &schema.columns[k]);

@@ -29,7 +29,7 @@ pub(super) struct Wide {
 
 impl Wide {
     /// The form of a file's matrix; none where it is none.
-    pub fn of(long: &Schema, bytes: &[u8]) -> Option<Wide> {
+    pub fn detect(long: &Schema, bytes: &[u8]) -> Option<Wide> {
         let is_named = long.named.as_ref().is_some_and(|named| !named.is_empty());
         let names = csv::first_names(bytes);
         let corner = names.iter().position(|name| name.contains('/'))?;

@@ -12,7 +12,7 @@ impl Answers {
     /// Adds the values of a file that are not given already: `mass = "3000lb"`, `displacement = 1800`, `class = "compact_2020"`.
     ///
     /// # Errors
-    /// What is no TOML, unknown names, and values that are neither text nor a number.
+    /// Invalid TOML, unknown names, and values that are neither text nor a number.
     pub fn add_file(&mut self, file: &str, text: &str) -> Result<(), Problems> {
         let document = Document::parse(file, text)?;
         let mut problems = Problems::new();

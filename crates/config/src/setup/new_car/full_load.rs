@@ -61,7 +61,7 @@ impl Curve {
         }
     }
 
-    /// Whether the rated power is what holds the torque at a speed.
+    /// True if the rated power is what holds the torque at a speed.
     fn is_held(&self, rpm: f64) -> bool {
         let [_, to] = self.plateau;
         let share = (rpm - to) / (self.rated_rpm - to);

@@ -149,7 +149,7 @@ fn made(answers: &Answers) -> Result<NewCar, Problems> {
                 .hint("a class has none that is this car's; only a car that it is like has"),
         );
     }
-    let Some(base) = problems.take(Base::of(answers)) else {
+    let Some(base) = problems.take(Base::from_answers(answers)) else {
         return Err(problems);
     };
     let lines = problems.take(rules::lines(answers, &base.car));
@@ -164,16 +164,16 @@ fn made(answers: &Answers) -> Result<NewCar, Problems> {
     text += &tables(&lines);
     let setup = car(answers, &text);
     let setup = setup.map_err(|found| options::under_options(found, &lines, answers))?;
-    text += &of_weight(&setup);
+    text += &weight_comments(&setup);
     Ok(NewCar { text, setup })
 }
 
-/// Whether a number that a class cannot have is missing.
+/// True if a number that a class cannot have is missing.
 fn is_missing(answers: &Answers, name: &str) -> bool {
     REQUIRED.contains(&name) && answers.like.is_none() && !answers.numbers.contains_key(name)
 }
 
-/// What the car inherits from.
+/// Names that the car inherits from.
 struct Base {
     /// Items of `like`.
     like: String,
@@ -182,7 +182,7 @@ struct Base {
 }
 
 impl Base {
-    fn of(answers: &Answers) -> Result<Base, Problems> {
+    fn from_answers(answers: &Answers) -> Result<Base, Problems> {
         let parents = parents(answers)?;
         let like = parents.iter().map(|name| format!("{name:?}"));
         let like = like.collect::<Vec<_>>().join(", ");
@@ -208,7 +208,7 @@ fn meaning(name: &str) -> &'static str {
     found.map_or("", |(_, meaning)| meaning)
 }
 
-/// What the car inherits from.
+/// Names that the car inherits from.
 fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
     let class = |name: &str, option: &str, is_box: bool| {
         let known: Vec<&str> = Kind::Class.names();
@@ -277,8 +277,8 @@ fn tables(lines: &[Line]) -> String {
     text
 }
 
-/// What the car inherits and is worth a look, as comments.
-fn of_weight(setup: &Setup) -> String {
+/// Inherited values that are worth a look, as comments.
+fn weight_comments(setup: &Setup) -> String {
     let inherited = setup.keys.iter().filter(|info| {
         OF_WEIGHT.contains(&info.key.as_str()) && ["class", "like"].contains(&info.status.as_str())
     });

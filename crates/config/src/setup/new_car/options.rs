@@ -1,4 +1,4 @@
-//! What is wrong with the car of some numbers, under the options that gave them.
+//! Problems of a car made of some numbers, under the options that gave them.
 
 use super::Answers;
 use super::rules::{Line, PLAIN};

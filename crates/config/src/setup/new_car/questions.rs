@@ -1,4 +1,4 @@
-//! What a person may be asked for, with what the car has without an answer.
+//! Questions to a person, with the value that the car has without an answer.
 
 use super::{Answers, Base, is_missing, made, meaning};
 use crate::{Problem, ProblemKind, Problems};
@@ -41,11 +41,11 @@ const INSTEAD: [(&str, &[&str]); 2] = [
 /// A number that is not given.
 #[derive(Clone, Debug)]
 pub struct Question {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// Its meaning and units.
+    /// Meaning and units.
     pub meaning: &'static str,
-    /// What the car has without an answer, and from where; none where an answer is needed.
+    /// Value without an answer, and its origin; `None` if an answer is needed.
     pub usual: Option<String>,
 }
 
@@ -54,7 +54,7 @@ pub struct Question {
 /// # Errors
 /// A class or a car that is none.
 pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
-    let base = Base::of(answers)?;
+    let base = Base::from_answers(answers)?;
     let of_box: &[(&str, &str)] = match base.car.transmission().is_cvt() {
         true => &OF_CVT,
         false => &OF_MANUAL,
@@ -83,7 +83,7 @@ pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
     Ok(list.collect())
 }
 
-/// What is wrong with a number, by itself or with those that are given.
+/// Problem of a number, by itself or with those that are given.
 #[must_use]
 pub fn mistake(answers: &Answers, name: &'static str, text: &str) -> Option<Problem> {
     let found = |answers: &Answers| made(answers).err().into_iter().flatten();

@@ -100,7 +100,7 @@ impl Conditions {
 }
 
 impl Speeds {
-    fn from_values<V: Values>(s: &V, from: &Key<'_>, to: &Key<'_>) -> Self {
+    fn from_values<V: Values>(s: &V, from: &Key<'static>, to: &Key<'static>) -> Self {
         let speeds = Speeds {
             from_rad_s: s.number(from),
             to_rad_s: s.number(to),

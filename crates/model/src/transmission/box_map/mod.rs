@@ -269,7 +269,7 @@ pub fn map(points: &[Point]) -> Result<LossMap, NoMap> {
 /// The map that the file of a key gives, if it gives one.
 pub(crate) fn from_values<V: Values>(
     s: &V,
-    key: &Key<'_>,
+    key: &Key<'static>,
     table: &'static FileTable,
     idle_nm: Option<f64>,
 ) -> Option<LossMap> {

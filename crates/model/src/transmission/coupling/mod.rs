@@ -43,7 +43,7 @@ const fn launch(choices: &'static [Choice]) -> spec::Spec {
 }
 
 /// The coupling of a box; `creep_nm` is the default of a clutch's creep torque.
-pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Launch {
+pub(super) fn from_values<V: Values>(s: &V, key: &Key<'static>, creep_nm: f64) -> Launch {
     let (kind, own) = s.choose(key);
     match kind {
         "torque_converter" => Launch::Converter(TorqueConverter::from_values(&own)),
@@ -52,7 +52,7 @@ pub(super) fn from_values<V: Values>(s: &V, key: &Key<'_>, creep_nm: f64) -> Lau
 }
 
 /// The clutch of a manual box.
-pub(super) fn drivers_clutch<V: Values>(s: &V, key: &Key<'_>) -> DriverClutch {
+pub(super) fn drivers_clutch<V: Values>(s: &V, key: &Key<'static>) -> DriverClutch {
     let (_, own) = s.choose(key);
     DriverClutch::new(FrictionClutch::from_values(&own, 0.0))
 }

@@ -88,13 +88,26 @@ keys! {
     }
 }
 
+impl FinalDrive {
+    /// The final drive from the values of `[transmission.cvt]`, in the oil of the sump.
+    pub(crate) fn from_cvt_values<V: Values>(s: &V, oil_m3: f64) -> Self {
+        FinalDrive::from_values(
+            &s.table("final_drive"),
+            s.number(&CVT.final_drive_ratio),
+            s.number(&CVT.final_drive_first_ratio),
+            oil_m3,
+        )
+    }
+}
+
 impl Cvt {
-    /// A checked CVT from the values of `[transmission.cvt]`, and the oil in its sump.
+    /// A checked CVT from the values of `[transmission.cvt]`, and the oil in its sump; `final_drive` is that of the same values, if there is one.
     pub fn from_values<V: Values>(
         s: &V,
         engine: &Engine,
         (oil, oil_m3): (&Lubricant, f64),
         formulation: Formulation,
+        final_drive: Option<&FinalDrive>,
     ) -> Self {
         let v = s.table("variator");
         let full_load_route = engine.speed_for_power();
@@ -121,12 +134,10 @@ impl Cvt {
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);
         let launch = coupling::from_values(s, &CVT.launch, 5.0);
         let mut cvt = Cvt {
-            final_drive: FinalDrive::from_values(
-                &s.table("final_drive"),
-                s.number(&CVT.final_drive_ratio),
-                s.number(&CVT.final_drive_first_ratio),
-                oil_m3,
-            ),
+            final_drive: match final_drive {
+                Some(known) => known.clone(),
+                None => FinalDrive::from_cvt_values(s, oil_m3),
+            },
             secondary_piston_m2: v.number(&VARIATOR.secondary_piston_cm2),
             primary_piston_m2: v.number(&VARIATOR.primary_piston_cm2),
             spring_n: v.number(&VARIATOR.spring_n),

@@ -48,7 +48,7 @@ const ANY_STAGE: Stage = Stage {
 };
 
 /// Rows of a key whose first column is a shaft, with that shaft's number.
-fn on_shafts<V: Values>(s: &V, key: &Key<'_>) -> Vec<(usize, Vec<f64>)> {
+fn on_shafts<V: Values>(s: &V, key: &Key<'static>) -> Vec<(usize, Vec<f64>)> {
     let rows = s.rows(key).unwrap_or_default();
     if rows.iter().any(|row| row[0].fract() != 0.0) {
         s.complain(

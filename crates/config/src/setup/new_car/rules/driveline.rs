@@ -1,4 +1,4 @@
-//! What follows from the numbers of a box: the belt that reaches its ratios, or the gear set and its shift speeds.
+//! Rules from the numbers of a box: the belt that reaches its ratios, or the gear set and its shift speeds.
 
 use std::f64::consts::PI;
 

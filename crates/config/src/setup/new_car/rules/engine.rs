@@ -1,4 +1,4 @@
-//! What follows from size, power and torque of an engine.
+//! Rules from size, power and torque of an engine.
 
 use std::f64::consts::PI;
 
@@ -47,7 +47,7 @@ impl Given<'_> {
         Some((value, speeds))
     }
 
-    /// What follows from the size of the engine.
+    /// Values from the size of the engine.
     pub(super) fn size(&mut self) {
         let Some(cc) = self.number("displacement", &VOLUME).filter(|cc| *cc > 0.0) else {
             return;
@@ -75,7 +75,7 @@ impl Given<'_> {
         }
     }
 
-    /// What follows from power and torque of the engine.
+    /// Values from power and torque of the engine.
     pub(super) fn power(&mut self) {
         let torque = self.at_speed("torque", &TORQUE);
         let Some((kw, speeds)) = self.at_speed("power", &POWER) else {

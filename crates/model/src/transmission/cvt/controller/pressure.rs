@@ -213,7 +213,7 @@ impl ClampKeys {
 }
 
 /// The chosen clamp law, and its table if it is one.
-pub fn clamp<V: Values>(s: &V, key: &Key<'_>) -> (ClampLaw, Option<Arc<PressureTable>>) {
+pub fn clamp<V: Values>(s: &V, key: &Key<'static>) -> (ClampLaw, Option<Arc<PressureTable>>) {
     let (law, c) = s.choose(key);
     if law == "table" {
         return (ClampLaw::Table, pressure_table(&c));

@@ -170,8 +170,8 @@ fn between(levels: &[f64], x: f64) -> (usize, usize, f64) {
 /// The table that the file gives, if it gives one.
 pub(super) fn shift_map<V: Values>(
     s: &V,
-    key: &Key<'_>,
-    lines: &[&Key<'_>],
+    key: &Key<'static>,
+    lines: &[&Key<'static>],
 ) -> Option<Arc<ShiftMap>> {
     let rows = s.file_table(key, &SHIFT_MAP)?;
     if let Some(line) = lines.iter().find(|line| s.has(line)) {

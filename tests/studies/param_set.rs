@@ -1,4 +1,4 @@
-//! Cars built from a template equal those of an ordinary load with the same overrides, and give the same problems.
+//! A car of changed values equals that of an ordinary load with the same overrides, and has the same problems at the same places.
 //! Truth of all comparisons: `setup::load` with `--set KEY=NUMBER`, compared by the Debug text of the whole car, which contains every
 //! number with all digits.
 #![allow(clippy::unwrap_used, reason = "tests")]
@@ -9,9 +9,8 @@ use std::collections::BTreeSet;
 
 use crate::common::CARS;
 use cvtcycle::config::cycle::embedded;
-use cvtcycle::config::setup::template::{ParameterRef, Variant, VehicleTemplate};
-use cvtcycle::config::setup::{Options, Setup, load};
-use cvtcycle::config::{KeyInfo, Override, Problems, render};
+use cvtcycle::config::setup::{Options, Param, ParamSet, Setup, load};
+use cvtcycle::config::{KeyInfo, Override, Problem, Problems, render};
 use cvtcycle::model::drive::{Conditions, Start, drive};
 use proptest::prelude::*;
 
@@ -24,14 +23,13 @@ fn options(set: &[&str]) -> Options {
     }
 }
 
-fn blueprint(word: &str, options: &Options) -> (VehicleTemplate, Setup) {
-    VehicleTemplate::load(word, options)
+fn params(word: &str, options: &Options) -> ParamSet {
+    ParamSet::load(word, options)
         .unwrap_or_else(|problems| panic!("{word}: {}", render(&problems, false)))
 }
 
-fn slot(blueprint: &VehicleTemplate, key: &str) -> ParameterRef {
-    blueprint
-        .slot(key)
+fn param(base: &ParamSet, key: &str) -> Param {
+    base.param(key)
         .unwrap_or_else(|problem| panic!("{key}: {}", problem.message))
 }
 
@@ -55,44 +53,38 @@ fn ordinary(word: &str, options: &Options, numbers: &[(&str, f64)]) -> Result<St
     load(word, &options).map(text)
 }
 
-/// Builds the car from the current numbers. Asserts that problems are counted exactly if there are any.
-fn built(bench: &mut Variant) -> Result<String, Problems> {
-    let problems = bench.problems();
-    match bench.build() {
-        Ok(setup) => {
-            assert!(
-                problems.is_empty() && setup.keys.is_empty(),
-                "built in spite of {problems:?}"
-            );
-            Ok(text(setup))
-        }
-        Err(rejected) => {
-            assert!(
-                rejected.problems > 0 && !problems.is_empty(),
-                "refused without a word"
-            );
-            Err(problems)
-        }
+/// Text of the car with other numbers, all set at once.
+fn built(base: &ParamSet, numbers: &[(&str, f64)]) -> Result<String, Problems> {
+    let params: Vec<(Param, f64)> = numbers
+        .iter()
+        .map(|(key, number)| (param(base, key), *number))
+        .collect();
+    let numbers: Vec<(&Param, f64)> = params.iter().map(|(param, x)| (param, *x)).collect();
+    let set = base.with_numbers(&numbers)?;
+    let setup = Setup::from_params(&set);
+    assert!(setup.keys.is_empty());
+    Ok(text(setup))
+}
+
+/// Text of the car with other numbers, set one after the other; none where a step is no possible car.
+fn built_in_steps(base: &ParamSet, numbers: &[(&str, f64)]) -> Option<String> {
+    let mut set = base.clone();
+    for (key, number) in numbers {
+        set = set.with(key, *number).ok()?;
     }
+    Some(text(Setup::from_params(&set)))
 }
 
 /// Sets numbers and compares with the ordinary load. Returns whether the car is valid.
-fn same(
-    word: &str,
-    options: &Options,
-    blueprint: &VehicleTemplate,
-    bench: &mut Variant,
-    numbers: &[(&str, f64)],
-) -> bool {
-    bench.reset();
-    for (key, number) in numbers {
-        bench.set(&slot(blueprint, key), *number);
-    }
-    let (quick, full) = (built(bench), ordinary(word, options, numbers));
+fn same(word: &str, options: &Options, base: &ParamSet, numbers: &[(&str, f64)]) -> bool {
+    let (quick, full) = (built(base, numbers), ordinary(word, options, numbers));
     assert!(
         quick == full,
         "{word} {numbers:?}:\n{quick:?}\ninstead of\n{full:?}"
     );
+    if let Some(steps) = built_in_steps(base, numbers) {
+        assert_eq!(Ok(&steps), full.as_ref(), "{word} {numbers:?} in steps");
+    }
     quick.is_ok()
 }
 
@@ -107,16 +99,14 @@ fn changed(info: &KeyInfo, base: f64) -> f64 {
 
 /// Compares every numeric key of a car. Returns the numbers of keys and of valid changes.
 fn every_number(word: &str, options: &Options) -> (usize, usize) {
-    let (blueprint, setup) = blueprint(word, options);
-    let mut bench = blueprint.bench();
-    let base = text(setup.clone());
-    assert_eq!(built(&mut bench).as_ref(), Ok(&base), "{word} unchanged");
-    let numbers = setup.keys.iter().filter(|info| info.si.is_some());
+    let base = params(word, options);
+    let unchanged = text(base.setup());
+    assert_eq!(built(&base, &[]).as_ref(), Ok(&unchanged), "{word}");
     let (mut count, mut accepted) = (0, 0);
-    for info in numbers {
-        let slot = slot(&blueprint, &info.key);
+    for info in base.keys().iter().filter(|info| info.si.is_some()) {
+        let param = param(&base, &info.key);
         assert_eq!(
-            (slot.base().to_string(), slot.unit(), slot.allowed()),
+            (param.base().to_string(), param.unit(), param.allowed()),
             (
                 info.value.clone(),
                 info.unit.as_str(),
@@ -124,16 +114,9 @@ fn every_number(word: &str, options: &Options) -> (usize, usize) {
             )
         );
         count += 1;
-        accepted += usize::from(same(
-            word,
-            options,
-            &blueprint,
-            &mut bench,
-            &[(&info.key, changed(info, slot.base()))],
-        ));
+        let number = changed(info, param.base());
+        accepted += usize::from(same(word, options, &base, &[(&info.key, number)]));
     }
-    bench.reset();
-    assert_eq!(built(&mut bench), Ok(base), "{word} after a reset");
     (count, accepted)
 }
 
@@ -225,7 +208,7 @@ fn numbers_that_the_file_leaves_out() {
     let word = edited(&folder, |line| {
         (!WITH_DEFAULT.contains(&name_of(line))).then(|| line.to_owned())
     });
-    let (_, setup) = blueprint(&word, &Options::default());
+    let setup = params(&word, &Options::default()).setup();
     let defaults: BTreeSet<&str> = setup
         .keys
         .iter()
@@ -250,50 +233,40 @@ fn numbers_of_options_given_as_a_word_or_missing() {
         )),
         _ => (!launch.contains(&name_of(line))).then(|| line.to_owned()),
     });
-    let (blueprint, _) = blueprint(&word, &Options::default());
-    let mut bench = blueprint.bench();
-    let base = built(&mut bench);
+    let base = params(&word, &Options::default());
+    let unchanged = built(&base, &[]);
     let (gain, share) = (
         "transmission.cvt.launch.friction_clutch.gain_nm_per_rpm2",
         "transmission.cvt.pump.kind.variable.least_share",
     );
-    assert_eq!(slot(&blueprint, share).base().to_string(), "0.25");
+    assert_eq!(param(&base, share).base().to_string(), "0.25");
     assert!(same(
         &word,
         &Options::default(),
-        &blueprint,
-        &mut bench,
+        &base,
         &[(gain, 4e-5), (share, 0.4)]
     ));
     assert!(same(
         &word,
         &Options::default(),
-        &blueprint,
-        &mut bench,
+        &base,
         &[("transmission.cvt.pump.kind.dual_cavity.share", 0.3)]
     ));
     let both = [
         (share, 0.4),
         ("transmission.cvt.pump.kind.dual_cavity.share", 0.3),
     ];
-    assert!(!same(
-        &word,
-        &Options::default(),
-        &blueprint,
-        &mut bench,
-        &both
-    ));
-    bench.reset();
-    assert_eq!(built(&mut bench), base);
+    assert!(!same(&word, &Options::default(), &base, &both));
+    assert_eq!(built(&base, &[]), unchanged);
 }
 
 /// A number selects the option to which it belongs, as on the command line, and leaves no unread key.
 #[test]
 fn numbers_of_options_that_the_file_does_not_choose() {
-    let (blueprint, setup) = blueprint(CARS[0], &Options::default());
-    let mut bench = blueprint.bench();
+    let base = params(CARS[0], &Options::default());
+    let setup = base.setup();
     let none = Options::default();
-    let share = slot(&blueprint, "transmission.cvt.pump.kind.dual_cavity.share");
+    let share = param(&base, "transmission.cvt.pump.kind.dual_cavity.share");
     assert_eq!(
         (share.base().to_string(), share.unit(), share.allowed()),
         ("0.5".to_owned(), "-", "0.05 to 1")
@@ -303,8 +276,8 @@ fn numbers_of_options_that_the_file_does_not_choose() {
         "road_load.form.body.frontal_area_m2",
         "road_load.form.body.rolling_coefficient",
     );
-    assert!(slot(&blueprint, cd).base().is_nan(), "no default");
-    assert_eq!(slot(&blueprint, area).unit(), "m²");
+    assert!(param(&base, cd).base().is_nan(), "no default");
+    assert_eq!(param(&base, area).unit(), "m²");
     let good: [&[(&str, f64)]; 4] = [
         &[("transmission.cvt.pump.kind.dual_cavity.share", 0.6)],
         &[
@@ -322,15 +295,11 @@ fn numbers_of_options_that_the_file_does_not_choose() {
         ],
     ];
     for numbers in good {
-        assert!(
-            same(CARS[0], &none, &blueprint, &mut bench, numbers),
-            "{numbers:?}"
-        );
+        assert!(same(CARS[0], &none, &base, numbers), "{numbers:?}");
         assert!(same(
             CARS[0],
             &none,
-            &blueprint,
-            &mut bench,
+            &base,
             &numbers.iter().rev().copied().collect::<Vec<_>>()
         ));
     }
@@ -345,19 +314,18 @@ fn numbers_of_options_that_the_file_does_not_choose() {
         &[("engine.model.bsfc_map.l", 2.4)],
     ];
     for numbers in bad {
-        assert!(
-            !same(CARS[0], &none, &blueprint, &mut bench, numbers),
-            "{numbers:?}"
-        );
+        assert!(!same(CARS[0], &none, &base, numbers), "{numbers:?}");
         // Repeated, and the same car twice: cached results of one car must not affect another.
-        bench.set(&share, 0.6);
-        assert!(
-            bench.build().is_err() && bench.build().is_err(),
-            "{numbers:?}"
-        );
+        let more: Vec<(&str, f64)> = numbers
+            .iter()
+            .copied()
+            .chain([(share.key(), 0.6)])
+            .collect();
+        for _ in 0..2 {
+            assert!(!same(CARS[0], &none, &base, &more), "{numbers:?}");
+        }
     }
-    bench.reset();
-    assert_eq!(built(&mut bench), Ok(text(setup)));
+    assert_eq!(built(&base, &[]), Ok(text(setup)));
 }
 
 /// Measured maps are read once: cars stay the same after the file is deleted.
@@ -376,50 +344,131 @@ fn maps_are_read_once() {
         "engine.model.bsfc_map.file=si_1900_bsfc",
     ]);
     every_number(&word, &options);
-    let (blueprint, _) = blueprint(&word, &options);
+    let base = params(&word, &options);
     let mass = [("road_load.mass_kg", 1200.0)];
     let want = ordinary(&word, &options, &mass);
     std::fs::remove_file(map).unwrap();
     assert!(ordinary(&word, &options, &mass).is_err());
-    let mut bench = blueprint.bench();
-    bench.set(&slot(&blueprint, mass[0].0), mass[0].1);
-    assert_eq!(bench.build().map(text).ok(), want.ok());
+    assert_eq!(built(&base, &mass), want);
 }
 
 fn is_shared<T: Send + Sync>(_: &T) {}
 
-fn is_sent<T: Send>(_: &T) {}
+/// Problems without their place, which depends on the way.
+fn words(problems: &Problems) -> Vec<[String; 3]> {
+    let words = |problem: &Problem| {
+        [&problem.message, &problem.allowed, &problem.hint].map(String::to_owned)
+    };
+    problems.iter().map(words).collect()
+}
 
-/// Two threads, each with its own variant, drive the same cars with the same bits as one thread.
+/// Property: each number of a car, set by a file that inherits the rest, by `--set` and by a set of values, gives the same car or the same
+/// problem; by the latter two, and by a factor on the value, at the same place.
+#[test]
+fn every_way_to_set_a_number_is_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    for car in [CARS[0], CARS[1]] {
+        let base = params(car, &Options::default());
+        let file = folder.path().join(format!("{car}.toml"));
+        let word = file.to_str().unwrap();
+        let vehicle = |setup: Setup| format!("{:?}", setup.vehicle.into_car(AMBIENT_K));
+        let mut refused = 0;
+        for info in base.keys().iter().filter(|info| info.si.is_some()) {
+            let of_fluid = ["lubricant.", "engine_oil."];
+            if of_fluid.iter().any(|prefix| info.key.starts_with(prefix)) {
+                continue;
+            }
+            let (table, name) = info.key.rsplit_once('.').unwrap();
+            let own: f64 = info.value.parse().unwrap();
+            for number in [changed(info, own), -1e7, 1e11] {
+                let text = format!("[vehicle]\nlike = \"{car}\"\n[{table}]\n{name} = {number}\n");
+                std::fs::write(&file, text).unwrap();
+                let by_file = load(word, &Options::default());
+                let by_override = load(car, &options(&[&format!("{}={number}", info.key)]));
+                let by_set = base.with(&info.key, number).map(|set| set.setup());
+                match (by_file, by_override, by_set) {
+                    (Ok(file), Ok(set), Ok(with)) => {
+                        assert_eq!(set.keys, with.keys, "{car} {} {number}", info.key);
+                        let [file, set, with] = [file, set, with].map(vehicle);
+                        assert!(file == set && set == with, "{car} {} {number}", info.key);
+                    }
+                    (Err(file), Err(set), Err(with)) => {
+                        refused += 1;
+                        assert_eq!(words(&file), words(&set), "{car} {} {number}", info.key);
+                        assert_eq!(set, with, "{car} {} {number}", info.key);
+                    }
+                    other => panic!("{car} {} {number}: {other:?}", info.key),
+                }
+            }
+            let by_factor = load(car, &options(&[&format!("{}*=1.01", info.key)]));
+            match (by_factor, base.with(&info.key, own * 1.01)) {
+                (Ok(factor), Ok(with)) => assert_eq!(vehicle(factor), vehicle(with.setup())),
+                (Err(factor), Err(with)) => assert_eq!(words(&factor), words(&with)),
+                other => panic!("{car} {}: {other:?}", info.key),
+            }
+        }
+        assert!(refused > 150, "{car}: {refused}");
+    }
+}
+
+/// Words and truth values, and a relation between two values, by `--set` and by a set.
+#[test]
+fn words_and_relations_have_the_problems_of_the_command_line() {
+    let base = params(CARS[0], &Options::default());
+    for (key, value) in [
+        ("road_load.surface", "road"),
+        ("road_load.surface", "rood"),
+        ("transmission.cvt.pump.kind", "variable"),
+        ("transmission.cvt.clamp", "slip_limited"),
+        ("transmission.cvt.variator.compensated", "false"),
+        ("transmission.cvt.variator.compensated", "maybe"),
+        ("transmission.cvt.belt.length_m", "0,7"),
+        ("transmission.manual.final_ratio", "4"),
+        ("engine.full_load", "[[850, 100], [800, 90]]"),
+        ("engine.idle.warm_degc", "20"),
+        ("engine.idle.warm_degree", "20"),
+        ("vehicle.title", "Other"),
+        ("engine..idle", "1"),
+    ] {
+        let ordinary = Override::parse_all(&[format!("{key}={value}")]).and_then(|set| {
+            let options = Options {
+                set,
+                ..Options::default()
+            };
+            load(CARS[0], &options)
+        });
+        let with = base.with(key, value).map(|set| set.setup());
+        let parts = |setup: Setup| (setup.keys.clone(), text(setup));
+        assert_eq!(with.map(parts), ordinary.map(parts), "{key}={value}");
+    }
+    let flag = base.with("transmission.cvt.variator.compensated", false);
+    assert!(flag.is_ok());
+}
+
+/// Two threads drive the same cars with the same bits as one thread.
 #[test]
 fn threads_agree() {
-    let (blueprint, _) = blueprint(CARS[0], &Options::default());
-    is_shared(&blueprint);
-    is_sent(&blueprint.bench());
+    let base = params(CARS[0], &Options::default());
+    is_shared(&base);
     let cycle = embedded("ece15").unwrap();
-    let slots = [
+    let params = [
         "transmission.cvt.belt.band_offset_mm",
         "lubricant.kv40_mm2_s",
         "engine.rated_kw",
     ]
-    .map(|key| slot(&blueprint, key));
+    .map(|key| param(&base, key));
     let drives = || {
-        let mut bench = blueprint.bench();
         let run = |k: u32| {
-            bench.reset();
-            for slot in &slots {
-                bench.set(slot, slot.base() * (1.0 + 0.01 * f64::from(k)));
-            }
+            let factor = 1.0 + 0.01 * f64::from(k);
+            let numbers = params.each_ref().map(|of| (of, of.base() * factor));
+            let set = base.with_numbers(&numbers).unwrap();
             let conditions = Conditions {
                 ambient_k: AMBIENT_K,
                 start: Start::Soak,
                 max_dt_s: 1.0,
                 keep_rows: false,
             };
-            format!(
-                "{:?}",
-                drive(&bench.build().unwrap(), &cycle, &conditions).totals
-            )
+            format!("{:?}", drive(set.vehicle(), &cycle, &conditions).totals)
         };
         (0..6).map(run).collect::<Vec<String>>()
     };
@@ -428,7 +477,7 @@ fn threads_agree() {
         (drives(), other.join().unwrap())
     });
     assert_eq!(one, two);
-    let key = |k: usize, factor: f64| format!("{}={}", slots[k].key(), slots[k].base() * factor);
+    let key = |k: usize, factor: f64| format!("{}={}", params[k].key(), params[k].base() * factor);
     let set = [key(0, 1.05), key(1, 1.05), key(2, 1.05)];
     let conditions = Conditions {
         ambient_k: AMBIENT_K,
@@ -465,25 +514,26 @@ proptest! {
             "transmission.cvt.clamp.torque_following.safety_factor",
             "transmission.cvt.clamp.map.base_bar",
         ];
-        let (blueprint, _) = blueprint(CARS[0], &Options::default());
-        let mut bench = blueprint.bench();
+        let base = params(CARS[0], &Options::default());
         let mut in_force: Vec<(&str, f64)> = Vec::new();
+        let mut set = Some(base.clone());
         for (k, factor, restart) in steps {
-            let slot = slot(&blueprint, KEYS[k]);
+            let own = param(&base, KEYS[k]).base();
             if restart && factor < 0.6 {
-                bench.reset();
                 in_force.clear();
+                set = Some(base.clone());
             }
-            let number = if k == 3 { (slot.base() * factor).round() } else { slot.base() * factor };
-            bench.set(&slot, number);
+            let number = if k == 3 { (own * factor).round() } else { own * factor };
+            set = set.and_then(|set| set.with(KEYS[k], number).ok());
             match in_force.iter_mut().find(|(key, _)| *key == KEYS[k]) {
                 Some(entry) => entry.1 = number,
                 None => in_force.push((KEYS[k], number)),
             }
-            if restart {
-                let _ = built(&mut bench);
-            }
         }
-        prop_assert_eq!(built(&mut bench), ordinary(CARS[0], &Options::default(), &in_force));
+        let full = ordinary(CARS[0], &Options::default(), &in_force);
+        prop_assert_eq!(&built(&base, &in_force), &full);
+        if let Some(set) = set {
+            prop_assert_eq!(Ok(text(Setup::from_params(&set))), full);
+        }
     }
 }
