@@ -1,8 +1,8 @@
 //! Choice of one of several options by the name of its table.
 use crate::document::{Node, Table, Value};
 use crate::problem::Problem;
-use crate::reader::log::join;
 use crate::reader::origin::Found;
+use crate::reader::path::join;
 use crate::reader::section::Section;
 use crate::reader::value::{Lookup, default_option, options};
 use cvtcycle_model::keys::Key;

@@ -6,6 +6,7 @@ pub mod lists;
 pub(crate) mod log;
 pub mod maps;
 pub(crate) mod origin;
+pub(crate) mod path;
 pub(crate) mod raw_value;
 pub(crate) mod recorded;
 pub(crate) mod section;
@@ -19,7 +20,8 @@ use crate::document::{Document, Entry};
 use crate::files::Files;
 use crate::problem::place::Place;
 use crate::problem::{Problem, Problems};
-use crate::reader::log::{KeyInfo, Log, parent};
+use crate::reader::log::{KeyInfo, Log};
+use crate::reader::path::parent;
 use crate::reader::recorded::Recorded;
 use crate::reader::unknown::{is_row, unread};
 

@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use crate::document::{Document, Entry, Node, OVERRIDE, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{did_you_mean, one_of, suggest};
-use crate::reader::log::{KeyInfo, join};
+use crate::reader::log::KeyInfo;
+use crate::reader::path::join;
 use crate::reader::section::Section;
 
 /// Allowed statuses of a value in a file.

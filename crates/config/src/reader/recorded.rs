@@ -5,8 +5,8 @@ use std::cell::Cell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use super::log::join;
 use super::maps::MapTable;
+use super::path::join;
 use cvtcycle_model::keys::file_table::{FileRows, FileTable};
 use cvtcycle_model::keys::{Bound, Key, Kind, Quantity, Values};
 use cvtcycle_model::maps::{BsfcMap, LossMap};

@@ -3,7 +3,7 @@ use crate::document::{Node, Span, Table, Value};
 use crate::problem::place::Place;
 use crate::problem::{Problem, ProblemKind};
 use crate::reader::Reader;
-use crate::reader::log::join;
+use crate::reader::path::join;
 use cvtcycle_model::keys::Key;
 
 /// A table at a dotted path. An absent table is a table without keys.

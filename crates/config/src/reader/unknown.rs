@@ -6,7 +6,8 @@ use crate::document::target::rows_of;
 use crate::document::{Document, Entry, Span, Table, Value};
 use crate::problem::Problem;
 use crate::problem::near::{is_suggestion, similarity, suggestion};
-use crate::reader::log::{Log, join, last, parent};
+use crate::reader::log::Log;
+use crate::reader::path::{join, last, parent};
 use cvtcycle_model::files::VEHICLE;
 use cvtcycle_model::keys::{Quantity, stem};
 

@@ -7,8 +7,9 @@ use crate::document::{Node, Span, Value};
 use crate::problem::Problem;
 use crate::problem::near::suggest;
 use crate::problem::place::Place;
-use crate::reader::log::{KeyInfo, join};
+use crate::reader::log::KeyInfo;
 use crate::reader::origin::{COLUMNS, Found};
+use crate::reader::path::join;
 use crate::reader::section::Section;
 use cvtcycle_model::keys::{Bound, Key, Kind, Presence, Quantity};
 

@@ -13,6 +13,7 @@ mod stopping;
 mod together;
 mod totals;
 mod vehicle;
+pub(crate) mod vehicle_keys;
 
 pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::Car;
+use crate::drive::vehicle_keys::VEHICLE_FILE;
 use crate::engine::Engine;
-use crate::files::VEHICLE_FILE;
 use crate::keys::Values;
 use crate::lubricant::Lubricant;
 use crate::road::RoadLoadInput;
