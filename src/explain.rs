@@ -59,16 +59,16 @@ impl Meanings {
     /// What a word means: a key, table, column, flag, label or term; else whatever has all of its words in its meaning.
     ///
     /// ```
-    /// use cvtcycle_study::explain::Meanings;
-    /// let offset = Meanings::of("band_offset_mm")?;
+    /// use cvtcycle::explain::Meanings;
+    /// let offset = Meanings::find("band_offset_mm")?;
     /// assert_eq!(offset.keys[0].0.key, "transmission.cvt.belt.band_offset_mm");
-    /// assert!(Meanings::of("band_ofset_mm").is_err());
+    /// assert!(Meanings::find("band_ofset_mm").is_err());
     /// # Ok::<(), cvtcycle_config::Problem>(())
     /// ```
     ///
     /// # Errors
     /// A word that is not known, with those like it.
-    pub fn of(word: &str) -> Result<Meanings, Problem> {
+    pub fn find(word: &str) -> Result<Meanings, Problem> {
         let mut meanings = Meanings::default();
         meanings.add(word);
         if meanings.is_empty() {

@@ -42,7 +42,7 @@ impl Execute for ExplainArgs {
 
     fn plan(&self, problems: &mut Problems) -> Option<Self::Plan> {
         let word = self.key.join(" ").trim().to_owned();
-        let found = Meanings::of(&word);
+        let found = Meanings::find(&word);
         let found = found.map_err(|problem| problem.in_file("explain").key("explain"));
         Some((word, problems.take(found)?))
     }
