@@ -297,7 +297,7 @@ fn the_head_is_taken_as_written() {
             seed: i64::MAX as u64
         }
     );
-    let line = |key: &str| plan.places.of(key).line;
+    let line = |key: &str| plan.places.place(key).line;
     assert_eq!(
         [
             line("vehicle"),
@@ -366,7 +366,7 @@ fn factors_are_taken_as_written() {
     assert_eq!(
         (
             f[3].places.nth("values", 2).line,
-            f[3].places.of("range").line
+            f[3].places.place("range").line
         ),
         (20, 20)
     );
@@ -420,8 +420,8 @@ fn examples_of_the_documentation() {
     );
     assert_eq!(
         (
-            plan.factors[1].places.of("distribution").line,
-            plan.factors[1].places.of("distribution.high").line
+            plan.factors[1].places.place("distribution").line,
+            plan.factors[1].places.place("distribution.high").line
         ),
         (27, 30)
     );

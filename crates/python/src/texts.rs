@@ -50,7 +50,7 @@ pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
 /// Explains a word.
 #[pyfunction]
 pub fn explain(py: Python<'_>, word: &str) -> PyResult<String> {
-    let found = py.detach(|| Meanings::of(word));
+    let found = py.detach(|| Meanings::find(word));
     let found = found.map_err(|problem| refused(problem.key("word")))?;
     text(&found.json(word)).map_err(refused)
 }

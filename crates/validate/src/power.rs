@@ -83,7 +83,10 @@ impl Perturbations {
         let compared: Vec<&Judged> = compared
             .filter(|judged| judged.computed.is_some() && judged.row.printed.is_some())
             .collect();
-        let mut rows: Vec<RowPower> = compared.iter().map(|judged| RowPower::of(judged)).collect();
+        let mut rows: Vec<RowPower> = compared
+            .iter()
+            .map(|judged| RowPower::new(judged))
+            .collect();
         let mut refused = Vec::new();
         for list in &self.lists {
             // The first list goes to all of them: nothing has flipped yet.
@@ -228,7 +231,7 @@ pub struct RowPower {
 }
 
 impl RowPower {
-    fn of(judged: &Judged) -> Self {
+    fn new(judged: &Judged) -> Self {
         RowPower {
             id: judged.row.id.clone(),
             group: judged.group.word(),
@@ -317,7 +320,7 @@ pub struct PowerReport {
 
 impl PowerReport {
     /// Rows of a strength.
-    pub fn of(&self, strength: Strength) -> impl Iterator<Item = &RowPower> {
+    pub fn rows_with(&self, strength: Strength) -> impl Iterator<Item = &RowPower> {
         self.rows
             .iter()
             .filter(move |row| row.strength() == strength)
@@ -341,7 +344,7 @@ impl PowerReport {
             })
         };
         let count = |strength: Strength| {
-            let count = self.of(strength).count();
+            let count = self.rows_with(strength).count();
             (strength.word().to_owned(), count.into())
         };
         object!({

@@ -196,12 +196,12 @@ fn one(s: &Section, name: &str, base: Option<Source>) -> Source {
     }
     for key in kind.axes() {
         let given = s.grid(key);
-        let Some((_, slot)) = source.axes.iter_mut().find(|(name, _)| *name == key.name) else {
+        let Some((_, values)) = source.axes.iter_mut().find(|(name, _)| *name == key.name) else {
             continue;
         };
-        *slot = given.or_else(|| slot.take());
+        *values = given.or_else(|| values.take());
         let required = matches!(key.presence, Presence::RequiredIf(_));
-        if required && slot.as_ref().is_none_or(Vec::is_empty) {
+        if required && values.as_ref().is_none_or(Vec::is_empty) {
             let message = format!("source `{name}` has no `{}`", key.name);
             let hint = "give a number, a list or a range";
             let allowed = key.range().in_unit(unit_of(key.name));

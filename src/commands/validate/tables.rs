@@ -171,10 +171,15 @@ pub fn power(report: &Report, power: &PowerReport, paint: Paint) -> String {
         .right("moves", |row| row.moved.to_string())
         .left("flipped by", |row| row.flips_text(MAX_FLIPS))
         .text(&power.rows);
-    let count = |strength: Strength| (strength.word(), power.of(strength).count().to_string());
+    let count = |strength: Strength| {
+        (
+            strength.word(),
+            power.rows_with(strength).count().to_string(),
+        )
+    };
     let counts = list(Strength::ALL.into_iter().map(count));
     let never = |verdict: Verdict| {
-        let rows = power.of(Strength::Never);
+        let rows = power.rows_with(Strength::Never);
         let ids = rows.filter(|row| row.verdict == verdict);
         let ids: Vec<&str> = ids.map(|row| row.id.as_str()).collect();
         (!ids.is_empty()).then(|| [verdict.word().to_owned(), ids.join(" ")])

@@ -22,7 +22,7 @@ fn near(a: f64, b: f64) -> bool {
 /// Truth: numpy 2.4 (`mean`, `std(ddof=1)`, `quantile`) and scipy 1.17 (`t.interval`, `binom.ppf`).
 #[test]
 fn val_summary_as_in_numpy_and_scipy() {
-    let s = Summary::of(&column(), USUAL);
+    let s = Summary::new(&column(), USUAL);
     assert_eq!((s.n, s.missing), (64, 0));
     assert!(
         near(s.mean, 13.43517654912861) && near(s.sd, 3.7526493749343626),
@@ -64,13 +64,13 @@ fn missing_values_are_counted_and_change_nothing_else() {
     let full = column();
     let mut gaps = full.clone();
     gaps.splice(10..10, [f64::NAN, f64::INFINITY, f64::NEG_INFINITY]);
-    let (a, b) = (Summary::of(&full, USUAL), Summary::of(&gaps, USUAL));
+    let (a, b) = (Summary::new(&full, USUAL), Summary::new(&gaps, USUAL));
     let spread = Spread {
         missing: 3,
         ..a.spread
     };
     assert_eq!(Summary { spread, ..a }, b);
-    let none = Summary::of(&[f64::NAN], USUAL);
+    let none = Summary::new(&[f64::NAN], USUAL);
     assert!(
         none.n == 0
             && none.missing == 1
@@ -78,8 +78,8 @@ fn missing_values_are_counted_and_change_nothing_else() {
             && none.min.is_nan()
             && none.quantiles[3].value.is_nan()
     );
-    assert!(none.mean_interval.is_none() && Summary::of(&[], USUAL).quantile(0.5).is_nan());
-    let one = Summary::of(&[2.5], USUAL);
+    assert!(none.mean_interval.is_none() && Summary::new(&[], USUAL).quantile(0.5).is_nan());
+    let one = Summary::new(&[2.5], USUAL);
     assert_eq!(
         (one.mean, one.min, one.max, one.quantile(0.05)),
         (2.5, 2.5, 2.5, 2.5)
@@ -92,13 +92,13 @@ fn missing_values_are_counted_and_change_nothing_else() {
 fn a_small_spread_about_a_large_mean_keeps_its_digits() {
     // By hand: 0, 1, 2 repeated about 10^9 has variance 2/3 n / (n - 1).
     let values: Vec<f64> = (0..3000).map(|i| 1e9 + f64::from(i % 3)).collect();
-    let s = Summary::of(&values, USUAL);
+    let s = Summary::new(&values, USUAL);
     assert!(
         near(s.mean, 1e9 + 1.0) && near(s.sd, (2.0 / 3.0 * 3000.0 / 2999.0_f64).sqrt()),
         "{}",
         s.sd
     );
-    let same = Summary::of(&[0.1; 1000], USUAL);
+    let same = Summary::new(&[0.1; 1000], USUAL);
     assert!(same.sd < 1e-17 && same.mean == 0.1, "{}", same.sd);
 }
 
@@ -127,7 +127,7 @@ fn shares_leave_out_what_is_missing() {
         (share.k, share.n, share.missing, share.share),
         (1, 2, 3, 0.5)
     );
-    let share = Share::of(&[1.0, 2.0, 3.0, 4.0], Some(USUAL), |x| x >= 2.0);
+    let share = Share::new(&[1.0, 2.0, 3.0, 4.0], Some(USUAL), |x| x >= 2.0);
     assert_eq!((share.k, share.n), (3, 4));
     assert!(
         share
@@ -162,14 +162,14 @@ fn hits(confidence: Confidence) -> [usize; 3] {
                 * (std::f64::consts::TAU * random.random::<f64>()).cos()
         };
         let values: Vec<f64> = (0..n).map(|_| (s * normal()).exp()).collect();
-        let summary = Summary::of(&values, confidence);
+        let summary = Summary::new(&values, confidence);
         let within = |[low, high]: [f64; 2], truth: f64| usize::from(low <= truth && truth <= high);
         hits[0] += within(summary.mean_interval.unwrap(), (0.5 * s * s).exp());
         let median = summary.quantiles.iter().find(|q| q.p == 0.5).unwrap();
         let [low, high] = median.interval;
         hits[1] += within([low.unwrap(), high.unwrap()], 1.0);
         hits[2] += within(
-            Share::of(&values, Some(confidence), |x| x > 1.0)
+            Share::new(&values, Some(confidence), |x| x > 1.0)
                 .interval
                 .unwrap(),
             0.5,

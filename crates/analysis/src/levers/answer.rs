@@ -315,7 +315,7 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
     };
     let fuel = pairs(&numbers.fuel);
     let percent: Vec<f64> = fuel.iter().map(|(x, of)| 100.0 * (x / of - 1.0)).collect(); // PV-1
-    let summary = Summary::of(&percent, confidence);
+    let summary = Summary::new(&percent, confidence);
     let quantile = |p: f64| {
         let found = summary.quantiles.iter().find(|q| (q.p - p).abs() < 1e-9);
         found.copied().unwrap_or(Quantile {
@@ -337,7 +337,7 @@ fn row(column: usize, note: &ColumnNote, numbers: &Numbers, confidence: Confiden
         fuel_percent: quantile(0.5),
         low_percent: quantile(low),   // PV-2
         high_percent: quantile(high), // PV-2
-        saves: Share::of(&percent, Some(confidence), |x| x < -NOTHING_PERCENT), // PV-3
+        saves: Share::new(&percent, Some(confidence), |x| x < -NOTHING_PERCENT), // PV-3
         fuel_l_per_100km: differences(&numbers.fuel),
         co2_g_per_km: differences(&numbers.co2),
         sum_percent: None,

@@ -106,7 +106,7 @@ impl Memory {
         parts.sort_by_key(|(part, _)| *part);
         let of = |baseline: usize| {
             let excess = excess(study, &parts, baseline);
-            let summary = Summary::of(&excess, Confidence::default());
+            let summary = Summary::new(&excess, Confidence::default());
             let more = Share::above_zero(&excess, None);
             DrawnDifference {
                 plan: PLAN.to_owned(),

@@ -220,13 +220,13 @@ mod tests {
     fn ends_need_draws_that_reach_them() {
         let usual = Confidence::default();
         let draws = |n: usize| (0..n).map(|k| k as f64).collect::<Vec<_>>();
-        let text = |n: usize| middle(&Summary::of(&draws(n), usual), usual, ("%", signed)).0;
+        let text = |n: usize| middle(&Summary::new(&draws(n), usual), usual, ("%", signed)).0;
         assert_eq!(
             text(71),
             "the least and the largest of 71 runs are 0 to +70 %"
         );
         // An output has no sign.
-        let output = Summary::of(&draws(101), usual);
+        let output = Summary::new(&draws(101), usual);
         assert_eq!(
             middle(&output, usual, ("W", fixed)).0,
             "90 % of the runs are 5 to 95 W, the median is 50 W"
@@ -236,7 +236,7 @@ mod tests {
             "90 % of the runs are +5 to +95 %, the median is +50 %"
         );
         let wide = Confidence::from_level(0.99);
-        let text = middle(&Summary::of(&draws(101), wide), wide, ("%", signed)).0;
+        let text = middle(&Summary::new(&draws(101), wide), wide, ("%", signed)).0;
         assert!(
             text.starts_with("the least and the largest of 101 runs"),
             "{text}"

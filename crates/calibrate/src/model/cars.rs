@@ -79,7 +79,7 @@ impl<'p> Cars<'p> {
     }
 
     /// The car of a source, loaded before.
-    pub fn of(&self, source: Option<&Source>) -> Car<'_> {
+    pub fn car(&self, source: Option<&Source>) -> Car<'_> {
         let name = self.name(source);
         let fitted = || Car::Fitted(self.by_name.get(&name).copied().unwrap_or(0));
         self.fixed.get(&name).map_or_else(fitted, Car::Fixed)

@@ -172,7 +172,7 @@ impl WithValues<'_> {
 
 impl store::Cars for WithValues<'_> {
     fn setup(&self, source: Option<&Source>) -> Result<Rc<Setup>, Problems> {
-        match self.cars.of(source) {
+        match self.cars.car(source) {
             Car::Fixed(setup) => Ok(Rc::new(setup.clone())),
             Car::Fitted(index) => {
                 let built = once(&self.built, index, || self.build(index));

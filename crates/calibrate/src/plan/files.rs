@@ -75,7 +75,7 @@ impl Deviations {
     }
 
     /// The standard deviation of a measured column in a row: that of the file goes before those of the plan.
-    fn of(&self, sheet: &Sheet, row: usize, name: &str) -> Option<f64> {
+    fn deviation(&self, sheet: &Sheet, row: usize, name: &str) -> Option<f64> {
         let own = sheet.number(row, sheet.find(&format!("{SD}{name}")));
         let named = |wanted: &str| self.0.iter().find(|(key, _)| key == wanted);
         own.or_else(|| Some(named(name).or_else(|| named(""))?.1))
@@ -100,7 +100,7 @@ impl Deviations {
             let lacks = |row: &usize| {
                 sheet.number(*row, Some(*k)).is_some()
                     && !sheet.is_bad(*row, deviation)
-                    && self.of(sheet, *row, name).is_none()
+                    && self.deviation(sheet, *row, name).is_none()
             };
             if let Some(row) = (0..sheet.rows.len()).find(lacks) {
                 let message = format!("{name} has no standard deviation here");
@@ -120,7 +120,7 @@ impl Deviations {
         observable: impl Fn(&str) -> Observable,
     ) -> Option<Observation> {
         let (value, name) = (sheet.number(row, Some(k))?, &sheet.columns[k]);
-        let sd = self.of(sheet, row, name).unwrap_or(f64::NAN);
+        let sd = self.deviation(sheet, row, name).unwrap_or(f64::NAN);
         let measured = Measured::Value(value);
         Some(Observation {
             column: name.clone(),

@@ -24,7 +24,7 @@ impl Delimiter {
     ///
     /// # Errors
     /// Two signs do so equally well.
-    pub(super) fn of<'t>(
+    pub(super) fn detect<'t>(
         names: Line<'t>,
         below: impl Iterator<Item = Line<'t>> + Clone,
     ) -> Result<Delimiter, [Delimiter; 2]> {
@@ -49,7 +49,7 @@ impl Delimiter {
         below: impl Iterator<Item = Line<'t>> + Clone,
         problems: &mut Collector<'_>,
     ) -> Option<Delimiter> {
-        let found = Delimiter::of(names, below);
+        let found = Delimiter::detect(names, below);
         let report = |both: &[Delimiter; 2]| {
             let [one, other] = both.map(|d| (d.count(names).unwrap_or(0), d.word()));
             let message = format!(

@@ -103,7 +103,7 @@ impl Schema {
         };
         let knows = |line: Line<'t>, below: &mut dyn Iterator<Item = Line<'t>>| {
             let lines: Vec<Line<'t>> = below.take(2).collect();
-            let sign = Delimiter::of(line, lines.into_iter()).map_or(',', Delimiter::sign);
+            let sign = Delimiter::detect(line, lines.into_iter()).map_or(',', Delimiter::sign);
             let mut fields = Vec::new();
             let is_split = split(line.text, sign, &mut fields).is_ok();
             let is_known = |field: &Field| {

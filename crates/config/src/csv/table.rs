@@ -235,7 +235,7 @@ pub fn first_names(bytes: &[u8]) -> Vec<String> {
     let names = |mut lines: Box<dyn Iterator<Item = Line<'_>>>| {
         let first = lines.next()?;
         let below: Vec<Line<'_>> = lines.take(2).collect();
-        let delimiter = Delimiter::of(first, below.into_iter()).ok()?;
+        let delimiter = Delimiter::detect(first, below.into_iter()).ok()?;
         let mut fields = Vec::new();
         split(first.text, delimiter.sign(), &mut fields).ok()?;
         let text = |field: &Field| first.text_of(*field).to_owned();

@@ -139,7 +139,7 @@ impl Study {
     /// The shortest step of a point, s, and where the plan gives it.
     fn shortest_step(&self) -> (f64, &Place) {
         let plan = &self.plan;
-        let own = (plan.base.dt_s, plan.places.of("dt_s"));
+        let own = (plan.base.dt_s, plan.places.place("dt_s"));
         let of_factor = |factor: &Factor| match &factor.values {
             FactorValues::List(list) => list
                 .iter()
@@ -173,7 +173,7 @@ impl Study {
         }
         Err(
             Problem::too_large(format!("one point keeps {cells} numbers of traces"))
-                .at(self.plan.places.of("keep").clone())
+                .at(self.plan.places.place("keep").clone())
                 .key("keep")
                 .allowed(format!("up to {CELLS} numbers"))
                 .hint("keep fewer columns, or take a larger dt_s"),

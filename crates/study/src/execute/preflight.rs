@@ -165,7 +165,7 @@ fn place(factor: &Factor, entry: Option<usize>) -> Place {
     };
     let place = match entry {
         Some(entry) => factor.places.nth(key, entry),
-        None => factor.places.of(key),
+        None => factor.places.place(key),
     };
     place.clone()
 }

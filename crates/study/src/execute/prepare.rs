@@ -203,7 +203,7 @@ fn unknown_analysed(plan: &Plan, outputs: &[OutputColumn<Run>]) -> Problems {
 
 /// A problem of a key of the plan's head.
 fn of_plan(kind: ProblemKind, plan: &Plan, key: &str, message: &str, hint: &str) -> Problem {
-    let place = plan.places.of(key).clone();
+    let place = plan.places.place(key).clone();
     Problem::new(kind, message).at(place).key(key).hint(hint)
 }
 
@@ -261,13 +261,13 @@ fn of_columns(plan: &Plan, columns: &[Column], problems: &mut Problems) -> Vec<S
 fn in_plan(plan: &Plan, key: &str, problem: Problem) -> Problem {
     let place = match &problem.place.input {
         Input::File(_) => return problem,
-        Input::Argument(Argument::Lubricant) => plan.places.of("lubricant").clone(),
-        Input::Argument(Argument::EngineOil) => plan.places.of("engine_oil").clone(),
-        Input::Argument(_) => return problem.at(plan.places.of(key).clone()).key(key),
+        Input::Argument(Argument::Lubricant) => plan.places.place("lubricant").clone(),
+        Input::Argument(Argument::EngineOil) => plan.places.place("engine_oil").clone(),
+        Input::Argument(_) => return problem.at(plan.places.place(key).clone()).key(key),
         Input::Override(text) => {
             let is_own = plan.base.set.iter().any(|by| by.to_string() == *text);
             let key = if is_own { "set" } else { "set_all" };
-            plan.places.of(key).clone().of_item(text)
+            plan.places.place(key).clone().of_item(text)
         }
     };
     problem.at(place)
@@ -292,7 +292,10 @@ fn cycles(plan: &Plan, folder: &Path, cars: &[StudyCar], problems: &mut Problems
         .flat_map(|car| car.setups(&plan.factors));
     let subject = subjects.next();
     let factor = plan.factors.iter().find(|factor| factor.key == "cycle");
-    let own = (Arc::from(plan.base.cycle.as_str()), plan.places.of("cycle"));
+    let own = (
+        Arc::from(plan.base.cycle.as_str()),
+        plan.places.place("cycle"),
+    );
     let named = factor.into_iter().flat_map(|factor| {
         let words = words(factor).into_iter().enumerate();
         words.map(|(k, word)| (word, factor.places.nth("values", k)))

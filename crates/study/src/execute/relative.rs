@@ -36,12 +36,12 @@ pub fn relative(plan: Plan) -> Result<(Plan, bool), Problems> {
         Some(word) => Some(ParamSet::load(&word, &options(&None))?),
         None => None,
     };
-    let of = |factor: &Factor| match factor.cars {
+    let owner = |factor: &Factor| match factor.cars {
         Cars::Baselines => baseline.as_ref(),
         Cars::Subject | Cars::All => Some(&subject),
     };
     let over = |factor: &Factor| {
-        let param = of(factor)?.param(&factor.key).ok()?;
+        let param = owner(factor)?.param(&factor.key).ok()?;
         let is_known = param.is_active() && param.base().is_finite();
         is_known.then(|| over(factor, param.base()))
     };

@@ -136,8 +136,8 @@ fn of_factor(
     hint: &str,
 ) -> Problem {
     // Missing places are those of the factor itself.
-    let place = match factor.places.of(key) {
-        place if place == factor.places.of("") => &factor.place,
+    let place = match factor.places.place(key) {
+        place if place == factor.places.place("") => &factor.place,
         place => place,
     };
     Problem::new(kind, message)
@@ -151,7 +151,7 @@ pub(super) fn limits(plan: &Plan, number: usize) -> Problems {
     let (design, read) = (&plan.design, &plan.factors);
     let mut problems = Problems::new();
     let mut refuse = |kind, allowed: &str, message: String, hint: &str| {
-        let place = plan.places.of("design").clone();
+        let place = plan.places.place("design").clone();
         let problem = Problem::new(kind, message).at(place).key("study.design");
         problems.push(problem.allowed(allowed).hint(hint));
     };
@@ -194,7 +194,7 @@ pub(super) fn limits(plan: &Plan, number: usize) -> Problems {
 
 fn of_distribution(kind: ProblemKind, factor: &Factor, message: String, hint: &str) -> Problem {
     Problem::new(kind, format!("factor {}: {message}", factor.key))
-        .at(factor.places.of("distribution").clone())
+        .at(factor.places.place("distribution").clone())
         .key("distribution")
         .hint(hint)
 }

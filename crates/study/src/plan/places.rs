@@ -19,14 +19,14 @@ impl Places {
     }
 
     /// Place of a key's value, such as `design`, `values` or `distribution.low`; the table itself where the key is not given.
-    pub fn of(&self, key: &str) -> &Place {
+    pub fn place(&self, key: &str) -> &Place {
         self.find(key).unwrap_or(&self.whole)
     }
 
     /// Place of an item of a list, counted from 0; the whole value where it is no list, such as a range.
     pub fn nth(&self, key: &str, item: usize) -> &Place {
         self.find(&item_name(key, item))
-            .unwrap_or_else(|| self.of(key))
+            .unwrap_or_else(|| self.place(key))
     }
 
     /// Notes a place.

@@ -54,7 +54,7 @@ pub struct Quantile {
 
 impl Summary {
     /// Describes a sample.
-    pub fn of(values: &[f64], confidence: Confidence) -> Self {
+    pub fn new(values: &[f64], confidence: Confidence) -> Self {
         let Ok(summary) = Self::over(values, confidence);
         summary
     }
@@ -73,7 +73,7 @@ impl Summary {
                 .flatten()
                 .chain(ends.iter().copied().flatten())
         });
-        let ordered = Ordered::of(values, &spread, places)?;
+        let ordered = Ordered::new(values, &spread, places)?;
         let quantile = |(p, ends): &(f64, [Option<usize>; 2])| Quantile {
             p: *p,
             value: ordered.quantile(*p),
@@ -96,7 +96,7 @@ impl Summary {
 impl Spread {
     /// Computes the moments of all finite values.
     pub(super) fn over<P: Numbers + ?Sized>(values: &P) -> Result<Self, P::Error> {
-        Moments::of(values)
+        Moments::compute(values)
     }
 
     /// Interval of the mean, for independent values.
@@ -127,7 +127,7 @@ pub fn quantiles<P: Numbers + ?Sized>(
 ) -> Result<Vec<f64>, P::Error> {
     let places = probabilities.iter().filter_map(|p| between(spread.n, *p));
     let places = places.flat_map(|(low, high, _)| [low, high]);
-    let ordered = Ordered::of(values, spread, places)?;
+    let ordered = Ordered::new(values, spread, places)?;
     Ok(probabilities.iter().map(|p| ordered.quantile(*p)).collect())
 }
 
@@ -148,7 +148,11 @@ pub struct Share {
 
 impl Share {
     /// The share of the values for which `holds`. Without a confidence the values are no sample.
-    pub fn of(values: &[f64], confidence: Option<Confidence>, holds: impl Fn(f64) -> bool) -> Self {
+    pub fn new(
+        values: &[f64],
+        confidence: Option<Confidence>,
+        holds: impl Fn(f64) -> bool,
+    ) -> Self {
         let Ok(share) = Self::over(values, confidence, holds);
         share
     }
@@ -181,7 +185,7 @@ impl Share {
 
     /// The share of the values above zero: of a difference, in how many pairs the first one has more. Equal ones are not more.
     pub fn above_zero(values: &[f64], confidence: Option<Confidence>) -> Self {
-        Self::of(values, confidence, is_above_zero)
+        Self::new(values, confidence, is_above_zero)
     }
 
     /// Counts over values that are not in memory.

@@ -113,17 +113,17 @@ pub fn group_means_over<P: Numbers + ?Sized, L: Iterator<Item: AsRef<str>>>(
         Some(mut rows) => {
             rows.sort_by_key(|(group, _)| *group);
             let rows: Vec<f64> = rows.into_iter().map(|(_, y)| y).collect();
-            let Ok(all) = Moments::of(rows.as_slice());
+            let Ok(all) = Moments::compute(rows.as_slice());
             all
         }
         None => all.spread(),
     };
-    Ok(Groups::of(groups, &all))
+    Ok(Groups::new(groups, &all))
 }
 
 impl Groups {
     /// From the groups, and all rows together.
-    fn of(groups: Vec<Group>, all: &Spread) -> Self {
+    fn new(groups: Vec<Group>, all: &Spread) -> Self {
         let filled = || groups.iter().filter(|g| g.n > 0);
         let between = |g: &Group| g.n as f64 * (g.mean - all.mean).powi(2);
         let between: f64 = filled().map(between).sum();

@@ -49,7 +49,7 @@ pub fn shares(factors: &[Column], output: &[f64], confidence: Confidence) -> Sha
         .filter(|k| output[*k].is_finite())
         .collect();
     let n = known.len();
-    let groups: Vec<Option<Groups>> = factors.iter().map(|x| Groups::of(x, &known)).collect();
+    let groups: Vec<Option<Groups>> = factors.iter().map(|x| Groups::new(x, &known)).collect();
     let y = standardized(known.iter().map(|k| output[*k]).collect()).filter(|_| n >= FEWEST);
     let Some(y) = y else {
         return Shares {
@@ -106,7 +106,7 @@ struct Groups {
 
 impl Groups {
     /// Groups of the draws that are known; none of a factor that does not vary, or that has no value at some draw.
-    fn of(column: &Column, known: &[usize]) -> Option<Self> {
+    fn new(column: &Column, known: &[usize]) -> Option<Self> {
         let n = known.len();
         let most = (n as f64).sqrt().floor() as usize; // IN-2
         let group: Vec<usize> = match column {

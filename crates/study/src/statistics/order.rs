@@ -27,7 +27,7 @@ struct Range {
 
 impl Range {
     /// The wanted places in it.
-    fn of<'w>(&self, wanted: &'w [usize]) -> &'w [usize] {
+    fn select<'w>(&self, wanted: &'w [usize]) -> &'w [usize] {
         let from = wanted.partition_point(|place| *place < self.before);
         let to = wanted.partition_point(|place| *place < self.before + self.count);
         &wanted[from..to]
@@ -36,7 +36,7 @@ impl Range {
 
 impl Ordered {
     /// The finite numbers at some places of their order; places beyond the last number have none.
-    pub(super) fn of<P: Numbers + ?Sized>(
+    pub(super) fn new<P: Numbers + ?Sized>(
         numbers: &P,
         spread: &Spread,
         places: impl IntoIterator<Item = usize>,
@@ -71,7 +71,7 @@ impl Ordered {
             open = narrowed(numbers, &open, &wanted, held)?;
             // Numbers of one key are known.
             for range in open.iter().filter(|range| range.low == range.high) {
-                let places = range.of(&wanted).iter();
+                let places = range.select(&wanted).iter();
                 found.extend(places.map(|place| (*place, number(range.low))));
             }
             open.retain(|range| range.low < range.high);
@@ -142,7 +142,7 @@ fn sorted<P: Numbers + ?Sized>(
     held.sort_unstable_by(f64::total_cmp);
     let (mut found, mut start) = (Vec::new(), 0);
     for range in open {
-        let places = range.of(wanted).iter();
+        let places = range.select(wanted).iter();
         found.extend(places.map(|place| (*place, held[start + place - range.before])));
         start += range.count;
     }
@@ -183,7 +183,7 @@ fn narrowed<P: Numbers + ?Sized>(
                 count: *count,
             };
             before += count;
-            if !own.of(wanted).is_empty() {
+            if !own.select(wanted).is_empty() {
                 narrow.push(own);
             }
         }
@@ -226,7 +226,7 @@ mod tests {
         for numbers in [spread_out, close, ties, zeros, lone, vec![3.0], Vec::new()] {
             let mut sorted: Vec<f64> = numbers.iter().copied().filter(|x| x.is_finite()).collect();
             sorted.sort_unstable_by(f64::total_cmp);
-            let Ok(spread) = Moments::of(numbers.as_slice());
+            let Ok(spread) = Moments::compute(numbers.as_slice());
             let places = (0..sorted.len() + 3).step_by(1 + sorted.len() / 50);
             for held in [7, 64, HELD] {
                 let Ok(found) = Ordered::with(numbers.as_slice(), &spread, places.clone(), held);

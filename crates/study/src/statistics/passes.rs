@@ -66,7 +66,7 @@ impl Moments {
     pub(super) const PASSES: usize = 3;
 
     /// Computes the spread of all finite numbers.
-    pub(super) fn of<P: Numbers + ?Sized>(numbers: &P) -> Result<Spread, P::Error> {
+    pub(super) fn compute<P: Numbers + ?Sized>(numbers: &P) -> Result<Spread, P::Error> {
         let mut moments = Moments::default();
         for _ in 0..Self::PASSES {
             each(numbers, |x| moments.add(x))?;

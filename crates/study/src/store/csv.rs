@@ -18,7 +18,7 @@ pub enum Header {
 
 impl Header {
     /// The text over a column.
-    pub fn of(self, column: &Head) -> String {
+    pub fn text(self, column: &Head) -> String {
         if self == Header::Names || column.unit.is_empty() {
             column.name.clone()
         } else {
@@ -42,7 +42,7 @@ impl<W: Write> CsvTable<W> {
     /// Those of `out`.
     pub fn new(out: W, columns: &[Head], header: Header) -> io::Result<Self> {
         Ok(CsvTable {
-            out: CsvWriter::new(out, columns.iter().map(|column| header.of(column)))?,
+            out: CsvWriter::new(out, columns.iter().map(|column| header.text(column)))?,
             columns: columns.to_vec(),
         })
     }
