@@ -27,6 +27,8 @@ pub use cvtcycle_analysis as analysis;
 #[cfg(feature = "studies")]
 pub use cvtcycle_calibrate as calibrate;
 pub use cvtcycle_config as config;
+#[cfg(feature = "studies")]
+pub use cvtcycle_fleet as fleet;
 pub use cvtcycle_model as model;
 pub use cvtcycle_output as output;
 #[cfg(feature = "studies")]

@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod convert;
 mod explain;
+mod fleet;
 mod fmu;
 mod label;
 mod levers;
@@ -97,6 +98,8 @@ enum Command {
     Losses(Box<losses::LossesArgs>),
     /// Evaluate the belt model at the operating points of a table
     Belt(Box<belt::BeltArgs>),
+    /// Drive many cars of a table on tests, and compare with measured fuel
+    Fleet(Box<fleet::FleetArgs>),
     /// Write a vehicle file from catalogue numbers
     New(Box<new::NewArgs>),
     /// Convert a drive cycle from one form of file to another: EPA, FASTSim, VECTO, a logger's table
@@ -148,6 +151,7 @@ impl Cli {
         match &self.command {
             Command::Run(args) => args.execute(terminal),
             Command::Attribute(args) => args.execute(terminal),
+            Command::Fleet(args) => args.execute(terminal),
             Command::Optimum(args) => args.execute(terminal),
             Command::Levers(args) => args.execute(terminal),
             Command::Label(args) => args.execute(terminal),

@@ -16,12 +16,14 @@
 //! | `reader` | values of keys in SI units with their origin: numbers, lists, choices, maps; a record of them for the parts of the model |
 //! | `setup` | vehicles, lubricants, rig; sets of values; the catalogue of keys, the book of assumptions |
 //! | `cycle` | drive cycles |
+//! | `procedure` | tests: a cycle with its start, temperature, load and figures |
 //! | `schema` | JSON Schema of the files |
 pub mod csv;
 pub mod cycle;
 mod document;
 mod files;
 mod problem;
+pub mod procedure;
 mod reader;
 pub mod schema;
 pub mod setup;

@@ -32,6 +32,8 @@ embedded! {
     plans: "plans" ".toml" ["fluids_by_ambient" "oil_at_minus_10" "pump_and_offset" "uncertainty_rover"];
     /// Changes of a car's design.
     levers: "levers" ".toml" ["cvt" "manual"];
+    /// Tests of a regulation.
+    tests: "cycles/tests" ".toml" ["ftp75" "hwfet" "us06" "sc03" "cold_ftp" "nedc" "wltp" "wltp_14" "jc08"];
     /// Plans of calibrations.
     calibrations: "calibrations" ".toml" ["rover_216_transmission" "rover_216_warm_up"];
     /// Tolerances and sources that all files with published values may use.

@@ -107,7 +107,7 @@ fn values(name: &str, text: &str, kind: Kind) -> Vec<KeyInfo> {
         Kind::Lubricant => drop(Lubricant::from_values(&root, name)),
         Kind::Vehicle | Kind::Class => drop(head(&root, name)),
         Kind::Rig => drop(rig::read(&root)),
-        Kind::Plan | Kind::Levers | Kind::Calibration => {}
+        Kind::Plan | Kind::Levers | Kind::Calibration | Kind::Test => {}
     }
     if let (Kind::Vehicle | Kind::Class, Some(oil)) = (kind, oil()) {
         let oil = Arc::new(oil);

@@ -138,6 +138,8 @@ pub enum Kind {
     Levers,
     /// The plan of a calibration.
     Calibration,
+    /// A test of a regulation.
+    Test,
 }
 
 impl Kind {
@@ -152,6 +154,7 @@ impl Kind {
             Kind::Plan => embedded::plans(),
             Kind::Levers => embedded::levers(),
             Kind::Calibration => embedded::calibrations(),
+            Kind::Test => embedded::tests(),
         }
     }
 
@@ -168,7 +171,7 @@ impl Kind {
             Kind::Lubricant => Argument::Lubricant,
             Kind::Plan => Argument::Plan,
             Kind::Calibration => Argument::Calibration,
-            Kind::Class | Kind::Rig | Kind::Levers => Argument::File,
+            Kind::Class | Kind::Rig | Kind::Levers | Kind::Test => Argument::File,
         }
     }
 
@@ -181,6 +184,7 @@ impl Kind {
             Kind::Plan => "plan",
             Kind::Levers => "lever file",
             Kind::Calibration => "calibration",
+            Kind::Test => "test",
         }
     }
 }

@@ -25,9 +25,9 @@ mod units;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::{Disk, Kind, Options, Setup, read};
+use super::{Disk, Kind, Options, ParamSet, Setup};
 use crate::problem::near::suggest;
-use crate::{Place, Problem, Problems};
+use crate::{Override, Place, Problem, Problems};
 pub use questions::{Question, mistake, questions};
 use rules::Line;
 
@@ -130,7 +130,31 @@ const OF_WEIGHT: [&str; 14] = [
 /// # Errors
 /// All numbers that are none or do not fit each other; a problem's key is the name of its option.
 pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
-    made(answers).map_err(|found| {
+    let (mut text, params) = placed(answers, &[])?;
+    let setup = params.setup();
+    text += &weight_comments(&setup);
+    Ok(NewCar { text, setup })
+}
+
+/// The car of catalogue numbers, in memory, with other values in place of those that the rules make.
+///
+/// ```
+/// use cvtcycle_config::setup::new_car::{Answers, param_set};
+/// let mut answers = Answers::default();
+/// answers.add_file("mine", "displacement = \"1.8l\"\npower = \"104kW\"")?;
+/// assert_eq!(param_set(&answers, &[])?.vehicle().engine().displacement_m3, 1.8e-3);
+/// # Ok::<(), cvtcycle_config::Problems>(())
+/// ```
+///
+/// # Errors
+/// As [`write`], and problems of the overrides.
+pub fn param_set(answers: &Answers, set: &[Override]) -> Result<ParamSet, Problems> {
+    placed(answers, set).map(|(_, params)| params)
+}
+
+/// Text and car; problems at the places of the numbers.
+fn placed(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Problems> {
+    made(answers, set).map_err(|found| {
         found.map(|problem| match answers.places.get(problem.key.as_str()) {
             Some(place) => problem.at(place.clone()),
             None => problem,
@@ -138,7 +162,7 @@ pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
     })
 }
 
-fn made(answers: &Answers) -> Result<NewCar, Problems> {
+fn made(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Problems> {
     let mut problems = Problems::new();
     for name in REQUIRED.iter().filter(|name| is_missing(answers, name)) {
         let problem = Problem::missing(format!("the {name} of the engine is missing")).key(*name);
@@ -162,10 +186,9 @@ fn made(answers: &Answers) -> Result<NewCar, Problems> {
     let title = format!("title = {title}\n{own}");
     let mut text = head(&title, &base.like, base.car.transmission().is_cvt());
     text += &tables(&lines);
-    let setup = car(answers, &text);
-    let setup = setup.map_err(|found| options::under_options(found, &lines, answers))?;
-    text += &weight_comments(&setup);
-    Ok(NewCar { text, setup })
+    let params = car(answers, &text, set);
+    let params = params.map_err(|found| options::under_options(found, &lines, answers))?;
+    Ok((text, params))
 }
 
 /// True if a number that a class cannot have is missing.
@@ -186,21 +209,20 @@ impl Base {
         let parents = parents(answers)?;
         let like = parents.iter().map(|name| format!("{name:?}"));
         let like = like.collect::<Vec<_>>().join(", ");
-        let car = car(answers, &head("", &like, false))?;
+        let car = car(answers, &head("", &like, false), &[])?.setup();
         Ok(Base { like, car })
     }
 }
 
 /// The car of a text that is to be the file.
-fn car(answers: &Answers, text: &str) -> Result<Setup, Problems> {
+fn car(answers: &Answers, text: &str, set: &[Override]) -> Result<ParamSet, Problems> {
     let folder = Path::new(&answers.file).parent();
     let folder = folder.map(Path::to_path_buf).unwrap_or_default();
-    read(
-        &answers.file,
-        text,
-        Box::new(Disk { folder }),
-        &Options::default(),
-    )
+    let options = Options {
+        set: set.to_vec(),
+        ..Options::default()
+    };
+    ParamSet::read(&answers.file, text, Box::new(Disk { folder }), &options)
 }
 
 fn meaning(name: &str) -> &'static str {

@@ -86,7 +86,7 @@ pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
 /// Problem of a number, by itself or with those that are given.
 #[must_use]
 pub fn mistake(answers: &Answers, name: &'static str, text: &str) -> Option<Problem> {
-    let found = |answers: &Answers| made(answers).err().into_iter().flatten();
+    let found = |answers: &Answers| made(answers, &[]).err().into_iter().flatten();
     let before: Vec<Problem> = found(answers).collect();
     let mut with = answers.clone();
     with.numbers.insert(name, text.to_owned());

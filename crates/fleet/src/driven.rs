@@ -1,0 +1,124 @@
+//! Cars on tests, side by side.
+
+use std::collections::BTreeMap;
+
+use cvtcycle_config::Problems;
+use cvtcycle_config::procedure::Procedure;
+use cvtcycle_config::setup::Setup;
+use cvtcycle_model::drive::{Conditions, Start, drive as drive_car};
+use cvtcycle_output::progress::Progress;
+use cvtcycle_output::summary::{Driven, RunSummary, Settings, run_summary};
+use rayon::prelude::*;
+
+use crate::FleetCar;
+
+/// Figures of a car on all tests.
+#[derive(Clone, Debug)]
+pub struct DrivenCar {
+    /// Each test, in order.
+    pub tests: Vec<TestFigures>,
+}
+
+/// Figures of a car on a test.
+#[derive(Clone, Debug)]
+pub struct TestFigures {
+    /// Name of the test.
+    pub test: String,
+    /// Fuel by column, L/100 km; of a test that was refused, none.
+    pub fuel: BTreeMap<String, f64>,
+    /// Checks of the run that failed.
+    pub failed_checks: Vec<String>,
+    /// Why the test could not be driven.
+    pub refused: Option<String>,
+    /// Work at the wheels in driving over distance, MJ/km.
+    pub wheel_mj_km: f64,
+}
+
+impl DrivenCar {
+    /// Computed fuel of a column, L/100 km.
+    #[must_use]
+    pub fn fuel(&self, column: &str) -> Option<f64> {
+        self.tests.iter().find_map(|test| test.fuel.get(column)).copied()
+    }
+
+    /// Failed checks of all tests, each with the test.
+    #[must_use]
+    pub fn failed_checks(&self) -> Vec<String> {
+        let of = |test: &TestFigures| -> Vec<String> {
+            let refused = test.refused.iter().map(|reason| format!("{}: {reason}", test.test));
+            test.failed_checks.iter().map(|check| format!("{}: {check}", test.test)).chain(refused).collect()
+        };
+        self.tests.iter().flat_map(of).collect()
+    }
+}
+
+/// Drives every car on every test, with steps of at most some time, s. `progress` counts the cars.
+pub fn drive(cars: &[FleetCar], tests: &[Procedure], max_dt_s: f64, progress: &(impl Progress + Sync)) -> Vec<DrivenCar> {
+    cars.par_iter()
+        .map(|car| {
+            let tests = tests.iter().map(|test| drive_test(car, test, max_dt_s)).collect();
+            progress.advance(1);
+            DrivenCar { tests }
+        })
+        .collect()
+}
+
+fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
+    let loaded = match car.by_test.get(&test.name) {
+        // Its road load is that of the test already.
+        Some(own) => Procedure { load_factor: 1.0, ..test.clone() }.load(own),
+        None => test.load(&car.params),
+    };
+    match loaded {
+        Ok(params) => figures(&Setup::from_params(&params), test, max_dt_s),
+        Err(problems) => TestFigures {
+            test: test.name.clone(),
+            fuel: BTreeMap::new(),
+            failed_checks: Vec::new(),
+            refused: Some(first_message(&problems)),
+            wheel_mj_km: f64::NAN,
+        },
+    }
+}
+
+fn first_message(problems: &Problems) -> String {
+    problems.iter().next().map_or_else(String::new, |problem| problem.message.clone())
+}
+
+fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
+    let cycle = test.cycle_for(setup);
+    let run = |conditions: Conditions| -> RunSummary {
+        let outcome = drive_car(setup, &cycle, &conditions);
+        let settings = Settings { dt_s: max_dt_s, ..Settings::default() };
+        run_summary(&cycle, "subject", &settings, &Driven { name: &setup.name, setup, outcome: &outcome })
+    };
+    let own = test.conditions(max_dt_s);
+    let first = run(own);
+    let warm = (test.warm_share > 0.0).then(|| run(Conditions { start: Start::Warm, ..own }));
+    let mut fuel = BTreeMap::new();
+    for result in &test.results {
+        let of = |summary: &RunSummary| {
+            if result.phases.is_empty() {
+                return summary.headline_fuel().unwrap_or(f64::NAN);
+            }
+            let parts = summary.phases.iter().filter(|phase| result.phases.contains(&phase.name));
+            let (litre, km) = parts.fold((0.0, 0.0), |(litre, km), part| {
+                (litre + part.fuel_l_per_100km.unwrap_or(f64::NAN) * part.distance_km, km + part.distance_km)
+            });
+            litre / km
+        };
+        let cold = of(&first);
+        let value = warm.as_ref().map_or(cold, |warm| (1.0 - test.warm_share) * cold + test.warm_share * of(warm)); // TE-1
+        fuel.insert(result.column(), value);
+    }
+    let mut failed_checks = first.failed_checks.clone();
+    failed_checks.extend(warm.into_iter().flat_map(|warm| warm.failed_checks));
+    failed_checks.dedup();
+    TestFigures {
+        test: test.name.clone(),
+        fuel,
+        failed_checks,
+        refused: None,
+        wheel_mj_km: first.wheel_work_positive_kj / 1e3 / first.distance_km,
+    }
+}

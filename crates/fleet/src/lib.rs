@@ -1,0 +1,62 @@
+//! Many cars from a table, a row each, driven on tests, and compared with measured fuel.
+//!
+//! | module | content |
+//! |---|---|
+//! | `map` | which columns of a table give which numbers of a car |
+//! | `sheet` | a table of text with its refused rows |
+//! | `car` | a row to a car, by the rules of `cvtcycle new`, in memory |
+//! | `driven` | cars on tests, side by side |
+//! | `errors` | computed against measured fuel: all cars, by the words of a column, pairs of cars |
+//! | `baselines` | regressions on the same measurements, each group predicted from the others |
+//! | `tables` | results as CSV |
+
+pub mod baselines;
+mod car;
+mod driven;
+pub mod errors;
+mod map;
+mod sheet;
+pub mod tables;
+
+pub use car::FleetCar;
+pub use driven::{DrivenCar, TestFigures, drive};
+pub use map::ColumnMap;
+pub use sheet::{Refused, Sheet};
+
+use cvtcycle_config::procedure::Procedure;
+use cvtcycle_config::{Override, Problems};
+
+/// Cars of a table, and the rows that are none.
+#[derive(Clone, Debug)]
+pub struct Fleet {
+    /// Cars in the order of their rows.
+    pub cars: Vec<FleetCar>,
+    /// Rows that cannot be driven, each with its reason.
+    pub refused: Vec<Refused>,
+    /// Columns that nothing reads, each with the near names.
+    pub unknown: Vec<(String, String)>,
+    /// Columns by which errors are grouped.
+    pub groups: Vec<String>,
+}
+
+impl Fleet {
+    /// Makes the cars of a table. `set` is taken by every car, before the columns of the row that are keys.
+    ///
+    /// ```
+    /// use cvtcycle_config::procedure::Procedure;
+    /// use cvtcycle_fleet::{ColumnMap, Fleet, Sheet};
+    /// let text = "carid,mass,displacement,power\none,1300,1.8l,100kW\ntwo,1300,1.8l,100\n";
+    /// let sheet = Sheet::read("cars.csv", text.as_bytes())?;
+    /// let tests = [Procedure::open("hwfet")?];
+    /// let fleet = Fleet::from_sheet(&sheet, &ColumnMap::own(), &tests, &[])?;
+    /// assert_eq!((fleet.cars.len(), fleet.refused.len()), (1, 1));
+    /// assert!(fleet.refused[0].reason.contains("unit"));
+    /// # Ok::<(), cvtcycle_config::Problems>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A table without the columns that the map needs, or with columns of one name.
+    pub fn from_sheet(sheet: &Sheet, map: &ColumnMap, tests: &[Procedure], set: &[Override]) -> Result<Fleet, Problems> {
+        car::fleet(sheet, map, tests, set)
+    }
+}
