@@ -11,11 +11,12 @@
 //! | NC-9 | stroke of four cylinders of equal bore and stroke | ASSUMED |
 //! | NC-10 | a CVT of a class keeps an engine that has its fuel cut later than the class expects 100 rpm above that speed in overrun | ASSUMED: controllers of CVTs hold the cut, 50 to 200 rpm |
 //!
-//! `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, this module the file; `options` puts what is wrong with it under their options, `answers`
+//! `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, `neutral` the drag of the box in a coast-down, this module the file; `options` puts what is wrong with it under their options, `answers`
 //! reads the numbers from a file, `questions` says what may be asked for.
 
 mod answers;
 mod full_load;
+mod neutral;
 mod options;
 mod questions;
 mod rules;
@@ -177,18 +178,30 @@ fn made(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Probl
         return Err(problems);
     };
     let lines = problems.take(rules::lines(answers, &base.car));
-    let Some(lines) = lines.filter(|_| problems.is_empty()) else {
+    let Some(mut lines) = lines.filter(|_| problems.is_empty()) else {
         return Err(problems);
     };
     let title = toml::Value::String(answers.title.clone()).to_string();
     let own = lines.iter().filter(|line| line.table() == VEHICLE);
     let own: String = own.map(Line::text).collect();
     let title = format!("title = {title}\n{own}");
-    let mut text = head(&title, &base.like, base.car.transmission().is_cvt());
-    text += &tables(&lines);
-    let params = car(answers, &text, set);
-    let params = params.map_err(|found| options::under_options(found, &lines, answers))?;
-    Ok((text, params))
+    let head = head(&title, &base.like, base.car.transmission().is_cvt());
+    let made = |lines: &[Line]| {
+        let text = format!("{head}{}", tables(lines));
+        let params = car(answers, &text, set);
+        let params = params.map_err(|found| options::under_options(found, lines, answers))?;
+        Ok((text, params))
+    };
+    let (text, params) = made(&lines)?;
+    if !rules::is_neutral(answers) {
+        return Ok((text, params));
+    }
+    let Some(drag) = neutral::drag_coefficients(&params.setup()) else {
+        let problem = Problem::invalid("the box cannot be turned without torque at some speed of a coast-down");
+        return Err(problem.key("road-load").hint("write body, and take the drag off f0, f1 and f2 yourself").into());
+    };
+    lines.extend(rules::drag_lines(drag));
+    made(&lines)
 }
 
 /// True if a number that a class cannot have is missing.

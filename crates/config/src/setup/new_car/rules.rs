@@ -72,16 +72,28 @@ pub(super) const PLAIN: [(&str, &str, Units); 9] = [
 
 const BEYOND_RATED_RPM: f64 = 400.0;
 
-/// No-load drag of a CVT in f0 and f1 of a coast-down in neutral, with the keys that take it off (RL-9).
-const DRAG: [(&str, &str); 2] = [
-    ("road_load.form.coefficients.driveline_f0_n", "27.0"),
-    (
-        "road_load.form.coefficients.driveline_f1_n_per_kmh",
-        "-0.13",
-    ),
+/// Keys of the drag of the box in f0, f1 and f2 (RL-9).
+const DRAG: [&str; 3] = [
+    "road_load.form.coefficients.driveline_f0_n",
+    "road_load.form.coefficients.driveline_f1_n_per_kmh",
+    "road_load.form.coefficients.driveline_f2_n_per_kmh2",
 ];
-/// Where it is from.
-const SOURCE: &str = "RL-9: through CVT over manual of the same car, 30 16 11 16 N at 20 50 80 110 km/h (sd 21 to 31, 23 pairs of US lists)";
+
+/// True for coefficients of a coast-down in neutral.
+pub(super) fn is_neutral(answers: &Answers) -> bool {
+    answers.numbers.get("road-load").is_some_and(|word| word == "neutral")
+}
+
+/// The drag of the box in the coefficients of a coast-down in neutral.
+pub(super) fn drag_lines(drag: [f64; 3]) -> impl Iterator<Item = Line> {
+    DRAG.into_iter().zip(drag).zip([2, 4, 6]).map(|((key, value), digits)| Line {
+        key,
+        value: format!("{value:.digits$}"),
+        status: "derived",
+        source: "NC-15: the box turned by the wheels without torque, in oil of 60 degC".to_owned(),
+        option: None,
+    })
+}
 
 /// The numbers that are given.
 struct Given<'a> {
@@ -216,15 +228,6 @@ impl Given<'_> {
                 "there is no coast-down to take the drag of the box from",
                 "give f0, f1 and f2 as well",
             ),
-            Some("neutral") if self.base.transmission().is_cvt() => {
-                self.lines.extend(DRAG.into_iter().map(|(key, value)| Line {
-                    key,
-                    value: value.to_owned(),
-                    status: "assumed",
-                    source: SOURCE.to_owned(),
-                    option: None,
-                }));
-            }
             Some("neutral") => {}
             Some(_) => self.complain(
                 "road-load",
