@@ -8,6 +8,7 @@
 //! | `driven` | cars on tests, side by side |
 //! | `errors` | computed against measured fuel: all cars, by the words of a column, pairs of cars |
 //! | `baselines` | regressions on the same measurements, each group predicted from the others |
+//! | `spread` | what the errors say of a car that is not in the table |
 //! | `tables` | results as CSV |
 
 pub mod baselines;
@@ -16,6 +17,7 @@ mod driven;
 pub mod errors;
 mod map;
 mod sheet;
+pub mod spread;
 pub mod tables;
 
 pub use car::FleetCar;

@@ -4,6 +4,7 @@ pub mod attribution;
 pub mod escape;
 pub mod file;
 pub mod files;
+pub mod fleet_spread;
 pub mod history;
 pub mod loss_forms;
 pub mod loss_table;

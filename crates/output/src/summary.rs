@@ -23,6 +23,7 @@ use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use super::record::{Manifest, Record, run_word};
+use crate::fleet_spread::FleetRange;
 use crate::number::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::setup::Setup;
@@ -111,6 +112,9 @@ pub struct Comparison {
     /// Difference over the draws of a plan of uncertainty; `None` for a case that was not drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interval: Option<DrawnDifference>,
+    /// Range of the difference from measured cars, where no draws give one, per cent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fleet: Option<FleetRange>,
 }
 
 /// A car that has been driven.
@@ -274,6 +278,7 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
         likeness: String::new(),
         differences: Vec::new(),
         interval: None,
+        fleet: None,
     }
 }
 

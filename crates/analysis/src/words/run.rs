@@ -7,6 +7,7 @@ use std::cell::OnceCell;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::decimal;
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
+use cvtcycle_output::fleet_spread::{FleetRange, fuel_range, pair_range};
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
@@ -23,8 +24,64 @@ use cvtcycle_validate::{About, ValidationRow, published};
 /// Distance of the ambient temperatures up to which a published number is one of this run, K.
 const NEAR_K: f64 = 5.0;
 
-/// Looks up how sure the differences of a run are, and which published numbers it contradicts. Both are only said of cars as they are shipped.
+/// Looks up how sure the fuel of a run and its differences are, and which published numbers it contradicts. Draws and published numbers are of cars as
+/// they are shipped; of all others measured cars tell.
 pub fn assess(
+    summary: &mut Summary,
+    cycle: &Cycle,
+    driven: &[Driven],
+    known: Option<&[ValidationRow]>,
+) {
+    assess_draws(summary, cycle, driven, known);
+    assess_fleet(summary);
+}
+
+/// Ranges from measured cars: of the fuel of each car that is not shipped, and of each difference without draws.
+fn assess_fleet(summary: &mut Summary) {
+    let (cycle, degc) = (summary.cycle.clone(), summary.ambient_degc);
+    let range = |run: &RunSummary| fuel_range(&run.transmission, &cycle, degc, run.headline_fuel()?);
+    let ranges: Vec<Option<FleetRange>> = summary.runs.iter().map(range).collect();
+    let Some((subject, baselines)) = summary.runs.split_first() else {
+        return;
+    };
+    for ((comparison, baseline), other) in summary.comparison.iter_mut().zip(baselines).zip(&ranges[1..]) {
+        let Some(percent) = comparison.fuel_percent.filter(|_| comparison.interval.is_none()) else {
+            continue;
+        };
+        let is_pair = [&subject.transmission, &baseline.transmission] == ["cvt", "manual"] && comparison.differences.is_empty();
+        comparison.fleet = match is_pair {
+            true => pair_range(&cycle, degc, percent),
+            false => unlike_range(percent, ranges[0].as_ref(), subject, other.as_ref(), baseline),
+        };
+    }
+    for (run, range) in summary.runs.iter_mut().zip(ranges) {
+        run.fleet = range.filter(|_| !Kind::Vehicle.names().contains(&run.vehicle.as_str()));
+    }
+}
+
+/// Range of the difference of two cars that are no pair: each has the spread of its kind, for itself.
+fn unlike_range(
+    percent: f64,
+    own: Option<&FleetRange>,
+    run: &RunSummary,
+    other: Option<&FleetRange>,
+    baseline: &RunSummary,
+) -> Option<FleetRange> {
+    let (own, other) = (own?, other?);
+    // Ends over the computed fuel, as logarithms: the middle of both, and their half widths.
+    let of = |range: &FleetRange, run: &RunSummary| {
+        let [low, high] = range.ends.map(|end| (end / run.headline_fuel().unwrap_or(f64::NAN)).ln());
+        (0.5 * (low + high), 0.5 * (high - low))
+    };
+    let (own_middle, own_half) = of(own, run);
+    let (other_middle, other_half) = of(other, baseline);
+    let (middle, half) = (own_middle - other_middle, own_half.hypot(other_half));
+    let ends = [middle - half, middle + half].map(|x| 100.0 * ((1.0 + percent / 100.0) * x.exp() - 1.0));
+    Some(FleetRange { figure: own.figure.clone(), cars: own.cars.min(other.cars), ends })
+}
+
+/// Draws and published numbers, of cars as they are shipped.
+fn assess_draws(
     summary: &mut Summary,
     cycle: &Cycle,
     driven: &[Driven],
@@ -142,14 +199,19 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         return Vec::new();
     };
     // The first interval alone carries the explanation of runs.
-    let mut explained = false;
+    let mut explained = [false, run.fleet.is_some()];
     let against = summary.comparison.iter().filter_map(|of| {
         let said = against(of, explained);
-        explained |= of.interval.is_some();
+        explained[0] |= of.interval.is_some();
+        explained[1] |= of.interval.is_none() && of.fleet.is_some();
         said
     });
     let against: String = against.collect();
-    let first = format!("{}: {} L/100 km{against}.", run.vehicle, fixed(fuel, 2));
+    let range = run.fleet.as_ref().map_or_else(String::new, |of| {
+        let [low, high] = of.ends.map(|end| fixed(end, 1));
+        format!(" ({low} to {high} for 90 % of such cars, by {} measured)", of.cars)
+    });
+    let first = format!("{}: {} L/100 km{range}{against}.", run.vehicle, fixed(fuel, 2));
     let lines = [Some(first), price(run)].into_iter().flatten();
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
@@ -229,13 +291,18 @@ pub fn intervals(summary: &Summary) -> Vec<String> {
 }
 
 /// ", 7 % more than the baseline (90 % of 256 runs with uncertain values varied: +2 to +12 %)".
-fn against(comparison: &Comparison, explained: bool) -> Option<String> {
+fn against(comparison: &Comparison, [explained, explained_fleet]: [bool; 2]) -> Option<String> {
     let percent = comparison.fuel_percent?;
     let baseline = &comparison.baseline;
     let Some(drawn) = &comparison.interval else {
         let compared = more_or_less(percent, 1);
         let than = than(&compared);
-        return Some(format!(", {compared} {than} {baseline} (no interval)"));
+        let range = comparison.fleet.as_ref().map(|of| {
+            let among = if explained_fleet { String::new() } else { format!(" for 90 % of such cars, by {} measured", of.cars) };
+            format!(" ({}{among})", between(of.ends, "%"))
+        });
+        let range = range.unwrap_or_else(|| " (how sure this is, no measured cars tell)".to_owned());
+        return Some(format!(", {compared} {than} {baseline}{range}"));
     };
     let ends = [drawn.percent[0], drawn.percent[2]];
     let compared = more_or_less(percent, decimals(ends));

@@ -199,16 +199,17 @@ pub(crate) fn file_table(
 }
 
 /// Hint for a BSFC map that is inconsistent.
-const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel";
+const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel, loads of zero and below need fuel_g_s";
 
 /// The table of a BSFC map from CSV; none after a problem.
 pub(crate) fn bsfc_table(s: &Section, key: &str, file: Named) -> Option<Arc<MapTable>> {
     let column = |name, low, high| Column::number(name, Bound::closed(low, high)).required();
     let columns = vec![
         column("speed_rpm", 100.0, 20_000.0),
-        column("bmep_bar", 0.05, 40.0).group("load"),
-        column("torque_nm", 0.1, 5000.0).group("load"),
-        column("bsfc_g_kwh", 100.0, 3000.0),
+        column("bmep_bar", -10.0, 40.0).group("load"),
+        column("torque_nm", -2000.0, 5000.0).group("load"),
+        column("fuel_g_s", 0.0, 100.0).group("fuel"),
+        column("bsfc_g_kwh", 100.0, 3000.0).group("fuel"),
     ];
     let wanted = Wanted {
         kind: "bsfc",
@@ -240,20 +241,28 @@ impl MapTable {
         if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
             return Ok(Some(map.clone()));
         }
-        let (speed, bsfc) = (self.index(0), self.index(3));
+        let flow = self.index(3).map(|i| (i, 1e3));
+        let fuel = flow.or_else(|| self.index(4).map(|i| (i, 3.6e9)));
         let load = self.index(1).map(|i| (i, 1e5));
         let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
         let load = load.or_else(|| self.index(2).map(|i| (i, per_torque)));
-        let (Some(speed), Some(bsfc), Some((load, factor))) = (speed, bsfc, load) else {
+        let (Some(speed), Some((fuel, per_si)), Some((load, factor))) =
+            (self.index(0), fuel, load)
+        else {
             return Ok(None);
         };
         let rpm = Quantity::from_key("speed_rpm");
         let rows: Vec<(f64, f64, f64)> = self
             .rows
             .iter()
-            .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[bsfc] / 3.6e9))
+            .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[fuel] / per_si))
             .collect();
-        let map = BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))?;
+        let map = match flow {
+            Some(_) => {
+                BsfcMap::from_flow(&rows, heating_value_j_kg, displacement_m3, (0.0, 0.0))?
+            }
+            None => BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))?,
+        };
         *made = Some((scale, map.clone()));
         Ok(Some(map))
     }

@@ -5,9 +5,11 @@
 //! | WI-1 | A f2 + B f - (L Theta + p) = 0; A = a2, B = a + b c + c2 cm2, L = l + l2 cm2 (positive) | source: CO2MPAS, natural aspiration set |
 //! | WI-2 | indicated = B f + A f2 | derived: WI-1 read as a balance |
 //! | BM-3 | cold: BMEP raised by friction above hot friction | derived: as WI-1 treats temperature |
+//! | WI-3 | with a drag of its own (EN-7), below the torque at which the hot engine turns itself: fuel and indicated work fall in proportion to nothing at the drag | derived: continuous at both ends; indicated efficiency of idling |
 //!
 //! f fuel mean effective pressure, p brake mean effective pressure, both bar inside WI-1; cm mean piston speed m/s; Theta friction factor.
-//! Valid while WI-1 has a root, p up to about 14 bar; beyond it the turning point is held and the row flagged. B is held between 0.05 and 1,
+//! Valid while WI-1 has a root, L Theta + p up to -B2/(4 A): 13 to 16 bar of p with the set of CO2MPAS for natural aspiration, 22 to 28 with those of engines measured since 2012;
+//! beyond it the turning point is held and the row flagged. B is held between 0.05 and 1,
 //! and fuel of a map at no less than the indicated work, so that no engine makes work of nothing: the row is flagged too. The reader refuses a
 //! line that would leave these bounds below the engine's highest speed.
 
@@ -106,6 +108,47 @@ impl<R: Real> FuelModel<R> {
         }
     }
 
+    /// As [`FuelModel::fuel_mep`] for an engine whose drag without fuel is not its friction but `drag_pa` (WI-3), all Pa.
+    ///
+    /// The hot engine turns itself with the fuel that the line has at no torque. What it takes up without fuel is less than the friction
+    /// at which the line ends (a line through loads says nothing of a closed throttle), so that between the two both fuel and indicated work
+    /// go to nothing in proportion. Friction above that of the hot engine is met as load, as in BM-3.
+    pub fn fuel_mep_above_drag(
+        &self,
+        piston_m_s: R,
+        speed_rad_s: R,
+        brake_pa: R,
+        friction_pa: R,
+        drag_pa: R,
+    ) -> FuelPoint<R> {
+        let hot = self.hot_friction_pa(piston_m_s);
+        let colder = friction_pa - hot;
+        let hot_drag = drag_pa - colder;
+        let share = ((brake_pa + drag_pa) / hot_drag).clamp(0.0, 1.0);
+        let fired = share.ge(1.0);
+        let need = fired.select(brake_pa + friction_pa, hot * share);
+        let none = share.splat(0.0).ge(share);
+        let point = match self {
+            FuelModel::Willans(w) => {
+                let line = w.fuel(piston_m_s, fired.select(need, hot));
+                FuelPoint {
+                    fuel_pa: fired.select(line.fuel_pa, line.fuel_pa * share),
+                    indicated_pa: fired.select(line.indicated_pa, line.indicated_pa * share),
+                    outside: line.outside,
+                }
+            }
+            FuelModel::Map(m) => {
+                let hot_brake = brake_pa + colder;
+                self.of_map(m, speed_rad_s, need, [hot_brake, hot_drag])
+            }
+        };
+        FuelPoint {
+            fuel_pa: none.select(share.splat(0.0), point.fuel_pa),
+            indicated_pa: none.select(share.splat(0.0), point.indicated_pa),
+            outside: !none & point.outside,
+        }
+    }
+
     /// Fuel for a brake mean effective pressure with friction in force, both Pa.
     pub fn fuel_mep(
         &self,
@@ -126,7 +169,10 @@ impl<R: Real> FuelModel<R> {
         }
         let point = match self {
             FuelModel::Willans(w) => w.fuel(piston_m_s, need),
-            FuelModel::Map(m) => self.of_map(m, piston_m_s, speed_rad_s, need),
+            FuelModel::Map(m) => {
+                let hot = self.hot_friction_pa(piston_m_s);
+                self.of_map(m, speed_rad_s, need, [need - hot, hot]) // BM-3
+            }
         };
         FuelPoint {
             fuel_pa: none.select(zero, point.fuel_pa),
@@ -135,18 +181,18 @@ impl<R: Real> FuelModel<R> {
         }
     }
 
-    /// Fuel of a measured map for an indicated mean effective pressure, Pa (BM-3).
+    /// Fuel of a measured map for an indicated mean effective pressure, from the brake mean effective pressure of the hot engine and the drag at
+    /// which its fuel ends, all Pa.
     fn of_map(
         &self,
         map: &R::PerLane<BsfcMap>,
-        piston_m_s: R,
         speed_rad_s: R,
         need: R,
+        [brake_pa, drag_pa]: [R; 2],
     ) -> FuelPoint<R> {
-        let hot = self.hot_friction_pa(piston_m_s);
-        let brake_pa = need - hot; // BM-3
         let found = R::per_lane(|run| {
-            R::get(map, run).at_speed(speed_rad_s.lane(run), brake_pa.lane(run), hot.lane(run))
+            let (brake_pa, drag_pa) = (brake_pa.lane(run), drag_pa.lane(run));
+            R::get(map, run).at_speed(speed_rad_s.lane(run), brake_pa, drag_pa)
         });
         let fuel_pa = need.map_lanes(|run| R::get(&found, run).0);
         let inside = need.mask_lanes(|run| R::get(&found, run).1);

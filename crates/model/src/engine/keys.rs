@@ -1,7 +1,7 @@
 //! Keys of `[engine]`, and an engine from their values.
 
 use super::start_stop::{StartStop, StartStopKeys};
-use super::{EFFICIENCY, Engine, FuelModel, Willans};
+use super::{EFFICIENCY, Engine, FuelModel, Motored, Willans};
 use crate::keys::{Bound, Choice, Repeat, Values, curve, keys};
 use crate::lubricant::{Viscosity, viscosity};
 use crate::maps::BsfcMap;
@@ -38,14 +38,21 @@ keys! {
     }
 
     /// Keys of `[engine.friction]`.
-    FRICTION: FrictionKeys = "friction" [] {
+    FRICTION: FrictionKeys = "friction" [OverrunKeys::TABLE.repeated(Repeat::Optional)] {
         hot_degc: number(60.0, 130.0), "temperature of the warm engine", ["EN-2"];
         viscous_share: number(0.0, 1.0), "share of hot friction that rubs in oil and follows its viscosity", ["EN-2"];
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["EN-2"];
         film_coolant_share: or(0.0, number(0.0, 1.0)), "temperature of the oil films, from that of the oil (0) to that of the coolant (1)", ["EN-2"];
         reference_kv40_mm2_s: number(1.5, 1000.0), "reference oil at 40 degC, for which the hot friction holds", ["EN-2"];
         reference_kv100_mm2_s: number(1.5, 1000.0), "reference oil at 100 degC", ["EN-2"];
-        overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction", ["EN-7"];
+        overrun_factor: or(1.0, number(1.0, 3.0)), "closed-throttle drag over friction, or over that of [engine.friction.overrun] where it is present", ["EN-7"];
+    }
+
+    /// Keys of `[engine.friction.overrun]`: the hot engine's drag without fuel, in place of its friction.
+    OVERRUN: OverrunKeys = "overrun" [] {
+        drag_bar: number(0.05, 5.0), "closed-throttle motoring mean effective pressure of the hot engine at no speed", ["EN-7", "WI-3"];
+        drag_bar_per_m_s: or(0.0, number(0.0, 0.5)), "its rise with mean piston speed", ["EN-7", "WI-3"];
+        drag_bar_per_m_s2: or(0.0, number(0.0, 0.05)), "its rise with the square of that", ["EN-7", "WI-3"];
     }
 
     /// Keys of `[engine.fuel]`.
@@ -82,7 +89,9 @@ keys! {
     BSFC: BsfcKeys = "bsfc_map" [] {
         l: or(DEFAULT.l, number(0.0, 5.0)), "hot friction mean effective pressure at zero speed, bar", ["WI-1", "BM-2"];
         l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2", ["WI-1", "BM-2"];
-        file: text(), "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh on a full grid", ["BM-1"];
+        measured_cc: optional(number(200.0, 20_000.0)), "swept volume of the engine that was measured, for a file with torque_nm or fuel_g_s; absent: that of the car", ["BM-1"];
+        measured_mj_kg: optional(number(20.0, 60.0)), "lower heating value of the fuel that it burnt; absent: that of the car's fuel", ["BM-1"];
+        file: text(), "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh or fuel_g_s on a full grid; with fuel_g_s loads may be zero and below", ["BM-1"];
     }
 }
 
@@ -125,6 +134,7 @@ impl Engine {
             reference_m2_s: reference_oil(&friction).kinematic_m2_s(hot_k),
             film_coolant_share: friction.number(&FRICTION.film_coolant_share),
             overrun_drag: friction.number(&FRICTION.overrun_factor),
+            motored: motored(&friction.table(OverrunKeys::TABLE.name)),
             enrichment: fuel.number(&FUEL.cold_enrichment),
             start_kg: fuel.number(&FUEL.start_g),
             start_s: fuel.number(&FUEL.start_s),
@@ -227,13 +237,25 @@ fn reference_oil<V: Values>(s: &V) -> Viscosity {
     viscosity(s, &FRICTION.reference_kv40_mm2_s, &points, words)
 }
 
+/// The drag without fuel, if it is not the friction of the fuel line.
+fn motored<V: Values>(s: &V) -> Option<Motored> {
+    s.exists().then(|| Motored {
+        rest_pa: s.number(&OVERRUN.drag_bar),
+        pa_per_m_s: s.number(&OVERRUN.drag_bar_per_m_s),
+        pa_per_m_s2: s.number(&OVERRUN.drag_bar_per_m_s2),
+    })
+}
+
 /// The fuel model, and the table of its keys.
 fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V) {
     let (kind, w) = s.choose(&ENGINE.model);
     if kind == "bsfc_map" {
         let friction = (w.number(&BSFC.l), w.number(&BSFC.l2));
-        let heating_value = s.table("fuel").number(&FUEL.heating_value_mj_kg);
-        let map = w.bsfc_map(&BSFC.file, heating_value, displacement_m3);
+        let measured_j_kg = w.optional(&BSFC.measured_mj_kg);
+        let heating_value =
+            measured_j_kg.unwrap_or_else(|| s.table("fuel").number(&FUEL.heating_value_mj_kg));
+        let measured_m3 = w.optional(&BSFC.measured_cc).unwrap_or(displacement_m3);
+        let map = w.bsfc_map(&BSFC.file, heating_value, measured_m3);
         let model = map.map_or(FuelModel::Willans(DEFAULT), |map| {
             FuelModel::Map(BsfcMap { friction, ..map })
         });

@@ -8,7 +8,7 @@
 //! | EN-4 | accessories: T = P_el/w + T_0, w at least half the idle speed | source: CO2MPAS class values |
 //! | EN-5 | charge g = (p/p_0) (298.15 K/T_amb)^0.5 | source: form of SAE J1349 (charge with pressure and root of temperature, friction constant) |
 //! | EN-6 | waste = fuel - crank power; exhaust takes its share, falling linearly with speed, at most fuel - indicated; oil takes its share of friction, the coolant the rest | source: ADVISOR (0.40 to 0.30 of fuel less shaft power); bound derived; unburnt enrichment goes to the exhaust |
-//! | EN-7 | overrun torque = friction x drag factor; fuel off where the fuel line reaches zero; the wheels drag the engine only above 1.1 idle (LC-3); without fuel cut (EN-11) the engine turns itself | source: CO2MPAS rule; drag factor ASSUMED |
+//! | EN-7 | overrun torque = x_d Theta L V/(4 pi), or with a drag of its own x_d (D + (Theta - 1) L) V/(4 pi), D = d + d1 cm + d2 cm2; fuel off where the fuel line reaches zero, with a drag of its own (WI-3) at that drag; the wheels drag the engine only above 1.1 idle (LC-3); without fuel cut (EN-11) the engine turns itself | source: CO2MPAS rule; drag factor ASSUMED |
 //! | EN-12 | free engine without fuel: w = sqrt(b2 + w0_2 - k w0) - b, k = T dt/J, b = k/2 + (drag at idle) dt/J | derived: its rotating energy turns against its own drag at w and the torque T that it passes on at the mean of w0 and w |
 //! | EN-8 | full load = g (T_hot + T_f) - Theta T_f, at least 2 % of T_hot; T_hot the line of the file, T_f hot friction | derived: the air limits indicated torque, friction takes its part |
 //!
@@ -17,10 +17,12 @@
 
 mod fuel;
 mod keys;
+mod motored;
 mod start;
 pub mod start_stop;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
+pub use motored::Motored;
 pub use keys::{ENGINE, EngineKeys};
 pub use start::Running;
 pub use start_stop::StartStop;
@@ -89,8 +91,10 @@ pub struct Engine<R: Real = f64> {
     pub reference_m2_s: R,
     /// Temperature of the oil films between that of the oil (0) and the coolant (1).
     pub film_coolant_share: R,
-    /// Overrun drag over friction.
+    /// Overrun drag over friction, or over what `motored` has.
     pub overrun_drag: R,
+    /// Drag without fuel where it is not the friction of the fuel line.
+    pub motored: Option<Motored<R>>,
     /// Enrichment e.
     pub enrichment: R,
     /// Fuel of a start at 0 degC and below, kg.
@@ -270,6 +274,19 @@ impl<R: Real> Engine<R> {
         mep_pa * self.displacement_m3 * PER_FOUR_PI
     }
 
+    /// Torque taken up without fuel at a friction mean effective pressure, Nm (EN-7).
+    pub(crate) fn drag_nm_of(&self, speed_rad_s: R, friction_pa: R) -> R {
+        match &self.motored {
+            None => self.torque_nm(friction_pa) * self.overrun_drag, // EN-7
+            Some(motored) => {
+                let piston_m_s = self.piston_m_s(speed_rad_s);
+                // Cold oil adds to it what it adds to friction.
+                let colder = friction_pa - self.fuel.hot_friction_pa(piston_m_s);
+                self.torque_nm(motored.hot_pa(piston_m_s) + colder) * self.overrun_drag // EN-7
+            }
+        }
+    }
+
     /// Mean effective pressure of a torque (four-stroke), Pa.
     pub fn mep_pa(&self, torque_nm: R) -> R {
         torque_nm * FOUR_PI / self.displacement_m3
@@ -349,7 +366,8 @@ impl<R: Real> EngineAtTemperature<'_, R> {
 
     /// Torque that slows the engine down without fuel, Nm: what its own rotating energy may turn against, whether or not fuel is cut for the wheels.
     pub fn own_drag_nm(&self, speed_rad_s: R) -> R {
-        self.engine.torque_nm(self.friction_pa(speed_rad_s)) * self.engine.overrun_drag // EN-7
+        let friction_pa = self.friction_pa(speed_rad_s);
+        self.engine.drag_nm_of(speed_rad_s, friction_pa)
     }
 
     /// Friction mean effective pressure at the present temperature, Pa.
@@ -379,15 +397,32 @@ impl<R: Real> EngineAtTemperature<'_, R> {
         let brake_pa = e.mep_pa(torque_nm);
         let friction_pa = self.friction_pa(speed_rad_s);
         let piston_m_s = e.piston_m_s(speed_rad_s);
-        let point = e
-            .fuel
-            .fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa);
+        let point = match &e.motored {
+            None => e
+                .fuel
+                .fuel_mep(piston_m_s, speed_rad_s, brake_pa, friction_pa),
+            Some(motored) => {
+                let colder = friction_pa - e.fuel.hot_friction_pa(piston_m_s);
+                let drag_pa = (motored.hot_pa(piston_m_s) + colder) * e.overrun_drag;
+                e.fuel.fuel_mep_above_drag(
+                    piston_m_s,
+                    speed_rad_s,
+                    brake_pa,
+                    friction_pa,
+                    drag_pa,
+                )
+            }
+        };
         let burns = point.fuel_pa.gt(0.0);
         let watts = e.displacement_m3 * speed_rad_s * PER_FOUR_PI;
         let burnt = point.fuel_pa * watts;
         let indicated = point.indicated_pa * watts;
-        // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
-        let friction = burns.select(friction_pa * watts, -brake_pa * watts);
+        let friction = match &e.motored {
+            // With fuel cut, throttle losses add to friction: what is taken up is the drag itself.
+            None => burns.select(friction_pa * watts, -brake_pa * watts),
+            // From the friction of the fuel line to the drag as fuel goes to nothing (WI-3).
+            Some(_) => indicated - brake_pa * watts,
+        };
         let fast = (speed_rad_s - e.idle_hot_rad_s) / (e.highest_rad_s - e.idle_hot_rad_s);
         let exhaust_share =
             e.exhaust_idle + (e.exhaust_fast - e.exhaust_idle) * fast.clamp(0.0, 1.0);

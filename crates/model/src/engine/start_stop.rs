@@ -355,7 +355,7 @@ impl StartStop {
     fn start_j(&self, engine: &Engine) -> f64 {
         let w = engine.idle_hot_rad_s;
         let friction_pa = engine.fuel.hot_friction_pa(engine.piston_m_s(w));
-        let drag_nm = engine.torque_nm(friction_pa) * engine.overrun_drag;
+        let drag_nm = engine.drag_nm_of(w, friction_pa);
         let shaft_j = 0.5 * w * (engine.inertia_kg_m2 * w + drag_nm * self.crank_s);
         shaft_j / (self.starter * self.store)
     }

@@ -104,7 +104,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity
     }
 }
 
-const UNITS: [Quantity; 63] = [
+const UNITS: [Quantity; 65] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -127,6 +127,8 @@ const UNITS: [Quantity; 63] = [
     unit("_pa", "Pa", 1.0),
     unit("_bar", "bar", 1e5),
     unit("_bar_per_nm", "bar per N m", 1e5),
+    unit("_bar_per_m_s", "bar/(m/s)", 1e5),
+    unit("_bar_per_m_s2", "bar/(m/s)²", 1e5),
     unit("_gpa", "GPa", 1e9),
     unit("_mpa_s", "mPa s", 1e-3),
     unit("_mm2_s", "mm²/s", 1e-6),

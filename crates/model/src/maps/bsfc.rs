@@ -2,8 +2,8 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | BM-1 | fuel MEP = BSFC x BMEP x LHV between the map's points, linear in speed and BMEP | source: the user's map |
-//! | BM-2 | below the map's lowest BMEP a line to zero fuel at minus the hot friction l + l2 cm2 | derived; friction from keys l, l2 |
+//! | BM-1 | fuel MEP = BSFC x BMEP x LHV, or fuel flow x LHV 4 pi/(V w), between the map's points, linear in speed and BMEP; LHV and V those of the engine that was measured | source: the user's map |
+//! | BM-2 | below the map's lowest BMEP (of those above the drag) a line to zero fuel at minus the hot friction l + l2 cm2, or at minus the drag of EN-7 where the engine has one of its own | derived; friction from keys l, l2 |
 
 /// A map of fuel mean effective pressure.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,8 +19,8 @@ pub struct BsfcMap {
 }
 
 impl BsfcMap {
-    /// Fuel MEP at a speed and load with hot friction, Pa, and whether the point lies within the map.
-    pub(crate) fn at_speed(&self, speed_rad_s: f64, bmep_pa: f64, friction_pa: f64) -> (f64, bool) {
+    /// Fuel MEP at a speed and load, with the drag at which there is none, Pa, and whether the point lies within the map.
+    pub(crate) fn at_speed(&self, speed_rad_s: f64, bmep_pa: f64, drag_pa: f64) -> (f64, bool) {
         let n = self.speed_rad_s.len();
         let hi = self
             .speed_rad_s
@@ -33,12 +33,12 @@ impl BsfcMap {
             self.fuel_pa[hi - 1][j] + u * (self.fuel_pa[hi][j] - self.fuel_pa[hi - 1][j])
         };
         let inside = s0 <= speed_rad_s && speed_rad_s <= s1 && bmep_pa <= self.bmep_pa[m - 1];
-        let lowest = self.bmep_pa[0];
+        // Loads at which the drag leaves no fuel have none, whatever the map says.
+        let first = self.bmep_pa.partition_point(|&p| p <= -drag_pa).min(m - 1);
+        let lowest = self.bmep_pa[first];
         if bmep_pa < lowest {
-            return (
-                row(0) * (bmep_pa + friction_pa) / (lowest + friction_pa),
-                inside,
-            ); // BM-2
+            let fuel_pa = row(first) * (bmep_pa + drag_pa) / (lowest + drag_pa); // BM-2
+            return (fuel_pa.max(0.0), inside);
         }
         let k = self
             .bmep_pa
@@ -54,12 +54,46 @@ impl BsfcMap {
     /// A map from rows (speed rad/s, BMEP Pa, BSFC kg/J) and the rubbing friction that belongs to it.
     ///
     /// # Errors
-    /// A sentence if the rows do not fill a rectangular grid of at least two speeds and two loads.
+    /// A sentence if the rows do not fill a rectangular grid of at least two speeds and two loads, or have no power.
     pub fn from_rows(
         rows: &[(f64, f64, f64)],
         heating_value_j_kg: f64,
         friction: (f64, f64),
     ) -> Result<Self, String> {
+        if let Some((_, load, _)) = rows.iter().find(|(_, load, _)| *load <= 0.0) {
+            return Err(format!(
+                "specific consumption has no meaning at {:.3} bar, where the engine gives no power",
+                load / 1e5
+            ));
+        }
+        let fuel = |&(speed, load, bsfc): &(f64, f64, f64)| {
+            (speed, load, bsfc * load * heating_value_j_kg) // BM-1
+        };
+        let rows: Vec<(f64, f64, f64)> = rows.iter().map(fuel).collect();
+        Self::of_fuel(&rows, friction)
+    }
+
+    /// As [`BsfcMap::from_rows`] of the fuel's own flow: rows (speed rad/s, BMEP Pa, fuel kg/s) of an engine of a displacement. Loads may be
+    /// nothing and below.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn from_flow(
+        rows: &[(f64, f64, f64)],
+        heating_value_j_kg: f64,
+        displacement_m3: f64,
+        friction: (f64, f64),
+    ) -> Result<Self, String> {
+        let per_speed = heating_value_j_kg * 4.0 * std::f64::consts::PI / displacement_m3;
+        let fuel = |&(speed, load, kg_s): &(f64, f64, f64)| {
+            (speed, load, kg_s / speed * per_speed) // BM-1
+        };
+        let rows: Vec<(f64, f64, f64)> = rows.iter().map(fuel).collect();
+        Self::of_fuel(&rows, friction)
+    }
+
+    /// A map from rows (speed rad/s, BMEP Pa, fuel MEP Pa).
+    fn of_fuel(rows: &[(f64, f64, f64)], friction: (f64, f64)) -> Result<Self, String> {
         let distinct = |f: &dyn Fn(&(f64, f64, f64)) -> f64| {
             let mut v: Vec<f64> = rows.iter().map(f).collect();
             v.sort_by(f64::total_cmp);
@@ -76,14 +110,12 @@ impl BsfcMap {
             ));
         }
         let mut fuel = vec![vec![f64::NAN; loads.len()]; speeds.len()];
-        for &(speed, load, bsfc) in rows {
-            let i = speeds
-                .partition_point(|&x| x < speed * (1.0 - 1e-8))
-                .min(speeds.len() - 1);
-            let j = loads
-                .partition_point(|&x| x < load * (1.0 - 1e-8))
-                .min(loads.len() - 1);
-            fuel[i][j] = bsfc * load * heating_value_j_kg; // BM-1
+        let place = |values: &[f64], x: f64| {
+            let before = values.partition_point(|&own| own < x - 1e-8 * x.abs());
+            before.min(values.len() - 1)
+        };
+        for &(speed, load, fuel_pa) in rows {
+            fuel[place(&speeds, speed)][place(&loads, load)] = fuel_pa;
         }
         if fuel.iter().flatten().any(|f| f.is_nan()) {
             return Err(
@@ -91,7 +123,7 @@ impl BsfcMap {
             );
         }
         if fuel.iter().any(|row| row.windows(2).any(|f| f[0] >= f[1])) {
-            return Err("fuel (BSFC times BMEP) must rise with load at every speed".into());
+            return Err("fuel (BSFC times BMEP, or its flow) must rise with load at every speed".into());
         }
         Ok(BsfcMap {
             speed_rad_s: speeds,

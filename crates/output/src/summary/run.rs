@@ -1,5 +1,6 @@
 //! Numbers of one car: fields of [`RunSummary`], with their values in [`run_summary`].
 
+use crate::fleet_spread::FleetRange;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{Deficit, Failure, LedgerErrors, failures};
@@ -62,6 +63,9 @@ pub struct RunSummary {
     /// FTP75 only: fuel weighted by bag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub weighted_fuel_l_per_100km: Option<f64>,
+    /// Range of the fuel from measured cars; absent for a car that has measurements of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fleet: Option<FleetRange>,
     /// Miles per imperial gallon, of the weighted fuel where there is one.
     pub mpg_uk: Option<f64>,
     /// Miles per US gallon, of the weighted fuel where there is one.
@@ -249,6 +253,7 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         fuel_l: all.fuel_kg / engine.fuel_density_kg_m3 * 1e3,
         fuel_l_per_100km: fuel.l_per_100km,
         weighted_fuel_l_per_100km: weighted,
+        fleet: None,
         mpg_uk: mpg(MPG_UK),
         mpg_us: mpg(MPG_US),
         co2_g_per_km: fuel.co2_g_per_km,
