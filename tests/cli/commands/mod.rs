@@ -6,6 +6,7 @@ mod optimum;
 mod out;
 mod compare;
 mod cycles;
+mod fleet;
 mod fmu;
 mod inputs;
 mod label;
