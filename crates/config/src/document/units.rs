@@ -51,6 +51,10 @@ pub(crate) const LENGTH: Units = Units(&[
     (&["um"], 1e-3),
 ]);
 pub(crate) const PER_TURN: Units = Units(&[(&["cc/rev", "cm3/rev", "cc", "cm3"], 1.0)]);
+pub(crate) const SPEED_PER_SPEED: Units = Units(&[
+    (&["rpm/(km/h)", "rpm/kmh"], 1.0),
+    (&["rpm/mph"], 1.0 / MILE),
+]);
 pub(crate) const RATIO: Units = Units(&[]);
 const ROAD_SPEED: Units = Units(&[
     (&["km/h", "kmh", "kph"], 1.0),

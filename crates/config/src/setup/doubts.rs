@@ -7,7 +7,9 @@ use std::ops::RangeInclusive;
 
 use super::Setup;
 use cvtcycle_model::keys::rpm;
+use cvtcycle_model::lubricant::Lubricant;
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::{
     BeltAtRatio, BeltLoad, Geometry, belt_capacity_nm,
@@ -47,8 +49,10 @@ const TOP_RPM: RangeInclusive<f64> = 1200.0..=4500.0;
 const STALL_RPM: RangeInclusive<f64> = 1500.0..=3200.0;
 /// Least running radius of a belt, m.
 const LEAST_RADIUS_M: f64 = 0.025;
+/// Engine speed at 80 km/h in top below which a CVT's reduction is not whole, rpm: 129 US cars of 2010 to 2019 have 1044 to 1675.
+const LEAST_80_RPM: f64 = 1000.0;
 /// A warm box, K, and a slow belt, rad/s, at which its grip is looked at.
-const WARM_K: f64 = 353.15;
+pub(super) const WARM_K: f64 = 353.15;
 const SLOW_RAD_S: f64 = 100.0;
 
 /// The doubts about a car, a sentence each.
@@ -70,8 +74,9 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
             overrun_doubt(setup, cvt),
             radius_doubt(cvt),
             grip_doubt(setup, cvt),
+            pump_doubt(setup, cvt),
         ],
-        Transmission::Manual(_) => [None, None, None, None],
+        Transmission::Manual(_) => [None, None, None, None, None],
     };
     all.into_iter().chain(of_box).flatten().collect()
 }
@@ -149,6 +154,12 @@ fn of_top_gear(setup: &Setup) -> Option<String> {
         Transmission::Manual(manual) => *manual.overall.last()?,
     };
     let at_100_rpm = rpm(100.0 / 3.6 / setup.road_load.base.wheel_radius_m * overall);
+    let at_80_rpm = 0.8 * at_100_rpm;
+    if setup.transmission().is_cvt() && at_80_rpm < LEAST_80_RPM {
+        return Some(format!(
+            "in the highest ratio the engine turns at {at_80_rpm:.0} rpm at 80 km/h, in cars with a CVT at 1044 to 1675 rpm: an axle ratio is often not the whole reduction; give engine over road speed (`new --n-over-v`)"
+        ));
+    }
     (!TOP_RPM.contains(&at_100_rpm)).then(|| {
         format!(
             "in the highest gear the engine turns at {at_100_rpm:.0} rpm at 100 km/h, in cars at 1200 to 4500 rpm: check the final drive, the highest ratio and the wheels"
@@ -156,8 +167,8 @@ fn of_top_gear(setup: &Setup) -> Option<String> {
     })
 }
 
-/// Speed at which full load holds the engine against a converter at rest.
-fn stall_doubt(setup: &Setup) -> Option<String> {
+/// Speed at which full load holds the engine against a converter at rest, rad/s; none of a friction clutch.
+fn stall_rad_s(setup: &Setup) -> Option<f64> {
     let coupling = setup.transmission().coupling();
     if !coupling.by_command() {
         return None; // a friction clutch has none
@@ -179,7 +190,11 @@ fn stall_doubt(setup: &Setup) -> Option<String> {
             false => high = middle,
         }
     }
-    let stall_rpm = rpm(low);
+    Some(low)
+}
+
+fn stall_doubt(setup: &Setup) -> Option<String> {
+    let stall_rpm = rpm(stall_rad_s(setup)?);
     (!STALL_RPM.contains(&stall_rpm)).then(|| {
         format!("full load stalls the converter at {stall_rpm:.0} rpm, those of cars at 1500 to 3200 rpm: check its capacity")
     })
@@ -198,15 +213,43 @@ fn radius_doubt(cvt: &Cvt) -> Option<String> {
     })
 }
 
+/// Torque of the primary that a clamping force, N, grips in low, Nm.
+pub(super) fn gripped_nm(cvt: &Cvt, oil: &Lubricant, secondary_clamp_n: f64) -> f64 {
+    let at = BeltAtRatio::new(&cvt.belt, cvt.ratio.low);
+    let load = BeltLoad {
+        secondary_clamp_n,
+        ..BeltLoad::turning(&cvt.belt, oil, WARM_K, cvt.ratio.low, SLOW_RAD_S)
+    };
+    belt_capacity_nm(&cvt.belt, &at, &load) / cvt.ratio.low
+}
+
+/// The pump's flow at idle against what creeps, and at the speed of stall against full load.
+fn pump_doubt(setup: &Setup, cvt: &Cvt) -> Option<String> {
+    let (oil, engine) = (setup.car(WARM_K).oil, setup.engine());
+    let now = cvt.pump.at(oil.dynamic_pa_s(WARM_K));
+    let idle = engine.idle_hot_rad_s;
+    let mut duties = vec![("idle", idle, cvt.coupling.creep_nm(0.0, idle))];
+    if let Some(stall) = stall_rad_s(setup) {
+        duties.push(("stall", stall, cvt.coupling.creep_nm(0.0, stall)));
+    }
+    duties.into_iter().find_map(|(of, rad_s, nm)| {
+        let held_pa = cvt.pump.deliverable_pa(&now, rad_s, 0.0);
+        let pa = held_pa.min(cvt.cap_pa);
+        let gripped = gripped_nm(cvt, &oil, cvt.secondary_clamp_n(pa, 0.0));
+        (held_pa < cvt.cap_pa && gripped < nm).then(|| {
+            format!(
+                "the pump is too small: at {of}, {:.0} rpm, it holds {:.0} bar in warm oil, which grip {gripped:.0} of {nm:.0} Nm in low: check pump.displacement_cc_rev",
+                rpm(rad_s),
+                pa / 1e5
+            )
+        })
+    })
+}
+
 /// Highest torque of the engine in low against what the largest pressure grips.
 fn grip_doubt(setup: &Setup, cvt: &Cvt) -> Option<String> {
     let oil = setup.car(WARM_K).oil;
-    let at = BeltAtRatio::new(&cvt.belt, cvt.ratio.low);
-    let load = BeltLoad {
-        secondary_clamp_n: cvt.secondary_clamp_n(cvt.cap_pa, 0.0),
-        ..BeltLoad::turning(&cvt.belt, &oil, WARM_K, cvt.ratio.low, SLOW_RAD_S)
-    };
-    let gripped_nm = belt_capacity_nm(&cvt.belt, &at, &load) / cvt.ratio.low;
+    let gripped_nm = gripped_nm(cvt, &oil, cvt.secondary_clamp_n(cvt.cap_pa, 0.0));
     let points = setup.engine().full_load.points();
     let highest_nm = points.map(|(_, nm)| nm).fold(0.0, f64::max);
     (gripped_nm < highest_nm).then(|| {

@@ -1,5 +1,6 @@
-//! From catalogue numbers to values of keys (NC-1 to NC-10).
+//! From catalogue numbers to values of keys (NC-1 to NC-18).
 
+mod box_size;
 mod driveline;
 mod engine;
 
@@ -133,7 +134,10 @@ pub(super) fn lines(answers: &Answers, base: &Setup) -> Result<Vec<Line>, Proble
     given.size();
     given.power();
     match base.transmission().is_cvt() {
-        true => given.belt(),
+        true => {
+            given.belt();
+            given.fit_box();
+        }
         false => given.gears(),
     }
     given.problems.finish()?;

@@ -143,6 +143,17 @@ pub(crate) struct EngineShaft<'a, R: Real = f64> {
     drag_nm: R,
 }
 
+/// What the pump's circuit does with the pressure that the clamp law sets.
+#[derive(Clone, Copy)]
+pub(crate) struct Circuit<R: Real = f64> {
+    /// Pressure that it holds, Pa.
+    pub pressure_pa: R,
+    /// True where the pump's flow is what limits it.
+    pub limited: R::Mask,
+    /// Flow that is left for the shift at that pressure, m3/s; where that is more than the shift takes, maybe what it takes.
+    pub left_m3_s: R,
+}
+
 /// How the secondary is clamped.
 #[derive(Clone, Copy)]
 pub(crate) struct Clamp<R: Real = f64> {
@@ -583,19 +594,35 @@ impl<'a, R: Real> Driveline<'a, R> {
         state
     }
 
-    /// The pressure that the circuit holds of the one that the clamp law sets, Pa, and whether the pump's flow is what limits it (PU-6). A pump
-    /// that is a measured map says nothing of its flow: it holds any pressure.
-    pub fn held_pa(&self, set_pa: R, pump: &TurningPump<R>, shift_flow_m3_s: R) -> (R, R::Mask) {
-        let mut short = !pump.surely_holds(set_pa, shift_flow_m3_s);
+    /// What the circuit holds of the pressure that the clamp law sets, Pa, with a flow into the pulleys, before which the clamp comes or not
+    /// (PU-6, PU-7). A pump that is a measured map says nothing of its flow: it holds any pressure.
+    pub fn held(
+        &self,
+        set_pa: R,
+        pump: &TurningPump<R>,
+        (shift_flow_m3_s, clamp_first): (R, bool),
+    ) -> Circuit<R> {
+        let short = !pump.surely_holds(set_pa, shift_flow_m3_s);
+        let mut circuit = Circuit {
+            pressure_pa: set_pa,
+            limited: short,
+            left_m3_s: shift_flow_m3_s,
+        };
         if !short.any() {
-            return (set_pa, short);
+            return circuit;
         }
-        let most_pa = pump.deliverable_pa(shift_flow_m3_s);
-        short = set_pa.gt(most_pa);
-        if self.cvt.has_map(Component::Pump) {
-            return (set_pa, short);
+        let before_m3_s = match clamp_first {
+            true => set_pa.splat(0.0),
+            false => shift_flow_m3_s,
+        };
+        let most_pa = pump.deliverable_pa(before_m3_s);
+        circuit.limited = set_pa.gt(most_pa);
+        if !self.cvt.has_map(Component::Pump) {
+            circuit.pressure_pa = circuit.limited.select(most_pa, set_pa);
+            let left_m3_s = pump.left_m3_s(circuit.pressure_pa); // PU-7
+            circuit.left_m3_s = short.select(left_m3_s, shift_flow_m3_s);
         }
-        (short.select(most_pa, set_pa), short)
+        circuit
     }
 
     /// Oil flow of the pump with the engine at a speed, at a pressure and a flow into the pulleys, m3/s.

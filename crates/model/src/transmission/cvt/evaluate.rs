@@ -28,6 +28,8 @@ pub(super) struct Step<'a, P, R: Real = f64> {
     pub drive: TurningTrain<R>,
     pub load: BeltLoad<R>,
     pub shift_flow_m3_s: R,
+    /// True where the clamp is fed before the shift (PU-7), false for an imposed ratio.
+    pub clamp_first: bool,
     /// True where pump flow held the shift back.
     pub shift_held: R::Mask,
     /// State of the ratio control.
@@ -114,6 +116,8 @@ pub(super) struct Point<R: Real = f64> {
     /// Loss of the coupling, W.
     pub coupling_w: R,
     pub flow_limited: R::Mask,
+    /// Flow that the clamp leaves for the shift, m3/s (PU-7).
+    pub left_m3_s: R,
     pub inside_maps: R::Mask,
     /// True where the coupling holds engine and primary together (LC-5).
     pub locked: R::Mask,
@@ -143,6 +147,7 @@ impl<R: Real> Point<R> {
             flywheel_nm: none,
             coupling_w: none,
             flow_limited: no,
+            left_m3_s: none,
             inside_maps: no,
             locked: no,
         }
@@ -387,8 +392,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             },
             chain.secondary_rad_s,
         );
-        let (next_pressure_pa, flow_limited) =
-            line.held_pa(set_pa, &next_pump, self.shift_flow_m3_s);
+        let shift = (self.shift_flow_m3_s, self.clamp_first);
+        let circuit = line.held(set_pa, &next_pump, shift);
         point.guess = Guess {
             engine_rad_s,
             slip: chain.slip,
@@ -396,7 +401,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         };
         point.slip_guessed = g.slip;
         point.next_engine_rad_s = next_engine_rad_s;
-        point.next_pressure_pa = next_pressure_pa;
+        point.next_pressure_pa = circuit.pressure_pa;
         point.clamp_cause = clamp_cause;
         point.throttle = throttle;
         point.full_load_nm = full_load_nm;
@@ -409,7 +414,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         point.miss_nm = chain.passed_nm - wanted_nm;
         point.flywheel_nm = flywheel_nm;
         point.coupling_w = own.loss_w;
-        point.flow_limited = flow_limited;
+        point.flow_limited = circuit.limited;
+        point.left_m3_s = circuit.left_m3_s;
         point.inside_maps = inside_maps;
         point.locked = chain.locked;
     }

@@ -29,6 +29,7 @@ mod launch_behind;
 mod prepare;
 mod secant;
 pub mod selector;
+mod shift_flow;
 mod solve;
 mod step_output;
 

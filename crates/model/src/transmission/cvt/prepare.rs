@@ -28,10 +28,18 @@ fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R) {
 /// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
 pub(super) type Before<'a, R> = (&'a Geometry<R>, &'a Shifting<R>, &'a Option<Hold<R>>);
 
-/// Inputs of the shift: the pump's free flow, efficiency for the full-load route.
+/// What a try of the solve asks of the shift.
+#[derive(Clone, Copy)]
+pub(super) struct Try<R: Real> {
+    /// Efficiency that the route at full load reckons with (RC-3, RC-7).
+    pub efficiency: R,
+    /// Largest flow into the pulleys, m3/s (RC-5).
+    pub most_flow_m3_s: R,
+}
+
+/// Inputs of the shift.
 struct Route<R: Real> {
-    pump: PumpAtTemperature<R>,
-    efficiency: R,
+    asked: Try<R>,
     /// Direction that a small change must not turn round; 0 in a kick-down (RC-7).
     last_direction: R::PerLane<i8>,
 }
@@ -78,11 +86,7 @@ fn shift<P: PrimeMover<R>, R: Real>(
         }; // RC-4
     }
     let (down_m3, up_m3) = sheave_volumes_m3(cvt, before);
-    let drawn = route
-        .pump
-        .drawn_m3_s(cvt.pump.full_flow_m3_s(past.engine_rad_s));
-    let free = drawn - route.pump.need_m3_s(past.secondary_pa);
-    let free = free.max(0.0);
+    let most = route.asked.most_flow_m3_s;
     let mut demand = RatioDemand {
         secondary_rad_s,
         primary_rad_s,
@@ -93,14 +97,14 @@ fn shift<P: PrimeMover<R>, R: Real>(
         mapped_rad_s: cvt.mapped_rad_s(input, share),
         cold_rad_s: (cvt.ratio.cold).at(input.heat.node_k[COOLANT], input.heat.node_k[SUMP]),
         ratio_before: before.ratio,
-        flow_down_per_s: free / down_m3, // RC-5
-        flow_up_per_s: free / up_m3,     // RC-5
+        flow_down_per_s: most / down_m3, // RC-5
+        flow_up_per_s: most / up_m3,     // RC-5
         coupled: past.coupled | zero.splat_mask(cvt.coupling.by_command()),
         last_direction: route.last_direction,
         free_up_to_rad_s: FREE_OVER_IDLE * input.engine.idle_rad_s(),
         dt_s: input.dt_s,
     };
-    let power_w = input.wheel.power_w / route.efficiency;
+    let power_w = input.wheel.power_w / route.asked.efficiency;
     let target_rad_s = cvt.ratio.target_rad_s(&demand);
     let ample_w = AMPLE * input.engine.full_load_nm(target_rad_s) * target_rad_s;
     if (power_w.gt(0.0) & !ample_w.gt(power_w)).any() {
@@ -165,9 +169,9 @@ pub(super) fn prepare<'a, P: PrimeMover<R>, R: Real>(
     past: &DrivelineState<R>,
     before: Before<'a, R>,
     belt: &'a mut BeltAtRatio<R>,
-    efficiency: R,
+    asked: Try<R>,
 ) -> Step<'a, P, R> {
-    efficiency.vectorize(|| prepared(cvt, input, past, before, belt, efficiency))
+    (asked.efficiency).vectorize(|| prepared(cvt, input, past, before, belt, asked))
 }
 
 #[physics]
@@ -177,7 +181,7 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
     past: &DrivelineState<R>,
     before: Before<'a, R>,
     belt: &'a mut BeltAtRatio<R>,
-    efficiency: R,
+    asked: Try<R>,
 ) -> Step<'a, P, R> {
     let (oil, friction) = (input.oil, &input.oil.friction);
     let (sump_k, belt_k) = (input.heat.node_k[SUMP], input.heat.node_k[BELT]);
@@ -191,10 +195,9 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
     let eta_belt = nu_belt * oil.density_kg_m3(belt_k);
     let inlet = cvt.pump.with_factor(sump.dynamic_pa_s, sump_k.splat(1.0));
     let route = Route {
-        pump: inlet,
-        efficiency,
+        asked,
         last_direction: {
-            let kicks = cvt.ratio.route_efficiency.gt(efficiency);
+            let kicks = cvt.ratio.route_efficiency.gt(asked.efficiency);
             R::per_lane(|lane| match kicks.lane(lane) {
                 true => 0,
                 false => *R::get(&before.1.direction, lane),
@@ -254,6 +257,7 @@ fn prepared<'a, P: PrimeMover<R>, R: Real>(
             sliding,
         ),
         shift_flow_m3_s: shift.flow_m3_s,
+        clamp_first: !matches!(before.2, Some(hold) if !hold.paced), // PU-7
         shift_held: shift.held,
         shifting: shift.kept,
         reach: input.reach(past.engine_rad_s, sump_k.splat(0.0)),

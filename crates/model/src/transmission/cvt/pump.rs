@@ -6,7 +6,8 @@
 //! | PU-2 | flow need = V_lub min(1, 1 Pa s/eta) + leakage p (eta_r/eta) + shift flow | ASSUMED values; thick oil runs through what lubricates as through leaks |
 //! | PU-3 | shift flow = A \|dx/dt\|, x = 2 tan th R | derived: thesis 9.1 requires it |
 //! | PU-4 | dual cavity and variable: only the share of D that the need requires works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
-//! | PU-6 | p <= (drawn flow - lubrication - shift flow)/(leakage eta_r/eta), at least 0.1 bar | derived: a circuit holds the pressure that its flow keeps up; 0.1 bar keeps the solve finite |
+//! | PU-6 | p <= (drawn flow - lubrication - flow before the clamp)/(leakage eta_r/eta), at least 0.1 bar; before it no flow but that of an imposed shift (PU-7) | derived: a circuit holds the pressure that its flow keeps up; 0.1 bar keeps the solve finite |
+//! | PU-7 | line pressure comes first: V_shift <= drawn flow - V_lub - leakage p eta_r/eta, the pressure by PU-6 without the shift flow; the shift's rate falls by RC-5 until it is so. A ratio that is imposed (RC-12) takes its flow, and the pressure by PU-6 falls | derived: valve bodies of CVTs have the line regulator before the ratio valve, so that the clamp is fed first and the shift waits |
 //! | PU-5 | drawn flow = V/(1 + (V/V_max)^4)^(1/4), V_max = p_i/(k eta/eta_r) | derived: laminar drop k eta V in strainer and suction line, bounded by the air's pressure; k and p_i = 0.7 bar ASSUMED |
 //! | EP-2 | electric: T_e = P/w, P = (p + line drop) V/eta_p, V the need of PU-2 and PU-3 up to that of the fastest motor; besides P (1/eta_a - 1) is lost in the alternator | derived; eta_p 0.4 to 0.75 ASSUMED; eta_a source: alternators 0.5 to 0.6, 48 V machines 0.8 |
 //!
@@ -332,6 +333,11 @@ impl<R: Real> TurningPump<'_, R> {
         let spare = self.drawn_m3_s() - now.lubrication_m3_s - shift_flow_m3_s;
         let enough = spare.gt(MIN_PA * now.leakage_m3_s_pa);
         enough.select(spare * now.inv_leakage, spare.splat(MIN_PA)) // PU-6
+    }
+
+    /// Flow of the whole displacement that a pressure and lubrication leave, m3/s, at least none (PU-7).
+    pub fn left_m3_s(&self, pressure_pa: R) -> R {
+        (self.drawn_m3_s() - self.now.need_m3_s(pressure_pa)).max(0.0) // PU-7
     }
 
     /// Torque and flow at a pressure and a need (PU-1, PU-4).

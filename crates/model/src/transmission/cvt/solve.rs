@@ -8,8 +8,9 @@
 
 use super::controller::ClampLaw;
 use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
-use super::prepare::prepare;
+use super::prepare::{Try, prepare};
 use super::secant::{Slopes, TorqueSecant};
+use super::shift_flow::ShiftFlow;
 use super::step_output::{Outcome, finish, standstill};
 use super::variator::BeltLoad;
 use super::{Cvt, CvtState, WarmStart};
@@ -357,9 +358,14 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
     let (yes, no) = (efficiency.splat_mask(true), efficiency.splat_mask(false));
     let mut tried_ratio = efficiency.splat(f64::NAN);
     let mut trying = yes;
+    let mut flow = ShiftFlow::new(efficiency);
     loop {
         let before = (&before, &*shifting, &hold);
-        let step = prepare(cvt, input, past, before, belt, efficiency);
+        let asked = Try {
+            efficiency,
+            most_flow_m3_s: flow.most_m3_s,
+        };
+        let step = prepare(cvt, input, past, before, belt, asked);
         // All runs of a group are at rest together.
         let rests = !step.secondary_rad_s.gt(0.0).any();
         if rests && !cvt.launch_behind {
@@ -378,7 +384,7 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
                 engine_rad_s: past.engine_rad_s,
                 pressure_pa: past.secondary_pa,
             };
-            step.run(&guess, &Limit::none(no), false, yes, work); // LO-4
+            step.run(&guess, &Limit::none(no), false, trying, work); // LO-4
         } else {
             let ratio = step.line.at.geometry.ratio;
             let last = ratio.bits_eq(tried_ratio)
@@ -393,6 +399,13 @@ pub(super) fn solve<P: PrimeMover<R>, R: Real>(
                 trying = short;
                 continue;
             }
+        }
+        let lacks = flow.takes(&step, &work.point);
+        if lacks.any() {
+            trying = lacks;
+            continue; // RC-5
+        }
+        if !rests {
             warm_start.slopes = work.slopes;
             warm_start.overrun = work.limit.engine_drag;
         }

@@ -71,7 +71,9 @@ fn idling<P: PrimeMover<R>, R: Real>(
         let signals = line.signals(guess, w);
         let set_pa;
         (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
-        (at.pressure_pa, at.flow_limited) = line.held_pa(set_pa, &shaft.pump, step.shift_flow_m3_s);
+        let shift = (step.shift_flow_m3_s, step.clamp_first);
+        let circuit = line.held(set_pa, &shaft.pump, shift);
+        (at.pressure_pa, at.flow_limited) = (circuit.pressure_pa, circuit.limited);
         let pump = line.turn_engine(
             &mut at.torques,
             &shaft,

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{BEYOND_RATED_RPM, Given, Line, digits, list};
-use crate::document::units::{LENGTH, POWER, RATIO};
+use crate::document::units::{LENGTH, POWER, RATIO, SPEED_PER_SPEED};
 use crate::setup::twin::shifts_kmh;
 use cvtcycle_model::keys::{RAD_S, RPM};
 use cvtcycle_model::math::asin;
@@ -12,6 +12,12 @@ use cvtcycle_model::transmission::Transmission;
 /// Numbers of a CVT only, and of a manual box only.
 const OF_CVT: [&str; 5] = ["ratio-low", "ratio-high", "span", "centre-distance", "pump"];
 const OF_MANUAL: [&str; 1] = ["gears"];
+const FINAL_DRIVE: &str = "transmission.cvt.final_drive_ratio";
+const HIGH: &str = "transmission.cvt.ratio.high";
+const OVERALL: &str = "transmission.manual.overall_ratios";
+const LAST: &str = "transmission.manual.final_ratio";
+/// Speed of the line of gentle driving over that of the highest ratio at 80 km/h, and its limits, rpm (NC-17).
+const GENTLE: (f64, [f64; 2]) = (0.8, [1000.0, 1300.0]);
 const LOW: &str = "transmission.cvt.ratio.low";
 const CENTRE: &str = "transmission.cvt.variator.centre_distance_mm";
 /// Least running radius of a belt, m (NC-4).
@@ -70,20 +76,23 @@ impl Given<'_> {
 
     /// Limits of the belt's ratio, and the belt that reaches them.
     pub(super) fn belt(&mut self) {
-        if let Some(ratio) = self.number("final-drive", &RATIO) {
-            self.is_given(
-                "final-drive",
-                "transmission.cvt.final_drive_ratio",
-                digits(ratio),
-            );
+        let final_drive = self.number("final-drive", &RATIO);
+        if let Some(ratio) = final_drive {
+            self.is_given("final-drive", FINAL_DRIVE, digits(ratio));
         }
         self.overrun();
         let limits = self.ratio_limits();
         let centre_mm = self.number("centre-distance", &LENGTH);
         let Some([low, high]) = limits else { return };
+        let high_in_force = high.unwrap_or_else(|| self.inherited(HIGH));
+        if let Some(top) = self.top_by_speeds() {
+            let words = format!("NC-16: over the highest ratio of {}", digits(high_in_force));
+            self.follows(FINAL_DRIVE, format!("{:.4}", top / high_in_force), words);
+        }
+        self.gentle(high_in_force, final_drive);
         for (option, key, value) in [
             ("ratio-low", LOW, low),
-            ("ratio-high", "transmission.cvt.ratio.high", high),
+            ("ratio-high", HIGH, high),
             ("centre-distance", CENTRE, centre_mm),
         ] {
             match (value, self.text(option)) {
@@ -117,6 +126,56 @@ impl Given<'_> {
                 "NC-10: above the speed from which all fuel is cut".to_owned(),
             );
         }
+    }
+
+    /// Overall ratio of the highest gear from engine over road speed (NC-16); none without one, or beside a final drive.
+    fn top_by_speeds(&mut self) -> Option<f64> {
+        let rpm_per_kmh = self.number("n-over-v", &SPEED_PER_SPEED)?;
+        if self.text("final-drive").is_some() {
+            self.complain(
+                "n-over-v",
+                "engine over road speed and a final drive at once",
+                "give one of them: the axle ratio of a data sheet is often not the whole reduction, engine over road speed is",
+            );
+            return None;
+        }
+        if rpm_per_kmh.is_nan() || rpm_per_kmh <= 0.0 {
+            self.complain(
+                "n-over-v",
+                "a number above zero is needed",
+                "write it as 26.4rpm/mph",
+            );
+            return None;
+        }
+        Some(rpm_per_kmh * 3.6 * self.radius_m() * RPM) // NC-16
+    }
+
+    /// Radius of the wheels, m.
+    fn radius_m(&self) -> f64 {
+        let mut radii = (self.lines.iter()).filter(|line| line.key == "road_load.wheel_radius_m");
+        let own = radii.next().and_then(|line| line.value.parse().ok());
+        own.unwrap_or(self.base.road_load.base.wheel_radius_m)
+    }
+
+    /// The line of gentle driving of a car whose reduction is given (NC-17). A car has its own.
+    fn gentle(&mut self, high: f64, final_drive: Option<f64>) {
+        let by_speeds = (self.lines.iter()).find(|line| line.key == FINAL_DRIVE);
+        let ratio = final_drive.or_else(|| by_speeds?.value.parse().ok());
+        let (None, Some(ratio)) = (&self.answers.like, ratio) else {
+            return;
+        };
+        let (share, [least, most]) = GENTLE;
+        let at_80_rpm = 80.0 / 3.6 / self.radius_m() * ratio * high * RAD_S;
+        let rpm = (share * at_80_rpm).clamp(least, most);
+        self.lines.push(Line {
+            key: "transmission.cvt.ratio.gentle_rpm",
+            value: digits(rpm.round()),
+            status: "assumed",
+            source: format!(
+                "NC-17: {at_80_rpm:.0} rpm in the highest ratio at 80 km/h; 1000 to 1300 rpm"
+            ),
+            option: None,
+        });
     }
 
     /// The belt that runs at the least radius in low.
@@ -161,14 +220,40 @@ impl Given<'_> {
     pub(super) fn gears(&mut self) {
         let final_drive = self.number("final-drive", &RATIO);
         if let Some(ratio) = final_drive {
-            self.is_given(
-                "final-drive",
-                "transmission.manual.final_ratio",
-                digits(ratio),
-            );
+            self.is_given("final-drive", LAST, digits(ratio));
         }
-        let Some(text) = self.text("gears").map(str::to_owned) else {
+        let top = self.top_by_speeds();
+        let inherited = self.inherited(LAST);
+        let Some((gears, words)) = self.gear_list() else {
             return;
+        };
+        // Without gears those of the class, behind another final drive.
+        let last = match (top, gears.last()) {
+            (Some(top), Some(gear)) => top / gear,
+            _ => final_drive.unwrap_or(inherited),
+        };
+        if self.text("gears").is_none() && final_drive.is_none() && top.is_none() {
+            return;
+        }
+        if top.is_some() {
+            let words = "NC-16: overall ratio of the highest gear over its own";
+            self.follows(LAST, format!("{last:.4}"), words.to_owned());
+        }
+        let overall: Vec<f64> = gears.iter().map(|gear| gear * last).collect();
+        let words = format!("{words} times a final drive of {}", digits(last));
+        self.follows(OVERALL, list(&overall), words);
+        self.shifts(&overall);
+    }
+
+    /// The gears that are given, else those of the class, without the final drive, in words too; none after a problem.
+    fn gear_list(&mut self) -> Option<(Vec<f64>, String)> {
+        let Some(text) = self.text("gears").map(str::to_owned) else {
+            let Transmission::Manual(manual) = self.base.transmission() else {
+                return None;
+            };
+            let last = self.inherited(LAST);
+            let gears = manual.overall.iter().map(|overall| overall / last);
+            return Some((gears.collect(), "NC-16: the inherited gears".to_owned()));
         };
         let parts: Vec<&str> = text.split(',').collect();
         let gears = parts
@@ -176,7 +261,7 @@ impl Given<'_> {
             .filter_map(|part| self.read("gears", part, &text, &RATIO));
         let gears: Vec<f64> = gears.collect();
         if gears.len() < parts.len() {
-            return;
+            return None;
         }
         let falls = gears.windows(2).all(|pair| pair[0] > pair[1]);
         if gears.len() < 2 || !falls {
@@ -185,13 +270,9 @@ impl Given<'_> {
                 "two gears or more are needed, from first to top",
                 "leave reverse out",
             );
-            return;
+            return None;
         }
-        let last = final_drive.unwrap_or_else(|| self.inherited("transmission.manual.final_ratio"));
-        let overall: Vec<f64> = gears.iter().map(|gear| gear * last).collect();
-        let words = format!("gears {text} times a final drive of {}", digits(last));
-        self.follows("transmission.manual.overall_ratios", list(&overall), words);
-        self.shifts(&overall);
+        Some((gears, format!("gears {text}")))
     }
 
     /// Shift speeds of a gear set.
@@ -200,12 +281,7 @@ impl Given<'_> {
         let rated = rated.and_then(|(_, speeds)| speeds.first().copied());
         let usual = self.base.engine().highest_rad_s - BEYOND_RATED_RPM * RPM;
         let rated_rad_s = rated.map_or(usual, |rpm| rpm * RPM);
-        let mut radii = self
-            .lines
-            .iter()
-            .filter(|line| line.key == "road_load.wheel_radius_m");
-        let radius_m = radii.next().and_then(|line| line.value.parse().ok());
-        let radius_m = radius_m.unwrap_or(self.base.road_load.base.wheel_radius_m);
+        let radius_m = self.radius_m();
         let speeds = shifts_kmh(overall, radius_m, rated_rad_s);
         let keys = [
             "transmission.manual.upshift_kmh",
