@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | NC-15 | F(v) = k T(v)/r, T the loss of the box turned by the wheels without torque, at the shaft that turns k times as fast as they do; f0, f1, f2 its least squares at 20, 30 .. 110 km/h | derived: the model's own drag, RL-9 |
+//! | NC-18 | F(v) = k T(v)/r, T the loss of the box turned by the wheels without torque, at the shaft that turns k times as fast as they do; f0, f1, f2 its least squares at 20, 30 .. 110 km/h | derived: the model's own drag, RL-9 |
 //!
 //! Of a CVT: final drive, pulley bearings, seal rings, belt and the open clutch behind the engine; not the pump and the input shaft, which the engine turns.
 //! The belt is at the ratio that holds the primary at `gentle_rpm`, as far as its range reaches, and under the clamp law's pressure at closed throttle. Of a
@@ -20,7 +20,7 @@ const OIL_K: f64 = 333.15;
 /// Speeds, m/s.
 const SPEEDS: [f64; 10] = [20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0, 110.0];
 
-/// Coefficients of the drag in neutral: N, N/(km/h), N/(km/h)2 (NC-15). `None` where the box cannot be turned at one of the speeds.
+/// Coefficients of the drag in neutral: N, N/(km/h), N/(km/h)2 (NC-18). `None` where the box cannot be turned at one of the speeds.
 pub(super) fn drag_coefficients(setup: &Setup) -> Option<[f64; 3]> {
     let bench = Bench::new(&setup.vehicle);
     let forces: Option<Vec<f64>> = SPEEDS.iter().map(|kmh| drag_n(setup, &bench, kmh / 3.6)).collect();
@@ -50,7 +50,7 @@ fn drag_n(setup: &Setup, bench: &Bench, speed_m_s: f64) -> Option<f64> {
         *component == Component::InputShaft || matches!(component.group(), LossGroup::Pump | LossGroup::Launch)
     };
     let parts = Component::ALL.into_iter().filter(|component| !turned_by_engine(component));
-    let force_n = parts.map(|component| answer.part_nm(component)).sum::<f64>() * overall / radius_m; // NC-15
+    let force_n = parts.map(|component| answer.part_nm(component)).sum::<f64>() * overall / radius_m; // NC-18
     force_n.is_finite().then_some(force_n)
 }
 

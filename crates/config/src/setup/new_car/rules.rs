@@ -91,7 +91,7 @@ pub(super) fn drag_lines(drag: [f64; 3]) -> impl Iterator<Item = Line> {
         key,
         value: format!("{value:.digits$}"),
         status: "derived",
-        source: "NC-15: the box turned by the wheels without torque, in oil of 60 degC".to_owned(),
+        source: "NC-18: the box turned by the wheels without torque, in oil of 60 degC".to_owned(),
         option: None,
     })
 }
