@@ -11,10 +11,13 @@
 //! | NC-9 | stroke of four cylinders of equal bore and stroke | ASSUMED |
 //! | NC-10 | a CVT of a class keeps an engine that has its fuel cut later than the class expects 100 rpm above that speed in overrun | ASSUMED: controllers of CVTs hold the cut, 50 to 200 rpm |
 //!
-//! `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, this module the file; `options` puts what is wrong with it under their options, `answers`
+//! | NC-11 | full load of a car with a named engine: its line, speeds times n_P/n_P,named where n_P is given, torques so that the greatest power is P; stroke of the named engine times (V/V_named)^(1/3) | derived: the same engine in another size |
+//!
+//! `engines` finds the class of an engine, `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, this module the file; `options` puts what is wrong with it under their options, `answers`
 //! reads the numbers from a file, `questions` says what may be asked for.
 
 mod answers;
+mod engines;
 mod full_load;
 mod options;
 mod questions;
@@ -28,6 +31,7 @@ use std::path::Path;
 use super::{Disk, Kind, Options, Setup, read};
 use crate::problem::near::suggest;
 use crate::{Place, Problem, Problems};
+pub use engines::{named_engines, technologies};
 pub use questions::{Question, mistake, questions};
 use rules::Line;
 
@@ -44,6 +48,12 @@ pub struct Answers {
     pub class: Option<String>,
     /// Class of the transmission.
     pub gearbox: Option<String>,
+    /// Technology of the engine, such as `di` ([`technologies`]).
+    pub engine: Option<String>,
+    /// Year of the engine.
+    pub engine_year: Option<String>,
+    /// A measured engine by the name of its class without `engine_`.
+    pub engine_like: Option<String>,
     /// The numbers.
     pub numbers: BTreeMap<&'static str, String>,
     /// Places of those that come from a file ([`Answers::add_file`]).
@@ -57,7 +67,42 @@ pub struct NewCar {
     pub text: String,
     /// The car that it is.
     pub setup: Setup,
+    /// Notes on what was chosen for it, a sentence each.
+    pub notes: Vec<String>,
 }
+
+/// What a class is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClassOf {
+    /// Body, with an engine.
+    Body,
+    /// Transmission.
+    Box,
+    /// Engine.
+    Engine,
+}
+
+impl ClassOf {
+    /// What a class is of, by its name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Self {
+        match (name.starts_with("box_"), name.starts_with(ENGINE)) {
+            (true, _) => ClassOf::Box,
+            (_, true) => ClassOf::Engine,
+            _ => ClassOf::Body,
+        }
+    }
+
+    /// The classes of it.
+    #[must_use]
+    pub fn names(self) -> Vec<&'static str> {
+        let names = Kind::Class.names().into_iter();
+        names.filter(|name| Self::of_name(name) == self).collect()
+    }
+}
+
+/// Begin of the names of classes of engines.
+const ENGINE: &str = "engine_";
 
 /// Names of the numbers that a car may have, with their meaning.
 pub const NUMBERS: [(&str, &str); 22] = [
@@ -165,12 +210,16 @@ fn made(answers: &Answers) -> Result<NewCar, Problems> {
     let setup = car(answers, &text);
     let setup = setup.map_err(|found| options::under_options(found, &lines, answers))?;
     text += &weight_comments(&setup);
-    Ok(NewCar { text, setup })
+    let notes = base.notes;
+    Ok(NewCar { text, setup, notes })
 }
 
 /// True if a number that a class cannot have is missing.
 fn is_missing(answers: &Answers, name: &str) -> bool {
-    REQUIRED.contains(&name) && answers.like.is_none() && !answers.numbers.contains_key(name)
+    let has = |name: &str| answers.numbers.contains_key(name);
+    // A named engine has its own, and in another size needs another power.
+    let is_whole = answers.engine_like.is_some() && (name != "power" || !has("displacement"));
+    REQUIRED.contains(&name) && answers.like.is_none() && !is_whole && !has(name)
 }
 
 /// Names that the car inherits from.
@@ -179,15 +228,17 @@ struct Base {
     like: String,
     /// The car without a value of its own.
     car: Setup,
+    /// Notes on the classes.
+    notes: Vec<String>,
 }
 
 impl Base {
     fn from_answers(answers: &Answers) -> Result<Base, Problems> {
-        let parents = parents(answers)?;
+        let (parents, notes) = parents(answers)?;
         let like = parents.iter().map(|name| format!("{name:?}"));
         let like = like.collect::<Vec<_>>().join(", ");
         let car = car(answers, &head("", &like, false))?;
-        Ok(Base { like, car })
+        Ok(Base { like, car, notes })
     }
 }
 
@@ -208,14 +259,10 @@ fn meaning(name: &str) -> &'static str {
     found.map_or("", |(_, meaning)| meaning)
 }
 
-/// Names that the car inherits from.
-fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
-    let class = |name: &str, option: &str, is_box: bool| {
-        let known: Vec<&str> = Kind::Class.names();
-        let known: Vec<&str> = known
-            .into_iter()
-            .filter(|of| of.starts_with("box_") == is_box)
-            .collect();
+/// Names that the car inherits from, and notes on them.
+fn parents(answers: &Answers) -> Result<(Vec<String>, Vec<String>), Problem> {
+    let class = |name: &str, option: &str, of: ClassOf| {
+        let known = of.names();
         match known.contains(&name) {
             true => Ok(format!("class:{name}")),
             false => Err(
@@ -227,6 +274,10 @@ fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
             ),
         }
     };
+    let found = engines::class(answers)?;
+    let notes = found.iter().filter_map(|engine| engine.note.clone());
+    let notes: Vec<String> = notes.collect();
+    let engine = found.map(|engine| format!("class:{}", engine.class));
     if let Some(car) = &answers.like {
         if answers.class.is_some() {
             let problem = Problem::conflict("a car and a class at once").key("class");
@@ -235,15 +286,18 @@ fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
         let gearbox = answers
             .gearbox
             .as_ref()
-            .map(|name| class(name, "box", true));
+            .map(|name| class(name, "box", ClassOf::Box));
         let gearbox = gearbox.transpose()?;
-        return Ok([car.clone()].into_iter().chain(gearbox).collect());
+        let all = [car.clone()].into_iter().chain(engine).chain(gearbox);
+        return Ok((all.collect(), notes));
     }
     let [body, gearbox] = USUAL;
-    Ok(vec![
-        class(answers.class.as_deref().unwrap_or(body), "class", false)?,
-        class(answers.gearbox.as_deref().unwrap_or(gearbox), "box", true)?,
-    ])
+    let body = answers.class.as_deref().unwrap_or(body);
+    let gearbox = answers.gearbox.as_deref().unwrap_or(gearbox);
+    let body = class(body, "class", ClassOf::Body)?;
+    let gearbox = class(gearbox, "box", ClassOf::Box)?;
+    let all = [body].into_iter().chain(engine).chain([gearbox]);
+    Ok((all.collect(), notes))
 }
 
 /// The begin of the file.

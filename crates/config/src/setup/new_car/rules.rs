@@ -1,4 +1,4 @@
-//! From catalogue numbers to values of keys (NC-1 to NC-10).
+//! From catalogue numbers to values of keys (NC-1 to NC-11).
 
 mod driveline;
 mod engine;
