@@ -6,6 +6,7 @@ use cvtcycle::config::Problems;
 use cvtcycle::config::csv::UNITS;
 use cvtcycle::config::cycle::{self, Cycle};
 use cvtcycle::config::setup::catalogue::{self, File};
+use cvtcycle::config::setup::new_car::ClassOf;
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
 use cvtcycle::model::keys::stem;
 use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
@@ -36,7 +37,7 @@ enum ListedKind {
     Cycles,
     /// Vehicles
     Vehicles,
-    /// Classes of cars and boxes, which vehicle files inherit from
+    /// Classes of cars, boxes and engines, which vehicle files inherit from
     Classes,
     /// Transmission and engine oils
     Lubricants,
@@ -163,19 +164,25 @@ fn list_classes() -> Listing {
         let info = file.keys.iter().find(|info| info.key == key);
         info.map_or_else(String::new, |info| info.value.clone())
     };
+    let of = |file: &File| match ClassOf::of_name(file.name) {
+        ClassOf::Body => "body",
+        ClassOf::Box => "box",
+        ClassOf::Engine => "engine",
+    };
     let shown = |key: &'static str| move |file: &File| value(file, key);
     let columns = TextColumns::new()
         .left("name", |file: &File| file.name)
+        .left("of", |file: &File| of(file))
         .right("kg", shown("road_load.mass_kg"))
         .right("cm3", shown("engine.displacement_cc"))
         .right("kW", shown("engine.rated_kw"))
         .left("title", shown("vehicle.title"));
-    let json = |file: &File| json!({ "name": file.name, "title": value(file, "vehicle.title"), "keys": file.keys.len() });
+    let json = |file: &File| json!({ "name": file.name, "of": of(file), "title": value(file, "vehicle.title"), "keys": file.keys.len() });
     Listing {
         json: json!({ "classes": list.iter().map(json).collect::<Vec<_>>() }),
         heading: "Classes",
         table: columns.lines(&list),
-        note: "A vehicle file takes what it leaves out from them: like = [\"class:compact_2020\", \"class:box_cvt_clutch\"] in [vehicle].\n\
+        note: "A vehicle file takes what it leaves out from them, of several from the later: like = [\"class:compact_2020\", \"class:engine_pfi_2013\", \"class:box_cvt_clutch\"] in [vehicle].\n\
             `cvtcycle show NAME` prints every value with its source.\n",
     }
 }

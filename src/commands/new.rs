@@ -8,7 +8,7 @@ use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use cvtcycle::config::bounded::TOML;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::setup::catalogue::{ENGINE_OIL, OIL};
-use cvtcycle::config::setup::new_car::{self, Answers, NUMBERS, NewCar};
+use cvtcycle::config::setup::new_car::{self, Answers, ClassOf, NUMBERS, NewCar};
 use cvtcycle::config::{Problem, Problems, decode};
 use cvtcycle::output::file::OutputFile;
 
@@ -41,11 +41,20 @@ pub struct NewArgs {
     #[arg(long, value_name = "NAME|FILE.toml", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
     like: Option<String>,
     /// Class of body and engine [default: compact_2020]
-    #[arg(long, value_name = "CLASS", value_parser = Names(|| Kind::Class.names()), hide_possible_values = true)]
+    #[arg(long, value_name = "CLASS", value_parser = Names(|| ClassOf::Body.names()), hide_possible_values = true)]
     class: Option<String>,
     /// Class of the transmission [default: that of --like, else box_cvt_clutch]
-    #[arg(long = "box", value_name = "CLASS", value_parser = Names(|| Kind::Class.names()), hide_possible_values = true)]
+    #[arg(long = "box", value_name = "CLASS", value_parser = Names(|| ClassOf::Box.names()), hide_possible_values = true)]
     gearbox: Option<String>,
+    /// Technology of the engine: pfi, di, di_high_compression, atkinson, turbo, diesel [default: that of the class]
+    #[arg(long, value_name = "TECHNOLOGY", value_parser = Names(new_car::technologies), hide_possible_values = true)]
+    engine: Option<String>,
+    /// Year of the engine: the newest set of its technology that is not newer
+    #[arg(long, value_name = "YEAR")]
+    engine_year: Option<String>,
+    /// Measured engine that it has, such as honda_l15b7; without size, power and torque all of it, with power its line of full load scaled
+    #[arg(long, value_name = "ENGINE", value_parser = Names(new_car::named_engines), hide_possible_values = true)]
+    engine_like: Option<String>,
     /// Take what is not given as an option from this file, a TOML table: mass = "3000lb"
     #[arg(long, value_name = "FILE.toml")]
     answers: Option<String>,
@@ -125,6 +134,9 @@ impl Execute for NewArgs {
             like: self.like.clone(),
             class: self.class.clone(),
             gearbox: self.gearbox.clone(),
+            engine: self.engine.clone(),
+            engine_year: self.engine_year.clone(),
+            engine_like: self.engine_like.clone(),
             numbers: self.numbers.0.iter().cloned().collect(),
             ..Answers::default()
         };
@@ -164,6 +176,7 @@ impl Execute for NewArgs {
         if has_usual_box {
             text += USUAL_BOX;
         }
+        text.extend(car.notes.iter().map(|note| format!("{note}\n")));
         let doubts = car.setup.doubts().into_iter();
         text.extend(doubts.map(|doubt| format!("doubt: {doubt}\n")));
         Ok(CommandOutput::text(text))
@@ -205,7 +218,8 @@ fn option(problem: Problem) -> Problem {
         return problem;
     }
     let is_number = NUMBERS.iter().any(|(name, _)| *name == problem.key);
-    if is_number || ["class", "box"].contains(&problem.key.as_str()) {
+    let words = ["class", "box", "engine", "engine-year", "engine-like"];
+    if is_number || words.contains(&problem.key.as_str()) {
         let option = format!("--{}", problem.key);
         return problem.in_file(&option).key(option);
     }

@@ -2,8 +2,7 @@
 
 use std::io::{self, BufRead, Write};
 
-use cvtcycle::config::setup::Kind;
-use cvtcycle::config::setup::new_car::{Answers, USUAL, mistake, questions};
+use cvtcycle::config::setup::new_car::{Answers, ClassOf, USUAL, mistake, questions};
 use cvtcycle::config::{Problem, Problems};
 
 use crate::args::problems::{did_you_mean, problem};
@@ -30,11 +29,10 @@ pub fn ask(
                 &mut answers.class
             };
             if slot.is_none() {
-                let known = Kind::Class.names();
-                let known: Vec<&str> = known
-                    .into_iter()
-                    .filter(|name| name.starts_with("box_") == is_box)
-                    .collect();
+                let known = match is_box {
+                    true => ClassOf::Box.names(),
+                    false => ClassOf::Body.names(),
+                };
                 let kind = if is_box { "box" } else { "class" };
                 let prompt = format!("{kind}: {} [{usual}]", known.join(", "));
                 let check = |word: &str| match known.contains(&word) {

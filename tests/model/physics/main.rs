@@ -19,6 +19,7 @@ mod cvt_part_properties;
 mod cycles;
 mod dead_inputs;
 mod electric_pump;
+mod engine_library;
 mod equations;
 mod forward;
 mod held;

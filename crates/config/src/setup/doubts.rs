@@ -6,6 +6,7 @@
 use std::ops::RangeInclusive;
 
 use super::Setup;
+use cvtcycle_model::engine::FuelModel;
 use cvtcycle_model::keys::rpm;
 use cvtcycle_model::lubricant::Lubricant;
 use cvtcycle_model::transmission::Transmission;
@@ -39,6 +40,10 @@ const COEFFICIENTS: [&str; 3] = [
 const NM_PER_LITRE: RangeInclusive<f64> = 60.0..=230.0;
 /// Torque over displacement above which, in Nm/l, and speed of the greatest power below which, in rpm, an engine is a diesel.
 const DIESEL: (f64, f64) = (110.0, 4500.0);
+/// Density of the fuel from which it is that of a diesel, kg/m3.
+const DIESEL_FUEL_KG_M3: f64 = 800.0;
+/// Full load over the load up to which a Willans line was fitted, from which it is doubted.
+const BEYOND_FIT: f64 = 1.25;
 /// Idle speeds of warm engines, rpm.
 const IDLE_RPM: RangeInclusive<f64> = 500.0..=1100.0;
 /// Dynamic radii of wheels, mm.
@@ -63,6 +68,7 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
         size_doubt(setup),
         of_full_load(setup),
         torque_doubt(setup),
+        range_doubt(setup),
         idle_doubt(setup),
         wheel_doubt(setup),
         of_top_gear(setup),
@@ -114,7 +120,39 @@ fn of_road_load(setup: &Setup) -> Option<String> {
     })
 }
 
-/// Highest torque over displacement, and what looks like a diesel: the engine of the program has a throttle and spark ignition.
+/// Full load beyond what the fuel model was made from, or beyond the point at which a Willans line turns.
+fn range_doubt(setup: &Setup) -> Option<String> {
+    let engine = setup.engine();
+    let limit_bar = |rad_s: f64| match &engine.fuel {
+        FuelModel::Willans(line) => {
+            let v = engine.piston_m_s(rad_s);
+            let b = line.efficiency(v);
+            let turn_bar = -0.25 * b * b / line.a2 - (line.l + line.l2 * v * v);
+            let fitted_bar = engine.fitted_pa.map(|fitted| BEYOND_FIT * fitted / 1e5);
+            fitted_bar.map_or(turn_bar, |fitted_bar| turn_bar.min(fitted_bar))
+        }
+        FuelModel::Map(map) => map.bmep_pa.last().map_or(0.0, |pa| pa / 1e5),
+    };
+    let points = engine.full_load.points();
+    let over = |(rad_s, nm): (f64, f64)| {
+        let bar = engine.mep_pa(nm) / 1e5;
+        (bar, limit_bar(rad_s), rpm(rad_s))
+    };
+    let (bar, limit, at_rpm) = points
+        .map(over)
+        .max_by(|a, b| (a.0 - a.1).total_cmp(&(b.0 - b.1)))?;
+    let model = match &engine.fuel {
+        FuelModel::Willans(_) => "Willans line",
+        FuelModel::Map(_) => "map of fuel",
+    };
+    (bar > limit).then(|| {
+        format!(
+            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: a turbo or diesel engine has its own (`cvtcycle list classes`, --engine of `new`)"
+        )
+    })
+}
+
+/// Highest torque over displacement, and what looks like a diesel with the fuel of a petrol engine.
 fn torque_doubt(setup: &Setup) -> Option<String> {
     let engine = setup.engine();
     let points = || engine.full_load.points();
@@ -127,9 +165,10 @@ fn torque_doubt(setup: &Setup) -> Option<String> {
     }
     let at_most = points().max_by(|a, b| (a.0 * a.1).total_cmp(&(b.0 * b.1)));
     let rated_rpm = at_most.map_or(f64::NAN, |(rad_s, _)| rpm(rad_s));
-    (per_litre > DIESEL.0 && rated_rpm < DIESEL.1).then(|| {
+    let burns_petrol = engine.fuel_density_kg_m3 < DIESEL_FUEL_KG_M3;
+    (burns_petrol && per_litre > DIESEL.0 && rated_rpm < DIESEL.1).then(|| {
         format!(
-            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine model is that of a spark-ignition engine, and its fuel would be wrong"
+            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine is one with spark ignition, and its fuel would be wrong (`engine_diesel_2015` of `cvtcycle list classes`, --engine diesel of `new`)"
         )
     })
 }

@@ -83,6 +83,7 @@ keys! {
         b: or(DEFAULT.b, number(-0.02, 0.05)), "its rise with piston speed, s/m", ["WI-1"];
         c: or(DEFAULT.c, number(-0.01, 0.001)), "its bend with piston speed, s2/m2", ["WI-1"];
         a2: or(DEFAULT.a2, number(-0.02, 0.0)), "fall of efficiency with load, 1/bar", ["WI-1"];
+        fitted_bar: optional(number(2.0, 40.0)), "brake mean effective pressure up to which the line was fitted; a full load far above it is doubted";
     }
 
     /// Keys of `[engine.model.bsfc_map]`.
@@ -113,7 +114,7 @@ impl Engine {
         let stopping = s.table("start_stop");
         let displacement_m3 = s.number(&ENGINE.displacement_cc);
         let hot_k = friction.number(&FRICTION.hot_degc);
-        let line;
+        let (fuel_model, line, fitted_pa) = fuel_model(s, displacement_m3);
         let engine = Engine {
             displacement_m3,
             stroke_m: s.number(&ENGINE.stroke_mm),
@@ -149,11 +150,8 @@ impl Engine {
             heating_value_j_kg: fuel.number(&FUEL.heating_value_mj_kg),
             fuel_density_kg_m3: fuel.number(&FUEL.density_kg_m3),
             co2_kg_kg: fuel.number(&FUEL.co2_per_fuel),
-            fuel: {
-                let (model, table) = fuel_model(s, displacement_m3);
-                line = table;
-                model
-            },
+            fuel: fuel_model,
+            fitted_pa,
             start_stop: StartStop::from_values(&stopping),
         };
         if let Some(on) = &engine.start_stop {
@@ -246,8 +244,8 @@ fn motored<V: Values>(s: &V) -> Option<Motored> {
     })
 }
 
-/// The fuel model, and the table of its keys.
-fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V) {
+/// The fuel model, the table of its keys, and the load up to which a Willans line was fitted.
+fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V, Option<f64>) {
     let (kind, w) = s.choose(&ENGINE.model);
     if kind == "bsfc_map" {
         let friction = (w.number(&BSFC.l), w.number(&BSFC.l2));
@@ -259,7 +257,7 @@ fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V) {
         let model = map.map_or(FuelModel::Willans(DEFAULT), |map| {
             FuelModel::Map(BsfcMap { friction, ..map })
         });
-        return (model, w);
+        return (model, w, None);
     }
     let (l, l2) = (w.number(&WILLANS.l), w.number(&WILLANS.l2));
     let line = Willans {
@@ -270,5 +268,6 @@ fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V) {
         l,
         l2,
     };
-    (FuelModel::Willans(line), w)
+    let fitted_pa = w.optional(&WILLANS.fitted_bar);
+    (FuelModel::Willans(line), w, fitted_pa)
 }

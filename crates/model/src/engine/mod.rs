@@ -125,6 +125,8 @@ pub struct Engine<R: Real = f64> {
     pub co2_kg_kg: R,
     /// Fuel model.
     pub fuel: FuelModel<R>,
+    /// Brake mean effective pressure up to which a Willans line was fitted, Pa; no equation uses it.
+    pub fitted_pa: Option<R>,
     /// Start-stop, if there is one.
     #[gather(same)]
     pub start_stop: Option<StartStop>,

@@ -6,7 +6,15 @@ use crate::problem::near::suggest;
 use crate::{Problem, Problems};
 
 /// Names that are no numbers.
-const WORDS: [&str; 4] = ["title", "like", "class", "box"];
+const WORDS: [&str; 7] = [
+    "title",
+    "like",
+    "class",
+    "engine",
+    "engine-year",
+    "engine-like",
+    "box",
+];
 
 impl Answers {
     /// Adds the values of a file that are not given already: `mass = "3000lb"`, `displacement = 1800`, `class = "compact_2020"`.
@@ -36,7 +44,7 @@ impl Answers {
             // Keys of TOML files have `_` where options have `-`.
             let option = name.replace('_', "-");
             let number = NUMBERS.iter().find(|(own, _)| *own == option);
-            match (number, name.as_str()) {
+            match (number, option.as_str()) {
                 (Some((own, _)), _) if !self.numbers.contains_key(own) => {
                     self.numbers.insert(own, text);
                     self.places.insert(own, place(&entry.node.span));
@@ -46,6 +54,9 @@ impl Answers {
                 (None, "like") => drop(self.like.get_or_insert(text)),
                 (None, "class") => drop(self.class.get_or_insert(text)),
                 (None, "box") => drop(self.gearbox.get_or_insert(text)),
+                (None, "engine") => drop(self.engine.get_or_insert(text)),
+                (None, "engine-year") => drop(self.engine_year.get_or_insert(text)),
+                (None, "engine-like") => drop(self.engine_like.get_or_insert(text)),
                 (None, "title") => {}
                 (None, _) => {
                     let known = NUMBERS.iter().map(|(own, _)| *own).chain(WORDS);

@@ -18,10 +18,13 @@
 //! | NC-17 | line of gentle driving of a CVT of a class with a N/V: 0.8 times the speed of its highest ratio at 80 km/h, 1000 to 1300 rpm; above 64 km/h or so the highest ratio is the line | ASSUMED, 0.7 to 0.9: cars of 2010 to 2019 turn 1044 to 1675 rpm at 80 km/h (US lists, 129), the median 1390 gives the 1100 of the classes |
 //! | NC-10 | a CVT of a class keeps an engine that has its fuel cut later than the class expects 100 rpm above that speed in overrun | ASSUMED: controllers of CVTs hold the cut, 50 to 200 rpm |
 //!
-//! `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, `neutral` the drag of the box in a coast-down, this module the file; `options` puts what is wrong with it under their options, `answers`
+//! | NC-19 | full load of a car with a named engine: its line, speeds times n_P/n_P,named where n_P is given, torques so that the greatest power is P; stroke of the named engine times (V/V_named)^(1/3) | derived: the same engine in another size |
+//!
+//! `engines` finds the class of an engine, `units` reads numbers with their units, `tyre` tyre codes, `rules` makes the values, `full_load` the line of full load, `neutral` the drag of the box in a coast-down, this module the file; `options` puts what is wrong with it under their options, `answers`
 //! reads the numbers from a file, `questions` says what may be asked for.
 
 mod answers;
+mod engines;
 mod full_load;
 mod neutral;
 mod options;
@@ -36,6 +39,7 @@ use std::path::Path;
 use super::{Disk, Kind, Options, ParamSet, Setup};
 use crate::problem::near::suggest;
 use crate::{Override, Place, Problem, Problems};
+pub use engines::{named_engines, technologies};
 pub use questions::{Question, mistake, questions};
 use rules::Line;
 
@@ -52,6 +56,12 @@ pub struct Answers {
     pub class: Option<String>,
     /// Class of the transmission.
     pub gearbox: Option<String>,
+    /// Technology of the engine, such as `di` ([`technologies`]).
+    pub engine: Option<String>,
+    /// Year of the engine.
+    pub engine_year: Option<String>,
+    /// A measured engine by the name of its class without `engine_`.
+    pub engine_like: Option<String>,
     /// The numbers.
     pub numbers: BTreeMap<&'static str, String>,
     /// Places of those that come from a file ([`Answers::add_file`]).
@@ -65,7 +75,42 @@ pub struct NewCar {
     pub text: String,
     /// The car that it is.
     pub setup: Setup,
+    /// Notes on what was chosen for it, a sentence each.
+    pub notes: Vec<String>,
 }
+
+/// What a class is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClassOf {
+    /// Body, with an engine.
+    Body,
+    /// Transmission.
+    Box,
+    /// Engine.
+    Engine,
+}
+
+impl ClassOf {
+    /// What a class is of, by its name.
+    #[must_use]
+    pub fn of_name(name: &str) -> Self {
+        match (name.starts_with("box_"), name.starts_with(ENGINE)) {
+            (true, _) => ClassOf::Box,
+            (_, true) => ClassOf::Engine,
+            _ => ClassOf::Body,
+        }
+    }
+
+    /// The classes of it.
+    #[must_use]
+    pub fn names(self) -> Vec<&'static str> {
+        let names = Kind::Class.names().into_iter();
+        names.filter(|name| Self::of_name(name) == self).collect()
+    }
+}
+
+/// Begin of the names of classes of engines.
+const ENGINE: &str = "engine_";
 
 /// Names of the numbers that a car may have, with their meaning.
 pub const NUMBERS: [(&str, &str); 23] = [
@@ -142,10 +187,10 @@ const OF_WEIGHT: [&str; 14] = [
 /// # Errors
 /// All numbers that are none or do not fit each other; a problem's key is the name of its option.
 pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
-    let (mut text, params) = placed(answers, &[])?;
+    let (mut text, params, notes) = placed(answers, &[])?;
     let setup = params.setup();
     text += &weight_comments(&setup);
-    Ok(NewCar { text, setup })
+    Ok(NewCar { text, setup, notes })
 }
 
 /// The car of catalogue numbers, in memory, with other values in place of those that the rules make.
@@ -161,11 +206,14 @@ pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
 /// # Errors
 /// As [`write`], and problems of the overrides.
 pub fn param_set(answers: &Answers, set: &[Override]) -> Result<ParamSet, Problems> {
-    placed(answers, set).map(|(_, params)| params)
+    placed(answers, set).map(|(_, params, _)| params)
 }
 
-/// Text and car; problems at the places of the numbers.
-fn placed(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Problems> {
+/// Text, car and notes.
+type Made = (String, ParamSet, Vec<String>);
+
+/// The car; problems at the places of the numbers.
+fn placed(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
     made(answers, set).map_err(|found| {
         found.map(|problem| match answers.places.get(problem.key.as_str()) {
             Some(place) => problem.at(place.clone()),
@@ -174,7 +222,7 @@ fn placed(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Pro
     })
 }
 
-fn made(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Problems> {
+fn made(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
     let mut problems = Problems::new();
     for name in REQUIRED.iter().filter(|name| is_missing(answers, name)) {
         let problem = Problem::missing(format!("the {name} of the engine is missing")).key(*name);
@@ -201,11 +249,11 @@ fn made(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Probl
         let text = format!("{head}{}", tables(lines));
         let params = car(answers, &text, set);
         let params = params.map_err(|found| options::under_options(found, lines, answers))?;
-        Ok((text, params))
+        Ok((text, params, base.notes.clone()))
     };
-    let (text, params) = made(&lines)?;
+    let (text, params, notes) = made(&lines)?;
     if !rules::is_neutral(answers) {
-        return Ok((text, params));
+        return Ok((text, params, notes));
     }
     let Some(drag) = neutral::drag_coefficients(&params.setup()) else {
         let problem = Problem::invalid("the box cannot be turned without torque at some speed of a coast-down");
@@ -217,7 +265,10 @@ fn made(answers: &Answers, set: &[Override]) -> Result<(String, ParamSet), Probl
 
 /// True if a number that a class cannot have is missing.
 fn is_missing(answers: &Answers, name: &str) -> bool {
-    REQUIRED.contains(&name) && answers.like.is_none() && !answers.numbers.contains_key(name)
+    let has = |name: &str| answers.numbers.contains_key(name);
+    // A named engine has its own, and in another size needs another power.
+    let is_whole = answers.engine_like.is_some() && (name != "power" || !has("displacement"));
+    REQUIRED.contains(&name) && answers.like.is_none() && !is_whole && !has(name)
 }
 
 /// Names that the car inherits from.
@@ -226,15 +277,17 @@ struct Base {
     like: String,
     /// The car without a value of its own.
     car: Setup,
+    /// Notes on the classes.
+    notes: Vec<String>,
 }
 
 impl Base {
     fn from_answers(answers: &Answers) -> Result<Base, Problems> {
-        let parents = parents(answers)?;
+        let (parents, notes) = parents(answers)?;
         let like = parents.iter().map(|name| format!("{name:?}"));
         let like = like.collect::<Vec<_>>().join(", ");
         let car = car(answers, &head("", &like, false), &[])?.setup();
-        Ok(Base { like, car })
+        Ok(Base { like, car, notes })
     }
 }
 
@@ -254,14 +307,10 @@ fn meaning(name: &str) -> &'static str {
     found.map_or("", |(_, meaning)| meaning)
 }
 
-/// Names that the car inherits from.
-fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
-    let class = |name: &str, option: &str, is_box: bool| {
-        let known: Vec<&str> = Kind::Class.names();
-        let known: Vec<&str> = known
-            .into_iter()
-            .filter(|of| of.starts_with("box_") == is_box)
-            .collect();
+/// Names that the car inherits from, and notes on them.
+fn parents(answers: &Answers) -> Result<(Vec<String>, Vec<String>), Problem> {
+    let class = |name: &str, option: &str, of: ClassOf| {
+        let known = of.names();
         match known.contains(&name) {
             true => Ok(format!("class:{name}")),
             false => Err(
@@ -273,6 +322,10 @@ fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
             ),
         }
     };
+    let found = engines::class(answers)?;
+    let notes = found.iter().filter_map(|engine| engine.note.clone());
+    let notes: Vec<String> = notes.collect();
+    let engine = found.map(|engine| format!("class:{}", engine.class));
     if let Some(car) = &answers.like {
         if answers.class.is_some() {
             let problem = Problem::conflict("a car and a class at once").key("class");
@@ -281,15 +334,18 @@ fn parents(answers: &Answers) -> Result<Vec<String>, Problem> {
         let gearbox = answers
             .gearbox
             .as_ref()
-            .map(|name| class(name, "box", true));
+            .map(|name| class(name, "box", ClassOf::Box));
         let gearbox = gearbox.transpose()?;
-        return Ok([car.clone()].into_iter().chain(gearbox).collect());
+        let all = [car.clone()].into_iter().chain(engine).chain(gearbox);
+        return Ok((all.collect(), notes));
     }
     let [body, gearbox] = USUAL;
-    Ok(vec![
-        class(answers.class.as_deref().unwrap_or(body), "class", false)?,
-        class(answers.gearbox.as_deref().unwrap_or(gearbox), "box", true)?,
-    ])
+    let body = answers.class.as_deref().unwrap_or(body);
+    let gearbox = answers.gearbox.as_deref().unwrap_or(gearbox);
+    let body = class(body, "class", ClassOf::Body)?;
+    let gearbox = class(gearbox, "box", ClassOf::Box)?;
+    let all = [body].into_iter().chain(engine).chain([gearbox]);
+    Ok((all.collect(), notes))
 }
 
 /// The begin of the file.

@@ -1,4 +1,4 @@
-//! From catalogue numbers to values of keys (NC-1 to NC-18).
+//! From catalogue numbers to values of keys (NC-1 to NC-19).
 
 mod box_size;
 mod driveline;

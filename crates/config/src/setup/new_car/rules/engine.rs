@@ -53,12 +53,19 @@ impl Given<'_> {
             return;
         };
         let litres = cc / 1e3;
-        let stroke_mm = exp(ln(cc * 1e3 / PI) / 3.0); // NC-9: four cylinders of pi/4 s^3
+        let (stroke_mm, of_stroke) = match self.answers.engine_like {
+            None => (exp(ln(cc * 1e3 / PI) / 3.0), "NC-9, ASSUMED"), // four cylinders of pi/4 s^3
+            Some(_) => {
+                let named = cc / self.inherited("engine.displacement_cc");
+                let stroke_mm = self.inherited("engine.stroke_mm") * exp(ln(named) / 3.0);
+                (stroke_mm, "NC-19, of the named engine")
+            }
+        };
         for (key, value, rule) in [
             (
                 "engine.stroke_mm",
                 format!("{stroke_mm:.1}"),
-                "NC-9, ASSUMED",
+                of_stroke,
             ),
             (
                 "engine.inertia_kg_m2",
@@ -81,7 +88,6 @@ impl Given<'_> {
         let Some((kw, speeds)) = self.at_speed("power", &POWER) else {
             return;
         };
-        let rated_rpm = speeds.first().copied().unwrap_or(RATED_RPM);
         self.is_given("power", "engine.rated_kw", digits(kw));
         for (key, kj_k) in [
             ("thermal.engine.block_kj_k", 0.525),
@@ -89,6 +95,10 @@ impl Given<'_> {
         ] {
             self.follows(key, format!("{:.1}", kj_k * kw), "NC-6".to_owned());
         }
+        if torque.is_none() && self.answers.engine_like.is_some() {
+            return self.named_line(kw, speeds.first().copied());
+        }
+        let rated_rpm = speeds.first().copied().unwrap_or(RATED_RPM);
         let highest_rpm = self
             .number("highest", &SPEED)
             .unwrap_or(rated_rpm + BEYOND_RATED_RPM);
@@ -121,6 +131,28 @@ impl Given<'_> {
                 let words = format!("NC-2 through {nm:.0} Nm and {} kW", digits(kw));
                 self.follows("engine.full_load", curve.rows(), words);
             }
+        }
+    }
+
+    /// The line of a named engine, scaled to a rated power and its speed (NC-19).
+    fn named_line(&mut self, kw: f64, rated_rpm: Option<f64>) {
+        let line = &self.base.engine().full_load;
+        let points: Vec<(f64, f64)> = line.points().map(|(w, nm)| (w / RPM, nm)).collect();
+        let kw_at = |(rpm, nm): &(f64, f64)| rpm * nm * RPM / 1e3;
+        let Some(rated) = points.iter().max_by(|a, b| kw_at(a).total_cmp(&kw_at(b))) else {
+            return;
+        };
+        let faster = rated_rpm.map_or(1.0, |rpm| rpm / rated.0);
+        let stronger = kw / (kw_at(rated) * faster);
+        let row = |(rpm, nm): &(f64, f64)| format!("[{:.0}, {:.1}]", rpm * faster, nm * stronger);
+        let rows: Vec<String> = points.iter().map(row).collect();
+        let words = format!(
+            "NC-19: line of the named engine, speeds times {faster:.3}, torques times {stronger:.3}"
+        );
+        self.follows("engine.full_load", format!("[{}]", rows.join(", ")), words.clone());
+        if self.number("highest", &SPEED).is_none() {
+            let highest_rpm = (self.inherited("engine.highest_rpm") * faster).round();
+            self.follows("engine.highest_rpm", digits(highest_rpm), words);
         }
     }
 
