@@ -4,7 +4,6 @@
 //! with f64.
 
 use crate::common::{ZERO, car, cycle, try_car};
-use cvtcycle_config::cycle::embedded;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::{Conditions, Outcome, Run, Start, drive, drive_each};
 use cvtcycle_model::flags::Flags;
@@ -31,9 +30,9 @@ fn a_stop_with_a_small_pump_is_solved() {
         "transmission.cvt.pump.kind.fixed={}",
         "transmission.cvt.pump.kind.dual_cavity.share=0.5",
         "transmission.cvt.pump.kind.variable.least_share=0.25",
-        "transmission.cvt.pump.kind.electric.fastest_rpm=700",
+        "transmission.cvt.pump.kind.electric.fastest_rpm=1100",
     ];
-    for (kind, cc) in kinds.iter().flat_map(|kind| [(kind, "5"), (kind, "7")]) {
+    for (kind, cc) in kinds.iter().flat_map(|kind| [(kind, "6"), (kind, "7")]) {
         let mut sets = vec![format!("{CC}={cc}")];
         sets.extend((!kind.contains("fixed")).then(|| (*kind).to_owned()));
         let setup = try_car(CVT, &sets).unwrap_or_else(|problems| panic!("{problems}"));
@@ -51,7 +50,7 @@ fn a_stop_with_a_small_pump_is_solved() {
 /// Conservation of the oil: what the pump draws covers lubrication, leakage and the sheaves in every row, and just so where the shift waits.
 #[test]
 fn the_shift_takes_what_the_clamp_leaves() {
-    for (cc, dt_s) in [(6.0, 1.0), (6.0, 0.2), (8.0, 0.2)] {
+    for (cc, dt_s) in [(5.6, 0.1), (6.0, 0.1), (7.0, 0.2)] {
         let setup = car(CVT, &[&format!("{CC}={cc}")]);
         let model = setup.car(24.0 + ZERO);
         let Transmission::Cvt(cvt) = &model.transmission else {
@@ -79,13 +78,13 @@ fn the_shift_takes_what_the_clamp_leaves() {
             let left_m3 = (drawn - need) * row.dt_s;
             // The slope of a radius at the begin of the step is taken for all of it (PU-3).
             assert!(
-                swept_m3 <= 1.15 * left_m3 + 1e-9,
+                swept_m3 <= 1.1 * left_m3 + 1e-9,
                 "{cc} cc at {} s: {swept_m3} of {left_m3} m3",
                 row.time_s
             );
             if row.flags.contains(Flags::FLOW_LIMITED) {
                 waits += 1;
-                assert!(swept_m3 >= 0.85 * left_m3, "{swept_m3} of {left_m3} m3");
+                assert!(swept_m3 >= 0.9 * left_m3 - 1e-9, "{swept_m3} of {left_m3} m3");
                 assert!(
                     row.clamp_safety >= 1.0,
                     "{} at {} s",
@@ -101,7 +100,7 @@ fn the_shift_takes_what_the_clamp_leaves() {
 /// A pump that is larger by a ten-millionth moves nothing by more than a hundred thousandth: the limit has no steps.
 #[test]
 fn the_limit_is_continuous() {
-    for cc in [5.0, 6.0, 7.0, 8.0] {
+    for cc in [5.6, 6.0, 6.5, 7.0] {
         let own = |cc: f64| driven(&car(CVT, &[&format!("{CC}={cc}")]), "udds", 24.0, 1.0);
         let (one, other) = (own(cc), own(cc * (1.0 + 1e-7)));
         let moved = one.rows.iter().zip(&other.rows);
@@ -118,13 +117,13 @@ fn searches_side_by_side_have_their_own_bits() {
         .map(|k| {
             let k = f64::from(k);
             let sets = [
-                format!("{CC}={}", 4.5 + 0.4 * k),
+                format!("{CC}={}", 4.5 + 0.2 * k),
                 format!("road_load.mass_kg={}", 1150.0 + 60.0 * ((3.0 * k) % 11.0)),
             ];
             try_car(CVT, &sets).unwrap_or_else(|problems| panic!("{problems}"))
         })
         .collect();
-    let trace = embedded("udds").unwrap_or_else(|_| panic!("a cycle"));
+    let trace = cycle("udds");
     let conditions = Conditions {
         ambient_k: 24.0 + ZERO,
         start: Start::Soak,
