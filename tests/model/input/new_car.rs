@@ -99,7 +99,10 @@ fn what_is_given_is_the_user_s_and_the_rest_of_a_class() {
     {
         let status = info.status.as_str();
         assert!(
-            ["user", "derived", "class", "choice", "default", ""].contains(&status),
+            [
+                "user", "derived", "assumed", "class", "choice", "default", ""
+            ]
+            .contains(&status),
             "{info:?}"
         );
     }
@@ -173,6 +176,111 @@ fn a_manual_box_has_its_gears() {
     assert_eq!(manual.overall.len(), 6);
     assert!((manual.overall[0] - 3.642 * 4.105).abs() < 1e-3);
     assert!(car.text.contains("TW-3") && !car.text.contains("baselines"));
+}
+
+/// NC-11 to NC-15: the arithmetic of the rules, a box that grips what the engine gives, and no doubt about any of them.
+#[test]
+fn a_box_of_a_class_fits_its_engine() {
+    for (gearbox, stall_rpm) in [("box_cvt_converter", 2400.0), ("box_cvt_clutch", 2500.0)] {
+        for kw in [55.0, 75.0, 104.0, 150.0, 200.0] {
+            let power = format!("{kw}kW@6200");
+            let litres = format!("{}l", kw / 60.0);
+            let numbers = [("power", power.as_str()), ("displacement", litres.as_str())];
+            let setup = new("compact_2020", gearbox, &numbers).unwrap().setup;
+            let engine = setup.engine();
+            let highest_nm = engine
+                .full_load
+                .points()
+                .map(|(_, nm)| nm)
+                .fold(0.0, f64::max);
+            let pump_cc = number(&setup, "transmission.cvt.pump.displacement_cc_rev");
+            assert!(
+                (pump_cc - 8.0 * highest_nm / 130.0).abs() < 0.06,
+                "{pump_cc}"
+            );
+            // Full load holds the engine at the speed of the rule.
+            let nm = engine.full_load.at(rad_s(stall_rpm));
+            let held_nm = if gearbox == "box_cvt_converter" {
+                let capacity = number(
+                    &setup,
+                    "transmission.cvt.launch.torque_converter.capacity_nm",
+                );
+                capacity * (stall_rpm / 1e3).powi(2)
+            } else {
+                let key = |name: &str| {
+                    number(
+                        &setup,
+                        &format!("transmission.cvt.launch.friction_clutch.{name}"),
+                    )
+                };
+                key("gain_nm_per_rpm2") * (stall_rpm - key("engage_rpm")).powi(2)
+            };
+            assert!((held_nm / nm - 1.0).abs() < 2e-3, "{held_nm} of {nm}");
+            assert_eq!(setup.doubts(), Vec::<String>::new(), "{gearbox} {kw} kW");
+        }
+    }
+    let own = cvt(&[("pump", "9.5cc/rev")]);
+    let pump = find(&own, "transmission.cvt.pump.displacement_cc_rev");
+    assert_eq!((pump.value.as_str(), pump.status.as_str()), ("9.5", "user"));
+}
+
+/// NC-16: the speed that the number says, whatever the tyre, the box and its gears; beside a final drive it is refused.
+#[test]
+fn engine_over_road_speed_is_the_reduction() {
+    let gears = ("gears", "3.6,2.1,1.4,1.0,0.8");
+    for (gearbox, numbers) in [
+        ("box_cvt_converter", vec![("n-over-v", "26.4rpm/mph")]),
+        (
+            "box_cvt_clutch",
+            vec![("n-over-v", "16.404"), ("ratio-high", "0.45")],
+        ),
+        (
+            "box_cvt_clutch",
+            vec![("n-over-v", "16.404rpm/(km/h)"), ("tyre", "185/65 R15")],
+        ),
+        ("box_manual_5", vec![("n-over-v", "26.4 rpm/mph")]),
+        ("box_manual_5", vec![("n-over-v", "26.4rpm/mph"), gears]),
+    ] {
+        let setup = new("compact_2020", gearbox, &numbers).unwrap().setup;
+        let overall = match setup.transmission() {
+            Transmission::Cvt(cvt) => cvt.ratio.high * cvt.final_drive.ratio,
+            Transmission::Manual(manual) => *manual.overall.last().unwrap(),
+        };
+        let at_100 = overall * (100.0 / 3.6) / setup.road_load.base.wheel_radius_m;
+        // 26.4 rpm per mph by the mile of 1.609344 km.
+        assert!(
+            (at_100 / rad_s(26.4 / 1.609_344 * 100.0) - 1.0).abs() < 5e-4,
+            "{gearbox} {numbers:?}"
+        );
+        let both = [numbers.as_slice(), &[("final-drive", "4.1")]].concat();
+        let refused = new("compact_2020", gearbox, &both).unwrap_err();
+        assert!(refused.iter().any(|problem| problem.key == "n-over-v"));
+    }
+    assert!(new("compact_2020", "box_cvt_clutch", &[("n-over-v", "0")]).is_err());
+    // NC-17 at 80 km/h: 0.8 of 26.4/1.609344 x 80 = 1312.3 rpm.
+    let setup = cvt(&[("n-over-v", "26.4rpm/mph")]);
+    assert_eq!(number(&setup, "transmission.cvt.ratio.gentle_rpm"), 1050.0);
+}
+
+/// NC-16: another final drive without gears multiplies all overall ratios by new over old.
+#[test]
+fn a_final_drive_acts_on_the_gears_of_the_class() {
+    let of = |numbers: &[(&'static str, &str)]| {
+        new("compact_2020", "box_manual_6", numbers).unwrap().setup
+    };
+    let (usual, own) = (of(&[]), of(&[("final-drive", "5")]));
+    let factor = 5.0 / number(&usual, "transmission.manual.final_ratio");
+    let (Transmission::Manual(usual), Transmission::Manual(own)) =
+        (usual.transmission(), own.transmission())
+    else {
+        unreachable!("manual boxes")
+    };
+    for (before, after) in usual.overall.iter().zip(&own.overall) {
+        assert!(
+            (after / before / factor - 1.0).abs() < 1e-3,
+            "{before} {after}"
+        );
+    }
 }
 
 #[test]
@@ -422,7 +530,12 @@ fn slips_across_keys_are_doubted() {
         (&[("f2", "0.3")], "N per kg"),
         (&[("idle", "400")], "idles at 400 rpm"),
         (&[("wheel-radius", "600")], "roll on 600 mm"),
-        (&[("final-drive", "1.5")], "in the highest gear"),
+        (
+            &[("final-drive", "1.5")],
+            "an axle ratio is often not the whole",
+        ),
+        (&[("final-drive", "15")], "in the highest gear"),
+        (&[("pump", "3")], "the pump is too small"),
     ] {
         let found = doubts("compact_2020", "box_cvt_clutch", numbers);
         assert!(

@@ -33,6 +33,7 @@ mod parts;
 mod rig_transmission;
 mod rig_variator;
 mod selector;
+mod shift_flow;
 mod parts_side_by_side;
 mod side_by_side;
 mod smaller_points;

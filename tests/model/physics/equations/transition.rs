@@ -51,12 +51,14 @@ fn shifted(
         state.driveline.coupled,
         state.driveline.stood,
     ) = (160.0, true, true);
+    let d = car.transmission.solve(&around, &mut state);
+    // What the clamp leaves at the end of the step.
     let eta = car.oil.dynamic_pa_s(k);
     let drawn = cvt
         .pump
         .at(eta)
-        .drawn_m3_s(cvt.pump.displacement_m3_rad * 160.0);
-    let free = (drawn - cvt.pump.steady_need_m3_s(past_pa, eta)).max(0.0);
+        .drawn_m3_s(cvt.pump.displacement_m3_rad * d.engine_rad_s);
+    let free = (drawn - cvt.pump.steady_need_m3_s(d.secondary_pa, eta)).max(0.0);
     let (down, up) = volumes(cvt, from);
     let demand = RatioDemand {
         secondary_rad_s: cvt.final_drive.ratio * wheel.wheel_rad_s,
@@ -80,7 +82,7 @@ fn shifted(
         free_up_to_rad_s: 0.0,
         dt_s: 0.5,
     };
-    (car.transmission.solve(&around, &mut state), demand)
+    (d, demand)
 }
 
 /// PU-3: oil for a unit of ln I, from differences of the running radii, m3: secondary cylinder towards low, primary towards high.
@@ -98,7 +100,10 @@ fn volumes(cvt: &Cvt, ratio: f64) -> (f64, f64) {
     )
 }
 
-/// RC-5, PU-3, PU-2: the ratio that the control takes at the flow that is free, both ways, with flow to spare and without; the shift's own
+/// Share of its flow to which a shift that waits for the pump is solved, and of ln I with it.
+const FLOW: f64 = 3e-6;
+
+/// RC-5, PU-7, PU-3, PU-2: the ratio that the control takes at the flow that is free, both ways, with flow to spare and without; the shift's own
 /// flow is asked of the pump.
 #[test]
 fn val_shift_of_the_shipped_box() {
@@ -117,6 +122,7 @@ fn val_shift_of_the_shipped_box() {
         (1.0, 25.0, 30e3),
         (0.6, 45.0, 35e3),
         (1.2, 14.0, 3e3),
+        (1.2, 16.0, 3e3),
         (1.5, 50.0, 45e3),
         (1.3, 50.0, 40e3),
         (1.2, 50.0, 35e3),
@@ -144,19 +150,27 @@ fn val_shift_of_the_shipped_box() {
                 // RC-7: the ratio of RC-3 where it suffices, else as much more as full load needs, else all that the rates allow.
                 let place = format!("{from} {speed} {pa} {degc}: {d:?} from {demand:?}");
                 let plain = route(b.cvt().ratio.route_efficiency);
-                let again = (d.belt_ratio / plain.0 - 1.0).abs() > 1e-9;
+                let again = (d.belt_ratio / plain.0 - 1.0).abs() > FLOW;
                 let missed = d.flags.contains(Flags::MISSED_TRACE);
                 let (ratio, change, short) = if missed {
                     route(0.4)
                 } else if again {
                     // An oil flow that bounds it bounds it still.
                     let change = (d.belt_ratio / from).ln();
-                    let bound = change >= 0.5 * demand.flow_down_per_s * (1.0 - 1e-9);
+                    let bound = change >= 0.5 * demand.flow_down_per_s * (1.0 - FLOW);
                     (d.belt_ratio, change, bound)
                 } else {
                     plain
                 };
-                assert!((d.belt_ratio / ratio - 1.0).abs() < 1e-9, "{place}");
+                let change = if short {
+                    (d.belt_ratio / from).ln()
+                } else {
+                    change
+                };
+                assert!(
+                    (d.belt_ratio / ratio - 1.0).abs() < if short { FLOW } else { 1e-9 },
+                    "{place}"
+                );
                 if again && !missed {
                     // No more speed than full load needs, but for losses that fall as torque does.
                     let needed = (0.95..=1.0).contains(&d.throttle);

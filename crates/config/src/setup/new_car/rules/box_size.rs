@@ -4,7 +4,7 @@
 
 use super::{Given, Line, digits};
 use crate::setup::doubts::{WARM_K, gripped_nm};
-use cvtcycle_model::keys::{RAD_S, RPM};
+use cvtcycle_model::keys::RAD_S;
 use cvtcycle_model::math::Curve;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::coupling::Coupling;
@@ -45,8 +45,8 @@ impl Given<'_> {
                 ),
             );
         }
-        let at_rest_nm = self.launch(cvt, &line);
-        self.pistons(cvt, highest_nm, at_rest_nm);
+        self.launch(cvt, &line);
+        self.pistons(cvt, highest_nm);
         self.wide_belt(highest_nm);
         let (least_kg, kg_nm, of_class_kg) = BOX_KG;
         let share = (least_kg + kg_nm * highest_nm) / of_class_kg;
@@ -82,8 +82,8 @@ impl Given<'_> {
         Curve::new(&rows).unwrap_or_else(|_| Curve::constant(0.0)) // such a line is a problem of the car
     }
 
-    /// The launch device (NC-12); the torque of the primary at rest and full load, Nm.
-    fn launch(&mut self, cvt: &Cvt, line: &Curve) -> f64 {
+    /// The launch device (NC-12).
+    fn launch(&mut self, cvt: &Cvt, line: &Curve) {
         let [by_converter, by_clutch] = STALL_RPM;
         if cvt.coupling.by_command() {
             let nm = line.at(by_converter);
@@ -95,15 +95,7 @@ impl Given<'_> {
                     "NC-12: {nm:.0} Nm at a stall speed of 2400 rpm, 2050 to 2900: service data of five CVT cars of 120 to 240 Nm have no fall with torque; EPA's ALPHA sizes 3030 rpm over the root of the highest torque, 2900 rpm"
                 ),
             );
-            let w = by_converter * RPM;
-            let creep_nm = cvt.coupling.creep_nm(0.0, w);
-            let taken_nm = cvt.coupling.engine_side(creep_nm, 0.0, w).engine_nm;
-            return nm
-                * if taken_nm > 0.0 {
-                    creep_nm / taken_nm
-                } else {
-                    1.0
-                };
+            return;
         }
         let nm = line.at(by_clutch);
         let key = "transmission.cvt.launch.friction_clutch";
@@ -117,18 +109,17 @@ impl Given<'_> {
                 ),
             );
         }
-        nm
     }
 
     /// Pistons with which the largest pressure grips in low (NC-13).
-    fn pistons(&mut self, cvt: &Cvt, highest_nm: f64, at_rest_nm: f64) {
+    fn pistons(&mut self, cvt: &Cvt, highest_nm: f64) {
         let safety = match cvt.clamp {
             ClampLaw::TorqueFollowing { safety, .. } | ClampLaw::SlipLimited { safety, .. } => {
                 safety
             }
             ClampLaw::Map(_) | ClampLaw::Table => SAFETY,
         };
-        let needed_nm = (safety * highest_nm).max(at_rest_nm);
+        let needed_nm = safety * highest_nm;
         let oil = self.base.car(WARM_K).oil;
         let clamp_n = cvt.secondary_clamp_n(cvt.cap_pa, 0.0);
         let gripped_nm = gripped_nm(cvt, &oil, clamp_n);
@@ -140,7 +131,7 @@ impl Given<'_> {
         let of_primary = cvt.primary_piston_m2 / cvt.secondary_piston_m2;
         let outer_cm = (area_cm2 / std::f64::consts::PI + INNER_CM * INNER_CM).sqrt();
         let words = format!(
-            "NC-13: {:.0} bar grip {needed_nm:.0} Nm in low, the larger of {safety} times the highest torque and of full load at rest",
+            "NC-13: {:.0} bar grip {needed_nm:.0} Nm in low, {safety} times the highest torque",
             cvt.cap_pa / 1e5
         );
         for (key, value) in [
