@@ -128,6 +128,11 @@ fn range_doubt(setup: &Setup) -> Option<String> {
         }
         FuelModel::Map(map) => map.bmep_pa.last().map_or(0.0, |pa| pa / 1e5),
     };
+    let highest_nm = engine.full_load.points().map(|(_, nm)| nm);
+    let per_litre = highest_nm.fold(0.0, f64::max) / (engine.displacement_m3 * 1e3);
+    if !NM_PER_LITRE.contains(&per_litre) {
+        return None; // then displacement or torque is doubted
+    }
     let points = engine.full_load.points();
     let over = |(rad_s, nm): (f64, f64)| {
         let bar = engine.mep_pa(nm) / 1e5;
