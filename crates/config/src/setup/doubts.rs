@@ -147,7 +147,7 @@ fn range_doubt(setup: &Setup) -> Option<String> {
     };
     (bar > limit).then(|| {
         format!(
-            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: a turbo or diesel engine has its own (`cvtcycle list classes`, --engine of `new`)"
+            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: a turbo or diesel engine has its own (`cvtcycle list classes`)"
         )
     })
 }
@@ -168,7 +168,7 @@ fn torque_doubt(setup: &Setup) -> Option<String> {
     let burns_petrol = engine.fuel_density_kg_m3 < DIESEL_FUEL_KG_M3;
     (burns_petrol && per_litre > DIESEL.0 && rated_rpm < DIESEL.1).then(|| {
         format!(
-            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine is one with spark ignition, and its fuel would be wrong (`engine_diesel_2015` of `cvtcycle list classes`, --engine diesel of `new`)"
+            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine is one with spark ignition, and its fuel would be wrong (the class `engine_diesel_2015` is one)"
         )
     })
 }

@@ -70,7 +70,7 @@ pub(super) fn class(answers: &Answers) -> Result<Option<EngineClass>, Problem> {
                     .key("engine-year")
                     .value(year)
                     .allowed(technologies().join(", "))
-                    .hint("give --engine as well"),
+                    .hint("give the technology as well"),
             ),
         };
     };
@@ -94,7 +94,7 @@ pub(super) fn class(answers: &Answers) -> Result<Option<EngineClass>, Problem> {
     let (class, note) = match (year, chosen) {
         (None, _) => {
             let note = format!(
-                "engine: {}, the newest of its kind; --engine-year names a year",
+                "engine: {}, the newest of its kind; with a year, that of the year",
                 newest.1
             );
             (newest.1, Some(note))
