@@ -34,7 +34,7 @@ Examples:
   cvtcycle label mycar.toml --set road_load.mass_kg=1320 --json
 
 Each car drives FTP75, HWFET and US06 at 24 degC, FTP75 with 10 % more road load at -6.7 degC, SC03 at 35 degC, and the WLTC of its class at 23 and \
-14 degC. `cvtcycle explain LB-4` has the formulas. Not for certification: the figures compare cars, and show what a label makes of a loss.")]
+14 degC. The tests are those of cycles/tests, their figures stated for the fuel of 1975 (TE-3). `cvtcycle explain LB-4` has the formulas. Not for certification: the figures compare cars, and show what a label makes of a loss.")]
 pub struct LabelArgs {
     /// Vehicles
     #[arg(value_name = "NAME|FILE.toml", default_value = "rover_216_cvt", value_parser = Names(|| Kind::Vehicle.names()), hide_possible_values = true)]
@@ -147,15 +147,16 @@ impl Execute for LabelArgs {
                 sc03,
                 wltc: &car.wltc,
             };
-            CarLabel {
+            let figures = label::figures(&cars, &cycles, STEP_S)?;
+            Ok::<_, Problems>(CarLabel {
                 vehicle: car.name.clone(),
-                figures: label::figures(&cars, &cycles, STEP_S),
-            }
+                figures,
+            })
         };
         let found = LabelSummary {
             manifest: Manifest::new(SCHEMA),
             loads: plan.loads,
-            cars: plan.cars.iter().map(drive).collect(),
+            cars: plan.cars.iter().map(drive).collect::<Result<_, _>>()?,
         };
         let json = json_text(&found)?;
         let failures = found.cars.iter().flat_map(|car| {

@@ -8,14 +8,14 @@
 //! | LB-4 | G_city = (0.33 S/4.1 + 0.82 (0.48 G_2 + 0.41 G_3 + 0.11 G_US06city) + 0.18 (0.5 G_2,cold + 0.5 G_3,cold) + 0.133 1.083 A)/0.905; G_highway = (0.33 S/60 + 1.007 (0.79 G_US06highway + 0.21 G_HWFET) + 0.133 0.377 A)/0.905; A = G_SC03 - 0.61 G_3 - 0.39 G_2 | source: as LB-3, the five cycles |
 //! | LB-5 | WLTP: CO2 at 14 over CO2 at 23 degC, both from a soak | source: UN GTR 15 Annex 6a, in words |
 //!
-//! Tests: FTP75 from a soak at 24 degC and, with 10 % more road load, at -6.7 degC; HWFET and US06 at 24 degC and SC03 at 35 degC, each directly after the
-//! same cycle. SC03 begins after ten minutes of rest in the test, which is left out. What air conditioning and heating draw is the caller's.
+//! The tests are those of `cycles/tests` (`cvtcycle_config::procedure`): FTP75 from a soak at 24 degC and, with 10 % more road load, at -6.7 degC; HWFET and
+//! US06 at 24 degC and SC03 at 35 degC, each directly after the same cycle, all stated for the fuel of 1975 (TE-3). SC03 begins after ten minutes of rest in the test, which is left out. What air conditioning and heating draw is the caller's.
 
+use cvtcycle_config::Problems;
 use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::procedure::Procedure;
 use cvtcycle_model::cycle::Weighting;
-use cvtcycle_model::drive::{
-    Conditions, Outcome, Start, Vehicle, co2_g_per_km, drive, litres_per_100km,
-};
+use cvtcycle_model::drive::{Outcome, Vehicle, co2_g_per_km, drive, litres_per_100km};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use serde::Serialize;
@@ -166,27 +166,23 @@ impl Tests {
 struct Driven<'a> {
     car: &'a Vehicle,
     cycle: &'a Cycle,
+    ambient_degc: f64,
+    /// Stated over burnt fuel (TE-3).
+    stated: f64,
     outcome: Outcome,
 }
 
 impl<'a> Driven<'a> {
-    fn new(
-        (car, cycle): (&'a Vehicle, &'a Cycle),
-        ambient_degc: f64,
-        start: Start,
-        max_dt_s: f64,
-    ) -> Self {
-        let conditions = Conditions {
-            ambient_k: ambient_degc + ZERO_DEGC_K,
-            start,
-            max_dt_s,
-            keep_rows: false,
-        };
-        Driven {
+    fn new((car, cycle): (&'a Vehicle, &'a Cycle), test: &str, max_dt_s: f64) -> Result<Self, Problems> {
+        let test = Procedure::open(test)?;
+        let conditions = test.conditions(max_dt_s);
+        Ok(Driven {
             car,
             cycle,
+            ambient_degc: conditions.ambient_k - ZERO_DEGC_K,
+            stated: test.stated_share(car),
             outcome: drive(car, cycle, &conditions),
-        }
+        })
     }
 
     /// Fuel of phases by name, L/100 km; of the whole cycle without names.
@@ -202,7 +198,7 @@ impl<'a> Driven<'a> {
             self.outcome.totals.over(&phases)
         };
         let density = self.car.engine().fuel_density_kg_m3;
-        litres_per_100km(part.fuel_kg, density, part.distance_m)
+        self.stated * litres_per_100km(part.fuel_kg, density, part.distance_m)
     }
 
     /// The three bags of FTP75.
@@ -210,11 +206,11 @@ impl<'a> Driven<'a> {
         ["cold_transient", "stabilised", "hot_transient"].map(|bag| self.fuel(&[bag]))
     }
 
-    fn wltp(&self, ambient_degc: f64) -> Wltp {
+    fn wltp(&self) -> Wltp {
         let total = self.outcome.totals.total();
         let co2_kg_kg = self.car.engine().co2_kg_kg;
         Wltp {
-            ambient_degc,
+            ambient_degc: self.ambient_degc,
             fuel_l_per_100km: self.fuel(&[]),
             co2_g_per_km: co2_g_per_km(total.fuel_kg, co2_kg_kg, total.distance_m),
         }
@@ -237,18 +233,21 @@ impl<'a> Driven<'a> {
 /// let [ftp75, hwfet, us06] = [find("ftp75")?, find("hwfet")?, find("us06")?];
 /// let [sc03, wltc] = [find("sc03")?, find("wltc_class3b")?];
 /// let cycles = Cycles { ftp75: &ftp75, hwfet: &hwfet, us06: &us06, sc03: &sc03, wltc: &wltc };
-/// let figures = figures(&Cars { mild: &car, cold: &car, hot: &car }, &cycles, 1.0);
+/// let figures = figures(&Cars { mild: &car, cold: &car, hot: &car }, &cycles, 1.0)?;
 /// assert!(figures.tests.bags[0] > figures.tests.bags[2], "the cold bag");
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
-pub fn figures(cars: &Cars, cycles: &Cycles, max_dt_s: f64) -> Figures {
-    let run = |car, cycle, degc, start| Driven::new((car, cycle), degc, start, max_dt_s);
-    let city = run(cars.mild, cycles.ftp75, 24.0, Start::Soak);
-    let cold = run(cars.cold, cycles.ftp75, -6.7, Start::Soak);
-    let highway = run(cars.mild, cycles.hwfet, 24.0, Start::Warm);
-    let fast = run(cars.mild, cycles.us06, 24.0, Start::Warm);
-    let hot = run(cars.hot, cycles.sc03, 35.0, Start::Warm);
-    let wltc = [23.0, 14.0].map(|degc| (degc, run(cars.mild, cycles.wltc, degc, Start::Soak)));
+///
+/// # Errors
+/// A test that cannot be read.
+pub fn figures(cars: &Cars, cycles: &Cycles, max_dt_s: f64) -> Result<Figures, Problems> {
+    let run = |car, cycle, test: &str| Driven::new((car, cycle), test, max_dt_s);
+    let city = run(cars.mild, cycles.ftp75, "ftp75")?;
+    let cold = run(cars.cold, cycles.ftp75, "cold_ftp")?;
+    let highway = run(cars.mild, cycles.hwfet, "hwfet")?;
+    let fast = run(cars.mild, cycles.us06, "us06")?;
+    let hot = run(cars.hot, cycles.sc03, "sc03")?;
+    let wltc = [run(cars.mild, cycles.wltc, "wltp")?, run(cars.mild, cycles.wltc, "wltp_14")?];
     let weighted = |start: &str| city.fuel(&[start, "stabilised"]);
     let tests = Tests {
         ftp75: Weighting::FTP75_COLD * weighted("cold_transient")
@@ -260,10 +259,10 @@ pub fn figures(cars: &Cars, cycles: &Cycles, max_dt_s: f64) -> Figures {
         sc03: hot.fuel(&[]),
     };
     let us = [&city, &cold, &highway, &fast, &hot];
-    let all = us.into_iter().chain(wltc.iter().map(|(_, driven)| driven));
+    let all = us.into_iter().chain(&wltc);
     let missed_s = all.filter_map(Driven::missed).collect();
-    let wltp = [0, 1].map(|i: usize| wltc[i].1.wltp(wltc[i].0));
-    Figures {
+    let wltp = wltc.each_ref().map(Driven::wltp);
+    Ok(Figures {
         unadjusted: tests.unadjusted(),
         derived: tests.derived(),
         five_cycle: tests.five_cycle(),
@@ -272,7 +271,7 @@ pub fn figures(cars: &Cars, cycles: &Cycles, max_dt_s: f64) -> Figures {
         wltp,
         co2_14_over_23: wltp[1].co2_g_per_km / wltp[0].co2_g_per_km, // LB-5
         missed_s,
-    }
+    })
 }
 
 #[cfg(test)]

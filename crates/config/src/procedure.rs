@@ -3,6 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | TE-1 | result = (1 - s) F_start + s F_warm, F fuel per distance, s `warm_share`; F_warm of the same cycle directly after | source: the test's regulation, in its file |
+//! | TE-3 | F_reported = F (0.4 + 0.6 X/X_ref), X heating value of a litre of the car's fuel, X_ref `reference_mj_per_litre` | source: 40 CFR 600.113-12, its factor 0.6 and 31.82 MJ/L (0.739 kg/L of 18 507 Btu/lb): fuel economy is stated for the fuel of 1975 |
 //! | TE-2 | road load times `load_factor`, electrical load plus `electrical_w` | source: as TE-1 |
 //!
 //! The selector of an automatic box is in neutral after a start as long as the cycle says so (SE-1). A file of the user is read like the shipped ones,
@@ -37,6 +38,7 @@ keys! {
         load_factor: or(1.0, number(0.1, 3.0)), "factor on the road load, not on the mass", ["TE-2"];
         electrical_w: or(0.0, number(0.0, 6000.0)), "electrical load at the engine's shaft in addition to the car's own", ["TE-2"];
         warm_share: or(0.0, number(0.0, 1.0)), "share of the result that is of the same cycle driven directly after", ["TE-1"];
+        reference_mj_per_litre: optional(number(20.0, 50.0)), "heating value of a litre of the fuel that the figures are stated for; absent: the car's own", ["TE-3"];
         source: computed("none", text()), "regulation or reference";
     }
 
@@ -72,6 +74,8 @@ pub struct Procedure {
     pub electrical_w: f64,
     /// Share of the warm run (TE-1).
     pub warm_share: f64,
+    /// Heating value of a litre of the fuel that figures are stated for, MJ (TE-3).
+    pub reference_mj_per_litre: Option<f64>,
     /// Figures.
     pub results: Vec<TestResult>,
 }
@@ -145,6 +149,7 @@ impl Procedure {
             s.number(&TEST.electrical_w),
             s.number(&TEST.warm_share),
         );
+        let reference_mj_per_litre = s.optional(&TEST.reference_mj_per_litre);
         let _ = s.text_or(&TEST.source, "");
         let mut problems = reader.finish().err().unwrap_or_default();
         let cycle = match problems.is_empty() {
@@ -167,13 +172,21 @@ impl Procedure {
         let Some(cycle) = cycle.filter(|_| problems.is_empty()) else {
             return Err(problems);
         };
-        Ok(Procedure { name, title, cycle_word, cycle, start, ambient_k, load_factor, electrical_w, warm_share, results })
+        Ok(Procedure { name, title, cycle_word, cycle, start, ambient_k, load_factor, electrical_w, warm_share, reference_mj_per_litre, results })
     }
 
     /// The cycle as a car drives it: of `wltc` that of its class.
     #[must_use]
     pub fn cycle_for(&self, car: &Vehicle) -> Cycle {
         cycle::for_car(&self.cycle_word, self.cycle.clone(), car)
+    }
+
+    /// Stated over burnt fuel of a car (TE-3).
+    #[must_use]
+    pub fn stated_share(&self, car: &Vehicle) -> f64 {
+        let engine = car.engine();
+        let own_mj_l = engine.heating_value_j_kg * engine.fuel_density_kg_m3 / 1e9;
+        self.reference_mj_per_litre.map_or(1.0, |reference| 0.4 + 0.6 * own_mj_l / reference) // TE-3
     }
 
     /// Conditions of the run that it measures, with steps of at most some time, s.

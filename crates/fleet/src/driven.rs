@@ -96,6 +96,7 @@ fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let first = run(own);
     let warm = (test.warm_share > 0.0).then(|| run(Conditions { start: Start::Warm, ..own }));
     let mut fuel = BTreeMap::new();
+    let stated = test.stated_share(setup);
     for result in &test.results {
         let of = |summary: &RunSummary| {
             if result.phases.is_empty() {
@@ -109,7 +110,7 @@ fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
         };
         let cold = of(&first);
         let value = warm.as_ref().map_or(cold, |warm| (1.0 - test.warm_share) * cold + test.warm_share * of(warm)); // TE-1
-        fuel.insert(result.column(), value);
+        fuel.insert(result.column(), stated * value);
     }
     let mut failed_checks = first.failed_checks.clone();
     failed_checks.extend(warm.into_iter().flat_map(|warm| warm.failed_checks));

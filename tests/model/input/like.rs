@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use cvtcycle_config::bounded::ReadError;
+use cvtcycle_config::setup::new_car::ClassOf;
 use cvtcycle_config::setup::{Files, Kind, Options, ParamSet, Setup, load, read};
 use cvtcycle_config::{KeyInfo, Override, Problems};
 
@@ -279,10 +280,7 @@ fn overrides_belong_to_the_car_and_studies_see_what_it_inherits() {
 
 #[test]
 fn every_class_of_body_makes_a_car_with_every_class_of_box() {
-    let (boxes, bodies): (Vec<&str>, Vec<&str>) = Kind::Class
-        .names()
-        .into_iter()
-        .partition(|name| name.starts_with("box_"));
+    let (boxes, bodies) = (ClassOf::Box.names(), ClassOf::Body.names());
     assert!(boxes.len() >= 3 && bodies.len() >= 5);
     for body in &bodies {
         for name in &boxes {

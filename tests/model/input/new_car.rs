@@ -1,6 +1,8 @@
 //! Vehicle files from catalogue numbers. The truth is the arithmetic of each rule, worked out here, and the geometry of the belt in the model.
 
-use cvtcycle_config::setup::new_car::{Answers, NewCar, write};
+use cvtcycle_config::setup::new_car::{
+    Answers, ClassOf, NewCar, named_engines, technologies, write,
+};
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
 use cvtcycle_config::{KeyInfo, Problems};
 use cvtcycle_model::keys::rad_s;
@@ -42,16 +44,8 @@ fn number(setup: &Setup, key: &str) -> f64 {
 fn every_class_makes_a_car_that_is_read_again() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("mycar.toml");
-    for class in Kind::Class
-        .names()
-        .iter()
-        .filter(|name| !name.starts_with("box_"))
-    {
-        for gearbox in Kind::Class
-            .names()
-            .iter()
-            .filter(|name| name.starts_with("box_"))
-        {
+    for class in ClassOf::Body.names() {
+        for gearbox in ClassOf::Box.names() {
             let car = new(class, gearbox, &[])
                 .unwrap_or_else(|found| panic!("{class} {gearbox}: {found:?}"));
             std::fs::write(&path, &car.text).unwrap();
@@ -525,7 +519,8 @@ fn slips_across_keys_are_doubted() {
         ("power", "110kW@3800"),
     ];
     for (numbers, words) in [
-        (diesel, "spark-ignition"),
+        (diesel, "are those of a diesel"),
+        (diesel, "full load is 21.4 bar"),
         (&[("mass", "2400")], "is the mass in lb?"),
         (&[("f2", "0.3")], "N per kg"),
         (&[("idle", "400")], "idles at 400 rpm"),
@@ -577,4 +572,185 @@ fn slips_across_keys_are_doubted() {
             "{words}: {found:?}"
         );
     }
+}
+
+/// A car of a class with an engine, by its options.
+fn engine(options: [&str; 3], numbers: &[(&'static str, &str)]) -> Result<NewCar, Problems> {
+    let given = |text: &str| (!text.is_empty()).then(|| text.to_owned());
+    let [engine, year, like] = options.map(given);
+    write(&Answers {
+        file: "mycar.toml".to_owned(),
+        title: "My car".to_owned(),
+        engine,
+        engine_year: year,
+        engine_like: like,
+        numbers: numbers
+            .iter()
+            .map(|(name, text)| (*name, (*text).to_owned()))
+            .collect(),
+        ..Answers::default()
+    })
+}
+
+/// The newest set of a technology that is not newer than the year; body, engine, box in this order.
+#[test]
+fn an_engine_is_of_its_technology_and_year() {
+    for (technology, year, class, notes) in [
+        ("pfi", "2018", "engine_pfi_2013", 0),
+        ("pfi", "2012", "engine_pfi_2010", 0),
+        ("pfi", "1990", "engine_pfi_1990", 0),
+        ("pfi", "1985", "engine_pfi_1990", 1),
+        ("pfi", "", "engine_pfi_2013", 1),
+        ("di", "2018", "engine_di_2012", 0),
+        ("di", "2005", "engine_di_2012", 1),
+        (
+            "di_high_compression",
+            "2015",
+            "engine_di_high_compression_2012",
+            0,
+        ),
+        ("turbo", "2014", "engine_turbo_2010", 0),
+        ("turbo", "2015", "engine_turbo_2015", 0),
+        ("atkinson", "2020", "engine_atkinson_2017", 0),
+        ("diesel", "2015", "engine_diesel_2015", 0),
+    ] {
+        let car = engine([technology, year, ""], &ENGINE).unwrap();
+        let like =
+            format!("like = [\"class:compact_2020\", \"class:{class}\", \"class:box_cvt_clutch\"]");
+        assert!(
+            car.text.contains(&like),
+            "{technology} {year}: {}",
+            car.text
+        );
+        assert_eq!(
+            car.notes.len(),
+            notes,
+            "{technology} {year}: {:?}",
+            car.notes
+        );
+        assert!(
+            find(&car.setup, "engine.model.willans.l")
+                .from
+                .contains(class)
+        );
+    }
+    // With another car, its engine alone is replaced.
+    let car = write(&Answers {
+        file: "mycar.toml".to_owned(),
+        like: Some("rover_216_cvt".to_owned()),
+        engine: Some("pfi".to_owned()),
+        engine_year: Some("2010".to_owned()),
+        ..Answers::default()
+    });
+    let car = car.unwrap();
+    assert!(
+        car.text
+            .contains("like = [\"rover_216_cvt\", \"class:engine_pfi_2010\"]")
+    );
+    assert!(car.setup.engine().motored.is_some());
+    assert_eq!(
+        technologies(),
+        [
+            "pfi",
+            "di",
+            "di_high_compression",
+            "atkinson",
+            "turbo",
+            "diesel"
+        ]
+    );
+}
+
+/// A measured engine alone is whole; with a power its line is scaled, with a size its map goes by litre (NC-11).
+#[test]
+fn a_measured_engine_has_its_own_line() {
+    for name in named_engines() {
+        let car = engine(["", "", name], &[]).unwrap().setup;
+        let class = format!("class engine_{name}");
+        assert_eq!(find(&car, "engine.full_load").from, class);
+        assert_eq!(find(&car, "engine.displacement_cc").from, class);
+    }
+    let own = engine(["", "", "honda_l15b7"], &[]).unwrap().setup;
+    let numbers = [("displacement", "2.0l"), ("power", "150kW@6500")];
+    let scaled = engine(["", "", "honda_l15b7"], &numbers).unwrap().setup;
+    let line = |car: &Setup, rpm: f64| car.engine().full_load.at(rad_s(rpm));
+    // 130.0 kW at 6000 rpm: speeds times 6500/6000, torques so that 150 kW are there.
+    assert!((line(&scaled, 6500.0) * rad_s(6500.0) / 150e3 - 1.0).abs() < 1e-3);
+    for rpm in [1500.0, 2500.0, 4000.0] {
+        let ratio = line(&scaled, rpm * 6.5 / 6.0) / line(&own, rpm);
+        assert!(
+            (ratio - 150.0 / 130.0 * 6.0 / 6.5).abs() < 2e-3,
+            "{rpm}: {ratio}"
+        );
+    }
+    let stroke_mm = 89.4 * (2000.0_f64 / 1496.0).cbrt();
+    assert!((number(&scaled, "engine.stroke_mm") - stroke_mm).abs() < 0.06);
+    // A torque is the user's: NC-2 as with any engine.
+    let numbers = [("power", "130kW@6000"), ("torque", "240@2000-4500")];
+    let nc2 = engine(["", "", "honda_l15b7"], &numbers).unwrap().setup;
+    assert!((line(&nc2, 3000.0) - 240.0).abs() < 0.06);
+    assert!(find(&nc2, "engine.full_load").source.contains("NC-2"));
+}
+
+#[test]
+fn engines_that_are_none_are_refused() {
+    for (options, numbers, key, words) in [
+        (["steam", "", ""], &ENGINE[..], "engine", "pfi, di, "),
+        (["di", "20l8", ""], &ENGINE, "engine-year", "1980 to 2035"),
+        (["di", "1950", ""], &ENGINE, "engine-year", "1980 to 2035"),
+        (["", "2015", ""], &ENGINE, "engine-year", "pfi, di, "),
+        (["di", "", "gm_lv3"], &ENGINE, "engine-like", ""),
+        (
+            ["", "", "honda_l15b"],
+            &ENGINE,
+            "engine-like",
+            "honda_l15b7",
+        ),
+        // In another size it needs another power.
+        (
+            ["", "", "honda_l15b7"],
+            &[("displacement", "2.0l")],
+            "power",
+            "",
+        ),
+    ] {
+        let found = engine(options, numbers).unwrap_err();
+        assert_eq!(found.len(), 1, "{options:?}: {found:?}");
+        assert_eq!(found[0].key, key, "{options:?}");
+        assert!(found[0].allowed.contains(words), "{found:?}");
+        assert!(!found[0].hint.is_empty(), "{found:?}");
+    }
+    let near = engine(["", "", "honda_l15b"], &ENGINE).unwrap_err();
+    assert_eq!(near[0].hint, "did you mean `honda_l15b7`?");
+    // Engines are no bodies and no boxes.
+    assert!(new("engine_di_2012", "box_cvt_clutch", &[]).is_err());
+    assert!(new("compact_2020", "engine_di_2012", &[]).is_err());
+}
+
+/// The three words in the file of answers, with the year as a number.
+#[test]
+fn answers_name_an_engine() {
+    let mut answers = Answers {
+        file: "mycar.toml".to_owned(),
+        ..Answers::default()
+    };
+    let text =
+        "engine = \"turbo\"\nengine_year = 2012\ndisplacement = \"1.6l\"\npower = \"120kW\"\n";
+    answers.add_file("answers.toml", text).unwrap();
+    assert!(
+        write(&answers)
+            .unwrap()
+            .text
+            .contains("class:engine_turbo_2010")
+    );
+    let mut answers = Answers::default();
+    answers
+        .add_file("answers.toml", "engine_like = \"gm_lv3\"\n")
+        .unwrap();
+    assert!(
+        write(&answers)
+            .unwrap()
+            .text
+            .contains("class:engine_gm_lv3")
+    );
 }

@@ -246,8 +246,7 @@ impl MapTable {
         let load = self.index(1).map(|i| (i, 1e5));
         let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
         let load = load.or_else(|| self.index(2).map(|i| (i, per_torque)));
-        let (Some(speed), Some((fuel, per_si)), Some((load, factor))) =
-            (self.index(0), fuel, load)
+        let (Some(speed), Some((fuel, per_si)), Some((load, factor))) = (self.index(0), fuel, load)
         else {
             return Ok(None);
         };
@@ -258,9 +257,7 @@ impl MapTable {
             .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[fuel] / per_si))
             .collect();
         let map = match flow {
-            Some(_) => {
-                BsfcMap::from_flow(&rows, heating_value_j_kg, displacement_m3, (0.0, 0.0))?
-            }
+            Some(_) => BsfcMap::from_flow(&rows, heating_value_j_kg, displacement_m3, (0.0, 0.0))?,
             None => BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))?,
         };
         *made = Some((scale, map.clone()));

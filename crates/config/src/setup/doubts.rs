@@ -133,6 +133,11 @@ fn range_doubt(setup: &Setup) -> Option<String> {
         }
         FuelModel::Map(map) => map.bmep_pa.last().map_or(0.0, |pa| pa / 1e5),
     };
+    let highest_nm = engine.full_load.points().map(|(_, nm)| nm);
+    let per_litre = highest_nm.fold(0.0, f64::max) / (engine.displacement_m3 * 1e3);
+    if !NM_PER_LITRE.contains(&per_litre) {
+        return None; // then displacement or torque is doubted
+    }
     let points = engine.full_load.points();
     let over = |(rad_s, nm): (f64, f64)| {
         let bar = engine.mep_pa(nm) / 1e5;
@@ -147,7 +152,7 @@ fn range_doubt(setup: &Setup) -> Option<String> {
     };
     (bar > limit).then(|| {
         format!(
-            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: a turbo or diesel engine has its own (`cvtcycle list classes`, --engine of `new`)"
+            "full load is {bar:.1} bar at {at_rpm:.0} rpm, and the engine's {model} holds up to {limit:.1} bar: a turbo or diesel engine has its own (`cvtcycle list classes`)"
         )
     })
 }
@@ -168,7 +173,7 @@ fn torque_doubt(setup: &Setup) -> Option<String> {
     let burns_petrol = engine.fuel_density_kg_m3 < DIESEL_FUEL_KG_M3;
     (burns_petrol && per_litre > DIESEL.0 && rated_rpm < DIESEL.1).then(|| {
         format!(
-            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine is one with spark ignition, and its fuel would be wrong (`engine_diesel_2015` of `cvtcycle list classes`, --engine diesel of `new`)"
+            "{per_litre:.0} Nm per litre with the greatest power at {rated_rpm:.0} rpm are those of a diesel: the engine is one with spark ignition, and its fuel would be wrong (the class `engine_diesel_2015` is one)"
         )
     })
 }

@@ -249,10 +249,12 @@ fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V, Option<f
     let (kind, w) = s.choose(&ENGINE.model);
     if kind == "bsfc_map" {
         let friction = (w.number(&BSFC.l), w.number(&BSFC.l2));
-        let measured_j_kg = w.optional(&BSFC.measured_mj_kg);
+        // NaN marks a value that could not be read and has its own problem.
+        let measured = |key| w.optional(key).filter(|value: &f64| value.is_finite());
+        let measured_j_kg = measured(&BSFC.measured_mj_kg);
         let heating_value =
             measured_j_kg.unwrap_or_else(|| s.table("fuel").number(&FUEL.heating_value_mj_kg));
-        let measured_m3 = w.optional(&BSFC.measured_cc).unwrap_or(displacement_m3);
+        let measured_m3 = measured(&BSFC.measured_cc).unwrap_or(displacement_m3);
         let map = w.bsfc_map(&BSFC.file, heating_value, measured_m3);
         let model = map.map_or(FuelModel::Willans(DEFAULT), |map| {
             FuelModel::Map(BsfcMap { friction, ..map })

@@ -22,8 +22,8 @@ mod start;
 pub mod start_stop;
 
 pub use fuel::{EFFICIENCY, FuelModel, FuelPoint, Willans};
-pub use motored::Motored;
 pub use keys::{ENGINE, EngineKeys};
+pub use motored::Motored;
 pub use start::Running;
 pub use start_stop::StartStop;
 
@@ -406,13 +406,8 @@ impl<R: Real> EngineAtTemperature<'_, R> {
             Some(motored) => {
                 let colder = friction_pa - e.fuel.hot_friction_pa(piston_m_s);
                 let drag_pa = (motored.hot_pa(piston_m_s) + colder) * e.overrun_drag;
-                e.fuel.fuel_mep_above_drag(
-                    piston_m_s,
-                    speed_rad_s,
-                    brake_pa,
-                    friction_pa,
-                    drag_pa,
-                )
+                e.fuel
+                    .fuel_mep_above_drag(piston_m_s, speed_rad_s, brake_pa, friction_pa, drag_pa)
             }
         };
         let burns = point.fuel_pa.gt(0.0);

@@ -123,7 +123,9 @@ impl BsfcMap {
             );
         }
         if fuel.iter().any(|row| row.windows(2).any(|f| f[0] >= f[1])) {
-            return Err("fuel (BSFC times BMEP, or its flow) must rise with load at every speed".into());
+            return Err(
+                "fuel (BSFC times BMEP, or its flow) must rise with load at every speed".into(),
+            );
         }
         Ok(BsfcMap {
             speed_rad_s: speeds,

@@ -191,7 +191,7 @@ fn ranges_in_words() {
 }
 
 /// Key, value, SI value worked out by hand, unit as shown.
-const EXPECTED: [(&str, f64, f64, &str); 67] = [
+const EXPECTED: [(&str, f64, f64, &str); 69] = [
     (
         "fall_per_1000_rpm",
         0.2,
@@ -223,6 +223,8 @@ const EXPECTED: [(&str, f64, f64, &str); 67] = [
     ("fuel_g_s", 2.0, 0.002, "g/s"),
     ("pressure_pa", 3.0, 3.0, "Pa"),
     ("line_bar", 20.0, 2e6, "bar"),
+    ("drag_bar_per_m_s", 0.05, 5000.0, "bar/(m/s)"),
+    ("drag_bar_per_m_s2", 0.002, 200.0, "bar/(m/s)²"),
     ("young_gpa", 210.0, 2.1e11, "GPa"),
     ("viscosity_mpa_s", 20.0, 0.02, "mPa s"),
     ("viscosity_mm2_s", 35.0, 3.5e-5, "mm²/s"),

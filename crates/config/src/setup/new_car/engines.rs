@@ -37,7 +37,9 @@ pub fn technologies() -> Vec<&'static str> {
 pub fn named_engines() -> Vec<&'static str> {
     let names = ClassOf::Engine.names().into_iter();
     let named = names.filter(|class| parts(class).is_none());
-    named.filter_map(|class| class.strip_prefix(ENGINE)).collect()
+    named
+        .filter_map(|class| class.strip_prefix(ENGINE))
+        .collect()
 }
 
 /// The class that is asked for.
@@ -63,11 +65,13 @@ pub(super) fn class(answers: &Answers) -> Result<Option<EngineClass>, Problem> {
     let Some(technology) = &answers.engine else {
         return match &answers.engine_year {
             None => Ok(None),
-            Some(year) => Err(Problem::missing("a year of an engine without its technology")
-                .key("engine-year")
-                .value(year)
-                .allowed(technologies().join(", "))
-                .hint("give --engine as well")),
+            Some(year) => Err(
+                Problem::missing("a year of an engine without its technology")
+                    .key("engine-year")
+                    .value(year)
+                    .allowed(technologies().join(", "))
+                    .hint("give the technology as well"),
+            ),
         };
     };
     let year = answers.engine_year.as_deref().map(year_of).transpose()?;
@@ -79,17 +83,28 @@ pub(super) fn class(answers: &Answers) -> Result<Option<EngineClass>, Problem> {
         .collect();
     sets.sort_unstable();
     let (Some(oldest), Some(newest)) = (sets.first(), sets.last()) else {
-        return Err(unknown(technology, "engine", "technology of an engine", &technologies()));
+        return Err(unknown(
+            technology,
+            "engine",
+            "technology of an engine",
+            &technologies(),
+        ));
     };
     let chosen = year.and_then(|year| sets.iter().rfind(|(from, _)| *from <= year));
     let (class, note) = match (year, chosen) {
         (None, _) => {
-            let note = format!("engine: {}, the newest of its kind; --engine-year names a year", newest.1);
+            let note = format!(
+                "engine: {}, the newest of its kind; with a year, that of the year",
+                newest.1
+            );
             (newest.1, Some(note))
         }
         (Some(_), Some((_, class))) => (*class, None),
         (Some(year), None) => {
-            let note = format!("engine: {} is the oldest of its kind, and newer than {year}", oldest.1);
+            let note = format!(
+                "engine: {} is the oldest of its kind, and newer than {year}",
+                oldest.1
+            );
             (oldest.1, Some(note))
         }
     };

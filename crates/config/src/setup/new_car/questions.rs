@@ -70,7 +70,10 @@ pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
             return Some("the engine's own line, scaled to the power, NC-19".to_owned());
         }
         let has_line = answers.engine_like.is_some();
-        if name == "torque" && !has_line && (answers.like.is_none() || answers.numbers.contains_key("power")) {
+        if name == "torque"
+            && !has_line
+            && (answers.like.is_none() || answers.numbers.contains_key("power"))
+        {
             return Some("from the power, NC-2".to_owned());
         }
         let info = base.car.keys.iter().find(|info| info.key == key)?;

@@ -62,11 +62,7 @@ impl Given<'_> {
             }
         };
         for (key, value, rule) in [
-            (
-                "engine.stroke_mm",
-                format!("{stroke_mm:.1}"),
-                of_stroke,
-            ),
+            ("engine.stroke_mm", format!("{stroke_mm:.1}"), of_stroke),
             (
                 "engine.inertia_kg_m2",
                 format!("{:.3}", 0.05 + 0.1 * litres),
@@ -149,7 +145,11 @@ impl Given<'_> {
         let words = format!(
             "NC-19: line of the named engine, speeds times {faster:.3}, torques times {stronger:.3}"
         );
-        self.follows("engine.full_load", format!("[{}]", rows.join(", ")), words.clone());
+        self.follows(
+            "engine.full_load",
+            format!("[{}]", rows.join(", ")),
+            words.clone(),
+        );
         if self.number("highest", &SPEED).is_none() {
             let highest_rpm = (self.inherited("engine.highest_rpm") * faster).round();
             self.follows("engine.highest_rpm", digits(highest_rpm), words);
