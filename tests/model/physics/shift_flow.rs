@@ -84,7 +84,10 @@ fn the_shift_takes_what_the_clamp_leaves() {
             );
             if row.flags.contains(Flags::FLOW_LIMITED) {
                 waits += 1;
-                assert!(swept_m3 >= 0.9 * left_m3 - 1e-9, "{swept_m3} of {left_m3} m3");
+                assert!(
+                    swept_m3 >= 0.9 * left_m3 - 1e-9,
+                    "{swept_m3} of {left_m3} m3"
+                );
                 assert!(
                     row.clamp_safety >= 1.0,
                     "{} at {} s",

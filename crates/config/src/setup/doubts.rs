@@ -201,7 +201,7 @@ fn of_top_gear(setup: &Setup) -> Option<String> {
     let at_80_rpm = 0.8 * at_100_rpm;
     if setup.transmission().is_cvt() && at_80_rpm < LEAST_80_RPM {
         return Some(format!(
-            "in the highest ratio the engine turns at {at_80_rpm:.0} rpm at 80 km/h, in cars with a CVT at 1044 to 1675 rpm: an axle ratio is often not the whole reduction; give engine over road speed (`new --n-over-v`)"
+            "in the highest ratio the engine turns at {at_80_rpm:.0} rpm at 80 km/h, in cars with a CVT at 1044 to 1675 rpm: an axle ratio is often not the whole reduction; give engine over road speed (n-over-v of a new car)"
         ));
     }
     (!TOP_RPM.contains(&at_100_rpm)).then(|| {
