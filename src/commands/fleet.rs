@@ -8,7 +8,9 @@ use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::STEP;
 use cvtcycle::config::{Override, Problems};
 use cvtcycle::fleet::baselines::{Baseline, baselines};
-use cvtcycle::fleet::errors::{Entry, ErrorStatistics, GroupErrors, Pair, box_word, by_group, pairs};
+use cvtcycle::fleet::errors::{
+    Entry, ErrorStatistics, GroupErrors, Pair, box_word, by_group, pairs,
+};
 use cvtcycle::fleet::{ColumnMap, DrivenCar, Fleet, Refused, Sheet, drive, spread, tables};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::fleet_spread;
@@ -64,7 +66,12 @@ pub struct FleetArgs {
     #[arg(long, value_name = "COLUMN,..", value_delimiter = ',')]
     by: Vec<String>,
     /// Longest time step, s, 0.01 to 10
-    #[arg(long, value_name = "SECONDS", default_value = "1", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value = "1",
+        allow_hyphen_values = true
+    )]
     dt: String,
     #[command(flatten)]
     threads: ThreadArgs,
@@ -116,9 +123,15 @@ impl Execute for FleetArgs {
         let set = overrides("--set", &self.set, problems);
         let map = match &self.map {
             None => Some(ColumnMap::own()),
-            Some(word) => problems.take(ColumnMap::open(word).map_err(|found| cite("--map", found))),
+            Some(word) => {
+                problems.take(ColumnMap::open(word).map_err(|found| cite("--map", found)))
+            }
         };
-        let tests: Vec<Option<Procedure>> = self.test.iter().map(|word| problems.take(Procedure::open(word).map_err(|found| cite("--test", found)))).collect();
+        let tests: Vec<Option<Procedure>> = self
+            .test
+            .iter()
+            .map(|word| problems.take(Procedure::open(word).map_err(|found| cite("--test", found))))
+            .collect();
         let dt_s = problems.take(number("--dt", &self.dt, STEP, "dt_s"));
         let mut sheet = problems.take(read("CARS.csv", &self.file));
         for file in &self.join {
@@ -131,23 +144,41 @@ impl Execute for FleetArgs {
         for column in self.by.iter().chain(&self.leave_out) {
             if sheet.column(column).is_none() && column != "none" {
                 let message = format!("the table has no column `{column}`");
-                problems.add(bad_value("--by", column, &sheet.names.join(", "), &message, ""));
+                problems.add(bad_value(
+                    "--by",
+                    column,
+                    &sheet.names.join(", "),
+                    &message,
+                    "",
+                ));
             } else if !map.groups.contains(column) && column != "none" {
                 map.groups.push(column.clone());
             }
         }
         let out = self.results.out.dir(problems);
-        Some(FleetPlan { sheet, map, tests: tests.into_iter().collect::<Option<_>>()?, set, dt_s: dt_s?, out })
+        Some(FleetPlan {
+            sheet,
+            map,
+            tests: tests.into_iter().collect::<Option<_>>()?,
+            set,
+            dt_s: dt_s?,
+            out,
+        })
     }
 
     fn run(&self, mut plan: FleetPlan, terminal: Terminal) -> CommandResult {
         let out = plan.out.take();
         let fleet = Fleet::from_sheet(&plan.sheet, &plan.map, &plan.tests, &plan.set)?;
-        let progress = Progress::counted("cars", fleet.cars.len() as u64, self.results.output.quiet);
+        let progress =
+            Progress::counted("cars", fleet.cars.len() as u64, self.results.output.quiet);
         let driven = drive(&fleet.cars, &plan.tests, plan.dt_s, &progress);
         progress.finish();
         let entries: Vec<Entry> = fleet.cars.iter().zip(&driven).collect();
-        let figures: Vec<String> = plan.tests.iter().flat_map(|test| test.results.iter().map(|result| result.column())).collect();
+        let figures: Vec<String> = plan
+            .tests
+            .iter()
+            .flat_map(|test| test.results.iter().map(|result| result.column()))
+            .collect();
         let leave_out = match self.leave_out.as_deref() {
             Some("none") => None,
             Some(column) => Some(column),
@@ -160,40 +191,64 @@ impl Execute for FleetArgs {
             tests: plan.tests.iter().map(|test| test.name.clone()).collect(),
             driven: fleet.cars.len(),
             refused: fleet.refused.len(),
-            cars_with_failed_checks: driven.iter().filter(|car| !car.failed_checks().is_empty()).count(),
+            cars_with_failed_checks: driven
+                .iter()
+                .filter(|car| !car.failed_checks().is_empty())
+                .count(),
             errors: by_group(&entries, &figures, &fleet.groups),
             pair_errors: pair_errors(&pairs, &figures),
             baselines: baselines(&entries, leave_out),
         };
         let json = json_text(&summary)?;
         let files = WrittenFiles::write(out, |dir| {
-            dir.put("fleet.csv", tables::fleet_csv(&fleet, &entries, &plan.tests, &range))?;
+            dir.put(
+                "fleet.csv",
+                tables::fleet_csv(&fleet, &entries, &plan.tests, &range),
+            )?;
             dir.put("errors.csv", tables::errors_csv(&summary.errors))?;
             dir.put("pairs.csv", tables::pairs_csv(&pairs))?;
             dir.put("baselines.csv", tables::baselines_csv(&summary.baselines))?;
             let column = leave_out.unwrap_or_default();
-            dir.put("spread.csv", spread::csv(&spread::spreads(&entries, &pairs, &figures, column)))?;
+            dir.put(
+                "spread.csv",
+                spread::csv(&spread::spreads(&entries, &pairs, &figures, column)),
+            )?;
             dir.put("summary.json", &json)?;
             Ok("")
         })?;
         let results = Results::new(json, failures(&fleet, &driven), files);
-        Ok(results.output(&self.results.output, || text(&summary, &fleet, terminal.stdout)))
+        Ok(results.output(&self.results.output, || {
+            text(&summary, &fleet, terminal.stdout)
+        }))
     }
 }
 
 fn read(option: &str, file: &str) -> Result<Sheet, Problems> {
     let bytes = bounded::read(Path::new(file), TABLE).map_err(|error| {
         let message = format!("cannot read `{file}`: {error}");
-        bad_value(option, file, &error.allowed("a readable file"), &message, &error.hint("check the path and its permissions"))
+        bad_value(
+            option,
+            file,
+            &error.allowed("a readable file"),
+            &message,
+            &error.hint("check the path and its permissions"),
+        )
     })?;
     Sheet::read(file, &bytes)
 }
 
 fn pair_errors(pairs: &[Pair], figures: &[String]) -> Vec<PairErrors> {
     let of = |figure: &String| {
-        let own: Vec<&Pair> = pairs.iter().filter(|pair| pair.figure == *figure && pair.error().is_finite()).collect();
-        let errors: Vec<(&str, f64)> = own.iter().map(|pair| (pair.car.as_str(), pair.error())).collect();
-        let mean = |x: fn(&Pair) -> f64| own.iter().map(|pair| x(pair)).sum::<f64>() / own.len() as f64;
+        let own: Vec<&Pair> = pairs
+            .iter()
+            .filter(|pair| pair.figure == *figure && pair.error().is_finite())
+            .collect();
+        let errors: Vec<(&str, f64)> = own
+            .iter()
+            .map(|pair| (pair.car.as_str(), pair.error()))
+            .collect();
+        let mean =
+            |x: fn(&Pair) -> f64| own.iter().map(|pair| x(pair)).sum::<f64>() / own.len() as f64;
         Some(PairErrors {
             figure: figure.clone(),
             measured_percent: mean(|pair| pair.measured_percent),
@@ -216,66 +271,142 @@ fn failures(fleet: &Fleet, driven: &[DrivenCar]) -> Vec<String> {
     let mut lines: Vec<String> = fleet
         .unknown
         .iter()
-        .map(|(name, near)| format!("column `{name}` is not read; {near}").trim_end_matches("; ").to_owned())
+        .map(|(name, near)| {
+            format!("column `{name}` is not read; {near}")
+                .trim_end_matches("; ")
+                .to_owned()
+        })
         .collect();
-    let row = |Refused { line, id, reason }: &Refused| format!("line {line} {id}: refused: {reason}");
+    let row =
+        |Refused { line, id, reason }: &Refused| format!("line {line} {id}: refused: {reason}");
     lines.extend(fleet.refused.iter().take(MAX_REFUSED).map(row));
     if fleet.refused.len() > MAX_REFUSED {
-        lines.push(format!("{} more rows refused: fleet.csv of --out has their reasons", fleet.refused.len() - MAX_REFUSED));
+        lines.push(format!(
+            "{} more rows refused: fleet.csv of --out has their reasons",
+            fleet.refused.len() - MAX_REFUSED
+        ));
     }
     let failed: Vec<String> = fleet
         .cars
         .iter()
         .zip(driven)
         .filter(|(_, driven)| !driven.failed_checks().is_empty())
-        .map(|(car, driven)| format!("check failed: {}: {}", car.id, driven.failed_checks().join(", ")))
+        .map(|(car, driven)| {
+            format!(
+                "check failed: {}: {}",
+                car.id,
+                driven.failed_checks().join(", ")
+            )
+        })
         .collect();
     let more = failed.len().saturating_sub(MAX_REFUSED);
     lines.extend(failed.into_iter().take(MAX_REFUSED));
     if more > 0 {
-        lines.push(format!("{more} more cars with failed checks: fleet.csv of --out has them"));
+        lines.push(format!(
+            "{more} more cars with failed checks: fleet.csv of --out has them"
+        ));
     }
     lines
 }
 
 fn text(summary: &FleetSummary, fleet: &Fleet, paint: Paint) -> String {
-    let mut head = format!("{} cars driven on {}", summary.driven, summary.tests.join(", "));
+    let mut head = format!(
+        "{} cars driven on {}",
+        summary.driven,
+        summary.tests.join(", ")
+    );
     if summary.refused > 0 {
         head += &format!(", {} rows refused", summary.refused);
     }
     if summary.cars_with_failed_checks > 0 {
-        head += &format!(", {} cars with failed checks", summary.cars_with_failed_checks);
+        head += &format!(
+            ", {} cars with failed checks",
+            summary.cars_with_failed_checks
+        );
     }
-    let doubtful = fleet.cars.iter().filter(|car| !car.doubts.is_empty()).count();
+    let doubtful = fleet
+        .cars
+        .iter()
+        .filter(|car| !car.doubts.is_empty())
+        .count();
     if doubtful > 0 {
         head += &format!(", {doubtful} with doubts");
     }
     let mut parts = Vec::new();
     if !summary.errors.is_empty() {
-        parts.push(("Computed against measured fuel, %".to_owned(), errors_table(&summary.errors)));
+        parts.push((
+            "Computed against measured fuel, %".to_owned(),
+            errors_table(&summary.errors),
+        ));
     }
     if !summary.pair_errors.is_empty() {
-        parts.push(("Pairs of cars: difference to the other box".to_owned(), pairs_table(&summary.pair_errors)));
+        parts.push((
+            "Pairs of cars: difference to the other box".to_owned(),
+            pairs_table(&summary.pair_errors),
+        ));
     }
     if !summary.baselines.is_empty() {
-        parts.push(("Regressions on the same measurements, each group predicted from the others, %".to_owned(), baselines_table(&summary.baselines)));
+        parts.push((
+            "Regressions on the same measurements, each group predicted from the others, %"
+                .to_owned(),
+            baselines_table(&summary.baselines),
+        ));
     }
     wrapped(&head, "") + &sections(parts, paint)
 }
 
 fn errors_table(groups: &[GroupErrors]) -> String {
-    table(&["figure", "column", "word"], groups.iter().map(|group| (vec![group.figure.clone(), group.column.clone(), group.word.clone()], &group.errors)))
+    table(
+        &["figure", "column", "word"],
+        groups.iter().map(|group| {
+            (
+                vec![
+                    group.figure.clone(),
+                    group.column.clone(),
+                    group.word.clone(),
+                ],
+                &group.errors,
+            )
+        }),
+    )
 }
 
 fn baselines_table(baselines: &[Baseline]) -> String {
-    table(&["figure", "box", "knows"], baselines.iter().map(|own| (vec![own.figure.clone(), own.transmission.clone(), own.knows.clone()], &own.errors)))
+    table(
+        &["figure", "box", "knows"],
+        baselines.iter().map(|own| {
+            (
+                vec![
+                    own.figure.clone(),
+                    own.transmission.clone(),
+                    own.knows.clone(),
+                ],
+                &own.errors,
+            )
+        }),
+    )
 }
 
-fn table<'a>(names: &[&str], rows: impl Iterator<Item = (Vec<String>, &'a ErrorStatistics)>) -> String {
+fn table<'a>(
+    names: &[&str],
+    rows: impl Iterator<Item = (Vec<String>, &'a ErrorStatistics)>,
+) -> String {
     let mut table = TextTable::new(&("l".repeat(names.len()) + "rrrrrr"));
-    table.row(names.iter().copied().chain(["n", "mean", "sd", "rms", "within 5 %", "worst"]));
+    table.row(
+        names
+            .iter()
+            .copied()
+            .chain(["n", "mean", "sd", "rms", "within 5 %", "worst"]),
+    );
     for (words, e) in rows {
-        let numbers = [e.n.to_string(), signed(e.mean_percent, 1), fixed(e.sd_percent, 1), fixed(e.rms_percent, 1), fixed(e.within_5_percent, 0), signed(e.worst_percent, 1)];
+        let numbers = [
+            e.n.to_string(),
+            signed(e.mean_percent, 1),
+            fixed(e.sd_percent, 1),
+            fixed(e.rms_percent, 1),
+            fixed(e.within_5_percent, 0),
+            signed(e.worst_percent, 1),
+        ];
         table.row(words.into_iter().chain(numbers));
     }
     table.text()
@@ -283,7 +414,15 @@ fn table<'a>(names: &[&str], rows: impl Iterator<Item = (Vec<String>, &'a ErrorS
 
 fn pairs_table(pairs: &[PairErrors]) -> String {
     let mut table = TextTable::new("lrrrrrr");
-    table.row(["figure", "n", "measured %", "computed %", "error", "sd", "rms"]);
+    table.row([
+        "figure",
+        "n",
+        "measured %",
+        "computed %",
+        "error",
+        "sd",
+        "rms",
+    ]);
     for pair in pairs {
         let e = &pair.errors;
         table.row([

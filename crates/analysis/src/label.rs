@@ -173,7 +173,11 @@ struct Driven<'a> {
 }
 
 impl<'a> Driven<'a> {
-    fn new((car, cycle): (&'a Vehicle, &'a Cycle), test: &str, max_dt_s: f64) -> Result<Self, Problems> {
+    fn new(
+        (car, cycle): (&'a Vehicle, &'a Cycle),
+        test: &str,
+        max_dt_s: f64,
+    ) -> Result<Self, Problems> {
         let test = Procedure::open(test)?;
         let conditions = test.conditions(max_dt_s);
         Ok(Driven {
@@ -247,7 +251,10 @@ pub fn figures(cars: &Cars, cycles: &Cycles, max_dt_s: f64) -> Result<Figures, P
     let highway = run(cars.mild, cycles.hwfet, "hwfet")?;
     let fast = run(cars.mild, cycles.us06, "us06")?;
     let hot = run(cars.hot, cycles.sc03, "sc03")?;
-    let wltc = [run(cars.mild, cycles.wltc, "wltp")?, run(cars.mild, cycles.wltc, "wltp_14")?];
+    let wltc = [
+        run(cars.mild, cycles.wltc, "wltp")?,
+        run(cars.mild, cycles.wltc, "wltp_14")?,
+    ];
     let weighted = |start: &str| city.fuel(&[start, "stabilised"]);
     let tests = Tests {
         ftp75: Weighting::FTP75_COLD * weighted("cold_transient")

@@ -131,7 +131,10 @@ impl Procedure {
         let reader = Reader::new(&document);
         let s = reader.root().table("test");
         let stem = Path::new(file.trim_start_matches("embedded:")).file_stem();
-        let name = stem.map_or_else(|| file.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let name = stem.map_or_else(
+            || file.to_owned(),
+            |stem| stem.to_string_lossy().into_owned(),
+        );
         let title = s.text_or(&TEST.title, &name);
         let word = Values::text(&s, &TEST.cycle);
         let cycle_word = match Path::new(file).parent() {
@@ -152,12 +155,13 @@ impl Procedure {
         let reference_mj_per_litre = s.optional(&TEST.reference_mj_per_litre);
         let _ = s.text_or(&TEST.source, "");
         let mut problems = reader.finish().err().unwrap_or_default();
-        let cycle = match problems.is_empty() {
-            true => problems.take(cycle::find(&cycle_word).map_err(|found| {
-                found.map(|problem| problem.at(place.clone()).key("test.cycle"))
-            })),
-            false => None,
-        };
+        let cycle =
+            match problems.is_empty() {
+                true => problems.take(cycle::find(&cycle_word).map_err(|found| {
+                    found.map(|problem| problem.at(place.clone()).key("test.cycle"))
+                })),
+                false => None,
+            };
         let mut results: Vec<TestResult> = Vec::new();
         for table in &tables {
             let Some(result) = problems.take(read_result(table, cycle.as_ref(), &results)) else {
@@ -166,13 +170,29 @@ impl Procedure {
             results.push(result);
         }
         if tables.is_empty() && problems.is_empty() {
-            let problem = Problem::missing("the test has no result").in_file(file).key("result");
-            problems.push(problem.hint("add [[result]] with a name; without phases it is the whole test"));
+            let problem = Problem::missing("the test has no result")
+                .in_file(file)
+                .key("result");
+            problems.push(
+                problem.hint("add [[result]] with a name; without phases it is the whole test"),
+            );
         }
         let Some(cycle) = cycle.filter(|_| problems.is_empty()) else {
             return Err(problems);
         };
-        Ok(Procedure { name, title, cycle_word, cycle, start, ambient_k, load_factor, electrical_w, warm_share, reference_mj_per_litre, results })
+        Ok(Procedure {
+            name,
+            title,
+            cycle_word,
+            cycle,
+            start,
+            ambient_k,
+            load_factor,
+            electrical_w,
+            warm_share,
+            reference_mj_per_litre,
+            results,
+        })
     }
 
     /// The cycle as a car drives it: of `wltc` that of its class.
@@ -186,13 +206,19 @@ impl Procedure {
     pub fn stated_share(&self, car: &Vehicle) -> f64 {
         let engine = car.engine();
         let own_mj_l = engine.heating_value_j_kg * engine.fuel_density_kg_m3 / 1e9;
-        self.reference_mj_per_litre.map_or(1.0, |reference| 0.4 + 0.6 * own_mj_l / reference) // TE-3
+        self.reference_mj_per_litre
+            .map_or(1.0, |reference| 0.4 + 0.6 * own_mj_l / reference) // TE-3
     }
 
     /// Conditions of the run that it measures, with steps of at most some time, s.
     #[must_use]
     pub fn conditions(&self, max_dt_s: f64) -> Conditions {
-        Conditions { ambient_k: self.ambient_k, start: self.start, max_dt_s, keep_rows: false }
+        Conditions {
+            ambient_k: self.ambient_k,
+            start: self.start,
+            max_dt_s,
+            keep_rows: false,
+        }
     }
 
     /// The car with the load of the test (TE-2).
@@ -213,25 +239,49 @@ impl Procedure {
     }
 }
 
-fn read_result(table: &Document, cycle: Option<&Cycle>, earlier: &[TestResult]) -> Result<TestResult, Problems> {
+fn read_result(
+    table: &Document,
+    cycle: Option<&Cycle>,
+    earlier: &[TestResult],
+) -> Result<TestResult, Problems> {
     let reader = Reader::new(table);
     let s = reader.root();
     let name = Values::text(&s, &RESULT.name);
     let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
     if s.has("name") && (name.is_empty() || !name.chars().all(is_plain)) {
         let message = format!("`{name}` is no name of a result");
-        s.unknown_name("name", "letters a-z, digits and _", &message, "write it as a column has it: bag1");
+        s.unknown_name(
+            "name",
+            "letters a-z, digits and _",
+            &message,
+            "write it as a column has it: bag1",
+        );
     }
     if earlier.iter().any(|other| other.name == name) {
-        s.complain(ProblemKind::Duplicate, "name", "a name of its own", &format!("the test has two results named `{name}`"), "rename one of them");
+        s.complain(
+            ProblemKind::Duplicate,
+            "name",
+            "a name of its own",
+            &format!("the test has two results named `{name}`"),
+            "rename one of them",
+        );
     }
     let phases = Values::texts(&s, &RESULT.phases);
     if let Some(cycle) = cycle {
         let groups = cycle.phase_groups();
         let known: Vec<&str> = groups.iter().map(|(name, _)| name.as_str()).collect();
-        for phase in phases.iter().filter(|phase| !known.contains(&phase.as_str())) {
+        for phase in phases
+            .iter()
+            .filter(|phase| !known.contains(&phase.as_str()))
+        {
             let message = format!("the cycle {} has no phase `{phase}`", cycle.name);
-            s.complain(ProblemKind::UnknownName, "phases", &known.join(", "), &message, &suggest(phase, &known));
+            s.complain(
+                ProblemKind::UnknownName,
+                "phases",
+                &known.join(", "),
+                &message,
+                &suggest(phase, &known),
+            );
         }
     }
     reader.finish().map(|_| TestResult { name, phases })

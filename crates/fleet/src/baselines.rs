@@ -35,7 +35,12 @@ fn numbers(kind: usize, entry: Entry, test: usize) -> Vec<f64> {
     match kind {
         0 => vec![1.0],
         1 => vec![1.0, vehicle.road_load.base.mass_kg / 1e3],
-        _ => vec![1.0, driven.tests[test].wheel_mj_km, vehicle.engine().displacement_m3 * 1e3, car.top_rad_m() / 10.0],
+        _ => vec![
+            1.0,
+            driven.tests[test].wheel_mj_km,
+            vehicle.engine().displacement_m3 * 1e3,
+            car.top_rad_m() / 10.0,
+        ],
     }
 }
 
@@ -47,17 +52,29 @@ pub fn baselines(cars: &[Entry], column: Option<&str>) -> Vec<Baseline> {
         return all;
     };
     for (index, test) in first.tests.iter().enumerate() {
-        let mut figures: Vec<&String> = cars.iter().flat_map(|(_, driven)| driven.tests[index].fuel.keys()).collect();
+        let mut figures: Vec<&String> = cars
+            .iter()
+            .flat_map(|(_, driven)| driven.tests[index].fuel.keys())
+            .collect();
         figures.sort();
         figures.dedup();
         for figure in figures {
             for transmission in ["cvt", "manual"] {
-                let known = |entry: &&Entry| box_word(entry.0) == transmission && entry.0.measured.contains_key(figure) && entry.1.tests[index].wheel_mj_km.is_finite();
+                let known = |entry: &&Entry| {
+                    box_word(entry.0) == transmission
+                        && entry.0.measured.contains_key(figure)
+                        && entry.1.tests[index].wheel_mj_km.is_finite()
+                };
                 let entries: Vec<Entry> = cars.iter().filter(known).copied().collect();
                 for (kind, knows) in KINDS.iter().enumerate() {
-                    let errors = left_out(&entries, figure, column, &|entry| numbers(kind, entry, index));
-                    let errors: Vec<(&str, f64)> = errors.iter().map(|(id, e)| (id.as_str(), *e)).collect();
-                    let constants = entries.first().map_or(0, |entry| numbers(kind, *entry, index).len());
+                    let errors = left_out(&entries, figure, column, &|entry| {
+                        numbers(kind, entry, index)
+                    });
+                    let errors: Vec<(&str, f64)> =
+                        errors.iter().map(|(id, e)| (id.as_str(), *e)).collect();
+                    let constants = entries
+                        .first()
+                        .map_or(0, |entry| numbers(kind, *entry, index).len());
                     all.extend(ErrorStatistics::new(&errors).map(|errors| Baseline {
                         figure: figure.clone(),
                         transmission: transmission.to_owned(),
@@ -74,7 +91,12 @@ pub fn baselines(cars: &[Entry], column: Option<&str>) -> Vec<Baseline> {
 }
 
 /// Errors of the cars of each group, predicted from those of the others, per cent; none of a group that the others cannot predict.
-fn left_out(cars: &[Entry], figure: &str, column: Option<&str>, x: &dyn Fn(Entry) -> Vec<f64>) -> Vec<(String, f64)> {
+fn left_out(
+    cars: &[Entry],
+    figure: &str,
+    column: Option<&str>,
+    x: &dyn Fn(Entry) -> Vec<f64>,
+) -> Vec<(String, f64)> {
     let group = |entry: &Entry| match column.and_then(|column| entry.0.words.get(column)) {
         Some(word) => word.clone(),
         None => entry.0.id.clone(),
@@ -102,7 +124,12 @@ fn left_out(cars: &[Entry], figure: &str, column: Option<&str>, x: &dyn Fn(Entry
 fn fit(cars: &[&Entry], figure: &str, x: &dyn Fn(Entry) -> Vec<f64>) -> Option<DVector<f64>> {
     let rows: Vec<Vec<f64>> = cars
         .iter()
-        .map(|entry| x(**entry).iter().map(|x| x / entry.0.measured[figure]).collect())
+        .map(|entry| {
+            x(**entry)
+                .iter()
+                .map(|x| x / entry.0.measured[figure])
+                .collect()
+        })
         .collect();
     let width = rows.first()?.len();
     if rows.len() < width + 2 {

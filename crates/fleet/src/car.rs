@@ -65,28 +65,54 @@ struct Columns<'a> {
     set: &'a [Override],
 }
 
-pub(crate) fn fleet(sheet: &Sheet, map: &ColumnMap, tests: &[Procedure], set: &[Override]) -> Result<Fleet, Problems> {
+pub(crate) fn fleet(
+    sheet: &Sheet,
+    map: &ColumnMap,
+    tests: &[Procedure],
+    set: &[Override],
+) -> Result<Fleet, Problems> {
     let Some(id) = sheet.column(&map.id) else {
-        let problem = Problem::missing(format!("the table has no column `{}` with the names of the cars", map.id)).in_file(&sheet.file);
+        let problem = Problem::missing(format!(
+            "the table has no column `{}` with the names of the cars",
+            map.id
+        ))
+        .in_file(&sheet.file);
         let hint = did_you_mean(&map.id, sheet.names.iter().map(String::as_str));
-        return Err(problem.allowed(sheet.names.join(", ")).hint(hint.unwrap_or_else(|| "a row is a car; --map names the columns of other tables".to_owned())).into());
+        return Err(problem
+            .allowed(sheet.names.join(", "))
+            .hint(hint.unwrap_or_else(|| {
+                "a row is a car; --map names the columns of other tables".to_owned()
+            }))
+            .into());
     };
-    let known_keys: HashSet<&str> = catalogue::known_names().iter().map(String::as_str).collect();
+    let known_keys: HashSet<&str> = catalogue::known_names()
+        .iter()
+        .map(String::as_str)
+        .collect();
     let is_key = |name: &str| name.contains('.') && known_keys.contains(name);
-    let results: HashSet<String> = tests.iter().flat_map(|test| test.results.iter().map(|result| result.column())).collect();
+    let results: HashSet<String> = tests
+        .iter()
+        .flat_map(|test| test.results.iter().map(|result| result.column()))
+        .collect();
     let all_results: HashSet<String> = Procedure::names()
         .into_iter()
         .filter_map(|name| Procedure::open(name).ok())
         .flat_map(|test| test.results.into_iter().map(|result| result.column()))
         .collect();
     let indices = |is: &dyn Fn(&str) -> bool| -> Vec<usize> {
-        (0..sheet.names.len()).filter(|k| is(&sheet.names[*k])).collect()
+        (0..sheet.names.len())
+            .filter(|k| is(&sheet.names[*k]))
+            .collect()
     };
     let columns = Columns {
         options: map.options_of(&sheet.names).into_iter().collect(),
         keys: indices(&is_key),
         measured: indices(&|name| results.contains(name)),
-        groups: map.groups.iter().filter_map(|name| Some((name.clone(), sheet.column(name)?))).collect(),
+        groups: map
+            .groups
+            .iter()
+            .filter_map(|name| Some((name.clone(), sheet.column(name)?)))
+            .collect(),
         pair: map.pair.as_ref().and_then(|name| sheet.column(name)),
         map,
         sheet,
@@ -95,18 +121,36 @@ pub(crate) fn fleet(sheet: &Sheet, map: &ColumnMap, tests: &[Procedure], set: &[
         set,
     };
     let is_known = |name: &String| map.knows(name) || is_key(name) || all_results.contains(name);
-    let near: Vec<&str> = catalogue::known_names().iter().map(String::as_str).collect();
+    let near: Vec<&str> = catalogue::known_names()
+        .iter()
+        .map(String::as_str)
+        .collect();
     let options = new_car::NUMBERS.iter().map(|(name, _)| *name).chain(WORDS);
     let near: Vec<&str> = near.into_iter().chain(options).collect();
     let unknown = sheet.names.iter().filter(|name| !is_known(name));
-    let unknown = unknown.map(|name| (name.clone(), did_you_mean(name, near.iter().copied()).unwrap_or_default())).collect();
+    let unknown = unknown
+        .map(|name| {
+            (
+                name.clone(),
+                did_you_mean(name, near.iter().copied()).unwrap_or_default(),
+            )
+        })
+        .collect();
     let mut seen: HashSet<&str> = HashSet::new();
-    let is_new: Vec<bool> = sheet.rows.iter().map(|row| seen.insert(row.cells[id].as_str())).collect();
+    let is_new: Vec<bool> = sheet
+        .rows
+        .iter()
+        .map(|row| seen.insert(row.cells[id].as_str()))
+        .collect();
     let rows: Vec<(&Row, bool)> = sheet.rows.iter().zip(is_new).collect();
     let made: Vec<Result<FleetCar, Refused>> = rows
         .into_par_iter()
         .map(|(row, is_new)| {
-            let refuse = |reason: String| Refused { line: row.line, id: row.cells[id].clone(), reason };
+            let refuse = |reason: String| Refused {
+                line: row.line,
+                id: row.cells[id].clone(),
+                reason,
+            };
             match row.cells[id].as_str() {
                 "" => Err(refuse(format!("{}: the car has no name", map.id))),
                 _ if !is_new => Err(refuse(format!("{}: an earlier row has this name", map.id))),
@@ -118,7 +162,11 @@ pub(crate) fn fleet(sheet: &Sheet, map: &ColumnMap, tests: &[Procedure], set: &[
         cars: Vec::new(),
         refused: sheet.refused.clone(),
         unknown,
-        groups: columns.groups.iter().map(|(name, _)| name.clone()).collect(),
+        groups: columns
+            .groups
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect(),
     };
     for car in made {
         match car {
@@ -133,7 +181,11 @@ pub(crate) fn fleet(sheet: &Sheet, map: &ColumnMap, tests: &[Procedure], set: &[
 impl Columns<'_> {
     fn car(&self, row: &Row) -> Result<FleetCar, String> {
         let id = row.cells[self.id].clone();
-        let options: Vec<(&str, &str)> = self.options.iter().map(|(option, template)| (option.as_str(), template.as_str())).collect();
+        let options: Vec<(&str, &str)> = self
+            .options
+            .iter()
+            .map(|(option, template)| (option.as_str(), template.as_str()))
+            .collect();
         let answers = self.answers(row, &options)?;
         let set = self.overrides(row)?;
         let params = made(&answers, &set)?;
@@ -142,12 +194,23 @@ impl Columns<'_> {
             let Some(own) = self.map.tests.get(&test.name) else {
                 continue;
             };
-            let own: Vec<(&str, &str)> = own.iter().map(|(option, template)| (option.as_str(), template.as_str())).collect();
-            let all: Vec<(&str, &str)> = options.iter().filter(|(option, _)| own.iter().all(|(other, _)| other != option)).copied().chain(own.iter().copied()).collect();
+            let own: Vec<(&str, &str)> = own
+                .iter()
+                .map(|(option, template)| (option.as_str(), template.as_str()))
+                .collect();
+            let all: Vec<(&str, &str)> = options
+                .iter()
+                .filter(|(option, _)| own.iter().all(|(other, _)| other != option))
+                .copied()
+                .chain(own.iter().copied())
+                .collect();
             // A row without all of them is driven with the test's factor.
             let mut filled = true;
             for (_, template) in &own {
-                filled &= self.map.fill(template, &|name| self.cell(row, name))?.is_some();
+                filled &= self
+                    .map
+                    .fill(template, &|name| self.cell(row, name))?
+                    .is_some();
             }
             if filled {
                 by_test.insert(test.name.clone(), made(&self.answers(row, &all)?, &set)?);
@@ -158,16 +221,30 @@ impl Columns<'_> {
             let (name, text) = (&self.sheet.names[*k], row.cells[*k].as_str());
             match text.parse::<f64>() {
                 _ if text.is_empty() => {}
-                Ok(litres) if (0.5..=60.0).contains(&litres) => drop(measured.insert(name.clone(), litres)),
-                Ok(_) => return Err(format!("{name}: {text} is outside 0.5 to 60 L/100 km: is it in another unit?")),
-                Err(_) => return Err(format!("{name}: `{text}` is no number; write it with a decimal point, or leave the cell empty")),
+                Ok(litres) if (0.5..=60.0).contains(&litres) => {
+                    drop(measured.insert(name.clone(), litres))
+                }
+                Ok(_) => {
+                    return Err(format!(
+                        "{name}: {text} is outside 0.5 to 60 L/100 km: is it in another unit?"
+                    ));
+                }
+                Err(_) => {
+                    return Err(format!(
+                        "{name}: `{text}` is no number; write it with a decimal point, or leave the cell empty"
+                    ));
+                }
             }
         }
         Ok(FleetCar {
             doubts: params.setup().doubts(),
             line: row.line,
             pair: self.pair.map_or_else(String::new, |k| row.cells[k].clone()),
-            words: self.groups.iter().map(|(name, k)| (name.clone(), row.cells[*k].clone())).collect(),
+            words: self
+                .groups
+                .iter()
+                .map(|(name, k)| (name.clone(), row.cells[*k].clone()))
+                .collect(),
             id,
             params,
             by_test,
@@ -185,11 +262,20 @@ impl Columns<'_> {
         for (option, template) in options {
             if let Some(value) = self.map.fill(template, &|name| self.cell(row, name))? {
                 debug_assert!(is_option(option), "checked with the map");
-                text += &format!("{} = {}\n", option.replace('-', "_"), toml::Value::String(value));
+                text += &format!(
+                    "{} = {}\n",
+                    option.replace('-', "_"),
+                    toml::Value::String(value)
+                );
             }
         }
-        let mut answers = Answers { title: row.cells[self.id].clone(), ..Answers::default() };
-        answers.add_file(&self.sheet.file, &text).map_err(|problems| sentence(&problems))?;
+        let mut answers = Answers {
+            title: row.cells[self.id].clone(),
+            ..Answers::default()
+        };
+        answers
+            .add_file(&self.sheet.file, &text)
+            .map_err(|problems| sentence(&problems))?;
         // The lines of that text are none of the table.
         answers.places.clear();
         Ok(answers)
@@ -201,7 +287,10 @@ impl Columns<'_> {
             let text = row.cells[*k].as_str();
             if !text.is_empty() {
                 let name = &self.sheet.names[*k];
-                set.push(Override::new(name, text).map_err(|problem| format!("{name}: {}", problem.message))?);
+                set.push(
+                    Override::new(name, text)
+                        .map_err(|problem| format!("{name}: {}", problem.message))?,
+                );
             }
         }
         Ok(set)

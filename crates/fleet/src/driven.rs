@@ -38,25 +38,43 @@ impl DrivenCar {
     /// Computed fuel of a column, L/100 km.
     #[must_use]
     pub fn fuel(&self, column: &str) -> Option<f64> {
-        self.tests.iter().find_map(|test| test.fuel.get(column)).copied()
+        self.tests
+            .iter()
+            .find_map(|test| test.fuel.get(column))
+            .copied()
     }
 
     /// Failed checks of all tests, each with the test.
     #[must_use]
     pub fn failed_checks(&self) -> Vec<String> {
         let of = |test: &TestFigures| -> Vec<String> {
-            let refused = test.refused.iter().map(|reason| format!("{}: {reason}", test.test));
-            test.failed_checks.iter().map(|check| format!("{}: {check}", test.test)).chain(refused).collect()
+            let refused = test
+                .refused
+                .iter()
+                .map(|reason| format!("{}: {reason}", test.test));
+            test.failed_checks
+                .iter()
+                .map(|check| format!("{}: {check}", test.test))
+                .chain(refused)
+                .collect()
         };
         self.tests.iter().flat_map(of).collect()
     }
 }
 
 /// Drives every car on every test, with steps of at most some time, s. `progress` counts the cars.
-pub fn drive(cars: &[FleetCar], tests: &[Procedure], max_dt_s: f64, progress: &(impl Progress + Sync)) -> Vec<DrivenCar> {
+pub fn drive(
+    cars: &[FleetCar],
+    tests: &[Procedure],
+    max_dt_s: f64,
+    progress: &(impl Progress + Sync),
+) -> Vec<DrivenCar> {
     cars.par_iter()
         .map(|car| {
-            let tests = tests.iter().map(|test| drive_test(car, test, max_dt_s)).collect();
+            let tests = tests
+                .iter()
+                .map(|test| drive_test(car, test, max_dt_s))
+                .collect();
             progress.advance(1);
             DrivenCar { tests }
         })
@@ -66,7 +84,11 @@ pub fn drive(cars: &[FleetCar], tests: &[Procedure], max_dt_s: f64, progress: &(
 fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let loaded = match car.by_test.get(&test.name) {
         // Its road load is that of the test already.
-        Some(own) => Procedure { load_factor: 1.0, ..test.clone() }.load(own),
+        Some(own) => Procedure {
+            load_factor: 1.0,
+            ..test.clone()
+        }
+        .load(own),
         None => test.load(&car.params),
     };
     match loaded {
@@ -82,19 +104,39 @@ fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
 }
 
 fn first_message(problems: &Problems) -> String {
-    problems.iter().next().map_or_else(String::new, |problem| problem.message.clone())
+    problems
+        .iter()
+        .next()
+        .map_or_else(String::new, |problem| problem.message.clone())
 }
 
 fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let cycle = test.cycle_for(setup);
     let run = |conditions: Conditions| -> RunSummary {
         let outcome = drive_car(setup, &cycle, &conditions);
-        let settings = Settings { dt_s: max_dt_s, ..Settings::default() };
-        run_summary(&cycle, "subject", &settings, &Driven { name: &setup.name, setup, outcome: &outcome })
+        let settings = Settings {
+            dt_s: max_dt_s,
+            ..Settings::default()
+        };
+        run_summary(
+            &cycle,
+            "subject",
+            &settings,
+            &Driven {
+                name: &setup.name,
+                setup,
+                outcome: &outcome,
+            },
+        )
     };
     let own = test.conditions(max_dt_s);
     let first = run(own);
-    let warm = (test.warm_share > 0.0).then(|| run(Conditions { start: Start::Warm, ..own }));
+    let warm = (test.warm_share > 0.0).then(|| {
+        run(Conditions {
+            start: Start::Warm,
+            ..own
+        })
+    });
     let mut fuel = BTreeMap::new();
     let stated = test.stated_share(setup);
     for result in &test.results {
@@ -102,14 +144,22 @@ fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
             if result.phases.is_empty() {
                 return summary.headline_fuel().unwrap_or(f64::NAN);
             }
-            let parts = summary.phases.iter().filter(|phase| result.phases.contains(&phase.name));
+            let parts = summary
+                .phases
+                .iter()
+                .filter(|phase| result.phases.contains(&phase.name));
             let (litre, km) = parts.fold((0.0, 0.0), |(litre, km), part| {
-                (litre + part.fuel_l_per_100km.unwrap_or(f64::NAN) * part.distance_km, km + part.distance_km)
+                (
+                    litre + part.fuel_l_per_100km.unwrap_or(f64::NAN) * part.distance_km,
+                    km + part.distance_km,
+                )
             });
             litre / km
         };
         let cold = of(&first);
-        let value = warm.as_ref().map_or(cold, |warm| (1.0 - test.warm_share) * cold + test.warm_share * of(warm)); // TE-1
+        let value = warm.as_ref().map_or(cold, |warm| {
+            (1.0 - test.warm_share) * cold + test.warm_share * of(warm)
+        }); // TE-1
         fuel.insert(result.column(), stated * value);
     }
     let mut failed_checks = first.failed_checks.clone();

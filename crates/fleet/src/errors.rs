@@ -38,16 +38,25 @@ impl ErrorStatistics {
     #[must_use]
     pub fn new(errors: &[(&str, f64)]) -> Option<Self> {
         let n = errors.len();
-        let worst = errors.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+        let worst = errors
+            .iter()
+            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
         let mean = errors.iter().map(|(_, e)| e).sum::<f64>() / n as f64;
         let square = |e: f64| e * e;
         let spread: f64 = errors.iter().map(|(_, e)| square(e - mean)).sum();
         let rms = (errors.iter().map(|(_, e)| square(*e)).sum::<f64>() / n as f64).sqrt();
-        let within = errors.iter().filter(|(_, e)| e.abs() <= WITHIN_PERCENT).count();
+        let within = errors
+            .iter()
+            .filter(|(_, e)| e.abs() <= WITHIN_PERCENT)
+            .count();
         Some(ErrorStatistics {
             n,
             mean_percent: mean,
-            sd_percent: if n > 1 { (spread / (n as f64 - 1.0)).sqrt() } else { f64::NAN },
+            sd_percent: if n > 1 {
+                (spread / (n as f64 - 1.0)).sqrt()
+            } else {
+                f64::NAN
+            },
             rms_percent: rms,
             within_5_percent: 100.0 * within as f64 / n as f64,
             worst_percent: worst.1,
@@ -106,7 +115,11 @@ pub fn error_percent((car, driven): Entry, figure: &str) -> Option<f64> {
 /// Word for the kind of a car's box.
 #[must_use]
 pub fn box_word(car: &FleetCar) -> &'static str {
-    if car.params.vehicle().transmission().is_cvt() { "cvt" } else { "manual" }
+    if car.params.vehicle().transmission().is_cvt() {
+        "cvt"
+    } else {
+        "manual"
+    }
 }
 
 /// Errors of some figures: by box, and by each word of each grouping column.
@@ -120,14 +133,24 @@ pub fn by_group(cars: &[Entry], figures: &[String], columns: &[String]) -> Vec<G
                 continue;
             };
             let of_box = [(0, "box", box_word(entry.0))].into_iter();
-            let of_columns = (1..).zip(columns).filter_map(|(k, column)| Some((k, column.as_str(), entry.0.words.get(column)?.as_str())));
+            let of_columns = (1..).zip(columns).filter_map(|(k, column)| {
+                Some((k, column.as_str(), entry.0.words.get(column)?.as_str()))
+            });
             for key in of_box.chain(of_columns) {
-                groups.entry(key).or_default().push((entry.0.id.as_str(), error));
+                groups
+                    .entry(key)
+                    .or_default()
+                    .push((entry.0.id.as_str(), error));
             }
         }
         for ((_, column, word), errors) in groups {
             let errors = ErrorStatistics::new(&errors);
-            all.extend(errors.map(|errors| GroupErrors { figure: figure.clone(), column: column.to_owned(), word: word.to_owned(), errors }));
+            all.extend(errors.map(|errors| GroupErrors {
+                figure: figure.clone(),
+                column: column.to_owned(),
+                word: word.to_owned(),
+                errors,
+            }));
         }
     }
     all
@@ -136,14 +159,18 @@ pub fn by_group(cars: &[Entry], figures: &[String], columns: &[String]) -> Vec<G
 /// Pairs of cars by the names in their rows.
 #[must_use]
 pub fn pairs(cars: &[Entry], figures: &[String]) -> Vec<Pair> {
-    let by_name: BTreeMap<&str, Entry> = cars.iter().map(|entry| (entry.0.id.as_str(), *entry)).collect();
+    let by_name: BTreeMap<&str, Entry> = cars
+        .iter()
+        .map(|entry| (entry.0.id.as_str(), *entry))
+        .collect();
     let mut all = Vec::new();
     for figure in figures {
         for (car, driven) in cars.iter().filter(|(car, _)| !car.pair.is_empty()) {
             let Some((other, other_driven)) = by_name.get(car.pair.as_str()) else {
                 continue;
             };
-            let difference = |own: Option<f64>, other: Option<f64>| Some(100.0 * (own? / other? - 1.0));
+            let difference =
+                |own: Option<f64>, other: Option<f64>| Some(100.0 * (own? / other? - 1.0));
             let computed = difference(driven.fuel(figure), other_driven.fuel(figure));
             let measured = |car: &FleetCar| car.measured.get(figure).copied();
             let Some(computed_percent) = computed else {

@@ -58,7 +58,12 @@ impl Fleet {
     ///
     /// # Errors
     /// A table without the columns that the map needs, or with columns of one name.
-    pub fn from_sheet(sheet: &Sheet, map: &ColumnMap, tests: &[Procedure], set: &[Override]) -> Result<Fleet, Problems> {
+    pub fn from_sheet(
+        sheet: &Sheet,
+        map: &ColumnMap,
+        tests: &[Procedure],
+        set: &[Override],
+    ) -> Result<Fleet, Problems> {
         car::fleet(sheet, map, tests, set)
     }
 }

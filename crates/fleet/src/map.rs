@@ -9,7 +9,15 @@ use indexmap::IndexMap;
 use serde::Deserialize;
 
 /// Options of `new` that are words.
-pub(crate) const WORDS: [&str; 7] = ["title", "like", "class", "box", "engine", "engine-year", "engine-like"];
+pub(crate) const WORDS: [&str; 7] = [
+    "title",
+    "like",
+    "class",
+    "box",
+    "engine",
+    "engine-year",
+    "engine-like",
+];
 
 /// Which columns of a table give which numbers of a car.
 ///
@@ -46,7 +54,12 @@ impl ColumnMap {
     /// A table whose columns are named by the options of `cvtcycle new` (`mass`, `f0`, `n_over_v`), each cell with its unit or in that of the option.
     #[must_use]
     pub fn own() -> Self {
-        ColumnMap { id: "carid".to_owned(), pair: Some("manual_carid".to_owned()), is_own: true, ..ColumnMap::default() }
+        ColumnMap {
+            id: "carid".to_owned(),
+            pair: Some("manual_carid".to_owned()),
+            is_own: true,
+            ..ColumnMap::default()
+        }
     }
 
     /// The map `epa`, or that of a TOML file.
@@ -58,23 +71,41 @@ impl ColumnMap {
             return Self::read("embedded:epa.toml", include_str!("epa.toml"));
         }
         if !cvtcycle_config::embedded::is_path(word) {
-            let problem = Problem::unknown_name(format!("there is no map named `{word}`")).value(word);
-            return Err(problem.allowed("epa, or the path of a TOML file").hint("a path needs a / or an ending").into());
+            let problem =
+                Problem::unknown_name(format!("there is no map named `{word}`")).value(word);
+            return Err(problem
+                .allowed("epa, or the path of a TOML file")
+                .hint("a path needs a / or an ending")
+                .into());
         }
         let bytes = bounded::read(std::path::Path::new(word), TOML).map_err(|error| {
-            Problem::unreadable(format!("cannot read `{word}`: {error}")).value(word).allowed(error.allowed("a readable file"))
+            Problem::unreadable(format!("cannot read `{word}`: {error}"))
+                .value(word)
+                .allowed(error.allowed("a readable file"))
         })?;
         Self::read(word, &decode(word, &bytes)?)
     }
 
     fn read(file: &str, text: &str) -> Result<Self, Problems> {
-        let map: ColumnMap = toml::from_str(text)
-            .map_err(|error| Problem::invalid(format!("this is no map of columns: {}", error.message())).in_file(file))?;
+        let map: ColumnMap = toml::from_str(text).map_err(|error| {
+            Problem::invalid(format!("this is no map of columns: {}", error.message()))
+                .in_file(file)
+        })?;
         let mut problems = Problems::new();
         let tests = map.tests.values().flat_map(IndexMap::keys);
-        for option in map.new.keys().chain(tests).filter(|option| !is_option(option)) {
-            let problem = Problem::unknown_name(format!("`cvtcycle new` has no option `{option}`")).in_file(file);
-            problems.push(problem.key(option.as_str()).allowed(options().collect::<Vec<_>>().join(", ")));
+        for option in map
+            .new
+            .keys()
+            .chain(tests)
+            .filter(|option| !is_option(option))
+        {
+            let problem = Problem::unknown_name(format!("`cvtcycle new` has no option `{option}`"))
+                .in_file(file);
+            problems.push(
+                problem
+                    .key(option.as_str())
+                    .allowed(options().collect::<Vec<_>>().join(", ")),
+            );
         }
         problems.finish().map(|()| map)
     }
@@ -94,12 +125,18 @@ impl ColumnMap {
 
     /// True for a column that the map reads or names.
     pub(crate) fn knows(&self, name: &str) -> bool {
-        let is_in = |template: &String| template.contains(&format!("{{{name}}}")) || template.contains(&format!("{{{name}:"));
+        let is_in = |template: &String| {
+            template.contains(&format!("{{{name}}}")) || template.contains(&format!("{{{name}:"))
+        };
         let words = self.words.values().flat_map(BTreeMap::values);
         let tests = self.tests.values().flat_map(IndexMap::values);
         name == self.id
             || self.pair.as_deref() == Some(name)
-            || self.groups.iter().chain(&self.unused).any(|own| own == name)
+            || self
+                .groups
+                .iter()
+                .chain(&self.unused)
+                .any(|own| own == name)
             || self.new.values().chain(words).chain(tests).any(is_in)
             || self.is_own && is_option(&heading(name).0.replace('_', "-"))
     }
@@ -108,7 +145,11 @@ impl ColumnMap {
     ///
     /// # Errors
     /// A sentence on a column that the table does not have, or on a word that the map does not know.
-    pub(crate) fn fill(&self, template: &str, cell: &dyn Fn(&str) -> Option<String>) -> Result<Option<String>, String> {
+    pub(crate) fn fill(
+        &self,
+        template: &str,
+        cell: &dyn Fn(&str) -> Option<String>,
+    ) -> Result<Option<String>, String> {
         let mut text = String::new();
         let mut rest = template;
         while let Some((before, behind)) = rest.split_once('{') {
@@ -117,7 +158,9 @@ impl ColumnMap {
             };
             text += before;
             let (name, length) = match inner.rsplit_once(':') {
-                Some((name, length)) if length.parse::<usize>().is_ok() => (name, length.parse().ok()),
+                Some((name, length)) if length.parse::<usize>().is_ok() => {
+                    (name, length.parse().ok())
+                }
                 _ => (inner, None),
             };
             let Some(value) = cell(name) else {
@@ -144,9 +187,14 @@ impl ColumnMap {
                 None => value,
             };
             // A cell with a unit of its own keeps it.
-            let has_unit = value.ends_with(|c: char| c.is_ascii_alphabetic()) && value.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+            let has_unit = value.ends_with(|c: char| c.is_ascii_alphabetic())
+                && value.starts_with(|c: char| c.is_ascii_digit() || c == '-');
             text += &value;
-            rest = if has_unit { after.trim_start_matches(|c: char| !c.is_whitespace() && c != '{') } else { after };
+            rest = if has_unit {
+                after.trim_start_matches(|c: char| !c.is_whitespace() && c != '{')
+            } else {
+                after
+            };
         }
         Ok(Some(text + rest))
     }

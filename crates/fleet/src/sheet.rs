@@ -45,18 +45,36 @@ impl Sheet {
     /// Text in an unknown encoding, no rows, columns without a name or with the name of another one.
     pub fn read(file: &str, bytes: &[u8]) -> Result<Sheet, Problems> {
         let text = decode(file, bytes)?;
-        let head = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        let head = text
+            .lines()
+            .find(|line| !line.trim().is_empty())
+            .unwrap_or_default();
         let count = |sign: &u8| head.bytes().filter(|b| b == sign).count();
-        let delimiter = [b',', b';', b'\t'].into_iter().max_by_key(|sign| count(sign)).unwrap_or(b',');
+        let delimiter = [b',', b';', b'\t']
+            .into_iter()
+            .max_by_key(|sign| count(sign))
+            .unwrap_or(b',');
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(delimiter)
             .flexible(true)
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
-        let unreadable = |error: csv::Error| Problem::unreadable(format!("the table cannot be read: {error}")).in_file(file);
-        let names: Vec<String> = reader.headers().map_err(unreadable)?.iter().map(str::to_owned).collect();
+        let unreadable = |error: csv::Error| {
+            Problem::unreadable(format!("the table cannot be read: {error}")).in_file(file)
+        };
+        let names: Vec<String> = reader
+            .headers()
+            .map_err(unreadable)?
+            .iter()
+            .map(str::to_owned)
+            .collect();
         check_names(file, &names)?;
-        let mut sheet = Sheet { file: file.to_owned(), names, rows: Vec::new(), refused: Vec::new() };
+        let mut sheet = Sheet {
+            file: file.to_owned(),
+            names,
+            rows: Vec::new(),
+            refused: Vec::new(),
+        };
         for record in reader.records() {
             let record = record.map_err(unreadable)?;
             let line = record.position().map_or(0, csv::Position::line);
@@ -66,17 +84,31 @@ impl Sheet {
             }
             if sheet.rows.len() + sheet.refused.len() == MAX_ROWS {
                 let problem = Problem::too_large("the table has too many rows").in_file(file);
-                return Err(problem.allowed(format!("up to {MAX_ROWS}")).hint("split the table").into());
+                return Err(problem
+                    .allowed(format!("up to {MAX_ROWS}"))
+                    .hint("split the table")
+                    .into());
             }
             if cells.len() != sheet.names.len() {
-                let reason = format!("{} cells in a table of {} columns", cells.len(), sheet.names.len());
-                sheet.refused.push(Refused { line, id: String::new(), reason });
+                let reason = format!(
+                    "{} cells in a table of {} columns",
+                    cells.len(),
+                    sheet.names.len()
+                );
+                sheet.refused.push(Refused {
+                    line,
+                    id: String::new(),
+                    reason,
+                });
                 continue;
             }
             sheet.rows.push(Row { line, cells });
         }
         if sheet.rows.is_empty() && sheet.refused.is_empty() {
-            return Err(Problem::missing("the table has no rows").in_file(file).hint("a row is a car, below a line of column names").into());
+            return Err(Problem::missing("the table has no rows")
+                .in_file(file)
+                .hint("a row is a car, below a line of column names")
+                .into());
         }
         Ok(sheet)
     }
@@ -87,14 +119,32 @@ impl Sheet {
     /// A table without that column; columns that both have are left as they are.
     pub fn join(&mut self, other: &Sheet, by: &str) -> Result<(), Problems> {
         let (Some(own), Some(at)) = (self.column(by), other.column(by)) else {
-            let file = if self.column(by).is_none() { &self.file } else { &other.file };
-            return Err(Problem::missing(format!("no column `{by}` by which rows are joined")).in_file(file).hint("name the column of the cars' names").into());
+            let file = if self.column(by).is_none() {
+                &self.file
+            } else {
+                &other.file
+            };
+            return Err(
+                Problem::missing(format!("no column `{by}` by which rows are joined"))
+                    .in_file(file)
+                    .hint("name the column of the cars' names")
+                    .into(),
+            );
         };
-        let new: Vec<usize> = (0..other.names.len()).filter(|k| self.column(&other.names[*k]).is_none()).collect();
-        self.names.extend(new.iter().map(|k| other.names[*k].clone()));
+        let new: Vec<usize> = (0..other.names.len())
+            .filter(|k| self.column(&other.names[*k]).is_none())
+            .collect();
+        self.names
+            .extend(new.iter().map(|k| other.names[*k].clone()));
         for row in &mut self.rows {
-            let found = other.rows.iter().find(|candidate| candidate.cells[at] == row.cells[own]);
-            row.cells.extend(new.iter().map(|k| found.map_or_else(String::new, |found| found.cells[*k].clone())));
+            let found = other
+                .rows
+                .iter()
+                .find(|candidate| candidate.cells[at] == row.cells[own]);
+            row.cells.extend(
+                new.iter()
+                    .map(|k| found.map_or_else(String::new, |found| found.cells[*k].clone())),
+            );
         }
         Ok(())
     }
@@ -113,8 +163,13 @@ fn check_names(file: &str, names: &[String]) -> Result<(), Problems> {
             let problem = Problem::missing(format!("column {} has no name", k + 1)).in_file(file);
             problems.push(problem.hint("give each column a name in the first line"));
         } else if names[..k].contains(name) {
-            let problem = Problem::conflict(format!("two columns are named `{name}`")).in_file(file);
-            problems.push(problem.key(name.as_str()).hint("rename or remove one of them"));
+            let problem =
+                Problem::conflict(format!("two columns are named `{name}`")).in_file(file);
+            problems.push(
+                problem
+                    .key(name.as_str())
+                    .hint("rename or remove one of them"),
+            );
         }
     }
     problems.finish()

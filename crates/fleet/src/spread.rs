@@ -38,8 +38,17 @@ pub fn spreads(cars: &[Entry], pairs: &[Pair], figures: &[String], column: &str)
     for figure in figures {
         for kind in ["cvt", "manual"] {
             let own = cars.iter().filter(|entry| box_word(entry.0) == kind);
-            let ratio = |entry: &Entry| entry.0.measured.get(figure).zip(entry.1.fuel(figure)).map(|(measured, computed)| (measured / computed).ln());
-            let numbers: Vec<(String, f64)> = own.filter_map(|entry| Some((group(entry), ratio(entry).filter(|x| x.is_finite())?))).collect();
+            let ratio = |entry: &Entry| {
+                entry
+                    .0
+                    .measured
+                    .get(figure)
+                    .zip(entry.1.fuel(figure))
+                    .map(|(measured, computed)| (measured / computed).ln())
+            };
+            let numbers: Vec<(String, f64)> = own
+                .filter_map(|entry| Some((group(entry), ratio(entry).filter(|x| x.is_finite())?)))
+                .collect();
             let percent = |x: f64| 100.0 * x.exp_m1();
             all.extend(spread(&numbers).map(|(groups, middle, ends)| Spread {
                 figure: figure.clone(),
@@ -51,9 +60,25 @@ pub fn spreads(cars: &[Entry], pairs: &[Pair], figures: &[String], column: &str)
             }));
         }
         let of_pair = |pair: &&Pair| pair.figure == *figure && pair.error().is_finite();
-        let word = |pair: &Pair| cars.iter().find(|entry| entry.0.id == pair.car).map(group).unwrap_or_default();
-        let numbers: Vec<(String, f64)> = pairs.iter().filter(of_pair).map(|pair| (word(pair), -pair.error())).collect();
-        all.extend(spread(&numbers).map(|(groups, middle, ends)| Spread { figure: figure.clone(), kind: "pair", cars: numbers.len(), groups, middle, ends }));
+        let word = |pair: &Pair| {
+            cars.iter()
+                .find(|entry| entry.0.id == pair.car)
+                .map(group)
+                .unwrap_or_default()
+        };
+        let numbers: Vec<(String, f64)> = pairs
+            .iter()
+            .filter(of_pair)
+            .map(|pair| (word(pair), -pair.error()))
+            .collect();
+        all.extend(spread(&numbers).map(|(groups, middle, ends)| Spread {
+            figure: figure.clone(),
+            kind: "pair",
+            cars: numbers.len(),
+            groups,
+            middle,
+            ends,
+        }));
     }
     all
 }
@@ -69,12 +94,18 @@ fn spread(numbers: &[(String, f64)]) -> Option<(usize, f64, [f64; 2])> {
     let mean = |list: &[f64]| list.iter().sum::<f64>() / list.len() as f64;
     let all: Vec<f64> = numbers.iter().map(|(_, x)| *x).collect();
     let residuals = numbers.iter().map(|(group, x)| {
-        let others: Vec<f64> = numbers.iter().filter(|(other, _)| other != group).map(|(_, x)| *x).collect();
+        let others: Vec<f64> = numbers
+            .iter()
+            .filter(|(other, _)| other != group)
+            .map(|(_, x)| *x)
+            .collect();
         x - mean(&others)
     });
     let squares: Vec<f64> = residuals.map(|r| r * r).collect();
     let s = mean(&squares).sqrt(); // FS-1
-    let t = StudentsT::new(0.0, 1.0, groups.len() as f64 - 1.0).ok()?.inverse_cdf(0.95);
+    let t = StudentsT::new(0.0, 1.0, groups.len() as f64 - 1.0)
+        .ok()?
+        .inverse_cdf(0.95);
     let middle = mean(&all);
     Some((groups.len(), middle, [middle - t * s, middle + t * s])) // FS-2
 }
@@ -84,8 +115,18 @@ fn spread(numbers: &[(String, f64)]) -> Option<(usize, f64, [f64; 2])> {
 pub fn csv(spreads: &[Spread]) -> String {
     let mut text = "figure,kind,cars,groups,middle,low,high\n".to_owned();
     for own in spreads {
-        let Spread { figure, kind, cars, groups, middle, ends } = own;
-        text += &format!("{figure},{kind},{cars},{groups},{middle:.2},{:.2},{:.2}\n", ends[0], ends[1]);
+        let Spread {
+            figure,
+            kind,
+            cars,
+            groups,
+            middle,
+            ends,
+        } = own;
+        text += &format!(
+            "{figure},{kind},{cars},{groups},{middle:.2},{:.2},{:.2}\n",
+            ends[0], ends[1]
+        );
     }
     text
 }
@@ -97,12 +138,18 @@ mod tests {
     /// By hand: three groups of three numbers 0, 1, 2 each; the others' mean is 1, the mean square 2/3, t with two degrees of freedom 2.920.
     #[test]
     fn val_spread_by_hand() {
-        let numbers: Vec<(String, f64)> = ["a", "b", "c"].iter().flat_map(|group| [0.0, 1.0, 2.0].map(|x| ((*group).to_owned(), x))).collect();
+        let numbers: Vec<(String, f64)> = ["a", "b", "c"]
+            .iter()
+            .flat_map(|group| [0.0, 1.0, 2.0].map(|x| ((*group).to_owned(), x)))
+            .collect();
         let (groups, middle, ends) = spread(&numbers).unwrap_or((0, 0.0, [0.0; 2]));
         assert_eq!(groups, 3);
         assert!((middle - 1.0).abs() < 1e-12);
         let half = 2.919_986 * (2.0_f64 / 3.0).sqrt();
-        assert!((ends[1] - 1.0 - half).abs() < 1e-4 && (1.0 - ends[0] - half).abs() < 1e-4, "{ends:?}");
+        assert!(
+            (ends[1] - 1.0 - half).abs() < 1e-4 && (1.0 - ends[0] - half).abs() < 1e-4,
+            "{ends:?}"
+        );
         assert_eq!(spread(&numbers[..6]), None, "two groups");
     }
 }

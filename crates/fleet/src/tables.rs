@@ -10,7 +10,8 @@ use crate::{Fleet, Refused};
 pub type Interval<'a> = &'a dyn Fn(Entry, &str) -> Option<[f64; 2]>;
 
 fn number(x: Option<f64>) -> String {
-    x.filter(|x| x.is_finite()).map_or_else(String::new, |x| format!("{x:.4}"))
+    x.filter(|x| x.is_finite())
+        .map_or_else(String::new, |x| format!("{x:.4}"))
 }
 
 fn finished(out: csv::Writer<Vec<u8>>) -> Vec<u8> {
@@ -24,12 +25,25 @@ fn put(out: &mut csv::Writer<Vec<u8>>, cells: &[String]) {
 
 /// `fleet.csv`: a row for each row of the table, driven or refused.
 #[must_use]
-pub fn fleet_csv(fleet: &Fleet, cars: &[Entry], tests: &[Procedure], interval: Interval) -> Vec<u8> {
-    let columns: Vec<String> = tests.iter().flat_map(|test| test.results.iter().map(|result| result.column())).collect();
+pub fn fleet_csv(
+    fleet: &Fleet,
+    cars: &[Entry],
+    tests: &[Procedure],
+    interval: Interval,
+) -> Vec<u8> {
+    let columns: Vec<String> = tests
+        .iter()
+        .flat_map(|test| test.results.iter().map(|result| result.column()))
+        .collect();
     let mut out = csv::Writer::from_writer(Vec::new());
     let mut head = vec!["carid".to_owned(), "line".to_owned()];
     for column in &columns {
-        head.extend([column.clone(), format!("{column}_low"), format!("{column}_high"), format!("{column}_measured")]);
+        head.extend([
+            column.clone(),
+            format!("{column}_low"),
+            format!("{column}_high"),
+            format!("{column}_measured"),
+        ]);
     }
     head.extend(["failed_checks", "doubts", "refused"].map(str::to_owned));
     put(&mut out, &head);
@@ -39,10 +53,23 @@ pub fn fleet_csv(fleet: &Fleet, cars: &[Entry], tests: &[Procedure], interval: I
         let mut cells = vec![car.id.clone(), car.line.to_string()];
         for column in &columns {
             let fuel = driven.fuel(column);
-            let range = fuel.and_then(|fuel| Some(interval(*entry, column)?.map(|factor| factor * fuel)));
-            cells.extend([fuel, range.map(|r| r[0]), range.map(|r| r[1]), car.measured.get(column).copied()].map(number));
+            let range =
+                fuel.and_then(|fuel| Some(interval(*entry, column)?.map(|factor| factor * fuel)));
+            cells.extend(
+                [
+                    fuel,
+                    range.map(|r| r[0]),
+                    range.map(|r| r[1]),
+                    car.measured.get(column).copied(),
+                ]
+                .map(number),
+            );
         }
-        cells.extend([driven.failed_checks().join("; "), car.doubts.join("; "), String::new()]);
+        cells.extend([
+            driven.failed_checks().join("; "),
+            car.doubts.join("; "),
+            String::new(),
+        ]);
         rows.push((car.line, cells));
     }
     for Refused { line, id, reason } in &fleet.refused {
@@ -62,12 +89,37 @@ pub fn fleet_csv(fleet: &Fleet, cars: &[Entry], tests: &[Procedure], interval: I
 #[must_use]
 pub fn errors_csv(groups: &[GroupErrors]) -> Vec<u8> {
     let mut out = csv::Writer::from_writer(Vec::new());
-    let head = ["figure", "column", "word", "n", "mean_percent", "sd_percent", "rms_percent", "within_5_percent", "worst_percent", "worst_car"];
+    let head = [
+        "figure",
+        "column",
+        "word",
+        "n",
+        "mean_percent",
+        "sd_percent",
+        "rms_percent",
+        "within_5_percent",
+        "worst_percent",
+        "worst_car",
+    ];
     put(&mut out, &head.map(str::to_owned));
     for group in groups {
         let e = &group.errors;
-        let mut cells = vec![group.figure.clone(), group.column.clone(), group.word.clone(), e.n.to_string()];
-        cells.extend([e.mean_percent, e.sd_percent, e.rms_percent, e.within_5_percent, e.worst_percent].map(|x| number(Some(x))));
+        let mut cells = vec![
+            group.figure.clone(),
+            group.column.clone(),
+            group.word.clone(),
+            e.n.to_string(),
+        ];
+        cells.extend(
+            [
+                e.mean_percent,
+                e.sd_percent,
+                e.rms_percent,
+                e.within_5_percent,
+                e.worst_percent,
+            ]
+            .map(|x| number(Some(x))),
+        );
         cells.push(e.worst_car.clone());
         put(&mut out, &cells);
     }
@@ -78,10 +130,23 @@ pub fn errors_csv(groups: &[GroupErrors]) -> Vec<u8> {
 #[must_use]
 pub fn pairs_csv(pairs: &[Pair]) -> Vec<u8> {
     let mut out = csv::Writer::from_writer(Vec::new());
-    put(&mut out, &["figure", "carid", "other", "measured_percent", "computed_percent", "error_points"].map(str::to_owned));
+    put(
+        &mut out,
+        &[
+            "figure",
+            "carid",
+            "other",
+            "measured_percent",
+            "computed_percent",
+            "error_points",
+        ]
+        .map(str::to_owned),
+    );
     for pair in pairs {
         let mut cells = vec![pair.figure.clone(), pair.car.clone(), pair.other.clone()];
-        cells.extend([pair.measured_percent, pair.computed_percent, pair.error()].map(|x| number(Some(x))));
+        cells.extend(
+            [pair.measured_percent, pair.computed_percent, pair.error()].map(|x| number(Some(x))),
+        );
         put(&mut out, &cells);
     }
     finished(out)
@@ -91,11 +156,39 @@ pub fn pairs_csv(pairs: &[Pair]) -> Vec<u8> {
 #[must_use]
 pub fn baselines_csv(baselines: &[Baseline]) -> Vec<u8> {
     let mut out = csv::Writer::from_writer(Vec::new());
-    put(&mut out, &["figure", "transmission", "knows", "constants", "n", "mean_percent", "sd_percent", "rms_percent", "within_5_percent"].map(str::to_owned));
+    put(
+        &mut out,
+        &[
+            "figure",
+            "transmission",
+            "knows",
+            "constants",
+            "n",
+            "mean_percent",
+            "sd_percent",
+            "rms_percent",
+            "within_5_percent",
+        ]
+        .map(str::to_owned),
+    );
     for baseline in baselines {
         let e = &baseline.errors;
-        let mut cells = vec![baseline.figure.clone(), baseline.transmission.clone(), baseline.knows.clone(), baseline.constants.to_string(), e.n.to_string()];
-        cells.extend([e.mean_percent, e.sd_percent, e.rms_percent, e.within_5_percent].map(|x| number(Some(x))));
+        let mut cells = vec![
+            baseline.figure.clone(),
+            baseline.transmission.clone(),
+            baseline.knows.clone(),
+            baseline.constants.to_string(),
+            e.n.to_string(),
+        ];
+        cells.extend(
+            [
+                e.mean_percent,
+                e.sd_percent,
+                e.rms_percent,
+                e.within_5_percent,
+            ]
+            .map(|x| number(Some(x))),
+        );
         put(&mut out, &cells);
     }
     finished(out)

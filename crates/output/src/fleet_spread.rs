@@ -52,9 +52,18 @@ fn rows() -> &'static [Row] {
 
 /// The row that tells of a run (FS-4).
 fn row(kind: &str, cycle: &str, ambient_degc: f64) -> Option<&'static Row> {
-    let named = |figure: &str| rows().iter().find(|row| row.figure == figure && row.kind == kind);
+    let named = |figure: &str| {
+        rows()
+            .iter()
+            .find(|row| row.figure == figure && row.kind == kind)
+    };
     let width = |row: &&Row| row.ends[1] - row.ends[0];
-    let wider = |a: Option<&'static Row>, b: Option<&'static Row>| [a, b].into_iter().flatten().max_by(|a, b| width(a).total_cmp(&width(b)));
+    let wider = |a: Option<&'static Row>, b: Option<&'static Row>| {
+        [a, b]
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| width(a).total_cmp(&width(b)))
+    };
     let own = match cycle {
         "ftp75" | "hwfet" => named(cycle),
         _ => wider(named("ftp75"), named("hwfet")),
@@ -86,8 +95,14 @@ pub fn fuel_range(kind: &str, cycle: &str, ambient_degc: f64, fuel: f64) -> Opti
 #[must_use]
 pub fn figure_range(kind: &str, column: &str, fuel: f64) -> Option<FleetRange> {
     let figure = column.strip_suffix("_l_per_100km").unwrap_or(column);
-    let own = rows().iter().find(|row| row.figure == figure && row.kind == kind);
-    let degc = if figure.starts_with("cold") { -6.7 } else { 24.0 };
+    let own = rows()
+        .iter()
+        .find(|row| row.figure == figure && row.kind == kind);
+    let degc = if figure.starts_with("cold") {
+        -6.7
+    } else {
+        24.0
+    };
     let row = own.or_else(|| row(kind, figure, degc))?;
     Some(FleetRange {
         figure: row.figure.to_owned(),

@@ -6,7 +6,8 @@ use super::{json, run, stdout};
 use std::fs;
 
 /// Rows of a table of one's own: good ones, and one of each kind of bad row.
-const TABLE: &str = "carid,mass [lb],f0,displacement,power,engine.electrical_w,hwfet_l_per_100km,note
+const TABLE: &str =
+    "carid,mass [lb],f0,displacement,power,engine.electrical_w,hwfet_l_per_100km,note
 good,3000,100,1.8l,104kW,400,5.5,x
 other,1300kg,100,1800,140hp,,,x
 double,3000,100,1.8l,104kW,,,x
@@ -34,18 +35,33 @@ fn table(text: &str) -> (tempfile::TempDir, String) {
 fn bad_rows_are_refused_by_name_and_the_rest_is_driven() {
     let (dir, path) = table(TABLE);
     let out = dir.path().join("out");
-    let output = run(&["fleet", &path, "--test", "hwfet", "--out", out.to_str().unwrap(), "--quiet"]);
+    let output = run(&[
+        "fleet",
+        &path,
+        "--test",
+        "hwfet",
+        "--out",
+        out.to_str().unwrap(),
+        "--quiet",
+    ]);
     assert_eq!(output.status.code(), Some(1));
     let text = String::from_utf8(output.stderr).unwrap();
     assert!(text.contains("column `note` is not read"), "{text}");
-    let rows = csv::Reader::from_path(out.join("fleet.csv")).unwrap().into_records();
+    let rows = csv::Reader::from_path(out.join("fleet.csv"))
+        .unwrap()
+        .into_records();
     let rows: Vec<csv::StringRecord> = rows.map(Result::unwrap).collect();
     assert_eq!(rows.len(), 13, "every row is in the file");
     let reason = |id: &str| {
         let of = rows.iter().filter(|row| &row[0] == id);
-        of.map(|row| row[row.len() - 1].to_owned()).collect::<Vec<_>>().join("|")
+        of.map(|row| row[row.len() - 1].to_owned())
+            .collect::<Vec<_>>()
+            .join("|")
     };
-    assert_eq!((reason("good"), reason("other")), (String::new(), String::new()));
+    assert_eq!(
+        (reason("good"), reason("other")),
+        (String::new(), String::new())
+    );
     assert_eq!(reason("double"), "|carid: an earlier row has this name");
     for (id, words) in [
         ("no_power", "power"),
@@ -58,31 +74,84 @@ fn bad_rows_are_refused_by_name_and_the_rest_is_driven() {
     ] {
         assert!(reason(id).contains(words), "{id}: {}", reason(id));
     }
-    let nameless: Vec<_> = rows.iter().filter(|row| row[0].is_empty()).map(|row| row[row.len() - 1].to_owned()).collect();
-    assert!(nameless.iter().any(|reason| reason.contains("no name")), "{nameless:?}");
-    assert!(nameless.iter().any(|reason| reason == "3 cells in a table of 8 columns"), "{nameless:?}");
+    let nameless: Vec<_> = rows
+        .iter()
+        .filter(|row| row[0].is_empty())
+        .map(|row| row[row.len() - 1].to_owned())
+        .collect();
+    assert!(
+        nameless.iter().any(|reason| reason.contains("no name")),
+        "{nameless:?}"
+    );
+    assert!(
+        nameless
+            .iter()
+            .any(|reason| reason == "3 cells in a table of 8 columns"),
+        "{nameless:?}"
+    );
 }
 
 #[test]
 fn a_row_is_the_car_of_new() {
-    let (dir, path) = table("carid,mass,displacement,power,engine.electrical_w\none,1300,1.8l,104kW,400\n");
+    let (dir, path) =
+        table("carid,mass,displacement,power,engine.electrical_w\none,1300,1.8l,104kW,400\n");
     let out = dir.path().join("out");
-    stdout(&run(&["fleet", &path, "--test", "cold_ftp", "--out", out.to_str().unwrap()]));
+    stdout(&run(&[
+        "fleet",
+        &path,
+        "--test",
+        "cold_ftp",
+        "--out",
+        out.to_str().unwrap(),
+    ]));
     let car = dir.path().join("one.toml");
     let car = car.to_str().unwrap();
-    stdout(&run(&["new", "one", "--mass", "1300", "--displacement", "1.8l", "--power", "104kW", "--out", car]));
+    stdout(&run(&[
+        "new",
+        "one",
+        "--mass",
+        "1300",
+        "--displacement",
+        "1.8l",
+        "--power",
+        "104kW",
+        "--out",
+        car,
+    ]));
     // TE-2: 10 % more road load and 100 W of blower; the row's own load in place of the class's.
     let own = json(&[
-        "run", "--vehicle", car, "--cycle", "ftp75", "--ambient", "-6.7", "--baseline", "none", "--price", "never", "--set", "engine.electrical_w=500", "--set",
-        "road_load.load_factor=1.1", "--json",
+        "run",
+        "--vehicle",
+        car,
+        "--cycle",
+        "ftp75",
+        "--ambient",
+        "-6.7",
+        "--baseline",
+        "none",
+        "--price",
+        "never",
+        "--set",
+        "engine.electrical_w=500",
+        "--set",
+        "road_load.load_factor=1.1",
+        "--json",
     ]);
     let mut reader = csv::Reader::from_path(out.join("fleet.csv")).unwrap();
-    let at = reader.headers().unwrap().iter().position(|name| name == "cold_ftp_l_per_100km").unwrap();
+    let at = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .position(|name| name == "cold_ftp_l_per_100km")
+        .unwrap();
     let row = reader.records().next().unwrap().unwrap();
     let fuel: f64 = row[at].parse().unwrap();
     // TE-3 by hand: 43.2 MJ/kg of 0.745 kg/L against 31.82 MJ/L.
     let stated = 0.4 + 0.6 * 43.2 * 0.745 / 31.82;
-    let truth = stated * own["runs"][0]["weighted_fuel_l_per_100km"].as_f64().unwrap();
+    let truth = stated
+        * own["runs"][0]["weighted_fuel_l_per_100km"]
+            .as_f64()
+            .unwrap();
     assert!((fuel - truth).abs() <= 5e-5, "{fuel} {truth}");
 }
 
@@ -90,12 +159,28 @@ fn a_row_is_the_car_of_new() {
 #[test]
 fn errors_by_hand() {
     let head = "carid,mass,displacement,power";
-    let (dir, path) = table(&format!("{head}\none,1300,1.8l,104kW\ntwo,1500,2.0l,110kW\n"));
+    let (dir, path) = table(&format!(
+        "{head}\none,1300,1.8l,104kW\ntwo,1500,2.0l,110kW\n"
+    ));
     let out = dir.path().join("out");
-    stdout(&run(&["fleet", &path, "--test", "hwfet", "--out", out.to_str().unwrap()]));
+    stdout(&run(&[
+        "fleet",
+        &path,
+        "--test",
+        "hwfet",
+        "--out",
+        out.to_str().unwrap(),
+    ]));
     let mut reader = csv::Reader::from_path(out.join("fleet.csv")).unwrap();
-    let fuel: Vec<f64> = reader.records().map(|row| row.unwrap()[2].parse().unwrap()).collect();
-    let text = format!("{head},hwfet_l_per_100km\none,1300,1.8l,104kW,{}\ntwo,1500,2.0l,110kW,{}\n", fuel[0], fuel[1] / 1.1);
+    let fuel: Vec<f64> = reader
+        .records()
+        .map(|row| row.unwrap()[2].parse().unwrap())
+        .collect();
+    let text = format!(
+        "{head},hwfet_l_per_100km\none,1300,1.8l,104kW,{}\ntwo,1500,2.0l,110kW,{}\n",
+        fuel[0],
+        fuel[1] / 1.1
+    );
     let (_dir, path) = table(&text);
     let found = json(&["fleet", &path, "--test", "hwfet", "--json"]);
     let errors = &found["errors"][0];
@@ -113,8 +198,19 @@ fn errors_by_hand() {
 /// The cars of the repository are all driven, none with a failed check in the city or on the highway.
 #[test]
 fn the_measured_cars_pass_their_tests() {
-    let found = json(&["fleet", "validation/fleet/us_cars.csv", "--map", "epa", "--test", "ftp75,hwfet", "--json"]);
-    assert_eq!((found["driven"].as_u64(), found["refused"].as_u64()), (Some(88), Some(0)));
+    let found = json(&[
+        "fleet",
+        "validation/fleet/us_cars.csv",
+        "--map",
+        "epa",
+        "--test",
+        "ftp75,hwfet",
+        "--json",
+    ]);
+    assert_eq!(
+        (found["driven"].as_u64(), found["refused"].as_u64()),
+        (Some(88), Some(0))
+    );
     assert_eq!(found["cars_with_failed_checks"].as_u64(), Some(0));
 }
 

@@ -39,19 +39,35 @@ pub fn assess(
 /// Ranges from measured cars: of the fuel of each car that is not shipped, and of each difference without draws.
 fn assess_fleet(summary: &mut Summary) {
     let (cycle, degc) = (summary.cycle.clone(), summary.ambient_degc);
-    let range = |run: &RunSummary| fuel_range(&run.transmission, &cycle, degc, run.headline_fuel()?);
+    let range =
+        |run: &RunSummary| fuel_range(&run.transmission, &cycle, degc, run.headline_fuel()?);
     let ranges: Vec<Option<FleetRange>> = summary.runs.iter().map(range).collect();
     let Some((subject, baselines)) = summary.runs.split_first() else {
         return;
     };
-    for ((comparison, baseline), other) in summary.comparison.iter_mut().zip(baselines).zip(&ranges[1..]) {
-        let Some(percent) = comparison.fuel_percent.filter(|_| comparison.interval.is_none()) else {
+    for ((comparison, baseline), other) in summary
+        .comparison
+        .iter_mut()
+        .zip(baselines)
+        .zip(&ranges[1..])
+    {
+        let Some(percent) = comparison
+            .fuel_percent
+            .filter(|_| comparison.interval.is_none())
+        else {
             continue;
         };
-        let is_pair = [&subject.transmission, &baseline.transmission] == ["cvt", "manual"] && comparison.differences.is_empty();
+        let is_pair = [&subject.transmission, &baseline.transmission] == ["cvt", "manual"]
+            && comparison.differences.is_empty();
         comparison.fleet = match is_pair {
             true => pair_range(&cycle, degc, percent),
-            false => unlike_range(percent, ranges[0].as_ref(), subject, other.as_ref(), baseline),
+            false => unlike_range(
+                percent,
+                ranges[0].as_ref(),
+                subject,
+                other.as_ref(),
+                baseline,
+            ),
         };
     }
     for (run, range) in summary.runs.iter_mut().zip(ranges) {
@@ -70,14 +86,21 @@ fn unlike_range(
     let (own, other) = (own?, other?);
     // Ends over the computed fuel, as logarithms: the middle of both, and their half widths.
     let of = |range: &FleetRange, run: &RunSummary| {
-        let [low, high] = range.ends.map(|end| (end / run.headline_fuel().unwrap_or(f64::NAN)).ln());
+        let [low, high] = range
+            .ends
+            .map(|end| (end / run.headline_fuel().unwrap_or(f64::NAN)).ln());
         (0.5 * (low + high), 0.5 * (high - low))
     };
     let (own_middle, own_half) = of(own, run);
     let (other_middle, other_half) = of(other, baseline);
     let (middle, half) = (own_middle - other_middle, own_half.hypot(other_half));
-    let ends = [middle - half, middle + half].map(|x| 100.0 * ((1.0 + percent / 100.0) * x.exp() - 1.0));
-    Some(FleetRange { figure: own.figure.clone(), cars: own.cars.min(other.cars), ends })
+    let ends =
+        [middle - half, middle + half].map(|x| 100.0 * ((1.0 + percent / 100.0) * x.exp() - 1.0));
+    Some(FleetRange {
+        figure: own.figure.clone(),
+        cars: own.cars.min(other.cars),
+        ends,
+    })
 }
 
 /// Draws and published numbers, of cars as they are shipped.
@@ -209,9 +232,16 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let against: String = against.collect();
     let range = run.fleet.as_ref().map_or_else(String::new, |of| {
         let [low, high] = of.ends.map(|end| fixed(end, 1));
-        format!(" ({low} to {high} for 90 % of such cars, by {} measured)", of.cars)
+        format!(
+            " ({low} to {high} for 90 % of such cars, by {} measured)",
+            of.cars
+        )
     });
-    let first = format!("{}: {} L/100 km{range}{against}.", run.vehicle, fixed(fuel, 2));
+    let first = format!(
+        "{}: {} L/100 km{range}{against}.",
+        run.vehicle,
+        fixed(fuel, 2)
+    );
     let lines = [Some(first), price(run)].into_iter().flatten();
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
@@ -298,10 +328,15 @@ fn against(comparison: &Comparison, [explained, explained_fleet]: [bool; 2]) -> 
         let compared = more_or_less(percent, 1);
         let than = than(&compared);
         let range = comparison.fleet.as_ref().map(|of| {
-            let among = if explained_fleet { String::new() } else { format!(" for 90 % of such cars, by {} measured", of.cars) };
+            let among = if explained_fleet {
+                String::new()
+            } else {
+                format!(" for 90 % of such cars, by {} measured", of.cars)
+            };
             format!(" ({}{among})", between(of.ends, "%"))
         });
-        let range = range.unwrap_or_else(|| " (how sure this is, no measured cars tell)".to_owned());
+        let range =
+            range.unwrap_or_else(|| " (how sure this is, no measured cars tell)".to_owned());
         return Some(format!(", {compared} {than} {baseline}{range}"));
     };
     let ends = [drawn.percent[0], drawn.percent[2]];

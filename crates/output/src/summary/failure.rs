@@ -149,7 +149,11 @@ fn slower_m_s(driven: &Driven) -> f64 {
     let (totals, load) = (&driven.outcome.totals, &driven.setup.road_load.base);
     let force_n = totals.worst_deficit_nm / load.wheel_radius_m;
     let slower = force_n * totals.seconds(Flags::MISSED_TRACE) / load.inertia_kg; // TR-1
-    if slower.is_finite() { slower } else { f64::INFINITY }
+    if slower.is_finite() {
+        slower
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// Relative errors of the energy balances of a run: maximum over the rows, and of the sums.
@@ -174,7 +178,8 @@ pub(super) fn failures(
         ..failure
     };
 
-    let missed = flag(Flags::MISSED_TRACE).filter(|_| slower_m_s(driven) > trace_tolerance_m_s(cycle));
+    let missed =
+        flag(Flags::MISSED_TRACE).filter(|_| slower_m_s(driven) > trace_tolerance_m_s(cycle));
     let missed = missed.map(|failure| match Deficit::worst(cycle, driven) {
         Some(worst) => at(failure, worst.at_s).value(worst.power_w / 1e3, None::<f64>, "kW"),
         None => failure,

@@ -256,8 +256,13 @@ fn made(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
         return Ok((text, params, notes));
     }
     let Some(drag) = neutral::drag_coefficients(&params.setup()) else {
-        let problem = Problem::invalid("the box cannot be turned without torque at some speed of a coast-down");
-        return Err(problem.key("road-load").hint("write body, and take the drag off f0, f1 and f2 yourself").into());
+        let problem = Problem::invalid(
+            "the box cannot be turned without torque at some speed of a coast-down",
+        );
+        return Err(problem
+            .key("road-load")
+            .hint("write body, and take the drag off f0, f1 and f2 yourself")
+            .into());
     };
     lines.extend(rules::drag_lines(drag));
     made(&lines)

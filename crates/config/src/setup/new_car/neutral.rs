@@ -12,8 +12,8 @@
 
 use crate::setup::Setup;
 use cvtcycle_model::rig::{Bench, BenchPoint};
-use cvtcycle_model::transmission::component::{Component, LossGroup};
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::component::{Component, LossGroup};
 
 /// Oil of a coast-down, K.
 const OIL_K: f64 = 333.15;
@@ -23,7 +23,10 @@ const SPEEDS: [f64; 10] = [20.0, 30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0, 100.0
 /// Coefficients of the drag in neutral: N, N/(km/h), N/(km/h)2 (NC-18). `None` where the box cannot be turned at one of the speeds.
 pub(super) fn drag_coefficients(setup: &Setup) -> Option<[f64; 3]> {
     let bench = Bench::new(&setup.vehicle);
-    let forces: Option<Vec<f64>> = SPEEDS.iter().map(|kmh| drag_n(setup, &bench, kmh / 3.6)).collect();
+    let forces: Option<Vec<f64>> = SPEEDS
+        .iter()
+        .map(|kmh| drag_n(setup, &bench, kmh / 3.6))
+        .collect();
     least_squares(&forces?)
 }
 
@@ -47,10 +50,17 @@ fn drag_n(setup: &Setup, bench: &Bench, speed_m_s: f64) -> Option<f64> {
     };
     let answer = bench.solve(&point);
     let turned_by_engine = |component: &Component| {
-        *component == Component::InputShaft || matches!(component.group(), LossGroup::Pump | LossGroup::Launch)
+        *component == Component::InputShaft
+            || matches!(component.group(), LossGroup::Pump | LossGroup::Launch)
     };
-    let parts = Component::ALL.into_iter().filter(|component| !turned_by_engine(component));
-    let force_n = parts.map(|component| answer.part_nm(component)).sum::<f64>() * overall / radius_m; // NC-18
+    let parts = Component::ALL
+        .into_iter()
+        .filter(|component| !turned_by_engine(component));
+    let force_n = parts
+        .map(|component| answer.part_nm(component))
+        .sum::<f64>()
+        * overall
+        / radius_m; // NC-18
     force_n.is_finite().then_some(force_n)
 }
 
@@ -75,7 +85,9 @@ fn least_squares(forces: &[f64]) -> Option<[f64; 3]> {
         for (k, row) in rows.iter_mut().enumerate().filter(|(k, _)| *k != i) {
             let factor = row[i] / pivot[i];
             debug_assert!(k != i);
-            row.iter_mut().zip(pivot).for_each(|(cell, own)| *cell -= factor * own);
+            row.iter_mut()
+                .zip(pivot)
+                .for_each(|(cell, own)| *cell -= factor * own);
         }
     }
     let x = [0, 1, 2].map(|i| rows[i][3] / rows[i][i]);

@@ -82,18 +82,25 @@ const DRAG: [&str; 3] = [
 
 /// True for coefficients of a coast-down in neutral.
 pub(super) fn is_neutral(answers: &Answers) -> bool {
-    answers.numbers.get("road-load").is_some_and(|word| word == "neutral")
+    answers
+        .numbers
+        .get("road-load")
+        .is_some_and(|word| word == "neutral")
 }
 
 /// The drag of the box in the coefficients of a coast-down in neutral.
 pub(super) fn drag_lines(drag: [f64; 3]) -> impl Iterator<Item = Line> {
-    DRAG.into_iter().zip(drag).zip([2, 4, 6]).map(|((key, value), digits)| Line {
-        key,
-        value: format!("{value:.digits$}"),
-        status: "derived",
-        source: "NC-18: the box turned by the wheels without torque, in oil of 60 degC".to_owned(),
-        option: None,
-    })
+    DRAG.into_iter()
+        .zip(drag)
+        .zip([2, 4, 6])
+        .map(|((key, value), digits)| Line {
+            key,
+            value: format!("{value:.digits$}"),
+            status: "derived",
+            source: "NC-18: the box turned by the wheels without torque, in oil of 60 degC"
+                .to_owned(),
+            option: None,
+        })
 }
 
 /// The numbers that are given.

@@ -17,7 +17,7 @@ use crate::transmission::step::StepInput;
 /// The solve stops when slip and, relatively, pressure and engine speed move less than this.
 pub(super) const TOLERANCE: f64 = 1e-7;
 /// Largest number of evaluations of a run.
-pub(super) const MAX_EVALUATIONS: u16 = 60;
+pub(super) const MAX_EVALUATIONS: u16 = 120;
 
 /// Everything of a step that does not change during the solve.
 pub(super) struct Step<'a, P, R: Real = f64> {
