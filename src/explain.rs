@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use cvtcycle_config::procedure::TEST_FILE;
 use cvtcycle_config::setup::catalogue::{self, ENGINE_OIL, File, OIL};
 use cvtcycle_config::{KeyInfo, Problem, near, suggestion};
 use cvtcycle_model::transmission::loss_factor;
@@ -186,11 +187,11 @@ fn matching_keys(word: &str, known: &'static [KeyInfo]) -> Vec<&'static KeyInfo>
         .unwrap_or_default()
 }
 
-/// Keys of the plans of studies and calibrations, of lever files and of validation files.
+/// Keys of the plans of studies and calibrations, of lever files, of validation files and of tests.
 pub fn plan_keys() -> &'static [KeyInfo] {
     static KEYS: OnceLock<Vec<KeyInfo>> = OnceLock::new();
     KEYS.get_or_init(|| {
-        let files = [PLAN, LEVER_FILE, CALIBRATION, VALIDATION];
+        let files = [PLAN, LEVER_FILE, CALIBRATION, VALIDATION, TEST_FILE];
         files.iter().flat_map(catalogue::keys_of).collect()
     })
 }

@@ -27,13 +27,15 @@ pub enum InputKind {
     Study,
     /// Changes of a car's design.
     Levers,
+    /// Test of a regulation.
+    Test,
 }
 
 /// A kind, its name, and the names of its embedded inputs.
 type KindRow = (InputKind, &'static str, fn() -> Vec<&'static str>);
 
 /// All kinds.
-const KINDS: [KindRow; 8] = [
+const KINDS: [KindRow; 9] = [
     (InputKind::Vehicle, "vehicle", || Kind::Vehicle.names()),
     (InputKind::Class, "class", || Kind::Class.names()),
     (InputKind::Lubricant, "lubricant", || {
@@ -46,6 +48,8 @@ const KINDS: [KindRow; 8] = [
     (InputKind::Study, "study", || Kind::Plan.names()),
     (InputKind::Levers, "levers", || Kind::Levers.names()),
     (InputKind::Cycle, "cycle", cycles),
+    // Some tests have the name of their cycle.
+    (InputKind::Test, "test", || Kind::Test.names()),
 ];
 
 /// Tables and keys that only a vehicle file has at its top.
@@ -59,13 +63,14 @@ const LUBRICANT: [&str; 5] = [
     "friction",
 ];
 /// Beginnings of table headers that only a plan or a lever file has; the rest of a header may be misspelt.
-const PLANS: [(InputKind, &[&str]); 3] = [
+const PLANS: [(InputKind, &[&str]); 4] = [
     (
         InputKind::Calibration,
         &["[calibra", "[[parameter", "[[data"],
     ),
     (InputKind::Study, &["[study", "[[factor"]),
     (InputKind::Levers, &["[lever", "[[lever"]),
+    (InputKind::Test, &["[test", "[[result"]),
 ];
 
 impl InputKind {

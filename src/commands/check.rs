@@ -6,6 +6,7 @@ use clap::Args;
 use cvtcycle::analysis::levers::LeverFile;
 use cvtcycle::calibrate::open;
 use cvtcycle::config::csv::Columns;
+use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::{self, NamedBy, Options};
 use cvtcycle::config::{Problem, Problems, bounded, cycle, render};
 use cvtcycle::output::summary::{differences, likeness};
@@ -145,6 +146,7 @@ fn check(file: &str, columns: &Columns) -> Checked {
         InputKind::Class | InputKind::Rig => Ok(Vec::new()),
         InputKind::Calibration => open(&word).map(drop).map(none),
         InputKind::Levers => LeverFile::open(&word).map(drop).map(none),
+        InputKind::Test => Procedure::open(&word).map(drop).map(none),
         InputKind::Study => Plan::open(&word)
             .and_then(Study::prepare)
             .map(drop)

@@ -8,12 +8,9 @@ use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::STEP;
 use cvtcycle::config::{Override, Problems};
 use cvtcycle::fleet::baselines::{Baseline, baselines};
-use cvtcycle::fleet::errors::{
-    Entry, ErrorStatistics, GroupErrors, Pair, box_word, by_group, pairs,
-};
+use cvtcycle::fleet::errors::{Entry, ErrorStatistics, GroupErrors, Pair, by_group, pairs};
 use cvtcycle::fleet::{ColumnMap, DrivenCar, Fleet, Refused, Sheet, drive, spread, tables};
 use cvtcycle::output::files::OutputDir;
-use cvtcycle::output::fleet_spread;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::SCHEMA;
@@ -203,7 +200,7 @@ impl Execute for FleetArgs {
         let files = WrittenFiles::write(out, |dir| {
             dir.put(
                 "fleet.csv",
-                tables::fleet_csv(&fleet, &entries, &plan.tests, &range),
+                tables::fleet_csv(&fleet, &entries, &plan.tests, &spread::known),
             )?;
             dir.put("errors.csv", tables::errors_csv(&summary.errors))?;
             dir.put("pairs.csv", tables::pairs_csv(&pairs))?;
@@ -257,13 +254,6 @@ fn pair_errors(pairs: &[Pair], figures: &[String]) -> Vec<PairErrors> {
         })
     };
     figures.iter().filter_map(of).collect()
-}
-
-/// Range of a figure of a car as factors on it.
-fn range((car, driven): Entry, figure: &str) -> Option<[f64; 2]> {
-    let fuel = driven.fuel(figure)?;
-    let range = fleet_spread::figure_range(box_word(car), figure, fuel)?;
-    Some(range.ends.map(|end| end / fuel))
 }
 
 /// What is not as it should be, a line each: exit code 1.

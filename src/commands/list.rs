@@ -5,10 +5,13 @@ use cvtcycle::analysis::levers::{Lever, LeverFile};
 use cvtcycle::config::Problems;
 use cvtcycle::config::csv::UNITS;
 use cvtcycle::config::cycle::{self, Cycle};
+use cvtcycle::config::procedure::{Procedure, TestResult};
 use cvtcycle::config::setup::catalogue::{self, File};
 use cvtcycle::config::setup::new_car::ClassOf;
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
+use cvtcycle::model::drive::Start;
 use cvtcycle::model::keys::stem;
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::{TextColumns, paragraphs};
@@ -47,6 +50,8 @@ enum ListedKind {
     Levers,
     /// Plans of studies
     Plans,
+    /// Tests of `fleet` and `label`
+    Tests,
 }
 
 /// A list as JSON and as text.
@@ -69,6 +74,7 @@ impl Execute for ListArgs {
             ListedKind::Columns => Some(list_columns()),
             ListedKind::Levers => list_levers(problems),
             ListedKind::Plans => list_plans(problems),
+            ListedKind::Tests => list_tests(problems),
         }
     }
 
@@ -213,6 +219,40 @@ fn list_levers(problems: &mut Problems) -> Option<Listing> {
         heading: "Levers",
         table: columns.lines(&list),
         note: "`cvtcycle levers` drives them next to the car as it is; it takes your own TOML file as well.\n",
+    })
+}
+
+fn list_tests(problems: &mut Problems) -> Option<Listing> {
+    let read = |name: &'static str| problems.take(Procedure::open(name));
+    let list: Vec<Procedure> = Procedure::names()
+        .into_iter()
+        .map(read)
+        .collect::<Option<_>>()?;
+    let columns = |test: &Procedure| {
+        test.results
+            .iter()
+            .map(TestResult::column)
+            .collect::<Vec<_>>()
+    };
+    let degc = |test: &Procedure| test.ambient_k - ZERO_DEGC_K;
+    let text = TextColumns::new()
+        .left("name", |test: &Procedure| test.name.clone())
+        .left("cycle", |test| test.cycle_word.clone())
+        .left("start", |test| {
+            if test.start == Start::Warm {
+                "warm"
+            } else {
+                "soak"
+            }
+        })
+        .number("degC", 1, move |test| degc(test))
+        .left("title", |test| test.title.clone());
+    let json = |test: &Procedure| json!({ "name": test.name, "title": test.title, "cycle": test.cycle_word, "ambient_degc": degc(test), "columns": columns(test) });
+    Some(Listing {
+        json: json!({ "tests": list.iter().map(json).collect::<Vec<_>>() }),
+        heading: "Tests",
+        table: text.lines(&list),
+        note: "`cvtcycle fleet` and `cvtcycle label` drive them; `fleet --test` takes your own TOML file as well.\n",
     })
 }
 

@@ -3,6 +3,7 @@
 use clap::{Args, CommandFactory, ValueEnum};
 use cvtcycle::analysis::levers::keys::LEVER_FILE;
 use cvtcycle::calibrate::plan::keys::CALIBRATION;
+use cvtcycle::config::procedure::TEST_FILE;
 use cvtcycle::config::schema;
 use cvtcycle::config::setup::assumptions::book;
 use cvtcycle::equations::equations;
@@ -116,6 +117,8 @@ enum SchemaKind {
     Plan,
     /// Changes of a car's design
     Levers,
+    /// Test of a regulation
+    Test,
 }
 
 impl SchemaKind {
@@ -129,6 +132,7 @@ impl SchemaKind {
             SchemaKind::Validation => ("validation", VALIDATION),
             SchemaKind::Plan => ("plan", PLAN),
             SchemaKind::Levers => ("levers", LEVER_FILE),
+            SchemaKind::Test => ("test", TEST_FILE),
         }
     }
 }

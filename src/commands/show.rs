@@ -126,12 +126,13 @@ impl Execute for ShowArgs {
                 (oil.title, keys)
             }
             InputKind::Class | InputKind::Rig => embedded(&word),
-            InputKind::Calibration | InputKind::Study | InputKind::Levers => {
+            InputKind::Calibration | InputKind::Study | InputKind::Levers | InputKind::Test => {
                 let (plan, instead) = match kind {
                     InputKind::Calibration => {
                         ("the plan of a calibration", "name the vehicle that it fits")
                     }
                     InputKind::Study => ("the plan of a study", "name the vehicle that it varies"),
+                    InputKind::Test => ("a test", "name its cycle, or a vehicle that drives it"),
                     _ => ("a file of levers", "name a vehicle that can have them"),
                 };
                 let message = format!("`{word}` is {plan}, which has no values of a vehicle");

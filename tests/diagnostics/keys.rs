@@ -116,7 +116,7 @@ impl Plain {
                 }
                 Err(problems) => Some(problems),
             },
-            Kind::Class | Kind::Plan | Kind::Levers | Kind::Calibration => None,
+            Kind::Class | Kind::Plan | Kind::Levers | Kind::Calibration | Kind::Test => None,
         }
         .unwrap_or_default()
     }
@@ -146,7 +146,7 @@ impl Plain {
                 let _ = cvtcycle::config::rig::read(&reader.root());
                 reader.finish().unwrap()
             }
-            Kind::Class | Kind::Plan | Kind::Levers | Kind::Calibration => Vec::new(),
+            Kind::Class | Kind::Plan | Kind::Levers | Kind::Calibration | Kind::Test => Vec::new(),
         }
     }
 

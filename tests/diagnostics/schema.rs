@@ -4,6 +4,7 @@
 //! keyword fails the test. `tools/schema_check` does the same with an independent validator.
 use cvtcycle::analysis::levers::keys::LEVER_FILE;
 use cvtcycle::calibrate::plan::keys::CALIBRATION;
+use cvtcycle::config::procedure::TEST_FILE;
 use cvtcycle::config::schema;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::model::files;
@@ -124,6 +125,7 @@ fn the_shipped_files_are_valid() {
         (Kind::Calibration, CALIBRATION),
         (Kind::Plan, PLAN),
         (Kind::Levers, LEVER_FILE),
+        (Kind::Test, TEST_FILE),
     ] {
         for (name, text) in kind.embedded() {
             assert_eq!(checked(&keys, text), [] as [&str; 0], "{name}");

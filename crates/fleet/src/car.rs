@@ -222,7 +222,7 @@ impl Columns<'_> {
             match text.parse::<f64>() {
                 _ if text.is_empty() => {}
                 Ok(litres) if (0.5..=60.0).contains(&litres) => {
-                    drop(measured.insert(name.clone(), litres))
+                    measured.insert(name.clone(), litres);
                 }
                 Ok(_) => {
                     return Err(format!(

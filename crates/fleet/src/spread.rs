@@ -6,6 +6,7 @@
 //! | FS-2 | 90 % of new cars: F_computed exp(c +- t s), t Student's 95 % point with one degree of freedom less than there are groups | ASSUMED: cars of a group share their error, groups are independent and normal |
 //! | FS-3 | pairs: as FS-1 and FS-2 with the measured less the computed difference, points, in place of the logarithm | as FS-1, FS-2 |
 
+use cvtcycle_output::fleet_spread;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::errors::{Entry, Pair, box_word};
@@ -28,6 +29,14 @@ pub struct Spread {
     pub middle: f64,
     /// Ends of the range that holds 90 % of cars.
     pub ends: [f64; 2],
+}
+
+/// Range of a figure of a car as factors on it, from the fleet that the program carries.
+#[must_use]
+pub fn known((car, driven): Entry, figure: &str) -> Option<[f64; 2]> {
+    let fuel = driven.fuel(figure)?;
+    let range = fleet_spread::figure_range(box_word(car), figure, fuel)?;
+    Some(range.ends.map(|end| end / fuel))
 }
 
 /// Spreads of all figures, by box and of pairs, with the groups of a column.

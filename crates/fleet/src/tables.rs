@@ -1,6 +1,6 @@
 //! Results as CSV.
 
-use cvtcycle_config::procedure::Procedure;
+use cvtcycle_config::procedure::{Procedure, TestResult};
 
 use crate::baselines::Baseline;
 use crate::errors::{Entry, GroupErrors, Pair};
@@ -23,7 +23,64 @@ fn put(out: &mut csv::Writer<Vec<u8>>, cells: &[String]) {
     let _ = out.write_record(cells);
 }
 
-/// `fleet.csv`: a row for each row of the table, driven or refused.
+/// Cell of the table of a fleet.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// A number; NaN where there is none.
+    Number(f64),
+    /// Text.
+    Text(String),
+}
+
+/// Names of the columns, and a row for each row of the table of cars, driven or refused.
+#[must_use]
+pub fn fleet_table(
+    fleet: &Fleet,
+    cars: &[Entry],
+    tests: &[Procedure],
+    interval: Interval,
+) -> (Vec<String>, Vec<Vec<Cell>>) {
+    let of_test = |test: &Procedure| {
+        test.results
+            .iter()
+            .map(TestResult::column)
+            .collect::<Vec<_>>()
+    };
+    let columns: Vec<String> = tests.iter().flat_map(of_test).collect();
+    let mut head = vec!["carid".to_owned(), "line".to_owned()];
+    for column in &columns {
+        let ends = ["_low", "_high", "_measured"].map(|end| format!("{column}{end}"));
+        head.extend([column.clone()].into_iter().chain(ends));
+    }
+    head.extend(["failed_checks", "doubts", "refused"].map(str::to_owned));
+    let mut rows: Vec<(u64, Vec<Cell>)> = Vec::new();
+    let none = || Cell::Text(String::new());
+    for entry in cars {
+        let (car, driven) = *entry;
+        let mut cells = vec![Cell::Text(car.id.clone()), Cell::Number(car.line as f64)];
+        for column in &columns {
+            let fuel = driven.fuel(column);
+            let range =
+                fuel.and_then(|fuel| Some(interval(*entry, column)?.map(|factor| factor * fuel)));
+            let measured = car.measured.get(column).copied();
+            let numbers = [fuel, range.map(|r| r[0]), range.map(|r| r[1]), measured];
+            cells.extend(numbers.map(|x| Cell::Number(x.unwrap_or(f64::NAN))));
+        }
+        let texts = [driven.failed_checks().join("; "), car.doubts.join("; ")];
+        cells.extend(texts.map(Cell::Text).into_iter().chain([none()]));
+        rows.push((car.line, cells));
+    }
+    for Refused { line, id, reason } in &fleet.refused {
+        let mut cells = vec![Cell::Text(id.clone()), Cell::Number(*line as f64)];
+        cells.extend((0..4 * columns.len()).map(|_| Cell::Number(f64::NAN)));
+        cells.extend([none(), none(), Cell::Text(reason.clone())]);
+        rows.push((*line, cells));
+    }
+    rows.sort_by_key(|(line, _)| *line);
+    (head, rows.into_iter().map(|(_, cells)| cells).collect())
+}
+
+/// `fleet.csv`.
 #[must_use]
 pub fn fleet_csv(
     fleet: &Fleet,
@@ -31,56 +88,19 @@ pub fn fleet_csv(
     tests: &[Procedure],
     interval: Interval,
 ) -> Vec<u8> {
-    let columns: Vec<String> = tests
-        .iter()
-        .flat_map(|test| test.results.iter().map(|result| result.column()))
-        .collect();
+    let (head, rows) = fleet_table(fleet, cars, tests, interval);
     let mut out = csv::Writer::from_writer(Vec::new());
-    let mut head = vec!["carid".to_owned(), "line".to_owned()];
-    for column in &columns {
-        head.extend([
-            column.clone(),
-            format!("{column}_low"),
-            format!("{column}_high"),
-            format!("{column}_measured"),
-        ]);
-    }
-    head.extend(["failed_checks", "doubts", "refused"].map(str::to_owned));
     put(&mut out, &head);
-    let mut rows: Vec<(u64, Vec<String>)> = Vec::new();
-    for entry in cars {
-        let (car, driven) = *entry;
-        let mut cells = vec![car.id.clone(), car.line.to_string()];
-        for column in &columns {
-            let fuel = driven.fuel(column);
-            let range =
-                fuel.and_then(|fuel| Some(interval(*entry, column)?.map(|factor| factor * fuel)));
-            cells.extend(
-                [
-                    fuel,
-                    range.map(|r| r[0]),
-                    range.map(|r| r[1]),
-                    car.measured.get(column).copied(),
-                ]
-                .map(number),
-            );
-        }
-        cells.extend([
-            driven.failed_checks().join("; "),
-            car.doubts.join("; "),
-            String::new(),
-        ]);
-        rows.push((car.line, cells));
-    }
-    for Refused { line, id, reason } in &fleet.refused {
-        let mut cells = vec![id.clone(), line.to_string()];
-        cells.resize(2 + 4 * columns.len() + 2, String::new());
-        cells.push(reason.clone());
-        rows.push((*line, cells));
-    }
-    rows.sort_by_key(|(line, _)| *line);
-    for (_, cells) in &rows {
-        put(&mut out, cells);
+    for row in rows {
+        let text = |(k, cell): (usize, &Cell)| match cell {
+            Cell::Number(line) if k == 1 => line.to_string(),
+            Cell::Number(x) => number(Some(*x)),
+            Cell::Text(text) => text.clone(),
+        };
+        put(
+            &mut out,
+            &row.iter().enumerate().map(text).collect::<Vec<_>>(),
+        );
     }
     finished(out)
 }

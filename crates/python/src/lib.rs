@@ -15,6 +15,7 @@ mod car;
 mod cycle;
 mod errors;
 mod family;
+mod fleet;
 mod job;
 mod rig;
 mod run;
@@ -40,6 +41,7 @@ mod _native {
         car::Car,
         cycle::Cycle,
         family::Family,
+        fleet::fleet,
         program,
         rig::{belt, losses},
         run::{Run, run},

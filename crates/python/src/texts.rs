@@ -3,6 +3,7 @@
 use cvtcycle::analysis::levers::keys::LEVER_FILE;
 use cvtcycle::calibrate::MAX_STARTS;
 use cvtcycle::calibrate::plan::keys::CALIBRATION;
+use cvtcycle::config::procedure::TEST_FILE;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::{
     Argument, Override, Problem, Problems, bounded, cycle, decode, schema as json_schema,
@@ -25,7 +26,7 @@ pub fn version() -> (&'static str, &'static str) {
     (env!("CARGO_PKG_VERSION"), BUILD)
 }
 
-/// Names of embedded inputs of a kind: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`.
+/// Names of embedded inputs of a kind: `vehicle`, `cycle`, `lubricant`, `plan`, `calibration`, `class`, `rig`, `levers`, `test`.
 #[pyfunction]
 pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
     let kinds = [
@@ -35,6 +36,7 @@ pub fn names(kind: &str) -> PyResult<Vec<&'static str>> {
         ("rig", Kind::Rig),
         ("plan", Kind::Plan),
         ("levers", Kind::Levers),
+        ("test", Kind::Test),
         ("calibration", Kind::Calibration),
     ];
     match kinds.iter().find(|(name, _)| *name == kind) {
@@ -66,6 +68,7 @@ pub fn schema(kind: &str) -> PyResult<String> {
         ("validation", VALIDATION),
         ("plan", PLAN),
         ("levers", LEVER_FILE),
+        ("test", TEST_FILE),
     ];
     match kinds.iter().find(|(name, _)| *name == kind) {
         Some((name, keys)) => text(&json_schema::json_schema(name, keys)).map_err(refused),

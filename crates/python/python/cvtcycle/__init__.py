@@ -15,7 +15,7 @@ from ._family import Family
 from ._run import Picture, Run, run
 from ._study import StoredStudy, Study
 from ._table import Table
-from ._tools import belt, calibrate, explain, losses, names, schema, validate
+from ._tools import belt, calibrate, explain, fleet, losses, names, schema, validate
 
 __version__, __build__ = _native.version()
 
@@ -33,6 +33,7 @@ __all__ = [
     "belt",
     "calibrate",
     "explain",
+    "fleet",
     "losses",
     "names",
     "run",

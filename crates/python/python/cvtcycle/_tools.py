@@ -15,7 +15,7 @@ from ._table import Table, frame_columns, doubles, table_text, texts
 
 
 def names(kind: str) -> list[str]:
-    """Names of embedded inputs of a kind: ``vehicle``, ``cycle``, ``lubricant``, ``plan``, ``calibration``, ``class``, ``rig``, ``levers``."""
+    """Names of embedded inputs of a kind: ``vehicle``, ``cycle``, ``lubricant``, ``plan``, ``calibration``, ``class``, ``rig``, ``levers``, ``test``."""
     return _native.names(kind)
 
 
@@ -88,6 +88,39 @@ def belt(
     """
     text = table_text(frame_columns("points", points))
     return Table(_native.belt(as_car("car", car)._car, name, text, formulation, band_speed))
+
+
+def fleet(
+    cars: Any,
+    *,
+    map: str | os.PathLike[str] | None = None,
+    tests: Iterable[str] | str = ("ftp75", "hwfet"),
+    set: Set = None,
+    dt_s: float = 1.0,
+    threads: int | None = None,
+    name: str = "cars",
+) -> Table:
+    """Drives the cars of a table on tests, as ``cvtcycle fleet`` does: a mapping or a frame, a row a car, or the path of a CSV file.
+
+    The result has a row for each row: the fuel of each figure in L/100 km with the range of 90 % of cars (``_low``, ``_high``) and what was measured,
+    ``failed_checks``, ``doubts``, and for a row that is no car ``refused``, its reason.
+
+    >>> import cvtcycle as cc
+    >>> cars = {"carid": ["mine"], "mass": ["1300kg"], "displacement": ["1.8l"], "power": ["104kW"]}
+    >>> 4 < cc.fleet(cars, tests="hwfet")["hwfet_l_per_100km"][0] < 7
+    True
+    """
+    if isinstance(cars, (str, os.PathLike)):
+        name = path_word("cars", cars)
+        try:
+            with open(name, "rb") as file:
+                text = file.read()
+        except OSError as error:
+            raise bad("cars", f"cannot read the table: {error.strerror}", value=name, hint="check the path") from None
+    else:
+        text = table_text(frame_columns("cars", cars))
+    word = None if map is None else path_word("map", map)
+    return Table(_native.fleet(name, text, word, texts("tests", tests), assignments(set), float(dt_s), threads))
 
 
 def validate(
