@@ -11,7 +11,6 @@ use cvtcycle::config::setup::new_car::ClassOf;
 use cvtcycle::config::setup::{self, Kind, Options, Setup};
 use cvtcycle::model::drive::Start;
 use cvtcycle::model::keys::stem;
-use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::model::lubricant::{Lubricant, ZERO_DEGC_K};
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::{TextColumns, paragraphs};
