@@ -7,6 +7,7 @@ use cvtcycle::analysis::levers::{Combine, Lever, LeverFile, LeverRequest, prepar
 use cvtcycle::calibrate;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{self, Cycle};
+use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::{self, Options};
 use cvtcycle::config::{Document, KeyInfo, Override, Problem, Problems, Reader, render};
 use cvtcycle::output::History;
@@ -18,13 +19,14 @@ use cvtcycle::validate;
 use super::calibration;
 
 /// Kinds of bad files.
-pub const KINDS: [&str; 16] = [
+pub const KINDS: [&str; 17] = [
     "vehicle",
     "like",
     "lubricant",
     "rig",
     "plan",
     "levers",
+    "test",
     "rows",
     "cover",
     "cycle",
@@ -61,6 +63,7 @@ pub fn message(kind: &str, case: &str) -> String {
         "lubricant" => setup::load_lubricant(case).err(),
         "plan" => Plan::open(case).and_then(Study::prepare).err(),
         "levers" => levers(case).err(),
+        "test" => Procedure::open(case).err(),
         "rows" => rows(case, &bytes),
         "cover" => Cover::read(case).err(),
         "cycle" => cycle(case, &bytes).err(),

@@ -52,6 +52,10 @@ const OUTSIDE: &[(&str, &str)] = &[
     ("analysis::levers::answer", "tables that the program wrote"),
     ("study::store", "files that the program wrote"),
     ("whatif", "pages that the program wrote: tools/browser"),
+    (
+        "fleet",
+        "rows and columns of a table of cars: tests/cli/commands/fleet.rs",
+    ),
 ];
 
 /// Submodules of those above that read input files.

@@ -81,7 +81,7 @@ pub(crate) fn fleet(
         return Err(problem
             .allowed(sheet.names.join(", "))
             .hint(hint.unwrap_or_else(|| {
-                "a row is a car; --map names the columns of other tables".to_owned()
+                "a row is a car; a map names the columns of other tables".to_owned()
             }))
             .into());
     };
@@ -308,7 +308,7 @@ fn sentence(problems: &Problems) -> String {
             "" => problem.message.clone(),
             key => format!("{key}: {}", problem.message),
         };
-        if !problem.value.is_empty() && !problem.message.contains(&problem.value) {
+        if !problem.value.is_empty() {
             text += &format!(", not {}", problem.value);
         }
         if !problem.allowed.is_empty() {

@@ -6,7 +6,7 @@
 //! | RL-2 | road: f2 scales with air density, f0 with 1 + k (20 degC - T) | source: gas law; k 0.00864/K UN R83 coast-down correction |
 //! | RL-3 | body form: f0 = m g c_r, f2 = rho/2 c_d A | source: mechanics |
 //! | RL-4 | p/p_0 = (1 - 2.25577e-5 h)^5.25588 | source: ISO standard atmosphere |
-//! | RL-9 | f = f_target - f_driveline for each of f0, f1, f2, where the target of a coast-down in neutral has the no-load drag of the box in it | derived; size ASSUMED: CVT over manual of the same car in US lists, 23 pairs, +30 (sd 23) +16 (21) +11 (25) +16 (31) N at 20 50 80 110 km/h |
+//! | RL-9 | f = f_target - f_driveline for each of f0, f1, f2, where the target of a coast-down in neutral has the no-load drag of the box in it | derived; `new` takes the model's own drag (NC-18); check: CVT over manual of the same car in US lists, 23 pairs, +30 (sd 23) +16 (21) +11 (25) +16 (31) N at 20 50 80 110 km/h |
 //! | RL-8 | f0, f1, f2 times a factor, the inertia as it is | source: US cold test (-6.7 degC, 10 % more road load) |
 //! | RL-5 | work of a step: integral of F v dt, speed linear, split where F changes sign | derived: polynomial |
 //!

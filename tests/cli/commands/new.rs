@@ -101,7 +101,7 @@ fn options_answers_and_questions_make_the_same_car() {
     }
 }
 
-/// RL-9: the drag of a CVT is subtracted from a coast-down in neutral, that of a manual box is not, and a coast-down is required.
+/// NC-18: the drag of the box is subtracted from a coast-down in neutral, that of a CVT being the larger one, and a coast-down is required.
 #[test]
 fn a_coast_down_in_neutral_has_the_box_in_it() {
     let dir = tempfile::tempdir().unwrap();
@@ -119,20 +119,36 @@ fn a_coast_down_in_neutral_has_the_box_in_it() {
     let load = ["--f0", "105", "--f1", "0.55", "--f2", "0.0305"];
     let neutral = [&load[..], &["--road-load", "neutral"]].concat();
     let manual = [&neutral[..], &["--box", "box_manual_5"]].concat();
+    let mut drags = Vec::new();
     for (name, words, taken) in [
         ("a", &load[..], false),
         ("b", &neutral, true),
-        ("c", &manual, false),
+        ("c", &manual, true),
     ] {
         let output = make(name, words);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let text = fs::read_to_string(dir.path().join(format!("{name}.toml"))).unwrap();
-        assert_eq!(
-            text.contains("driveline_f0_n = { value = 27.0, status = \"assumed\""),
-            taken,
-            "{text}"
-        );
-        assert_eq!(text.contains("driveline_f1_n_per_kmh"), taken);
+        let value = |key: &str| -> Option<f64> {
+            let (_, rest) = text.split_once(&format!("{key} = {{ value = "))?;
+            rest.split(',').next()?.parse().ok()
+        };
+        let names = [
+            "driveline_f0_n",
+            "driveline_f1_n_per_kmh",
+            "driveline_f2_n_per_kmh2",
+        ];
+        let found: Vec<f64> = names.into_iter().filter_map(value).collect();
+        assert_eq!(found.len(), if taken { 3 } else { 0 }, "{text}");
+        if let [f0, f1, f2] = found[..] {
+            drags.push([20.0, 110.0].map(|kmh| f0 + (f1 + f2 * kmh) * kmh));
+        }
+    }
+    // Coast-downs of cars with both boxes: more with the CVT, and some 5 to 60 N at all speeds.
+    let [cvt, manual] = drags[..] else {
+        panic!("{drags:?}")
+    };
+    for (cvt, manual) in cvt.iter().zip(manual) {
+        assert!(5.0 < manual && manual < *cvt && *cvt < 60.0, "{drags:?}");
     }
     let output = make("d", &["--road-load", "neutral"]);
     assert!(stderr(&output).contains("no coast-down to take the drag of the box from"));

@@ -37,7 +37,7 @@ pub fn assess(
 }
 
 /// Ranges from measured cars: of the fuel of each car that is not shipped, and of each difference without draws.
-fn assess_fleet(summary: &mut Summary) {
+pub fn assess_fleet(summary: &mut Summary) {
     let (cycle, degc) = (summary.cycle.clone(), summary.ambient_degc);
     let range =
         |run: &RunSummary| fuel_range(&run.transmission, &cycle, degc, run.headline_fuel()?);

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use cvtcycle_analysis::words::drawn::{Draws, prepare};
-use cvtcycle_analysis::words::run::{maps_left, sentences};
+use cvtcycle_analysis::words::run::{assess_fleet, maps_left, sentences};
 use cvtcycle_config::cycle::{self, Cycle};
 use cvtcycle_config::setup::{NamedBy, Options, Setup, TWIN, is_twin, load, name_of};
 use cvtcycle_config::{Override, Problem, Problems, carried};
@@ -304,6 +304,7 @@ impl LivePage {
         for (comparison, drawn) in found.comparison.iter_mut().zip(drawn.into_iter().flatten()) {
             comparison.interval = Some(drawn);
         }
+        assess_fleet(&mut found);
         let histories = driven.iter().map(|car| history(car, &cycle));
         let histories: Vec<History> = histories.collect();
         let section = self.section(state, &found, &histories, &cycle, &wanted);
