@@ -8,13 +8,16 @@ use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::STEP;
 use cvtcycle::config::{Override, Problems};
 use cvtcycle::fleet::baselines::{Baseline, baselines};
-use cvtcycle::fleet::errors::{Entry, ErrorStatistics, GroupErrors, Pair, by_group, pairs};
+use cvtcycle::fleet::errors::{
+    Entry, ErrorStatistics, GroupErrors, Pair, box_word, by_group, pairs,
+};
 use cvtcycle::fleet::{ColumnMap, DrivenCar, Fleet, Refused, Sheet, drive, spread, tables};
 use cvtcycle::output::files::OutputDir;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::record::Manifest;
 use cvtcycle::output::summary::SCHEMA;
 use cvtcycle::output::table::{TextTable, wrapped};
+use cvtcycle::report::charts::{FleetMark, fleet_scatter};
 use serde::Serialize;
 
 use super::{Execute, threads};
@@ -205,6 +208,9 @@ impl Execute for FleetArgs {
             dir.put("errors.csv", tables::errors_csv(&summary.errors))?;
             dir.put("pairs.csv", tables::pairs_csv(&pairs))?;
             dir.put("baselines.csv", tables::baselines_csv(&summary.baselines))?;
+            for (kind, marks) in marks(&entries, &plan.tests, leave_out) {
+                dir.put(&format!("measured_{kind}.svg"), &fleet_scatter(&marks).svg)?;
+            }
             let column = leave_out.unwrap_or_default();
             dir.put(
                 "spread.csv",
@@ -232,6 +238,43 @@ fn read(option: &str, file: &str) -> Result<Sheet, Problems> {
         )
     })?;
     Sheet::read(file, &bytes)
+}
+
+/// Cars with measured fuel by box, for the picture: the whole result of each test.
+fn marks(
+    entries: &[Entry],
+    tests: &[Procedure],
+    column: Option<&str>,
+) -> Vec<(&'static str, Vec<FleetMark>)> {
+    let of = |kind: &'static str| {
+        let own = entries.iter().filter(|(car, _)| box_word(car) == kind);
+        let all = own.flat_map(|(car, driven)| {
+            let whole = tests.iter().flat_map(|test| {
+                test.results
+                    .iter()
+                    .filter(|result| result.phases.is_empty())
+            });
+            whole.filter_map(|result| {
+                let column_name = result.column();
+                Some(FleetMark {
+                    car: car.id.clone(),
+                    group: column
+                        .and_then(|column| car.words.get(column))
+                        .cloned()
+                        .unwrap_or_else(|| kind.to_owned()),
+                    figure: result.name.to_uppercase(),
+                    measured: *car.measured.get(&column_name)?,
+                    computed: driven.fuel(&column_name)?,
+                })
+            })
+        });
+        (kind, all.collect::<Vec<_>>())
+    };
+    ["cvt", "manual"]
+        .map(of)
+        .into_iter()
+        .filter(|(_, marks)| !marks.is_empty())
+        .collect()
 }
 
 fn pair_errors(pairs: &[Pair], figures: &[String]) -> Vec<PairErrors> {

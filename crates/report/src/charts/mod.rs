@@ -7,6 +7,7 @@ pub mod calibration;
 pub mod decision;
 mod engine;
 pub mod figures;
+mod fleet;
 mod grids;
 mod levers;
 pub mod lines;
@@ -20,6 +21,7 @@ pub mod study;
 mod variator_curves;
 
 pub use engine::cell;
+pub use fleet::{FleetMark, fleet_scatter};
 pub use levers::{foremost_levers, lever_strip, lever_title, saves};
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};
