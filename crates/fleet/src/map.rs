@@ -68,7 +68,7 @@ impl ColumnMap {
     /// A file that cannot be read, or is no map.
     pub fn open(word: &str) -> Result<Self, Problems> {
         if word == "epa" {
-            return Self::read("embedded:epa.toml", include_str!("epa.toml"));
+            return Self::read("embedded:epa.toml", include_str!("../data/epa.toml"));
         }
         if !cvtcycle_config::embedded::is_path(word) {
             let problem =

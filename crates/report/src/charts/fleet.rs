@@ -125,9 +125,11 @@ fn panel(rect: Rect, figure: &str, rows: &[(&FleetMark, usize)], groups: &[&str]
     let mut panel = Panel::new(rect, axis("Measured"), axis("Computed"));
     let [from, to] = [low - room, high + room];
     for factor in [1.0 - BESIDE, 1.0 + BESIDE] {
+        // Within the frame.
+        let [left, right] = [from.max(from / factor), to.min(to / factor)];
         panel.segment(
-            at(from, factor * from),
-            at(to, factor * to),
+            at(left, factor * left),
+            at(right, factor * right),
             Style::line(stroke("#777777", 0.5, &[])),
         );
     }
