@@ -234,7 +234,7 @@ fn read(option: &str, file: &str) -> Result<Sheet, Problems> {
             file,
             &error.allowed("a readable file"),
             &message,
-            &error.hint("check the path and its permissions"),
+            error.hint("check the path and its permissions"),
         )
     })?;
     Sheet::read(file, &bytes)

@@ -120,22 +120,8 @@ pub(crate) fn fleet(
         tests,
         set,
     };
-    let is_known = |name: &String| map.knows(name) || is_key(name) || all_results.contains(name);
-    let near: Vec<&str> = catalogue::known_names()
-        .iter()
-        .map(String::as_str)
-        .collect();
-    let options = new_car::NUMBERS.iter().map(|(name, _)| *name).chain(WORDS);
-    let near: Vec<&str> = near.into_iter().chain(options).collect();
-    let unknown = sheet.names.iter().filter(|name| !is_known(name));
-    let unknown = unknown
-        .map(|name| {
-            (
-                name.clone(),
-                did_you_mean(name, near.iter().copied()).unwrap_or_default(),
-            )
-        })
-        .collect();
+    let is_known = |name: &str| map.knows(name) || is_key(name) || all_results.contains(name);
+    let unknown = unknown_columns(&sheet.names, &is_known);
     let mut seen: HashSet<&str> = HashSet::new();
     let is_new: Vec<bool> = sheet
         .rows
@@ -176,6 +162,16 @@ pub(crate) fn fleet(
     }
     fleet.refused.sort_by_key(|refused| refused.line);
     Ok(fleet)
+}
+
+/// Columns that nothing reads, each with the near names.
+fn unknown_columns(names: &[String], is_known: &dyn Fn(&str) -> bool) -> Vec<(String, String)> {
+    let options = new_car::NUMBERS.iter().map(|(name, _)| *name).chain(WORDS);
+    let keys = catalogue::known_names().iter().map(String::as_str);
+    let known: Vec<&str> = keys.chain(options).collect();
+    let near = |name: &String| did_you_mean(name, known.iter().copied()).unwrap_or_default();
+    let unknown = names.iter().filter(|name| !is_known(name));
+    unknown.map(|name| (name.clone(), near(name))).collect()
 }
 
 impl Columns<'_> {

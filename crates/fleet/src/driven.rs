@@ -67,7 +67,7 @@ pub fn drive(
     cars: &[FleetCar],
     tests: &[Procedure],
     max_dt_s: f64,
-    progress: &(impl Progress + Sync),
+    progress: &impl Progress,
 ) -> Vec<DrivenCar> {
     cars.par_iter()
         .map(|car| {

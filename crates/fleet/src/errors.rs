@@ -122,12 +122,15 @@ pub fn box_word(car: &FleetCar) -> &'static str {
     }
 }
 
+/// Errors with the names of their cars, by place of the column, its name and a word in it.
+type ByWord<'a> = BTreeMap<(usize, &'a str, &'a str), Vec<(&'a str, f64)>>;
+
 /// Errors of some figures: by box, and by each word of each grouping column.
 #[must_use]
 pub fn by_group(cars: &[Entry], figures: &[String], columns: &[String]) -> Vec<GroupErrors> {
     let mut all = Vec::new();
     for figure in figures {
-        let mut groups: BTreeMap<(usize, &str, &str), Vec<(&str, f64)>> = BTreeMap::new();
+        let mut groups = ByWord::new();
         for entry in cars {
             let Some(error) = error_percent(*entry, figure) else {
                 continue;

@@ -135,7 +135,7 @@ fn searches_side_by_side_have_their_own_bits() {
     };
     let runs = cars.iter().map(|vehicle| Run {
         vehicle,
-        conditions: conditions.clone(),
+        conditions,
     });
     let runs: Vec<Run> = runs.collect();
     for (run, outcome) in runs.iter().zip(drive_each(&runs, &trace)) {

@@ -204,7 +204,7 @@ pub fn write(answers: &Answers) -> Result<NewCar, Problems> {
 /// ```
 ///
 /// # Errors
-/// As [`write`], and problems of the overrides.
+/// As [`write()`], and problems of the overrides.
 pub fn param_set(answers: &Answers, set: &[Override]) -> Result<ParamSet, Problems> {
     placed(answers, set).map(|(_, params, _)| params)
 }

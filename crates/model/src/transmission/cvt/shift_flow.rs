@@ -80,8 +80,8 @@ impl Search {
         }
         self.tries += 1;
         self.most = match now.beyond > 0.0 {
-            true => self.from_low(now),
-            false => self.from_high(now, left),
+            true => self.after_low(now),
+            false => self.after_high(now, left),
         };
         let lowest = self.low.map_or(0.0, |low| low.flow);
         if self.tries >= MOST_TRIES || self.high.flow - lowest <= tolerance {
@@ -91,7 +91,7 @@ impl Search {
     }
 
     /// The next flow after one that there is.
-    fn from_low(&mut self, now: Tried) -> f64 {
+    fn after_low(&mut self, now: Tried) -> f64 {
         if self.moved == Some(End::Low) {
             self.high.beyond *= 0.5; // Illinois: the same end moves again
         }
@@ -101,7 +101,7 @@ impl Search {
     }
 
     /// The next flow after one that there is not, which left another.
-    fn from_high(&mut self, now: Tried, left: f64) -> f64 {
+    fn after_high(&mut self, now: Tried, left: f64) -> f64 {
         let before = std::mem::replace(&mut self.high, now);
         let moved = self.moved.replace(End::High);
         if let Some(low) = &mut self.low {

@@ -125,7 +125,7 @@ impl Given<'_> {
         let gripped_nm = gripped_nm(cvt, &oil, clamp_n);
         let share = needed_nm / gripped_nm;
         let area_cm2 = 1e4 * (share * clamp_n - cvt.spring_n) / cvt.cap_pa;
-        if !(area_cm2 > 0.0) {
+        if area_cm2.is_nan() || area_cm2 <= 0.0 {
             return;
         }
         let of_primary = cvt.primary_piston_m2 / cvt.secondary_piston_m2;
