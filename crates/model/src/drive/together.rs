@@ -3,6 +3,16 @@
 //! Each run has the bits that [`drive_into`](super::drive_into) gives it alone. Cars can be in one group that are of one kind (see
 //! [`Gather::alike`]) and drive the same trace; those with start-stop, with a slip-limited clamp or with a shift map drive alone. A run that fails keeps its numbers that are none to itself.
 
+#![cfg_attr(
+    not(any(
+        target_arch = "x86",
+        target_arch = "x86_64",
+        target_arch = "aarch64",
+        all(target_arch = "wasm32", target_feature = "simd128")
+    )),
+    allow(dead_code, unused_imports, reason = "no lanes: see HAS_LANES")
+)]
+
 use std::borrow::Cow;
 
 use super::run::{Conditions, Outcome, Start, drive_into};
