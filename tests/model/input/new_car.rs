@@ -218,7 +218,7 @@ fn a_box_of_a_class_fits_its_engine() {
     assert_eq!((pump.value.as_str(), pump.status.as_str()), ("9.5", "user"));
 }
 
-/// NC-16: the speed that the number says, whatever the tyre, the box and its gears; beside a final drive it is refused.
+/// NC-16: the speed that the number says, whatever the tyre, the box and its gears; with a final drive it is refused.
 #[test]
 fn engine_over_road_speed_is_the_reduction() {
     let gears = ("gears", "3.6,2.1,1.4,1.0,0.8");

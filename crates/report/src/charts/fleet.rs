@@ -28,10 +28,10 @@ const TOP: f64 = 58.0;
 const GAP: (f64, f64) = (18.0, 10.0);
 const FOOT: (f64, f64) = (PLOT_LEFT, RIGHT - PLOT_LEFT);
 const RADIUS: f64 = 3.4;
-/// Error of the thin lines beside that of equality.
-const BESIDE: f64 = 0.05;
+/// Error of the thin lines.
+const THIN: f64 = 0.05;
 
-/// Draws computed over measured fuel, with the line of equality and lines 5 % beside it.
+/// Draws computed over measured fuel, with the line of equality and lines 5 % above and below.
 #[must_use]
 pub fn fleet_scatter(marks: &[FleetMark]) -> Picture {
     let figures = distinct(marks.iter().map(|mark| mark.figure.as_str()));
@@ -78,7 +78,7 @@ pub fn fleet_scatter(marks: &[FleetMark]) -> Picture {
         let (symbol, colour) = Symbol::nth(k);
         Entry::symbol(symbol, Symbol::filled(colour), *name)
     });
-    let note = "Thick line: computed = measured; thin lines: 5 % beside it. Equal cars repeat their tests within about 3 %.";
+    let note = "Thick line: computed = measured; thin lines: 5 % more and less. Equal cars repeat their tests within about 3 %.";
     Chart::new(
         "Computed against measured fuel",
         rms(marks, &figures),
@@ -124,7 +124,7 @@ fn panel(rect: Rect, figure: &str, rows: &[(&FleetMark, usize)], groups: &[&str]
     };
     let mut panel = Panel::new(rect, axis("Measured"), axis("Computed"));
     let [from, to] = [low - room, high + room];
-    for factor in [1.0 - BESIDE, 1.0 + BESIDE] {
+    for factor in [1.0 - THIN, 1.0 + THIN] {
         // Within the frame.
         let [left, right] = [from.max(from / factor), to.min(to / factor)];
         panel.segment(

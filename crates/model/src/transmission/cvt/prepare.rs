@@ -28,7 +28,7 @@ fn sheave_volumes_m3<R: Real>(cvt: &Cvt<R>, g: &Geometry<R>) -> (R, R) {
 /// The geometry before the step, what the ratio control kept of it, and what is imposed on the step.
 pub(super) type Before<'a, R> = (&'a Geometry<R>, &'a Shifting<R>, &'a Option<Hold<R>>);
 
-/// What a try of the solve asks of the shift.
+/// Demand of a try of the solve on the shift.
 #[derive(Clone, Copy)]
 pub(super) struct Try<R: Real> {
     /// Efficiency that the route at full load reckons with (RC-3, RC-7).

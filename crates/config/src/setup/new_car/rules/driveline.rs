@@ -128,7 +128,7 @@ impl Given<'_> {
         }
     }
 
-    /// Overall ratio of the highest gear from engine over road speed (NC-16); none without one, or beside a final drive.
+    /// Overall ratio of the highest gear from engine over road speed (NC-16); none without one, or with a final drive.
     fn top_by_speeds(&mut self) -> Option<f64> {
         let rpm_per_kmh = self.number("n-over-v", &SPEED_PER_SPEED)?;
         if self.text("final-drive").is_some() {
