@@ -66,8 +66,12 @@ pub fn url_path(path: &[u8]) -> String {
 /// # Errors
 /// A map has keys that are not text; no value of this program has.
 pub fn json_text(value: &impl Serialize) -> Result<String, Problems> {
-    let json =
+    let mut json =
         serde_json::to_string_pretty(value).map_err(|error| Problem::invalid(error.to_string()))?;
+    if !json.contains(is_hidden) {
+        json.push('\n');
+        return Ok(json);
+    }
     let mut text = String::with_capacity(json.len() + 1);
     for c in json.chars() {
         match is_hidden(c) {

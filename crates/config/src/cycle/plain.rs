@@ -46,23 +46,39 @@ fn phase(name: &str, phases: &mut Vec<String>) -> Option<u16> {
     u16::try_from(place).ok()
 }
 
+/// Parts of a text between bytes of ASCII. They are short: `str::split` would set out for a search of long ones at each.
+fn split(text: &str, at: u8) -> impl Iterator<Item = &str> {
+    let mut rest = Some(text);
+    std::iter::from_fn(move || {
+        let all = rest?;
+        let end = all.bytes().position(|byte| byte == at);
+        rest = end.map(|end| &all[end + 1..]);
+        Some(&all[..end.unwrap_or(all.len())])
+    })
+}
+
+/// The cells of a line.
+fn cells(line: &str) -> impl Iterator<Item = &str> {
+    split(line, b',')
+}
+
 /// The trace of a table whose first row is at 0 s; none where it has another column or a cell that is not of its kind. Phases known already keep their index,
 /// new ones are added.
 pub(super) fn plain_trace(text: &str, phases: &mut Vec<String>) -> Option<Trace> {
-    let mut lines = text.lines();
-    let columns: Vec<Column> = (lines.next()?.split(','))
+    let mut lines = split(text, b'\n').map(|line| line.strip_suffix('\r').unwrap_or(line));
+    let columns: Vec<Column> = cells(lines.next()?)
         .map(Column::from_name)
         .collect::<Option<_>>()?;
     let has = [0, 1, 2].map(|gear| {
         let is = |column: &Column| matches!(column, Column::Gear(own) if *own == gear);
         columns.iter().any(is)
     });
-    let mut rows: Vec<Row> = Vec::with_capacity(text.lines().count());
+    let mut rows: Vec<Row> = Vec::new();
     let mut before = phases.len();
-    for line in lines {
+    for line in lines.filter(|line| !line.is_empty()) {
         before = phases.len();
         let mut row = Row::default();
-        for (column, cell) in columns.iter().zip(line.split(',')) {
+        for (column, cell) in columns.iter().zip(cells(line)) {
             match column {
                 Column::Time => row.time_s = Some(cell.parse().ok()?),
                 Column::Speed => row.speed_m_s = Some(speed("speed_km_h", cell.parse().ok()?).1),

@@ -1,9 +1,10 @@
 //! Records of a reading session.
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use crate::problem::Problem;
 use crate::reader::recorded::Recorded;
 use cvtcycle_model::keys::with_labels;
+use rustc_hash::FxHashMap;
 
 /// Information about one key after reading it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,7 +63,7 @@ pub(crate) struct Log {
     /// Values for the parts of the model.
     pub values: Recorded,
     /// Index of `keys` by their dotted path.
-    pub index: HashMap<String, usize>,
+    pub index: FxHashMap<String, usize>,
     /// Paths whose whole content counts as read.
     pub read: BTreeSet<String>,
     /// Paths of tables that were read.

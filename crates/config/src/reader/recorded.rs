@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::cell::Cell;
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::maps::MapTable;
@@ -10,6 +9,7 @@ use super::path::join;
 use cvtcycle_model::keys::file_table::{FileRows, FileTable};
 use cvtcycle_model::keys::{Bound, Key, Kind, Quantity, Values};
 use cvtcycle_model::maps::{BsfcMap, LossMap};
+use rustc_hash::FxHashMap;
 
 /// A value that is no single number.
 #[derive(Clone, Debug)]
@@ -74,10 +74,19 @@ impl<T> InOrder<T> {
         Some(&self.0[index].1)
     }
 
+    fn get(&self, name: &str) -> Option<&T> {
+        let found = self.0.iter().find(|(own, _)| own == name);
+        found.map(|(_, value)| value)
+    }
+
+    fn push(&mut self, name: Name, value: T) {
+        self.0.push((name, value));
+    }
+
     fn set(&mut self, name: Name, value: T) {
         match self.0.iter_mut().find(|(own, _)| *own == name) {
             Some((_, old)) => *old = value,
-            None => self.0.push((name, value)),
+            None => self.push(name, value),
         }
     }
 }
@@ -99,12 +108,10 @@ struct Table {
 pub(crate) struct Recorded {
     tables: Vec<Table>,
     /// Indices of the tables by their paths.
-    paths: HashMap<String, usize>,
+    paths: FxHashMap<String, usize>,
     /// In SI units; NaN for what may be absent and is.
     pub numbers: Vec<f64>,
     pub rows: Vec<NumberRow>,
-    /// Indices of the numbers by their dotted keys.
-    keys: HashMap<String, usize>,
 }
 
 impl Recorded {
@@ -136,25 +143,20 @@ impl Recorded {
 
     /// Records a number in SI units.
     pub fn number(&mut self, path: &str, key: &Key<'static>, si: f64) {
-        let own = join(path, key.name);
-        let index = match self.keys.get(&own) {
-            Some(index) => *index,
-            None => self.numbers.len(),
-        };
-        if index < self.numbers.len() {
-            self.numbers[index] = si;
+        let table = self.add_table(path);
+        let numbers = &mut self.tables[table].numbers;
+        if let Some(index) = numbers.get(key.name) {
+            self.numbers[*index] = si;
             return;
         }
+        numbers.push(key.name.into(), self.numbers.len());
         self.numbers.push(si);
         self.rows.push(NumberRow {
-            key: own.as_str().into(),
+            key: join(path, key.name).into(),
             quantity: key.quantity,
             range: key.range(),
             is_whole: matches!(key.kind, Kind::Integer(..)),
         });
-        self.keys.insert(own, index);
-        let table = self.table_mut(path);
-        table.numbers.set(key.name.into(), index);
     }
 
     /// Records a value that is no single number.
@@ -175,9 +177,9 @@ impl Recorded {
 
     /// Index of the number of a dotted key; none of what is no number, and of a number whose presence gives a part another form.
     pub fn find(&self, key: &str) -> Option<usize> {
-        let index = *self.keys.get(key)?;
         let (path, name) = key.rsplit_once('.').unwrap_or(("", key));
         let table = &self.tables[*self.paths.get(path)?];
+        let index = *table.numbers.get(name)?;
         let decides = |(of, given): &(Box<str>, bool)| **of == *name && !given;
         (!table.is_absent && !table.given.iter().any(decides)).then_some(index)
     }

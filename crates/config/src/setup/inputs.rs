@@ -17,9 +17,9 @@ use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::variator::Formulation;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::path::Path;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// A document and what is wrong with it so far.
 #[derive(Clone, Debug, Default)]
@@ -177,10 +177,8 @@ impl Inputs {
         }
         let assembled = assembled?;
         problems.finish()?;
-        let index = keys.iter().enumerate();
-        let index = index.map(|(k, info): (usize, &KeyInfo)| (info.key.clone(), k));
         let read = Validated {
-            index: index.collect(),
+            index: OnceLock::new(),
             inputs: self,
             keys,
             recorded,
@@ -196,12 +194,23 @@ pub(super) struct Validated {
     pub inputs: Inputs,
     /// Every key that was read, vehicle first, with the prefixes of the fluids.
     pub keys: Vec<KeyInfo>,
-    /// Places in `keys`.
-    pub index: HashMap<String, usize>,
+    /// Places in `keys`, once one is looked for: a run looks for none.
+    index: OnceLock<FxHashMap<String, usize>>,
     /// The values of each file, in the order of [`Target::CAR`].
     pub recorded: [Recorded; 3],
     /// The last set that chooses other options, and the keys that choose them.
     pub chosen: Mutex<Option<(Vec<String>, ParamSet)>>,
+}
+
+impl Validated {
+    /// What is known about a key.
+    pub fn info(&self, key: &str) -> Option<&KeyInfo> {
+        let index = self.index.get_or_init(|| {
+            let keys = self.keys.iter().enumerate();
+            keys.map(|(k, info)| (info.key.clone(), k)).collect()
+        });
+        self.keys.get(*index.get(key)?)
+    }
 }
 
 /// The car that a reading makes.

@@ -345,7 +345,7 @@ pub fn read_lubricant(file: &str, text: &str) -> Result<(Lubricant, Vec<KeyInfo>
 /// # Ok::<(), cvtcycle_config::Problems>(())
 /// ```
 pub fn load(word: &str, options: &Options) -> Result<Setup, Problems> {
-    Ok(ParamSet::load(word, options)?.setup())
+    Ok(ParamSet::load(word, options)?.into_setup())
 }
 
 /// As [`load`], for a vehicle's text that need not be on disk. `file` is its name or path, which problems cite and from which paths of
@@ -367,7 +367,7 @@ pub fn read(
     files: Box<dyn Files>,
     options: &Options,
 ) -> Result<Setup, Problems> {
-    Ok(ParamSet::read(file, text, files, options)?.setup())
+    Ok(ParamSet::read(file, text, files, options)?.into_setup())
 }
 
 /// As [`read`], for the twin of the vehicle: the same car with a manual box.
@@ -380,7 +380,7 @@ pub fn read_twin(
     files: Box<dyn Files>,
     options: &Options,
 ) -> Result<Setup, Problems> {
-    Ok(ParamSet::read_twin(file, text, files, options)?.setup())
+    Ok(ParamSet::read_twin(file, text, files, options)?.into_setup())
 }
 
 /// Range of the temperature of all parts at the start, degC.

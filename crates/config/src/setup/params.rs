@@ -207,6 +207,19 @@ impl ParamSet {
         }
     }
 
+    /// As [`ParamSet::setup`], without a copy of what only this set has.
+    pub(super) fn into_setup(mut self) -> Setup {
+        let keys = match Arc::get_mut(&mut self.read) {
+            Some(read) if self.changes.is_empty() => std::mem::take(&mut read.keys),
+            _ => self.keys(),
+        };
+        Setup {
+            keys,
+            origin: self.read.inputs.origin(),
+            ..Setup::from_params(&self)
+        }
+    }
+
     /// True where the set has the key.
     #[must_use]
     pub fn has(&self, key: &str) -> bool {
@@ -214,8 +227,7 @@ impl ParamSet {
     }
 
     fn info(&self, key: &str) -> Option<&KeyInfo> {
-        let index = self.read.index.get(key)?;
-        self.read.keys.get(*index)
+        self.read.info(key)
     }
 
     /// Finds a number by its dotted key (`lubricant.` and `engine_oil.` for the fluids). It may be at its default; it may also belong to an
