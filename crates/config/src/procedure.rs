@@ -62,7 +62,7 @@ pub struct Procedure {
     pub title: String,
     /// Word of its cycle.
     pub cycle_word: String,
-    /// Its cycle; `wltc` still has to be chosen for a car ([`Procedure::cycle_for`]).
+    /// Cycle; `wltc` still has to be chosen for a car ([`Procedure::cycle_for`]).
     pub cycle: Cycle,
     /// Start; the second run of TE-1 is always warm.
     pub start: Start,

@@ -17,7 +17,7 @@ use crate::{Fleet, Refused};
 /// A car of a table.
 #[derive(Clone, Debug)]
 pub struct FleetCar {
-    /// Its name.
+    /// Name.
     pub id: String,
     /// Line of its row.
     pub line: u64,

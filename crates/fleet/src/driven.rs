@@ -83,7 +83,7 @@ pub fn drive(
 
 fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let loaded = match car.by_test.get(&test.name) {
-        // Its road load is that of the test already.
+        // The road load is that of the test already.
         Some(own) => Procedure {
             load_factor: 1.0,
             ..test.clone()

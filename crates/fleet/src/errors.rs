@@ -34,7 +34,7 @@ pub struct ErrorStatistics {
 }
 
 impl ErrorStatistics {
-    /// Of errors with the names of their cars; `None` of none.
+    /// Statistics of errors with the names of their cars; `None` without errors.
     #[must_use]
     pub fn new(errors: &[(&str, f64)]) -> Option<Self> {
         let n = errors.len();

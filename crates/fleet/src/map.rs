@@ -19,7 +19,7 @@ pub(crate) const WORDS: [&str; 7] = [
     "engine-like",
 ];
 
-/// Which columns of a table give which numbers of a car.
+/// Columns of a table that give the numbers of a car.
 ///
 /// A value is made of text and columns: `"{test_weight_lb}lb"`; `{years:4}` has the first four characters of the cell. A value with an empty
 /// cell is left out.

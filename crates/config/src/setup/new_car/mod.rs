@@ -79,7 +79,7 @@ pub struct NewCar {
     pub notes: Vec<String>,
 }
 
-/// What a class is of.
+/// Part of a car that a class describes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClassOf {
     /// Body, with an engine.
@@ -91,7 +91,7 @@ pub enum ClassOf {
 }
 
 impl ClassOf {
-    /// What a class is of, by its name.
+    /// Finds the part from the name of a class.
     #[must_use]
     pub fn of_name(name: &str) -> Self {
         match (name.starts_with("box_"), name.starts_with(ENGINE)) {
