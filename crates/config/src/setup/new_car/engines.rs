@@ -42,7 +42,7 @@ pub fn named_engines() -> Vec<&'static str> {
         .collect()
 }
 
-/// The class that is asked for.
+/// Class of a technology and year.
 ///
 /// # Errors
 /// An engine that is not known, a year that is none, and two engines at once.
