@@ -299,7 +299,7 @@ fn pair_errors(pairs: &[Pair], figures: &[String]) -> Vec<PairErrors> {
     figures.iter().filter_map(of).collect()
 }
 
-/// What is not as it should be, a line each: exit code 1.
+/// Lists unread columns, refused rows and failed checks, a line each: exit code 1.
 fn failures(fleet: &Fleet, driven: &[DrivenCar]) -> Vec<String> {
     let mut lines: Vec<String> = fleet
         .unknown

@@ -3,7 +3,7 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | TE-1 | result = (1 - s) F_start + s F_warm, F fuel per distance, s `warm_share`; F_warm of the same cycle directly after | source: the test's regulation, in its file |
-//! | TE-3 | F_reported = F (0.4 + 0.6 X/X_ref), X heating value of a litre of the car's fuel, X_ref `reference_mj_per_litre` | source: 40 CFR 600.113-12, its factor 0.6 and 31.82 MJ/L (0.739 kg/L of 18 507 Btu/lb): fuel economy is stated for the fuel of 1975 |
+//! | TE-3 | F_reported = F (0.4 + 0.6 X/X_ref), X heating value of a litre of the car's fuel, X_ref `reference_mj_per_litre` | source: 40 CFR 600.113-12, its factor 0.6 and 31.78 MJ/L (specific gravity 0.739 at 60 degF, 0.7383 kg/L, of 18 507 Btu/lb), from memory: fuel economy is stated for the fuel of 1975 |
 //! | TE-2 | road load times `load_factor`, electrical load plus `electrical_w` | source: as TE-1 |
 //!
 //! The selector of an automatic box is in neutral after a start as long as the cycle says so (SE-1). A file of the user is read like the shipped ones,

@@ -51,7 +51,7 @@ pub fn baselines(cars: &[Entry], column: Option<&str>) -> Vec<Baseline> {
     let Some((_, first)) = cars.first() else {
         return all;
     };
-    for (index, test) in first.tests.iter().enumerate() {
+    for index in 0..first.tests.len() {
         let mut figures: Vec<&String> = cars
             .iter()
             .flat_map(|(_, driven)| driven.tests[index].fuel.keys())
@@ -85,7 +85,6 @@ pub fn baselines(cars: &[Entry], column: Option<&str>) -> Vec<Baseline> {
                 }
             }
         }
-        let _ = test;
     }
     all
 }

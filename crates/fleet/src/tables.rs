@@ -3,7 +3,7 @@
 use cvtcycle_config::procedure::{Procedure, TestResult};
 
 use crate::baselines::Baseline;
-use crate::errors::{Entry, GroupErrors, Pair};
+use crate::errors::{Entry, ErrorStatistics, GroupErrors, Pair};
 use crate::{Fleet, Refused};
 
 /// Range of 90 % of cars for a computed figure, as factors on it: low and high. `None` where no measured cars tell.
@@ -105,111 +105,95 @@ pub fn fleet_csv(
     finished(out)
 }
 
+/// Names of the cells of [`statistics`].
+const STATISTICS: [&str; 7] = [
+    "n",
+    "mean_percent",
+    "sd_percent",
+    "rms_percent",
+    "within_5_percent",
+    "worst_percent",
+    "worst_car",
+];
+
+fn statistics(e: &ErrorStatistics) -> impl Iterator<Item = String> {
+    let numbers = [
+        e.mean_percent,
+        e.sd_percent,
+        e.rms_percent,
+        e.within_5_percent,
+        e.worst_percent,
+    ];
+    let numbers = numbers.map(|x| number(Some(x)));
+    [e.n.to_string()]
+        .into_iter()
+        .chain(numbers)
+        .chain([e.worst_car.clone()])
+}
+
+/// A table of names and rows of cells.
+fn csv_table<const N: usize>(
+    names: [&str; N],
+    rows: impl Iterator<Item = ([String; N], Vec<String>)>,
+    more: &[&str],
+) -> Vec<u8> {
+    let mut out = csv::Writer::from_writer(Vec::new());
+    let head: Vec<String> = names
+        .iter()
+        .chain(more)
+        .map(|name| (*name).to_owned())
+        .collect();
+    put(&mut out, &head);
+    for (words, cells) in rows {
+        put(
+            &mut out,
+            &words.into_iter().chain(cells).collect::<Vec<_>>(),
+        );
+    }
+    finished(out)
+}
+
 /// `errors.csv`: statistics of the errors by group.
 #[must_use]
 pub fn errors_csv(groups: &[GroupErrors]) -> Vec<u8> {
-    let mut out = csv::Writer::from_writer(Vec::new());
-    let head = [
-        "figure",
-        "column",
-        "word",
-        "n",
-        "mean_percent",
-        "sd_percent",
-        "rms_percent",
-        "within_5_percent",
-        "worst_percent",
-        "worst_car",
-    ];
-    put(&mut out, &head.map(str::to_owned));
-    for group in groups {
-        let e = &group.errors;
-        let mut cells = vec![
-            group.figure.clone(),
-            group.column.clone(),
-            group.word.clone(),
-            e.n.to_string(),
-        ];
-        cells.extend(
-            [
-                e.mean_percent,
-                e.sd_percent,
-                e.rms_percent,
-                e.within_5_percent,
-                e.worst_percent,
-            ]
-            .map(|x| number(Some(x))),
-        );
-        cells.push(e.worst_car.clone());
-        put(&mut out, &cells);
-    }
-    finished(out)
+    let row = |group: &GroupErrors| {
+        let words = [&group.figure, &group.column, &group.word].map(Clone::clone);
+        (words, statistics(&group.errors).collect())
+    };
+    csv_table(
+        ["figure", "column", "word"],
+        groups.iter().map(row),
+        &STATISTICS,
+    )
 }
 
 /// `pairs.csv`: differences between cars that differ in their box.
 #[must_use]
 pub fn pairs_csv(pairs: &[Pair]) -> Vec<u8> {
-    let mut out = csv::Writer::from_writer(Vec::new());
-    put(
-        &mut out,
-        &[
-            "figure",
-            "carid",
-            "other",
-            "measured_percent",
-            "computed_percent",
-            "error_points",
-        ]
-        .map(str::to_owned),
-    );
-    for pair in pairs {
-        let mut cells = vec![pair.figure.clone(), pair.car.clone(), pair.other.clone()];
-        cells.extend(
-            [pair.measured_percent, pair.computed_percent, pair.error()].map(|x| number(Some(x))),
-        );
-        put(&mut out, &cells);
-    }
-    finished(out)
+    let row = |pair: &Pair| {
+        let words = [&pair.figure, &pair.car, &pair.other].map(Clone::clone);
+        let numbers = [pair.measured_percent, pair.computed_percent, pair.error()];
+        (words, numbers.map(|x| number(Some(x))).to_vec())
+    };
+    let more = ["measured_percent", "computed_percent", "error_points"];
+    csv_table(["figure", "carid", "other"], pairs.iter().map(row), &more)
 }
 
 /// `baselines.csv`: errors of regressions on the same cars.
 #[must_use]
 pub fn baselines_csv(baselines: &[Baseline]) -> Vec<u8> {
-    let mut out = csv::Writer::from_writer(Vec::new());
-    put(
-        &mut out,
-        &[
-            "figure",
-            "transmission",
-            "knows",
-            "constants",
-            "n",
-            "mean_percent",
-            "sd_percent",
-            "rms_percent",
-            "within_5_percent",
-        ]
-        .map(str::to_owned),
-    );
-    for baseline in baselines {
-        let e = &baseline.errors;
-        let mut cells = vec![
-            baseline.figure.clone(),
-            baseline.transmission.clone(),
-            baseline.knows.clone(),
-            baseline.constants.to_string(),
-            e.n.to_string(),
+    let row = |own: &Baseline| {
+        let words = [
+            own.figure.clone(),
+            own.transmission.clone(),
+            own.knows.clone(),
+            own.constants.to_string(),
         ];
-        cells.extend(
-            [
-                e.mean_percent,
-                e.sd_percent,
-                e.rms_percent,
-                e.within_5_percent,
-            ]
-            .map(|x| number(Some(x))),
-        );
-        put(&mut out, &cells);
-    }
-    finished(out)
+        (words, statistics(&own.errors).collect())
+    };
+    csv_table(
+        ["figure", "transmission", "knows", "constants"],
+        baselines.iter().map(row),
+        &STATISTICS,
+    )
 }

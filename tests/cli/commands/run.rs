@@ -562,3 +562,58 @@ fn files_of_a_run_against_the_twin_of_a_shipped_car() {
         assert_eq!(car["name"], name);
     }
 }
+
+/// TR-1 by hand from the run's own numbers: the largest missing force over the inertia, times the seconds that miss, against 2 mph on a US cycle. Both
+/// outcomes occur.
+#[test]
+fn a_trace_is_missed_beyond_its_tolerance() {
+    let mut outcomes = Vec::new();
+    for mass_kg in [1405.0, 1500.0, 1600.0, 1700.0, 1900.0, 2300.0] {
+        let set = format!("road_load.mass_kg={mass_kg}");
+        let words = [
+            "run",
+            "--vehicle",
+            "civic_20_cvt",
+            "--cycle",
+            "us06",
+            "--start",
+            "warm",
+            "--baseline",
+            "none",
+            "--price",
+            "never",
+            "--set",
+            &set,
+            "--json",
+        ];
+        let output = run(&words);
+        let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let own = &found["runs"][0];
+        let missed_s = own["trace_missed_s"].as_f64().unwrap();
+        let checks = own["failed_checks"].as_array().unwrap();
+        let failed = checks.iter().any(|check| check == "missed_trace");
+        if missed_s > 0.0 {
+            let torque_nm = own["worst_deficit"]["wheel_torque_nm"].as_f64().unwrap();
+            let setup = cvtcycle::config::setup::load(
+                "civic_20_cvt",
+                &cvtcycle::config::setup::Options::default(),
+            )
+            .unwrap();
+            let base = setup.road_load.base;
+            let inertia_kg = mass_kg * base.inertia_kg / base.mass_kg;
+            let slower_m_s = torque_nm / base.wheel_radius_m * missed_s / inertia_kg;
+            assert_eq!(
+                failed,
+                slower_m_s > 2.0 * 0.44704,
+                "{mass_kg} kg: {slower_m_s} m/s"
+            );
+            outcomes.push(failed);
+        } else {
+            assert!(!failed, "{mass_kg} kg");
+        }
+    }
+    assert!(
+        outcomes.contains(&true) && outcomes.contains(&false),
+        "{outcomes:?}"
+    );
+}

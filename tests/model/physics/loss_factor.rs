@@ -1,8 +1,9 @@
 //! Factors on losses: without a loss, with all of it, and with any part of it (CV-7, MB-6, LC-6).
 
+use cvtcycle_config::cycle::read_csv;
 use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
-use cvtcycle_model::drive::{Conditions, Start, drive};
+use cvtcycle_model::drive::{Conditions, Row, Start, drive};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::loss_factor::{LossFactors, UNCHANGED};
@@ -147,6 +148,35 @@ fn a_loss_that_is_removed_is_zero_in_every_row() {
     }
 }
 
+/// Conservation: gross slip of both pulleys times the largest factor would leave no speed to the output (CV-1); it is bound before (CV-7). A clamp
+/// that is too weak by half and a hard launch get there. An input of the fuzzer: the speed of the engine was infinite.
+#[test]
+fn the_largest_factor_on_gross_slip_leaves_a_speed() {
+    let plain = car(
+        "rover_216_cvt",
+        &[
+            "transmission.cvt.clamp=slip_limited",
+            "transmission.cvt.clamp.slip_limited.safety_factor=0.5",
+        ],
+    );
+    let launch = read_csv("launch.csv", b"time_s,speed_kmh\n0,0\n1.85,51\n4,51\n").unwrap();
+    let conditions = Conditions {
+        keep_rows: true,
+        ..at(-3.5, Start::Soak)
+    };
+    let car = plain.with_losses_times(&only(Component::BeltSlip, 5.0));
+    let rows = drive(&car, &launch, &conditions).rows;
+    let most = rows.iter().map(|row| row.slip).fold(0.0, f64::max);
+    assert!(most <= 0.8, "{most}");
+    for row in &rows {
+        let losses: f64 = Component::ALL.iter().map(|part| row.loss_w[*part]).sum();
+        assert!(
+            (row.engine_speed_rad_s + losses + row.fuel_kg_s).is_finite(),
+            "{row:?}"
+        );
+    }
+}
+
 /// Hand calculation of a launch: the torque at the box times the slip speed is the loss that the car with a coupling of no loss does not have.
 /// Both cars turn the engine alike, and the engine's fuel differs by the work that it does not do.
 #[test]
@@ -167,8 +197,7 @@ fn launch_price_by_hand() {
             }
             slipping += 1;
             assert!(b.loss_w[Component::LaunchClutch] <= 0.0);
-            let own =
-                |row: &cvtcycle_model::drive::Row| row.engine_torque_nm * row.engine_speed_rad_s;
+            let own = |row: &Row| row.engine_torque_nm * row.engine_speed_rad_s;
             by_hand_j += a.loss_w[Component::LaunchClutch] * a.dt_s;
             engine_j += (own(a) - own(b)) * a.dt_s;
         }

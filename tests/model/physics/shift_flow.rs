@@ -1,4 +1,4 @@
-//! A pump that cannot feed the clamp and the shift that is asked for: the clamp comes first, the shift waits (PU-7, RC-5).
+//! A pump that cannot feed the clamp and the demanded shift: the clamp comes first, the shift waits (PU-7, RC-5).
 //!
 //! Truth: the balance of the oil from the rows, with the volume that the sheaves sweep by the geometry of the belt; solves that end; the same text
 //! with f64.

@@ -203,7 +203,7 @@ pub(super) struct Validated {
 }
 
 impl Validated {
-    /// What is known about a key.
+    /// Knowledge about a key.
     pub fn info(&self, key: &str) -> Option<&KeyInfo> {
         let index = self.index.get_or_init(|| {
             let keys = self.keys.iter().enumerate();

@@ -11,7 +11,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | TR-1 | the car is slower than the trace by at most dv = F t/m_e, F the largest missing force at the wheels, t the time of all rows that miss; no failure up to 2 mph on US cycles, 2 km/h on others | derived, an upper bound; tolerances: 40 CFR 1066.425, UN Regulation 83, UN GTR 15 |
+//! | TR-1 | the car is slower than the trace by at most dv = F t/m_e, F the largest missing force at the wheels, t the time of all rows that miss; no failure up to 2 mph on US cycles, 2 km/h on others | derived, an upper bound; tolerances: 40 CFR 1066.425, UN Regulation 83, UN GTR 15, from memory |
 
 use serde::{Deserialize, Serialize};
 

@@ -52,7 +52,7 @@ fn shifted(
         state.driveline.stood,
     ) = (160.0, true, true);
     let d = car.transmission.solve(&around, &mut state);
-    // What the clamp leaves at the end of the step.
+    // Flow left by the clamp at the end of the step.
     let eta = car.oil.dynamic_pa_s(k);
     let drawn = cvt
         .pump

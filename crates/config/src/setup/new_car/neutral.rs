@@ -82,9 +82,8 @@ fn least_squares(forces: &[f64]) -> Option<[f64; 3]> {
         if pivot[i].abs() < 1e-12 {
             return None;
         }
-        for (k, row) in rows.iter_mut().enumerate().filter(|(k, _)| *k != i) {
+        for (_, row) in rows.iter_mut().enumerate().filter(|(k, _)| *k != i) {
             let factor = row[i] / pivot[i];
-            debug_assert!(k != i);
             row.iter_mut()
                 .zip(pivot)
                 .for_each(|(cell, own)| *cell -= factor * own);

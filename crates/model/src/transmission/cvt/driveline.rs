@@ -143,7 +143,7 @@ pub(crate) struct EngineShaft<'a, R: Real = f64> {
     drag_nm: R,
 }
 
-/// What the pump's circuit does with the pressure that the clamp law sets.
+/// Answer of the pump's circuit to the pressure that the clamp law sets.
 #[derive(Clone, Copy)]
 pub(crate) struct Circuit<R: Real = f64> {
     /// Pressure that it holds, Pa.
@@ -594,9 +594,9 @@ impl<'a, R: Real> Driveline<'a, R> {
         state
     }
 
-    /// What the circuit holds of the pressure that the clamp law sets, Pa, with a flow into the pulleys, before which the clamp comes or not
-    /// (PU-6, PU-7). A pump that is a measured map says nothing of its flow: it holds any pressure.
-    pub fn held(
+    /// Computes the pressure that the circuit reaches of the one that the clamp law sets, Pa, with a flow into the pulleys; the clamp is fed before
+    /// it, or not (PU-6, PU-7). A pump that is a measured map has no flow: it reaches any pressure.
+    pub fn circuit(
         &self,
         set_pa: R,
         pump: &TurningPump<R>,

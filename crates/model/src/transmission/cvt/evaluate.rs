@@ -393,7 +393,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             chain.secondary_rad_s,
         );
         let shift = (self.shift_flow_m3_s, self.clamp_first);
-        let circuit = line.held(set_pa, &next_pump, shift);
+        let circuit = line.circuit(set_pa, &next_pump, shift);
         point.guess = Guess {
             engine_rad_s,
             slip: chain.slip,

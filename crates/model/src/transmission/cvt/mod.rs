@@ -8,7 +8,7 @@
 //! | CV-4 | T_flywheel + accessories <= full load; the rest is a deficit | derived |
 //! | CV-6 | launch clutch: T_engine = T_p, loss T_p (w_e - w_p) for T_p >= 0; in overrun T_engine w_e = T_p w_p, no loss | derived |
 //! | CV-5 | unknowns pressure (through throttle), slip, engine speed (and output torque where CV-3 or CV-4 bind) by fixed point with secant, bounded | derived |
-//! | CV-7 | T' = f T of a part's torque or its map's, slip s' = f s with its loss, final drive GT-2 with f T_0 and f k | derived: definition of a loss changed by a factor f of `loss_factor`, for its price |
+//! | CV-7 | T' = f T of a part's torque or its map's, slip s' = f s with its loss and \|s'\| <= 0.8, final drive GT-2 with f T_0 and f k | derived: definition of a loss changed by a factor f of `loss_factor`, for its price; the bound ASSUMED, that of SL-9 at its largest: only gross slip is beyond it |
 //!
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
 

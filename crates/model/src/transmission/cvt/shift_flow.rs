@@ -7,7 +7,7 @@
 use super::evaluate::{Point, Step};
 use crate::math::{Mask, Real, physics};
 
-/// Flow that may be missing or unused, over that of the shift that is asked for.
+/// Flow that may be missing or unused, over that of the demanded shift.
 const TOLERANCE: f64 = 1e-6;
 /// Tries after which the interval is halved, and after which a run takes what it knows that there is.
 const HALVED_FROM: u8 = 8;
@@ -32,7 +32,7 @@ enum End {
 struct Search {
     /// Largest flow of the next try, m3/s.
     most: f64,
-    /// Flow of the shift that is asked for, m3/s.
+    /// Flow of the demanded shift, m3/s.
     asked: f64,
     /// Largest flow that there is, if one is known.
     low: Option<Tried>,

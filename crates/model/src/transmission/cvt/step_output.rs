@@ -72,7 +72,7 @@ fn idling<P: PrimeMover<R>, R: Real>(
         let set_pa;
         (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
         let shift = (step.shift_flow_m3_s, step.clamp_first);
-        let circuit = line.held(set_pa, &shaft.pump, shift);
+        let circuit = line.circuit(set_pa, &shaft.pump, shift);
         (at.pressure_pa, at.flow_limited) = (circuit.pressure_pa, circuit.limited);
         let pump = line.turn_engine(
             &mut at.torques,

@@ -15,7 +15,7 @@
 //! | RC-9 | RC-1 and RC-2 look at u <- u + (P/P_max - u)(1 - exp(-dt/tau)); RC-3 at P itself | ASSUMED: tau 0 to 3 s |
 //! | RC-10 | a change against the last one is made where \|ln(I*/I)\| > h, then in full; always to the ends of the ratio, and below 1.2 idle speed of the primary | ASSUMED: spools have friction and a pitot signal is a difference; h 0.02 to 0.10 |
 //! | RC-11 | cold: target + r clip((T_to - T)/(T_to - T_from), 0, 1) u_1, T of coolant or sump, u_1 rising from 0 without power to 1 at 1 % of rated power | ASSUMED: r 300 to 1000 rpm, gone by 40 to 60 degC coolant in modern cars; none in overrun |
-//! | RC-5 | and <= V_left / (A 2 tan th \|dR/d ln I\|), V_left by PU-7 at the end of the step, with the pressure that this rate needs (PC-5): the largest rate that fulfils it | derived: thesis 9.1; at the end of the step as all else in it; solved to 1e-6 of the flow asked for |
+//! | RC-5 | and <= V_left / (A 2 tan th \|dR/d ln I\|), V_left by PU-7 at the end of the step, with the pressure that this rate needs (PC-5): the largest rate that fulfils it | derived: thesis 9.1; at the end of the step as all else in it; solved to 1e-6 of the demanded flow |
 //!
 //! The power asked for is wheel power, so the ratio never chases its own losses.
 

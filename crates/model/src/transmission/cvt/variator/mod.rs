@@ -163,11 +163,20 @@ impl<R: Real> BeltLosses<R> {
     }
 }
 
+/// Most total slip that a factor leads to (CV-7): that of the largest allowed bound of both pulleys (SL-9). At 1 no speed belongs to it (CV-1).
+const MAX_SLIP: f64 = 0.8;
+
 #[physics]
 impl<R: Real> BeltLosses<R> {
+    /// The factor on slip, as far as its bound allows (CV-7).
+    fn slip_factor(&self, factor: &ByComponent<R>) -> R {
+        let most = MAX_SLIP / self.slip_total.abs();
+        most.min(factor[Component::BeltSlip])
+    }
+
     /// Each loss times its factor, slip with the loss that it makes (CV-7).
     pub fn times(self, factor: &ByComponent<R>) -> Self {
-        let slips = factor[Component::BeltSlip];
+        let slips = self.slip_factor(factor);
         BeltLosses {
             band_nm: factor[Component::BeltBand] * self.band_nm,
             film_nm: factor[Component::BeltFilm] * self.film_nm,
@@ -184,7 +193,7 @@ impl BeltState {
     /// Each loss times its factor, under an output torque, Nm, at a ratio (CV-7, VA-1).
     pub fn times(self, factor: &LossFactors, output_nm: f64, ratio: f64) -> Self {
         let losses = self.losses.times(factor);
-        let slips = factor[Component::BeltSlip];
+        let slips = self.losses.slip_factor(factor);
         // Parts of a printed sum other than VA-1 stay as they are.
         let own_nm = |l: &BeltLosses| output_nm / ratio * (1.0 - l.slip_total) + l.sum_nm(); // VA-1
         BeltState {
