@@ -2,6 +2,7 @@
 
 use clap::Args;
 use cvtcycle::config::csv::Columns;
+use cvtcycle::config::log::Repairs;
 use cvtcycle::config::setup::{
     self, AMBIENT, Kind, Options, START, STEP, Setup, TWIN, baseline_of,
 };
@@ -193,16 +194,22 @@ pub struct ColumnsArgs {
     /// without names the columns in their order: time:s,speed:mph
     #[arg(long, value_name = "LIST")]
     pub columns: Option<String>,
+    /// Repairs of a log: empty, stamps, negative, spikes and smooth are made, sort and cut where they are named, no-smooth leaves one
+    /// out, none all [default: auto]
+    #[arg(long, value_name = "LIST")]
+    pub repair: Option<String>,
 }
 
 impl ColumnsArgs {
     /// Parses the columns. Without the option, or after a problem, the file's own names are used.
     pub fn get(&self, problems: &mut Problems) -> Columns {
         let columns = self.columns.as_deref().map(Columns::parse);
-        problems
-            .take(columns.transpose())
-            .flatten()
+        let columns = problems.take(columns.transpose()).flatten();
+        let repairs = self.repair.as_deref().map(Repairs::parse);
+        let repairs = problems.take(repairs.transpose()).flatten();
+        columns
             .unwrap_or_default()
+            .with_repairs(repairs.unwrap_or_default())
     }
 }
 

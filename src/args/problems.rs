@@ -87,6 +87,7 @@ fn argument_option(argument: Argument) -> &'static str {
         Argument::Plan | Argument::Calibration => "PLAN",
         Argument::Cover => "--cover",
         Argument::Columns => "--columns",
+        Argument::Repair => "--repair",
         Argument::Output => "--out",
         Argument::File => "FILE",
     }

@@ -8,7 +8,7 @@ use cvtcycle::calibrate::open;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::{self, NamedBy, Options};
-use cvtcycle::config::{Problem, Problems, bounded, cycle, render};
+use cvtcycle::config::{Problem, Problems, bounded, cycle};
 use cvtcycle::output::summary::{differences, likeness};
 use cvtcycle::output::table::wrapped;
 use cvtcycle::study::Study;
@@ -19,7 +19,7 @@ use super::Execute;
 use crate::args::input_kind::InputKind;
 use crate::args::problems::{bad_value, cite, cite_options};
 use crate::args::{ColumnsArgs, JsonArgs, Names, bytes, cycles};
-use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text};
+use crate::print::{CommandOutput, CommandResult, Ending, Terminal, json_text, problems_text};
 use physics::PhysicsPlan;
 
 /// Arguments of `check`.
@@ -121,7 +121,7 @@ impl CheckArgs {
                     format!("ok  {file} ({})\n", kind.word()) + &notes.collect::<String>()
                 })
                 .collect(),
-            problems: render(
+            problems: problems_text(
                 &bad.flatten().cloned().collect::<Vec<_>>(),
                 terminal.stderr.is_on(),
             ),
@@ -138,7 +138,16 @@ fn check(file: &str, columns: &Columns) -> Checked {
         InputKind::Cycle => match cycle::open(&word, columns) {
             Ok(cycle) => {
                 let read_as = cycle.read_as.map(|words| format!("read as: {words}"));
-                Ok(read_as.into_iter().collect())
+                let recording = cycle.recording.unwrap_or_default();
+                let repairs = recording
+                    .repairs
+                    .iter()
+                    .map(|repair| format!("{}: {}", repair.name, repair.what));
+                let doubts = recording
+                    .doubts
+                    .iter()
+                    .map(|doubt| format!("doubt: {doubt}"));
+                Ok(read_as.into_iter().chain(repairs).chain(doubts).collect())
             }
             Err(found) => Err(map_problem(&word).map_or(found, Into::into)),
         },

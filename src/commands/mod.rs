@@ -12,6 +12,7 @@ mod fmu;
 mod label;
 mod levers;
 mod list;
+mod log;
 mod losses;
 mod new;
 mod optimum;
@@ -102,6 +103,8 @@ enum Command {
     Fleet(Box<fleet::FleetArgs>),
     /// Write a vehicle file from catalogue numbers
     New(Box<new::NewArgs>),
+    /// Show what is understood of a recorded drive: channels, units, rate, repairs, doubts; write it as a cycle
+    Log(log::LogArgs),
     /// Convert a drive cycle from one form of file to another: EPA, FASTSim, VECTO, a logger's table
     Convert(convert::ConvertArgs),
     /// Write a car as an FMU (FMI 2.0 or 3.0), a unit for co-simulation in other programs
@@ -155,6 +158,7 @@ impl Cli {
             Command::Optimum(args) => args.execute(terminal),
             Command::Levers(args) => args.execute(terminal),
             Command::Label(args) => args.execute(terminal),
+            Command::Log(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),
             Command::Report(args) => args.execute(terminal),
             Command::Whatif(args) => args.execute(terminal),

@@ -234,7 +234,7 @@ pub fn stream(
 /// Prints the output of a command or its problems, and returns the exit code.
 pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
     let mut output = result.unwrap_or_else(|problems| CommandOutput {
-        problems: render(&problems.map(cite_options), terminal.stderr.is_on()),
+        problems: problems_text(&problems.map(cite_options), terminal.stderr.is_on()),
         ending: Ending::BadInput,
         ..CommandOutput::default()
     });
@@ -257,6 +257,47 @@ pub fn finish(result: CommandResult, terminal: Terminal) -> u8 {
         terminal.stderr,
     ));
     output.ending.code()
+}
+
+/// Problems as text, and below them the same call with the columns with which a file is read.
+pub fn problems_text(problems: &[Problem], colour: bool) -> String {
+    let mut text = render(problems, colour);
+    let mut proposals: Vec<&str> = problems
+        .iter()
+        .map(|problem| problem.columns.as_str())
+        .filter(|columns| !columns.is_empty())
+        .collect();
+    proposals.dedup();
+    for columns in proposals {
+        text += &format!("try: {}\n", with_columns(std::env::args().skip(1), columns));
+    }
+    text
+}
+
+/// A call of the program with these columns in place of others, as a shell takes it.
+fn with_columns(arguments: impl Iterator<Item = String>, columns: &str) -> String {
+    let mut words = vec!["cvtcycle".to_owned()];
+    let mut is_value = false;
+    for argument in arguments {
+        let is_old = std::mem::replace(&mut is_value, argument == "--columns");
+        if !(is_old || is_value || argument.starts_with("--columns=")) {
+            words.push(quoted(&argument));
+        }
+    }
+    words.extend(["--columns".to_owned(), quoted(columns)]);
+    words.join(" ")
+}
+
+/// A word as a shell takes it: in quotes where it has more than letters, figures and signs without meaning there.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:,%+@".contains(c);
+    match word {
+        "" => "\"\"".to_owned(),
+        word if word.chars().all(is_plain) => word.to_owned(),
+        // Double quotes are those of all shells; where the word has signs that they do not hold, single ones.
+        word if !word.contains(['"', '$', '`', '\\', '!']) => format!("\"{word}\""),
+        word => format!("'{}'", word.replace('\'', "'\\''")),
+    }
 }
 
 fn unwritten(error: &io::Error) -> Problem {

@@ -1,8 +1,10 @@
 //! The summary of a run with all that is said of it: maps that were left, prices of the losses, published numbers.
 
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_model::drive::Conditions;
-use cvtcycle_output::summary::{Driven, Settings, StartWord, Summary, find_maps_left, summarise};
+use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_output::summary::{
+    Driven, RunSummary, Settings, StartWord, Summary, find_maps_left, summarise,
+};
 
 use crate::attribute::{Attribution, Depth, attribute};
 use crate::words;
@@ -71,5 +73,71 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
         run.price = Some(attribute(&priced, run));
     }
     words::run::assess(&mut summary, cycle, driven, of.published.as_deref());
+    bounds(&mut summary, of, driven);
     summary
+}
+
+/// Half width by which fuel and difference of a smoothed recording are open beside what the strength of the smoothing leaves: per cent of the fuel, and
+/// points. Twice the rms error of UDDS, HWFET, US06, NYCC and Artemis urban, rounded to whole km/h and mph at 10, 4, 2 and 1 Hz or with 0.05 m/s of
+/// noise, and smoothed (tests/cli/commands/log.rs repeats it).
+const LEFT: [f64; 2] = [0.9, 0.6];
+
+/// How far rate, resolution and smoothing of a recording leave the results open (LO-6): the cars drive it with a quarter and four times the density of
+/// LO-3 too.
+fn bounds(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
+    let recorded = of.cycle.recording.as_deref();
+    let Some((own, recorded)) = summary.recording.as_mut().zip(recorded) else {
+        return;
+    };
+    if recorded.bounds.is_empty() {
+        return;
+    }
+    let conditions = Conditions {
+        keep_rows: false,
+        ..of.conditions
+    };
+    let headline = |runs: &[RunSummary]| runs.iter().map(RunSummary::headline_fuel).collect();
+    let mut fuels: Vec<Vec<Option<f64>>> = vec![headline(&summary.runs)];
+    for trace in &recorded.bounds {
+        let cycle = Cycle {
+            manual: trace.clone(),
+            automatic: None,
+            recording: None,
+            ..of.cycle.clone()
+        };
+        let outcomes: Vec<_> = driven
+            .iter()
+            .map(|car| drive(car.setup, &cycle, &conditions))
+            .collect();
+        let cars: Vec<Driven> = driven
+            .iter()
+            .zip(&outcomes)
+            .map(|(car, outcome)| Driven { outcome, ..*car })
+            .collect();
+        let other = summarise(
+            &cycle,
+            of.ambient_degc,
+            of.start.clone(),
+            of.settings.clone(),
+            &cars,
+        );
+        fuels.push(headline(&other.runs));
+    }
+    let hull = |values: &dyn Fn(&Vec<Option<f64>>) -> Option<f64>| {
+        let all: Option<Vec<f64>> = fuels.iter().map(values).collect();
+        all.map(|all| {
+            let low = all.iter().copied().fold(f64::INFINITY, f64::min);
+            [low, all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        })
+    };
+    let fuel = hull(&|fuels| *fuels.first()?);
+    own.fuel =
+        fuel.map(|[low, high]| [low * (1.0 - 0.01 * LEFT[0]), high * (1.0 + 0.01 * LEFT[0])]);
+    own.percent = (1..driven.len())
+        .map(|k| {
+            let percent =
+                hull(&|fuels| Some(100.0 * ((*fuels.first()?)? / (*fuels.get(k)?)? - 1.0)));
+            percent.map(|[low, high]| [low - LEFT[1], high + LEFT[1]])
+        })
+        .collect();
 }

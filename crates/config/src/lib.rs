@@ -19,6 +19,7 @@
 //! | `procedure` | tests: a cycle with its start, temperature, load and figures |
 //! | `schema` | JSON Schema of the files |
 pub mod csv;
+pub mod log;
 pub mod cycle;
 mod document;
 mod files;

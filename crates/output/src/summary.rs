@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 use super::record::{Manifest, Record, run_word};
 use crate::fleet_spread::FleetRange;
 use crate::number::finite;
-use cvtcycle_config::cycle::Cycle;
+use cvtcycle_config::cycle::{Cycle, Repair};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::Outcome;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
@@ -43,6 +43,9 @@ pub struct Summary {
     /// Interpretation of the cycle's file, if it is not in the program's own form.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub read_as: Option<String>,
+    /// How the cycle's recording was repaired, and what is doubted; none of a cycle that was written as one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recording: Option<RecordingSummary>,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
     /// `soak`, `warm`, or the temperature of all nodes in degC.
@@ -56,6 +59,53 @@ pub struct Summary {
     /// Published numbers that this run contradicts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub contradicted: Vec<Contradiction>,
+}
+
+/// A recorded cycle: its repairs and doubts, and how far its resolution leaves the results open.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RecordingSummary {
+    /// Repairs that were made.
+    pub repairs: Vec<RepairSummary>,
+    /// Doubts, each a sentence without its full stop.
+    pub doubts: Vec<String>,
+    /// True where rows come at a rate, so that it is a log and no schedule.
+    pub is_log: bool,
+    /// Ends of the subject's fuel, in the unit of its headline, that rate, resolution and smoothing leave; none of speeds that were not smoothed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fuel: Option<[f64; 2]>,
+    /// The same of the difference to each baseline, per cent.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub percent: Vec<Option<[f64; 2]>>,
+}
+
+/// A repair of a recording.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RepairSummary {
+    /// Name, as `--repair` has it.
+    pub name: String,
+    /// Number of rows, samples or gaps.
+    pub count: usize,
+    /// What was done.
+    pub what: String,
+}
+
+impl RecordingSummary {
+    /// Repairs and doubts of a cycle.
+    #[must_use]
+    pub fn of(cycle: &Cycle) -> Option<Self> {
+        let recording = cycle.recording.as_deref()?;
+        let repair = |repair: &Repair| RepairSummary {
+            name: repair.name.clone(),
+            count: repair.count,
+            what: repair.what.clone(),
+        };
+        Some(RecordingSummary {
+            repairs: recording.repairs.iter().map(repair).collect(),
+            doubts: recording.doubts.clone(),
+            is_log: recording.is_log,
+            ..RecordingSummary::default()
+        })
+    }
 }
 
 /// Start as the user wrote it.
@@ -190,6 +240,7 @@ pub fn summarise(
         manifest: Manifest::new(SCHEMA),
         cycle: cycle.name.clone(),
         read_as: cycle.read_as.clone(),
+        recording: RecordingSummary::of(cycle),
         ambient_degc,
         start,
         settings,

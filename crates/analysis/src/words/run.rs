@@ -11,7 +11,7 @@ use cvtcycle_output::fleet_spread::{FleetRange, fuel_range, pair_range};
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
-    Comparison, Contradiction, Driven, MapLeft, RunSummary, StartWord, Summary,
+    Comparison, Contradiction, Driven, MapLeft, RecordingSummary, RunSummary, StartWord, Summary,
 };
 
 use super::intervals as drawn;
@@ -223,8 +223,16 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     };
     // The first interval alone carries the explanation of runs.
     let mut explained = [false, run.fleet.is_some()];
-    let against = summary.comparison.iter().filter_map(|of| {
-        let said = against(of, explained);
+    let recording = summary.recording.as_ref();
+    let left = |k: usize| recording.and_then(|own| own.percent.get(k).copied().flatten());
+    let against = summary.comparison.iter().enumerate().filter_map(|(k, of)| {
+        let said = against(of, explained).map(|said| match left(k) {
+            Some(ends) => format!(
+                "{said} [{} by the resolution of the log]",
+                between(ends, "%")
+            ),
+            None => said,
+        });
         explained[0] |= of.interval.is_some();
         explained[1] |= of.interval.is_none() && of.fleet.is_some();
         said
@@ -237,14 +245,40 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
             of.cars
         )
     });
+    let resolution = recording
+        .and_then(|own| own.fuel)
+        .map_or_else(String::new, |ends| {
+            let [low, high] = ends.map(|end| fixed(end, 2));
+            format!(" [{low} to {high} by the resolution of the log]")
+        });
+    let doubts = recording.map_or(&[][..], |own| &own.doubts);
+    let doubt = match doubts {
+        [] => String::new(),
+        doubts => {
+            let text = doubts.join("; ");
+            let stop = if text.ends_with('?') { "" } else { "." };
+            format!("DOUBTFUL, {text}{stop} ")
+        }
+    };
     let first = format!(
-        "{}: {} L/100 km{range}{against}.",
+        "{doubt}{}: {} L/100 km{resolution}{range}{against}.",
         run.vehicle,
         fixed(fuel, 2)
     );
-    let lines = [Some(first), price(run)].into_iter().flatten();
+    let lines = [Some(first), recording.and_then(repaired), price(run)]
+        .into_iter()
+        .flatten();
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
+}
+
+/// The repairs of a recording, a sentence.
+fn repaired(recording: &RecordingSummary) -> Option<String> {
+    let repairs = recording.repairs.iter();
+    let list: Vec<String> = repairs
+        .map(|own| format!("{} ({})", own.what, own.name))
+        .collect();
+    (!list.is_empty()).then(|| format!("The log was repaired: {}.", list.join("; ")))
 }
 
 /// Share of the distance between the ends of the draws by which the car as it is may be from their median. ASSUMED: half of the draws of any bell

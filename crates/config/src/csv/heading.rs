@@ -45,7 +45,7 @@ pub const UNITS: [(&str, &str); 38] = [
 ];
 
 /// A text in lower case, its words joined by `_`; a sign alone stays as it is.
-pub(super) fn bare(text: &str) -> String {
+pub(crate) fn bare(text: &str) -> String {
     let lower = text.trim().to_lowercase();
     let is_letter = |c: char| c.is_alphanumeric() || c == '°';
     let words = lower.split(|c: char| !is_letter(c));

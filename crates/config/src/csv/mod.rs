@@ -25,9 +25,12 @@ mod table;
 mod text;
 
 pub use collector::{Cell, Collector, Line};
+pub(crate) use heading::bare;
 pub use heading::{Foreign, UNITS};
 pub use named::Columns;
+pub(crate) use named::Entry;
 pub use schema::{Cells, Column, Schema};
 pub use stream::Lines;
 pub use table::{Row, Table, Value, first_names, read};
 pub use text::Field;
+pub(crate) use text::{empty, split};

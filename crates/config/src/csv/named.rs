@@ -2,23 +2,32 @@
 
 use super::heading::unit_named;
 use super::text::split;
+use crate::log::{Quantity, Repairs};
 use crate::{Argument, Problem};
+
+/// Word of a choice of rows: `where=VehId:7`.
+const WHERE: &str = "where";
 
 /// Form of an entry.
 const FORM: &str = "QUANTITY=NAME:UNIT with a comma between columns, or QUANTITY:UNIT for each column of a file without names";
 
-/// The columns that are meant; all that have a name of the schema if there are none.
+/// The columns that are meant, all that have a name of the schema if there are none; and the repairs of a log that are wanted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Columns(pub(super) Vec<Entry>);
+pub struct Columns {
+    pub(super) list: Vec<Entry>,
+    repairs: Repairs,
+}
 
 /// One column.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Entry {
-    /// A quantity, such as `speed`, or a column of the schema.
+pub(crate) struct Entry {
+    /// A quantity, such as `speed`, a column of the schema, or `where`.
     pub quantity: String,
     /// Name in the file; none where the columns are given in their order.
     pub name: Option<String>,
     pub unit: Option<String>,
+    /// True where the unit holds against the one that the file states: `km/h!`.
+    pub forced: bool,
 }
 
 impl Columns {
@@ -50,7 +59,8 @@ impl Columns {
             let Some(entry) = Entry::parse(own) else {
                 return wrong(format!("`{own}` names no column"));
             };
-            if list.iter().any(|other| other.quantity == entry.quantity) {
+            if entry.quantity != WHERE && list.iter().any(|other| other.quantity == entry.quantity)
+            {
                 return wrong(format!("{} is given twice", entry.quantity));
             }
             list.push(entry);
@@ -59,23 +69,42 @@ impl Columns {
         if named > 0 && named < list.len() {
             return wrong("some columns are named and some are not".to_owned());
         }
-        Ok(Columns(list))
+        Ok(Columns {
+            list,
+            repairs: Repairs::default(),
+        })
+    }
+
+    /// With these repairs of a log.
+    #[must_use]
+    pub fn with_repairs(self, repairs: Repairs) -> Self {
+        Columns { repairs, ..self }
+    }
+
+    /// Repairs of a log that are wanted.
+    #[must_use]
+    pub fn repairs(&self) -> Repairs {
+        self.repairs
+    }
+
+    pub(crate) fn entries(&self) -> &[Entry] {
+        &self.list
     }
 
     /// True where the names of the file say themselves what they are.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.list.is_empty()
     }
 
     /// True where the file has no line of names.
     pub(super) fn are_in_order(&self) -> bool {
-        self.0.iter().any(|entry| entry.name.is_none())
+        self.list.iter().any(|entry| entry.name.is_none())
     }
 
     /// True if a name of the file is one of them.
     pub(super) fn has(&self, text: &str) -> bool {
-        self.0
+        self.list
             .iter()
             .any(|entry| entry.name.as_deref() == Some(text))
     }
@@ -90,17 +119,26 @@ impl Entry {
                 quantity: some(quantity)?,
                 name: None,
                 unit: Some(some(unit)?),
+                forced: false,
             });
+        };
+        let is_unit = |unit: &str| {
+            let unit = unit.trim_end_matches('!');
+            unit_named(unit).is_some()
+                || Quantity::ALL
+                    .iter()
+                    .any(|(own, _)| own.unit(unit).is_some())
         };
         // A name may have a colon itself.
         let (name, unit) = match rest.rsplit_once(':') {
-            Some((name, unit)) if unit_named(unit).is_some() => (name, some(unit)),
+            Some((name, unit)) if quantity.trim() != WHERE && is_unit(unit) => (name, some(unit)),
             _ => (rest, None),
         };
         Some(Entry {
             quantity: some(quantity)?,
             name: Some(some(name)?),
-            unit,
+            forced: unit.as_deref().is_some_and(|unit| unit.ends_with('!')),
+            unit: unit.map(|unit| unit.trim_end_matches('!').to_owned()),
         })
     }
 }

@@ -121,7 +121,7 @@ impl Columns {
         problems: &mut Collector<'_>,
     ) -> Vec<Option<usize>> {
         let mut found = vec![None; fields.len()];
-        for (k, entry) in self.0.iter().enumerate() {
+        for (k, entry) in self.list.iter().enumerate() {
             let is_it = |field: &Field| Some(line.text_of(*field)) == entry.name.as_deref();
             let at = match entry.name {
                 Some(_) => fields.iter().position(is_it),

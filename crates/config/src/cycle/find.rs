@@ -4,6 +4,7 @@ use super::{Cycle, Interval, Trace, Weighting, embedded, names, read_columns};
 use crate::csv::Columns;
 use crate::files::bounded::{self, Limit};
 use crate::files::embedded::is_path;
+use crate::log::Repairs;
 use crate::{Argument, Problem, Problems, near, suggestion};
 use cvtcycle_model::drive::Vehicle;
 
@@ -65,7 +66,8 @@ pub fn find(word: &str) -> Result<Cycle, Problems> {
 /// As there; columns with a cycle that is no file.
 pub fn open(word: &str, columns: &Columns) -> Result<Cycle, Problems> {
     let named = find_named(word)?;
-    if named.is_some() && !columns.is_empty() {
+    let is_given = !columns.is_empty() || columns.repairs() != Repairs::default();
+    if named.is_some() && is_given {
         let problem =
             Problem::conflict(format!("`{word}` is no file whose columns could be named"));
         let problem = problem
@@ -224,6 +226,7 @@ fn cycle(name: &str, text: &str, kmh: f64) -> Cycle {
         manual: Trace::without_gears(vec![interval]),
         automatic: None,
         read_as: None,
+        recording: None,
         is_wltc: false,
     }
 }

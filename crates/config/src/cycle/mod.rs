@@ -16,6 +16,7 @@ mod row;
 mod write;
 
 pub use cvtcycle_model::cycle::*;
+pub(crate) use embedded::of_seconds;
 pub use embedded::{embedded, names, shared};
 pub use find::{ALIASES, CONSTANT, bytes, constant_speed, find, for_car, is_csv, name_of, open};
 pub use read::{read_columns, read_csv};

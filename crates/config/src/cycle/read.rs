@@ -5,9 +5,10 @@ use std::path::Path;
 use super::distance::{DistanceRow, Stretch, stretches};
 use super::gears::{GearColumns, GearCommand, commands};
 use super::row::{GEARS, MAX_DURATION_S, NOTE, Over, Row, Rows, schema};
-use super::{Cycle, Interval, Trace, Weighting};
-use crate::csv::{self, Collector, Columns, Line, Table};
-use crate::{Problem, Problems, readable};
+use super::{Cycle, Interval, Recording, Trace, Weighting};
+use crate::csv::{self, Collector, Columns, Entry, Line, Table};
+use crate::log::{self, Log, Quantity, Resolution, Samples};
+use crate::{Place, Problem, Problems, readable};
 
 /// Reads a drive cycle from the bytes of a CSV file called `file`.
 ///
@@ -23,13 +24,14 @@ pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
     read_columns(file, bytes, &Columns::default())
 }
 
-/// As [`read_csv`], with the columns that are meant; if there are any, all others are passed over.
+/// As [`read_csv`], with the columns that are meant, of which all others are passed over, and the repairs that are wanted. A file that is not written as the
+/// program's own tables, or as those of EPA, FASTSim and VECTO, is read as a log: see [`crate::log`].
 ///
 /// # Errors
 /// As there.
 pub fn read_columns(file: &str, bytes: &[u8], columns: &Columns) -> Result<Cycle, Problems> {
     let mut phases = Vec::new();
-    let (manual, read_as) = read_trace((file, columns), bytes, &mut phases)?;
+    let found = read_any(file, bytes, columns, &mut phases)?;
     let path = Path::new(file);
     let text = |part: Option<&std::ffi::OsStr>| {
         part.and_then(|part| part.to_str())
@@ -41,19 +43,272 @@ pub fn read_columns(file: &str, bytes: &[u8], columns: &Columns) -> Result<Cycle
         title: text(path.file_name()),
         phases,
         weighting: Weighting::None,
-        manual,
+        manual: found.trace,
         automatic: None,
-        read_as,
+        read_as: found.read_as,
+        recording: found.recording,
         is_wltc: false,
     })
 }
 
+/// A file that was read.
+struct Found {
+    trace: Trace,
+    read_as: Option<String>,
+    recording: Option<Box<Recording>>,
+}
+
+/// Reads a table of a cycle, else a log.
+fn read_any(
+    file: &str,
+    bytes: &[u8],
+    columns: &Columns,
+    phases: &mut Vec<String>,
+) -> Result<Found, Problems> {
+    // Quantities that only the tables of cycles have: gears, distances.
+    let of_table =
+        |entry: &Entry| entry.quantity != "where" && Quantity::from_word(&entry.quantity).is_none();
+    let is_table = columns.is_empty() || columns.entries().iter().any(of_table);
+    let table = is_table.then(|| read_rows((file, columns), bytes, phases));
+    let problems = match table {
+        Some(Ok(read)) if !read.is_strange() => return as_recorded(file, read, columns),
+        Some(Ok(_)) => None,
+        Some(Err(problems)) => Some(problems),
+        None => None,
+    };
+    match (log::read(file, bytes, columns), problems) {
+        (Ok(log), _) => Ok(of_log(log, phases)),
+        (Err(refused), Some(problems)) if !refused.is_known => {
+            let columns = refused
+                .problems
+                .iter()
+                .map(|problem| problem.columns.clone());
+            let columns = columns.max().unwrap_or_default();
+            let alike = alike(problems);
+            Err(alike.map(|problem| problem.columns(columns.as_str())))
+        }
+        (Err(refused), _) => Err(refused.problems),
+    }
+}
+
+/// Problems of one kind as one, with the number of the others and the lines of the first.
+fn alike(problems: Problems) -> Problems {
+    const SHOWN: usize = 5;
+    // Two problems that differ in their figures alone are of one kind.
+    let kind = |problem: &Problem| {
+        let words: String = problem
+            .message
+            .chars()
+            .filter(|c| !c.is_ascii_digit())
+            .collect();
+        (problem.key.clone(), words, problem.place.line == 0)
+    };
+    let mut first: Vec<(Problem, Vec<usize>)> = Vec::new();
+    let mut not_shown = None;
+    for problem in problems {
+        if problem.not_shown().is_some() {
+            not_shown = Some(problem);
+            continue;
+        }
+        match first
+            .iter_mut()
+            .find(|(other, _)| kind(other) == kind(&problem))
+        {
+            Some((_, lines)) => lines.push(problem.place.line),
+            None => first.push((problem, Vec::new())),
+        }
+    }
+    let joined = first.into_iter().map(|(problem, lines)| match lines.len() {
+        0 => problem,
+        1..=2 => {
+            let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
+            let message = format!("{}, also in line {}", problem.message, lines.join(" and "));
+            problem.message(message)
+        }
+        count => {
+            let shown: Vec<String> = lines.iter().take(SHOWN).map(usize::to_string).collect();
+            let more = if count > SHOWN { " and others" } else { "" };
+            let message = format!(
+                "{}, and in {count} more rows: line {}{more}",
+                problem.message,
+                shown.join(", ")
+            );
+            problem.message(message)
+        }
+    });
+    joined.chain(not_shown).collect()
+}
+
+/// The trace of a log.
+fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
+    /// Rows nearer to each other say nothing more about a drive, s.
+    const NEAR_S: f64 = 0.1;
+    let samples = &log.treated.samples;
+    phases.extend(log.words.iter().take(usize::from(u16::MAX)).cloned());
+    let first_s = samples.time_s[0];
+    let last = samples.time_s.len() - 1;
+    let mut rows = vec![0];
+    let is_fast = log
+        .treated
+        .resolution
+        .is_some_and(|own| own.step_s < 0.5 * NEAR_S);
+    for k in 1..=last {
+        let before = rows.last().copied().unwrap_or_default();
+        let step = samples.time_s[k] - samples.time_s[before];
+        // A start and a stop keep their instant.
+        let turns = (samples.speed_m_s[k] <= 0.0) != (samples.speed_m_s[k - 1] <= 0.0);
+        if !is_fast || k == last || turns || step >= NEAR_S {
+            rows.push(k);
+        }
+    }
+    let trace = |speed_m_s: &[f64]| {
+        let interval = |pair: &[usize]| {
+            let (from, to) = (pair[0], pair[1]);
+            let rests = speed_m_s[from] <= 0.0 && speed_m_s[to] <= 0.0;
+            Interval {
+                start_s: samples.time_s[from] - first_s,
+                end_s: samples.time_s[to] - first_s,
+                start_speed_m_s: speed_m_s[from],
+                end_speed_m_s: speed_m_s[to],
+                phase: log.phase.as_ref().map_or(0, |phase| phase[from]),
+                grade: log.grade.as_ref().map_or(0.0, |grade| grade[from]),
+                engine_off: rests && log.engine_off.as_ref().is_some_and(|off| off[from]),
+            }
+        };
+        Trace::without_gears(rows.windows(2).map(interval).collect())
+    };
+    let bounds = log
+        .treated
+        .bounds
+        .iter()
+        .map(|speed| trace(speed))
+        .collect();
+    let mut read_as = log.read_as;
+    if rows.len() <= last {
+        read_as.push(format!("a row each {NEAR_S} s"));
+    }
+    let all = log.channels.len() + log.passed_over.len();
+    if !log.passed_over.is_empty() {
+        read_as.push(format!("{} of {all} columns", log.channels.len()));
+    }
+    let treated = &log.treated;
+    Found {
+        trace: trace(&samples.speed_m_s),
+        read_as: (!read_as.is_empty()).then(|| read_as.join(", ")),
+        recording: Some(Box::new(Recording {
+            repairs: treated.repairs.clone(),
+            doubts: treated.doubts.clone(),
+            bounds,
+            is_log: treated.is_recording,
+        })),
+    }
+}
+
+/// A table of a cycle whose rows are a recording is repaired and doubted like a log.
+fn as_recorded(file: &str, read: ReadRows, columns: &Columns) -> Result<Found, Problems> {
+    let samples = read.samples();
+    let ReadRows {
+        has,
+        mut rows,
+        mut intervals,
+        row_of,
+        read_as,
+    } = read;
+    if row_of.is_some() {
+        let trace = trace(has, &rows, intervals, row_of);
+        return Ok(Found {
+            trace,
+            read_as,
+            recording: None,
+        });
+    }
+    let resolution = Resolution::of(&samples.time_s, &samples.speed_m_s);
+    let likeness = log::likeness(&samples, resolution.map_or(0.0, |own| own.speed_m_s));
+    let raw = samples.speed_m_s.clone();
+    let place = |line: u32| {
+        Problem::default().at(Place {
+            line: line as usize,
+            ..Place::file(file)
+        })
+    };
+    let is_exact = likeness.is_exact && resolution.is_none_or(|own| own.speed_m_s < 0.15);
+    let treated = log::treat(samples, columns.repairs(), is_exact, &place);
+    let treated = treated.map_err(|problems| problems.into_iter().collect::<Problems>())?;
+    let mut doubts = treated.doubts;
+    doubts.extend(likeness.doubt);
+    doubts.extend(log::motions(&treated.samples));
+    let (times, speeds) = (&treated.samples.time_s, &treated.samples.speed_m_s);
+    let mut with = |speeds: &[f64]| {
+        for (k, row) in rows.iter_mut().enumerate() {
+            (row.time_s, row.speed_m_s) = (Some(times[k]), Some(speeds[k]));
+        }
+        for (k, interval) in intervals.iter_mut().enumerate() {
+            (interval.start_s, interval.end_s) = (times[k], times[k + 1]);
+            (interval.start_speed_m_s, interval.end_speed_m_s) = (speeds[k], speeds[k + 1]);
+        }
+        trace(has, &rows, intervals.clone(), None)
+    };
+    let bounds: Vec<Trace> = treated.bounds.iter().map(|speed| with(speed)).collect();
+    let is_changed = raw != *speeds || !treated.repairs.is_empty();
+    let trace = with(speeds);
+    let is_said = is_changed || !doubts.is_empty() || treated.is_recording;
+    let recording = Recording {
+        repairs: treated.repairs,
+        doubts,
+        bounds,
+        is_log: treated.is_recording,
+    };
+    Ok(Found {
+        trace,
+        read_as,
+        recording: is_said.then(|| Box::new(recording)),
+    })
+}
+
+/// Rows of a table of a cycle.
+pub(super) struct ReadRows {
+    has: [bool; 3],
+    rows: Vec<Row>,
+    intervals: Vec<Interval>,
+    /// Row of each interval in a table over distance.
+    row_of: Option<Vec<usize>>,
+    read_as: Option<String>,
+}
+
+impl ReadRows {
+    /// True if its steps are those of no drive: stamps in another unit, which the reader of logs says with what to write.
+    fn is_strange(&self) -> bool {
+        self.row_of.is_none() && log::are_strange(&self.samples())
+    }
+
+    fn samples(&self) -> Samples {
+        let of = |of: &dyn Fn(&Row) -> f64| self.rows.iter().map(of).collect::<Vec<f64>>();
+        Samples {
+            time_s: of(&|row| row.time_s.unwrap_or_default()),
+            speed_m_s: of(&|row| row.speed_m_s.unwrap_or_default()),
+            lines: self.rows.iter().map(|row| row.line).collect(),
+        }
+    }
+}
+
 /// The trace alone, and how it was read. Phases known already keep their index, new ones are added.
+#[cfg(test)]
 pub(super) fn read_trace(
-    (file, columns): (&str, &Columns),
+    own: (&str, &Columns),
     bytes: &[u8],
     phases: &mut Vec<String>,
 ) -> Result<(Trace, Option<String>), Problems> {
+    let read = read_rows(own, bytes, phases)?;
+    let trace = trace(read.has, &read.rows, read.intervals, read.row_of);
+    Ok((trace, read.read_as))
+}
+
+/// Reads a table of a cycle; phases known already keep their index, new ones are added.
+fn read_rows(
+    (file, columns): (&str, &Columns),
+    bytes: &[u8],
+    phases: &mut Vec<String>,
+) -> Result<ReadRows, Problems> {
     let mut problems = Collector::new(file);
     let mut rows = Rows::new(phases);
     let schema = schema(columns);
@@ -103,7 +358,13 @@ pub(super) fn read_trace(
     problems.finish().finish()?;
     let read_as = read_as(&table);
     let has = GEARS.map(|k| table.has(k));
-    Ok((trace(has, &rows, intervals, row_of), read_as))
+    Ok(ReadRows {
+        has,
+        rows,
+        intervals,
+        row_of,
+        read_as,
+    })
 }
 
 /// The intervals of a table over distance, and the row of each.

@@ -167,6 +167,8 @@ pub(super) struct Row {
     /// In the order of [`GEARS`].
     pub(super) gears: [u8; 3],
     pub(super) note: Note,
+    /// Number of its line.
+    pub(super) line: u32,
 }
 
 /// Order of the rows of a table.
@@ -243,6 +245,7 @@ impl<'p> Rows<'p> {
             engine_off: whole(ENGINE_OFF) == 1,
             gears: GEARS.map(whole),
             note: note(cells, problems),
+            line: u32::try_from(cells.line.number).unwrap_or(u32::MAX),
         };
         check_note(&row, cells, problems);
         // Neighbours are compared one to the next, so that one bad row does not condemn all that follow.

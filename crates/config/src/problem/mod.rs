@@ -102,6 +102,9 @@ pub struct Problem {
     pub settings: &'static [Setting],
     /// Known names that may have been meant, the most likely first.
     pub suggested: Box<[String]>,
+    /// Columns with which the file is read, as the setting takes them; empty where there are none.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub columns: String,
     /// True if the message names the key; else the key is put before it in a text with lines.
     #[serde(skip)]
     pub names_key: bool,
@@ -228,6 +231,7 @@ texts! {
     allowed "With the accepted values.";
     message "With another message.";
     hint "With this hint.";
+    columns "With the columns with which the file is read.";
 }
 
 impl fmt::Display for Problem {

@@ -38,6 +38,8 @@ pub enum Argument {
     File,
     /// The columns of a table that are meant.
     Columns,
+    /// The repairs of a log that are wanted.
+    Repair,
     /// Written value.
     Output,
 }
@@ -56,6 +58,7 @@ impl Argument {
             Argument::Cover => "cover",
             Argument::File => "file",
             Argument::Columns => "columns",
+            Argument::Repair => "repair",
             Argument::Output => "output",
         }
     }

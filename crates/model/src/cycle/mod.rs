@@ -45,8 +45,34 @@ pub struct Cycle {
     pub automatic: Option<Trace>,
     /// How its file was read, where it was not written as the program's own are: separators, names and units of other programs.
     pub read_as: Option<String>,
+    /// How its recording was repaired, and what is doubted; none of a cycle that was written as one.
+    pub recording: Option<Box<Recording>>,
     /// True for a WLTC with a speed a second, where the gears of a manual car follow UN GTR 15.
     pub is_wltc: bool,
+}
+
+/// How a recording became a cycle.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    /// Repairs that were made.
+    pub repairs: Vec<Repair>,
+    /// Doubts, each a sentence without its full stop.
+    pub doubts: Vec<String>,
+    /// Traces with less and more smoothing, which the recording does not rule out.
+    pub bounds: Vec<Trace>,
+    /// True where rows come at a rate, so that it is a log and no schedule.
+    pub is_log: bool,
+}
+
+/// A repair of a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Repair {
+    /// Name, as `--repair` has it.
+    pub name: String,
+    /// Number of rows, samples or gaps.
+    pub count: usize,
+    /// What was done, in words.
+    pub what: String,
 }
 
 impl Cycle {
@@ -110,6 +136,7 @@ impl Cycle {
             manual: Trace::without_gears(intervals),
             automatic: None,
             read_as: None,
+            recording: None,
             is_wltc: false,
         })
     }

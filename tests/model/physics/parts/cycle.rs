@@ -86,6 +86,7 @@ fn cycle(phases: &[&str]) -> Cycle {
         manual: Trace::without_gears(Vec::new()),
         automatic: None,
         read_as: None,
+        recording: None,
         is_wltc: false,
     }
 }

@@ -1,0 +1,263 @@
+//! The columns that mend a refusal, as a text for `--columns` that works.
+
+use super::choose::{Chosen, Reading, Source};
+use super::sheet::{Sheet, is_missing, number};
+use super::stamp::Form;
+use super::units::Quantity;
+use crate::readable;
+
+/// Accelerations of a drive on a road, m/s2: the largest is between these.
+const PLAUSIBLE_M_S2: [f64; 2] = [0.5, 6.0];
+
+/// An entry, in double quotes where it has a comma or quotes.
+fn entry(text: &str) -> String {
+    match text.contains([',', '"']) {
+        true => format!("\"{}\"", text.replace('"', "\"\"")),
+        false => text.to_owned(),
+    }
+}
+
+/// `time=NAME:UNIT,speed=NAME:UNIT`, with other channels and the rows that are meant.
+pub(super) fn columns(
+    sheet: &Sheet<'_>,
+    (time, speed): (&Source, &Source),
+    more: &[(Quantity, usize, &str)],
+    filters: &[(String, String)],
+) -> String {
+    let name = |column: usize| {
+        sheet
+            .names
+            .get(column)
+            .cloned()
+            .unwrap_or_else(|| (column + 1).to_string())
+    };
+    let of = |source: &Source| {
+        let name = match &source.only {
+            Some((column, word)) => format!("{}[{}={word}]", name(source.column), name(*column)),
+            None => name(source.column),
+        };
+        let quantity = source.quantity.name();
+        entry(&match source.reading {
+            Reading::Number(unit) => {
+                let stated = sheet
+                    .stated_unit(source.quantity, source.column)
+                    .filter(|_| source.only.is_none());
+                let force = if stated.is_some_and(|stated| stated != unit) {
+                    "!"
+                } else {
+                    ""
+                };
+                format!("{quantity}={name}:{}{force}", unit.name)
+            }
+            Reading::Stamp(_) | Reading::Word => format!("{quantity}={name}"),
+        })
+    };
+    if sheet.names.is_empty() {
+        return in_order(sheet, time, speed);
+    }
+    let more = more.iter().map(|(quantity, column, unit)| {
+        entry(&format!("{}={}:{unit}", quantity.name(), name(*column)))
+    });
+    let filters = filters
+        .iter()
+        .map(|(name, value)| entry(&format!("where={name}:{value}")));
+    let list: Vec<String> = [of(time), of(speed)]
+        .into_iter()
+        .chain(more)
+        .chain(filters)
+        .collect();
+    list.join(",")
+}
+
+/// The columns of a file without names.
+fn in_order(_: &Sheet<'_>, time: &Source, speed: &Source) -> String {
+    let unit = |source: &Source| match source.reading {
+        Reading::Number(unit) => unit.name,
+        _ => "s",
+    };
+    let mut both = [
+        (time.column, format!("time:{}", unit(time))),
+        (speed.column, format!("speed:{}", unit(speed))),
+    ];
+    both.sort();
+    match both {
+        [(0, first), (1, second)] => format!("{first},{second}"),
+        _ => format!(
+            "time={}:{},speed={}:{}",
+            time.column + 1,
+            unit(time),
+            speed.column + 1,
+            unit(speed)
+        ),
+    }
+}
+
+/// Numbers of a column in the first rows.
+pub(super) fn raw(sheet: &Sheet<'_>, column: usize) -> Vec<f64> {
+    let cell = |row: &Vec<&str>| {
+        let cell = row.get(column).copied().filter(|cell| !is_missing(cell))?;
+        number(cell, sheet.decimal_comma)
+    };
+    sheet.sample.iter().filter_map(cell).collect()
+}
+
+/// Unit of stamps by their steps: a log has some rows a second.
+pub(super) fn time_unit(stamps: &[f64]) -> &'static str {
+    let steps = stamps
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .filter(|step| *step > 0.0);
+    let step = super::smooth::median(steps.collect()).unwrap_or(1.0);
+    match step {
+        step if step < 0.5 / 1000.0 => "h",
+        // A second is 1/60 min; steps of 0.01, 0.02 and 0.05 are those of seconds.
+        step if (step * 60.0 - 1.0).abs() < 0.03 => "min",
+        step if step < 15.0 => "s",
+        step if step < 15e3 => "ms",
+        step if step < 15e6 => "us",
+        _ => "ns",
+    }
+}
+
+/// Largest gain of speed over a second, in the unit of the numbers over seconds.
+fn largest_gain(pairs: &[(f64, f64)]) -> f64 {
+    let (mut behind, mut most) = (0, 0.0_f64);
+    for k in 1..pairs.len() {
+        while behind + 1 < k && pairs[k].0 - pairs[behind + 1].0 >= 1.0 {
+            behind += 1;
+        }
+        let step = pairs[k].0 - pairs[behind].0;
+        if step > 0.0 {
+            most = most.max((pairs[k].1 - pairs[behind].1) / step.max(1.0));
+        }
+    }
+    most
+}
+
+/// Unit of speeds by what a car can do, the first that is plausible; and the acceleration in each, in words.
+fn speed_unit(pairs: &[(f64, f64)]) -> (&'static str, String) {
+    let top = pairs
+        .iter()
+        .fold(0.0_f64, |top, (_, speed)| top.max(*speed));
+    let gain = largest_gain(pairs);
+    let units = [("km/h", 1.0 / 3.6), ("mph", 0.447_04), ("m/s", 1.0)];
+    let is_plausible = |factor: f64| {
+        let [low, high] = PLAUSIBLE_M_S2;
+        (low..=high).contains(&(gain * factor)) && top * factor < 70.0
+    };
+    let found = units.iter().find(|(_, factor)| is_plausible(*factor));
+    let words =
+        units.map(|(name, factor)| format!("{} m/s2 in {name}", readable(gain * factor, 1)));
+    let hint = match gain > 0.0 {
+        true => format!(
+            "the largest gain in the first rows would be {}",
+            words.join(", ")
+        ),
+        false => String::new(),
+    };
+    (found.map_or("km/h", |(name, _)| name), hint)
+}
+
+/// Proposed columns, and a hint about the unit of the speed.
+pub(super) struct Guess {
+    pub columns: String,
+    pub hint: String,
+}
+
+/// Columns for a file whose names do not say all: by the names that mean something, by a column that never falls, by the units that fit a car.
+pub(super) fn guess(
+    sheet: &Sheet<'_>,
+    chosen: &Chosen,
+    filters: &[(String, String)],
+) -> Option<Guess> {
+    let mut hint = String::new();
+    let is_number = |column: &usize| raw(sheet, *column).len() > 1;
+    let named = |quantity: Quantity| {
+        chosen
+            .no_unit
+            .iter()
+            .find(|(own, _)| *own == quantity)
+            .map(|(_, column)| *column)
+    };
+    let rises = |column: &usize| {
+        let values = raw(sheet, *column);
+        values.len() > 2
+            && values.windows(2).all(|pair| pair[1] >= pair[0])
+            && values.last() > values.first()
+    };
+    let stamps = |column: &usize| {
+        sheet
+            .sample
+            .first()
+            .and_then(|row| row.get(*column))
+            .and_then(|cell| Form::of(cell))
+    };
+    let speed_column = chosen
+        .speeds
+        .first()
+        .map(|source| source.column)
+        .or_else(|| named(Quantity::Speed));
+    let time = match (chosen.times.first(), named(Quantity::Time)) {
+        (Some(time), _) => time.clone(),
+        (None, named) => {
+            let rising =
+                || (0..sheet.width).find(|column| Some(*column) != speed_column && rises(column));
+            let stamped = || (0..sheet.width).find(|column| stamps(column).is_some());
+            let column = named.or_else(stamped).or_else(rising)?;
+            let reading = match stamps(&column).filter(|_| !is_number(&column)) {
+                Some(form) => Reading::Stamp(form),
+                None => Reading::Number(Quantity::Time.unit(time_unit(&raw(sheet, column)))?),
+            };
+            Source {
+                quantity: Quantity::Time,
+                column,
+                reading,
+                only: None,
+            }
+        }
+    };
+    let speed = match chosen.speeds.first() {
+        Some(speed) => speed.clone(),
+        None => {
+            // Without a name that means a speed, only a table of two columns leaves no choice.
+            let other = || {
+                (0..sheet.width)
+                    .find(|column| *column != time.column && is_number(column))
+                    .filter(|_| sheet.width == 2 || sheet.names.is_empty())
+            };
+            let column = named(Quantity::Speed).or_else(other)?;
+            let only = chosen.only_no_unit.clone();
+            let is_row = |row: &&Vec<&str>| {
+                only.as_ref()
+                    .is_none_or(|(column, word)| row.get(*column) == Some(&word.as_str()))
+            };
+            let factor = match time.reading {
+                Reading::Number(unit) => unit.si(1.0),
+                _ => 1.0,
+            };
+            let at = |cell: &str| match time.reading {
+                Reading::Stamp(form) => form.seconds(cell),
+                _ => number(cell, sheet.decimal_comma).map(|stamp| stamp * factor),
+            };
+            let pair = |row: &Vec<&str>| {
+                at(row.get(time.column)?).zip(number(row.get(column)?, sheet.decimal_comma))
+            };
+            let pairs: Vec<(f64, f64)> = sheet
+                .sample
+                .iter()
+                .filter(is_row)
+                .filter_map(pair)
+                .collect();
+            let (unit, words) = speed_unit(&pairs);
+            hint = words;
+            Source {
+                quantity: Quantity::Speed,
+                column,
+                reading: Reading::Number(Quantity::Speed.unit(unit)?),
+                only,
+            }
+        }
+    };
+    let columns = columns(sheet, (&time, &speed), &[], filters);
+    Some(Guess { columns, hint })
+}

@@ -1,0 +1,648 @@
+//! Faults of recordings that have one remedy: each has a name, is counted, and can be switched off.
+
+use std::fmt;
+
+use super::smooth::{Resolution, smoothed};
+use crate::{Argument, Problem, readable};
+use cvtcycle_model::cycle::Repair;
+
+/// Speed above which a car is moving, m/s.
+const MOVING_M_S: f64 = 0.5;
+/// Speeds down to here are those of a sensor at rest, m/s (1 km/h).
+const MIN_SPEED_M_S: f64 = -1.0 / 3.6;
+/// No road car gains speed faster; one that also loses it as fast is a lost sample, m/s2.
+const SPIKE_M_S2: f64 = 4.0;
+/// Longest spike, samples and s.
+const SPIKE: (usize, f64) = (3, 3.0);
+/// A step of a recording is a gap from here on, s, and in steps.
+const GAP: (f64, f64) = (10.0, 10.0);
+/// Tyres cannot do more, m/s2.
+const JUMP_M_S2: f64 = 12.0;
+/// Steps of a fast raster, s, in which speeds may change by this beyond it, m/s.
+const FAST_S: f64 = 0.2;
+const FAST_M_S: f64 = 0.5;
+/// Most gaps and jumps that are bridged, and one of so many rows.
+const CUTS: usize = 5;
+const CUTS_PER_ROW: usize = 200;
+/// Rows of a recording at least, and the share of its steps that are not longer than so many medians.
+const RECORDING: (usize, f64) = (20, 0.9);
+const ALIKE: f64 = 3.0;
+/// Speeds of one stamp that differ by less have a mean, m/s.
+const SAME_M_S: f64 = 1.5;
+/// Acceleration with which a cut is bridged, as in a cycle over distance (CY-1), m/s2: up and down.
+const BRIDGE_M_S2: [f64; 2] = [1.0, 1.5];
+/// Length of road on either side over which a slope is taken from heights, m.
+const SLOPE_M: f64 = 100.0;
+/// Steepest slope, rise over run.
+const STEEPEST: f64 = 0.35;
+
+macro_rules! repairs {
+    ($($name:ident $word:literal $default:literal $what:literal;)*) => {
+        /// Repairs that are wanted.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct Repairs {
+            $(#[doc = $what] pub $name: bool,)*
+        }
+
+        impl Default for Repairs {
+            fn default() -> Self {
+                Repairs { $($name: $default,)* }
+            }
+        }
+
+        impl Repairs {
+            /// Name, default and meaning of each.
+            pub const ALL: &'static [(&'static str, bool, &'static str)] = &[$(($word, $default, $what)),*];
+
+            /// None.
+            pub const NONE: Repairs = Repairs { $($name: false,)* };
+
+            fn set(&mut self, word: &str, on: bool) -> bool {
+                match word {
+                    $($word => self.$name = on,)*
+                    _ => return false,
+                }
+                true
+            }
+        }
+    };
+}
+
+repairs! {
+    empty "empty" true "rows without a time or a speed, as where channels have their own rasters, are left out";
+    stamps "stamps" true "rows of one time stamp become one with their mean";
+    negative "negative" true "speeds from -1 to 0 km/h become 0";
+    spikes "spikes" true "up to 3 samples against both neighbours become the line between these";
+    smooth "smooth" true "speeds whose resolution or noise is coarse for their rate are smoothed";
+    sort "sort" false "rows are put in the order of their times";
+    cut "cut" false "a gap while the car moves, or a jump of the speed, is bridged at 1.0 and 1.5 m/s2";
+}
+
+impl Repairs {
+    /// Reads a list: `cut`, `no-smooth`, `none`, with commas between them.
+    ///
+    /// # Errors
+    /// A word that is no repair.
+    ///
+    /// ```
+    /// use cvtcycle_config::log::Repairs;
+    /// let repairs = Repairs::parse("cut,no-smooth")?;
+    /// assert!(repairs.cut && !repairs.smooth && repairs.spikes);
+    /// # Ok::<(), cvtcycle_config::Problem>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Repairs, Problem> {
+        let mut repairs = Repairs::default();
+        for word in text
+            .split(',')
+            .map(str::trim)
+            .filter(|word| !word.is_empty())
+        {
+            let known = match word.strip_prefix("no-") {
+                _ if word == "none" => {
+                    repairs = Repairs::NONE;
+                    true
+                }
+                _ if word == "auto" => true,
+                Some(word) => repairs.set(word, false),
+                None => repairs.set(word, true),
+            };
+            if !known {
+                let names: Vec<&str> = Repairs::ALL.iter().map(|(name, _, _)| *name).collect();
+                return Err(
+                    Problem::unknown_name(format!("there is no repair `{word}`"))
+                        .at(Argument::Repair)
+                        .value(word)
+                        .allowed(format!(
+                            "{}; with no- before a name it is left out; none; auto",
+                            names.join(", ")
+                        )),
+                );
+            }
+        }
+        Ok(repairs)
+    }
+}
+
+impl fmt::Display for Repairs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let list: Vec<&str> = Repairs::ALL
+            .iter()
+            .filter(|(_, is, _)| *is)
+            .map(|(name, _, _)| *name)
+            .collect();
+        f.write_str(&list.join(","))
+    }
+}
+
+/// A repair that was made.
+pub(super) fn made(name: &'static str, count: usize, what: String) -> Repair {
+    Repair {
+        name: name.to_owned(),
+        count,
+        what,
+    }
+}
+
+/// A recording: times that rise, and speeds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Samples {
+    pub time_s: Vec<f64>,
+    pub speed_m_s: Vec<f64>,
+    /// Line of each row.
+    pub lines: Vec<u32>,
+}
+
+/// A recording after its repairs.
+#[derive(Debug)]
+pub(crate) struct Treated {
+    pub samples: Samples,
+    /// The same with other strengths of smoothing.
+    pub bounds: Vec<Vec<f64>>,
+    pub resolution: Option<Resolution>,
+    pub repairs: Vec<Repair>,
+    pub doubts: Vec<String>,
+    /// True where most steps are alike.
+    pub is_recording: bool,
+}
+
+fn kmh(speed_m_s: f64) -> String {
+    readable(3.6 * speed_m_s, 1)
+}
+
+impl Samples {
+    fn step(&self, k: usize) -> f64 {
+        self.time_s[k + 1] - self.time_s[k]
+    }
+
+    fn accel(&self, k: usize) -> f64 {
+        (self.speed_m_s[k + 1] - self.speed_m_s[k]) / self.step(k)
+    }
+
+    /// Median step where most steps are alike: the rows are those of a recording, not the corners of a schedule.
+    fn raster(&self) -> Option<f64> {
+        let steps: Vec<f64> = self
+            .time_s
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        let step = super::smooth::median(steps.clone())?;
+        let alike = steps.iter().filter(|own| **own <= ALIKE * step).count();
+        (self.time_s.len() >= RECORDING.0 && alike as f64 >= RECORDING.1 * steps.len() as f64)
+            .then_some(step)
+    }
+
+    /// Puts the rows in the order of their times. Returns how many stood behind a later one.
+    pub(super) fn sort(&mut self, others: &mut [Vec<f64>]) -> usize {
+        let mut order: Vec<usize> = (0..self.time_s.len()).collect();
+        let moved = self
+            .time_s
+            .windows(2)
+            .filter(|pair| pair[1] < pair[0])
+            .count();
+        order.sort_by(|a, b| self.time_s[*a].total_cmp(&self.time_s[*b]));
+        let pick = |list: &Vec<f64>| order.iter().map(|k| list[*k]).collect();
+        (self.time_s, self.speed_m_s) = (pick(&self.time_s), pick(&self.speed_m_s));
+        self.lines = order.iter().map(|k| self.lines[*k]).collect();
+        for other in others {
+            *other = pick(other);
+        }
+        moved
+    }
+
+    /// Rows of one stamp become one with the mean of their speeds. Returns the number of rows that are gone.
+    ///
+    /// # Errors
+    /// One stamp has speeds too different for a mean: the index of its second row.
+    pub(super) fn merge(&mut self, others: &mut [Vec<f64>]) -> Result<usize, usize> {
+        let n = self.time_s.len();
+        let (mut to, mut k) = (0, 0);
+        while k < n {
+            let mut end = k + 1;
+            while end < n && self.time_s[end] <= self.time_s[k] {
+                end += 1;
+            }
+            let own = &self.speed_m_s[k..end];
+            let (low, high) = own
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                    (low.min(*v), high.max(*v))
+                });
+            // Rows of a second may differ by what a car gains in it.
+            let next_s = self
+                .time_s
+                .get(end)
+                .map_or(1.0, |next| next - self.time_s[k]);
+            if high - low > SAME_M_S + SPIKE_M_S2 * next_s.min(2.0) {
+                return Err(k + 1);
+            }
+            let mean = own.iter().sum::<f64>() / own.len() as f64;
+            (self.time_s[to], self.speed_m_s[to], self.lines[to]) =
+                (self.time_s[k], mean, self.lines[k]);
+            for other in &mut *others {
+                other[to] = other[k];
+            }
+            (to, k) = (to + 1, end);
+        }
+        self.time_s.truncate(to);
+        self.speed_m_s.truncate(to);
+        self.lines.truncate(to);
+        others.iter_mut().for_each(|other| other.truncate(to));
+        Ok(n - to)
+    }
+
+    /// Replaces samples against both neighbours by the line between these; returns their indices.
+    fn spikes(&mut self) -> Vec<(usize, f64)> {
+        let n = self.time_s.len();
+        let mut found = Vec::new();
+        let mut k = 0;
+        while k + 2 < n {
+            let first = self.accel(k);
+            let least = |k: usize| SPIKE_M_S2.max(1.0 / self.step(k).max(0.05));
+            let width = (1..=SPIKE.0).find(|width| {
+                let end = k + width;
+                end + 1 < n
+                    && self.time_s[end + 1] - self.time_s[k] <= SPIKE.1 + 1.0
+                    && first.abs() > least(k)
+                    && self.accel(end).abs() > least(end)
+                    && first * self.accel(end) < 0.0
+                    // Within it the speed stays: it does not come back by itself.
+                    && (k + 1..end).all(|k| self.accel(k).abs() < SPIKE_M_S2)
+                    && (self.speed_m_s[end + 1] - self.speed_m_s[k]).abs() < 0.3 * (self.speed_m_s[k + 1] - self.speed_m_s[k]).abs()
+            });
+            let Some(width) = width else {
+                k += 1;
+                continue;
+            };
+            let end = k + width + 1;
+            let slope =
+                (self.speed_m_s[end] - self.speed_m_s[k]) / (self.time_s[end] - self.time_s[k]);
+            for at in k + 1..end {
+                found.push((at, self.speed_m_s[at]));
+                self.speed_m_s[at] = self.speed_m_s[k] + slope * (self.time_s[at] - self.time_s[k]);
+            }
+            k = end;
+        }
+        found
+    }
+}
+
+/// Repairs a recording, or says what cannot be repaired; `propose` makes the line of a call that mends it. `exact`: the speeds of a shipped cycle.
+pub(crate) fn treat(
+    mut samples: Samples,
+    wanted: Repairs,
+    exact: bool,
+    place: &dyn Fn(u32) -> Problem,
+) -> Result<Treated, Vec<Problem>> {
+    let mut repairs = Vec::new();
+    let mut problems = Vec::new();
+    let at = |line: u32, problem: Problem| Problem {
+        place: place(line).place,
+        key: "speed".to_owned(),
+        ..problem
+    };
+    let raster = samples.raster();
+    let negative: Vec<usize> = (0..samples.speed_m_s.len())
+        .filter(|k| samples.speed_m_s[*k] < 0.0)
+        .collect();
+    let small = negative
+        .iter()
+        .all(|k| samples.speed_m_s[*k] >= MIN_SPEED_M_S);
+    if let Some(first) = negative.first() {
+        let count = negative.len();
+        if small && wanted.negative {
+            negative.iter().for_each(|k| samples.speed_m_s[*k] = 0.0);
+            repairs.push(made(
+                "negative",
+                count,
+                format!(
+                    "{} of a sensor at rest set to 0",
+                    number_of(count, "small negative speed")
+                ),
+            ));
+        } else {
+            let worst = negative
+                .iter()
+                .map(|k| samples.speed_m_s[*k])
+                .fold(0.0, f64::min);
+            problems.push(
+                at(
+                    samples.lines[*first],
+                    Problem::out_of_range(format!(
+                        "{} below 0, down to {} km/h",
+                        number_of(count, "speed"),
+                        kmh(worst)
+                    )),
+                )
+                .allowed("0 to 300 km/h")
+                .hint("reversing cannot be driven: is a sign of the direction in the column?"),
+            );
+        }
+    }
+    let fast: Vec<usize> = (0..samples.speed_m_s.len())
+        .filter(|k| 3.6 * samples.speed_m_s[*k] > 300.0)
+        .collect();
+    if let Some(first) = fast.first() {
+        let speed = samples.speed_m_s[*first];
+        problems.push(
+            at(
+                samples.lines[*first],
+                Problem::out_of_range(format!(
+                    "{} above 300 km/h, the first {} km/h",
+                    number_of(fast.len(), "speed"),
+                    kmh(speed)
+                )),
+            )
+            .allowed("0 to 300 km/h")
+            .hint("is the column in another unit?"),
+        );
+    }
+    if exact {
+        return finish(
+            samples,
+            Vec::new(),
+            None,
+            repairs,
+            Vec::new(),
+            raster.is_some(),
+            problems,
+        );
+    }
+    if raster.is_some() {
+        let mut mended = samples.clone();
+        let spikes = mended.spikes();
+        if let Some((first, speed)) = spikes.first().copied() {
+            let (line, time) = (
+                samples.lines[first],
+                samples.time_s[first] - samples.time_s[0],
+            );
+            let text = format!(
+                "{} against both neighbours, the first {} km/h at {} s (line {line})",
+                number_of(spikes.len(), "sample"),
+                kmh(speed),
+                readable(time, 2)
+            );
+            if wanted.spikes {
+                samples = mended;
+                repairs.push(made(
+                    "spikes",
+                    spikes.len(),
+                    format!("{text}, replaced by the line between these"),
+                ));
+            } else {
+                problems.push(
+                    at(line, Problem::out_of_range(text))
+                        .allowed("speeds that a car can drive")
+                        .hint("--repair spikes replaces them"),
+                );
+            }
+        }
+    }
+    let resolution = raster.and_then(|_| Resolution::of(&samples.time_s, &samples.speed_m_s));
+    gaps(
+        &mut samples,
+        raster,
+        resolution,
+        wanted,
+        &mut repairs,
+        &mut problems,
+        &at,
+    );
+    let mut bounds = Vec::new();
+    let mut doubts = Vec::new();
+    if let Some(own) = resolution.filter(Resolution::is_coarse) {
+        let words = format!(
+            "speeds in steps of {} km/h at {} Hz: accelerations to {} m/s2, errors of {} km/h",
+            readable(3.6 * own.speed_m_s, 3),
+            readable(1.0 / own.step_s, 1),
+            readable(own.accel_m_s2(), 2),
+            readable(3.6 * own.error_m_s, 2)
+        );
+        if wanted.smooth {
+            let with =
+                |factor| smoothed(&samples.time_s, &samples.speed_m_s, own.error_m_s, factor);
+            bounds = vec![with(0.25), with(4.0)];
+            samples.speed_m_s = with(1.0);
+            repairs.push(made(
+                "smooth",
+                samples.time_s.len(),
+                format!("{words}; smoothed (LO-3)"),
+            ));
+        } else {
+            doubts.push(format!("{words}; the differences of the speeds are noise, and the fuel is that of the noise"));
+        }
+    }
+    finish(
+        samples,
+        bounds,
+        resolution,
+        repairs,
+        doubts,
+        raster.is_some(),
+        problems,
+    )
+}
+
+fn finish(
+    samples: Samples,
+    bounds: Vec<Vec<f64>>,
+    resolution: Option<Resolution>,
+    repairs: Vec<Repair>,
+    doubts: Vec<String>,
+    is_recording: bool,
+    problems: Vec<Problem>,
+) -> Result<Treated, Vec<Problem>> {
+    match problems.is_empty() {
+        true => Ok(Treated {
+            samples,
+            bounds,
+            resolution,
+            repairs,
+            doubts,
+            is_recording,
+        }),
+        false => Err(problems),
+    }
+}
+
+/// `1 sample`, `3 samples`.
+pub(super) fn number_of(count: usize, noun: &str) -> String {
+    match count {
+        1 => format!("1 {noun}"),
+        _ => format!("{count} {noun}s"),
+    }
+}
+
+/// Gaps while the car moves, and jumps that no car drives beyond what the resolution explains: refused, or bridged.
+fn gaps(
+    samples: &mut Samples,
+    raster: Option<f64>,
+    resolution: Option<Resolution>,
+    wanted: Repairs,
+    repairs: &mut Vec<Repair>,
+    problems: &mut Vec<Problem>,
+    at: &dyn Fn(u32, Problem) -> Problem,
+) {
+    let noise = resolution.map_or(0.0, |own| 3.0 * own.speed_m_s.max(2.0 * own.error_m_s));
+    // Sensors of fast rasters are not as fine as their steps.
+    let noise = match raster {
+        Some(step) if step < FAST_S => noise.max(FAST_M_S),
+        _ => noise,
+    };
+    let is_gap = |k: &usize| {
+        let moving = samples.speed_m_s[*k].max(samples.speed_m_s[k + 1]) > MOVING_M_S;
+        let least = raster.map_or(f64::INFINITY, |step| GAP.0.max(GAP.1 * step));
+        moving && samples.step(*k) > least
+    };
+    let is_jump = |k: &usize| {
+        let change = (samples.speed_m_s[k + 1] - samples.speed_m_s[*k]).abs();
+        change > JUMP_M_S2 * samples.step(*k) + noise
+    };
+    let last = samples.time_s.len() - 1;
+    let gaps: Vec<usize> = (0..last).filter(is_gap).collect();
+    let jumps: Vec<usize> = (0..last).filter(is_jump).collect();
+    let mut texts = Vec::new();
+    if let Some(first) = gaps.first().copied() {
+        let gap_s: f64 = gaps.iter().map(|k| samples.step(*k)).sum();
+        texts.push(format!(
+            "{} while the car moves, {} s in all: the first of {} s from {} km/h to {} km/h",
+            number_of(gaps.len(), "gap"),
+            readable(gap_s, 1),
+            readable(samples.step(first), 1),
+            kmh(samples.speed_m_s[first]),
+            kmh(samples.speed_m_s[first + 1])
+        ));
+    }
+    if let Some(first) = jumps.first().copied() {
+        texts.push(format!(
+            "the speed jumps{}: {} m/s2 from the row above, {} to {} km/h",
+            match jumps.len() {
+                1 => String::new(),
+                n => format!(" {n} times, first here"),
+            },
+            readable(samples.accel(first), 1),
+            kmh(samples.speed_m_s[first]),
+            kmh(samples.speed_m_s[first + 1])
+        ));
+    }
+    if texts.is_empty() {
+        return;
+    }
+    let few = CUTS.max(samples.time_s.len() / CUTS_PER_ROW);
+    if !wanted.cut || raster.is_none() || gaps.len() + jumps.len() > few {
+        let first = gaps.first().into_iter().chain(&jumps).min().copied();
+        let line = samples.lines[first.unwrap_or_default() + 1];
+        let starts =
+            jumps.first().is_some_and(|k| samples.speed_m_s[*k] <= 0.0) && jumps.len() == 1;
+        let hint = match (gaps.is_empty(), raster) {
+            (false, _) => "fill the gap with rows, or take its time out: --repair cut",
+            (true, _) if starts => {
+                "for times at full throttle see `cvtcycle accelerate`; else: is the time in seconds, are samples lost?"
+            }
+            (true, Some(_)) if jumps.len() <= few => {
+                "is the speed in the unit that is stated? where samples are lost, --repair cut bridges the jump"
+            }
+            (true, _) => {
+                "is the speed in the unit that is stated? is the time in seconds? are samples lost?"
+            }
+        };
+        let allowed = match raster {
+            Some(step) if !gaps.is_empty() => format!(
+                "up to {} s from row to row while the car moves",
+                readable(GAP.0.max(GAP.1 * step), 1)
+            ),
+            _ => "-12 to 12 m/s2".to_owned(),
+        };
+        problems.push(at(
+            line,
+            Problem::conflict(texts.join("; "))
+                .allowed(allowed)
+                .hint(hint),
+        ));
+        return;
+    }
+    let (mut shift, mut bridged_m, before) = (0.0, 0.0, samples.time_s.clone());
+    for k in 0..last {
+        if gaps.contains(&k) || jumps.contains(&k) {
+            let [from, to] = [samples.speed_m_s[k], samples.speed_m_s[k + 1]];
+            let up_s = (to - from) / BRIDGE_M_S2[0];
+            let bridge_s = up_s
+                .max((from - to) / BRIDGE_M_S2[1])
+                .max(raster.unwrap_or(0.0));
+            bridged_m += 0.5 * (from + to) * bridge_s;
+            shift += before[k + 1] - before[k] - bridge_s;
+        }
+        samples.time_s[k + 1] = before[k + 1] - shift;
+    }
+    let bridge = format!(
+        "{}; bridged at 1.0 and 1.5 m/s2 over {} m",
+        texts.join("; "),
+        readable(bridged_m, 0)
+    );
+    repairs.push(made("cut", gaps.len() + jumps.len(), bridge));
+}
+
+/// Slopes from heights: the line of least squares through the heights within 100 m of road on either side, of which each metre counts once. Returns
+/// slopes, and how many rows were above the steepest road and are set to it.
+pub(super) fn slopes(samples: &Samples, altitude_m: &[f64]) -> (Vec<f64>, usize) {
+    /// Mean height of a metre of road.
+    struct Point {
+        road_m: f64,
+        sum_m: f64,
+        count: f64,
+    }
+    let mut points: Vec<Point> = Vec::new();
+    let mut point_of = Vec::with_capacity(altitude_m.len());
+    let mut road_m = 0.0;
+    for (k, height) in altitude_m.iter().enumerate() {
+        if k > 0 {
+            road_m += 0.5 * (samples.speed_m_s[k] + samples.speed_m_s[k - 1]) * samples.step(k - 1);
+        }
+        if height.is_finite() {
+            match points.last_mut().filter(|last| road_m - last.road_m < 1.0) {
+                Some(last) => (last.sum_m, last.count) = (last.sum_m + height, last.count + 1.0),
+                None => points.push(Point {
+                    road_m,
+                    sum_m: *height,
+                    count: 1.0,
+                }),
+            }
+        }
+        point_of.push(points.len().saturating_sub(1));
+    }
+    let (mut low, mut high) = (0, 0);
+    let mut of_points: Vec<f64> = Vec::with_capacity(points.len());
+    for own in &points {
+        while high < points.len() && points[high].road_m <= own.road_m + SLOPE_M {
+            high += 1;
+        }
+        while points[low].road_m < own.road_m - SLOPE_M {
+            low += 1;
+        }
+        let window = &points[low..high];
+        let mean =
+            |of: &dyn Fn(&Point) -> f64| window.iter().map(of).sum::<f64>() / window.len() as f64;
+        let (x, y) = (
+            mean(&|p| p.road_m - own.road_m),
+            mean(&|p| p.sum_m / p.count),
+        );
+        let xx = mean(&|p| (p.road_m - own.road_m - x).powi(2));
+        let xy = mean(&|p| (p.road_m - own.road_m - x) * (p.sum_m / p.count - y));
+        // Less than some metres of road have no slope of their own.
+        of_points.push(match window.len() >= 3 && xx > 25.0 {
+            true => xy / xx,
+            false => of_points.last().copied().unwrap_or(0.0),
+        });
+    }
+    let slope = |point: &usize| of_points.get(*point).copied().unwrap_or(0.0);
+    let steep = point_of
+        .iter()
+        .filter(|point| slope(point).abs() > STEEPEST)
+        .count();
+    (
+        point_of
+            .iter()
+            .map(|point| slope(point).clamp(-STEEPEST, STEEPEST))
+            .collect(),
+        steep,
+    )
+}
