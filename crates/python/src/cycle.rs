@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use cvtcycle::config::csv::Columns;
-use cvtcycle::config::cycle::{self, Cycle as CoreCycle};
+use cvtcycle::config::cycle::{self, Cycle as CoreCycle, Repair};
+use cvtcycle::config::log::Repairs;
 use pyo3::prelude::*;
 
 use crate::car::Car;
@@ -18,11 +19,11 @@ pub struct Cycle {
     word: Option<String>,
 }
 
-fn columns(text: Option<&str>) -> PyResult<Columns> {
-    match text {
-        None => Ok(Columns::default()),
-        Some(text) => Columns::parse(text).map_err(refused),
-    }
+fn columns(text: Option<&str>, repair: Option<&str>) -> PyResult<Columns> {
+    let columns = text.map(Columns::parse).transpose().map_err(refused)?;
+    let repairs = repair.map(Repairs::parse).transpose().map_err(refused)?;
+    let columns = columns.unwrap_or_default();
+    Ok(columns.with_repairs(repairs.unwrap_or_default()))
 }
 
 impl Cycle {
@@ -41,9 +42,15 @@ impl Cycle {
 #[pymethods]
 impl Cycle {
     #[new]
-    #[pyo3(signature = (word, columns=None))]
-    fn new(py: Python<'_>, word: PathBuf, columns: Option<&str>) -> PyResult<Self> {
-        let (word, columns) = (word.to_string_lossy().into_owned(), self::columns(columns)?);
+    #[pyo3(signature = (word, columns=None, repair=None))]
+    fn new(
+        py: Python<'_>,
+        word: PathBuf,
+        columns: Option<&str>,
+        repair: Option<&str>,
+    ) -> PyResult<Self> {
+        let word = word.to_string_lossy().into_owned();
+        let columns = self::columns(columns, repair)?;
         let found = py
             .detach(|| cycle::open(&word, &columns))
             .map_err(refused)?;
@@ -55,14 +62,15 @@ impl Cycle {
 
     /// Reads the bytes of a table. Problems cite it as `name`.
     #[staticmethod]
-    #[pyo3(signature = (name, text, columns=None))]
+    #[pyo3(signature = (name, text, columns=None, repair=None))]
     fn from_bytes(
         py: Python<'_>,
         name: &str,
         text: &[u8],
         columns: Option<&str>,
+        repair: Option<&str>,
     ) -> PyResult<Self> {
-        let columns = self::columns(columns)?;
+        let columns = self::columns(columns, repair)?;
         let found = py
             .detach(|| cycle::read_columns(name, text, &columns))
             .map_err(refused)?;
@@ -85,6 +93,22 @@ impl Cycle {
     #[getter]
     fn read_as(&self) -> Option<&str> {
         self.cycle.read_as.as_deref()
+    }
+
+    /// Name, count and meaning of each repair of its recording.
+    #[getter]
+    fn repairs(&self) -> Vec<(String, usize, String)> {
+        let recording = self.cycle.recording.as_deref();
+        let repairs = recording.map_or(&[][..], |own| &own.repairs);
+        let parts = |own: &Repair| (own.name.clone(), own.count, own.what.clone());
+        repairs.iter().map(parts).collect()
+    }
+
+    /// Doubts about its recording.
+    #[getter]
+    fn doubts(&self) -> Vec<String> {
+        let recording = self.cycle.recording.as_deref();
+        recording.map_or_else(Vec::new, |own| own.doubts.clone())
     }
 
     #[getter]

@@ -11,6 +11,7 @@ mod fmu;
 mod inputs;
 mod label;
 mod levers;
+mod log;
 mod named;
 mod new;
 mod run;

@@ -240,7 +240,8 @@ impl Sheet<'_> {
             if chosen.speeds.is_empty() {
                 chosen.speeds = speeds;
             }
-            let of_both = |(own, _): &(Quantity, usize)| matches!(own, Quantity::Time | Quantity::Speed);
+            let of_both =
+                |(own, _): &(Quantity, usize)| matches!(own, Quantity::Time | Quantity::Speed);
             chosen.no_unit = own.no_unit.into_iter().filter(of_both).collect();
         }
         Ok(chosen)

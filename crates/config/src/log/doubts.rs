@@ -8,6 +8,8 @@ use crate::readable;
 const SAME: f64 = 0.9;
 /// Difference of two samples that are the same, m/s and share.
 const ALIKE: (f64, f64) = (0.03, 0.004);
+/// A sample that differs by less may be of the same cycle with noise, m/s.
+const OTHER_M_S: f64 = 0.3;
 /// A factor nearer to 1 is none.
 const FACTOR: f64 = 0.004;
 /// Factors of units that are taken for each other.
@@ -116,7 +118,8 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
     if (same as f64) < SAME * f64::from(count) {
         return None;
     }
-    if (factor - 1.0).abs() > FACTOR {
+    let mean = own.iter().sum::<f64>() / own.len() as f64;
+    if (factor - 1.0).abs() > FACTOR + resolution_m_s / mean.max(1.0) {
         let known = FACTORS
             .iter()
             .find(|(known, _)| (factor / known - 1.0).abs() < FACTOR);
@@ -131,11 +134,12 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
             is_exact: false,
         });
     }
-    let other_samples: Vec<usize> = pairs()
-        .enumerate()
-        .filter(|(_, pair)| !is_same(pair))
-        .map(|(k, _)| k)
-        .collect();
+    let is_other = |(own, other): (&f64, &f64)| {
+        (own - other).abs() > OTHER_M_S.max(resolution_m_s) + ALIKE.1 * other
+    };
+    let other_samples = pairs().enumerate().filter(|(_, pair)| is_other(*pair));
+    let other_samples: Vec<usize> = other_samples.map(|(k, _)| k).collect();
+    let all_same = pairs().all(|pair| is_same(&pair));
     let doubt = other_samples.first().map(|first| {
         format!(
             "this is {} but for {} of {} samples, the first at {first} s: {} km/h in place of {}",
@@ -147,7 +151,7 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
         )
     });
     Some(Likeness {
-        is_exact: doubt.is_none(),
+        is_exact: all_same,
         doubt,
     })
 }

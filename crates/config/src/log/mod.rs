@@ -511,7 +511,10 @@ impl Reader<'_, '_> {
                 .map(|k| format!("\"{}\"", self.sheet.label(list[k].column)))
                 .collect();
             if !coarser.is_empty() {
-                read_as.push(format!("{} is coarser and passed over", coarser.join(", ")));
+                read_as.push(format!(
+                    "{} passed over for one as fine or finer",
+                    coarser.join(", ")
+                ));
             }
         }
         Ok((time, speed))

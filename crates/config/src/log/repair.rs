@@ -410,12 +410,20 @@ pub(crate) fn treat(
     let mut bounds = Vec::new();
     let mut doubts = Vec::new();
     if let Some(own) = resolution.filter(Resolution::is_coarse) {
+        let steps = match own.is_rounded() {
+            true => format!(
+                "speeds in steps of {} km/h",
+                readable(3.6 * own.speed_m_s, 3)
+            ),
+            false => format!(
+                "speeds with a noise of {} km/h",
+                readable(3.6 * own.error_m_s, 2)
+            ),
+        };
         let words = format!(
-            "speeds in steps of {} km/h at {} Hz: accelerations to {} m/s2, errors of {} km/h",
-            readable(3.6 * own.speed_m_s, 3),
+            "{steps} at {} Hz, accelerations to {} m/s2",
             readable(1.0 / own.step_s, 1),
-            readable(own.accel_m_s2(), 2),
-            readable(3.6 * own.error_m_s, 2)
+            readable(std::f64::consts::SQRT_2 * own.error_m_s / own.step_s, 2)
         );
         if wanted.smooth {
             let with =

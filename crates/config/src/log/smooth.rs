@@ -42,6 +42,12 @@ impl Resolution {
         self.speed_m_s / self.step_s
     }
 
+    /// True where the resolution makes most of the error, and no noise.
+    #[must_use]
+    pub fn is_rounded(&self) -> bool {
+        self.speed_m_s * self.speed_m_s / 12.0 > 0.5 * self.error_m_s * self.error_m_s
+    }
+
     /// True where differences of speeds are noise (LO-4).
     #[must_use]
     pub fn is_coarse(&self) -> bool {

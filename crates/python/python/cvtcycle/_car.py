@@ -10,7 +10,7 @@ from typing import Any
 
 from . import _native
 from ._errors import bad
-from ._table import frame_columns, table_text, texts
+from ._table import table_text, texts, timed_columns
 
 Set = Mapping[str, Any] | Iterable[str] | None
 """Changes of values: a mapping from key to value, or texts ``KEY=VALUE``."""
@@ -177,7 +177,7 @@ class Cycle:
     """A drive cycle: a shipped one (``names("cycle")``), ``constant_V`` with V in km/h, or the path of a table of time and speed."""
 
     def __init__(self, word: str | os.PathLike[str]) -> None:
-        self._made: tuple[Any, ...] = ("word", path_word("word", word), None)
+        self._made: tuple[Any, ...] = ("word", path_word("word", word), None, None)
         self._cycle = _native.Cycle(*self._made[1:])
 
     @classmethod
@@ -192,19 +192,20 @@ class Cycle:
         return Cycle._build, (self._made,)
 
     @classmethod
-    def read(cls, file: Any, *, columns: str | None = None) -> Cycle:
+    def read(cls, file: Any, *, columns: str | None = None, repair: str | None = None) -> Cycle:
         """Reads a path or an open file in the program's own form, or of EPA, FASTSim, VECTO or a logger.
 
-        ``columns`` names those that are meant, such as ``time=Time_ADC:s,speed=VehSpd:mph``.
+        ``columns`` names those that are meant, such as ``time=Time_ADC:s,speed=VehSpd:mph``; ``repair`` the repairs of a log that are
+        wanted, such as ``cut,no-smooth``. What was repaired is in :attr:`repairs`, what is doubted in :attr:`doubts`.
         """
         if not hasattr(file, "read"):
-            return cls._build(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns))
+            return cls._build(("word", os.path.join(os.path.dirname(path_word("file", file)) or ".", os.path.basename(file)), columns, repair))
         try:
             data = file.read()
         except (OSError, ValueError) as error:
             raise bad("file", f"cannot read it: {error}") from error
         name = str(getattr(file, "name", "file"))
-        return cls._build(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns))
+        return cls._build(("text", name, data.encode() if isinstance(data, str) else bytes(data), columns, repair))
 
     @classmethod
     def from_arrays(
@@ -230,9 +231,13 @@ class Cycle:
         return cls.from_frame({key: values for key, values in given.items() if values is not None}, name=name)
 
     @classmethod
-    def from_frame(cls, frame: Any, *, name: str = "frame", columns: str | None = None) -> Cycle:
-        """Builds a cycle from a frame or mapping with the columns of a cycle file, such as ``time_s`` and ``speed_kmh``."""
-        return cls._build(("text", name, table_text(frame_columns("frame", frame)), columns))
+    def from_frame(cls, frame: Any, *, name: str = "frame", columns: str | None = None, repair: str | None = None) -> Cycle:
+        """Builds a cycle from a frame or mapping with the columns of a cycle file, such as ``time_s`` and ``speed_kmh``.
+
+        Times may be datetimes, timedeltas or the index of a pandas frame; columns that mean nothing are passed over. ``columns`` and
+        ``repair`` as in :meth:`read`.
+        """
+        return cls._build(("text", name, table_text(timed_columns("frame", frame)), columns, repair))
 
     @property
     def name(self) -> str:
@@ -248,6 +253,16 @@ class Cycle:
     def read_as(self) -> str | None:
         """Interpretation of a file of another program; None for the program's own form."""
         return self._cycle.read_as
+
+    @property
+    def repairs(self) -> list[tuple[str, int, str]]:
+        """Repairs of its recording: name, count, what was done."""
+        return self._cycle.repairs
+
+    @property
+    def doubts(self) -> list[str]:
+        """Doubts about its recording, a sentence each."""
+        return self._cycle.doubts
 
     @property
     def phases(self) -> list[str]:

@@ -131,6 +131,9 @@ def doubles(key: str, values: Any) -> bytes:
 def _listed(key: str, values: Any) -> list[Any]:
     if isinstance(values, (str, bytes, Mapping)):
         raise bad(key, f"{type(values).__name__} is no sequence of numbers")
+    if getattr(getattr(values, "dtype", None), "kind", "") in ("m", "M") and hasattr(values, "astype") and not hasattr(values, "to_list"):
+        # NumPy lists nanoseconds as whole numbers.
+        values = values.astype("datetime64[us]" if values.dtype.kind == "M" else "timedelta64[us]")
     for method in ("to_list", "tolist"):
         if hasattr(values, method):
             return list(getattr(values, method)())
@@ -153,6 +156,48 @@ def frame_columns(key: str, frame: Any) -> dict[str, list[Any]]:
         return {str(name): _listed(str(name), frame[name]) for name in names}
     except (KeyError, TypeError) as error:
         raise bad(key, f"{type(frame).__name__} has no columns by name: {error}") from error
+
+
+def timed_columns(key: str, frame: Any) -> dict[str, list[Any]]:
+    """Columns of a frame as :func:`frame_columns`, with the index of a pandas frame where it is the time, and times as seconds."""
+    columns = frame_columns(key, frame)
+    index = getattr(frame, "index", None)
+    if index is not None and hasattr(index, "dtype") and not _has_time(columns):
+        # asammdf and loggers have their stamps in the index; a plain count of the rows has no name.
+        name = str(getattr(index, "name", None) or "")
+        if getattr(index.dtype, "kind", "") in ("m", "M") or (name and getattr(index.dtype, "kind", "") in "fiu"):
+            columns = {_time_name(name or "time"): _listed("index", index), **columns}
+    timed = {}
+    for name, values in columns.items():
+        seconds = _seconds(values)
+        timed[name if seconds is None else _time_name(name)] = values if seconds is None else seconds
+    return timed
+
+
+def _has_time(columns: Mapping[str, Sequence[Any]]) -> bool:
+    return any(name.lower().startswith(("time", "t [", "timestamp", "elapsed", "date")) or name == "t" for name in columns)
+
+
+def _time_name(name: str) -> str:
+    """Name of a column of seconds: with that unit, unless it states one."""
+    lower = name.lower()
+    return name if lower.endswith(("_s", "[s]", "(s)")) else f"{lower.removesuffix('s') if lower == 'timestamps' else lower}_s"
+
+
+def _seconds(values: Sequence[Any]) -> list[Any] | None:
+    """Seconds since the first of datetimes or timedeltas; None for other values. Missing ones stay missing."""
+    import datetime
+
+    first = next((value for value in values if value is not None and value == value), None)
+    if isinstance(first, datetime.timedelta):
+        return [value.total_seconds() if _is_there(value) else None for value in values]
+    if isinstance(first, datetime.datetime):
+        return [(value - first).total_seconds() if _is_there(value) else None for value in values]
+    return None
+
+
+def _is_there(value: Any) -> bool:
+    return value is not None and value == value
 
 
 def table_text(columns: Mapping[str, Sequence[Any]]) -> bytes:
