@@ -1,8 +1,8 @@
 //! Groups of options, each option declared once. A command flattens the groups that it takes.
 
 use clap::Args;
+use cvtcycle::config::channel::Repairs;
 use cvtcycle::config::csv::Columns;
-use cvtcycle::config::log::Repairs;
 use cvtcycle::config::setup::{
     self, AMBIENT, Kind, Options, START, STEP, Setup, TWIN, baseline_of,
 };

@@ -74,6 +74,7 @@ fn setting_flag(setting: Setting) -> &'static str {
         Setting::Added => "--with",
         Setting::Loosely => "--loosely",
         Setting::Columns => "--columns",
+        Setting::Repair => "--repair",
     }
 }
 

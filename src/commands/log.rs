@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use cvtcycle::config::Problems;
-use cvtcycle::config::cycle::{Cycle, Format, Recording, write};
-use cvtcycle::config::log::{Channel, Log, Look, look};
+use cvtcycle::config::channel::Quantity;
+use cvtcycle::config::cycle::{Cycle, Format, Look, Recording, look, write};
+use cvtcycle::config::log::{Channel, Log};
 use cvtcycle::output::file::OutputFile;
 use cvtcycle::output::number::fixed;
 use cvtcycle::output::table::{TextTable, wrapped};
@@ -100,7 +101,6 @@ fn range(channel: &Channel) -> (usize, f64, f64) {
 
 /// Unit in which a channel is printed, and its size in SI.
 fn printed(channel: &Channel) -> (&'static str, f64, usize) {
-    use cvtcycle::config::log::Quantity;
     match channel.quantity {
         Quantity::Time => ("s", 1.0, 2),
         Quantity::Speed => ("km/h", 1.0 / 3.6, 2),

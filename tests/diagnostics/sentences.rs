@@ -22,6 +22,8 @@ const MARKS: [&str; 7] = [
 /// Modules (with submodules) whose problems are not about input files of users, with the reason.
 const OUTSIDE: &[(&str, &str)] = &[
     ("config::cycle::find", "names given to options"),
+    ("config::channel", "names given to options"),
+    ("config::log", "logs: tests/cli/commands/log.rs"),
     (
         "config::setup",
         "names given to options: only this module, see INSIDE",

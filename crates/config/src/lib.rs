@@ -18,6 +18,7 @@
 //! | `cycle` | drive cycles |
 //! | `procedure` | tests: a cycle with its start, temperature, load and figures |
 //! | `schema` | JSON Schema of the files |
+pub mod channel;
 pub mod csv;
 pub mod log;
 pub mod cycle;

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use cvtcycle::config::channel::Repairs;
 use cvtcycle::config::csv::Columns;
 use cvtcycle::config::cycle::{self, Cycle as CoreCycle, Repair};
-use cvtcycle::config::log::Repairs;
 use pyo3::prelude::*;
 
 use crate::car::Car;

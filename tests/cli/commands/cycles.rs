@@ -22,7 +22,8 @@ fn a_logger_s_table_is_driven_by_its_named_columns() {
     let refused = run_in(dir.path(), &drive);
     assert_eq!(refused.status.code(), Some(2));
     assert!(
-        stderr(&refused).contains("say which columns are meant (--columns)"),
+        stderr(&refused)
+            .contains("try: cvtcycle run --cycle log.csv --price never --baseline none --columns"),
         "{}",
         stderr(&refused)
     );
@@ -31,7 +32,7 @@ fn a_logger_s_table_is_driven_by_its_named_columns() {
     let summary: Value = serde_json::from_slice(&driven.stdout).unwrap();
     assert_eq!(
         summary["read_as"],
-        "semicolons, decimal commas, \"Time_ADC\" as time_s, \"VehSpd\" as speed_mph, 2 of 3 columns"
+        "semicolons, decimal commas, \"Time_ADC\" as time in s, \"VehSpd\" as speed in mph, 2 of 3 columns"
     );
     // 13.5 mph are 6.035 m/s: ten seconds accelerating, ten at constant speed, ten decelerating.
     let km = summary["runs"][0]["distance_km"].as_f64().unwrap();

@@ -131,7 +131,7 @@ fn a_stated_unit_is_not_overridden_in_silence() {
     let output = drive("k02_ved_ms.csv", &["--columns", &of("s")]);
     let text = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
-    assert!(text.contains("states ms, and --columns says s"), "{text}");
+    assert!(text.contains("states ms, and the columns say s"), "{text}");
     assert_eq!(
         drive("k02_ved_ms.csv", &["--columns", &of("ms")])
             .status

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::channel::bare;
+
 /// Units as people write them, `bare`, and the unit that is meant.
 pub const UNITS: [(&str, &str); 38] = [
     ("s", "s"),
@@ -43,18 +45,6 @@ pub const UNITS: [(&str, &str); 38] = [
     ("-", "-"),
     ("1", "-"),
 ];
-
-/// A text in lower case, its words joined by `_`; a sign alone stays as it is.
-pub(crate) fn bare(text: &str) -> String {
-    let lower = text.trim().to_lowercase();
-    let is_letter = |c: char| c.is_alphanumeric() || c == '°';
-    let words = lower.split(|c: char| !is_letter(c));
-    let words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
-    match words.is_empty() {
-        true => lower,
-        false => words.join("_"),
-    }
-}
 
 /// The unit that a text means, with brackets or without.
 pub(super) fn unit_named(text: &str) -> Option<&'static str> {

@@ -25,7 +25,6 @@ mod table;
 mod text;
 
 pub use collector::{Cell, Collector, Line};
-pub(crate) use heading::bare;
 pub use heading::{Foreign, UNITS};
 pub use named::Columns;
 pub(crate) use named::Entry;

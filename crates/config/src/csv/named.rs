@@ -2,7 +2,7 @@
 
 use super::heading::unit_named;
 use super::text::split;
-use crate::log::{Quantity, Repairs};
+use crate::channel::{Quantity, Repairs};
 use crate::{Argument, Problem};
 
 /// Word of a choice of rows: `where=VehId:7`.

@@ -5,10 +5,11 @@ use std::borrow::Cow;
 use cvtcycle_model::keys::{Quantity, stem};
 
 use super::collector::{Collector, Line};
-use super::heading::{bare, readings, unit_in, unit_named};
+use super::heading::{readings, unit_in, unit_named};
 use super::named::{Columns, Entry};
 use super::schema::{Cells, Column, Schema};
 use super::text::Field;
+use crate::channel::bare;
 use crate::{Argument, Problem, near, suggestion};
 
 /// A longer name is none with words and a unit.

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use super::dialect::with_point;
-use super::heading::{Foreign, bare};
+use super::heading::Foreign;
 use super::named::Columns;
+use crate::channel::bare;
 use crate::{Bound, Problem, Setting, suggestion, unit_of};
 
 /// Content of the cells of a column.

@@ -1,10 +1,10 @@
 //! A cycle by its name, a constant speed (as the older fuel figures at 90 and 120 km/h, 80/1268/EEC, have it), or a file of the user.
 
 use super::{Cycle, Interval, Trace, Weighting, embedded, names, read_columns};
+use crate::channel::Repairs;
 use crate::csv::Columns;
 use crate::files::bounded::{self, Limit};
 use crate::files::embedded::is_path;
-use crate::log::Repairs;
 use crate::{Argument, Problem, Problems, near, suggestion};
 use cvtcycle_model::drive::Vehicle;
 

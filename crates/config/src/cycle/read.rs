@@ -4,13 +4,15 @@ use std::path::Path;
 
 use super::distance::{DistanceRow, Stretch, stretches};
 use super::gears::{GearColumns, GearCommand, commands};
+use super::likeness::likeness;
 use super::row::{GEARS, MAX_DURATION_S, NOTE, Over, Row, Rows, schema};
 use super::{Cycle, Interval, Recording, Trace, Weighting};
+use crate::channel::Quantity;
 use crate::csv::{self, Collector, Columns, Entry, Line, Table};
-use crate::log::{self, Log, Quantity, Resolution, Samples};
+use crate::log::{self, Log, Resolution, Samples};
 use crate::{Place, Problem, Problems, readable};
 
-/// Reads a drive cycle from the bytes of a CSV file called `file`.
+/// Reads a drive cycle from the bytes of a CSV file called `file`, as it is written: nothing is repaired or smoothed.
 ///
 /// Columns: `time_s` (s, strictly rising, any step; the first time becomes 0), or `distance_m` with `stop_s` at speed 0 (CY-1), and one of
 /// `speed_kmh`, `speed_km_h`, `speed_m_s`, `speed_mph`. Optional, holding from their row to the next: `phase` (name), `gear` (0 to 10, for every gearbox that has
@@ -21,7 +23,41 @@ use crate::{Place, Problem, Problems, readable};
 /// # Errors
 /// All problems of the file at once, in the order of its lines, each with its place; after 50 the rest is counted in one last entry.
 pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
-    read_columns(file, bytes, &Columns::default())
+    let mut phases = Vec::new();
+    let read = read_rows((file, &Columns::default()), bytes, &mut phases, &mut false)?;
+    let trace = trace(read.has, &read.rows, read.intervals, read.row_of);
+    let read_as = read.read_as;
+    let recording = None;
+    Ok(cycle(
+        file,
+        phases,
+        Found {
+            trace,
+            read_as,
+            recording,
+        },
+    ))
+}
+
+/// The cycle of a file.
+fn cycle(file: &str, phases: Vec<String>, found: Found) -> Cycle {
+    let path = Path::new(file);
+    let text = |part: Option<&std::ffi::OsStr>| {
+        part.and_then(|part| part.to_str())
+            .unwrap_or(file)
+            .to_owned()
+    };
+    Cycle {
+        name: text(path.file_stem()),
+        title: text(path.file_name()),
+        phases,
+        weighting: Weighting::None,
+        manual: found.trace,
+        automatic: None,
+        read_as: found.read_as,
+        recording: found.recording,
+        is_wltc: false,
+    }
 }
 
 /// As [`read_csv`], with the columns that are meant, of which all others are passed over, and the repairs that are wanted. A file that is not written as the
@@ -32,23 +68,7 @@ pub fn read_csv(file: &str, bytes: &[u8]) -> Result<Cycle, Problems> {
 pub fn read_columns(file: &str, bytes: &[u8], columns: &Columns) -> Result<Cycle, Problems> {
     let mut phases = Vec::new();
     let found = read_any(file, bytes, columns, &mut phases)?;
-    let path = Path::new(file);
-    let text = |part: Option<&std::ffi::OsStr>| {
-        part.and_then(|part| part.to_str())
-            .unwrap_or(file)
-            .to_owned()
-    };
-    Ok(Cycle {
-        name: text(path.file_stem()),
-        title: text(path.file_name()),
-        phases,
-        weighting: Weighting::None,
-        manual: found.trace,
-        automatic: None,
-        read_as: found.read_as,
-        recording: found.recording,
-        is_wltc: false,
-    })
+    Ok(cycle(file, phases, found))
 }
 
 /// A file that was read.
@@ -69,25 +89,32 @@ fn read_any(
     let of_table =
         |entry: &Entry| entry.quantity != "where" && Quantity::from_word(&entry.quantity).is_none();
     let is_table = columns.is_empty() || columns.entries().iter().any(of_table);
-    let table = is_table.then(|| read_rows((file, columns), bytes, phases));
+    let mut has_names = false;
+    let table = is_table.then(|| read_rows((file, columns), bytes, phases, &mut has_names));
     let problems = match table {
         Some(Ok(read)) if !read.is_strange() => return as_recorded(file, read, columns),
         Some(Ok(_)) => None,
         Some(Err(problems)) => Some(problems),
         None => None,
     };
-    match (log::read(file, bytes, columns), problems) {
-        (Ok(log), _) => Ok(of_log(log, phases)),
-        (Err(refused), Some(problems)) if !refused.is_known => {
-            let columns = refused
-                .problems
-                .iter()
-                .map(|problem| problem.columns.clone());
-            let columns = columns.max().unwrap_or_default();
-            let alike = alike(problems);
-            Err(alike.map(|problem| problem.columns(columns.as_str())))
+    phases.clear();
+    let refused = match log::read(file, bytes, columns, likeness) {
+        Ok(log) => return Ok(of_log(log, phases)),
+        Err(refused) => refused,
+    };
+    // Of a table of a cycle its own reader says more, unless there is something to choose.
+    let is_choice = |problem: &Problem| !problem.columns.is_empty() || !problem.settings.is_empty();
+    let is_better = match has_names {
+        true => refused.problems.iter().any(is_choice),
+        false => refused.is_known,
+    };
+    match problems {
+        Some(problems) if !is_better => {
+            let columns = refused.problems.iter().map(|problem| &problem.columns);
+            let columns = columns.max().cloned().unwrap_or_default();
+            Err(alike(problems).map(|problem| problem.columns(columns.as_str())))
         }
-        (Err(refused), _) => Err(refused.problems),
+        _ => Err(refused.problems),
     }
 }
 
@@ -223,7 +250,7 @@ fn as_recorded(file: &str, read: ReadRows, columns: &Columns) -> Result<Found, P
         });
     }
     let resolution = Resolution::of(&samples.time_s, &samples.speed_m_s);
-    let likeness = log::likeness(&samples, resolution.map_or(0.0, |own| own.speed_m_s));
+    let like = likeness(&samples, resolution.map_or(0.0, |own| own.speed_m_s));
     let raw = samples.speed_m_s.clone();
     let place = |line: u32| {
         Problem::default().at(Place {
@@ -231,11 +258,11 @@ fn as_recorded(file: &str, read: ReadRows, columns: &Columns) -> Result<Found, P
             ..Place::file(file)
         })
     };
-    let is_exact = likeness.is_exact && resolution.is_none_or(|own| own.speed_m_s < 0.15);
+    let is_exact = like.is_exact && resolution.is_none_or(|own| own.speed_m_s < 0.15);
     let treated = log::treat(samples, columns.repairs(), is_exact, &place);
     let treated = treated.map_err(|problems| problems.into_iter().collect::<Problems>())?;
     let mut doubts = treated.doubts;
-    doubts.extend(likeness.doubt);
+    doubts.extend(like.doubt);
     doubts.extend(log::motions(&treated.samples));
     let (times, speeds) = (&treated.samples.time_s, &treated.samples.speed_m_s);
     let mut with = |speeds: &[f64]| {
@@ -298,16 +325,17 @@ pub(super) fn read_trace(
     bytes: &[u8],
     phases: &mut Vec<String>,
 ) -> Result<(Trace, Option<String>), Problems> {
-    let read = read_rows(own, bytes, phases)?;
+    let read = read_rows(own, bytes, phases, &mut false)?;
     let trace = trace(read.has, &read.rows, read.intervals, read.row_of);
     Ok((trace, read.read_as))
 }
 
-/// Reads a table of a cycle; phases known already keep their index, new ones are added.
+/// Reads a table of a cycle; phases known already keep their index, new ones are added. `has_names`: the names of its columns are those of a cycle.
 fn read_rows(
     (file, columns): (&str, &Columns),
     bytes: &[u8],
     phases: &mut Vec<String>,
+    has_names: &mut bool,
 ) -> Result<ReadRows, Problems> {
     let mut problems = Collector::new(file);
     let mut rows = Rows::new(phases);
@@ -316,7 +344,10 @@ fn read_rows(
         bytes,
         &schema,
         &mut problems,
-        check_notes,
+        |table, header, problems| {
+            *has_names = problems.is_empty();
+            check_notes(table, header, problems);
+        },
         |cells, problems| {
             rows.add(cells, problems);
             true

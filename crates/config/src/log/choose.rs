@@ -2,7 +2,7 @@
 
 use super::sheet::{Sheet, is_missing, number, unit_in};
 use super::stamp::Form;
-use super::units::{Quantity, Unit, is_identity};
+use crate::channel::{Quantity, Unit, is_identity};
 use crate::csv::{Columns, Entry};
 use crate::{Argument, Problem, near, suggestion};
 
@@ -135,7 +135,7 @@ impl Sheet<'_> {
     fn by_values(&self, chosen: &mut Chosen) {
         const VALUES: [&str; 6] = ["value", "values", "val", "reading", "data", "wert"];
         let is_value =
-            |column: &usize| VALUES.contains(&crate::csv::bare(&self.names[*column]).as_str());
+            |column: &usize| VALUES.contains(&crate::channel::bare(&self.names[*column]).as_str());
         let Some(value) = (0..self.names.len()).find(is_value) else {
             return;
         };
@@ -289,7 +289,7 @@ impl Sheet<'_> {
         if let Some(stated) = stated.filter(|stated| *stated != unit && !entry.forced) {
             let name = self.label(column);
             let message = format!(
-                "`{name}` states {}, and --columns says {}",
+                "`{name}` states {}, and the columns say {}",
                 stated.name, unit.name
             );
             return Err(Problem::conflict(message)

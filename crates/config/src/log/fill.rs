@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::choose::{Chosen, Reading, Source};
 use super::sheet::{Met, Sheet, is_missing, number};
 use super::stamp::{DAY_S, Form};
-use super::units::is_identity;
+use crate::channel::is_identity;
 
 /// Most values of a column that tells cars or drives apart.
 const MAX_VALUES: usize = 200;

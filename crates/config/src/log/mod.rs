@@ -7,13 +7,12 @@
 //! |---|---|
 //! | `text` | bytes to text, in the encoding that they are in |
 //! | `sheet` | the sign between columns; what is above the rows and below them |
-//! | `units` | quantities, their names in other programs, their units |
 //! | `stamp` | time stamps: clocks, dates |
 //! | `choose` | the channels that are meant, by their names or by the user |
 //! | `fill` | cells to numbers |
 //! | `repair` | faults that have one remedy: each has a name and is counted |
 //! | `smooth` | resolution of a speed over its rate, smoothing (LO-1 to LO-4) |
-//! | `doubts` | likeness to a shipped cycle, motions that no car has |
+//! | `doubts` | motions that no car has |
 //! | `propose` | the columns that mend a refusal |
 
 mod choose;
@@ -25,14 +24,13 @@ mod sheet;
 mod smooth;
 mod stamp;
 mod text;
-mod units;
 
-pub(crate) use doubts::{likeness, motions};
-pub use repair::Repairs;
+pub(crate) use doubts::{Likeness, motions};
 pub(crate) use repair::{Samples, Treated, treat};
 pub use smooth::Resolution;
-pub use units::{Quantity, Unit};
+pub(crate) use smooth::median;
 
+use crate::channel::Quantity;
 use crate::csv::Columns;
 use crate::{Place, Problem, Problems, readable};
 use choose::{Chosen, Reading, Source};
@@ -113,10 +111,19 @@ struct Reader<'s, 't> {
     file: &'s str,
     sheet: &'s Sheet<'t>,
     columns: &'s Columns,
+    likeness: Known,
 }
 
+/// What is known of other drives: whether a recording, of this resolution in m/s, is one of them.
+pub(crate) type Known = fn(&Samples, f64) -> Likeness;
+
 /// Reads a log.
-pub(crate) fn read(file: &str, bytes: &[u8], columns: &Columns) -> Result<Log, Refused> {
+pub(crate) fn read(
+    file: &str,
+    bytes: &[u8],
+    columns: &Columns,
+    likeness: Known,
+) -> Result<Log, Refused> {
     let in_file = |problem: Problem| problem.in_file(file);
     let text = text::decode(bytes).map_err(|problem| Refused {
         problems: in_file(problem).into(),
@@ -132,6 +139,7 @@ pub(crate) fn read(file: &str, bytes: &[u8], columns: &Columns) -> Result<Log, R
         file,
         sheet: &sheet,
         columns,
+        likeness,
     }
     .read()?;
     if let Some(encoding) = text.encoding {
@@ -205,7 +213,7 @@ impl Reader<'_, '_> {
         let raw = samples.clone();
         let resolution =
             Resolution::of(&samples.time_s, &samples.speed_m_s).map_or(0.0, |own| own.speed_m_s);
-        let likeness = likeness(&samples, resolution);
+        let likeness = (self.likeness)(&samples, resolution);
         let place = |line: u32| self.problem(line, Problem::default());
         let is_exact = likeness.is_exact && resolution < 0.15;
         let mut treated = treat(samples, wanted, is_exact, &place).map_err(|found| {
@@ -590,7 +598,7 @@ impl Reader<'_, '_> {
                 let problem = Problem::missing(text)
                     .in_file(self.file)
                     .key("speed")
-                    .hint("--repair empty leaves them out");
+                    .hint("let the repair `empty` leave them out");
                 return Err(Refused::known(problem));
             }
             repairs.push(made("empty", empty, format!("{text} left out")));
@@ -679,7 +687,7 @@ impl Reader<'_, '_> {
             .in_file(self.file)
             .key("time");
             return Err(Refused::known(
-                problem.hint("--repair stamps makes one row of them"),
+                problem.hint("let the repair `stamps` make one row of them"),
             ));
         }
         let before = samples.clone();
@@ -705,9 +713,8 @@ impl Reader<'_, '_> {
                 let problem = Problem::conflict(message)
                     .key("time")
                     .allowed("speeds at one stamp that may be one");
-                let problem = problem.hint(
-                    "are these the rows of two cars? choose one with --columns where=COLUMN:VALUE",
-                );
+                let problem = problem
+                    .hint("are these the rows of two cars? choose one with where=COLUMN:VALUE");
                 Err(Refused::known(self.problem(before.lines[at], problem)))
             }
         }
@@ -748,10 +755,10 @@ impl Reader<'_, '_> {
                     .columns(propose::columns(self.sheet, leading, &[], &filters))
             }
             false => {
-                let message = format!("the time does not rise {}", times(falls.len()));
+                let message = format!("the time falls {}", times(falls.len()));
                 Problem::conflict(message)
                     .allowed("more than in the row above")
-                    .hint("--repair sort puts the rows in the order of their times")
+                    .hint("sort the rows, or let the repair `sort` do it")
             }
         };
         Refused::known(self.problem(line, problem.key("time")))
@@ -855,15 +862,6 @@ fn held(values: &[f64]) -> Vec<f64> {
     values.iter().map(hold).collect()
 }
 
-/// A log as it was understood, and the cycle that it is.
-#[derive(Debug)]
-pub struct Look {
-    /// The log; none of a file over distance or of a cycle without a channel of speed.
-    pub log: Option<Log>,
-    /// The cycle.
-    pub cycle: crate::cycle::Cycle,
-}
-
 impl Log {
     /// Rate and resolution of the speed; none of a schedule, or of a car at rest.
     #[must_use]
@@ -880,18 +878,4 @@ impl Log {
         let high = steps.iter().copied().fold(0.0, f64::max);
         [low, smooth::median(steps).unwrap_or(0.0), high]
     }
-}
-
-/// Reads the log at a path, with what was understood of it.
-///
-/// # Errors
-/// As [`crate::cycle::open`].
-pub fn look(path: &str, columns: &Columns) -> Result<Look, Problems> {
-    use crate::cycle::{bytes, read_columns};
-    let bytes = bytes(crate::Argument::File, path, crate::files::bounded::TABLE)?;
-    let cycle = read_columns(path, &bytes, columns)?;
-    Ok(Look {
-        log: read(path, &bytes, columns).ok(),
-        cycle,
-    })
 }

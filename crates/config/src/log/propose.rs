@@ -3,7 +3,7 @@
 use super::choose::{Chosen, Reading, Source};
 use super::sheet::{Sheet, is_missing, number};
 use super::stamp::Form;
-use super::units::Quantity;
+use crate::channel::Quantity;
 use crate::readable;
 
 /// Accelerations of a drive on a road, m/s2: the largest is between these.

@@ -1,9 +1,8 @@
 //! Faults of recordings that have one remedy: each has a name, is counted, and can be switched off.
 
-use std::fmt;
-
 use super::smooth::{Resolution, smoothed};
-use crate::{Argument, Problem, readable};
+use crate::channel::Repairs;
+use crate::{Problem, Setting, readable};
 use cvtcycle_model::cycle::Repair;
 
 /// Speed above which a car is moving, m/s.
@@ -35,104 +34,6 @@ const BRIDGE_M_S2: [f64; 2] = [1.0, 1.5];
 const SLOPE_M: f64 = 100.0;
 /// Steepest slope, rise over run.
 const STEEPEST: f64 = 0.35;
-
-macro_rules! repairs {
-    ($($name:ident $word:literal $default:literal $what:literal;)*) => {
-        /// Repairs that are wanted.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub struct Repairs {
-            $(#[doc = $what] pub $name: bool,)*
-        }
-
-        impl Default for Repairs {
-            fn default() -> Self {
-                Repairs { $($name: $default,)* }
-            }
-        }
-
-        impl Repairs {
-            /// Name, default and meaning of each.
-            pub const ALL: &'static [(&'static str, bool, &'static str)] = &[$(($word, $default, $what)),*];
-
-            /// None.
-            pub const NONE: Repairs = Repairs { $($name: false,)* };
-
-            fn set(&mut self, word: &str, on: bool) -> bool {
-                match word {
-                    $($word => self.$name = on,)*
-                    _ => return false,
-                }
-                true
-            }
-        }
-    };
-}
-
-repairs! {
-    empty "empty" true "rows without a time or a speed, as where channels have their own rasters, are left out";
-    stamps "stamps" true "rows of one time stamp become one with their mean";
-    negative "negative" true "speeds from -1 to 0 km/h become 0";
-    spikes "spikes" true "up to 3 samples against both neighbours become the line between these";
-    smooth "smooth" true "speeds whose resolution or noise is coarse for their rate are smoothed";
-    sort "sort" false "rows are put in the order of their times";
-    cut "cut" false "a gap while the car moves, or a jump of the speed, is bridged at 1.0 and 1.5 m/s2";
-}
-
-impl Repairs {
-    /// Reads a list: `cut`, `no-smooth`, `none`, with commas between them.
-    ///
-    /// # Errors
-    /// A word that is no repair.
-    ///
-    /// ```
-    /// use cvtcycle_config::log::Repairs;
-    /// let repairs = Repairs::parse("cut,no-smooth")?;
-    /// assert!(repairs.cut && !repairs.smooth && repairs.spikes);
-    /// # Ok::<(), cvtcycle_config::Problem>(())
-    /// ```
-    pub fn parse(text: &str) -> Result<Repairs, Problem> {
-        let mut repairs = Repairs::default();
-        for word in text
-            .split(',')
-            .map(str::trim)
-            .filter(|word| !word.is_empty())
-        {
-            let known = match word.strip_prefix("no-") {
-                _ if word == "none" => {
-                    repairs = Repairs::NONE;
-                    true
-                }
-                _ if word == "auto" => true,
-                Some(word) => repairs.set(word, false),
-                None => repairs.set(word, true),
-            };
-            if !known {
-                let names: Vec<&str> = Repairs::ALL.iter().map(|(name, _, _)| *name).collect();
-                return Err(
-                    Problem::unknown_name(format!("there is no repair `{word}`"))
-                        .at(Argument::Repair)
-                        .value(word)
-                        .allowed(format!(
-                            "{}; with no- before a name it is left out; none; auto",
-                            names.join(", ")
-                        )),
-                );
-            }
-        }
-        Ok(repairs)
-    }
-}
-
-impl fmt::Display for Repairs {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let list: Vec<&str> = Repairs::ALL
-            .iter()
-            .filter(|(_, is, _)| *is)
-            .map(|(name, _, _)| *name)
-            .collect();
-        f.write_str(&list.join(","))
-    }
-}
 
 /// A repair that was made.
 pub(super) fn made(name: &'static str, count: usize, what: String) -> Repair {
@@ -392,7 +293,8 @@ pub(crate) fn treat(
                 problems.push(
                     at(line, Problem::out_of_range(text))
                         .allowed("speeds that a car can drive")
-                        .hint("--repair spikes replaces them"),
+                        .hint("let the repair `spikes` replace them")
+                        .settings(&[Setting::Repair]),
                 );
             }
         }
@@ -542,12 +444,12 @@ fn gaps(
         let starts =
             jumps.first().is_some_and(|k| samples.speed_m_s[*k] <= 0.0) && jumps.len() == 1;
         let hint = match (gaps.is_empty(), raster) {
-            (false, _) => "fill the gap with rows, or take its time out: --repair cut",
+            (false, _) => "fill the gap with rows, or let the repair `cut` take its time out",
             (true, _) if starts => {
                 "for times at full throttle see `cvtcycle accelerate`; else: is the time in seconds, are samples lost?"
             }
             (true, Some(_)) if jumps.len() <= few => {
-                "is the speed in the unit that is stated? where samples are lost, --repair cut bridges the jump"
+                "is the speed in the unit that is stated? where samples are lost, let the repair `cut` bridge the jump"
             }
             (true, _) => {
                 "is the speed in the unit that is stated? is the time in seconds? are samples lost?"

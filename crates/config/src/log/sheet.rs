@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::stamp::Form;
-use super::units::Quantity;
+use crate::channel::Quantity;
 use crate::csv::{Field, split};
 
 /// Lines at the beginning in which the layout is looked for.
@@ -395,7 +395,7 @@ fn is_bracketed(cell: &str) -> bool {
 }
 
 /// The unit that the name of a channel of this quantity has in it: in brackets, behind a comma, or as its last word.
-pub(super) fn unit_in(quantity: Quantity, name: &str) -> Option<super::units::Unit> {
+pub(super) fn unit_in(quantity: Quantity, name: &str) -> Option<crate::channel::Unit> {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some((_, inner)) = name.rsplit_once(open)
             && let Some(unit) = inner.split(close).next()
@@ -415,7 +415,7 @@ pub(super) fn unit_in(quantity: Quantity, name: &str) -> Option<super::units::Un
     {
         return Some(unit);
     }
-    let bare = crate::csv::bare(name);
+    let bare = crate::channel::bare(name);
     let mut ends = bare.match_indices('_').map(|(at, _)| &bare[at + 1..]);
     let at_end = ends.find_map(|end| quantity.unit(end));
     // A name that is a unit alone, such as KPH or seconds, is of a quantity whose unit no other has.

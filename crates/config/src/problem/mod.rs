@@ -79,6 +79,8 @@ pub enum Setting {
     Loosely,
     /// The columns of a table that are meant.
     Columns,
+    /// The repairs of a log.
+    Repair,
 }
 
 /// One problem of an input.

@@ -1,6 +1,6 @@
 //! Quantities of a log's channels, their names in other programs, and their units.
 
-use crate::csv::bare;
+use super::bare;
 
 /// Quantity of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -277,7 +277,7 @@ impl Quantity {
     }
 
     /// True if a number needs a unit.
-    pub(super) fn needs_unit(self) -> bool {
+    pub(crate) fn needs_unit(self) -> bool {
         !matches!(
             self,
             Quantity::EngineOn | Quantity::EngineOff | Quantity::Phase
@@ -297,7 +297,7 @@ impl Quantity {
     }
 
     /// First unit: that of a flag, or a degree Celsius.
-    pub(super) fn plain_unit(self) -> Option<Unit> {
+    pub(crate) fn plain_unit(self) -> Option<Unit> {
         self.table().first().map(|(unit, _)| *unit)
     }
 
@@ -313,7 +313,7 @@ impl Quantity {
 
     /// Quantity that the name of a channel means.
     #[must_use]
-    pub(super) fn of_name(name: &str) -> Option<Quantity> {
+    pub(crate) fn of_name(name: &str) -> Option<Quantity> {
         let words = words(name);
         let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()));
         let is_oil = has(&["oil"]);
@@ -417,7 +417,7 @@ const SPEED_OF_BOX: &[&str] = &[
 ];
 
 /// True if the name of a column says that it numbers or names cars, drives or devices.
-pub(super) fn is_identity(name: &str) -> bool {
+pub(crate) fn is_identity(name: &str) -> bool {
     const WORDS: [&str; 6] = ["id", "vehid", "vehicleid", "tripid", "trip", "vin"];
     const NAMES: [&str; 10] = [
         "car", "driver", "session", "journey", "device", "veh", "vehicle", "drive", "route", "run",
