@@ -62,12 +62,19 @@ impl Sheet<'_> {
         ];
         let name = self.names.get(column).map_or("", String::as_str);
         let stated = unit_in(quantity, name).or_else(|| quantity.unit(self.units.get(column)?));
-        stated.or_else(|| {
+        let stated = stated.or_else(|| {
             let (_, unit) = KNOWN.iter().find(|(known, _)| *known == name)?;
             // Other programs write `vehicle_speed` too.
             let is_own =
                 name != "vehicle_speed" || self.names.iter().any(|name| name == "timestep_time");
             quantity.unit(unit).filter(|_| is_own)
+        });
+        // In a table of the program's own form `grade` is a share.
+        let is_table = name == "grade" && self.names.iter().any(|name| name == "time_s");
+        stated.or_else(|| {
+            quantity
+                .plain_unit()
+                .filter(|_| is_table && quantity == Quantity::Grade)
         })
     }
 

@@ -155,8 +155,9 @@ impl<'t> Sheet<'t> {
                 && (next.len() == FOLLOWING || *k + next.len() == cells.len())
         };
         let first = (0..lines.len()).find(begins)?;
-        // A line such as [Data] may stand between names and rows.
-        let is_between = |k: &usize| !fits(&cells[*k]);
+        // A line such as [Data] may stand between names and rows; a comment has no names.
+        let has_head = |k: &usize| fits(&cells[*k]) && !lines[*k].1.trim_start().starts_with('#');
+        let is_between = |k: &usize| !has_head(k);
         let between = (0..first).rev().take_while(is_between).count();
         let from = match between <= MAX_BETWEEN {
             true => first - between,
@@ -164,7 +165,7 @@ impl<'t> Sheet<'t> {
         };
         let above: Vec<usize> = (0..from)
             .rev()
-            .take_while(|k| fits(&cells[*k]))
+            .take_while(has_head)
             .take(MAX_HEAD)
             .collect();
         let above: Vec<usize> = above.into_iter().rev().collect();
