@@ -6,6 +6,7 @@ use cvtcycle_config::cycle::{embedded, find, for_car};
 use cvtcycle_model::cycle::GearCommand;
 use cvtcycle_model::cycle::gtr15::{GtrGears, GtrVehicle, MakerLimits, SAFETY, gears};
 use cvtcycle_model::drive::{Conditions, Start, drive};
+use cvtcycle_model::transmission::Transmission;
 use proptest::prelude::*;
 
 fn trace(name: &str) -> Vec<f64> {
@@ -210,6 +211,90 @@ fn a_manual_car_on_a_wltc_drives_these_gears_and_no_other_car_or_cycle_does() {
     let cvt = car("rover_216_cvt", &[]);
     assert!(cvt.gtr15().is_none());
     assert_eq!(cvt.trace(&cycle).schedule, "");
+}
+
+/// The data of a car for the procedure are the car's own in the units of the regulation: rated power in kW, road load at a speed in N, engine speed over
+/// car speed in rpm/(km/h).
+#[test]
+fn data_for_the_procedure_are_the_car_s() {
+    let rover = car("rover_216_5mt", &[]);
+    let (own, load) = (rover.gtr15().unwrap(), &rover.vehicle.road_load.base);
+    let rated_kw = own.full_load.iter().map(|p| p[1]).fold(0.0, f64::max);
+    assert!((1e3 * rated_kw / rover.engine().rated_w - 1.0).abs() < 1e-3);
+    let (kmh, m_s) = (90.0, 25.0);
+    let force_n = own.load[0] + own.load[1] * kmh + own.load[2] * kmh * kmh;
+    let want_n = load.f0_n + load.f1_n_per_m_s * m_s + load.f2_n_per_m_s2 * m_s * m_s;
+    assert!((force_n / want_n - 1.0).abs() < 1e-12);
+    let Transmission::Manual(manual) = rover.transmission() else {
+        panic!("a manual box")
+    };
+    let wheel_rad_s = m_s / load.wheel_radius_m;
+    for (per_kmh, overall) in own.rpm_per_kmh.iter().zip(&manual.overall) {
+        let rad_s = per_kmh * kmh * std::f64::consts::PI / 30.0;
+        assert!((rad_s / (overall * wheel_rad_s) - 1.0).abs() < 1e-12);
+    }
+}
+
+/// GS-4: second gear waits for 1.15 of idle only after first; a trace that begins in motion has second from its least speed on.
+#[test]
+fn a_trace_that_begins_in_motion_has_had_no_first_gear() {
+    let car = SIX.vehicle(1385.0);
+    let second_rpm = 9.0 * car.rpm_per_kmh[1];
+    assert!(0.9 * SIX.idle_rpm < second_rpm && second_rpm < 1.15 * SIX.idle_rpm);
+    let found = gears(&[9.0; 60], &car);
+    assert!(
+        found.gear[..50].iter().all(|gear| *gear == 2),
+        "{:?}",
+        found.gear
+    );
+}
+
+/// GS-2: up to the end of the start phase, that second with it, gears above second turn the engine no more slowly than the maker's limit.
+#[test]
+fn the_start_phase_of_the_maker_ends_with_its_last_second() {
+    let kmh: Vec<f64> = (0..200).map(|t| f64::from(t).min(60.0)).collect();
+    let car = SIX.vehicle(1385.0);
+    let high = |found: &GtrGears, t: usize| {
+        let gear = usize::from(found.gear[t]);
+        (gear, kmh[t] * car.rpm_per_kmh[gear - 1])
+    };
+    let plain = gears(&kmh, &car);
+    let (gear, rpm) = high(&plain, 100);
+    assert!(gear > 3 && rpm < 2500.0, "{gear} {rpm}");
+    for start_s in [100.0, 101.0, 102.0] {
+        let maker = MakerLimits {
+            start_rpm: [2500.0; 2],
+            start_s,
+            ..MakerLimits::default()
+        };
+        let held = gears(
+            &kmh,
+            &GtrVehicle {
+                maker,
+                ..car.clone()
+            },
+        );
+        for t in 70..180 {
+            let (gear, rpm) = high(&held, t);
+            if t as f64 <= start_s {
+                assert!(gear <= 2 || rpm >= 2500.0, "{start_s} {t}: {gear} {rpm}");
+            } else {
+                assert_eq!(held.gear[t], plain.gear[t], "{start_s} {t}");
+            }
+        }
+    }
+}
+
+/// GS-1: the highest speed is looked for below 500 km/h, whatever the ratios and the load.
+#[test]
+fn the_highest_speed_is_bounded() {
+    for load in [[0.0; 3], [1.0, 0.0, 1e-5], [82.25, 0.5545, 0.027_943]] {
+        let mut car = SIX.vehicle(1385.0);
+        car.load = load;
+        car.rpm_per_kmh.iter_mut().for_each(|ndv| *ndv *= 0.3);
+        let found = gears(&trace("wltc_class3b"), &car);
+        assert!(found.top.1 <= 500.0, "{load:?}: {:?}", found.top);
+    }
 }
 
 #[test]
