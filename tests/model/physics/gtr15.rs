@@ -285,6 +285,172 @@ fn the_start_phase_of_the_maker_ends_with_its_last_second() {
     }
 }
 
+/// GS-1 by hand: 95 % of 100 kW are between 6000 rpm and 7000 rpm, where the power falls to 80 kW, at 6250 rpm; the last rise through them does not count.
+#[test]
+fn nearly_rated_power_ends_where_the_power_falls_through_it() {
+    let mut car = SIX.vehicle(1385.0);
+    let curve = [
+        (700.0, 8.0),
+        (3000.0, 60.0),
+        (4000.0, 80.0),
+        (6000.0, 100.0),
+        (7000.0, 80.0),
+        (7500.0, 60.0),
+    ];
+    car.full_load = curve.map(|(n, kw)| [n, kw, 0.0]).to_vec();
+    let found = gears(&trace("wltc_class3b"), &car);
+    assert!((found.n95_rpm - 6250.0).abs() < 1e-9, "{}", found.n95_rpm);
+}
+
+/// A box of eight gears with a step of 1.2 and a trace that falls so that the car has the given gears, second by second, and then stands. Least
+/// engine speeds are those of GS-2, and slowing down needs no power, so that the highest gear that is not too slow is chosen.
+fn falling(wanted: &[u8]) -> (GtrGears, Vec<f64>, usize) {
+    let mut car = SIX.vehicle(1385.0);
+    car.rpm_per_kmh = (0..8).map(|k| 75.0 / 1.2_f64.powi(k)).collect();
+    // Rated power is at the last but one speed.
+    let drive_rpm = (650.0 + 0.125 * (6500.0 - 650.0) + 0.5_f64).floor();
+    let least_kmh = |gear: u8| match gear {
+        2 => 650.0 / car.rpm_per_kmh[1],
+        gear => (car.rpm_per_kmh.get(usize::from(gear) - 1)).map_or(119.0, |ndv| drive_rpm / ndv),
+    };
+    let mut kmh = vec![120.0; 60];
+    let begins = kmh.len();
+    let mut from = 0;
+    while from < wanted.len() {
+        let count = wanted[from..]
+            .iter()
+            .take_while(|g| **g == wanted[from])
+            .count();
+        let (low, high) = (
+            least_kmh(wanted[from]),
+            least_kmh(wanted[from] + 1).min(119.0),
+        );
+        // Evenly through the range of the gear.
+        for k in 0..count {
+            kmh.push(high - (high - low) * (k as f64 + 0.5) / count as f64);
+        }
+        from += count;
+    }
+    while kmh[kmh.len() - 1] > 1.0 {
+        let next = kmh[kmh.len() - 1] - 3.0;
+        kmh.push(next.max(0.0));
+    }
+    kmh.extend([0.0; 20]);
+    (gears(&kmh, &car), kmh, begins)
+}
+
+/// GS-5 by the text of UN GTR 15, Annex 2, 4 (f): in a deceleration a gear of one second between two of three seconds and more is none, with the clutch
+/// open; one of two seconds is none and then the gear that follows; i, i, i, i-1, i-1, i-2 and i, i, i, i-1, i-2, i-2 become i, i, i, 0, i-2, i-2, and
+/// i, i, i, i-1, i-2, i-3 as i, i, i, i-2, i-2, i-3 become i, i, i, 0, i-3, i-3. Gears of three seconds stay, however far apart.
+#[test]
+fn gears_of_one_or_two_seconds_on_the_way_down_are_passed_over() {
+    for i in 4_u8..=8 {
+        for d in 3..i {
+            let long = [[i; 5], [d; 5]].concat();
+            assert_slows(&long, &long);
+            for e in 2..d {
+                let [before, after] = [[i; 5], [e; 5]];
+                let one = [&before[..], &[d], &after].concat();
+                assert_slows(&one, &[&before[..], &[0], &after].concat());
+                let two = [&before[..], &[d, d], &after].concat();
+                assert_slows(&two, &[&before[..], &[0, e], &after].concat());
+            }
+        }
+        let short = |own: &[u8], to: &[u8]| {
+            assert_slows(&[&[i; 5][..], own].concat(), &[&[i; 5][..], to].concat());
+        };
+        if i > 4 {
+            let after = [i - 3; 4];
+            short(
+                &[&[i - 1, i - 2, i - 3], &after[..]].concat(),
+                &[&[0, i - 3, i - 3], &after[..]].concat(),
+            );
+            short(
+                &[&[i - 2, i - 2, i - 3], &after[..]].concat(),
+                &[&[0, i - 3, i - 3], &after[..]].concat(),
+            );
+        }
+    }
+}
+
+fn assert_slows(wanted: &[u8], then: &[u8]) {
+    let (found, kmh, begins) = falling(wanted);
+    let own = &found.gear[begins..begins + wanted.len()];
+    assert_eq!(
+        own,
+        then,
+        "{wanted:?}: {:?}",
+        &kmh[begins - 1..begins + wanted.len()]
+    );
+    for (t, (own, then)) in found.clutch[begins..].iter().zip(then).enumerate() {
+        assert_eq!(*own, *then == 0, "{wanted:?}: clutch at {t}");
+    }
+}
+
+/// GS-5: first gear is not used before a standstill. A car that slows down from a speed at which second gear turns just too slowly for that has none, with
+/// the clutch open in the first second.
+#[test]
+fn no_first_gear_before_a_standstill() {
+    let car = SIX.vehicle(1385.0);
+    let kmh: Vec<f64> = [[8.5; 30].to_vec(), vec![6.5, 4.5, 2.5, 0.5], vec![0.0; 10]].concat();
+    let rpm = 8.5 * car.rpm_per_kmh[1];
+    assert!((0.9 * 650.0..650.0).contains(&rpm), "{rpm}");
+    let found = gears(&kmh, &car);
+    assert!(
+        found.gear[..29].iter().all(|gear| *gear == 2),
+        "{:?}",
+        found.gear
+    );
+    assert!(
+        found.gear[29..34].iter().all(|gear| *gear == 0),
+        "{:?}",
+        found.gear
+    );
+    assert!(found.clutch[29] && !found.clutch[30], "{:?}", found.clutch);
+}
+
+/// Every second in a gear is driven in it with the clutch closed, but for those of a deceleration in which it is open or slips: between 0.9 of idle and
+/// idle in second gear (GS-2).
+#[test]
+fn the_clutch_opens_in_decelerations_only() {
+    let down = (0..45).map(|t| 30.2 - 0.5 * f64::from(t));
+    let dip: Vec<f64> = down
+        .chain((0..60).map(|t| 8.7 + 0.5 * f64::from(t)))
+        .collect();
+    for (kmh, opens) in [(dip, true), (trace("wltc_class3b"), false)] {
+        let car = SIX.vehicle(1385.0);
+        let found = gears(&kmh, &car);
+        let falls = |t: usize| kmh.get(t + 1).is_some_and(|next| *next < kmh[t] - 1e-3);
+        let mut open = 0;
+        for (t, command) in found.commands(&kmh).into_iter().enumerate() {
+            let gear = found.gear[t];
+            if gear == 0 || kmh[t] < 1.0 {
+                continue;
+            }
+            match command {
+                GearCommand::Declutched(own) => {
+                    assert!(own == gear && found.clutch[t] && falls(t), "{t}");
+                    open += 1;
+                }
+                GearCommand::InGear(own) => {
+                    let slows = t >= 2 && (t - 2..=t).all(falls);
+                    assert!(own == gear && !(found.clutch[t] && slows), "{t}");
+                }
+                other => panic!("{t}: {other:?}"),
+            }
+            if opens && falls(t) {
+                let rpm = kmh[t] * car.rpm_per_kmh[1];
+                assert_eq!(
+                    found.clutch[t],
+                    gear == 2 && rpm < SIX.idle_rpm,
+                    "{t}: {rpm}"
+                );
+            }
+        }
+        assert_eq!(open > 0, opens, "{open} s");
+    }
+}
+
 /// GS-1: the highest speed is looked for below 500 km/h, whatever the ratios and the load.
 #[test]
 fn the_highest_speed_is_bounded() {
