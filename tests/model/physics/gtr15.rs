@@ -451,6 +451,56 @@ fn the_clutch_opens_in_decelerations_only() {
     }
 }
 
+/// A car of 2.0 l with gears of one step from 130 rpm/(km/h) down.
+fn stepped(test_mass_kg: f64, step: f64, count: i32) -> GtrVehicle {
+    GtrVehicle {
+        rpm_per_kmh: (0..count).map(|k| 130.0 / step.powi(k)).collect(),
+        ..SIX.vehicle(test_mass_kg)
+    }
+}
+
+/// GS-1 and GS-5: a rise begins after a hold at the highest speed of second gear; the rule that no gear is taken in the first two seconds of a rise
+/// holds down to the least possible gear only. Truth: no second turns the engine faster than a gear may.
+#[test]
+fn no_correction_leads_below_the_least_possible_gear() {
+    let kmh = [
+        0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.9, 9.1, 11.4, 15.7, 18.9, 15.4, 5.6, 3.2, 13.9, 19.1, 27.7,
+        35.4, 38.3, 42.5, 50.4, 54.4, 61.3, 64.8, 64.8, 64.8, 73.7, 82.7, 74.4, 72.2, 70.0,
+    ];
+    let car = stepped(2109.0, 1.347, 4);
+    let found = gears(&kmh, &car);
+    for (t, v) in kmh.iter().enumerate().filter(|(t, _)| found.gear[*t] > 0) {
+        let (gear, rpm) = (
+            found.gear[t],
+            v * car.rpm_per_kmh[usize::from(found.gear[t]) - 1],
+        );
+        let most = if gear < found.top.0 {
+            found.n95_rpm
+        } else {
+            found.highest_rpm
+        };
+        assert!(
+            rpm <= most + 1e-6,
+            "{t} s: {rpm} rpm in {gear}, {most} rpm at most"
+        );
+    }
+    assert_eq!(found.gear[23..28], [2, 2, 2, 3, 3]);
+}
+
+/// GS-5: each gear for two seconds. A rise with a hold of one second has no gear that is taken for that second.
+#[test]
+fn no_gear_is_taken_for_one_second() {
+    let kmh = [
+        0.0, 0.0, 0.0, 0.0, 0.0, 2.9, 0.0, 8.4, 8.8, 16.9, 25.1, 35.6, 39.1, 35.7, 33.2, 33.7,
+        40.5, 41.0, 41.0, 41.0, 45.2, 42.6, 41.7, 38.1, 46.6, 53.2, 53.2, 62.1,
+    ];
+    let found = gears(&kmh, &stepped(2425.0, 1.593, 8));
+    let is_peak = |g: &[u8]| g[0] > 0 && g[0] < g[1] && g[2] < g[1];
+    let peak = found.gear.windows(3).position(is_peak);
+    assert_eq!(peak, None, "{:?}", found.gear);
+    assert_eq!(found.gear[23..28], [2; 5]);
+}
+
 /// GS-1: the highest speed is looked for below 500 km/h, whatever the ratios and the load.
 #[test]
 fn the_highest_speed_is_bounded() {
