@@ -1,6 +1,10 @@
 //! Totals against the rows they were gathered from, with steps other than 1 s.
 //!
 //! Truth: a sum is the quantity of each row times its step, by phase; an extreme is the largest of the rows, at the end of the first row that has it.
+#![allow(
+    clippy::float_cmp,
+    reason = "numbers that are handed on are promised exactly"
+)]
 
 use crate::common::{CARS, Keep, ZERO, car, cycle};
 use cvtcycle_config::cycle::Cycle;
