@@ -12,6 +12,7 @@ mod files;
 mod like;
 mod new_car;
 mod overrides;
+mod pairs;
 mod problems;
 mod reading;
 mod setup;

@@ -238,6 +238,9 @@ fn scattered_points_of_a_linear_field() {
         assert!((got - want).abs() < 1e-9, "{got} {want}");
     }
     assert!(leave_one_out(&rows).unwrap().largest_nm < 1e-9);
+    // As few points as are allowed: the plane through each twelve gives the thirteenth.
+    let few = leave_one_out(&rows[..13]).unwrap();
+    assert!(few.points == 13 && few.largest_nm < 1e-9, "{few:?}");
     let mut off = rows.clone();
     off[100].1 += 1.0;
     let missed = leave_one_out(&off).unwrap();

@@ -5,8 +5,10 @@ use cvtcycle_config::setup::{Options, Setup, load};
 use cvtcycle_config::{Override, render};
 use cvtcycle_model::drive::{Conditions, Row, Start, drive};
 use cvtcycle_model::flags::Flags;
+use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
-use cvtcycle_model::transmission::loss_factor::{LossFactors, UNCHANGED};
+use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, belt_state};
+use cvtcycle_model::transmission::loss_factor::{LossFactors, UNCHANGED, changes};
 
 use crate::common::{CARS, at, car, cycle, fuel_kg, soak_rows};
 
@@ -209,5 +211,63 @@ fn launch_price_by_hand() {
             (engine_j / by_hand_j - 1.0).abs() < 0.01,
             "{name}: {engine_j} {by_hand_j}"
         );
+    }
+}
+
+/// A car is changed by a factor other than 1 on any one component, and by nothing else.
+#[test]
+fn any_factor_other_than_one_changes() {
+    assert!(!changes(&UNCHANGED));
+    for component in Component::ALL {
+        for factor in [0.0, 0.999, 1.0 + f64::EPSILON, 2.0] {
+            assert!(changes(&only(component, factor)), "{component:?} {factor}");
+        }
+    }
+}
+
+/// CV-7: twice the slip is twice the speeds and the losses of every part of it, on both pulleys, and pays by VA-1 at the input; what a factor of another
+/// part leaves alone.
+#[test]
+fn a_factor_on_slip_is_one_on_all_of_its_parts() {
+    let setup = car(CARS[0], &[]);
+    let Transmission::Cvt(cvt) = setup.transmission() else {
+        panic!("a CVT")
+    };
+    let oil = setup.car(353.15).oil;
+    for (ratio, nm) in [(2.0, 120.0), (0.6, 40.0), (1.4, -30.0)] {
+        let load = BeltLoad {
+            output_torque_nm: nm,
+            secondary_clamp_n: 15e3,
+            ..BeltLoad::turning(&cvt.belt, &oil, 353.15, ratio, 200.0)
+        };
+        let at = BeltAtRatio::new(&cvt.belt, ratio);
+        let plain = belt_state(&cvt.belt, &at, &load);
+        let twice = plain.times(&only(Component::BeltSlip, 2.0), nm, ratio);
+        for (name, a, b) in [
+            ("primary", plain.slip.primary, twice.slip.primary),
+            ("secondary", plain.slip.secondary, twice.slip.secondary),
+            ("gap", plain.slip.gap, twice.slip.gap),
+            ("idle", plain.slip.idle, twice.slip.idle),
+            (
+                "loss, primary",
+                plain.slip.primary_loss_nm,
+                twice.slip.primary_loss_nm,
+            ),
+            (
+                "loss, secondary",
+                plain.slip.secondary_loss_nm,
+                twice.slip.secondary_loss_nm,
+            ),
+            ("loss", plain.losses.slip_nm, twice.losses.slip_nm),
+            ("total", plain.losses.slip_total, twice.losses.slip_total),
+        ] {
+            assert!((b - 2.0 * a).abs() <= 1e-12 * a.abs(), "{name} {a} {b}");
+        }
+        assert!(plain.slip.primary.abs() > 0.0 && plain.losses.slip_total.abs() > 0.0);
+        let more_nm = -nm / ratio * plain.losses.slip_total + plain.losses.slip_nm; // VA-1
+        let paid_nm = twice.input_torque_nm - plain.input_torque_nm;
+        assert!((paid_nm - more_nm).abs() < 1e-9, "{paid_nm} {more_nm}");
+        let bands = plain.times(&only(Component::BeltBand, 2.0), nm, ratio);
+        assert!(bands.slip == plain.slip, "{ratio}");
     }
 }

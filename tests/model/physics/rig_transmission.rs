@@ -11,8 +11,8 @@ use cvtcycle_config::Override;
 use cvtcycle_config::setup::{Options, load};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::rig::transmission::{
-    Branch, Conditions, Loop, Piece, Plan, Stage, StripDown, loaded, on_the_rig, second_box,
-    steady, strip_down, transient,
+    Branch, Conditions, Loop, MAX_DURATION_S, Moment, Piece, Plan, Stage, StripDown, loaded,
+    on_the_rig, second_box, steady, strip_down, transient,
 };
 use cvtcycle_model::rig::{Bench, BenchPoint};
 use cvtcycle_model::thermal::{Heat, HeatInput, METAL, SUMP};
@@ -380,6 +380,11 @@ fn a_weak_cooler_leaves_the_loop_open() {
         &["rig.cooler.coolant_degc=19", "rig.transient.end_degc=60"],
     );
     assert!(!low.complete && low.moments.len() < 20_000);
+    // The cooling is given up at its longest duration and not a second later.
+    let last = low.moments.last().unwrap();
+    let is_cooling = |moment: &&Moment| moment.branch == Branch::Cooling;
+    let lasted_s = last.time_s - low.moments.iter().find(is_cooling).unwrap().time_s;
+    assert!((lasted_s - MAX_DURATION_S).abs() < 1e-6, "{lasted_s} s");
 }
 
 // ---- Steady maps, loads, the second box

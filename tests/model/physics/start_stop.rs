@@ -140,6 +140,12 @@ fn val_decisions_by_hand() {
     ] {
         assert_eq!(decide(now, past).0, Command::Run, "{past:?}");
     }
+    // It stops from half of the store on.
+    let half_full = StartStopState {
+        drawn_j: 0.49 * full_j,
+        ..ready
+    };
+    assert_eq!(decide(now, half_full).0, Command::Stop);
     for (past, command) in [
         (
             StartStopState {

@@ -10,6 +10,7 @@ use cvtcycle_model::keys::file_table::FileRows;
 use cvtcycle_model::keys::rad_s;
 use cvtcycle_model::lubricant::FilmPowers;
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::controller::{
     ClampSignals, PressurePoint, PressureTable, ShiftMap, ShiftPoint,
@@ -265,6 +266,35 @@ fn a_pressure_table_of_the_law_drives_like_it() {
         "{}",
         outside(&short)
     );
+}
+
+/// PC-6 at rest in gear: the torque that the table has to cover is the clutch's creep torque at the primary, whatever the ratio.
+#[test]
+fn a_table_covers_the_creep_torque_of_a_car_at_rest() {
+    let plain = car("", &[]).unwrap();
+    let (low, idle) = (cvt(&plain).ratio.low, plain.engine().idle_hot_rad_s);
+    let creep_nm = cvt(&plain).coupling.creep_nm(0.0, idle);
+    assert!(creep_nm > 1.0 && low > 1.5, "{creep_nm} {low}");
+    let flagged = |most_nm: f64| {
+        let mut text = String::from("input_torque_nm,belt_ratio,secondary_pressure_bar\n");
+        for torque in [0.0, most_nm] {
+            for ratio in [0.3, 3.0] {
+                let _ = writeln!(text, "{torque},{ratio},15");
+            }
+        }
+        let setup = car(&text, &TABLE).unwrap();
+        let conditions = Conditions {
+            ambient_k: 363.15,
+            start: Start::Soak,
+            max_dt_s: 1.0,
+            keep_rows: true,
+        };
+        let rows = drive(&setup, &embedded("ece15").unwrap(), &conditions).rows;
+        let first = &rows[1];
+        assert!(first.speed_m_s <= 0.0 && first.flags.contains(Flags::CLUTCH_SLIPPING));
+        first.flags.contains(Flags::OUTSIDE_VALIDITY)
+    };
+    assert!(!flagged(1.1 * creep_nm) && flagged(0.9 * creep_nm));
 }
 
 /// The example of the book drives like the Rover from 80 degC, within 1 %: its pressure is that of 80 degC, at a throttle that is the primary's torque

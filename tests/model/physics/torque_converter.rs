@@ -160,6 +160,32 @@ fn converter_is_continuous() {
     }
 }
 
+/// Property: the torque that reaches the box from an engine and the torque that the engine feels from the box are each other's inverse (TC-1, TC-5), and
+/// at a speed ratio of the table they are in its torque ratio.
+#[test]
+fn torque_into_the_box_is_the_inverse_of_torque_out_of_the_engine() {
+    let table = [
+        [0.0, 2.0, 1.0],
+        [0.5, 1.5, 0.8],
+        [0.9, 1.0, 0.4],
+        [1.0, 1.0, 0.0],
+    ];
+    let c = TorqueConverter::new(0.003, &table, 1.0, 1.0, None);
+    for engine in [90.0, 200.0, 500.0] {
+        for share in [0.0, 0.1, 0.5, 0.7, 0.95, 1.0] {
+            let turbine = share * engine;
+            for nm in [1.0, 40.0, 150.0] {
+                let output_nm = c.output_nm(nm, turbine, engine);
+                let back_nm = c.engine_side(output_nm, turbine, engine).engine_nm;
+                assert!((back_nm / nm - 1.0).abs() < 1e-12, "{engine} {share} {nm}");
+                if share == 0.5 {
+                    assert!((output_nm / nm - 1.5).abs() < 1e-12, "{output_nm}");
+                }
+            }
+        }
+    }
+}
+
 /// Property: engine speed at a torque at rest goes with one over the root of the size; a larger converter never turns the engine faster.
 #[test]
 fn val_capacity_size_scales() {

@@ -1,6 +1,7 @@
 //! Forces and moments on the belt: what the tension step, band torque and slip must be by statics, and the second law.
 
 use super::*;
+use cvtcycle_model::transmission::cvt::variator::Tension;
 
 /// Share of slip in the loss, Nm: below zero it relieves the bands (SL-11).
 fn relief_nm(s: &BeltState) -> f64 {
@@ -44,6 +45,19 @@ proptest! {
         let least = g.primary_wrap_rad.min(g.secondary_wrap_rad);
         let force_n = (1.0 - p.film_share) * p.mu_band * mean_n * least + p.film_n()[0];
         prop_assert!((t.step_n.abs() - part * force_n).abs() <= 1e-10 * (1.0 + mean_n));
+    }
+
+    /// The step without compression is the tension step of the belt under the torque that makes compression zero, in every form (TE-5, TE-7).
+    #[test]
+    fn the_bare_step_is_that_without_compression(p in any_point(), formulation in any_formulation()) {
+        let belt = thesis_belt(formulation);
+        let at = BeltAtRatio::new(&belt, p.ratio);
+        let step_n = Tension::bare_step_n(&belt, &at, &p.load(formulation));
+        let torque_nm = step_n * at.geometry.secondary_radius_m;
+        let t = Point { torque_nm, ..p }.state(&belt).tension;
+        let scale_n = 1.0 + step_n.abs() + t.primary_shoulder_n.abs();
+        prop_assert!(t.compression_n.abs() <= 1e-11 * scale_n, "{t:?}");
+        prop_assert!((t.step_n - step_n).abs() <= 1e-11 * scale_n, "{step_n} N: {t:?}");
     }
 
     /// Second law: no part of the loss is negative, power out never exceeds power in, and what slip relieves the bands of they have (SL-12).

@@ -2,6 +2,7 @@
 #![allow(clippy::float_cmp, reason = "division points are promised exactly")]
 
 use GearCommand::{Change, Declutched, InGear, Neutral};
+use cvtcycle_model::cycle::distance::{DistanceRow, stretches};
 use cvtcycle_model::cycle::gears::{GearColumns, GearCommand, Note, commands};
 use cvtcycle_model::cycle::{Cycle, Interval, Step, Trace, Weighting};
 
@@ -255,4 +256,66 @@ fn phases_of_intervals_are_named_by_number() {
     };
     assert_eq!(names([0, 0]), Vec::<String>::new());
     assert_eq!(names([0, 1]), ["phase_1", "phase_2"]);
+}
+
+/// Intervals are refused where they do not end after their beginning, at a time that is a number, or where the car goes backwards; a car may begin at rest.
+#[test]
+fn senseless_intervals_are_refused() {
+    let from_rest = |end_s: f64, end_speed_m_s: f64| Interval {
+        start_s: 0.0,
+        end_s,
+        start_speed_m_s: 0.0,
+        end_speed_m_s,
+        phase: 0,
+        grade: 0.0,
+        engine_off: false,
+    };
+    let made = |interval| Cycle::from_intervals("own", vec![interval]);
+    assert!(made(from_rest(10.0, 15.0)).is_ok() && made(from_rest(10.0, 0.0)).is_ok());
+    for end_s in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+        let refused = made(from_rest(end_s, 15.0)).unwrap_err();
+        assert!(refused.contains("interval 1 does not end"), "{refused}");
+    }
+    for end_m_s in [-1e-9, f64::INFINITY, f64::NAN] {
+        let refused = made(from_rest(10.0, end_m_s)).unwrap_err();
+        assert!(refused.contains("speed or grade"), "{refused}");
+    }
+}
+
+/// CY-1: between two stops the car accelerates at 1.0 m/s2 and brakes at 1.5 m/s2; too near for its target it does nothing else, and the highest
+/// speed is that at which both ways make the distance: v2 = 2 s a b/(a + b).
+#[test]
+fn a_drive_over_distance_accelerates_and_brakes() {
+    let stop = |distance_m: f64, stop_s: f64| DistanceRow {
+        distance_m,
+        speed_m_s: if stop_s > 0.0 { 0.0 } else { 20.0 },
+        stop_s,
+    };
+    for (length_m, kinds) in [(100.0, 2), (1000.0, 3)] {
+        let drive = stretches(&[stop(0.0, 5.0), stop(1.0, 0.0), stop(length_m, 5.0)]);
+        let moving: Vec<_> = drive
+            .iter()
+            .filter(|s| s.speed_m_s[0] + s.speed_m_s[1] > 0.0)
+            .collect();
+        let mut fastest = 0.0_f64;
+        let mut way_m = 0.0;
+        let mut found = Vec::new();
+        for s in &moving {
+            let [from, to] = s.speed_m_s;
+            let dt_s = s.time_s[1] - s.time_s[0];
+            let accel = (to - from) / dt_s;
+            let allowed = [1.0, 0.0, -1.5]
+                .iter()
+                .position(|a| (accel - a).abs() < 1e-9);
+            found.push(allowed.unwrap_or_else(|| panic!("{accel} m/s2 in {s:?}")));
+            way_m += 0.5 * (from + to) * dt_s;
+            fastest = fastest.max(to);
+        }
+        found.dedup();
+        assert_eq!(found.len(), kinds, "{length_m} m: {moving:?}");
+        assert!((way_m - length_m).abs() < 1e-9, "{way_m} m");
+        let peak = (2.0 * length_m * 1.0 * 1.5 / (1.0 + 1.5_f64)).sqrt();
+        let want = if kinds == 2 { peak } else { 20.0 };
+        assert!((fastest - want).abs() < 1e-9, "{fastest} m/s, {want} m/s");
+    }
 }
