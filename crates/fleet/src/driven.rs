@@ -110,7 +110,7 @@ fn first_message(problems: &Problems) -> String {
         .map_or_else(String::new, |problem| problem.message.clone())
 }
 
-fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
+pub(crate) fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let cycle = test.cycle_for(setup);
     let run = |conditions: Conditions| -> RunSummary {
         let outcome = drive_car(setup, &cycle, &conditions);

@@ -10,6 +10,7 @@
 //! | `baselines` | regressions on the same measurements, each group predicted from the others |
 //! | `spread` | what the errors say of a car that is not in the table |
 //! | `tables` | results as CSV |
+//! | `weights` | which of the numbers of a car matter most for its fuel |
 
 pub mod baselines;
 mod car;
@@ -19,6 +20,7 @@ mod map;
 mod sheet;
 pub mod spread;
 pub mod tables;
+pub mod weights;
 
 pub use car::FleetCar;
 pub use driven::{DrivenCar, TestFigures, drive};

@@ -39,8 +39,8 @@ use std::path::Path;
 use super::{Disk, Kind, Options, ParamSet, Setup};
 use crate::problem::near::suggest;
 use crate::{Override, Place, Problem, Problems};
-pub use engines::{named_engines, technologies};
-pub use questions::{Question, mistake, questions};
+pub use engines::{engine_mistake, named_engines, technologies, years};
+pub use questions::{Question, mistake, questions, road_load_default};
 use rules::Line;
 
 /// Catalogue numbers by the names of their options, as texts.
@@ -120,7 +120,7 @@ pub const NUMBERS: [(&str, &str); 23] = [
     ("f2", "part quadratic in speed: N/(km/h)2 or lbf/mph2"),
     (
         "road-load",
-        "what f0, f1 and f2 are of: body, or neutral for a coast-down in neutral with the drag of the box in it",
+        "what f0, f1 and f2 are of: body, or neutral for a coast-down in neutral with the drag of the box in it, as EPA's targets are",
     ),
     ("tyre", "tyre code, such as 215/55 R16"),
     (
@@ -249,9 +249,10 @@ fn made(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
         let text = format!("{head}{}", tables(lines));
         let params = car(answers, &text, set);
         let params = params.map_err(|found| options::under_options(found, lines, answers))?;
-        Ok((text, params, base.notes.clone()))
+        Ok::<Made, Problems>((text, params, base.notes.clone()))
     };
-    let (text, params, notes) = made(&lines)?;
+    let (text, params, mut notes) = made(&lines)?;
+    notes.extend(questions::road_load_note(answers));
     if !rules::is_neutral(answers) {
         return Ok((text, params, notes));
     }
@@ -265,7 +266,8 @@ fn made(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
             .into());
     };
     lines.extend(rules::drag_lines(drag));
-    made(&lines)
+    let (text, params, _) = made(&lines)?;
+    Ok((text, params, notes))
 }
 
 /// True if a number that a class cannot have is missing.
