@@ -36,7 +36,7 @@ mod units;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::{Disk, Kind, Options, ParamSet, Setup};
+use super::{Disk, Kind, NamedBy, Options, ParamSet, Setup};
 use crate::problem::near::suggest;
 use crate::{Override, Place, Problem, Problems};
 pub use engines::{engine_mistake, named_engines, technologies, years};
@@ -209,6 +209,26 @@ pub fn param_set(answers: &Answers, set: &[Override]) -> Result<ParamSet, Proble
     placed(answers, set).map(|(_, params, _)| params)
 }
 
+/// The twin of that car: the same with a manual box, as its file has it as baseline. `None` of a car with a manual box.
+///
+/// # Errors
+/// As [`param_set`].
+pub fn twin_set(answers: &Answers, set: &[Override]) -> Result<Option<ParamSet>, Problems> {
+    let (text, params, _) = placed(answers, set)?;
+    if !params.vehicle().transmission().is_cvt() {
+        return Ok(None);
+    }
+    let is_of_box = |by: &Override| by.key().starts_with("transmission.");
+    let set = set.iter().filter(|by| !is_of_box(by)).cloned();
+    let options = Options {
+        set: set.collect(),
+        ..Options::default()
+    };
+    let options = options.of_twin(NamedBy::File);
+    let twin = ParamSet::read_twin(&answers.file, &text, files(answers), &options);
+    twin.map(Some)
+}
+
 /// Text, car and notes.
 type Made = (String, ParamSet, Vec<String>);
 
@@ -300,13 +320,18 @@ impl Base {
 
 /// The car of a text that is to be the file.
 fn car(answers: &Answers, text: &str, set: &[Override]) -> Result<ParamSet, Problems> {
-    let folder = Path::new(&answers.file).parent();
-    let folder = folder.map(Path::to_path_buf).unwrap_or_default();
     let options = Options {
         set: set.to_vec(),
         ..Options::default()
     };
-    ParamSet::read(&answers.file, text, Box::new(Disk { folder }), &options)
+    ParamSet::read(&answers.file, text, files(answers), &options)
+}
+
+/// Files next to that of the car.
+fn files(answers: &Answers) -> Box<Disk> {
+    let folder = Path::new(&answers.file).parent();
+    let folder = folder.map(Path::to_path_buf).unwrap_or_default();
+    Box::new(Disk { folder })
 }
 
 fn meaning(name: &str) -> &'static str {
