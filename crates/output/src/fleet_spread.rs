@@ -154,24 +154,39 @@ pub fn figure_range(kind: &str, column: &str, fuel: f64) -> Option<FleetRange> {
 pub struct Compared<'a> {
     /// `cvt` or `manual`: the car, and the one that it is compared with.
     pub kinds: [&'a str; 2],
-    /// True if road load, tyres and engine are the same.
-    pub is_alike: bool,
+    /// What the other car is to the car.
+    pub other: Other,
 }
 
-/// Range of the difference of two cars for 90 % of such cars, per cent: of a CVT to the same car with a manual box from measured pairs, of all others from the
-/// errors of both (FS-6).
+/// What a car is to the car that is compared with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Other {
+    /// Its twin by the rules of the program (TW-1 to TW-4), whose gear set and shift speeds are guesses as well.
+    Twin,
+    /// A car of its own, with the same road load, tyres and engine.
+    Alike,
+    /// Any car.
+    Any,
+}
+
+/// Range of the difference of two cars for 90 % of such cars, per cent: of a CVT to the same car with a manual box from measured pairs, driven with the pair's own
+/// manual car or with the twin of the CVT in its place; of all others from the errors of both (FS-6).
 ///
 /// ```
-/// use cvtcycle_output::fleet_spread::{Compared, DrivenOn, difference_range};
-/// let of = |is_alike| Compared { kinds: ["cvt", "manual"], is_alike };
+/// use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range};
+/// let of = |other| Compared { kinds: ["cvt", "manual"], other };
 /// let on = DrivenOn::whole("hwfet", 24.0);
-/// let [pair, unlike] = [true, false].map(|alike| difference_range(of(alike), on, -3.0).expect("cars of both kinds").ends);
+/// let range = |other| difference_range(of(other), on, -3.0).expect("cars of both kinds").ends;
+/// let [pair, unlike] = [Other::Alike, Other::Any].map(range);
 /// assert!(unlike[0] < pair[0] && pair[0] < -3.0 && -3.0 < pair[1] && pair[1] < unlike[1]);
 /// ```
 #[must_use]
 pub fn difference_range(of: Compared, on: DrivenOn, percent: f64) -> Option<FleetRange> {
-    if of.kinds == ["cvt", "manual"] && of.is_alike {
-        let row = on.row("pair")?;
+    if of.kinds == ["cvt", "manual"] && of.other != Other::Any {
+        let row = on.row(match of.other {
+            Other::Twin => "twin",
+            _ => "pair",
+        })?;
         return Some(FleetRange {
             figure: row.figure.to_owned(),
             cars: row.cars,

@@ -528,7 +528,7 @@ fn pictures_and_twins_of_a_fleet() {
         ("errors_by_make.svg", "Error by make"),
         (
             "errors_over_n_over_v.svg",
-            "Error over engine speed over road speed",
+            "Error by engine speed over road speed",
         ),
         ("pairs.svg", "Difference to the same car with a manual box"),
     ] {

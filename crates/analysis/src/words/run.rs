@@ -7,7 +7,7 @@ use std::cell::OnceCell;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::decimal;
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
-use cvtcycle_output::fleet_spread::{Compared, DrivenOn, difference_range, fuel_range};
+use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range, fuel_range};
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
@@ -49,11 +49,19 @@ pub fn assess_fleet(summary: &mut Summary) {
         .collect();
     let is_named = |run: &RunSummary| Kind::Vehicle.names().contains(&run.vehicle.as_str());
     let is_shipped = summary.runs.iter().all(is_named);
+    let twin = summary
+        .runs
+        .first()
+        .map_or_else(String::new, |run| format!("{}_twin", run.vehicle));
     let baselines = kinds.iter().skip(1);
     for (comparison, other) in summary.comparison.iter_mut().zip(baselines) {
         let of = Compared {
             kinds: [&kinds[0], other],
-            is_alike: comparison.differences.is_empty(),
+            other: match comparison.differences.is_empty() {
+                true if comparison.baseline == twin => Other::Twin,
+                true => Other::Alike,
+                false => Other::Any,
+            },
         };
         comparison.fleet = comparison
             .fuel_percent

@@ -2,7 +2,7 @@
 //! and the published numbers that contradict it.
 
 use cvtcycle_config::setup::Kind;
-use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, difference_range};
+use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{fixed, plain, signed};
 
 use super::effects::decided;
@@ -50,7 +50,10 @@ pub fn fleet_range(
     let is_twin = outline.cars[baseline] == format!("{}_twin", outline.cars[0]);
     let of = Compared {
         kinds: [own?, other?],
-        is_alike: is_twin && outline.plan.base.set.is_empty(),
+        other: match is_twin && outline.plan.base.set.is_empty() {
+            true => Other::Twin,
+            false => Other::Any,
+        },
     };
     difference_range(of, on, percent).filter(|_| percent.is_finite())
 }

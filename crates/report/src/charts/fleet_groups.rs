@@ -40,7 +40,7 @@ pub struct FleetPair {
     pub computed_percent: f64,
 }
 
-/// What two tests of equal cars differ by, per cent, of FTP75 and of all others: the standard deviation within the US lists of 2010 to 2019.
+/// Within which tests of equal cars repeat, per cent, of HWFET and of all others: US lists of 2010 to 2019.
 #[must_use]
 pub fn repeat_percent(figure: &str) -> f64 {
     match figure {
@@ -136,7 +136,7 @@ pub fn fleet_by_group(by: &str, errors: &[FleetError]) -> Picture {
         panels.push(panel);
     }
     let foot = (left, RIGHT - left);
-    let note = "Dot: a car; line: mean of the group; band: standard deviation between tests of equal cars, 2.8 % on FTP75 and 2.5 % on HWFET.";
+    let note = "Dot: a car; line: mean of the group; band: tests of equal cars repeat within 2.8 % on FTP75 and 2.5 % on HWFET.";
     Chart::new(
         format!("Error by {by}"),
         spread(errors, &figures),
@@ -236,9 +236,9 @@ pub fn fleet_over(over: &str, errors: &[FleetError]) -> Picture {
         }
         panels.push(panel);
     }
-    let note = "Line: least squares; band: standard deviation between tests of equal cars, 2.8 % on FTP75 and 2.5 % on HWFET.";
+    let note = "Line: least squares; band: tests of equal cars repeat within 2.8 % on FTP75 and 2.5 % on HWFET.";
     Chart::new(
-        format!("Error over {}", over.split(" [").next().unwrap_or(over)),
+        format!("Error by {}", over.split(" [").next().unwrap_or(over)),
         spread(errors, &figures),
         PLOT_LEFT,
     )
@@ -263,8 +263,8 @@ fn line(errors: &[&FleetError]) -> Option<(f64, f64)> {
     (xx > 0.0).then(|| (my - mx * xy / xx, xy / xx))
 }
 
-/// The computed difference of each pair against the measured one, a symbol for each group. The band is the standard deviation between the differences of two
-/// tests each, root 2 times that of a test.
+/// The computed difference of each pair against the measured one, a symbol for each group. The band is root 2 times that of one
+/// test.
 #[must_use]
 pub fn fleet_pairs(pairs: &[FleetPair]) -> Picture {
     let figures = distinct(pairs.iter().map(|pair| pair.figure.as_str()));
@@ -344,7 +344,7 @@ pub fn fleet_pairs(pairs: &[FleetPair]) -> Picture {
         )
     };
     let said: Vec<String> = figures.iter().map(of).collect();
-    let note = "Thick line: computed = measured; band: standard deviation of a measured difference, from 2.8 % between tests of equal cars on FTP75 and 2.5 % on HWFET.";
+    let note = "Line: computed = measured; band: root 2 times that within which tests of equal cars repeat, 2.8 % on FTP75 and 2.5 % on HWFET.";
     Chart::new(
         "Difference to the same car with a manual box",
         said.join("; "),

@@ -9,7 +9,7 @@ use crate::problems::problem;
 use crate::results::{ResultDir, RunResults, find};
 use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, Problems, Setting};
-use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, difference_range};
+use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{finite, plain};
 use cvtcycle_output::record::Manifest;
 use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
@@ -256,7 +256,10 @@ fn by_cars(summary: &Summary, base: &RunSummary, percent: f64) -> Option<FleetRa
     }
     let of = Compared {
         kinds: [&run.transmission, &base.transmission],
-        is_alike: base.vehicle == format!("{}_twin", run.vehicle),
+        other: match base.vehicle == format!("{}_twin", run.vehicle) {
+            true => Other::Twin,
+            false => Other::Any,
+        },
     };
     let on = DrivenOn::whole(&summary.cycle, summary.ambient_degc);
     difference_range(of, on, percent)
