@@ -148,6 +148,9 @@ struct Observation<'a> {
     measured: f64,
 }
 
+/// Residuals, or why there are none.
+type Evaluated = Result<Vec<f64>, String>;
+
 /// Cars with the places of the keys in them.
 struct Model<'a> {
     cars: Vec<&'a FleetCar>,
@@ -157,10 +160,103 @@ struct Model<'a> {
     tests: &'a [Procedure],
     observations: Vec<Observation<'a>>,
     dt_s: f64,
-    known: Mutex<HashMap<Vec<u64>, Result<Vec<f64>, String>>>,
+    /// Residuals by the bits of the values: folds begin at common ones.
+    known: Mutex<HashMap<Vec<u64>, Evaluated>>,
 }
 
-impl Model<'_> {
+fn no(message: &str, hint: &str) -> Problems {
+    Problem::missing(message).hint(hint).into()
+}
+
+impl<'a> Model<'a> {
+    fn new(
+        fleet: &'a Fleet,
+        tests: &'a [Procedure],
+        keys: &'a [FitKey],
+        dt_s: f64,
+    ) -> Result<Self, Problems> {
+        let cars: Vec<&FleetCar> = fleet.cars.iter().collect();
+        let of_car = |(k, car): (usize, &&'a FleetCar)| {
+            let (id, car) = (car.id.as_str(), *car);
+            let figures = tests.iter().flat_map(move |test| figures_of(car, test));
+            figures.map(move |(figure, measured)| Observation {
+                car: k,
+                id,
+                figure,
+                measured,
+            })
+        };
+        let observations: Vec<Observation> = cars.iter().enumerate().flat_map(of_car).collect();
+        if observations.is_empty() {
+            return Err(no(
+                "there is nothing to fit to: no measured fuel of these tests",
+                "a column is headed by a figure of a test, such as ftp75_l_per_100km",
+            ));
+        }
+        let place = |car: &FleetCar, key: &FitKey| {
+            let param = car.params.param(&key.key).ok();
+            param.filter(Param::is_active)
+        };
+        let places = cars
+            .iter()
+            .map(|car| keys.iter().map(|key| place(car, key)).collect())
+            .collect();
+        Ok(Model {
+            cars,
+            places,
+            keys,
+            tests,
+            observations,
+            dt_s,
+            known: Mutex::default(),
+        })
+    }
+
+    /// Mean values of the cars, and the parameters that start from them.
+    fn parameters(&self) -> Result<(Vec<f64>, Vec<Parameter>), Problems> {
+        let mut found = Vec::new();
+        for (k, key) in self.keys.iter().enumerate() {
+            let of_car = |of: &Vec<Option<Param>>| of[k].as_ref().map(Param::base);
+            let bases = self.places.iter().filter_map(of_car);
+            let bases: Vec<f64> = bases.filter(|x| x.is_finite()).collect();
+            if bases.is_empty() {
+                let message = format!("no car has a value of `{}`", key.key);
+                return Err(no(&message, "name a key that the cars have"));
+            }
+            let before = bases.iter().sum::<f64>() / bases.len() as f64;
+            let [low, high] = key.ends;
+            let start = before.clamp(low, high);
+            found.push((before, Parameter::new(&key.key, start, low, high)));
+        }
+        Ok(found.into_iter().unzip())
+    }
+
+    /// Words of the groups in order, and the group of each observation.
+    fn groups(&self, column: &str) -> (Vec<String>, Vec<usize>) {
+        let word = |o: &Observation| {
+            let word = self.cars[o.car].words.get(column);
+            word.cloned().unwrap_or_default()
+        };
+        let words: Vec<String> = self.observations.iter().map(word).collect();
+        let mut groups = words.clone();
+        groups.sort();
+        groups.dedup();
+        let place = |word: &String| groups.binary_search(word).unwrap_or(0);
+        let of_group = words.iter().map(place).collect();
+        (groups, of_group)
+    }
+
+    /// Statistics of the errors of some observations.
+    fn statistics(&self, residuals: &[f64], of: &dyn Fn(usize) -> bool) -> Option<ErrorStatistics> {
+        let errors: Vec<(&str, f64)> = residuals
+            .iter()
+            .enumerate()
+            .filter(|(k, r)| of(*k) && r.is_finite())
+            .map(|(k, r)| (self.observations[k].id, 100.0 * (r / 100.0).exp_m1()))
+            .collect();
+        ErrorStatistics::new(&errors)
+    }
+
     /// A car with the values in place of its own.
     fn changed(&self, car: usize, values: &[f64]) -> Result<FleetCar, String> {
         let numbers: Vec<(&Param, f64)> = self.places[car]
@@ -255,72 +351,9 @@ pub fn fit(
     dt_s: f64,
     progress: &dyn Progress,
 ) -> Result<FleetFit, Problems> {
-    let cars: Vec<&FleetCar> = fleet.cars.iter().collect();
-    let observations: Vec<Observation> = cars
-        .iter()
-        .enumerate()
-        .flat_map(|(k, car)| {
-            let figures = tests.iter().flat_map(|test| figures_of(car, test));
-            figures.map(move |(figure, measured)| Observation {
-                car: k,
-                id: &car.id,
-                figure,
-                measured,
-            })
-        })
-        .collect();
-    let no = |message: &str, hint: &str| Problems::from(Problem::missing(message).hint(hint));
-    if observations.is_empty() {
-        return Err(no(
-            "there is nothing to fit to: no measured fuel of these tests",
-            "a column is headed by a figure of a test, such as ftp75_l_per_100km",
-        ));
-    }
-    let place = |car: &FleetCar, key: &FitKey| {
-        let param = car.params.param(&key.key).ok();
-        param.filter(Param::is_active)
-    };
-    let places: Vec<Vec<Option<Param>>> = cars
-        .iter()
-        .map(|car| keys.iter().map(|key| place(car, key)).collect())
-        .collect();
-    let mut parameters = Vec::new();
-    for (k, key) in keys.iter().enumerate() {
-        let bases = places
-            .iter()
-            .filter_map(|of| of[k].as_ref().map(Param::base));
-        let bases: Vec<f64> = bases.filter(|x| x.is_finite()).collect();
-        if bases.is_empty() {
-            let message = format!("no car has a value of `{}`", key.key);
-            return Err(no(&message, "name a key that the cars have"));
-        }
-        let before = bases.iter().sum::<f64>() / bases.len() as f64;
-        let [low, high] = key.ends;
-        let start = before.clamp(low, high);
-        parameters.push((before, Parameter::new(&key.key, start, low, high)));
-    }
-    let (before, parameters): (Vec<f64>, Vec<Parameter>) = parameters.into_iter().unzip();
-    let group = |o: &Observation| {
-        let word = cars[o.car].words.get(column);
-        word.cloned().unwrap_or_default()
-    };
-    let words: Vec<String> = observations.iter().map(group).collect();
-    let mut groups = words.clone();
-    groups.sort();
-    groups.dedup();
-    let of_group: Vec<usize> = words
-        .iter()
-        .map(|word| groups.binary_search(word).unwrap_or(0))
-        .collect();
-    let model = Model {
-        cars: cars.clone(),
-        places,
-        keys,
-        tests,
-        observations,
-        dt_s,
-        known: Mutex::default(),
-    };
+    let model = Model::new(fleet, tests, keys, dt_s)?;
+    let (before, parameters) = model.parameters()?;
+    let (groups, of_group) = model.groups(column);
     let invalid = |why: String| Problems::from(Problem::invalid(why));
     let as_made = model.residuals(None).map_err(invalid)?;
     let found = solve::fit(&model, &parameters, &SEARCH, progress)
@@ -329,16 +362,7 @@ pub fn fit(
         0 | 1 => Vec::new(),
         _ => solve::leave_out(&model, &parameters, &of_group, &found, &SEARCH, progress),
     };
-    let statistics = |residuals: &[f64], of: &dyn Fn(usize) -> bool| {
-        let errors: Vec<(&str, f64)> = residuals
-            .iter()
-            .enumerate()
-            .filter(|(k, r)| of(*k) && r.is_finite())
-            .map(|(k, r)| (model.observations[k].id, 100.0 * (r / 100.0).exp_m1()))
-            .collect();
-        ErrorStatistics::new(&errors)
-    };
-    let all = |residuals: &[f64]| statistics(residuals, &|_| true);
+    let all = |residuals: &[f64]| model.statistics(residuals, &|_| true);
     let mut predicted = vec![f64::NAN; as_made.len()];
     for fold in &folds {
         let places = (0..as_made.len()).filter(|k| of_group[*k] == fold.group);
@@ -352,14 +376,21 @@ pub fn fit(
         let fold = folds.iter().find(|fold| fold.group == g);
         Some(FoldErrors {
             word: word.clone(),
-            as_made: statistics(&as_made, &own)?,
-            predicted: statistics(&predicted, &own),
+            as_made: model.statistics(&as_made, &own)?,
+            predicted: model.statistics(&predicted, &own),
             values: fold.map_or_else(Vec::new, |fold| fold.values.clone()),
         })
     });
+    let mut figures: Vec<String> = model
+        .observations
+        .iter()
+        .map(|o| o.figure.clone())
+        .collect();
+    figures.sort();
+    figures.dedup();
     Ok(FleetFit {
-        keys: model.keys.iter().map(|key| key.key.clone()).collect(),
-        ends: model.keys.iter().map(|key| key.ends).collect(),
+        keys: keys.iter().map(|key| key.key.clone()).collect(),
+        ends: keys.iter().map(|key| key.ends).collect(),
         before,
         groups: by_group.collect(),
         end: found.end.name().to_owned(),
@@ -368,16 +399,7 @@ pub fn fit(
         fitted: all(&found.residuals).ok_or_else(missing)?,
         predicted: all(&predicted),
         values: found.values,
-        figures: {
-            let mut figures: Vec<String> = model
-                .observations
-                .iter()
-                .map(|o| o.figure.clone())
-                .collect();
-            figures.sort();
-            figures.dedup();
-            figures
-        },
+        figures,
     })
 }
 

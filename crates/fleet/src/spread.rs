@@ -75,9 +75,11 @@ pub fn spreads(cars: &[Entry], pairs: &[Pair], figures: &[String], column: &str)
                 .map(group)
                 .unwrap_or_default()
         };
-        let kinds: [(&'static str, fn(&Pair) -> f64); 2] =
-            [("pair", Pair::error), ("twin", Pair::twin_error)];
-        for (kind, error) in kinds {
+        for kind in ["pair", "twin"] {
+            let error = |pair: &Pair| match kind {
+                "pair" => pair.error(),
+                _ => pair.twin_error(),
+            };
             let own = pairs.iter().filter(of_pair);
             let numbers: Vec<(String, f64)> = own
                 .map(|pair| (word(pair), -error(pair)))

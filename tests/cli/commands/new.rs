@@ -134,7 +134,7 @@ fn coefficients_in_lbf_are_of_a_coast_down_in_neutral() {
     assert_eq!(usual, neutral);
     assert_ne!(usual, body);
     assert!(
-        said.contains("taken for EPA's targets") && said.contains("--road-load body"),
+        said.contains("taken for EPA's targets") && said.contains("road-load is body"),
         "{said}"
     );
     for quiet in [quiet, quiet_body] {

@@ -82,7 +82,7 @@ fn why(reasons: &[(String, usize)]) -> String {
 fn change(answer: &LeverAnswer, row: &LeverRow) -> String {
     let median = signed(row.fuel_percent.value, 2);
     let Some(_) = answer.plan else {
-        return format!("{median} % fuel (without draws no interval: --samples 256)");
+        return format!("{median} % fuel (without draws no interval)");
     };
     let [low, high] = [row.low_percent, row.high_percent].map(|end| signed(end.value, 2));
     let (k, n) = (row.saves.k, row.saves.n);

@@ -107,13 +107,13 @@ pub fn road_load_default(answers: &Answers) -> String {
 
 /// What was taken for the coefficients of the road load, where nothing was said of them.
 pub(super) fn road_load_note(answers: &Answers) -> Option<String> {
-    let has = |name: &&str| answers.numbers.contains_key(*name);
-    if has(&"road-load") || !["f0", "f1", "f2"].iter().any(|name| has(&name)) {
+    let has = |name: &str| answers.numbers.contains_key(name);
+    if has("road-load") || !["f0", "f1", "f2"].iter().any(|name| has(name)) {
         return None;
     }
     Some(match has_lbf(answers) {
-        true => "road load: f0, f1 and f2 in lbf are taken for EPA's targets, of a coast-down in neutral, and the drag of the box is taken off them (NC-18); if they are of the body alone: --road-load body".to_owned(),
-        false => "road load: f0, f1 and f2 are taken for those of the body; of a coast-down in neutral they have the drag of the box in them: --road-load neutral".to_owned(),
+        true => "road load: f0, f1 and f2 in lbf are taken for EPA's targets, of a coast-down in neutral, and the drag of the box is taken off them (NC-18); if they are of the body alone, road-load is body".to_owned(),
+        false => "road load: f0, f1 and f2 are taken for those of the body; of a coast-down in neutral they have the drag of the box in them, and road-load is neutral".to_owned(),
     })
 }
 
