@@ -251,9 +251,9 @@ fn the_picture_of_the_house_matches_the_modules() {
     let floors = [
         "src",
         "report",
+        "fleet",
         "analysis",
         "calibrate",
-        "fleet",
         "study",
         "validate",
         "output",

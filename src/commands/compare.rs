@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use cvtcycle::analysis::words::between;
 use cvtcycle::config::Problems;
 use cvtcycle::output::number::{fixed, signed};
 use cvtcycle::output::table::{TextTable, wrapped};
@@ -122,6 +123,12 @@ fn table(found: &RunComparison, runs: &[&Side]) -> String {
         true => String::new(),
         false => signed(run.difference_percent, 2),
     });
+    if runs.iter().any(|run| run.fleet.is_some()) {
+        add("90 % of such cars", "", &|run| {
+            let range = run.fleet.as_ref();
+            range.map_or_else(String::new, |range| between(range.ends, "%"))
+        });
+    }
     add("CO2", "g/km", &|run| fixed(run.co2_g_per_km, 1));
     for name in &found.components {
         add(&name.replace('_', " "), "kJ/km", &|run| {

@@ -6,11 +6,15 @@ use std::io::{IsTerminal, Write};
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
 use cvtcycle::config::bounded::TOML;
+use cvtcycle::config::procedure::Procedure;
 use cvtcycle::config::setup::Kind;
 use cvtcycle::config::setup::catalogue::{ENGINE_OIL, OIL};
 use cvtcycle::config::setup::new_car::{self, Answers, ClassOf, NUMBERS, NewCar};
 use cvtcycle::config::{Problem, Problems, decode};
+use cvtcycle::fleet::weights::{Weight, weights};
 use cvtcycle::output::file::OutputFile;
+use cvtcycle::output::number::{fixed, signed};
+use cvtcycle::output::table::wrapped;
 
 use super::Execute;
 use crate::args::problems::{bad_value, cite_options};
@@ -107,6 +111,8 @@ const USUAL_BOX: &str = "box: box_cvt_clutch, with a wet launch clutch; most CVT
 /// Car and its file.
 pub struct NewPlan {
     car: NewCar,
+    /// What it was made of.
+    answers: Answers,
     /// True if the box is the default because none was named.
     has_usual_box: bool,
     file: OutputFile,
@@ -146,6 +152,7 @@ impl Execute for NewArgs {
         let file = self.out.file(Some(path), "toml", problems);
         Some(NewPlan {
             car: car?,
+            answers,
             has_usual_box,
             file: file?,
         })
@@ -155,6 +162,7 @@ impl Execute for NewArgs {
         let NewPlan {
             car,
             has_usual_box,
+            answers,
             mut file,
         } = plan;
         let written = file.write_all(car.text.as_bytes());
@@ -177,10 +185,43 @@ impl Execute for NewArgs {
             text += USUAL_BOX;
         }
         text.extend(car.notes.iter().map(|note| format!("{note}\n")));
+        text += &weighed(&answers);
         let doubts = car.setup.doubts().into_iter();
         text.extend(doubts.map(|doubt| format!("doubt: {doubt}\n")));
         Ok(CommandOutput::text(text))
     }
+}
+
+/// Test whose fuel tells which numbers matter.
+const TEST: &str = "ftp75";
+/// Numbers that are named.
+const NAMED: usize = 3;
+
+/// The numbers that matter most for the fuel of a test, in words; empty where none matters or the car cannot be driven.
+fn weighed(answers: &Answers) -> String {
+    let test = Procedure::open(TEST).ok();
+    let Some((fuel, weights)) = test.and_then(|test| weights(answers, &test)) else {
+        return String::new();
+    };
+    let said = |weight: &&Weight| weight.fuel_percent.abs() >= 0.05;
+    let words = |weight: &Weight| {
+        let (name, by) = (weight.name, &weight.by);
+        match (name, weight.by.ends_with('%')) {
+            ("road-load", _) => format!("{name} ({by}) {} %", fixed(weight.fuel_percent, 1)),
+            (_, true) => format!("{name} ({by} more) {} %", signed(weight.fuel_percent, 1)),
+            _ => format!("{name} ({by} later) {} %", signed(weight.fuel_percent, 1)),
+        }
+    };
+    let list: Vec<String> = weights.iter().filter(said).take(NAMED).map(words).collect();
+    if list.is_empty() {
+        return String::new();
+    }
+    let line = format!(
+        "FTP75: {} L/100 km. Of what was given, these matter most for it, by their usual uncertainty: {}",
+        fixed(fuel, 2),
+        list.join(", ")
+    );
+    wrapped(&line, "")
 }
 
 impl NewArgs {

@@ -11,6 +11,7 @@ use cvtcycle_model::transmission::Transmission;
 use rayon::prelude::*;
 
 use crate::map::{ColumnMap, WORDS, is_option};
+use crate::setting::Setting;
 use crate::sheet::{Row, Sheet};
 use crate::{Fleet, Refused};
 
@@ -31,6 +32,8 @@ pub struct FleetCar {
     pub measured: BTreeMap<String, f64>,
     /// Name of the car that it is a pair with; empty for none.
     pub pair: String,
+    /// Of a car with a CVT that is a pair: its twin by the rules of TW-1 to TW-4.
+    pub twin: Option<ParamSet>,
     /// Words of the columns by which errors are grouped.
     pub words: BTreeMap<String, String>,
 }
@@ -62,14 +65,14 @@ struct Columns<'a> {
     id: usize,
     pair: Option<usize>,
     tests: &'a [Procedure],
-    set: &'a [Override],
+    set: &'a [Setting],
 }
 
 pub(crate) fn fleet(
     sheet: &Sheet,
     map: &ColumnMap,
     tests: &[Procedure],
-    set: &[Override],
+    set: &[Setting],
 ) -> Result<Fleet, Problems> {
     let Some(id) = sheet.column(&map.id) else {
         let problem = Problem::missing(format!(
@@ -120,7 +123,12 @@ pub(crate) fn fleet(
         tests,
         set,
     };
-    let is_known = |name: &str| map.knows(name) || is_key(name) || all_results.contains(name);
+    let is_set = |name: &str| {
+        let column = sheet.column(name);
+        column.is_some_and(|k| set.iter().any(|setting| setting.reads(k)))
+    };
+    let is_known =
+        |name: &str| map.knows(name) || is_key(name) || all_results.contains(name) || is_set(name);
     let unknown = unknown_columns(&sheet.names, &is_known);
     let mut seen: HashSet<&str> = HashSet::new();
     let is_new: Vec<bool> = sheet
@@ -128,10 +136,10 @@ pub(crate) fn fleet(
         .iter()
         .map(|row| seen.insert(row.cells[id].as_str()))
         .collect();
-    let rows: Vec<(&Row, bool)> = sheet.rows.iter().zip(is_new).collect();
+    let rows: Vec<(usize, (&Row, bool))> = sheet.rows.iter().zip(is_new).enumerate().collect();
     let made: Vec<Result<FleetCar, Refused>> = rows
         .into_par_iter()
-        .map(|(row, is_new)| {
+        .map(|(index, (row, is_new))| {
             let refuse = |reason: String| Refused {
                 line: row.line,
                 id: row.cells[id].clone(),
@@ -140,7 +148,7 @@ pub(crate) fn fleet(
             match row.cells[id].as_str() {
                 "" => Err(refuse(format!("{}: the car has no name", map.id))),
                 _ if !is_new => Err(refuse(format!("{}: an earlier row has this name", map.id))),
-                _ => columns.car(row).map_err(refuse),
+                _ => columns.car(index, row).map_err(refuse),
             }
         })
         .collect();
@@ -175,7 +183,7 @@ fn unknown_columns(names: &[String], is_known: &dyn Fn(&str) -> bool) -> Vec<(St
 }
 
 impl Columns<'_> {
-    fn car(&self, row: &Row) -> Result<FleetCar, String> {
+    fn car(&self, index: usize, row: &Row) -> Result<FleetCar, String> {
         let id = row.cells[self.id].clone();
         let options: Vec<(&str, &str)> = self
             .options
@@ -183,8 +191,13 @@ impl Columns<'_> {
             .map(|(option, template)| (option.as_str(), template.as_str()))
             .collect();
         let answers = self.answers(row, &options)?;
-        let set = self.overrides(row)?;
+        let set = self.overrides(index, row, &answers)?;
         let params = made(&answers, &set)?;
+        let pair = self.pair.map_or("", |k| row.cells[k].as_str());
+        let twin = match pair {
+            "" => None,
+            _ => new_car::twin_set(&answers, &set).map_err(|problems| sentence(&problems))?,
+        };
         let mut by_test = BTreeMap::new();
         for test in self.tests {
             let Some(own) = self.map.tests.get(&test.name) else {
@@ -235,7 +248,8 @@ impl Columns<'_> {
         Ok(FleetCar {
             doubts: params.setup().doubts(),
             line: row.line,
-            pair: self.pair.map_or_else(String::new, |k| row.cells[k].clone()),
+            pair: pair.to_owned(),
+            twin,
             words: self
                 .groups
                 .iter()
@@ -277,8 +291,21 @@ impl Columns<'_> {
         Ok(answers)
     }
 
-    fn overrides(&self, row: &Row) -> Result<Vec<Override>, String> {
-        let mut set = self.set.to_vec();
+    /// Values of a row: the settings first, then the columns that are keys.
+    fn overrides(
+        &self,
+        index: usize,
+        row: &Row,
+        answers: &Answers,
+    ) -> Result<Vec<Override>, String> {
+        let is_manual = answers
+            .gearbox
+            .as_deref()
+            .is_some_and(|name| name.contains("manual"));
+        let mut set = Vec::new();
+        for setting in self.set.iter().filter(|setting| setting.is_of(!is_manual)) {
+            set.extend(setting.in_row(self.sheet, index)?);
+        }
         for k in &self.keys {
             let text = row.cells[*k].as_str();
             if !text.is_empty() {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use cvtcycle_config::Problems;
 use cvtcycle_config::procedure::Procedure;
-use cvtcycle_config::setup::Setup;
+use cvtcycle_config::setup::{ParamSet, Setup};
 use cvtcycle_model::drive::{Conditions, Start, drive as drive_car};
 use cvtcycle_output::progress::Progress;
 use cvtcycle_output::summary::{Driven, RunSummary, Settings, run_summary};
@@ -17,6 +17,8 @@ use crate::FleetCar;
 pub struct DrivenCar {
     /// Each test, in order.
     pub tests: Vec<TestFigures>,
+    /// Each test with the twin, of a car that has one; not those of which the row has a road load of its own.
+    pub twin: Vec<TestFigures>,
 }
 
 /// Figures of a car on a test.
@@ -44,6 +46,13 @@ impl DrivenCar {
             .copied()
     }
 
+    /// Computed fuel of the twin of a column, L/100 km.
+    #[must_use]
+    pub fn twin_fuel(&self, column: &str) -> Option<f64> {
+        let mut tests = self.twin.iter();
+        tests.find_map(|test| test.fuel.get(column)).copied()
+    }
+
     /// Failed checks of all tests, each with the test.
     #[must_use]
     pub fn failed_checks(&self) -> Vec<String> {
@@ -65,23 +74,29 @@ impl DrivenCar {
 /// Drives every car on every test, with steps of at most some time, s. `progress` counts the cars.
 pub fn drive(
     cars: &[FleetCar],
-    tests: &[Procedure],
+    tests_of: &[Procedure],
     max_dt_s: f64,
     progress: &impl Progress,
 ) -> Vec<DrivenCar> {
     cars.par_iter()
         .map(|car| {
-            let tests = tests
+            let tests = tests_of
                 .iter()
                 .map(|test| drive_test(car, test, max_dt_s))
                 .collect();
+            let twin = car.twin.as_ref().map_or_else(Vec::new, |twin| {
+                // A test whose road load the row has for this car alone is none of the twin's.
+                let own = |test: &&Procedure| !car.by_test.contains_key(&test.name);
+                let drive = |test| drive_params(twin, test, max_dt_s);
+                tests_of.iter().filter(own).map(drive).collect()
+            });
             progress.advance(1);
-            DrivenCar { tests }
+            DrivenCar { tests, twin }
         })
         .collect()
 }
 
-fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
+pub(crate) fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let loaded = match car.by_test.get(&test.name) {
         // The road load is that of the test already.
         Some(own) => Procedure {
@@ -91,6 +106,15 @@ fn drive_test(car: &FleetCar, test: &Procedure, max_dt_s: f64) -> TestFigures {
         .load(own),
         None => test.load(&car.params),
     };
+    driven(loaded, test, max_dt_s)
+}
+
+/// A car whose road load is not that of the test yet.
+fn drive_params(params: &ParamSet, test: &Procedure, max_dt_s: f64) -> TestFigures {
+    driven(test.load(params), test, max_dt_s)
+}
+
+fn driven(loaded: Result<ParamSet, Problems>, test: &Procedure, max_dt_s: f64) -> TestFigures {
     match loaded {
         Ok(params) => figures(&Setup::from_params(&params), test, max_dt_s),
         Err(problems) => TestFigures {
@@ -110,7 +134,7 @@ fn first_message(problems: &Problems) -> String {
         .map_or_else(String::new, |problem| problem.message.clone())
 }
 
-fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
+pub(crate) fn figures(setup: &Setup, test: &Procedure, max_dt_s: f64) -> TestFigures {
     let cycle = test.cycle_for(setup);
     let run = |conditions: Conditions| -> RunSummary {
         let outcome = drive_car(setup, &cycle, &conditions);

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | FE-1 | e = 100 (F_computed/F_measured - 1) | definition |
 //! | FE-2 | pair: d = 100 (F/F_other - 1), error d_computed - d_measured | definition |
+//! | FE-3 | change by settings: errors of the same cars before and after, those that were driven and measured in both | definition |
 
 use std::collections::BTreeMap;
 
@@ -92,9 +93,17 @@ pub struct Pair {
     pub measured_percent: f64,
     /// Computed difference, per cent.
     pub computed_percent: f64,
+    /// Computed difference to the twin that the program makes of the car (TW-1 to TW-4), in place of the measured one's own row; NaN of a car without one.
+    pub twin_percent: f64,
 }
 
 impl Pair {
+    /// As [`Pair::error`], with the twin in place of the other car.
+    #[must_use]
+    pub fn twin_error(&self) -> f64 {
+        self.twin_percent - self.measured_percent
+    }
+
     /// Computed less measured difference, points (FE-2).
     #[must_use]
     pub fn error(&self) -> f64 {
@@ -159,6 +168,73 @@ pub fn by_group(cars: &[Entry], figures: &[String], columns: &[String]) -> Vec<G
     all
 }
 
+/// Errors of a figure before and after a change of the cars (FE-3).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ErrorChange {
+    /// Column of the figure.
+    pub figure: String,
+    /// Kind of box.
+    pub transmission: String,
+    /// Cars with an error, before and after.
+    pub cars: [usize; 2],
+    /// Cars with both.
+    pub n: usize,
+    /// Mean error of these, before and after, per cent.
+    pub mean_percent: [f64; 2],
+    /// Root of the mean square, before and after, per cent.
+    pub rms_percent: [f64; 2],
+    /// Mean change of the error of a car, points.
+    pub mean_change: f64,
+    /// Standard deviation of that change; NaN of one car.
+    pub sd_change: f64,
+    /// Cars whose error is smaller in size after.
+    pub nearer: usize,
+}
+
+/// Errors of the same cars before and after, by figure and box.
+#[must_use]
+pub fn changes(before: &[Entry], after: &[Entry], figures: &[String]) -> Vec<ErrorChange> {
+    let mut all = Vec::new();
+    for figure in figures {
+        for transmission in ["cvt", "manual"] {
+            let errors = |entries: &[Entry]| -> BTreeMap<String, f64> {
+                let own = entries
+                    .iter()
+                    .filter(|entry| box_word(entry.0) == transmission);
+                own.filter_map(|entry| Some((entry.0.id.clone(), error_percent(*entry, figure)?)))
+                    .collect()
+            };
+            let (first, second) = (errors(before), errors(after));
+            let both: Vec<[f64; 2]> = first
+                .iter()
+                .filter_map(|(id, error)| Some([*error, *second.get(id)?]))
+                .collect();
+            if both.is_empty() {
+                continue;
+            }
+            let n = both.len() as f64;
+            let mean = |of: &dyn Fn(&[f64; 2]) -> f64| both.iter().map(of).sum::<f64>() / n;
+            let mean_change = mean(&|pair| pair[1] - pair[0]);
+            let square = mean(&|pair| (pair[1] - pair[0] - mean_change).powi(2));
+            all.push(ErrorChange {
+                figure: figure.clone(),
+                transmission: transmission.to_owned(),
+                cars: [first.len(), second.len()],
+                n: both.len(),
+                mean_percent: [0, 1].map(|k| mean(&|pair| pair[k])),
+                rms_percent: [0, 1].map(|k| mean(&|pair| pair[k] * pair[k]).sqrt()),
+                mean_change,
+                sd_change: (square * n / (n - 1.0)).sqrt(),
+                nearer: both
+                    .iter()
+                    .filter(|pair| pair[1].abs() < pair[0].abs())
+                    .count(),
+            });
+        }
+    }
+    all
+}
+
 /// Pairs of cars by the names in their rows.
 #[must_use]
 pub fn pairs(cars: &[Entry], figures: &[String]) -> Vec<Pair> {
@@ -185,6 +261,8 @@ pub fn pairs(cars: &[Entry], figures: &[String]) -> Vec<Pair> {
                 other: other.id.clone(),
                 measured_percent: difference(measured(car), measured(other)).unwrap_or(f64::NAN),
                 computed_percent,
+                twin_percent: difference(driven.fuel(figure), driven.twin_fuel(figure))
+                    .unwrap_or(f64::NAN),
             });
         }
     }

@@ -6,27 +6,34 @@
 //! | `sheet` | a table of text with its refused rows |
 //! | `car` | a row to a car, by the rules of `cvtcycle new`, in memory |
 //! | `driven` | cars on tests, side by side |
+//! | `setting` | values of keys: for all cars, or from the columns of a row |
+//! | `fit` | values fitted to measured fuel, and what they are worth for groups left out |
 //! | `errors` | computed against measured fuel: all cars, by the words of a column, pairs of cars |
 //! | `baselines` | regressions on the same measurements, each group predicted from the others |
 //! | `spread` | what the errors say of a car that is not in the table |
 //! | `tables` | results as CSV |
+//! | `weights` | which of the numbers of a car matter most for its fuel |
 
 pub mod baselines;
 mod car;
 mod driven;
 pub mod errors;
+pub mod fit;
 mod map;
+mod setting;
 mod sheet;
 pub mod spread;
 pub mod tables;
+pub mod weights;
 
 pub use car::FleetCar;
 pub use driven::{DrivenCar, TestFigures, drive};
 pub use map::ColumnMap;
+pub use setting::Setting;
 pub use sheet::{Refused, Sheet};
 
+use cvtcycle_config::Problems;
 use cvtcycle_config::procedure::Procedure;
-use cvtcycle_config::{Override, Problems};
 
 /// Cars of a table, and the rows that are none.
 #[derive(Clone, Debug)]
@@ -62,7 +69,7 @@ impl Fleet {
         sheet: &Sheet,
         map: &ColumnMap,
         tests: &[Procedure],
-        set: &[Override],
+        set: &[Setting],
     ) -> Result<Fleet, Problems> {
         car::fleet(sheet, map, tests, set)
     }

@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | FS-1 | c mean of ln(F_measured/F_computed) over the cars; s2 mean square of that number less the mean of the cars of the other groups | definition: each group is judged by the others |
 //! | FS-2 | 90 % of new cars: F_computed exp(c +- t s), t Student's 95 % point with one degree of freedom less than there are groups | ASSUMED: cars of a group share their error, groups are independent and normal |
-//! | FS-3 | pairs: as FS-1 and FS-2 with the measured less the computed difference, points, in place of the logarithm | as FS-1, FS-2 |
+//! | FS-3 | pairs: as FS-1 and FS-2 with the measured less the computed difference, points, in place of the logarithm; twins: the same with the difference to the twin of the CVT car in place of the pair's manual one | as FS-1, FS-2 |
 
 use cvtcycle_output::fleet_spread;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -19,7 +19,7 @@ const FEWEST: (usize, usize) = (8, 3);
 pub struct Spread {
     /// Column of the figure.
     pub figure: String,
-    /// `cvt`, `manual` or `pair`.
+    /// `cvt`, `manual`, `pair` or `twin`.
     pub kind: &'static str,
     /// Number of cars or pairs.
     pub cars: usize,
@@ -75,19 +75,25 @@ pub fn spreads(cars: &[Entry], pairs: &[Pair], figures: &[String], column: &str)
                 .map(group)
                 .unwrap_or_default()
         };
-        let numbers: Vec<(String, f64)> = pairs
-            .iter()
-            .filter(of_pair)
-            .map(|pair| (word(pair), -pair.error()))
-            .collect();
-        all.extend(spread(&numbers).map(|(groups, middle, ends)| Spread {
-            figure: figure.clone(),
-            kind: "pair",
-            cars: numbers.len(),
-            groups,
-            middle,
-            ends,
-        }));
+        for kind in ["pair", "twin"] {
+            let error = |pair: &Pair| match kind {
+                "pair" => pair.error(),
+                _ => pair.twin_error(),
+            };
+            let own = pairs.iter().filter(of_pair);
+            let numbers: Vec<(String, f64)> = own
+                .map(|pair| (word(pair), -error(pair)))
+                .filter(|(_, x)| x.is_finite())
+                .collect();
+            all.extend(spread(&numbers).map(|(groups, middle, ends)| Spread {
+                figure: figure.clone(),
+                kind,
+                cars: numbers.len(),
+                groups,
+                middle,
+                ends,
+            }));
+        }
     }
     all
 }

@@ -5,6 +5,8 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | FS-4 | FTP75 and HWFET have their own spread; every other cycle the wider of both; below 10 degC that of the first bag at -6.7 degC where it is wider | ASSUMED: no fleet is measured on other cycles |
+//! | FS-5 | a part of a cycle has the widest spread of the three bags of FTP75 | ASSUMED: as FS-4 |
+//! | FS-6 | cars that are no pair: ends of ln(F/F_other) from the middles and half widths of both kinds, c_1 - c_2 +- sqrt(h_1^2 + h_2^2) | ASSUMED: the errors of the two cars are independent |
 
 use std::sync::OnceLock;
 
@@ -50,27 +52,63 @@ fn rows() -> &'static [Row] {
     })
 }
 
-/// The row that tells of a run (FS-4).
-fn row(kind: &str, cycle: &str, ambient_degc: f64) -> Option<&'static Row> {
-    let named = |figure: &str| {
-        rows()
-            .iter()
-            .find(|row| row.figure == figure && row.kind == kind)
-    };
-    let width = |row: &&Row| row.ends[1] - row.ends[0];
-    let wider = |a: Option<&'static Row>, b: Option<&'static Row>| {
-        [a, b]
-            .into_iter()
-            .flatten()
-            .max_by(|a, b| width(a).total_cmp(&width(b)))
-    };
-    let own = match cycle {
-        "ftp75" | "hwfet" => named(cycle),
-        _ => wider(named("ftp75"), named("hwfet")),
-    };
-    match ambient_degc < COLD_DEGC {
-        true => wider(own, named("cold_bag1")),
-        false => own,
+/// What was driven, as far as measured cars tell of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrivenOn<'a> {
+    /// Name of the cycle.
+    pub cycle: &'a str,
+    /// True for a part of the cycle.
+    pub is_part: bool,
+    /// Ambient temperature, degC.
+    pub ambient_degc: f64,
+}
+
+impl<'a> DrivenOn<'a> {
+    /// A whole cycle.
+    #[must_use]
+    pub fn whole(cycle: &'a str, ambient_degc: f64) -> Self {
+        DrivenOn {
+            cycle,
+            is_part: false,
+            ambient_degc,
+        }
+    }
+
+    /// A part of a cycle.
+    #[must_use]
+    pub fn part(cycle: &'a str, ambient_degc: f64) -> Self {
+        DrivenOn {
+            is_part: true,
+            ..DrivenOn::whole(cycle, ambient_degc)
+        }
+    }
+
+    /// The row that tells of a run (FS-4, FS-5).
+    fn row(&self, kind: &str) -> Option<&'static Row> {
+        let named = |figure: &str| {
+            rows()
+                .iter()
+                .find(|row| row.figure == figure && row.kind == kind)
+        };
+        let width = |row: &&Row| row.ends[1] - row.ends[0];
+        let widest = |figures: &[&str]| {
+            figures
+                .iter()
+                .filter_map(|figure| named(figure))
+                .max_by(|a, b| width(a).total_cmp(&width(b)))
+        };
+        let own = match (self.is_part, self.cycle) {
+            (true, _) => widest(&["bag1", "bag2", "bag3"]),
+            (_, "ftp75" | "hwfet") => named(self.cycle),
+            _ => widest(&["ftp75", "hwfet"]),
+        };
+        match self.ambient_degc < COLD_DEGC {
+            true => [own, named("cold_bag1")]
+                .into_iter()
+                .flatten()
+                .max_by(|a, b| width(a).total_cmp(&width(b))),
+            false => own,
+        }
     }
 }
 
@@ -83,7 +121,7 @@ fn row(kind: &str, cycle: &str, ambient_degc: f64) -> Option<&'static Row> {
 /// ```
 #[must_use]
 pub fn fuel_range(kind: &str, cycle: &str, ambient_degc: f64, fuel: f64) -> Option<FleetRange> {
-    let row = row(kind, cycle, ambient_degc)?;
+    let row = DrivenOn::whole(cycle, ambient_degc).row(kind)?;
     Some(FleetRange {
         figure: row.figure.to_owned(),
         cars: row.cars,
@@ -103,7 +141,7 @@ pub fn figure_range(kind: &str, column: &str, fuel: f64) -> Option<FleetRange> {
     } else {
         24.0
     };
-    let row = own.or_else(|| row(kind, figure, degc))?;
+    let row = own.or_else(|| DrivenOn::whole(figure, degc).row(kind))?;
     Some(FleetRange {
         figure: row.figure.to_owned(),
         cars: row.cars,
@@ -111,13 +149,63 @@ pub fn figure_range(kind: &str, column: &str, fuel: f64) -> Option<FleetRange> {
     })
 }
 
-/// Range of the difference of a CVT car to the same car with a manual box, for 90 % of pairs for which this difference is computed, per cent.
+/// Kinds of box of two cars, and whether they differ in nothing else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compared<'a> {
+    /// `cvt` or `manual`: the car, and the one that it is compared with.
+    pub kinds: [&'a str; 2],
+    /// What the other car is to the car.
+    pub other: Other,
+}
+
+/// What a car is to the car that is compared with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Other {
+    /// Its twin by the rules of the program (TW-1 to TW-4), whose gear set and shift speeds are guesses as well.
+    Twin,
+    /// A car of its own, with the same road load, tyres and engine.
+    Alike,
+    /// Any car.
+    Any,
+}
+
+/// Range of the difference of two cars for 90 % of such cars, per cent: of a CVT to the same car with a manual box from measured pairs, driven with the pair's own
+/// manual car or with the twin of the CVT in its place; of all others from the errors of both (FS-6).
+///
+/// ```
+/// use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range};
+/// let of = |other| Compared { kinds: ["cvt", "manual"], other };
+/// let on = DrivenOn::whole("hwfet", 24.0);
+/// let range = |other| difference_range(of(other), on, -3.0).expect("cars of both kinds").ends;
+/// let [pair, unlike] = [Other::Alike, Other::Any].map(range);
+/// assert!(unlike[0] < pair[0] && pair[0] < -3.0 && -3.0 < pair[1] && pair[1] < unlike[1]);
+/// ```
 #[must_use]
-pub fn pair_range(cycle: &str, ambient_degc: f64, percent: f64) -> Option<FleetRange> {
-    let row = row("pair", cycle, ambient_degc)?;
+pub fn difference_range(of: Compared, on: DrivenOn, percent: f64) -> Option<FleetRange> {
+    if of.kinds == ["cvt", "manual"] && of.other != Other::Any {
+        let row = on.row(match of.other {
+            Other::Twin => "twin",
+            _ => "pair",
+        })?;
+        return Some(FleetRange {
+            figure: row.figure.to_owned(),
+            cars: row.cars,
+            ends: row.ends.map(|points| percent + points),
+        });
+    }
+    let [own, other] = of.kinds.map(|kind| on.row(kind));
+    let (own, other) = (own?, other?);
+    let of = |row: &Row| {
+        let [low, high] = row.ends.map(|percent| (percent / 100.0).ln_1p());
+        (0.5 * (low + high), 0.5 * (high - low))
+    };
+    let ((own_middle, own_half), (other_middle, other_half)) = (of(own), of(other));
+    let (middle, half) = (own_middle - other_middle, own_half.hypot(other_half)); // FS-6
+    let ends =
+        [middle - half, middle + half].map(|x| 100.0 * ((1.0 + percent / 100.0) * x.exp() - 1.0));
     Some(FleetRange {
-        figure: row.figure.to_owned(),
-        cars: row.cars,
-        ends: row.ends.map(|points| percent + points),
+        figure: own.figure.to_owned(),
+        cars: own.cars.min(other.cars),
+        ends,
     })
 }

@@ -12,7 +12,7 @@ mod price;
 mod run;
 
 pub use alike::{Difference, differences, words as likeness};
-pub use failure::{Deficit, Failure};
+pub use failure::{Deficit, Failure, has_failed_trace};
 pub use known::{Contradiction, DrawnDifference};
 pub use maps_left::{MapLeft, find_maps_left};
 pub use phases::PhaseSummary;
@@ -165,6 +165,9 @@ pub struct Comparison {
     /// Range of the difference from measured cars, where no draws give one, per cent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fleet: Option<FleetRange>,
+    /// Ranges of the differences by group of phases from measured cars, of cars that are not shipped, per cent.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub phases_fleet: IndexMap<String, [f64; 2]>,
 }
 
 /// A car that has been driven.
@@ -330,6 +333,7 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
         differences: Vec::new(),
         interval: None,
         fleet: None,
+        phases_fleet: IndexMap::new(),
     }
 }
 

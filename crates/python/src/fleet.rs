@@ -1,10 +1,10 @@
 //! Cars of a table, driven on tests.
 
+use cvtcycle::config::Problems;
 use cvtcycle::config::procedure::Procedure;
-use cvtcycle::config::{Override, Problems};
 use cvtcycle::fleet::errors::Entry;
 use cvtcycle::fleet::tables::{Cell, fleet_table};
-use cvtcycle::fleet::{ColumnMap, Fleet, Sheet, drive, spread};
+use cvtcycle::fleet::{ColumnMap, Fleet, Setting, Sheet, drive, spread};
 use cvtcycle::output::table::{Head, Kind};
 use pyo3::prelude::*;
 
@@ -36,17 +36,30 @@ pub fn fleet(
             "the step is out of range",
         ));
     }
-    let set = Override::parse_all(&set).map_err(refused)?;
     let solve = move |stop: &Stop| -> Result<(Vec<String>, Vec<Vec<Cell>>), Problems> {
         let map = map.map_or_else(|| Ok(ColumnMap::own()), |word| ColumnMap::open(&word))?;
         let tests: Vec<Procedure> = tests
             .iter()
             .map(|word| Procedure::open(word))
             .collect::<Result<_, _>>()?;
-        let fleet = Fleet::from_sheet(&Sheet::read(&name, &text)?, &map, &tests, &set)?;
-        let driven = drive(&fleet.cars, &tests, dt_s, stop);
+        let sheet = Sheet::read(&name, &text)?;
+        let set = Setting::read_all(&set, &sheet.names)?;
+        let driven_with = |set: &[Setting]| -> Result<_, Problems> {
+            let fleet = Fleet::from_sheet(&sheet, &map, &tests, set)?;
+            let driven = drive(&fleet.cars, &tests, dt_s, stop);
+            Ok((fleet, driven))
+        };
+        let (fleet, driven) = driven_with(&set)?;
         let cars: Vec<Entry> = fleet.cars.iter().zip(&driven).collect();
-        Ok(fleet_table(&fleet, &cars, &tests, &spread::known))
+        let before = match set.is_empty() {
+            true => None,
+            false => Some(driven_with(&[])?),
+        };
+        let before = before
+            .iter()
+            .flat_map(|(fleet, driven)| fleet.cars.iter().zip(driven));
+        let before: Vec<Entry> = before.collect();
+        Ok(fleet_table(&fleet, &cars, &before, &tests, &spread::known))
     };
     let (names, rows) = job(py, threads, Interrupted::Detaches, solve)?.map_err(refused)?;
     let column = |(k, name): (usize, &String)| {
@@ -93,6 +106,7 @@ fn doc(name: &str) -> String {
         ("_low", "lower end of the range of 90 % of cars"),
         ("_high", "upper end of the range of 90 % of cars"),
         ("_measured", "measured fuel"),
+        ("_before", "computed fuel without the settings"),
     ];
     let found = ends
         .iter()

@@ -181,7 +181,7 @@ impl Names for FileNames<'_> {
         self.sources.iter().map(|source| &*source.name).collect()
     }
 
-    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str> {
+    fn columns(&self, source: usize, totals: bool) -> Vec<&str> {
         match self.sources.get(source).map(|source| source.kind) {
             Some(kind) if kind == Kind::Run || !totals => tables::columns(kind, totals),
             _ => Vec::new(),

@@ -1,5 +1,6 @@
 //! The summary of a run as tables.
 
+use cvtcycle::analysis::words::between;
 use cvtcycle::analysis::words::run::sentences;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
@@ -149,10 +150,18 @@ fn compared(comparison: &Comparison) -> String {
         .phases_percent
         .iter()
         .filter(|(_, x)| x.is_some());
+    let with = |x: Option<f64>, range: Option<[f64; 2]>| match range {
+        Some(ends) => format!("{} % ({})", signed(x, 1), between(ends, "%")),
+        None => format!("{} %", signed(x, 1)),
+    };
     let parts: Vec<String> = phases
-        .map(|(name, x)| format!("{name} {} %", signed(x, 1)))
+        .map(|(name, x)| {
+            let range = comparison.phases_fleet.get(name).copied();
+            format!("{name} {}", with(x, range))
+        })
         .collect();
-    let whole = format!("{} %", signed(difference, 1));
+    let range = comparison.fleet.as_ref().map(|range| range.ends);
+    let whole = with(Some(difference), range);
     let mut line = match parts.len() {
         0 | 1 => whole,
         _ => format!("{}, whole cycle {whole}", parts.join(", ")),
@@ -279,7 +288,7 @@ fn notes(summary: &Summary) -> String {
         .iter()
         .any(|difference| difference.interval.is_none())
     {
-        text += "a difference without an interval gets one from --draws 256\n";
+        text += "a difference gets an interval of its own from --draws 256\n";
     }
     let worst = |value: fn(&RunSummary) -> Option<f64>| {
         let all: Option<Vec<f64>> = summary.runs.iter().map(value).collect();

@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use cvtcycle::analysis::words::study::sentences;
+use cvtcycle::analysis::words::between;
+use cvtcycle::analysis::words::study::{fleet_range, sentences};
+use cvtcycle::output::fleet_spread::DrivenOn;
 use cvtcycle::report::results::StudyResults;
 use cvtcycle::study::answer::ambient::Matrix;
 use cvtcycle::study::answer::{Ended, OutputAnswer};
@@ -28,7 +30,7 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
         .collect();
     let text = head(study, paint) + if said.is_empty() { "" } else { "\n" } + &said;
     if let Some(matrix) = &answer.matrix {
-        return text + &matrix_tables(matrix, paint);
+        return text + &matrix_tables(matrix, outline, paint);
     }
     let outputs = sections([("Outputs", outputs(answer))], paint);
     let factors = factors(answer, outline, paint);
@@ -43,7 +45,7 @@ pub fn tables(study: &StudyResults, paint: Paint) -> String {
 type MatrixRow = (usize, usize);
 
 /// Fuel of each part of the cycle with the difference to the baselines, and the final temperature of the transmission oil.
-fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
+fn matrix_tables(matrix: &Matrix, outline: &StudyManifest, paint: Paint) -> String {
     let rows = |columns: &TextColumns<MatrixRow>| {
         let ambients = matrix.ambient_degc.len();
         let of_start = |start| (0..ambients).map(move |ambient| (start, ambient));
@@ -59,8 +61,23 @@ fn matrix_tables(matrix: &Matrix, paint: Paint) -> String {
         for (car, numbers) in matrix.cars.iter().zip(&part.l_per_100km) {
             columns = columns.number(car, 2, |row| cell(numbers, row));
         }
-        for (car, numbers) in matrix.cars.iter().skip(1).zip(&part.excess_percent) {
+        let baselines = (1..).zip(matrix.cars.iter().skip(1));
+        for ((k, car), numbers) in baselines.zip(&part.excess_percent) {
             columns = columns.right(format!("over {car}"), |row| signed(cell(numbers, row), 1));
+            let cycle = &outline.plan.base.cycle;
+            let range = move |row: &MatrixRow| {
+                let (degc, percent) = (matrix.ambient_degc[row.1], cell(numbers, row)?);
+                let on = match part.name.as_str() {
+                    "total" => DrivenOn::whole(cycle, degc),
+                    _ => DrivenOn::part(cycle, degc),
+                };
+                Some(between(fleet_range(outline, k, percent, on)?.ends, "%"))
+            };
+            if range(&(0, 0)).is_some() {
+                columns = columns.right("90 % of such cars", move |row| {
+                    range(row).unwrap_or_default()
+                });
+            }
         }
         let title = format!("Fuel, {name}, L/100 km, and difference of the subject, %");
         (title, rows(&columns))

@@ -2,8 +2,60 @@
 //!
 //! Truth: each test driven by `run`. The sums of LB-1 are tested with the formulas.
 
-use super::{json, refused, run, stdout};
+use super::{json, refused, run, run_in, stdout};
 use serde_json::Value;
+
+/// Truth: `run`, which fails a trace beyond its tolerance alone (TR-1): a car of 90 kW misses one second of US06 within it, one of 75 kW five beyond it.
+#[test]
+fn a_trace_within_its_tolerance_is_none_that_was_missed() {
+    let dir = tempfile::tempdir().unwrap();
+    for (power, code) in [("90kW", 0), ("75kW", 1)] {
+        let words = [
+            "new",
+            "weak",
+            "--force",
+            "--mass",
+            "1300",
+            "--displacement",
+            "1.4l",
+            "--power",
+            power,
+            "--box",
+            "box_cvt_converter",
+        ];
+        assert_eq!(run_in(dir.path(), &words).status.code(), Some(0));
+        let words = [
+            "run",
+            "--vehicle",
+            "weak.toml",
+            "--baseline",
+            "none",
+            "--cycle",
+            "us06",
+            "--start",
+            "warm",
+            "--ambient",
+            "24",
+            "--price",
+            "never",
+            "--json",
+        ];
+        let output = run_in(dir.path(), &words);
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let missed_s = found["runs"][0]["trace_missed_s"].as_f64().unwrap();
+        assert!(missed_s > 0.0, "{power}");
+        assert_eq!(output.status.code(), Some(code), "{power}");
+        let output = run_in(dir.path(), &["label", "weak.toml", "--json"]);
+        assert_eq!(output.status.code(), Some(code), "{power}");
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let missed = found["cars"][0]["missed_s"].as_array().unwrap();
+        let us06 = missed.iter().find(|of| of[0] == "us06");
+        assert_eq!(
+            us06.map(|of| of[1].as_f64().unwrap()),
+            (code == 1).then_some(missed_s)
+        );
+    }
+}
 
 /// Every test equals the run in its description, and both tables and notes are printed.
 #[test]

@@ -26,9 +26,9 @@ const MINIMUM: [&str; 6] = [
     "--power",
     "132hp@6000",
 ];
-/// Catalogue numbers as answers, in the order of the questions; class and box come first.
+/// Catalogue numbers as answers, in the order of the questions; class, box and engine come first.
 const ANSWERS: &str =
-    "\n\n3000lb\n105\n0.55\n0.0305\n215/55 R16\n1.8l\n104kW@6400\n172@4000\n\n\n\n2.6\n";
+    "\n\n\n3000lb\n105\n0.55\n0.0305\n\n215/55 R16\n1.8l\n104kW@6400\n172@4000\n\n\n\n2.6\n";
 
 fn options() -> Vec<String> {
     let parts = NUMBERS.iter();
@@ -99,6 +99,163 @@ fn options_answers_and_questions_make_the_same_car() {
         let output = run_in(dir, words);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     }
+}
+
+/// Property: coefficients in lbf are EPA's, of a coast-down in neutral, unless it is said otherwise; the answer says what was taken. Truth: `--road-load`.
+#[test]
+fn coefficients_in_lbf_are_of_a_coast_down_in_neutral() {
+    let dir = tempfile::tempdir().unwrap();
+    let words = [
+        "--displacement",
+        "1.8l",
+        "--power",
+        "104kW",
+        "--f0",
+        "25lbf",
+        "--f1",
+        "0.2lbf/mph",
+        "--f2",
+        "0.019lbf/mph2",
+    ];
+    let new = |more: &[&str]| {
+        let output = run_in(
+            dir.path(),
+            &[&["new", "mycar", "--force"][..], &words, more].concat(),
+        );
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        (
+            fs::read_to_string(dir.path().join("mycar.toml")).unwrap(),
+            stdout(&output),
+        )
+    };
+    let (usual, said) = new(&[]);
+    let [(neutral, quiet), (body, quiet_body)] =
+        ["neutral", "body"].map(|word| new(&["--road-load", word]));
+    assert_eq!(usual, neutral);
+    assert_ne!(usual, body);
+    assert!(
+        said.contains("taken for EPA's targets") && said.contains("road-load is body"),
+        "{said}"
+    );
+    for quiet in [quiet, quiet_body] {
+        assert!(!quiet.contains("road load: "), "{quiet}");
+    }
+    // In newtons they are of the body, which is said as well.
+    let output = run_in(
+        dir.path(),
+        &[
+            "new",
+            "newton",
+            "--displacement",
+            "1.8l",
+            "--power",
+            "104kW",
+            "--f0",
+            "105",
+        ],
+    );
+    assert!(
+        stdout(&output).contains("taken for those of the body"),
+        "{}",
+        stdout(&output)
+    );
+    assert!(
+        !fs::read_to_string(dir.path().join("newton.toml"))
+            .unwrap()
+            .contains("driveline_f0_n")
+    );
+}
+
+/// Truth: the same car by options. A wrong answer is asked again with its reason.
+#[test]
+fn the_engine_and_what_the_coefficients_are_of_are_asked() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let words = [
+        "--engine",
+        "turbo",
+        "--engine-year",
+        "2012",
+        "--f0",
+        "25lbf",
+        "--road-load",
+        "body",
+    ];
+    let rest = ["--displacement", "1.5l", "--power", "104kW"];
+    let by_options = made(dir, &[&words[..], &rest].concat(), "").0;
+    let (asked, questions) = made(
+        dir,
+        &["--ask"],
+        "\n\nturbos\nturbo\nlast year\n2012\n\n25lbf\n\n\nbody\n\n1.5l\n104kW\n",
+    );
+    assert_eq!(asked, by_options);
+    for part in [
+        "engine: technology ",
+        "or measured ",
+        "there is no engine named `turbos`; did you mean `turbo`?",
+        "this is no year of an engine; 1980 to 2035",
+        "[neutral: targets in lbf are EPA's, of coast-downs in neutral]: ",
+    ] {
+        assert!(questions.contains(part), "{part}\n{questions}");
+    }
+    // Without coefficients there is nothing to ask of them.
+    let (_, questions) = made(dir, &["--ask"], "\n\n\n\n\n\n\n\n1.5l\n104kW\n");
+    assert!(!questions.contains("road-load: "), "{questions}");
+}
+
+/// Truth: the fuel of FTP75 by `run` with mass 2 % up and down.
+#[test]
+fn the_numbers_that_matter_most_are_named_with_what_they_move() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let car = |name: &str, mass: &str| {
+        let words = [
+            "new",
+            name,
+            "--displacement",
+            "1.8l",
+            "--power",
+            "104kW",
+            "--box",
+            "box_cvt_converter",
+            "--mass",
+            mass,
+        ];
+        let output = run_in(dir, &words);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        stdout(&output)
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+    };
+    let said = car("own", "1500");
+    let fuel = |name: &str| {
+        let file = format!("{name}.toml");
+        let words = [
+            "run",
+            "--vehicle",
+            &file,
+            "--cycle",
+            "ftp75",
+            "--ambient",
+            "24",
+            "--baseline",
+            "none",
+            "--price",
+            "never",
+            "--json",
+        ];
+        let found: serde_json::Value = serde_json::from_slice(&run_in(dir, &words).stdout).unwrap();
+        found["runs"][0]["weighted_fuel_l_per_100km"]
+            .as_f64()
+            .unwrap()
+    };
+    car("more", "1530");
+    car("less", "1470");
+    let percent = 50.0 * (fuel("more") - fuel("less")) / fuel("own");
+    let part = format!("mass (2 % more) {percent:+.1} %");
+    assert!(said.contains(&part), "{part}: {said}");
+    assert_eq!(said.matches(" more) ").count(), 3, "{said}");
 }
 
 /// NC-18: the drag of the box is subtracted from a coast-down in neutral, that of a CVT being the larger one, and a coast-down is required.

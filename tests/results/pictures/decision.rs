@@ -20,6 +20,7 @@ fn title(svg: &str) -> String {
 #[test]
 fn the_strip_states_if_the_sign_is_certain() {
     let row = |drawn: Option<[f64; 3]>| Against {
+        is_by_cars: false,
         baseline: "five <gears>".to_owned(),
         title: "a car with <gears> (not like for like)".to_owned(),
         files: Some(6.3),

@@ -14,7 +14,10 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::request::{ColumnNote, LeverNotes};
+use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, ProblemKind};
+use cvtcycle_output::fleet_spread::{FleetRange, fuel_range};
+use cvtcycle_study::StudyManifest;
 use cvtcycle_study::answer::{Ended, Status, StudyTable, counted, ended};
 use cvtcycle_study::execute::manifest::SCHEMA;
 use cvtcycle_study::execute::outputs::FUEL;
@@ -80,6 +83,9 @@ pub struct LeverBlock {
     pub ambient_degc: f64,
     /// Fuel of the car as it is, median, L/100 km.
     pub fuel_l_per_100km: f64,
+    /// What 90 % of such cars use, by measured cars; of a car that is not shipped.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fleet: Option<FleetRange>,
     /// Draws in which the car as it is fails a check or cannot be driven.
     pub failed: usize,
     /// Number of draws in total.
@@ -255,23 +261,33 @@ pub fn lever_answer(frame: &StudyTable, confidence: Confidence) -> Result<LeverA
         plan: about.plan,
         heard_rpm: about.heard_rpm,
         runs: ended(frame)?,
-        blocks: blocks(&about.columns, &numbers, confidence),
+        blocks: blocks(&about.columns, &numbers, confidence, outline),
         notes: about.notes,
     })
 }
 
 /// The columns by car and ambient temperature, in their order.
-fn blocks(columns: &[ColumnNote], numbers: &Numbers, confidence: Confidence) -> Vec<LeverBlock> {
+fn blocks(
+    columns: &[ColumnNote],
+    numbers: &Numbers,
+    confidence: Confidence,
+    outline: &StudyManifest,
+) -> Vec<LeverBlock> {
     let mut blocks: Vec<LeverBlock> = Vec::new();
     for (k, column) in columns.iter().enumerate() {
         if column.kind == "reference" {
             if column.name == "reference" {
                 let failed = numbers.ok[k].iter().map(|ok| !ok);
                 let failed: Vec<bool> = failed.collect();
+                let fuel = median(numbers.fuel[k].iter().copied());
+                let is_shipped = Kind::Vehicle.names().contains(&column.vehicle.as_str());
+                let kind = outline.kinds.get(k).filter(|_| !is_shipped);
+                let cycle = outline.plan.base.cycle.as_str();
                 blocks.push(LeverBlock {
+                    fleet: kind.and_then(|kind| fuel_range(kind, cycle, column.ambient_degc, fuel)),
                     vehicle: column.vehicle.clone(),
                     ambient_degc: column.ambient_degc,
-                    fuel_l_per_100km: median(numbers.fuel[k].iter().copied()),
+                    fuel_l_per_100km: fuel,
                     failed: failed.iter().filter(|failed| **failed).count(),
                     n: failed.len(),
                     reasons: numbers.reasons(k, &failed),

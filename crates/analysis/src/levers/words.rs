@@ -1,12 +1,14 @@
 //! The answer of a lever study in sentences.
 
 use super::{LeverAnswer, LeverBlock, LeverRow};
+use crate::words::of_cars;
 use cvtcycle_output::number::{fixed, signed};
 
 /// Describes the savings of a car's levers: the first lines of the answer.
 pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> {
     let mut sentences = Vec::new();
     let fuel = fixed(block.fuel_l_per_100km, 2);
+    let range = block.fleet.as_ref().map_or_else(String::new, of_cars);
     let of_runs = match answer.plan {
         Some(_) => format!(
             " in the median of {} runs with uncertain values varied",
@@ -21,10 +23,12 @@ pub fn answer_in_words(answer: &LeverAnswer, block: &LeverBlock) -> Vec<String> 
         Some(best) => {
             let (name, change) = (&best.of.title, change(answer, best));
             sentences.push(format!(
-                "{fuel} L/100 km{of_runs}; {name} saves most: {change}."
+                "{fuel} L/100 km{range}{of_runs}; {name} saves most: {change}."
             ));
         }
-        None => sentences.push(format!("{fuel} L/100 km{of_runs}; no lever saves fuel.")),
+        None => sentences.push(format!(
+            "{fuel} L/100 km{range}{of_runs}; no lever saves fuel."
+        )),
     }
     let is_open = |row: &&LeverRow| {
         let interval = row.saves.interval;
@@ -78,7 +82,7 @@ fn why(reasons: &[(String, usize)]) -> String {
 fn change(answer: &LeverAnswer, row: &LeverRow) -> String {
     let median = signed(row.fuel_percent.value, 2);
     let Some(_) = answer.plan else {
-        return format!("{median} % fuel");
+        return format!("{median} % fuel (without draws no interval)");
     };
     let [low, high] = [row.low_percent, row.high_percent].map(|end| signed(end.value, 2));
     let (k, n) = (row.saves.k, row.saves.n);

@@ -7,7 +7,7 @@ use std::cell::OnceCell;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::decimal;
 use cvtcycle_config::setup::{Kind, Options, Setup, load};
-use cvtcycle_output::fleet_spread::{FleetRange, fuel_range, pair_range};
+use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range, fuel_range};
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
@@ -15,7 +15,10 @@ use cvtcycle_output::summary::{
 };
 
 use super::intervals as drawn;
-use super::{against_print, between, decimals, more_or_less, of_difference, than};
+use super::{
+    against_print, between, decimals, difference_of_cars, more_or_less, of_cars, of_difference,
+    than,
+};
 use crate::attribute::answer as price;
 use cvtcycle_study::statistics::{Confidence, Enough};
 use cvtcycle_validate::rule::Printed;
@@ -39,68 +42,46 @@ pub fn assess(
 /// Ranges from measured cars: of the fuel of each car that is not shipped, and of each difference without draws.
 pub fn assess_fleet(summary: &mut Summary) {
     let (cycle, degc) = (summary.cycle.clone(), summary.ambient_degc);
-    let range =
-        |run: &RunSummary| fuel_range(&run.transmission, &cycle, degc, run.headline_fuel()?);
-    let ranges: Vec<Option<FleetRange>> = summary.runs.iter().map(range).collect();
-    let Some((subject, baselines)) = summary.runs.split_first() else {
-        return;
-    };
-    for ((comparison, baseline), other) in summary
-        .comparison
-        .iter_mut()
-        .zip(baselines)
-        .zip(&ranges[1..])
-    {
-        let Some(percent) = comparison
+    let kinds: Vec<String> = summary
+        .runs
+        .iter()
+        .map(|run| run.transmission.clone())
+        .collect();
+    let is_named = |run: &RunSummary| Kind::Vehicle.names().contains(&run.vehicle.as_str());
+    let is_shipped = summary.runs.iter().all(is_named);
+    let twin = summary
+        .runs
+        .first()
+        .map_or_else(String::new, |run| format!("{}_twin", run.vehicle));
+    let baselines = kinds.iter().skip(1);
+    for (comparison, other) in summary.comparison.iter_mut().zip(baselines) {
+        let of = Compared {
+            kinds: [&kinds[0], other],
+            other: match comparison.differences.is_empty() {
+                true if comparison.baseline == twin => Other::Twin,
+                true => Other::Alike,
+                false => Other::Any,
+            },
+        };
+        comparison.fleet = comparison
             .fuel_percent
             .filter(|_| comparison.interval.is_none())
-        else {
-            continue;
+            .and_then(|percent| difference_range(of, DrivenOn::whole(&cycle, degc), percent));
+        let of_part = |percent: Option<f64>| {
+            Some(difference_range(of, DrivenOn::part(&cycle, degc), percent?)?.ends)
         };
-        let is_pair = [&subject.transmission, &baseline.transmission] == ["cvt", "manual"]
-            && comparison.differences.is_empty();
-        comparison.fleet = match is_pair {
-            true => pair_range(&cycle, degc, percent),
-            false => unlike_range(
-                percent,
-                ranges[0].as_ref(),
-                subject,
-                other.as_ref(),
-                baseline,
-            ),
-        };
+        let parts = comparison.phases_percent.iter();
+        comparison.phases_fleet = parts
+            .filter(|_| !is_shipped)
+            .filter_map(|(name, percent)| Some((name.to_owned(), of_part(percent)?)))
+            .collect();
     }
-    for (run, range) in summary.runs.iter_mut().zip(ranges) {
-        run.fleet = range.filter(|_| !Kind::Vehicle.names().contains(&run.vehicle.as_str()));
+    for run in &mut summary.runs {
+        let fuel = run.headline_fuel();
+        run.fleet = fuel
+            .filter(|_| !is_named(run))
+            .and_then(|fuel| fuel_range(&run.transmission, &cycle, degc, fuel));
     }
-}
-
-/// Range of the difference of two cars that are no pair: each has the spread of its kind, for itself.
-fn unlike_range(
-    percent: f64,
-    own: Option<&FleetRange>,
-    run: &RunSummary,
-    other: Option<&FleetRange>,
-    baseline: &RunSummary,
-) -> Option<FleetRange> {
-    let (own, other) = (own?, other?);
-    // Ends over the computed fuel, as logarithms: the middle of both, and their half widths.
-    let of = |range: &FleetRange, run: &RunSummary| {
-        let [low, high] = range
-            .ends
-            .map(|end| (end / run.headline_fuel().unwrap_or(f64::NAN)).ln());
-        (0.5 * (low + high), 0.5 * (high - low))
-    };
-    let (own_middle, own_half) = of(own, run);
-    let (other_middle, other_half) = of(other, baseline);
-    let (middle, half) = (own_middle - other_middle, own_half.hypot(other_half));
-    let ends =
-        [middle - half, middle + half].map(|x| 100.0 * ((1.0 + percent / 100.0) * x.exp() - 1.0));
-    Some(FleetRange {
-        figure: own.figure.clone(),
-        cars: own.cars.min(other.cars),
-        ends,
-    })
 }
 
 /// Draws and published numbers, of cars as they are shipped.
@@ -238,13 +219,7 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         said
     });
     let against: String = against.collect();
-    let range = run.fleet.as_ref().map_or_else(String::new, |of| {
-        let [low, high] = of.ends.map(|end| fixed(end, 1));
-        format!(
-            " ({low} to {high} for 90 % of such cars, by {} measured)",
-            of.cars
-        )
-    });
+    let range = run.fleet.as_ref().map_or_else(String::new, of_cars);
     let resolution = recording
         .and_then(|own| own.fuel)
         .map_or_else(String::new, |ends| {
@@ -362,12 +337,11 @@ fn against(comparison: &Comparison, [explained, explained_fleet]: [bool; 2]) -> 
         let compared = more_or_less(percent, 1);
         let than = than(&compared);
         let range = comparison.fleet.as_ref().map(|of| {
-            let among = if explained_fleet {
-                String::new()
-            } else {
-                format!(" for 90 % of such cars, by {} measured", of.cars)
+            let range = match explained_fleet {
+                true => between(of.ends, "%"),
+                false => difference_of_cars(of),
             };
-            format!(" ({}{among})", between(of.ends, "%"))
+            format!(" ({range})")
         });
         let range =
             range.unwrap_or_else(|| " (how sure this is, no measured cars tell)".to_owned());

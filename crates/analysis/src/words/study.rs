@@ -2,10 +2,11 @@
 //! and the published numbers that contradict it.
 
 use cvtcycle_config::setup::Kind;
+use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{fixed, plain, signed};
 
 use super::effects::decided;
-use super::{Written, against_print, decimals, ends_in};
+use super::{Written, against_print, between, decimals, difference_of_cars, ends_in};
 use cvtcycle_study::answer::ambient::Matrix;
 use cvtcycle_study::answer::{Answer, Comparison, OutputAnswer, Range};
 use cvtcycle_study::execute::manifest::StudyManifest;
@@ -19,18 +20,64 @@ pub fn sentences(answer: &Answer, outline: &StudyManifest) -> Vec<String> {
         return Vec::new();
     }
     let mut list = match &answer.matrix {
-        Some(matrix) => of_climates(matrix),
-        None => of_design(answer),
+        Some(matrix) => of_climates(matrix, outline),
+        None => of_design(answer, outline),
     };
     list.extend(contradictions(answer, outline));
     list
 }
 
+/// Range of the difference of the subject to a car of a study, by its place, for 90 % of such cars, where a car is not shipped: measured cars tell. None of
+/// studies of earlier versions.
+#[must_use]
+pub fn fleet_range(
+    outline: &StudyManifest,
+    baseline: usize,
+    percent: f64,
+    on: DrivenOn,
+) -> Option<FleetRange> {
+    let places = [0, baseline];
+    let shipped = Kind::Vehicle.names();
+    let is_shipped = |k: usize| Some(shipped.contains(&outline.cars.get(k)?.as_str()));
+    if is_shipped(0)? && is_shipped(baseline)? {
+        return None;
+    }
+    let kind = |k: usize| {
+        let kind = outline.kinds.get(k)?.as_str();
+        (!kind.is_empty()).then_some(kind)
+    };
+    let [own, other] = places.map(kind);
+    let is_twin = outline.cars[baseline] == format!("{}_twin", outline.cars[0]);
+    let of = Compared {
+        kinds: [own?, other?],
+        other: match is_twin && outline.plan.base.set.is_empty() {
+            true => Other::Twin,
+            false => Other::Any,
+        },
+    };
+    difference_range(of, on, percent).filter(|_| percent.is_finite())
+}
+
+/// What a study without a matrix was driven on: where cycle or temperature vary, what tells least.
+fn driven_on(outline: &StudyManifest) -> DrivenOn<'_> {
+    let base = &outline.plan.base;
+    let varies = |key: &str| outline.plan.factors.iter().any(|factor| factor.key == key);
+    DrivenOn::whole(
+        if varies("cycle") { "" } else { &base.cycle },
+        if varies("ambient_degc") {
+            f64::NEG_INFINITY
+        } else {
+            base.ambient_degc
+        },
+    )
+}
+
 /// The differences to the baselines and what decides them; without baselines the first output.
-fn of_design(answer: &Answer) -> Vec<String> {
+fn of_design(answer: &Answer, outline: &StudyManifest) -> Vec<String> {
     let mut list = Vec::new();
     for of in &answer.comparisons {
         list.push(compared(of, answer));
+        list.extend(by_cars(of, outline));
         let mut outputs = answer.outputs.iter();
         let output = outputs.find(|o| o.output == EXCESS && o.car == of.baseline);
         list.extend(output.and_then(|output| decided(output, answer)));
@@ -50,6 +97,25 @@ fn of_design(answer: &Answer) -> Vec<String> {
         list.extend(decided(first, answer));
     }
     list
+}
+
+/// What measured cars say of a difference: of points that are no sample from the lower end of the least to the upper end of the largest.
+fn by_cars(of: &Comparison, outline: &StudyManifest) -> Option<String> {
+    let baseline = outline.cars.iter().position(|car| *car == of.baseline)?;
+    let [least, largest] = match (&of.excess_range, &of.excess_percent) {
+        (Some(range), _) => [range.least?, range.largest?],
+        (None, Some(summary)) => [summary.quantile(0.5); 2],
+        (None, None) => return None,
+    };
+    let on = driven_on(outline);
+    let [mut range, high] = [least, largest].map(|x| fleet_range(outline, baseline, x, on));
+    if let (Some(range), Some(high)) = (&mut range, high) {
+        range.ends[1] = high.ends[1];
+    }
+    Some(format!(
+        "Computed cars are not measured ones: the difference is {}.",
+        difference_of_cars(&range?)
+    ))
 }
 
 /// In how many pairs the subject uses more, and how much more. Points that are no sample say nothing beyond themselves.
@@ -132,7 +198,7 @@ fn ends(output: &OutputAnswer, range: &Range) -> Option<String> {
 }
 
 /// The difference at the coldest and the warmest ambient temperature, for each start.
-fn of_climates(matrix: &Matrix) -> Vec<String> {
+fn of_climates(matrix: &Matrix, outline: &StudyManifest) -> Vec<String> {
     let (Some(subject), Some(total)) = (matrix.cars.first(), matrix.fuel.first()) else {
         return Vec::new();
     };
@@ -142,17 +208,28 @@ fn of_climates(matrix: &Matrix) -> Vec<String> {
         return Vec::new();
     };
     let mut list = Vec::new();
-    for (baseline, by_start) in matrix.cars.iter().skip(1).zip(&total.excess_percent) {
-        let start = |(start, numbers): (&String, &Vec<f64>)| {
+    let mut known = None;
+    let baselines = (1..).zip(matrix.cars.iter().skip(1));
+    for ((place, baseline), by_start) in baselines.zip(&total.excess_percent) {
+        let mut start = |(start, numbers): (&String, &Vec<f64>)| {
             let [cold, warm] = [cold, warm].map(|(k, degc)| {
-                let excess = signed(numbers.get(k).copied(), 1);
-                format!("{excess} % at {} degC", plain(*degc))
+                let excess = numbers.get(k).copied();
+                let on = DrivenOn::whole(&outline.plan.base.cycle, *degc);
+                let range = fleet_range(outline, place, excess.unwrap_or(f64::NAN), on);
+                let ends = range.as_ref().map_or_else(String::new, |range| {
+                    format!(" ({})", between(range.ends, "%"))
+                });
+                known = range.map(|range| range.cars).or(known);
+                format!("{} %{ends} at {} degC", signed(excess, 1), plain(*degc))
             });
             format!("{cold} and {warm} (start {start})")
         };
-        let starts: Vec<String> = matrix.starts.iter().zip(by_start).map(start).collect();
+        let starts: Vec<String> = matrix.starts.iter().zip(by_start).map(&mut start).collect();
         let starts = starts.join("; ");
         list.push(format!("Fuel of {subject} over {baseline}: {starts}."));
+    }
+    if known.is_some() {
+        list.push("In brackets: what 90 % of such cars have, by measured ones.".to_owned());
     }
     list
 }

@@ -19,7 +19,7 @@ use super::{Driven, Settings};
 use crate::Flags;
 use crate::number::{finite, fixed};
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_model::drive::{HIGHEST_K, Totals};
+use cvtcycle_model::drive::{HIGHEST_K, Totals, Vehicle};
 use cvtcycle_model::keys::rpm;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_model::math::larger;
@@ -145,8 +145,8 @@ fn trace_tolerance_m_s(cycle: &Cycle) -> f64 {
 }
 
 /// Speed by which a car falls behind its trace at most, m/s (TR-1); infinite where the missing force is not known.
-fn slower_m_s(driven: &Driven) -> f64 {
-    let (totals, load) = (&driven.outcome.totals, &driven.setup.road_load.base);
+fn slower_m_s(car: &Vehicle, totals: &Totals) -> f64 {
+    let load = &car.road_load.base;
     let force_n = totals.worst_deficit_nm / load.wheel_radius_m;
     let slower = force_n * totals.seconds(Flags::MISSED_TRACE) / load.inertia_kg; // TR-1
     if slower.is_finite() {
@@ -154,6 +154,13 @@ fn slower_m_s(driven: &Driven) -> f64 {
     } else {
         f64::INFINITY
     }
+}
+
+/// True if a run is slower than its trace by more than the tolerance of the test (TR-1).
+#[must_use]
+pub fn has_failed_trace(cycle: &Cycle, car: &Vehicle, totals: &Totals) -> bool {
+    totals.seconds(Flags::MISSED_TRACE) > 0.0
+        && slower_m_s(car, totals) > trace_tolerance_m_s(cycle)
 }
 
 /// Relative errors of the energy balances of a run: maximum over the rows, and of the sums.
@@ -179,7 +186,7 @@ pub(super) fn failures(
     };
 
     let missed =
-        flag(Flags::MISSED_TRACE).filter(|_| slower_m_s(driven) > trace_tolerance_m_s(cycle));
+        flag(Flags::MISSED_TRACE).filter(|_| has_failed_trace(cycle, driven.setup, totals));
     let missed = missed.map(|failure| match Deficit::worst(cycle, driven) {
         Some(worst) => at(failure, worst.at_s).value(worst.power_w / 1e3, None::<f64>, "kW"),
         None => failure,

@@ -103,11 +103,15 @@ def fleet(
     """Drives the cars of a table on tests, as ``cvtcycle fleet`` does: a mapping or a frame, a row a car, or the path of a CSV file.
 
     The result has a row for each row: the fuel of each figure in L/100 km with the range of 90 % of cars (``_low``, ``_high``) and what was measured,
-    ``failed_checks``, ``doubts``, and for a row that is no car ``refused``, its reason.
+    ``failed_checks``, ``doubts``, and for a row that is no car ``refused``, its reason. A value of ``set`` may be an expression of the columns of the
+    table; with ``set`` a column ``_before`` has the fuel of each figure without it.
 
     >>> import cvtcycle as cc
     >>> cars = {"carid": ["mine"], "mass": ["1300kg"], "displacement": ["1.8l"], "power": ["104kW"]}
     >>> 4 < cc.fleet(cars, tests="hwfet")["hwfet_l_per_100km"][0] < 7
+    True
+    >>> table = cc.fleet(cars | {"seats": [4]}, tests="hwfet", set={"engine.electrical_w": "300 + 100*seats"})
+    >>> table["hwfet_l_per_100km"][0] > table["hwfet_l_per_100km_before"][0]
     True
     """
     if isinstance(cars, (str, os.PathLike)):

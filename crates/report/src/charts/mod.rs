@@ -8,6 +8,7 @@ pub mod decision;
 mod engine;
 pub mod figures;
 mod fleet;
+mod fleet_groups;
 mod grids;
 mod levers;
 pub mod lines;
@@ -22,6 +23,9 @@ mod variator_curves;
 
 pub use engine::cell;
 pub use fleet::{FleetMark, fleet_scatter};
+pub use fleet_groups::{
+    FleetError, FleetPair, fleet_by_group, fleet_over, fleet_pairs, repeat_percent,
+};
 pub use levers::{foremost_levers, lever_strip, lever_title, saves};
 pub use loss_table::loss_figures;
 pub use picture::{Picture, PictureTable};

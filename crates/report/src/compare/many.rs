@@ -7,10 +7,12 @@ use serde::Serialize;
 
 use crate::problems::problem;
 use crate::results::{ResultDir, RunResults, find};
+use cvtcycle_config::setup::Kind;
 use cvtcycle_config::{Problem, Problems, Setting};
+use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{finite, plain};
 use cvtcycle_output::record::Manifest;
-use cvtcycle_output::summary::{RunSummary, StartWord};
+use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
 use cvtcycle_output::{Component, summary::SCHEMA};
 
 /// Losses are omitted if their difference is below this share of the largest one.
@@ -49,6 +51,9 @@ pub struct Side {
     pub difference_l_per_100km: Option<f64>,
     /// Difference, per cent.
     pub difference_percent: Option<f64>,
+    /// Difference of 90 % of such cars, per cent, by measured ones, of another car than the reference; `None` of two shipped cars.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fleet: Option<FleetRange>,
     /// Carbon dioxide of the headline fuel.
     pub co2_g_per_km: Option<f64>,
     /// Loss of each component per kilometre.
@@ -210,7 +215,7 @@ fn compare_runs(named: &[(String, RunResults)], conditions: Vec<DifferingValue>)
     let base = &named[0].1.summary.runs[0];
     let runs: Vec<Side> = named
         .iter()
-        .map(|(name, run)| side(name, &run.summary.runs[0], base))
+        .map(|(name, run)| side(name, &run.summary, base))
         .collect();
     let spread = |component: &Component| {
         let losses = runs.iter().map(|run| loss(run, component.name()));
@@ -241,7 +246,27 @@ fn loss(run: &Side, component: &str) -> f64 {
         .unwrap_or(0.0)
 }
 
-fn side(name: &str, run: &RunSummary, base: &RunSummary) -> Side {
+/// Difference of another car than the reference, by measured cars.
+fn by_cars(summary: &Summary, base: &RunSummary, percent: f64) -> Option<FleetRange> {
+    let run = summary.runs.first()?;
+    let shipped = Kind::Vehicle.names();
+    let is_shipped = |run: &RunSummary| shipped.contains(&run.vehicle.as_str());
+    if run.vehicle == base.vehicle || is_shipped(run) && is_shipped(base) {
+        return None;
+    }
+    let of = Compared {
+        kinds: [&run.transmission, &base.transmission],
+        other: match base.vehicle == format!("{}_twin", run.vehicle) {
+            true => Other::Twin,
+            false => Other::Any,
+        },
+    };
+    let on = DrivenOn::whole(&summary.cycle, summary.ambient_degc);
+    difference_range(of, on, percent)
+}
+
+fn side(name: &str, summary: &Summary, base: &RunSummary) -> Side {
+    let run = &summary.runs[0];
     let each_km = |kj: f64| finite(kj / run.distance_km);
     let own = |c: Component| {
         Some((
@@ -250,12 +275,14 @@ fn side(name: &str, run: &RunSummary, base: &RunSummary) -> Side {
         ))
     };
     let fuels = run.headline_fuel().zip(base.headline_fuel());
+    let percent = fuels.and_then(|(fuel, base)| finite(100.0 * (fuel / base - 1.0)));
     Side {
+        fleet: percent.and_then(|percent| by_cars(summary, base, percent)),
         name: name.to_owned(),
         vehicle: run.vehicle.clone(),
         fuel_l_per_100km: run.headline_fuel(),
         difference_l_per_100km: fuels.map(|(fuel, base)| fuel - base),
-        difference_percent: fuels.and_then(|(fuel, base)| finite(100.0 * (fuel / base - 1.0))),
+        difference_percent: percent,
         co2_g_per_km: run.weighted_co2_g_per_km.or(run.co2_g_per_km),
         loss_kj_per_km: Component::ALL
             .into_iter()

@@ -9,8 +9,8 @@ use crate::charts::decision::{Against, against, answer_strip, level};
 use crate::charts::{foremost_levers, lever_title, saves};
 use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_analysis::words::decimals;
 use cvtcycle_analysis::words::run::contradictions;
+use cvtcycle_analysis::words::{decimals, of_cars};
 use cvtcycle_output::summary::{Comparison, Contradiction, RunSummary, Summary};
 
 /// Maximum number of levers on page 1, and among the decisions.
@@ -94,8 +94,10 @@ fn question(summary: &Summary, cycle: &str) -> String {
 }
 
 fn interval(comparison: &Comparison) -> Option<[f64; 2]> {
-    let drawn = comparison.interval.as_ref()?;
-    Some([drawn.percent[0], drawn.percent[2]])
+    match &comparison.interval {
+        Some(drawn) => Some([drawn.percent[0], drawn.percent[2]]),
+        None => Some(comparison.fleet.as_ref()?.ends),
+    }
 }
 
 /// Fuel of the subject, and its difference to the first baseline with the known uncertainty.
@@ -108,7 +110,11 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         Some(_) => " (weighted)",
         None => "",
     };
-    let text = format!("The {} uses {fuel}{weighted} on {cycle}", subject.label());
+    let range = subject.fleet.as_ref().map_or_else(String::new, of_cars);
+    let text = format!(
+        "The {} uses {fuel}{weighted}{range} on {cycle}",
+        subject.label()
+    );
     let first = summary.comparison.first().zip(summary.runs.get(1));
     let Some((percent, comparison, baseline)) = first
         .and_then(|(comparison, baseline)| Some((comparison.fuel_percent?, comparison, baseline)))
@@ -126,7 +132,14 @@ fn lead(summary: &Summary, cycle: &str) -> String {
                 interval.draws
             )
         }
-        None => "How sure that is, is not known".to_owned(),
+        None => match &comparison.fleet {
+            Some(range) => format!(
+                "Of such cars, by {} measured, 90 % have {}",
+                range.cars,
+                level(range.ends)
+            ),
+            None => "How sure that is, no measured cars tell".to_owned(),
+        },
     };
     format!("{text}: {difference}{kind}. {known}.")
 }
@@ -154,7 +167,7 @@ fn best(answer: &LeverAnswer, block: &LeverBlock) -> Option<String> {
             )
         }
         None => format!(
-            "Best single change: {name}, which saves {} %.",
+            "Best single change: {name}, which saves {} % (without draws no interval).",
             grouped(saved, 1)
         ),
     })
@@ -181,7 +194,12 @@ pub(crate) fn strip(section: &mut Section, summary: &Summary, cycle: &str) {
         drawn: comparison
             .interval
             .as_ref()
-            .map(|interval| interval.percent),
+            .map(|interval| interval.percent)
+            .or_else(|| {
+                let fleet = comparison.fleet.as_ref()?;
+                Some([fleet.ends[0], comparison.fuel_percent?, fleet.ends[1]])
+            }),
+        is_by_cars: comparison.interval.is_none(),
         published: published(summary, &baseline.vehicle),
     };
     let rows: Vec<Against> = baselines.iter().zip(&summary.comparison).map(row).collect();

@@ -5,6 +5,7 @@ use super::super::number::{Quantity, capital_first, grouped, list_of, percent, p
 use super::super::results::{RunResults, StudyResults};
 use super::super::{study_answers, validation};
 use super::{Car, energy};
+use cvtcycle_analysis::words::difference_of_cars;
 use cvtcycle_analysis::words::run::{intervals, maps_left};
 use cvtcycle_output::summary::{RunSummary, Summary};
 
@@ -91,6 +92,11 @@ fn fuel(summary: &Summary) -> ReportTable {
         Some(run.distance_km)
     });
     table.note = "Positive differences: the subject uses more.".to_owned();
+    let ranges = summary.comparison.iter().filter_map(|of| {
+        let (other, range) = (&of.baseline, of.fleet.as_ref()?);
+        Some(format!(" Against {other} {}.", difference_of_cars(range)))
+    });
+    table.note.extend(ranges);
     table
 }
 
@@ -164,6 +170,21 @@ pub(super) fn cold(cars: &[Car]) -> Option<String> {
     })
 }
 
+/// What measured cars say of the difference to each baseline.
+fn by_cars(summary: &Summary) -> Option<String> {
+    let known = summary.comparison.iter().filter_map(|of| {
+        let range = difference_of_cars(of.fleet.as_ref()?);
+        Some(format!("to {} {range}", of.baseline))
+    });
+    let known: Vec<String> = known.collect();
+    (!known.is_empty()).then(|| {
+        format!(
+            "There is no study of uncertainty of this case: the interval of the difference is that of computed against measured cars, {}.",
+            known.join("; ")
+        )
+    })
+}
+
 fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     let outside = cars.iter().filter(|car| car.run.outside_validity_s > 0.0);
     let outside = outside.map(|car| {
@@ -195,7 +216,7 @@ fn doubts(found: &RunResults, cars: &[Car]) -> Vec<String> {
     let is_known = !known.is_empty();
     list.extend(known);
     list.extend(match found.studies.iter().find(has_interval) {
-        None => (!is_known).then(|| none.to_owned()),
+        None => (!is_known).then(|| by_cars(&labelled).unwrap_or_else(|| none.to_owned())),
         Some(study) => {
             let unfinished = study.unfinished();
             unfinished.map(|text| format!("Its interval is preliminary: {text}."))

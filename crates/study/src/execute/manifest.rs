@@ -1,6 +1,7 @@
 //! The manifest of a study, `study.json`: the same study gives the same bytes, by which a resumed study is recognised.
 
 use cvtcycle_config::Problems;
+use cvtcycle_config::setup::Setup;
 use cvtcycle_output::provenance::{car_sha256, cycle_sha256, hash};
 use cvtcycle_output::record::Manifest;
 use serde::Deserialize;
@@ -92,7 +93,7 @@ impl Study {
             "role": &*car.role,
             "title": setup.title,
             "short": setup.short,
-            "transmission": if setup.transmission().is_cvt() { "cvt" } else { "manual" },
+            "transmission": word(setup),
             "lubricant": setup.oils().0.name,
             "engine_oil": setup.oils().1.name,
             // Other files, such as measured maps, are in the car though not in its keys.
@@ -100,6 +101,18 @@ impl Study {
             "values": values.collect::<serde_json::Map<_, _>>(),
         })
     }
+}
+
+fn word(setup: &Setup) -> &'static str {
+    match setup.transmission().is_cvt() {
+        true => "cvt",
+        false => "manual",
+    }
+}
+
+fn kind(study: &Study, car: &super::cars::StudyCar) -> String {
+    let variant = car.variant(0, &study.plan.factors);
+    variant.map_or_else(|_| String::new(), |variant| word(&variant.setup).to_owned())
 }
 
 fn columns(columns: &[Head]) -> Vec<Value> {
@@ -138,6 +151,8 @@ pub struct StudyManifest {
     pub question: String,
     /// Names of the cars, the subject first.
     pub cars: Vec<String>,
+    /// Kinds of their boxes, `cvt` or `manual`; empty words in studies of earlier versions.
+    pub kinds: Vec<String>,
     /// Phase groups.
     pub phases: Vec<String>,
     /// Limits of the results, a sentence each.
@@ -185,6 +200,8 @@ struct StoredColumn {
 #[derive(Deserialize)]
 struct StoredCar {
     name: String,
+    #[serde(default)]
+    transmission: String,
 }
 
 impl StudyManifest {
@@ -197,6 +214,7 @@ impl StudyManifest {
             question: study.plan.question.clone(),
             notes: study.notes.clone(),
             cars: study.cars.iter().map(|car| car.name.to_string()).collect(),
+            kinds: study.cars.iter().map(|car| kind(study, car)).collect(),
             phases: study.phases.clone(),
             analysed: analysed(&study.analysed(), &columns),
             columns,
@@ -234,11 +252,17 @@ impl StudyManifest {
         }
         let heads = stored.columns.into_iter();
         let columns: Vec<_> = heads.map(|c| (c.name, c.unit)).collect();
+        let (cars, kinds) = stored
+            .cars
+            .into_iter()
+            .map(|car| (car.name, car.transmission))
+            .unzip();
         Ok(StudyManifest {
+            kinds,
             title: stored.title,
             question: stored.question,
             notes: stored.notes,
-            cars: stored.cars.into_iter().map(|car| car.name).collect(),
+            cars,
             phases: stored.phases,
             analysed: analysed(&stored.analyse, &columns),
             columns,

@@ -96,6 +96,42 @@ pub fn compute(expr: &Expr, tables: &dyn Tables) -> Result<Computed, String> {
     }
 }
 
+/// Computes a number from one row of a table; reductions and keys have no number there.
+///
+/// # Errors
+/// As [`compute`].
+pub fn compute_row(expr: &Expr, table: &Table, row: usize) -> Result<f64, String> {
+    let mut context = Context {
+        tables: &OneRow,
+        row: Some((table, row)),
+        variables: Vec::new(),
+        recording: false,
+    };
+    finite(context.eval(expr)?)
+}
+
+/// No table but the row itself.
+struct OneRow;
+
+impl Tables for OneRow {
+    fn table(&self, _: usize, _: bool) -> Result<Rc<Table>, String> {
+        Err("there is no source".to_owned())
+    }
+
+    fn key(&self, _: Option<usize>, path: &str, _: Option<usize>) -> Result<f64, String> {
+        Err(format!("the key {path} is not known here"))
+    }
+
+    /// An expression of one row has as many parts as its text.
+    fn spend(&self, _: u64) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn left_out(&self, _: usize) {}
+
+    fn outside(&self, _: usize) {}
+}
+
 fn finite(x: f64) -> Result<f64, String> {
     let finite = x.is_finite().then_some(x);
     finite.ok_or_else(|| "the result is not a finite number".to_owned())

@@ -10,7 +10,7 @@ mod lexer;
 mod parser;
 mod reduce;
 
-pub use eval::{Computed, MAX_EVALUATIONS, Tables, compute};
+pub use eval::{Computed, MAX_EVALUATIONS, Tables, compute, compute_row};
 pub(crate) use functions::truth;
 pub use functions::{FUNCTIONS, Form, Function, Gives, REDUCTIONS, Reduction};
 pub use lexer::MAX_TOKENS;

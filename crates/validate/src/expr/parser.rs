@@ -14,9 +14,13 @@ pub trait Names {
     /// Names of all sources.
     fn sources(&self) -> Vec<&str>;
     /// Columns of a source, or of its totals.
-    fn columns(&self, source: usize, totals: bool) -> Vec<&'static str>;
+    fn columns(&self, source: usize, totals: bool) -> Vec<&str>;
     /// Known keys of vehicles and fluids.
     fn keys(&self) -> &[String];
+    /// Columns that may be named outside of any source: those of the row that is looked at.
+    fn row(&self) -> Vec<&str> {
+        Vec::new()
+    }
 }
 
 /// Parses a text.
@@ -28,7 +32,10 @@ pub fn parse(text: &str, names: &dyn Names) -> Result<Expr, Vec<Fault>> {
         tokens: tokens(text).map_err(|fault| vec![fault])?,
         next: 0,
         names,
-        scopes: Vec::new(),
+        scopes: Some(names.row())
+            .filter(|row| !row.is_empty())
+            .into_iter()
+            .collect(),
         variables: Vec::new(),
         depth: 0,
         faults: Vec::new(),
@@ -55,7 +62,7 @@ struct Parser<'a> {
     next: usize,
     names: &'a dyn Names,
     /// Columns of the reductions, the innermost last.
-    scopes: Vec<Vec<&'static str>>,
+    scopes: Vec<Vec<&'a str>>,
     variables: Vec<String>,
     depth: usize,
     /// Unknown names, which do not stop the parsing.

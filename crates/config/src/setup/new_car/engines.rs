@@ -42,6 +42,24 @@ pub fn named_engines() -> Vec<&'static str> {
         .collect()
 }
 
+/// Years of the sets of a technology, the oldest first.
+#[must_use]
+pub fn years(technology: &str) -> Vec<u16> {
+    let classes = ClassOf::Engine.names().into_iter().filter_map(parts);
+    let mut years: Vec<u16> = classes
+        .filter(|(of, _)| *of == technology)
+        .map(|(_, year)| year)
+        .collect();
+    years.sort_unstable();
+    years
+}
+
+/// Problem of technology, year or measured engine of some answers.
+#[must_use]
+pub fn engine_mistake(answers: &Answers) -> Option<Problem> {
+    class(answers).err()
+}
+
 /// Class of a technology and year.
 ///
 /// # Errors

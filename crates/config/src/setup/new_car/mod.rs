@@ -36,11 +36,11 @@ mod units;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::{Disk, Kind, Options, ParamSet, Setup};
+use super::{Disk, Kind, NamedBy, Options, ParamSet, Setup};
 use crate::problem::near::suggest;
 use crate::{Override, Place, Problem, Problems};
-pub use engines::{named_engines, technologies};
-pub use questions::{Question, mistake, questions};
+pub use engines::{engine_mistake, named_engines, technologies, years};
+pub use questions::{Question, mistake, questions, road_load_default};
 use rules::Line;
 
 /// Catalogue numbers by the names of their options, as texts.
@@ -120,7 +120,7 @@ pub const NUMBERS: [(&str, &str); 23] = [
     ("f2", "part quadratic in speed: N/(km/h)2 or lbf/mph2"),
     (
         "road-load",
-        "what f0, f1 and f2 are of: body, or neutral for a coast-down in neutral with the drag of the box in it",
+        "what f0, f1 and f2 are of: body, or neutral for a coast-down in neutral with the drag of the box in it, as EPA's targets are",
     ),
     ("tyre", "tyre code, such as 215/55 R16"),
     (
@@ -209,6 +209,26 @@ pub fn param_set(answers: &Answers, set: &[Override]) -> Result<ParamSet, Proble
     placed(answers, set).map(|(_, params, _)| params)
 }
 
+/// The twin of that car: the same with a manual box, as its file has it as baseline. `None` of a car with a manual box.
+///
+/// # Errors
+/// As [`param_set`].
+pub fn twin_set(answers: &Answers, set: &[Override]) -> Result<Option<ParamSet>, Problems> {
+    let (text, params, _) = placed(answers, set)?;
+    if !params.vehicle().transmission().is_cvt() {
+        return Ok(None);
+    }
+    let is_of_box = |by: &Override| by.key().starts_with("transmission.");
+    let set = set.iter().filter(|by| !is_of_box(by)).cloned();
+    let options = Options {
+        set: set.collect(),
+        ..Options::default()
+    };
+    let options = options.of_twin(NamedBy::File);
+    let twin = ParamSet::read_twin(&answers.file, &text, files(answers), &options);
+    twin.map(Some)
+}
+
 /// Text, car and notes.
 type Made = (String, ParamSet, Vec<String>);
 
@@ -249,9 +269,10 @@ fn made(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
         let text = format!("{head}{}", tables(lines));
         let params = car(answers, &text, set);
         let params = params.map_err(|found| options::under_options(found, lines, answers))?;
-        Ok((text, params, base.notes.clone()))
+        Ok::<Made, Problems>((text, params, base.notes.clone()))
     };
-    let (text, params, notes) = made(&lines)?;
+    let (text, params, mut notes) = made(&lines)?;
+    notes.extend(questions::road_load_note(answers));
     if !rules::is_neutral(answers) {
         return Ok((text, params, notes));
     }
@@ -265,7 +286,8 @@ fn made(answers: &Answers, set: &[Override]) -> Result<Made, Problems> {
             .into());
     };
     lines.extend(rules::drag_lines(drag));
-    made(&lines)
+    let (text, params, _) = made(&lines)?;
+    Ok((text, params, notes))
 }
 
 /// True if a number that a class cannot have is missing.
@@ -298,13 +320,18 @@ impl Base {
 
 /// The car of a text that is to be the file.
 fn car(answers: &Answers, text: &str, set: &[Override]) -> Result<ParamSet, Problems> {
-    let folder = Path::new(&answers.file).parent();
-    let folder = folder.map(Path::to_path_buf).unwrap_or_default();
     let options = Options {
         set: set.to_vec(),
         ..Options::default()
     };
-    ParamSet::read(&answers.file, text, Box::new(Disk { folder }), &options)
+    ParamSet::read(&answers.file, text, files(answers), &options)
+}
+
+/// Files next to that of the car.
+fn files(answers: &Answers) -> Box<Disk> {
+    let folder = Path::new(&answers.file).parent();
+    let folder = folder.map(Path::to_path_buf).unwrap_or_default();
+    Box::new(Disk { folder })
 }
 
 fn meaning(name: &str) -> &'static str {

@@ -1,14 +1,16 @@
 //! Questions to a person, with the value that the car has without an answer.
 
+use super::rules::has_lbf;
 use super::{Answers, Base, is_missing, made, meaning};
 use crate::{Problem, ProblemKind, Problems};
 
 /// Numbers of every car, in the order of the questions, and the key whose inherited value holds without an answer.
-const OF_ALL: [(&str, &str); 10] = [
+const OF_ALL: [(&str, &str); 11] = [
     ("mass", "road_load.mass_kg"),
     ("f0", "road_load.form.coefficients.f0_n"),
     ("f1", "road_load.form.coefficients.f1_n_per_kmh"),
     ("f2", "road_load.form.coefficients.f2_n_per_kmh2"),
+    ("road-load", ""),
     ("tyre", "road_load.wheel_radius_m"),
     ("displacement", "engine.displacement_cc"),
     ("power", "engine.rated_kw"),
@@ -65,6 +67,9 @@ pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
         names.any(|name| answers.numbers.contains_key(name))
     };
     let usual = |name: &str, key: &str| {
+        if name == "road-load" {
+            return Some(road_load_default(answers));
+        }
         let is_scaled = answers.engine_like.is_some() && answers.numbers.contains_key("power");
         if name == "torque" && is_scaled {
             return Some("the engine's own line, scaled to the power, NC-19".to_owned());
@@ -89,6 +94,27 @@ pub fn questions(answers: &Answers) -> Result<Vec<Question>, Problems> {
         usual: usual(name, key).filter(|_| !is_missing(answers, name)),
     });
     Ok(list.collect())
+}
+
+/// What the coefficients of the road load are taken for without an answer, and why.
+#[must_use]
+pub fn road_load_default(answers: &Answers) -> String {
+    match has_lbf(answers) {
+        true => "neutral: targets in lbf are EPA's, of coast-downs in neutral".to_owned(),
+        false => "body".to_owned(),
+    }
+}
+
+/// What was taken for the coefficients of the road load, where nothing was said of them.
+pub(super) fn road_load_note(answers: &Answers) -> Option<String> {
+    let has = |name: &str| answers.numbers.contains_key(name);
+    if has("road-load") || !["f0", "f1", "f2"].iter().any(|name| has(name)) {
+        return None;
+    }
+    Some(match has_lbf(answers) {
+        true => "road load: f0, f1 and f2 in lbf are taken for EPA's targets, of a coast-down in neutral, and the drag of the box is taken off them (NC-18); if they are of the body alone, road-load is body".to_owned(),
+        false => "road load: f0, f1 and f2 are taken for those of the body; of a coast-down in neutral they have the drag of the box in them, and road-load is neutral".to_owned(),
+    })
 }
 
 /// Problem of a number, by itself or with those that are given.

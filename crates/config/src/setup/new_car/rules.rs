@@ -80,12 +80,20 @@ const DRAG: [&str; 3] = [
     "road_load.form.coefficients.driveline_f2_n_per_kmh2",
 ];
 
-/// True for coefficients of a coast-down in neutral.
+/// True for coefficients of a coast-down in neutral: by the answer, else where one of them is in lbf, as EPA gives its targets.
 pub(super) fn is_neutral(answers: &Answers) -> bool {
-    answers
-        .numbers
-        .get("road-load")
-        .is_some_and(|word| word == "neutral")
+    match answers.numbers.get("road-load") {
+        Some(word) => word == "neutral",
+        None => has_lbf(answers),
+    }
+}
+
+/// True if a coefficient of the road load is in lbf.
+pub(super) fn has_lbf(answers: &Answers) -> bool {
+    ["f0", "f1", "f2"].iter().any(|name| {
+        let text = answers.numbers.get(name);
+        text.is_some_and(|text| text.to_ascii_lowercase().contains("lbf"))
+    })
 }
 
 /// The drag of the box in the coefficients of a coast-down in neutral.

@@ -15,7 +15,11 @@ pub fn level(interval: [f64; 2]) -> String {
 }
 
 /// Title of the strip of the answer.
-pub(super) fn strip(subject: &str, first: Option<(&str, f64, Option<[f64; 2]>)>) -> String {
+pub(super) fn strip(
+    subject: &str,
+    first: Option<(&str, f64, Option<[f64; 2]>)>,
+    is_by_cars: bool,
+) -> String {
     let Some((baseline, percent, interval)) = first else {
         return format!("{subject} has no car to compare it with");
     };
@@ -28,10 +32,13 @@ pub(super) fn strip(subject: &str, first: Option<(&str, f64, Option<[f64; 2]>)>)
                 level(ends)
             )
         }
-        Some(ends) => format!(
-            "{subject} uses {compared}; with uncertain values varied {}",
-            level(ends)
-        ),
+        Some(ends) => {
+            let among = match is_by_cars {
+                true => "90 % of such cars have",
+                false => "with uncertain values varied",
+            };
+            format!("{subject} uses {compared}; {among} {}", level(ends))
+        }
     }
 }
 

@@ -26,6 +26,8 @@ pub struct Against {
     pub files: Option<f64>,
     /// 5 %, 50 % and 95 % of the draws.
     pub drawn: Option<[f64; 3]>,
+    /// True if these are of measured cars, not of draws: 90 % of such cars, about the difference with the nominal values.
+    pub is_by_cars: bool,
     /// A published range that contradicts it.
     pub published: Option<[f64; 2]>,
 }
@@ -57,14 +59,17 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
         panel.row_name(k, over.size(12.0).class("row").row(k));
         let middle = |x: f64| at(x, row_middle(k));
         if let Some([low, median, high]) = row.drawn {
+            let has_median = !row.is_by_cars;
             let style = Style::edged(Fill::car(0), 0.5).row(k);
             panel.bar(k, (low, high), (-HALF, HALF), style);
-            panel.symbol(
-                Symbol::CIRCLE,
-                middle(median),
-                RADIUS - 1.0,
-                Symbol::white(INK).row(k),
-            );
+            if has_median {
+                panel.symbol(
+                    Symbol::CIRCLE,
+                    middle(median),
+                    RADIUS - 1.0,
+                    Symbol::white(INK).row(k),
+                );
+            }
         }
         if let Some([low, high]) = row.published {
             let line = Style::line(stroke(PUBLISHED, 2.0, &[])).row(k);
@@ -89,13 +94,22 @@ pub fn answer_strip(subject: &str, conditions: &str, rows: &[Against]) -> Pictur
     }
     panel.upright(0.0, stroke(INK, 1.2, &[]));
     let first = rows.first();
+    let is_by_cars = first.is_some_and(|row| row.is_by_cars);
     let first = first.and_then(|row| Some((row.baseline.as_str(), row.files?, row.interval())));
-    let varied = match rows.iter().any(|row| row.drawn.is_some()) {
-        true => "; bar: 90 % of the runs with all uncertain values varied",
-        false => "",
+    let has = |by_cars: bool| {
+        rows.iter()
+            .any(|row| row.drawn.is_some() && row.is_by_cars == by_cars)
+    };
+    let varied = match (has(false), has(true)) {
+        (true, false) => "; bar: 90 % of the runs with all uncertain values varied",
+        (false, true) => "; bar: 90 % of such cars, by measured ones",
+        (true, true) => {
+            "; bar: 90 % of the runs with all uncertain values varied, or of such cars, by measured ones"
+        }
+        (false, false) => "",
     };
     Chart::new(
-        says::strip(subject, first),
+        says::strip(subject, first, is_by_cars),
         format!("{conditions}{varied}"),
         MARGIN,
     )
@@ -125,7 +139,14 @@ fn titles(rows: &[Against]) -> Vec<String> {
 
 fn legend(rows: &[Against]) -> Vec<Entry> {
     let mut list = vec![Entry::symbol(Symbol::CIRCLE, nominal(), "nominal values")];
-    if rows.iter().any(|row| row.drawn.is_some()) {
+    let drawn = |by_cars: bool| {
+        rows.iter()
+            .any(|row| row.drawn.is_some() && row.is_by_cars == by_cars)
+    };
+    if drawn(true) {
+        list.push(Entry::fill(Fill::car(0), "90 % of such cars"));
+    }
+    if drawn(false) {
         list.push(Entry::fill(Fill::car(0), "90 % of these runs"));
         list.push(Entry::symbol(
             Symbol::CIRCLE,
@@ -163,16 +184,17 @@ fn table() -> PictureTable {
     PictureTable::new(&[
         ("Against", ""),
         ("Nominal values", "%"),
-        ("5 % of the runs below", "%"),
+        ("5 % below", "%"),
         ("Median", "%"),
-        ("95 % of the runs below", "%"),
+        ("95 % below", "%"),
         ("Published from", "%"),
         ("to", "%"),
     ])
 }
 
 fn cells(row: &Against) -> Vec<String> {
-    let drawn = (0..3).map(|k| row.drawn.map(|of| of[k]));
+    let median = |k| k == 1 && row.is_by_cars;
+    let drawn = (0..3).map(|k| row.drawn.filter(|_| !median(k)).map(|of| of[k]));
     let published = (0..2).map(|k| row.published.map(|of| of[k]));
     let numbers = [row.files].into_iter().chain(drawn).chain(published);
     let cells = numbers.map(|x| optional_cell(x, 0.01));
