@@ -155,10 +155,12 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
         ),
     };
     // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
-    State {
+    let mut state = State {
         transmission: None,
         ..start
-    }
+    };
+    state.start_stop.on_s = 0.0; // a key-on of its own, after a warm-up too (SS-1)
+    state
 }
 
 /// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop.
@@ -175,7 +177,14 @@ fn cut_at_stops(trace: &Trace, on: &StartStop) -> Trace {
         let stop_s = from_s + on.delay_s;
         [stop_s, larger(to_s - on.lead_s, stop_s)]
     };
-    let at_s: Vec<f64> = trace.rests_s().into_iter().flat_map(ends).collect();
+    let rests_s = trace.rests_s();
+    let mut at_s: Vec<f64> = rests_s.iter().copied().flat_map(ends).collect();
+    let first_s = on.first_stop_after_s;
+    let within = |&(from_s, to_s): &(f64, f64)| from_s < first_s && first_s < to_s;
+    if rests_s.iter().any(within) {
+        let place = at_s.partition_point(|&time_s| time_s < first_s);
+        at_s.insert(place, first_s);
+    }
     trace.cut(&at_s)
 }
 
