@@ -14,6 +14,7 @@ mod levers;
 mod named;
 mod new;
 mod run;
+mod standing;
 mod streams;
 mod study;
 #[cfg(unix)]

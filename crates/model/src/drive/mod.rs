@@ -22,8 +22,9 @@ pub use gears::{CarTrace, WltcClass};
 pub use physics::{Finding, Law, PhysicsCheck, check_physics};
 pub use row::{HIGHEST_K, Row};
 pub use run::{
-    Conditions, FuelMap, Outcome, RowSink, Start, co2_g_per_km, drive, drive_into, fuel_map,
-    litres_per_100km, own_trace, start_state,
+    Conditions, FuelMap, Outcome, RowSink, SHORTEST_M, SLOWEST_M_S, Start, co2_g_per_km,
+    distance_counts, drive, drive_into, fuel_map, litres_per_100km, litres_per_hour, own_trace,
+    start_state,
 };
 pub use simulate::{Recorder, State, simulate};
 pub use step::{Drive, loss_heat_w};
