@@ -1,5 +1,6 @@
 //! A car through a cycle: the loop over the steps, its rows, energy balances and totals.
 
+mod accelerate;
 mod balance;
 mod car;
 mod forward;
@@ -15,6 +16,7 @@ mod totals;
 mod vehicle;
 pub(crate) mod vehicle_keys;
 
+pub use accelerate::{Accelerated, Driven, FullThrottle, Grip, Instant, accelerate};
 pub use balance::{EnergyTerms, TERM_NAMES};
 pub use car::Car;
 pub use forward::{Forward, Given, Turned};
