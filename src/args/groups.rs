@@ -79,11 +79,11 @@ impl FormulationArgs {
 /// Start and time step of a drive.
 #[derive(Args, Clone, Debug)]
 pub struct DriveArgs {
-    /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), or all
-    /// temperatures in degC
+    /// Start: `soak` (everything at ambient), `warm` (directly after the same cycle from a soak), all
+    /// temperatures in degC, or those of single nodes, coolant=81,sump=60: coolant, engine_oil, sump, metal, belt, tyre; the others follow (TH-10)
     #[arg(
         long,
-        value_name = "soak|warm|DEGC",
+        value_name = "soak|warm|DEGC|NODE=DEGC,...",
         default_value = "soak",
         allow_hyphen_values = true
     )]
@@ -172,10 +172,18 @@ fn start(value: &str) -> Result<(Start, StartWord), Problems> {
     match value {
         "soak" => return word(Start::Soak),
         "warm" => return word(Start::Warm),
+        nodes if nodes.contains('=') => {
+            let found = setup::start_nodes(nodes);
+            let found = found.map_err(|problem| problem.in_file("--start").key("--start"))?;
+            return Ok((Start::Nodes(found), StartWord::of_nodes(&found)));
+        }
         _ => {}
     }
     let named = |mut problem: Problem| {
-        problem.allowed = format!("soak, warm, or {}", START.in_unit("°C"));
+        problem.allowed = format!(
+            "soak, warm, {}, or temperatures of nodes such as coolant=81,sump=60",
+            START.in_unit("°C")
+        );
         let question = did_you_mean(value, &["soak", "warm"]);
         if !question.is_empty() {
             problem.hint = question;

@@ -6,6 +6,7 @@ use clap::Args;
 use cvtcycle::analysis::words::between;
 use cvtcycle::config::Problems;
 use cvtcycle::output::number::{fixed, signed};
+use cvtcycle::output::summary::Over;
 use cvtcycle::output::table::{TextTable, wrapped};
 use cvtcycle::report::compare::{RunComparison, Side, compare, names};
 
@@ -113,11 +114,19 @@ fn table(found: &RunComparison, runs: &[&Side]) -> String {
         table.row(head.chain(runs.iter().map(|run| cell(run))));
     };
     add("", "", &|run| run.name.clone());
-    add("fuel", "L/100 km", &|run| fixed(run.fuel_l_per_100km, 3));
+    let over = runs.first().map_or(Over::Distance, |run| run.over());
+    add("fuel", over.unit(), &|run| {
+        let fuel = match over {
+            Over::Distance => run.fuel_l_per_100km,
+            Over::Time => run.fuel_l_per_h,
+        };
+        fixed(fuel, 3)
+    });
     let own = |run: &Side| run.name == found.reference;
-    add("difference", "L/100 km", &|run| match own(run) {
-        true => String::new(),
-        false => signed(run.difference_l_per_100km, 3),
+    add("difference", over.unit(), &|run| match (own(run), over) {
+        (true, _) => String::new(),
+        (false, Over::Distance) => signed(run.difference_l_per_100km, 3),
+        (false, Over::Time) => signed(run.difference_l_per_h, 3),
     });
     add("", "%", &|run| match own(run) {
         true => String::new(),
@@ -129,14 +138,21 @@ fn table(found: &RunComparison, runs: &[&Side]) -> String {
             range.map_or_else(String::new, |range| between(range.ends, "%"))
         });
     }
-    add("CO2", "g/km", &|run| fixed(run.co2_g_per_km, 1));
+    let unit = match over {
+        Over::Distance => {
+            add("CO2", "g/km", &|run| fixed(run.co2_g_per_km, 1));
+            "kJ/km"
+        }
+        Over::Time => "kJ/h",
+    };
     for name in &found.components {
-        add(&name.replace('_', " "), "kJ/km", &|run| {
-            fixed(run.loss_kj_per_km.get(name).copied().flatten(), 2)
+        add(&name.replace('_', " "), unit, &|run| {
+            fixed(run.losses_kj(over).get(name).copied().flatten(), 2)
         });
     }
-    add("transmission", "kJ/km", &|run| {
-        fixed(run.transmission_loss_kj_per_km, 2)
+    add("transmission", unit, &|run| match over {
+        Over::Distance => fixed(run.transmission_loss_kj_per_km, 2),
+        Over::Time => fixed(run.transmission_loss_kj_per_h, 2),
     });
     if runs.iter().any(|run| run.min_clamp_safety.is_some()) {
         add("clamp safety, least", "-", &|run| {

@@ -1,5 +1,6 @@
 //! The commands, one file each: arguments, a checked plan, and the computation.
 
+mod accelerate;
 mod attribute;
 mod belt;
 mod calibrate;
@@ -79,6 +80,8 @@ enum Command {
     Optimum(Box<optimum::OptimumArgs>),
     /// Drive changes of a design next to the car as it is: what each saves, how sure that is, and what it does besides
     Levers(Box<levers::LeversArgs>),
+    /// Compute full-throttle times: 0-100 km/h, 0-60 mph, 80-120 km/h, a quarter mile, with the limit of grip
+    Accelerate(Box<accelerate::AccelerateArgs>),
     /// Compute the figures of a fuel label: US city and highway, by two formulas and five cycles, and WLTP at 14 and 23 degC
     Label(label::LabelArgs),
     /// Run many simulations: ambient temperatures, parameter sweeps, sampling, with statistics
@@ -157,6 +160,7 @@ impl Cli {
             Command::Fleet(args) => args.execute(terminal),
             Command::Optimum(args) => args.execute(terminal),
             Command::Levers(args) => args.execute(terminal),
+            Command::Accelerate(args) => args.execute(terminal),
             Command::Label(args) => args.execute(terminal),
             Command::Log(args) => args.execute(terminal),
             Command::Study(args) => args.execute(terminal),

@@ -212,7 +212,10 @@ impl Attribution<'_> {
     ) -> Vec<String> {
         let mut notes = Vec::new();
         if base.headline_fuel().is_none() {
-            notes.push("the car does not move: there is no fuel per distance to save".to_owned());
+            notes.push(
+                "the car does not move, or hardly: there is no fuel per distance to save"
+                    .to_owned(),
+            );
         }
         let maps = components
             .iter()

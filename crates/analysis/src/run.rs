@@ -3,7 +3,7 @@
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::{Conditions, drive};
 use cvtcycle_output::summary::{
-    Driven, RunSummary, Settings, StartWord, Summary, find_maps_left, summarise,
+    Driven, Over, RunSummary, Settings, StartWord, Summary, find_maps_left, summarise,
 };
 
 use crate::attribute::{Attribution, Depth, attribute};
@@ -61,7 +61,10 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
     let start = of.start.clone();
     let mut summary = summarise(cycle, of.ambient_degc, start, settings.clone(), driven);
     find_maps_left(&mut summary, cycle, &of.conditions, driven);
-    for (run, car) in summary.runs.iter_mut().zip(driven).filter(|_| of.price) {
+    // Without a distance to speak of there is no fuel per distance to save.
+    let priced = |run: &RunSummary| of.price && run.over() == Over::Distance;
+    let cars = summary.runs.iter_mut().zip(driven);
+    for (run, car) in cars.filter(|(run, _)| priced(run)) {
         let priced = Attribution {
             setup: car.setup,
             cycle,

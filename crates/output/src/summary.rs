@@ -17,18 +17,19 @@ pub use known::{Contradiction, DrawnDifference};
 pub use maps_left::{MapLeft, find_maps_left};
 pub use phases::PhaseSummary;
 pub use price::{LossPrice, PairPrice, PriceSummary, Saving};
-pub use run::{RunSummary, Solve, run_summary};
+pub use run::{Over, RunSummary, Solve, run_summary};
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use super::record::{Manifest, Record, run_word};
 use crate::fleet_spread::FleetRange;
-use crate::number::finite;
+use crate::number::{finite, plain};
 use cvtcycle_config::cycle::{Cycle, Repair};
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::drive::Outcome;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
+use cvtcycle_model::thermal::{START_NODES, StartTemperatures};
 
 /// Version of the object; a new number when a name goes or changes its meaning.
 pub const SCHEMA: u32 = 1;
@@ -48,7 +49,7 @@ pub struct Summary {
     pub recording: Option<RecordingSummary>,
     /// Ambient temperature, degC.
     pub ambient_degc: f64,
-    /// `soak`, `warm`, or the temperature of all nodes in degC.
+    /// `soak`, `warm`, the temperature of all nodes in degC, or those of single nodes.
     pub start: StartWord,
     /// Other settings.
     pub settings: Settings,
@@ -116,6 +117,8 @@ pub enum StartWord {
     Word(String),
     /// All nodes at a temperature, degC.
     Degc(f64),
+    /// Nodes at temperatures of their own by name, degC; the others follow (TH-10).
+    Nodes(IndexMap<String, f64>),
 }
 
 impl StartWord {
@@ -125,7 +128,54 @@ impl StartWord {
         match self {
             StartWord::Word(word) => word.clone(),
             StartWord::Degc(degc) => degc.to_string(),
+            StartWord::Nodes(nodes) => {
+                let each = nodes.iter().map(|(name, degc)| format!("{name}={degc}"));
+                each.collect::<Vec<_>>().join(",")
+            }
         }
+    }
+
+    /// Temperatures of single nodes.
+    #[must_use]
+    pub fn of_nodes(start: &StartTemperatures) -> Self {
+        let given = START_NODES.iter().zip(start.given_k);
+        let degc = |k: f64| ((k - ZERO_DEGC_K) * 1e9).round() / 1e9; // as written: rounding of the shift to K goes
+        StartWord::Nodes(
+            given
+                .filter_map(|(name, k)| Some(((*name).to_owned(), degc(k?))))
+                .collect(),
+        )
+    }
+
+    /// Says where single nodes begin, with the nodes that follow them: "coolant (engine oil) at 81 degC, sump (metal, belt) at 60 degC, tyre at
+    /// ambient"; none for the other starts.
+    #[must_use]
+    pub fn nodes_in_words(&self) -> Option<String> {
+        let StartWord::Nodes(nodes) = self else {
+            return None;
+        };
+        let given_k = START_NODES.map(|name| nodes.get(name).copied());
+        let start = StartTemperatures { given_k };
+        let spoken = |node: usize| START_NODES[node].replace('_', " ");
+        let led_by = |leader: Option<usize>| -> Vec<String> {
+            let all = 0..START_NODES.len();
+            let follows = |node: &usize| start.source(*node) == leader && Some(*node) != leader;
+            all.filter(follows).map(spoken).collect()
+        };
+        let of_given = |(node, degc): (usize, f64)| {
+            let with = match led_by(Some(node)).join(", ") {
+                with if with.is_empty() => with,
+                with => format!(" ({with})"),
+            };
+            format!("{}{with} at {} degC", spoken(node), plain(degc))
+        };
+        let given = given_k.into_iter().enumerate();
+        let mut parts: Vec<String> = given
+            .filter_map(|(node, degc)| Some(of_given((node, degc?))))
+            .collect();
+        let rest = led_by(None).join(", ");
+        parts.extend((!rest.is_empty()).then(|| format!("{rest} at ambient")));
+        Some(parts.join(", "))
     }
 }
 
@@ -149,7 +199,7 @@ pub struct Settings {
 pub struct Comparison {
     /// Name of the baseline.
     pub baseline: String,
-    /// Difference of the fuel per distance over the whole cycle (FTP75: weighted), per cent.
+    /// Difference of the fuel per distance over the whole cycle (FTP75: weighted), of that per hour where there is no distance, per cent.
     pub fuel_percent: Option<f64>,
     /// Difference by group of phases, per cent.
     pub phases_percent: Named,
@@ -324,10 +374,15 @@ pub fn compare(subject: &RunSummary, baseline: &RunSummary) -> Comparison {
     let percent =
         |s: Option<f64>, b: Option<f64>| s.zip(b).and_then(|(s, b)| finite((s / b - 1.0) * 100.0));
     let phases = subject.phases.iter().zip(&baseline.phases);
-    let phases = phases.map(|(s, b)| (&*s.name, percent(s.fuel_l_per_100km, b.fuel_l_per_100km)));
+    let over = subject.over();
+    let fuel = |phase: &PhaseSummary| match over {
+        Over::Distance => phase.fuel_l_per_100km,
+        Over::Time => phase.fuel_l_per_h,
+    };
+    let phases = phases.map(|(s, b)| (&*s.name, percent(fuel(s), fuel(b))));
     Comparison {
         baseline: baseline.vehicle.clone(),
-        fuel_percent: percent(subject.headline_fuel(), baseline.headline_fuel()),
+        fuel_percent: percent(subject.consumption(over), baseline.consumption(over)),
         phases_percent: phases.collect(),
         likeness: String::new(),
         differences: Vec::new(),

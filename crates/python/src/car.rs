@@ -3,14 +3,25 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use cvtcycle::config::setup::{self, Disk, NamedBy, Options, ParamSet, Setup, baseline_of};
+use cvtcycle::analysis::accelerate::{
+    AXLE_SHARE, Conditions, DRIVEN, GRADE_PERCENT, GRIP, HEIGHT_OVER_BASE, SHIFT_S, SPEED_KMH,
+    STEP_S, Span, times, usual_grip, usual_spans,
+};
+use cvtcycle::config::setup::{
+    self, AMBIENT, Disk, NamedBy, Options, ParamSet, Setup, baseline_of,
+};
 use cvtcycle::config::{Override, Problem, Problems};
 use cvtcycle::explain::key_json;
+use cvtcycle::model::drive::{Grip, Start};
+use cvtcycle::model::lubricant::ZERO_DEGC_K;
+use cvtcycle::model::thermal::{NODES, StartTemperatures};
+use cvtcycle::model::transmission::Transmission;
 use cvtcycle::model::transmission::cvt::variator::Formulation;
+use cvtcycle::output::escape::json_text;
 use pyo3::prelude::*;
 use serde_json::Value;
 
-use crate::errors::{bad, refused};
+use crate::errors::{bad, number, refused};
 
 /// Text of a vehicle without a file.
 #[derive(Clone, Debug)]
@@ -115,6 +126,96 @@ impl Car {
         let word = word.to_string_lossy().into_owned();
         py.detach(|| Car::load(word, options, None))
             .map_err(refused)
+    }
+
+    /// Full-throttle times, the JSON of `accelerate --json` without its manifest; the usual spans without a speed at the end.
+    #[expect(clippy::too_many_arguments, reason = "they are named in Python")]
+    fn accelerate(
+        &self,
+        py: Python<'_>,
+        speeds_kmh: Option<(f64, f64)>,
+        grip: Option<f64>,
+        driven: &str,
+        axle_share: Option<f64>,
+        height_over_base: f64,
+        grade_percent: f64,
+        shift_s: f64,
+        gear: Option<u8>,
+        ambient_degc: f64,
+        start: &Bound<'_, PyAny>,
+        dt_s: f64,
+    ) -> PyResult<String> {
+        let spans = match speeds_kmh {
+            None => usual_spans(),
+            Some((from, to)) => {
+                let from = number("from_kmh", from, SPEED_KMH, "km/h")?;
+                let to = number("to_kmh", to, SPEED_KMH, "km/h")?;
+                if from >= to {
+                    let allowed = format!("above {from}");
+                    return Err(bad(
+                        "to_kmh",
+                        &to.to_string(),
+                        &allowed,
+                        "the speed at the end is not above that at the begin",
+                    ));
+                }
+                let span = Span::Speeds(from / 3.6, to / 3.6);
+                vec![(format!("{from} km/h to {to} km/h"), span)]
+            }
+        };
+        let named = DRIVEN.iter().find(|(name, _)| *name == driven);
+        let Some((_, wheels)) = named else {
+            return Err(bad(
+                "driven",
+                driven,
+                "front, rear, all",
+                "these wheels are not known",
+            ));
+        };
+        let usual = usual_grip(*wheels);
+        let share = axle_share.unwrap_or(usual.axle_share);
+        let limits = Grip {
+            mu: grip.map_or(Ok(usual.mu), |mu| number("grip", mu, GRIP, "-"))?,
+            axle_share: number("axle_share", share, AXLE_SHARE, "-")?,
+            height_over_base: number("height_over_base", height_over_base, HEIGHT_OVER_BASE, "-")?,
+            ..usual
+        };
+        let gears = match self.setup.transmission() {
+            Transmission::Manual(manual) => manual.overall.len(),
+            Transmission::Cvt(_) => 0,
+        };
+        if let Some(gear) = gear.filter(|gear| !(1..=gears).contains(&usize::from(*gear))) {
+            let allowed = match gears {
+                0 => "None with a CVT".to_owned(),
+                gears => format!("1 to {gears}"),
+            };
+            return Err(bad(
+                "gear",
+                &gear.to_string(),
+                &allowed,
+                "this car has no such gear",
+            ));
+        }
+        let ambient_degc = number("ambient_degc", ambient_degc, AMBIENT, "degC")?;
+        let start = match crate::run::start(start)?.0 {
+            Start::Nodes(nodes) => nodes,
+            Start::At(temp_k) => StartTemperatures {
+                given_k: [Some(temp_k); NODES + 1],
+            },
+            Start::Soak | Start::Warm => StartTemperatures::default(),
+        };
+        let conditions = Conditions {
+            ambient_k: ambient_degc + ZERO_DEGC_K,
+            start,
+            grade: number("grade_percent", grade_percent, GRADE_PERCENT, "%")? / 100.0,
+            grip: grip.map(|_| limits),
+            shift_s: number("shift_s", shift_s, SHIFT_S, "s")?,
+            gear,
+            dt_s: number("dt_s", dt_s, STEP_S, "s")?,
+        };
+        let setup = Arc::clone(&self.setup);
+        let found = py.detach(move || json_text(&times(&setup, &spans, &conditions)));
+        found.map_err(refused)
     }
 
     /// Reads the text of a vehicle file. Problems cite it as `name`; its maps are in `folder`.

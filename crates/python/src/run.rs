@@ -7,9 +7,11 @@ use cvtcycle::analysis::run::{RunQuestion, summary};
 use cvtcycle::analysis::sensitivity::Named;
 use cvtcycle::config::bounded::kept_steps;
 use cvtcycle::config::cycle::Cycle as CoreCycle;
-use cvtcycle::config::setup::{AMBIENT, Options, START, STEP, Setup};
+use cvtcycle::config::setup::{AMBIENT, Options, START, STEP, Setup, start_nodes, start_of_nodes};
 use cvtcycle::config::{Problem, Problems};
-use cvtcycle::model::drive::{Conditions, Outcome, Start, drive, fuel_map, litres_per_100km};
+use cvtcycle::model::drive::{
+    Conditions, Outcome, Start, distance_counts, drive, fuel_map, litres_per_100km, litres_per_hour,
+};
 use cvtcycle::model::lubricant::ZERO_DEGC_K;
 use cvtcycle::output::History;
 use cvtcycle::output::escape::json_text;
@@ -23,6 +25,7 @@ use cvtcycle::report::run_files::{self, TraceFormat};
 use cvtcycle::report::write::{Form, Target};
 use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::car::Car;
 use crate::cycle::Cycle;
@@ -67,21 +70,42 @@ impl RunArguments {
     }
 }
 
-fn start(given: &Bound<'_, PyAny>) -> PyResult<(Start, StartWord)> {
+/// Parses a start: `soak`, `warm`, a temperature in degC, or those of nodes.
+/// # Errors
+/// The exception of the argument.
+pub fn start(given: &Bound<'_, PyAny>) -> PyResult<(Start, StartWord)> {
     if let Ok(word) = given.extract::<String>() {
         let state = match word.as_str() {
             "soak" => Start::Soak,
             "warm" => Start::Warm,
+            nodes if nodes.contains('=') => {
+                let found = start_nodes(nodes).map_err(refused)?;
+                return Ok((Start::Nodes(found), StartWord::of_nodes(&found)));
+            }
             _ => {
-                let allowed = format!("soak, warm, or {}", START.in_unit("degC"));
+                let allowed = format!(
+                    "soak, warm, {}, or temperatures of nodes such as coolant=81,sump=60",
+                    START.in_unit("degC")
+                );
                 return Err(bad("start", &word, &allowed, "this start is not known"));
             }
         };
         return Ok((state, StartWord::Word(word)));
     }
+    if let Ok(nodes) = given.cast::<PyDict>() {
+        let list: Vec<(String, f64)> = nodes
+            .iter()
+            .map(|(name, degc)| Ok((name.extract()?, degc.extract()?)))
+            .collect::<PyResult<_>>()?;
+        let found = start_of_nodes(&list).map_err(refused)?;
+        return Ok((Start::Nodes(found), StartWord::of_nodes(&found)));
+    }
     let degc = given.extract::<f64>();
-    let degc =
-        degc.map_err(|_| PyTypeError::new_err("start: 'soak', 'warm' or a temperature in degC"))?;
+    let degc = degc.map_err(|_| {
+        PyTypeError::new_err(
+            "start: 'soak', 'warm', a temperature in degC or temperatures of nodes, {'coolant': 81}",
+        )
+    })?;
     let degc = number("start", degc, START, "degC")?;
     Ok((Start::At(degc + ZERO_DEGC_K), StartWord::Degc(degc)))
 }
@@ -233,6 +257,7 @@ impl RunData {
             history: &histories[k],
             fuel_map: Some(fuel_map(&self.cars[k].setup)),
             group_fuel: charts::group_fuel(&summary.runs[k]),
+            fuel_unit: summary.runs[k].over().unit(),
             published: charts::published_drive(&self.cars[k].name, &summary),
         };
         let picture = match kind {
@@ -299,16 +324,28 @@ impl Run {
         self.0.arguments.conditions.keep_rows
     }
 
-    /// Fuel of the subject over the whole cycle, L/100 km; NaN below a distance of one metre.
+    /// Fuel of the subject over the whole cycle, L/100 km; NaN below 10 m and below a mean speed of 1 km/h.
     #[getter]
     fn fuel_l_per_100km(&self) -> f64 {
         let car = &self.0.cars[0];
         let total = car.outcome.totals.total();
+        if !distance_counts(total.distance_m, total.duration_s) {
+            return f64::NAN;
+        }
         litres_per_100km(
             total.fuel_kg,
             car.setup.engine().fuel_density_kg_m3,
             total.distance_m,
         )
+    }
+
+    /// Fuel of the subject over the whole cycle, L/h.
+    #[getter]
+    fn fuel_l_per_h(&self) -> f64 {
+        let car = &self.0.cars[0];
+        let total = car.outcome.totals.total();
+        let density = car.setup.engine().fuel_density_kg_m3;
+        litres_per_hour(total.fuel_kg, density, total.duration_s)
     }
 
     /// JSON of `run --json`.

@@ -1,6 +1,7 @@
 //! Formats numbers for the report: decimals and unit of each kind of quantity are defined here only.
 
 use cvtcycle_output::number;
+use cvtcycle_output::summary::Over;
 
 /// Separator of a number and its unit, which keeps them on one line.
 const SPACE: char = '\u{a0}';
@@ -17,6 +18,8 @@ const GROUPED: f64 = 999.95;
 pub enum Quantity {
     /// Fuel over distance, L/100 km.
     Fuel,
+    /// Fuel over time, L/h.
+    FuelInTime,
     /// A small difference of fuel over distance, L/100 km.
     FuelShare,
     /// Carbon dioxide, g/km.
@@ -40,12 +43,25 @@ pub enum Quantity {
 }
 
 impl Quantity {
+    /// Fuel over distance or time.
+    #[must_use]
+    pub fn fuel(over: Over) -> Self {
+        match over {
+            Over::Distance => Quantity::Fuel,
+            Over::Time => Quantity::FuelInTime,
+        }
+    }
+
     /// Decimals.
     fn decimals(self) -> usize {
         match self {
             Quantity::Seconds => 0,
             Quantity::Energy | Quantity::Degc | Quantity::Percent | Quantity::Co2 => 1,
-            Quantity::Fuel | Quantity::Effect | Quantity::Ratio | Quantity::Index => 2,
+            Quantity::Fuel
+            | Quantity::FuelInTime
+            | Quantity::Effect
+            | Quantity::Ratio
+            | Quantity::Index => 2,
             Quantity::FuelShare | Quantity::Distance => 3,
         }
     }
@@ -55,6 +71,7 @@ impl Quantity {
     pub fn unit(self) -> &'static str {
         match self {
             Quantity::Fuel | Quantity::FuelShare => "L/100\u{a0}km",
+            Quantity::FuelInTime => "L/h",
             Quantity::Co2 => "g/km",
             Quantity::Distance => "km",
             Quantity::Seconds => "s",

@@ -68,6 +68,7 @@ pub fn write(
         history,
         fuel_map: Some(fuel_map.clone()),
         group_fuel: charts::group_fuel(run),
+        fuel_unit: run.over().unit(),
         published: charts::published_drive(car.name, summary),
     });
     let plots: Vec<PlotRun> = plots.collect();

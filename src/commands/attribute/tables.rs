@@ -50,11 +50,13 @@ fn run_tables(summary: &Summary, run: &RunSummary, by_phase: bool, paint: Paint)
     let start = match &summary.start {
         StartWord::Word(word) => word.clone(),
         StartWord::Degc(degc) => format!("start at {} degC", plain(*degc)),
+        StartWord::Nodes(_) => format!("start {}", summary.start.text()),
     };
     let ambient = plain(summary.ambient_degc);
-    let fuel = run.headline_fuel();
+    let over = run.over();
     let title = format!("{} at {ambient} degC, {start}", run.vehicle);
-    let fuel_line = format!("{}: {} L/100 km.", run.vehicle, fixed(fuel, 2));
+    let fuel = fixed(run.consumption(over), 2);
+    let fuel_line = format!("{}: {fuel} {}.", run.vehicle, over.unit());
     let sentences = std::iter::once(fuel_line).chain(answer(run));
     let sentences = sentences.map(|sentence| wrapped(&sentence, ""));
     let notes = price.notes.iter().map(|note| wrapped(note, "note: "));

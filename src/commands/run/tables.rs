@@ -5,7 +5,7 @@ use cvtcycle::analysis::words::run::sentences;
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
-use cvtcycle::output::summary::{Comparison, RunSummary, StartWord, Summary};
+use cvtcycle::output::summary::{Comparison, Over, PhaseSummary, RunSummary, StartWord, Summary};
 use cvtcycle::output::table::{TextTable, paragraphs, wrapped};
 
 use super::losses::{loss_words, priced_losses};
@@ -39,6 +39,10 @@ fn head(summary: &Summary, cycle: &Cycle, paint: Paint) -> String {
         }
         StartWord::Word(_) => "start soaked at ambient".to_owned(),
         StartWord::Degc(degc) => format!("start with everything at {} degC", plain(*degc)),
+        StartWord::Nodes(_) => format!(
+            "start with {}",
+            summary.start.nodes_in_words().unwrap_or_default()
+        ),
     };
     let settings = &summary.settings;
     let (name, title) = (paint.heading(&summary.cycle), &cycle.title);
@@ -120,11 +124,32 @@ impl<'a> ByVehicle<'a> {
 fn fuel(summary: &Summary) -> String {
     let mut table = ByVehicle::new(summary);
     let groups = summary.runs.first().map_or(&[][..], |run| &run.phases);
+    let over = summary
+        .runs
+        .first()
+        .map_or(Over::Distance, RunSummary::over);
     for (k, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
-        table.add(&group.name, "L/100 km", |run| {
-            let phase = run.phases.get(k);
-            fixed(phase.and_then(|phase| phase.fuel_l_per_100km), 2)
+        table.add(&group.name, over.unit(), |run| {
+            let fuel = |phase: &PhaseSummary| match over {
+                Over::Distance => phase.fuel_l_per_100km,
+                Over::Time => phase.fuel_l_per_h,
+            };
+            fixed(run.phases.get(k).and_then(fuel), 2)
         });
+    }
+    if over == Over::Time {
+        table.add("total", over.unit(), |run| fixed(run.litres_per_hour(), 2));
+        let an_hour = |run: &RunSummary| run.fuel_kg * 3600.0 / run.duration_s;
+        table.add("", "kg/h", |run| fixed(an_hour(run), 3));
+        table.add("", "g", |run| fixed(run.fuel_kg * 1e3, 1));
+        table.add("driven distance", "m", |run| {
+            fixed(run.distance_km * 1e3, 1)
+        });
+        table.add("duration", "s", |run| fixed(run.duration_s, 0));
+        table.add("fuel at standstill", "% fuel", |run| {
+            percent(run.standstill_fuel_g, run.fuel_kg * 1e3, 1)
+        });
+        return table.text(&LEAD);
     }
     table.add("total", "L/100 km", |run| fixed(run.fuel_l_per_100km, 2));
     table.number("weighted 0.43 / 0.57", "L/100 km", 2, |run| {

@@ -1,6 +1,7 @@
 //! Runs the program in a temporary directory: exit codes, streams, files.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+mod accelerate;
 mod attribute;
 mod optimum;
 mod out;
@@ -15,6 +16,7 @@ mod log;
 mod named;
 mod new;
 mod run;
+mod standing;
 mod streams;
 mod study;
 #[cfg(unix)]

@@ -9,6 +9,7 @@
 #[path = "../../common/mod.rs"]
 mod common;
 
+mod accelerate;
 mod allocation;
 mod belt_properties;
 mod cold;

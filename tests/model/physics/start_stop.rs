@@ -296,6 +296,56 @@ fn stops_need_a_warm_box() {
     assert!(stops(&manual.rows) >= stops(&warm.rows));
 }
 
+/// `first_stop_after_s` keeps the first stop back and no later one; `min_run_s` holds after each start. Truth: definition of SS-1 on the rests of the trace
+/// (an ECE 15 stands to 11 s, from 28 to 49 s, 96 to 117 s, 188 to 195 s), and monotony: fuel is between that of no limit and that of the same time after each start.
+#[test]
+fn first_stop_waits_from_key_on() {
+    let nedc = cycle("ece15_eudc");
+    for name in ["civic_20_cvt", "rover_216_5mt"] {
+        for start in [Start::Warm, Start::At(85.0 + ZERO)] {
+            let conditions = Run {
+                keep_rows: true,
+                ..at(23.0, start)
+            };
+            let drive = |sets: &[&str]| drive(&stopping(name, sets), &nedc, &conditions);
+            let [free, waits, each] =
+                [&[][..], &["first_stop_after_s=100"], &["min_run_s=100"]].map(drive);
+            let stopped = |o: &Outcome| -> Vec<(f64, bool)> {
+                let row = |r: &Row| (r.time_s, off(r));
+                o.rows.iter().map(row).collect()
+            };
+            let first_s = |o: &Outcome| o.rows.iter().find(|r| off(r)).map(|r| r.time_s - r.dt_s);
+            assert!(first_s(&free).is_some_and(|s| s < 96.0), "{name}");
+            // 100 s is within the third rest, which is cut there.
+            assert_eq!(first_s(&waits), Some(100.0), "{name}");
+            let later = |o: &Outcome| {
+                let mut rows = stopped(o);
+                rows.retain(|(time_s, _)| *time_s > 117.0);
+                rows
+            };
+            assert_eq!(later(&waits), later(&free), "{name}");
+            assert!(stops(&each.rows) < stops(&waits.rows), "{name}");
+            assert!(
+                fuel(&free) < fuel(&waits) && fuel(&waits) < fuel(&each),
+                "{name}"
+            );
+        }
+    }
+    // A soak of the cycle ends with a new key-on.
+    let ftp = run(
+        &stopping("rover_216_5mt", &["first_stop_after_s=300"]),
+        &cycle("ftp75"),
+        23.0,
+        1.0,
+    );
+    let on_s = ftp
+        .rows
+        .iter()
+        .filter(|r| r.time_s > 1980.0 && off(r))
+        .map(|r| r.time_s);
+    assert!(on_s.fold(f64::INFINITY, f64::min) > 1969.0 + 300.0);
+}
+
 /// Contract: both ledgers close in every row, and the store's term is what the store loses, over cars, cycles, steps and pumps.
 #[test]
 fn books_close_over_stops() {

@@ -7,6 +7,7 @@ use cvtcycle_config::cycle::embedded;
 use cvtcycle_config::setup::Setup;
 use cvtcycle_model::cycle::Cycle;
 use cvtcycle_model::drive::{Conditions, Outcome, Run, Start, drive, drive_each};
+use cvtcycle_model::thermal::{COOLANT, SUMP, StartTemperatures};
 
 /// Numbers of the car that move every part of the drive, each by its own steps.
 const VARIED: [(&str, f64, f64); 12] = [
@@ -77,9 +78,15 @@ fn manual_cars_in_lockstep_have_their_own_bits() {
 #[test]
 fn gears_of_their_own_and_starts_of_their_own() {
     let cycle = embedded("udds").unwrap();
-    let start = |k: usize| match k % 2 {
+    let start = |k: usize| match k % 3 {
         0 => Start::Soak,
-        _ => Start::At(280.0 + 5.0 * k as f64),
+        1 => Start::At(280.0 + 5.0 * k as f64),
+        _ => {
+            let mut nodes = StartTemperatures::default();
+            nodes.given_k[COOLANT] = Some(300.0 + 5.0 * k as f64);
+            nodes.given_k[SUMP] = Some(310.0);
+            Start::Nodes(nodes)
+        }
     };
     assert_alone(&family("rover_216_5mt", 9), &cycle, |k| Conditions {
         ambient_k: 260.0 + 5.0 * k as f64,

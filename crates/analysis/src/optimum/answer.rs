@@ -191,9 +191,18 @@ impl Question<'_> {
         (trace, steps): (&'a Trace, &'a [Step]),
         least_speeds_rad_s: &'a [f64],
     ) -> Vec<Task<'a>> {
-        let start_k = match self.conditions.start {
-            Start::At(temp_k) => temp_k,
-            Start::Soak | Start::Warm => self.conditions.ambient_k,
+        let ambient_k = self.conditions.ambient_k;
+        let start = match self.conditions.start {
+            Start::At(temp_k) => State::at(temp_k),
+            Start::Soak | Start::Warm => State::at(ambient_k),
+            Start::Nodes(nodes) => {
+                let (heat, tyre_k) = nodes.at(ambient_k);
+                State {
+                    heat,
+                    tyre_k,
+                    ..State::at(ambient_k)
+                }
+            }
         };
         let task = |(number, car): (usize, &'a Car), clamp: Clamp| {
             let main = number == 0 && clamp == Clamp::Law;
@@ -202,7 +211,7 @@ impl Question<'_> {
                 cvt: super::cvt(car)?,
                 steps,
                 trace,
-                start: State::at(start_k),
+                start,
                 warm: self.conditions.start == Start::Warm,
                 clamp,
                 limits: self.limits(car),

@@ -11,7 +11,8 @@ use cvtcycle_output::fleet_spread::{Compared, DrivenOn, Other, difference_range,
 use cvtcycle_output::number::{fixed, signed};
 use cvtcycle_output::provenance::car_sha256;
 use cvtcycle_output::summary::{
-    Comparison, Contradiction, Driven, MapLeft, RecordingSummary, RunSummary, StartWord, Summary,
+    Comparison, Contradiction, Driven, MapLeft, Over, RecordingSummary, RunSummary, StartWord,
+    Summary,
 };
 
 use super::intervals as drawn;
@@ -198,8 +199,11 @@ fn number(summary: &Summary, about: &About, baseline: Option<usize>) -> Option<f
 
 /// The first lines of a run, a sentence each.
 pub fn sentences(summary: &Summary) -> Vec<String> {
-    let run = summary.runs.first();
-    let Some((run, fuel)) = run.and_then(|run| run.headline_fuel().map(|fuel| (run, fuel))) else {
+    let Some(run) = summary.runs.first() else {
+        return Vec::new();
+    };
+    let over = run.over();
+    let Some(fuel) = run.consumption(over) else {
         return Vec::new();
     };
     // The first interval alone carries the explanation of runs.
@@ -235,10 +239,15 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
             format!("DOUBTFUL, {text}{stop} ")
         }
     };
+    let mass = match over {
+        Over::Distance => String::new(),
+        Over::Time => format!(" ({})", mass_in_time(run)),
+    };
     let first = format!(
-        "{doubt}{}: {} L/100 km{resolution}{range}{against}.",
+        "{doubt}{}: {} {}{mass}{resolution}{range}{against}.",
         run.vehicle,
-        fixed(fuel, 2)
+        fixed(fuel, 2),
+        over.unit()
     );
     let lines = [Some(first), recording.and_then(repaired), price(run)]
         .into_iter()
@@ -254,6 +263,18 @@ fn repaired(recording: &RecordingSummary) -> Option<String> {
         .map(|own| format!("{} ({})", own.what, own.name))
         .collect();
     (!list.is_empty()).then(|| format!("The log was repaired: {}.", list.join("; ")))
+}
+
+/// "151.2 g in 600 s, 0.907 kg/h; 0 m are too short for L/100 km": what stands with a consumption over time.
+pub fn mass_in_time(run: &RunSummary) -> String {
+    let (grams, seconds) = (fixed(run.fuel_kg * 1e3, 1), fixed(run.duration_s, 0));
+    let (an_hour, metres) = (
+        fixed(run.fuel_kg * 3600.0 / run.duration_s, 3),
+        fixed(run.distance_km * 1e3, 0),
+    );
+    format!(
+        "{grams} g in {seconds} s, {an_hour} kg/h; {metres} m in that time are too few for L/100 km"
+    )
 }
 
 /// Share of the distance between the ends of the draws by which the car as it is may be from their median. ASSUMED: half of the draws of any bell

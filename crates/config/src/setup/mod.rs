@@ -11,9 +11,11 @@ mod inputs;
 mod like;
 mod params;
 pub mod rig;
+mod start;
 mod twin;
 
 pub use self::params::{Param, ParamSet, ParamValue};
+pub use self::start::{start_nodes, start_of_nodes};
 pub use crate::files::embedded::{
     is_path, lubricants as embedded_lubricants, vehicles as embedded_vehicles,
 };
@@ -387,7 +389,7 @@ pub fn read_twin(
     Ok(ParamSet::read_twin(file, text, files, options)?.into_setup())
 }
 
-/// Range of the temperature of all parts at the start, degC.
+/// Range of the temperatures at the start, of all parts or of one, degC.
 pub const START: Bound = Bound::closed(-40.0, 130.0);
 
 /// Range of the longest step, s.

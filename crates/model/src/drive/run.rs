@@ -8,7 +8,7 @@ use crate::drive::{EnergyTerms, Row, Totals};
 use crate::engine::StartStop;
 use crate::math::larger;
 use crate::prime_mover::PrimeMover;
-use crate::thermal::Heat;
+use crate::thermal::{Heat, StartTemperatures};
 
 /// Temperatures at the start of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +19,8 @@ pub enum Start {
     Warm,
     /// All nodes at a temperature, K.
     At(f64),
+    /// Nodes at temperatures of their own (TH-10).
+    Nodes(StartTemperatures),
 }
 
 /// Output wanted of a run.
@@ -146,6 +148,14 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
     let start = match conditions.start {
         Start::Soak => State::at(conditions.ambient_k),
         Start::At(temp_k) => State::at(temp_k),
+        Start::Nodes(nodes) => {
+            let (heat, tyre_k) = nodes.at(conditions.ambient_k);
+            State {
+                heat,
+                tyre_k,
+                ..State::at(conditions.ambient_k)
+            }
+        }
         Start::Warm => simulate(
             car,
             trace,
@@ -155,10 +165,12 @@ pub fn start_state(car: &Car, trace: &Trace, conditions: &Conditions) -> State {
         ),
     };
     // A car at rest begins a new cycle in its own start state; only heat, rotating energy and the running engine carry over.
-    State {
+    let mut state = State {
         transmission: None,
         ..start
-    }
+    };
+    state.start_stop.on_s = 0.0; // a key-on of its own, after a warm-up too (SS-1)
+    state
 }
 
 /// The trace as a car drives it: with rows where its engine may stop and where it starts again, if it has start-stop.
@@ -175,7 +187,14 @@ fn cut_at_stops(trace: &Trace, on: &StartStop) -> Trace {
         let stop_s = from_s + on.delay_s;
         [stop_s, larger(to_s - on.lead_s, stop_s)]
     };
-    let at_s: Vec<f64> = trace.rests_s().into_iter().flat_map(ends).collect();
+    let rests_s = trace.rests_s();
+    let mut at_s: Vec<f64> = rests_s.iter().copied().flat_map(ends).collect();
+    let first_s = on.first_stop_after_s;
+    let within = |&(from_s, to_s): &(f64, f64)| from_s < first_s && first_s < to_s;
+    if rests_s.iter().any(within) {
+        let place = at_s.partition_point(|&time_s| time_s < first_s);
+        at_s.insert(place, first_s);
+    }
     trace.cut(&at_s)
 }
 
@@ -224,10 +243,27 @@ pub fn fuel_map(vehicle: &Vehicle) -> FuelMap {
     }
 }
 
-/// Shortest distance that a fuel consumption is given for, m.
-const SHORTEST_M: f64 = 1.0;
+/// Shortest distance that a consumption over distance is given for, m. ASSUMED, 1 to 100 m: two lengths of a car; over less it is the time at rest that is
+/// measured.
+pub const SHORTEST_M: f64 = 10.0;
+/// Mean speed below which a drive has no consumption over distance, m/s (1 km/h). ASSUMED, 0.5 to 3 km/h: an engine that idles at 0.9 L/h is at 90 L/100 km there.
+pub const SLOWEST_M_S: f64 = 1.0 / 3.6;
 
-/// Carbon dioxide in g/km from the mass of fuel and distance; NaN for less than a metre.
+/// True where fuel over distance means something; where it does not, fuel over time does.
+pub fn distance_counts(distance_m: f64, duration_s: f64) -> bool {
+    distance_m >= SHORTEST_M && distance_m >= SLOWEST_M_S * duration_s
+}
+
+/// Fuel in L/h from mass and duration; NaN without a duration.
+pub fn litres_per_hour(fuel_kg: f64, density_kg_m3: f64, duration_s: f64) -> f64 {
+    if duration_s > 0.0 {
+        fuel_kg / density_kg_m3 * 1000.0 * 3600.0 / duration_s
+    } else {
+        f64::NAN
+    }
+}
+
+/// Carbon dioxide in g/km from the mass of fuel and distance; NaN for less than [`SHORTEST_M`].
 pub fn co2_g_per_km(fuel_kg: f64, co2_kg_kg: f64, distance_m: f64) -> f64 {
     if distance_m >= SHORTEST_M {
         fuel_kg * co2_kg_kg * 1e6 / distance_m
@@ -236,7 +272,7 @@ pub fn co2_g_per_km(fuel_kg: f64, co2_kg_kg: f64, distance_m: f64) -> f64 {
     }
 }
 
-/// Fuel in L/100 km from mass and distance; NaN for less than a metre.
+/// Fuel in L/100 km from mass and distance; NaN for less than [`SHORTEST_M`].
 pub fn litres_per_100km(fuel_kg: f64, density_kg_m3: f64, distance_m: f64) -> f64 {
     if distance_m >= SHORTEST_M {
         fuel_kg / density_kg_m3 * 1000.0 / (distance_m / 100_000.0)

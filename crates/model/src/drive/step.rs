@@ -71,6 +71,14 @@ impl<'a> Drive<'a> {
         }
     }
 
+    /// A car in a state whose manual box follows gears, one an interval.
+    pub(super) fn in_gears(car: &'a Car, gears: Option<&'a [GearCommand]>, state: State) -> Self {
+        Drive {
+            gears,
+            ..Drive::new(car, state)
+        }
+    }
+
     /// The state after the last step.
     pub fn state(&self) -> State {
         self.state

@@ -252,15 +252,23 @@ fn in_cars<R: Real, T: Driveline<R>>(
 ) -> Vec<Outcome> {
     let trace = &*group[0].trace;
     let (conditions, max_dt_s) = (group[0].run.conditions, group[0].run.conditions.max_dt_s);
-    let start_k = like.map_lanes(|lane| match of_lane[lane].run.conditions.start {
-        Start::At(temp_k) => temp_k,
-        Start::Soak | Start::Warm => of_lane[lane].run.conditions.ambient_k,
-    });
-    let mut state = State::at(start_k);
+    // Every lane begins as a run alone begins; a warm start drives there itself, from ambient.
+    let begins = |lane: usize| {
+        let conditions = &of_lane[lane].run.conditions;
+        let ambient_k = conditions.ambient_k;
+        match conditions.start {
+            Start::At(temp_k) => (Heat::uniform(temp_k), temp_k),
+            Start::Soak | Start::Warm => (Heat::uniform(ambient_k), ambient_k),
+            Start::Nodes(nodes) => nodes.at(ambient_k),
+        }
+    };
+    let mut state = State::at(like.map_lanes(|lane| begins(lane).1));
+    state.heat.node_k =
+        std::array::from_fn(|node| like.map_lanes(|lane| begins(lane).0.node_k[node]));
     let mut totals = Totals::like(like, phases);
     let passes = match conditions.start {
         Start::Warm => 2,
-        Start::Soak | Start::At(_) => 1,
+        Start::Soak | Start::At(_) | Start::Nodes(_) => 1,
     };
     // One call, so that the step is there once; what a first pass sums up is dropped.
     for _ in 0..passes {

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | SS-1 | stops after t_d at rest, in neutral, where coolant, sump (of a CVT) and ambient are within their limits, the engine ran t_r since its start, the car was faster than v_min since the last stop, and E > E_0/2 | limits source: service data of Toyota, Honda, Infiniti, Ford; t_d and E ASSUMED |
+//! | SS-1 | stops after t_d at rest, in neutral, where coolant, sump (of a CVT) and ambient are within their limits, the engine ran t_r since its start (min_run_s) and t_f has passed since key-on (first_stop_after_s), the car was faster than v_min since the last stop, and E > E_0/2 | limits source: service data of Toyota, Honda, Infiniti, Ford; t_d and E ASSUMED |
 //! | SS-2 | starts t_l before the car moves, or where a limit fails, E < E_0/4, or after the longest stop | ASSUMED: a driver's foot leaves the brake 0.3 to 1 s before |
 //! | SS-3 | fuel of the start m = max(t_i m'_idle, m_0 clip((60 degC - T)/60 K, 0, 1)) in its step; EN-9 and the raised idle of EN-1 are of the first start alone | source: Ford Fusion 2.5 L, a restart is 9 s of idle, enrichment included (FOTW 1239); t_i ASSUMED, 1 to 9 s |
 //! | SS-4 | starter: E = (J w_idle2/2 + W_c)/eta_s, W_c = T_drag(w_idle) w_idle t_c/2 heats the block | derived; eta_s source: starter data, 2 kW in and 1.1 kW out; t_c ASSUMED |
@@ -31,6 +31,8 @@ pub struct StartStop {
     pub ambient_k: f64,
     /// Time that the engine has run since its start, s.
     pub min_run_s: f64,
+    /// Time from key-on before which it does not stop, s.
+    pub first_stop_after_s: f64,
     /// Speed that the car has had since the last stop, m/s.
     pub min_speed_m_s: f64,
     /// Time at rest before it stops, s.
@@ -68,6 +70,8 @@ pub struct StartStopState {
     pub stopped: bool,
     /// Time since the last start, s.
     pub ran_s: f64,
+    /// Time since key-on, stops included, s.
+    pub on_s: f64,
     /// Highest speed of the car since the last stop, m/s.
     pub fastest_m_s: f64,
     /// Time at rest so far, s.
@@ -123,6 +127,7 @@ impl StartStop {
         let was_stopped = past.stopped;
         past.fastest_m_s = larger(now.speed_m_s, past.fastest_m_s);
         past.stopped = now.speed_m_s <= 0.0 && self.stops(now, past);
+        past.on_s += now.dt_s;
         past.stood_s = if now.speed_m_s > 0.0 {
             0.0
         } else {
@@ -149,7 +154,8 @@ impl StartStop {
             && within(self.coolant_k, now.coolant_k)
             && now.sump_k.is_none_or(|sump_k| within(self.sump_k, sump_k))
             && now.ambient_k >= self.ambient_k
-            && now.rest_s > self.lead_s + SAME_S;
+            && now.rest_s > self.lead_s + SAME_S
+            && past.on_s >= self.first_stop_after_s - SAME_S;
         let left_j = self.store_j - past.drawn_j;
         if past.stopped {
             return allowed
@@ -285,7 +291,8 @@ keys! {
         sump_min_degc: or(25.0, number(-60.0, 150.0)), "transmission oil of a CVT from which it may stop", ["SS-1"];
         sump_max_degc: or(115.0, number(-60.0, 160.0)), "transmission oil of a CVT up to which it may stop", ["SS-1"];
         ambient_min_degc: or(-5.0, number(-60.0, 60.0)), "ambient from which it may stop", ["SS-1"];
-        min_run_s: or(20.0, number(0.0, 600.0)), "time that the engine runs after a start", ["SS-1"];
+        min_run_s: or(20.0, number(0.0, 600.0)), "time that the engine runs after each start, restarts included", ["SS-1"];
+        first_stop_after_s: or(0.0, number(0.0, 3600.0)), "time from key-on before which it does not stop; later stops are free of it", ["SS-1"];
         min_speed_kmh: or(5.0, number(0.0, 50.0)), "speed that the car must have exceeded since the last stop", ["SS-1"];
         delay_s: or(0.5, number(0.0, 10.0)), "time at rest before the engine stops", ["SS-1"];
         stop_max_s: or(180.0, above(0.0, 3600.0)), "longest stop", ["SS-2"];
@@ -315,6 +322,7 @@ impl StartStop {
             sump_k: [&START_STOP.sump_min_degc, &START_STOP.sump_max_degc].map(number),
             ambient_k: number(&START_STOP.ambient_min_degc),
             min_run_s: number(&START_STOP.min_run_s),
+            first_stop_after_s: number(&START_STOP.first_stop_after_s),
             min_speed_m_s: number(&START_STOP.min_speed_kmh),
             delay_s: number(&START_STOP.delay_s),
             stop_max_s: number(&START_STOP.stop_max_s),

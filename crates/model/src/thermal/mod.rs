@@ -10,6 +10,7 @@
 //! | TH-7 | heat exchanger coolant to transmission oil: G open(T_c), open over 5 K above its valve's temperature | ASSUMED valve: without it the exchanger takes the heat that warms the engine |
 //! | TH-8 | spray: G = G_2500 n/2500 rpm, never below 10 % of G_2500 | ASSUMED: the pump's flow carries it; G_2500 fitted to a belt about 20 K above the sump (thesis 5.5.2) |
 //! | TH-9 | heat through the radiator flows out of a coolant that is warmer than the air, and into a colder one: a step in which TH-5 would turn it round is made with the radiator shut | derived: second law |
+//! | TH-10 | at a start whose nodes are given one by one a node without a temperature has that of the nearest given one: coolant and engine oil each other's; sump, metal and belt the sump's, then metal's, then belt's; else ambient, as tyres have it | ASSUMED: engine and box soak as two lumps |
 //! | TH-6 | with the engine off, radiator and all links that need a pump or splash keep 10 % | ASSUMED |
 //!
 //! The linear system of TH-5 is solved by elimination (links.rs).
@@ -19,9 +20,11 @@
 
 mod keys;
 mod links;
+mod start;
 
 pub use keys::ThermalKeys;
 use links::Links;
+pub use start::{START_NODES, StartTemperatures};
 
 use crate::math::{Gather, Mask, Real, exp, ln, physics, places, ramp};
 

@@ -4,7 +4,7 @@ use super::Driven;
 use crate::PhaseTotals;
 use crate::number::finite;
 use cvtcycle_config::cycle::{Cycle, Weighting};
-use cvtcycle_model::drive::{co2_g_per_km, litres_per_100km};
+use cvtcycle_model::drive::{co2_g_per_km, distance_counts, litres_per_100km, litres_per_hour};
 use cvtcycle_model::engine::Engine;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,9 @@ pub struct PhaseSummary {
     pub duration_s: f64,
     /// Fuel mass.
     pub fuel_kg: f64,
+    /// Fuel over time; null in files of an earlier version.
+    #[serde(default)]
+    pub fuel_l_per_h: Option<f64>,
     /// Fuel; null without distance.
     pub fuel_l_per_100km: Option<f64>,
     /// Carbon dioxide; null without distance.
@@ -27,22 +30,23 @@ pub struct PhaseSummary {
     pub transmission_loss_kj: f64,
 }
 
-/// Fuel of some part of a cycle over its distance.
+/// Fuel of some part of a cycle over its distance and its time.
 pub(super) struct PhaseFuel {
+    pub(super) l_per_h: Option<f64>,
     pub(super) l_per_100km: Option<f64>,
     pub(super) co2_g_per_km: Option<f64>,
 }
 
 impl PhaseFuel {
     pub(super) fn new(part: &PhaseTotals, engine: &Engine) -> Self {
-        let litres = litres_per_100km(part.fuel_kg, engine.fuel_density_kg_m3, part.distance_m);
+        let (fuel_kg, distance_m) = (part.fuel_kg, part.distance_m);
+        let density = engine.fuel_density_kg_m3;
+        let counts = distance_counts(distance_m, part.duration_s);
+        let over_distance = |number: f64| finite(number).filter(|_| counts);
         PhaseFuel {
-            l_per_100km: finite(litres),
-            co2_g_per_km: finite(co2_g_per_km(
-                part.fuel_kg,
-                engine.co2_kg_kg,
-                part.distance_m,
-            )),
+            l_per_h: finite(litres_per_hour(fuel_kg, density, part.duration_s)),
+            l_per_100km: over_distance(litres_per_100km(fuel_kg, density, distance_m)),
+            co2_g_per_km: over_distance(co2_g_per_km(fuel_kg, engine.co2_kg_kg, distance_m)),
         }
     }
 }
@@ -58,6 +62,7 @@ pub(super) fn phases(cycle: &Cycle, driven: &Driven, engine: &Engine) -> Vec<Pha
                 distance_km: part.distance_m / 1e3,
                 duration_s: part.duration_s,
                 fuel_kg: part.fuel_kg,
+                fuel_l_per_h: fuel.l_per_h,
                 fuel_l_per_100km: fuel.l_per_100km,
                 co2_g_per_km: fuel.co2_g_per_km,
                 transmission_loss_kj: part.terms.losses / 1e3,

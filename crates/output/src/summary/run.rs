@@ -58,7 +58,16 @@ pub struct RunSummary {
     pub fuel_kg: f64,
     /// Fuel volume.
     pub fuel_l: f64,
-    /// Fuel over the whole cycle.
+    /// The same mass, g; null in files of an earlier version.
+    #[serde(default)]
+    pub fuel_g: Option<f64>,
+    /// Fuel over time; null in files of an earlier version.
+    #[serde(default)]
+    pub fuel_l_per_h: Option<f64>,
+    /// Fuel over time; null in files of an earlier version.
+    #[serde(default)]
+    pub fuel_kg_per_h: Option<f64>,
+    /// Fuel over the whole cycle; null below 10 m, and below a mean speed of 1 km/h.
     pub fuel_l_per_100km: Option<f64>,
     /// FTP75 only: fuel weighted by bag.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -131,6 +140,26 @@ pub struct RunSummary {
     pub price: Option<PriceSummary>,
 }
 
+/// What a fuel consumption is over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Over {
+    /// Distance, L/100 km.
+    Distance,
+    /// Time, L/h: the drive has no distance to speak of.
+    Time,
+}
+
+impl Over {
+    /// Unit of the consumption.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Over::Distance => "L/100 km",
+            Over::Time => "L/h",
+        }
+    }
+}
+
 /// Statistics of the implicit solve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
@@ -152,6 +181,28 @@ impl RunSummary {
     /// Headline fuel of the car: weighted where the cycle is.
     pub fn headline_fuel(&self) -> Option<f64> {
         self.weighted_fuel_l_per_100km.or(self.fuel_l_per_100km)
+    }
+
+    /// Fuel over time, L/h; of files of an earlier version too.
+    pub fn litres_per_hour(&self) -> Option<f64> {
+        let of_old = || finite(self.fuel_l * 3600.0 / self.duration_s);
+        self.fuel_l_per_h.or_else(of_old)
+    }
+
+    /// What the headline is over: the distance, or the time where that is too short or too slow for L/100 km.
+    pub fn over(&self) -> Over {
+        match self.headline_fuel() {
+            Some(_) => Over::Distance,
+            None => Over::Time,
+        }
+    }
+
+    /// Consumption over distance or time.
+    pub fn consumption(&self, over: Over) -> Option<f64> {
+        match over {
+            Over::Distance => self.headline_fuel(),
+            Over::Time => self.litres_per_hour(),
+        }
     }
 
     /// Term of the power ledger that consumes fuel, kJ. `electric` is the remainder of battery, starter and alternator: their losses, and the
@@ -251,6 +302,9 @@ pub fn run_summary(cycle: &Cycle, role: &str, settings: &Settings, driven: &Driv
         duration_s: all.duration_s,
         fuel_kg: all.fuel_kg,
         fuel_l: all.fuel_kg / engine.fuel_density_kg_m3 * 1e3,
+        fuel_g: finite(all.fuel_kg * 1e3),
+        fuel_l_per_h: fuel.l_per_h,
+        fuel_kg_per_h: finite(all.fuel_kg * 3600.0 / all.duration_s),
         fuel_l_per_100km: fuel.l_per_100km,
         weighted_fuel_l_per_100km: weighted,
         fleet: None,

@@ -128,6 +128,39 @@ class Car:
             raise bad("data", f"{type(data).__name__} is no dict")
         return cls.from_toml(_native.Car.json_to_toml(json.dumps(_plain("", data))), **{"name": "dict.toml", **options})
 
+    def accelerate(
+        self,
+        from_kmh: float | None = None,
+        to_kmh: float | None = None,
+        *,
+        grip: float | None = 0.9,
+        driven: str = "front",
+        axle_share: float | None = None,
+        height_over_base: float = 0.21,
+        grade_percent: float = 0.0,
+        shift_s: float = 0.5,
+        gear: int | None = None,
+        ambient_degc: float = 25.0,
+        start: str | float | Mapping[str, float] = "coolant=90,sump=80",
+        dt_s: float = 0.05,
+    ) -> dict[str, Any]:
+        """Full-throttle times, as ``cvtcycle accelerate --json`` prints them: ``spans`` with times and errors, ``drives`` with what happened.
+
+        Without speeds 0-100 km/h, 0-60 mph, 80-120 km/h, a quarter mile and 1000 m. ``grip`` is the friction coefficient of the ``driven`` tyres
+        (``front``, ``rear``, ``all``), None for no limit. ``gear`` keeps a gear of a manual box. ``start`` as in :func:`run`. A load is
+        ``set={"road_load.payload_kg+": 150}`` of the car.
+        """
+        speeds = None
+        if from_kmh is not None or to_kmh is not None:
+            speeds = (0.0 if from_kmh is None else from_kmh, 100.0 if to_kmh is None else to_kmh)
+        start = dict(start) if isinstance(start, Mapping) else start
+        found: dict[str, Any] = json.loads(
+            self._car.accelerate(
+                speeds, grip, driven, axle_share, height_over_base, grade_percent, shift_s, gear, ambient_degc, start, dt_s
+            )
+        )
+        return found
+
     def twin(self) -> Car:
         """Same car with a manual box."""
         return Car._build(("twin", self._made))

@@ -42,7 +42,7 @@ def run(
     cars: Sequence[Car],
     cycle: Cycle,
     ambient_degc: float,
-    start: str | float,
+    start: str | float | dict[str, float],
     dt_s: float,
     keep_rows: bool,
     price: bool,
@@ -77,6 +77,20 @@ class Car:
         engine_oil: str | None = None,
         formulation: str = "smooth",
     ) -> Car: ...
+    def accelerate(
+        self,
+        speeds_kmh: tuple[float, float] | None,
+        grip: float | None,
+        driven: str,
+        axle_share: float | None,
+        height_over_base: float,
+        grade_percent: float,
+        shift_s: float,
+        gear: int | None,
+        ambient_degc: float,
+        start: str | float | dict[str, float],
+        dt_s: float,
+    ) -> str: ...
     @staticmethod
     def json_to_toml(json: str) -> str: ...
     def twin(self) -> Car: ...
@@ -149,6 +163,8 @@ class Run:
     def cars(self) -> list[str]: ...
     @property
     def fuel_l_per_100km(self) -> float: ...
+    @property
+    def fuel_l_per_h(self) -> float: ...
     @property
     def has_trace(self) -> bool: ...
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any
 
@@ -47,8 +48,13 @@ class Run:
 
     @property
     def fuel_l_per_100km(self) -> float:
-        """Fuel of the subject over the whole cycle, L/100 km; NaN below a distance of one metre."""
+        """Fuel of the subject over the whole cycle, L/100 km; NaN below 10 m and below a mean speed of 1 km/h."""
         return self._run.fuel_l_per_100km
+
+    @property
+    def fuel_l_per_h(self) -> float:
+        """Fuel of the subject over the whole cycle, L/h."""
+        return self._run.fuel_l_per_h
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -108,15 +114,22 @@ class Run:
         return "python: " + shlex.join(self._words)
 
     def __repr__(self) -> str:
-        return f"<cvtcycle.Run of {', '.join(self.cars)}: {self.fuel_l_per_100km:.2f} L/100 km>"
+        return f"<cvtcycle.Run of {', '.join(self.cars)}: {self._fuel}>"
+
+    @property
+    def _fuel(self) -> str:
+        fuel = self.fuel_l_per_100km
+        return f"{self.fuel_l_per_h:.2f} L/h" if math.isnan(fuel) else f"{fuel:.2f} L/100 km"
 
     def _repr_html_(self) -> str:
         rows = ""
+        over = "fuel_l_per_h" if math.isnan(self.fuel_l_per_100km) else "fuel_l_per_100km"
         for car in self.summary["runs"]:
-            fuel, co2 = (car[key] for key in ("fuel_l_per_100km", "co2_g_per_km"))
+            fuel, co2 = (car[key] for key in (over, "co2_g_per_km"))
             cells = [car["vehicle"], car["title"], _shown(fuel, 2), _shown(co2, 1)]
             rows += "<tr>" + "".join(f"<td>{_html(str(cell))}</td>" for cell in cells) + "</tr>"
-        head = "<tr><th>car</th><th></th><th>fuel, L/100 km</th><th>CO2, g/km</th></tr>"
+        unit = "L/h" if over == "fuel_l_per_h" else "L/100 km"
+        head = f"<tr><th>car</th><th></th><th>fuel, {unit}</th><th>CO2, g/km</th></tr>"
         ambient = self.summary["ambient_degc"]
         return f"<p>{_html(self.summary['cycle'])}, ambient {ambient:g} degC</p><table>{head}{rows}</table>"
 
@@ -146,7 +159,7 @@ def run(
     cycle: Cycle | str | os.PathLike[str],
     *,
     ambient_degc: float = 25.0,
-    start: str | float = "soak",
+    start: str | float | Mapping[str, float] = "soak",
     dt_s: float = 1.0,
     baselines: Iterable[Car | str | os.PathLike[str]] = (),
     trace: bool = True,
@@ -154,8 +167,9 @@ def run(
 ) -> Run:
     """Drives a car and its baselines through a cycle.
 
-    ``start`` is ``soak`` (everything at ambient), ``warm`` (directly after the same cycle from a soak) or a temperature in degC. ``dt_s`` is
-    the longest time step. ``baselines`` are cars, names or paths, and ``twin`` for the same car with a manual box. Without ``trace`` no
+    ``start`` is ``soak`` (everything at ambient), ``warm`` (directly after the same cycle from a soak), a temperature in degC, or those of
+    single nodes, ``{"coolant": 81, "sump": 60}`` or ``"coolant=81,sump=60"``: coolant, engine_oil, sump, metal, belt, tyre; the others follow (TH-10).
+    ``dt_s`` is the longest time step. ``baselines`` are cars, names or paths, and ``twin`` for the same car with a manual box. Without ``trace`` no
     steps are kept, which is faster. With ``price`` each car is driven again without each of its losses, for the fuel that it costs.
     """
     subject = as_car("car", car)
@@ -163,6 +177,7 @@ def run(
         baselines = [baselines]
     others = [subject.twin() if own == "twin" else as_car("baselines", own) for own in baselines]
     cycle = as_cycle(cycle)
+    start = dict(start) if isinstance(start, Mapping) else start
     made = _native.run(
         [own._car for own in (subject, *others)], cycle._cycle, ambient_degc, start, dt_s, bool(trace), bool(price)
     )

@@ -10,14 +10,19 @@ use crate::number::{NONE, Quantity, capital};
 use crate::run::Car;
 use cvtcycle_output::Component;
 use cvtcycle_output::history::History;
+use cvtcycle_output::summary::Over;
 
 pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     let mut section = Section::new("difference", "Difference by component");
-    section.text(
-        "Both runs close their energy ledgers, so the differences of all terms add up to that of the fuel. As L/100 km each term counts as the \
-         fuel that holds its energy.",
-    );
     let cars = [&subject.a, &subject.b];
+    let over_distance = cars.iter().all(|car| car.run.over() == Over::Distance);
+    let as_litres = match over_distance {
+        true => " As L/100 km each term counts as the fuel that holds its energy.",
+        false => "",
+    };
+    section.text(format!(
+        "Both runs close their energy ledgers, so the differences of all terms add up to that of the fuel.{as_litres}"
+    ));
     let component = |c: Component| {
         let kj = cars.map(|car| car.run.loss_kj.get(c.name()));
         let some = kj.iter().any(Option::is_some);
@@ -35,7 +40,10 @@ pub(super) fn difference(subject: &Pair, names: &[String; 2]) -> Section {
     let picture = difference_bars(&EnergyDifference {
         names: names.clone(),
         fuel_kj_per_l: of_both(|car| car.run.fuel_energy_kj / car.run.fuel_l),
-        distance_km: of_both(|car| car.run.distance_km),
+        distance_km: of_both(|car| match car.run.over() {
+            Over::Distance => car.run.distance_km,
+            Over::Time => 0.0,
+        }),
         fuel_kj: of_both(|car| car.run.fuel_energy_kj),
         terms: components.chain(terms).collect(),
     });

@@ -12,7 +12,7 @@ use cvtcycle_config::{Problem, Problems, Setting};
 use cvtcycle_output::fleet_spread::{Compared, DrivenOn, FleetRange, Other, difference_range};
 use cvtcycle_output::number::{finite, plain};
 use cvtcycle_output::record::Manifest;
-use cvtcycle_output::summary::{RunSummary, StartWord, Summary};
+use cvtcycle_output::summary::{Over, RunSummary, StartWord, Summary};
 use cvtcycle_output::{Component, summary::SCHEMA};
 
 /// Losses are omitted if their difference is below this share of the largest one.
@@ -49,23 +49,49 @@ pub struct Side {
     pub fuel_l_per_100km: Option<f64>,
     /// Difference to the reference.
     pub difference_l_per_100km: Option<f64>,
-    /// Difference, per cent.
+    /// Fuel over time.
+    pub fuel_l_per_h: Option<f64>,
+    /// Difference of the fuel over time to the reference.
+    pub difference_l_per_h: Option<f64>,
+    /// Difference of the headline fuel, of the fuel over time where the reference has no distance to speak of, per cent.
     pub difference_percent: Option<f64>,
     /// Difference of 90 % of such cars, per cent, by measured ones, of another car than the reference; `None` of two shipped cars.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fleet: Option<FleetRange>,
     /// Carbon dioxide of the headline fuel.
     pub co2_g_per_km: Option<f64>,
-    /// Loss of each component per kilometre.
+    /// Loss of each component per kilometre; empty without distance.
     pub loss_kj_per_km: BTreeMap<String, Option<f64>>,
     /// Total loss of the transmission per kilometre.
     pub transmission_loss_kj_per_km: Option<f64>,
+    /// Loss of each component per hour.
+    pub loss_kj_per_h: BTreeMap<String, Option<f64>>,
+    /// Total loss of the transmission per hour.
+    pub transmission_loss_kj_per_h: Option<f64>,
     /// Smallest clamp safety factor.
     pub min_clamp_safety: Option<f64>,
     /// Time in which the car could not follow the trace.
     pub trace_missed_s: f64,
     /// Names of the failed checks.
     pub failed_checks: Vec<String>,
+}
+
+impl Side {
+    /// What the fuel is over.
+    pub fn over(&self) -> Over {
+        match self.fuel_l_per_100km {
+            Some(_) => Over::Distance,
+            None => Over::Time,
+        }
+    }
+
+    /// Loss of each component per kilometre or hour.
+    pub fn losses_kj(&self, over: Over) -> &BTreeMap<String, Option<f64>> {
+        match over {
+            Over::Distance => &self.loss_kj_per_km,
+            Over::Time => &self.loss_kj_per_h,
+        }
+    }
 }
 
 /// A value or condition that differs between runs.
@@ -170,6 +196,7 @@ fn conditions(named: &[(String, RunResults)]) -> Vec<DifferingValue> {
     let start = |run: &RunResults| match &run.summary.start {
         StartWord::Word(word) => word.clone(),
         StartWord::Degc(degc) => format!("{} degC", plain(*degc)),
+        StartWord::Nodes(_) => run.summary.start.text(),
     };
     // A cycle's file may have changed under the same name.
     let trace = |run: &RunResults| {
@@ -217,8 +244,9 @@ fn compare_runs(named: &[(String, RunResults)], conditions: Vec<DifferingValue>)
         .iter()
         .map(|(name, run)| side(name, &run.summary, base))
         .collect();
+    let over = base.over();
     let spread = |component: &Component| {
-        let losses = runs.iter().map(|run| loss(run, component.name()));
+        let losses = runs.iter().map(|run| loss(run, component.name(), over));
         let ends = losses.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
             (low.min(x), high.max(x))
         });
@@ -237,9 +265,9 @@ fn compare_runs(named: &[(String, RunResults)], conditions: Vec<DifferingValue>)
     }
 }
 
-/// Loss per kilometre; zero for a car without this component.
-fn loss(run: &Side, component: &str) -> f64 {
-    run.loss_kj_per_km
+/// Loss per kilometre or hour; zero for a car without this component.
+fn loss(run: &Side, component: &str, over: Over) -> f64 {
+    run.losses_kj(over)
         .get(component)
         .copied()
         .flatten()
@@ -267,29 +295,33 @@ fn by_cars(summary: &Summary, base: &RunSummary, percent: f64) -> Option<FleetRa
 
 fn side(name: &str, summary: &Summary, base: &RunSummary) -> Side {
     let run = &summary.runs[0];
-    let each_km = |kj: f64| finite(kj / run.distance_km);
-    let own = |c: Component| {
-        Some((
-            c.name().to_owned(),
-            run.loss_kj.get(c.name()).and_then(each_km)?,
-        ))
+    let each_km = |kj: f64| finite(kj / run.distance_km).filter(|_| run.over() == Over::Distance);
+    let each_hour = |kj: f64| finite(kj * 3600.0 / run.duration_s);
+    let own = |each: &dyn Fn(f64) -> Option<f64>| {
+        let own = |c: Component| {
+            let each = run.loss_kj.get(c.name()).and_then(each)?;
+            Some((c.name().to_owned(), Some(each)))
+        };
+        Component::ALL.into_iter().filter_map(own).collect()
     };
-    let fuels = run.headline_fuel().zip(base.headline_fuel());
+    let difference = |over: Over| Some(run.consumption(over)? - base.consumption(over)?);
+    let over = base.over();
+    let fuels = run.consumption(over).zip(base.consumption(over));
     let percent = fuels.and_then(|(fuel, base)| finite(100.0 * (fuel / base - 1.0)));
     Side {
         fleet: percent.and_then(|percent| by_cars(summary, base, percent)),
         name: name.to_owned(),
         vehicle: run.vehicle.clone(),
         fuel_l_per_100km: run.headline_fuel(),
-        difference_l_per_100km: fuels.map(|(fuel, base)| fuel - base),
+        difference_l_per_100km: difference(Over::Distance),
+        fuel_l_per_h: run.litres_per_hour(),
+        difference_l_per_h: difference(Over::Time),
         difference_percent: percent,
         co2_g_per_km: run.weighted_co2_g_per_km.or(run.co2_g_per_km),
-        loss_kj_per_km: Component::ALL
-            .into_iter()
-            .filter_map(own)
-            .map(|(name, kj)| (name, Some(kj)))
-            .collect(),
+        loss_kj_per_km: own(&each_km),
         transmission_loss_kj_per_km: each_km(run.transmission_loss_kj()),
+        loss_kj_per_h: own(&each_hour),
+        transmission_loss_kj_per_h: each_hour(run.transmission_loss_kj()),
         min_clamp_safety: run.min_clamp_safety,
         trace_missed_s: run.trace_missed_s,
         failed_checks: run.failed_checks.clone(),

@@ -15,7 +15,7 @@ use super::run::{Car, cars, change_table, conditions_line, cycle_title, hashes};
 use cvtcycle_config::Problems;
 use cvtcycle_output::Component;
 use cvtcycle_output::record::{CarRecord, Change, ValueRecord};
-use cvtcycle_output::summary::RunSummary;
+use cvtcycle_output::summary::{Over, RunSummary};
 
 /// Relative difference of driven distances above which the report says that a fuel difference includes one of distance.
 const DISTANCE: f64 = 1e-4;
@@ -170,17 +170,22 @@ fn only_change(subjects: &Pair) -> String {
 
 /// Fuel of both subjects, and the difference.
 fn lead(subjects: &Pair, [name_a, name_b]: &[String; 2]) -> String {
-    let fuel = |car: &Car| car.run.headline_fuel().unwrap_or(f64::NAN);
+    let over = subjects.a.run.over();
+    let fuel = |car: &Car| car.run.consumption(over).unwrap_or(f64::NAN);
     let (fuel_a, fuel_b) = (fuel(&subjects.a), fuel(&subjects.b));
     let change = fuel_b - fuel_a;
     let percent = 100.0 * change / fuel_a;
     format!(
         "the subject of {name_b} uses {}: {} or {} {} than that of {name_a} ({}).",
-        Quantity::Fuel.text(fuel_b),
-        Quantity::FuelShare.text(change.abs()),
+        Quantity::fuel(over).text(fuel_b),
+        match over {
+            Over::Distance => Quantity::FuelShare,
+            Over::Time => Quantity::FuelInTime,
+        }
+        .text(change.abs()),
         Quantity::Effect.text(percent.abs()),
         less_or_more(change),
-        Quantity::Fuel.text(fuel_a)
+        Quantity::fuel(over).text(fuel_a)
     )
 }
 
@@ -217,7 +222,10 @@ fn largest(a: &Car, b: &Car, alike: bool) -> String {
 }
 
 fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
-    let unit = Quantity::Fuel.unit();
+    let over = pairs
+        .first()
+        .map_or(Over::Distance, |pair| pair.a.run.over());
+    let unit = Quantity::fuel(over).unit();
     let columns = [
         (names[0].as_str(), unit),
         (&names[1], unit),
@@ -234,9 +242,17 @@ fn fuel_table(pairs: &[Pair], names: &[String; 2]) -> ReportTable {
         let phases = a.run.phases.iter().zip(&b.run.phases);
         for (x, y) in phases.filter(|_| a.run.phases.len() > 1) {
             let name = format!("{car}, {}", phase(&x.name));
-            table.named(name, fuel_cells(x.fuel_l_per_100km, y.fuel_l_per_100km));
+            let [x, y] = [x, y].map(|phase| match over {
+                Over::Distance => phase.fuel_l_per_100km,
+                Over::Time => phase.fuel_l_per_h,
+            });
+            table.named(name, fuel_cells(x, y));
         }
-        let whole = fuel_cells(a.run.fuel_l_per_100km, b.run.fuel_l_per_100km);
+        let [x, y] = [a, b].map(|car| match over {
+            Over::Distance => car.run.fuel_l_per_100km,
+            Over::Time => car.run.litres_per_hour(),
+        });
+        let whole = fuel_cells(x, y);
         table.strong(format!("{car}, whole cycle"), whole);
         let weighted = [a, b].map(|car| car.run.weighted_fuel_l_per_100km);
         if weighted[0].is_some() {

@@ -9,9 +9,9 @@ use crate::charts::decision::{Against, against, answer_strip, level};
 use crate::charts::{foremost_levers, lever_title, saves};
 use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_analysis::words::run::contradictions;
+use cvtcycle_analysis::words::run::{contradictions, mass_in_time};
 use cvtcycle_analysis::words::{decimals, of_cars};
-use cvtcycle_output::summary::{Comparison, Contradiction, RunSummary, Summary};
+use cvtcycle_output::summary::{Comparison, Contradiction, Over, RunSummary, Summary};
 
 /// Maximum number of levers on page 1, and among the decisions.
 const OPTIONS: (usize, usize) = (6, 2);
@@ -105,14 +105,19 @@ fn lead(summary: &Summary, cycle: &str) -> String {
     let Some(subject) = summary.runs.first() else {
         return String::new();
     };
-    let fuel = Quantity::Fuel.text(subject.headline_fuel());
+    let over = subject.over();
+    let fuel = Quantity::fuel(over).text(subject.consumption(over));
+    let mass = match over {
+        Over::Distance => String::new(),
+        Over::Time => format!(" ({})", mass_in_time(subject)),
+    };
     let weighted = match subject.weighted_fuel_l_per_100km {
         Some(_) => " (weighted)",
         None => "",
     };
     let range = subject.fleet.as_ref().map_or_else(String::new, of_cars);
     let text = format!(
-        "The {} uses {fuel}{weighted}{range} on {cycle}",
+        "The {} uses {fuel}{mass}{weighted}{range} on {cycle}",
         subject.label()
     );
     let first = summary.comparison.first().zip(summary.runs.get(1));

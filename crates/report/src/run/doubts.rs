@@ -7,7 +7,7 @@ use super::super::{study_answers, validation};
 use super::{Car, energy};
 use cvtcycle_analysis::words::difference_of_cars;
 use cvtcycle_analysis::words::run::{intervals, maps_left};
-use cvtcycle_output::summary::{RunSummary, Summary};
+use cvtcycle_output::summary::{Over, RunSummary, Summary};
 
 pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     let mut section = Section::new("results", "Results, and what to doubt");
@@ -56,18 +56,30 @@ fn fuel(summary: &Summary) -> ReportTable {
         table.emphasise(strong);
     };
     let groups = runs.first().map_or(&[][..], |run| &run.phases);
+    let over = runs.first().map_or(Over::Distance, RunSummary::over);
     for (p, group) in groups.iter().enumerate().filter(|_| groups.len() > 1) {
         let name = format!("Fuel, {}", phase(&group.name));
-        add(&name, Quantity::Fuel, false, &|_, run| {
-            run.phases.get(p).and_then(|p| p.fuel_l_per_100km)
+        add(&name, Quantity::fuel(over), false, &|_, run| {
+            let phase = run.phases.get(p)?;
+            match over {
+                Over::Distance => phase.fuel_l_per_100km,
+                Over::Time => phase.fuel_l_per_h,
+            }
         });
     }
     let weighted = runs
         .iter()
         .any(|run| run.weighted_fuel_l_per_100km.is_some());
-    add("Fuel, whole cycle", Quantity::Fuel, !weighted, &|_, run| {
-        run.fuel_l_per_100km
-    });
+    let whole = Quantity::fuel(over);
+    add(
+        "Fuel, whole cycle",
+        whole,
+        !weighted,
+        &|_, run| match over {
+            Over::Distance => run.fuel_l_per_100km,
+            Over::Time => run.litres_per_hour(),
+        },
+    );
     if weighted {
         let value_of: &ByRun = &|_, run| run.weighted_fuel_l_per_100km;
         add("Fuel, weighted 0.43/0.57", Quantity::Fuel, true, value_of);

@@ -74,6 +74,7 @@ fn plot<'a>(car: &Car<'a>, summary: &Summary) -> Option<PlotRun<'a>> {
         history,
         fuel_map,
         group_fuel: group_fuel(car.run),
+        fuel_unit: car.run.over().unit(),
         published: published_drive(&car.run.vehicle, summary),
     })
 }

@@ -150,6 +150,10 @@ pub fn start_line(summary: &Summary) -> String {
         StartWord::Word(word) if word == "warm" => "warm start from the same cycle".to_owned(),
         StartWord::Word(_) => "cold start".to_owned(),
         StartWord::Degc(start) => format!("the car at {}", degc(*start)),
+        StartWord::Nodes(_) => {
+            let nodes = summary.start.nodes_in_words().unwrap_or_default();
+            format!("start with {}", nodes.replace("degC", "\u{b0}C"))
+        }
     }
 }
 

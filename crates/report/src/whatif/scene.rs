@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use cvtcycle_config::setup::{AMBIENT, Options, START};
+use cvtcycle_config::setup::{AMBIENT, Options, START, start_nodes};
 use cvtcycle_config::{Argument, Override, Problem, Problems, carried};
 use cvtcycle_model::drive::Start;
 use cvtcycle_model::lubricant::ZERO_DEGC_K;
@@ -105,6 +105,10 @@ impl Scene {
         match self.start.as_str() {
             "soak" => return word(Start::Soak),
             "warm" => return word(Start::Warm),
+            nodes if nodes.contains('=') => {
+                let found = start_nodes(nodes)?;
+                return Ok((Start::Nodes(found), StartWord::of_nodes(&found)));
+            }
             _ => {}
         }
         let degc = self.start.parse().ok().filter(|degc| START.contains(*degc));

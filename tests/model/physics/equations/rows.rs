@@ -6,7 +6,9 @@ use crate::common::{CARS, Keep, ZERO, at, car, cycle, hill};
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_model::drive::{Car, State, simulate};
 use cvtcycle_model::drive::{EnergyTerms, Row};
-use cvtcycle_model::drive::{Start, co2_g_per_km, drive, fuel_map, litres_per_100km};
+use cvtcycle_model::drive::{
+    Start, co2_g_per_km, distance_counts, drive, fuel_map, litres_per_100km, litres_per_hour,
+};
 use cvtcycle_model::engine::Running;
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::prime_mover::PrimeMover;
@@ -337,9 +339,13 @@ fn val_fuel_map_by_hand() {
         }
     }
     same(litres_per_100km(0.745, 745.0, 20_000.0), 5.0);
-    same(litres_per_100km(0.745, 745.0, 1.0), 100_000.0);
+    same(litres_per_100km(0.745, 745.0, 10.0), 10_000.0);
+    same(litres_per_hour(0.745, 745.0, 1800.0), 2.0);
+    assert!(litres_per_hour(0.745, 745.0, 0.0).is_nan());
+    assert!(distance_counts(10.0, 36.0) && !distance_counts(9.99, 1.0));
+    assert!(distance_counts(100.0, 359.9) && !distance_counts(100.0, 360.1)); // 1 km/h
     same(co2_g_per_km(1.0, 3.1, 20_000.0), 155.0);
-    for short_m in [0.0, 1e-300, 0.999] {
+    for short_m in [0.0, 1e-300, 9.99] {
         assert!(litres_per_100km(1.0, 745.0, short_m).is_nan());
         assert!(co2_g_per_km(1.0, 3.1, short_m).is_nan());
     }

@@ -76,6 +76,7 @@ fn index(source: &Path) -> Result<String, String> {
     let mut text = MADE_FROM_HEADS.to_owned()
         + "\n| label | page | statement in the code | status |\n|---|---|---|---|\n";
     for stem in PAGES.iter().map(|page| page.stem).chain([
+        "accelerate",
         "attribution",
         "cold",
         "optimum",

@@ -20,7 +20,7 @@ const TURNED: f64 = 15.0;
 /// Empty share of a group's width.
 const GAP: f64 = 0.28;
 
-/// Fuel in L/100 km by phase group and in total, one bar per vehicle.
+/// Fuel by phase group and in total, one bar per vehicle.
 pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
     let groups = groups(runs);
     let bars = (groups.len() * runs.len()).max(1) as f64;
@@ -49,7 +49,7 @@ pub fn fuel_bars(runs: &[PlotRun]) -> Picture {
 /// Adds the bars of all groups; returns their values.
 fn draw_groups(panel: &mut Panel, runs: &[PlotRun], groups: &[String]) -> PictureTable {
     let names = [("Part of the cycle", ""), ("Vehicle", "")];
-    let mut table = PictureTable::new(&[&names[..], &[("Fuel", "L/100 km")]].concat());
+    let mut table = PictureTable::new(&[&names[..], &[("Fuel", unit(runs))]].concat());
     let width = (1.0 - GAP) / runs.len().max(1) as f64;
     let headline = headline(groups);
     for (g, group) in groups.iter().enumerate() {
@@ -102,7 +102,11 @@ fn title(runs: &[PlotRun]) -> String {
     } else {
         format!(": {}", list_of(&others))
     };
-    format!("{} uses {own:.2} L/100 km{weighted}{rest}", first.name)
+    format!(
+        "{} uses {own:.2} {}{weighted}{rest}",
+        first.name,
+        unit(runs)
+    )
 }
 
 /// Number of other cars named in the title.
@@ -113,7 +117,13 @@ fn axis(runs: &[PlotRun]) -> Axis {
     let groups = runs.iter().flat_map(|run| &run.group_fuel);
     let values = groups.map(|(_, fuel)| *fuel);
     let highest = values.filter(|x| x.is_finite()).fold(0.0, f64::max);
-    Axis::round("Fuel [L/100 km]", [0.0, 1.12 * highest].into_iter(), 8)
+    let title = format!("Fuel [{}]", unit(runs));
+    Axis::round(&title, [0.0, 1.12 * highest].into_iter(), 8)
+}
+
+/// Unit of the fuel of the first car, which is that of all on the same cycle.
+fn unit(runs: &[PlotRun]) -> &'static str {
+    runs.first().map_or("L/100 km", |run| run.fuel_unit)
 }
 
 fn bar(panel: &mut Panel, (from, to): (f64, f64), value: f64, style: Style) {

@@ -15,7 +15,7 @@ pub use super::printed::{PublishedDrive, published_drive};
 
 use cvtcycle_model::drive::FuelMap;
 use cvtcycle_output::History;
-use cvtcycle_output::summary::RunSummary;
+use cvtcycle_output::summary::{Over, RunSummary};
 
 /// A run and the additional data of its pictures.
 #[derive(Clone, Debug)]
@@ -26,22 +26,32 @@ pub struct PlotRun<'a> {
     pub history: &'a History,
     /// Engine, for the operating points.
     pub fuel_map: Option<FuelMap>,
-    /// Fuel in L/100 km of each phase group and of the `total`, in the order of the plot.
+    /// Fuel of each phase group and of the `total`, in the order of the plot.
     pub group_fuel: Vec<(String, f64)>,
+    /// Unit of that fuel, L/100 km, or L/h for a drive without way.
+    pub fuel_unit: &'static str,
     /// Published numbers of this drive.
     pub published: PublishedDrive,
 }
 
-/// Fuel of each phase group, of the cycle, and weighted where the cycle is, L/100 km: for [`PlotRun::group_fuel`].
+/// Fuel of each phase group, of the cycle, and weighted where the cycle is, L/100 km, or L/h for a drive without way: for [`PlotRun::group_fuel`].
 pub fn group_fuel(run: &RunSummary) -> Vec<(String, f64)> {
     // The only group of an undivided cycle is its total.
     let phases = run.phases.iter().filter(|_| run.phases.len() > 1);
-    let phases = phases.map(|phase| (phase.name.as_str(), phase.fuel_l_per_100km));
+    let over = run.over();
+    let phases = phases.map(|phase| {
+        let fuel = match over {
+            Over::Distance => phase.fuel_l_per_100km,
+            Over::Time => phase.fuel_l_per_h,
+        };
+        (phase.name.as_str(), fuel)
+    });
     let weighted = run.weighted_fuel_l_per_100km.map(Some);
-    let whole = [
-        ("total", Some(run.fuel_l_per_100km)),
-        ("weighted", weighted),
-    ];
+    let total = match over {
+        Over::Distance => run.fuel_l_per_100km,
+        Over::Time => run.litres_per_hour(),
+    };
+    let whole = [("total", Some(total)), ("weighted", weighted)];
     let whole = whole
         .into_iter()
         .filter_map(|(name, fuel)| Some((name, fuel?)));
