@@ -27,6 +27,7 @@ mod gtr15;
 mod launch_behind;
 mod loss_factor;
 mod maps;
+mod maps_of_others;
 mod metamorphic;
 mod outside;
 mod parts;

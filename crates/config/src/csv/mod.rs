@@ -29,5 +29,5 @@ pub use heading::{Foreign, UNITS};
 pub use named::Columns;
 pub use schema::{Cells, Column, Schema};
 pub use stream::Lines;
-pub use table::{Row, Table, Value, first_names, read};
+pub use table::{Row, Table, Value, first_fields, read};
 pub use text::Field;
