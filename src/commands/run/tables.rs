@@ -1,7 +1,7 @@
 //! The summary of a run as tables.
 
 use cvtcycle::analysis::words::between;
-use cvtcycle::analysis::words::run::sentences;
+use cvtcycle::analysis::words::run::{DOUBT, sentences};
 use cvtcycle::config::cycle::Cycle;
 use cvtcycle::output::Component;
 use cvtcycle::output::number::{NONE, fixed, percent, plain, signed, tiny};
@@ -302,7 +302,9 @@ fn notes(summary: &Summary) -> String {
         if let Some(schedule) = &run.gear_schedule {
             text += &format!("{name}: {schedule}\n");
         }
-        text.extend(run.notes.iter().map(|note| format!("{name}: {note}\n")));
+        // Doubts are in the answer.
+        let notes = run.notes.iter().filter(|note| !note.starts_with(DOUBT));
+        text.extend(notes.map(|note| format!("{name}: {note}\n")));
         if let Some(safety) = run.min_clamp_safety {
             let safety = fixed(safety, 2);
             text += &format!("{name}: smallest clamp safety factor {safety}\n");

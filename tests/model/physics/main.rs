@@ -29,6 +29,7 @@ mod launch_behind;
 mod laws;
 mod loss_factor;
 mod maps;
+mod maps_of_others;
 mod metamorphic;
 mod outside;
 mod parts;

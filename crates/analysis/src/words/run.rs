@@ -252,6 +252,7 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     let lines = [Some(first), recording.and_then(repaired), price(run)]
         .into_iter()
         .flatten();
+    let lines = lines.chain(input_doubts(summary));
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
 }
@@ -302,6 +303,21 @@ fn draw_doubts(summary: &Summary) -> Vec<String> {
     drawn.collect()
 }
 
+/// Beginning of a note that is a doubt about what was read.
+pub const DOUBT: &str = "doubt: ";
+
+/// The doubts about what was read of each car: numbers from it are as doubtful.
+fn input_doubts(summary: &Summary) -> Vec<String> {
+    let of = |run: &RunSummary| {
+        let doubts = run.notes.iter().filter(|note| note.starts_with(DOUBT));
+        let lines: Vec<String> = doubts
+            .map(|note| format!("{}: {note}.", run.vehicle))
+            .collect();
+        lines
+    };
+    summary.runs.iter().flat_map(of).collect()
+}
+
 /// The measured maps that a car left for a large part of the run, a sentence each.
 pub fn maps_left(summary: &Summary) -> Vec<String> {
     let of = |run: &RunSummary| {
@@ -316,14 +332,23 @@ fn left_map(run: &RunSummary, map: &MapLeft) -> String {
     let end = map
         .end
         .map_or_else(String::new, |end| format!(" {}", decimal(end)));
-    format!(
-        "{}: {} was left for {} % of the time with the engine on, most by {} {}{end}; the value of its edge is held there.",
-        run.vehicle,
-        map.file,
-        fixed(map.percent, 0),
-        map.column,
-        map.side
-    )
+    let (vehicle, file) = (&run.vehicle, &map.file);
+    let time = match map.seconds {
+        Some(seconds) => format!(" ({} s)", fixed(seconds, 0)),
+        None => String::new(),
+    };
+    let percent = fixed(map.percent, 0);
+    let left =
+        format!("{vehicle}: {file} was left for {percent} % of the time with the engine on{time}");
+    match map.column.as_str() {
+        "" => format!(
+            "{left}, most in holes between its points; what is there follows from the nearest of them."
+        ),
+        column => format!(
+            "{left}, most by {column} {}{end}; the value of its edge is held there.",
+            map.side
+        ),
+    }
 }
 
 /// The published numbers that a run contradicts, a sentence each.

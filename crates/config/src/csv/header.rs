@@ -249,7 +249,7 @@ impl Schema {
             });
             return;
         }
-        let close = near(text, self.read().map(name));
+        let close = near(text, self.listed().map(name));
         problems.value(line, field, text, || self.unknown(text, &close));
         meant.extend(close);
     }
@@ -276,7 +276,7 @@ impl Schema {
             if own.required && is_needed() && !is_there && !same().any(|c| meant.contains(&name(c)))
             {
                 problems.line(line, &own.name, || {
-                    let names: Vec<&str> = same().map(name).collect();
+                    let names: Vec<&str> = same().filter(|c| !c.is_alias).map(name).collect();
                     Problem::missing(format!("the column {} is missing", names.join(" or ")))
                         .names_key()
                         .allowed(self.all())

@@ -30,6 +30,6 @@ pub use named::Columns;
 pub(crate) use named::Entry;
 pub use schema::{Cells, Column, Schema};
 pub use stream::Lines;
-pub use table::{Row, Table, Value, first_names, read};
+pub use table::{Row, Table, Value, first_fields, read};
 pub use text::Field;
 pub(crate) use text::{empty, split};

@@ -98,7 +98,7 @@ impl Columns {
     }
 
     /// True where the file has no line of names.
-    pub(super) fn are_in_order(&self) -> bool {
+    pub fn are_in_order(&self) -> bool {
         self.list.iter().any(|entry| entry.name.is_none())
     }
 

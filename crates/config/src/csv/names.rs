@@ -29,6 +29,15 @@ pub(super) enum Found {
 }
 
 impl Schema {
+    /// The column that a text means: its name, a word with a unit, or a unit alone where that is enough.
+    #[must_use]
+    pub fn column_of(&self, text: &str) -> Option<usize> {
+        match self.find(text.trim(), None) {
+            Found::Column(column) => Some(column),
+            _ => None,
+        }
+    }
+
     /// Meaning of the name of a column, with the unit below it where there is a row of units.
     pub(super) fn find(&self, text: &str, below: Option<&str>) -> Found {
         let named = |name: &str| self.columns.iter().position(|own| own.name == name);
@@ -112,6 +121,29 @@ fn unit_of(column: &Column) -> &'static str {
 }
 
 impl Columns {
+    /// The columns of the schema in the order in which they are given.
+    ///
+    /// # Errors
+    /// A quantity that the schema does not have, or not in that unit.
+    pub fn in_order(&self, schema: &Schema) -> Result<Vec<usize>, Problem> {
+        let column = |entry: &Entry| entry.column(None, schema);
+        let all: Result<Vec<usize>, Problem> = self.list.iter().map(column).collect();
+        all.map_err(|problem| problem.at(Argument::Columns))
+    }
+
+    /// The names that are given, each with its column of the schema.
+    ///
+    /// # Errors
+    /// As [`Columns::in_order`].
+    pub fn by_name(&self, schema: &Schema) -> Result<Vec<(&str, usize)>, Problem> {
+        let places = self.in_order(schema)?;
+        let names = self
+            .list
+            .iter()
+            .map(|entry| entry.name.as_deref().unwrap_or_default());
+        Ok(names.zip(places).collect())
+    }
+
     /// The column of the schema for each column of the file.
     pub(super) fn match_columns(
         &self,

@@ -40,6 +40,8 @@ pub struct Column {
     pub allowed: &'static str,
     /// Hint for a bad cell, in place of the general ones.
     pub hint: &'static str,
+    /// True if it is a column of its group in another unit, which lists of the columns leave out.
+    pub is_alias: bool,
 }
 
 impl Column {
@@ -54,6 +56,16 @@ impl Column {
             may_be_empty: false,
             allowed: "",
             hint: "",
+            is_alias: false,
+        }
+    }
+
+    /// The column is one in another unit.
+    #[must_use]
+    pub fn alias(self) -> Self {
+        Column {
+            is_alias: true,
+            ..self
         }
     }
 
@@ -220,10 +232,15 @@ impl Schema {
         self.columns.iter().filter(|c| c.cells != Cells::Ignored)
     }
 
+    /// Columns that lists have.
+    pub(super) fn listed(&self) -> impl Iterator<Item = &Column> {
+        self.read().filter(|column| !column.is_alias)
+    }
+
     /// The names of all columns that are read, or words for them.
     pub(super) fn all(&self) -> String {
         if self.names.is_empty() {
-            self.read().map(name).collect::<Vec<_>>().join(", ")
+            self.listed().map(name).collect::<Vec<_>>().join(", ")
         } else {
             self.names.to_string()
         }

@@ -120,7 +120,7 @@ fn read_cell(
     let text = line.text_of(field);
     let found = match column.cells {
         Cells::Ignored => return Value::Word,
-        _ if text.is_empty() && column.may_be_empty => return Value::Empty,
+        _ if column.may_be_empty && is_nothing(text) => return Value::Empty,
         Cells::Word if text.is_empty() => Err(Problem::missing("the value is missing")
             .allowed(if column.allowed.is_empty() {
                 "a word"
@@ -142,6 +142,14 @@ fn read_cell(
         },
         Value::Number,
     )
+}
+
+/// True if a cell says that nothing was measured.
+fn is_nothing(text: &str) -> bool {
+    text.chars().all(|c| c == '-')
+        || ["nan", "n/a", "na"]
+            .iter()
+            .any(|word| word.eq_ignore_ascii_case(text))
 }
 
 /// A row that was read; columns are indices of the schema.
@@ -230,21 +238,31 @@ impl<'a, 't> Row<'a, 't> {
     }
 }
 
-/// The names of the first line of a table that is in memory, whatever they are; none where it cannot be understood.
-pub fn first_names(bytes: &[u8]) -> Vec<String> {
-    let names = |mut lines: Box<dyn Iterator<Item = Line<'_>>>| {
-        let first = lines.next()?;
-        let below: Vec<Line<'_>> = lines.take(2).collect();
-        let delimiter = Delimiter::detect(first, below.into_iter()).ok()?;
-        let mut fields = Vec::new();
-        split(first.text, delimiter.sign(), &mut fields).ok()?;
-        let text = |field: &Field| first.text_of(*field).to_owned();
+/// Most lines of [`first_fields`].
+const FIRST_LINES: usize = 2000;
+
+/// The fields of the first lines of a table that is in memory, whatever they are; none where it cannot be understood. The sign between them is that of
+/// the first line that has one.
+pub fn first_fields(bytes: &[u8]) -> Vec<Vec<String>> {
+    let Some(lines) = Collector::new("").lines(bytes) else {
+        return Vec::new();
+    };
+    let lines: Vec<Line<'_>> = lines.take(FIRST_LINES).collect();
+    let sign = (0..lines.len().min(2)).find_map(|k| {
+        let below = lines[k + 1..].iter().copied().take(2);
+        let delimiter = Delimiter::detect(lines[k], below).ok()?;
+        lines[k]
+            .text
+            .contains(delimiter.sign())
+            .then(|| delimiter.sign())
+    });
+    let mut fields = Vec::new();
+    let split_line = |line: &Line<'_>| {
+        split(line.text, sign.unwrap_or(','), &mut fields).ok()?;
+        let text = |field: &Field| line.text_of(*field).to_owned();
         Some(fields.iter().map(text).collect())
     };
-    let lines = Collector::new("").lines(bytes);
-    lines
-        .and_then(|lines| names(Box::new(lines)))
-        .unwrap_or_default()
+    lines.iter().map_while(split_line).collect()
 }
 
 /// Reads a table that is in memory. `check` receives the line of column names; `take` receives every row and returns false to end the

@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 use crate::document::overrides::Override;
 use crate::document::{Node, Value};
 use crate::problem::Problem;
+use crate::reader::maps;
 use crate::reader::origin::Found;
 use crate::reader::path::join;
 use crate::reader::section::Section;
@@ -181,6 +182,11 @@ impl<'r> Section<'r> {
         let Kind::Rows(columns) = key.kind else {
             return Vec::new();
         };
+        if maps::is_full_load(columns) && self.names_file(key) {
+            let file = self.read_csv_name(key).ok();
+            let rows = file.and_then(|file| maps::full_load(self, key.name, file.into(), columns));
+            return rows.unwrap_or_default();
+        }
         let Some((found, items)) = self.items(key, "a list of rows") else {
             return Vec::new();
         };
@@ -193,6 +199,12 @@ impl<'r> Section<'r> {
                 .for_each(|row| row[column] = quantity.to_si(row[column]));
         }
         rows
+    }
+
+    /// True if the value of a key is the name of a file: a text with an ending.
+    fn names_file(&self, key: &Key<'_>) -> bool {
+        let is_name = |node: &Node| matches!(&node.value, Value::Text(text) if text.contains('.'));
+        matches!(self.open(key), Lookup::Found(found) if is_name(found.node))
     }
 
     /// One row in the columns' own units.

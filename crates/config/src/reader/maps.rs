@@ -1,6 +1,8 @@
 //! Tables that vehicle files name: BSFC and loss maps.
 
+mod fuel;
 mod grid;
+mod script;
 mod wide;
 
 use self::grid::Rules;
@@ -17,7 +19,7 @@ use crate::problem::{Problem, Setting};
 use crate::reader::section::Section;
 use cvtcycle_model::keys::file_table::{FileColumn, FileRows, FileTable};
 use cvtcycle_model::keys::{Bound, Quantity};
-use cvtcycle_model::maps::{BsfcMap, LossMap};
+use cvtcycle_model::maps::{Basis, BsfcMap, FuelRow, FuelTable, LossMap, NoMap};
 use cvtcycle_model::math::{GRID_AXES, Grid};
 
 /// A CSV of numbers with a header, read whole, and the map that was made of it.
@@ -26,9 +28,14 @@ pub(crate) struct MapTable {
     /// Indices of the columns in the schema.
     columns: Vec<usize>,
     rows: Vec<Vec<f64>>,
+    /// Line of each row.
+    lines: Vec<usize>,
+    /// Name of the file.
+    file: String,
+    read_as: Option<String>,
     loss: OnceLock<LossMap>,
-    /// With the bits of heating value and displacement, which are parts of its numbers.
-    bsfc: Mutex<Option<([u64; 2], BsfcMap)>>,
+    /// With the engine that was measured, whose values are parts of its numbers.
+    bsfc: Mutex<Option<(Basis, BsfcMap)>>,
 }
 
 impl MapTable {
@@ -62,6 +69,8 @@ struct Wanted {
     columns: Vec<Column>,
     rules: Rules,
     foreign: Foreign,
+    /// True of a map of fuel.
+    is_fuel: bool,
 }
 
 fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<MapTable>> {
@@ -101,10 +110,18 @@ fn read(s: &Section, key: &str, named: &Named, wanted: Wanted) -> Option<Arc<Map
             Some(text) => Cow::Borrowed(text.as_bytes()),
             None => Cow::Owned(bytes_of(s.reader.files, file).map_err(unreadable).ok()?),
         };
-        match grid::read(file, &bytes, &schema, wanted.rules) {
-            Ok((columns, rows)) => Some(Arc::new(MapTable {
-                columns,
-                rows,
+        let wanted = grid::Wanted {
+            schema: &schema,
+            rules: wanted.rules,
+            is_fuel: wanted.is_fuel,
+        };
+        match grid::read(file, &bytes, wanted) {
+            Ok(read) => Some(Arc::new(MapTable {
+                columns: read.columns,
+                lines: read.rows.iter().map(|(line, _)| *line).collect(),
+                rows: read.rows.into_iter().map(|(_, values)| values).collect(),
+                file: named.file.clone(),
+                read_as: read.read_as,
                 loss: OnceLock::new(),
                 bsfc: Mutex::default(),
             }) as Made),
@@ -160,6 +177,15 @@ pub(crate) fn file_table(
 ) -> Option<FileRows> {
     let column = |own: &FileColumn| {
         let column = Column::number(own.name, own.range).group(own.group);
+        let column = match own.is_like.is_empty() {
+            true => column,
+            false => column.alias(),
+        };
+        // A cell of a matrix without a value is a hole where there may be some.
+        let column = match table.has_holes && own.group == table.value_group() {
+            true => column.or_empty(),
+            false => column,
+        };
         match own.required {
             true => column.required(),
             false => column,
@@ -170,23 +196,22 @@ pub(crate) fn file_table(
         columns: table.columns.iter().map(column).collect(),
         rules: Rules {
             rises_with: table.rises_with,
-            is_grid: table.is_grid,
+            is_grid: table.is_grid && !table.has_holes,
         },
         foreign: Foreign {
             words: table.words,
             ..Foreign::default()
         },
+        is_fuel: false,
     };
     let found = read(s, key, &file, wanted)?;
-    let columns: Vec<&'static str> = found
-        .columns
-        .iter()
-        .map(|k| table.columns[*k].name)
-        .collect();
-    let units: Vec<Quantity> = columns
-        .iter()
-        .map(|name| Quantity::from_key(name))
-        .collect();
+    let own = || found.columns.iter().map(|k| &table.columns[*k]);
+    let units: Vec<Quantity> = own().map(|own| Quantity::from_key(own.name)).collect();
+    let name = |own: &FileColumn| match own.is_like {
+        "" => own.name,
+        like => like,
+    };
+    let columns: Vec<&'static str> = own().map(name).collect();
     let si = |row: &Vec<f64>| {
         units
             .iter()
@@ -198,69 +223,141 @@ pub(crate) fn file_table(
     Some(FileRows { columns, rows })
 }
 
-/// Hint for a BSFC map that is inconsistent.
-const GRID: &str = "give at least two speeds and two loads; more torque needs more fuel, loads of zero and below need fuel_g_s";
+/// True of a list of rows that is a full-load line, which a file may give.
+pub(crate) fn is_full_load(columns: &[(&str, Bound)]) -> bool {
+    matches!(columns, [("speed_rpm", _), ("torque_nm", _)])
+}
 
-/// The table of a BSFC map from CSV; none after a problem.
+/// Columns of a full-load line in the tables of others that are passed over: the drag and the time constant of VECTO's `.vfld`.
+const BESIDE_FULL_LOAD: &[(&str, &str)] = &[
+    ("motoring torque*", ""),
+    ("Motoring Torque*", ""),
+    ("drag torque*", ""),
+    ("PT1*", ""),
+    ("full load torque [Nm]", "torque_nm"),
+    ("rpm", "speed_rpm"),
+    ("Nm", "torque_nm"),
+];
+
+/// Words of others for a full-load line.
+const OF_FULL_LOAD: &[(&str, &str)] = &[
+    ("engine_speed", "speed"),
+    ("n", "speed"),
+    ("full_load_torque", "torque"),
+    ("max_torque", "torque"),
+    ("maximum_torque", "torque"),
+    ("engine_torque", "torque"),
+    ("wot_torque", "torque"),
+];
+
+/// The rows of a full-load line from a file, speed in rad/s and torque in Nm, rising in speed; points without torque, in which such tables end, are
+/// left out.
+pub(crate) fn full_load(
+    s: &Section,
+    key: &str,
+    file: Named,
+    columns: &[(&str, Bound)],
+) -> Option<Vec<Vec<f64>>> {
+    let [(_, speeds), (_, torques)] = columns else {
+        return None;
+    };
+    let least = Bound::closed(0.0, torques.high());
+    let column =
+        |name: &'static str, range, group| Column::number(name, range).required().group(group);
+    let wanted = Wanted {
+        kind: "full_load",
+        columns: vec![
+            column("speed_rpm", *speeds, "speed"),
+            column("speed_rad_s", Bound::closed(0.0, 1600.0), "speed").alias(),
+            column("torque_lbft", Bound::closed(0.0, 1500.0), "torque").alias(),
+            column("torque_nm", least, "torque"),
+        ],
+        rules: Rules {
+            rises_with: None,
+            is_grid: false,
+        },
+        foreign: Foreign {
+            headings: BESIDE_FULL_LOAD,
+            words: OF_FULL_LOAD,
+            ..Foreign::default()
+        },
+        is_fuel: false,
+    };
+    let table = read(s, key, &file, wanted)?;
+    let names = ["speed_rpm", "speed_rad_s", "torque_lbft", "torque_nm"];
+    let si = |row: &Vec<f64>| -> Vec<f64> {
+        let cells = table.columns.iter().zip(row);
+        cells
+            .map(|(column, x)| Quantity::from_key(names[*column]).to_si(*x))
+            .collect()
+    };
+    let mut rows: Vec<Vec<f64>> = table
+        .rows
+        .iter()
+        .map(si)
+        .filter(|row| row[1] > 0.0)
+        .collect();
+    rows.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    Some(rows)
+}
+
+/// The table of a map of fuel; none after a problem.
 pub(crate) fn bsfc_table(s: &Section, key: &str, file: Named) -> Option<Arc<MapTable>> {
-    let column = |name, low, high| Column::number(name, Bound::closed(low, high)).required();
-    let columns = vec![
-        column("speed_rpm", 100.0, 20_000.0),
-        column("bmep_bar", -10.0, 40.0).group("load"),
-        column("torque_nm", -2000.0, 5000.0).group("load"),
-        column("fuel_g_s", 0.0, 100.0).group("fuel"),
-        column("bsfc_g_kwh", 100.0, 3000.0).group("fuel"),
-    ];
     let wanted = Wanted {
         kind: "bsfc",
-        columns,
-        rules: GRID_RULES,
-        foreign: Foreign::default(),
+        columns: fuel::columns(),
+        rules: Rules {
+            rises_with: None,
+            is_grid: false,
+        },
+        foreign: fuel::FOREIGN,
+        is_fuel: true,
     };
     read(s, key, &file, wanted)
 }
 
-/// The problem of a BSFC map that does not hang together.
-pub(crate) fn no_bsfc_map(why: String) -> Problem {
-    let problem = Problem::conflict(why).allowed("a map of fuel over speed and load");
-    problem.hint(GRID)
+/// The problem of a map of fuel that does not hang together.
+pub(crate) fn no_bsfc_map(why: NoMap) -> Problem {
+    let problem = Problem::conflict(why.message).allowed(why.allowed);
+    problem.hint(why.hint)
 }
 
 impl MapTable {
-    /// A BSFC map without friction; none of a table without its columns. The last one is kept: few cars differ in what it depends on.
+    /// A map of fuel without friction; none of a table without its columns. The last one is kept: few cars differ in what it depends on.
     ///
     /// # Errors
     /// Why the rows make no map.
-    pub fn bsfc_map(
-        &self,
-        heating_value_j_kg: f64,
-        displacement_m3: f64,
-    ) -> Result<Option<BsfcMap>, String> {
-        let scale = [heating_value_j_kg.to_bits(), displacement_m3.to_bits()];
+    pub fn bsfc_map(&self, basis: &Basis) -> Result<Option<BsfcMap>, NoMap> {
         let mut made = self.bsfc.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, map)) = made.as_ref().filter(|(of, _)| *of == scale) {
+        if let Some((_, map)) = made.as_ref().filter(|(of, _)| of == basis) {
             return Ok(Some(map.clone()));
         }
-        let flow = self.index(3).map(|i| (i, 1e3));
-        let fuel = flow.or_else(|| self.index(4).map(|i| (i, 3.6e9)));
-        let load = self.index(1).map(|i| (i, 1e5));
-        let per_torque = 4.0 * std::f64::consts::PI / displacement_m3;
-        let load = load.or_else(|| self.index(2).map(|i| (i, per_torque)));
-        let (Some(speed), Some((fuel, per_si)), Some((load, factor))) = (self.index(0), fuel, load)
-        else {
+        let (mut speed, mut load, mut burnt) = (None, None, None);
+        for (at, column) in self.columns.iter().enumerate() {
+            match fuel::gives(*column) {
+                fuel::Gives::Speed => speed = Some((at, *column)),
+                fuel::Gives::Load(of) => load = Some((at, *column, of)),
+                fuel::Gives::Fuel(of) => burnt = Some((at, *column, of)),
+            }
+        }
+        let (Some(speed), Some(load), Some(burnt)) = (speed, load, burnt) else {
             return Ok(None);
         };
-        let rpm = Quantity::from_key("speed_rpm");
-        let rows: Vec<(f64, f64, f64)> = self
-            .rows
-            .iter()
-            .map(|r| (rpm.to_si(r[speed]), r[load] * factor, r[fuel] / per_si))
-            .collect();
-        let map = match flow {
-            Some(_) => BsfcMap::from_flow(&rows, heating_value_j_kg, displacement_m3, (0.0, 0.0))?,
-            None => BsfcMap::from_rows(&rows, heating_value_j_kg, (0.0, 0.0))?,
+        let row = |(row, line): (&Vec<f64>, &usize)| FuelRow {
+            speed_rad_s: fuel::to_si(speed.1, row[speed.0]),
+            load: fuel::to_si(load.1, row[load.0]),
+            fuel: fuel::to_si(burnt.1, row[burnt.0]),
+            line: *line,
         };
-        *made = Some((scale, map.clone()));
+        let table = FuelTable {
+            file: self.file.clone(),
+            read_as: self.read_as.clone(),
+            load: load.2,
+            fuel: burnt.2,
+            rows: self.rows.iter().zip(&self.lines).map(row).collect(),
+        };
+        let map = BsfcMap::from_table(&table, basis, (0.0, 0.0))?;
+        *made = Some((*basis, map.clone()));
         Ok(Some(map))
     }
 }
@@ -308,6 +405,7 @@ pub(crate) fn loss_map(
         columns,
         rules: GRID_RULES,
         foreign: Foreign::default(),
+        is_fuel: false,
     };
     let table = read(s, key, &file, wanted)?;
     if let Some(map) = table.loss.get() {

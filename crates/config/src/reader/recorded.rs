@@ -8,7 +8,7 @@ use super::maps::MapTable;
 use super::path::join;
 use cvtcycle_model::keys::file_table::{FileRows, FileTable};
 use cvtcycle_model::keys::{Bound, Key, Kind, Quantity, Values};
-use cvtcycle_model::maps::{BsfcMap, LossMap};
+use cvtcycle_model::maps::{Basis, BsfcMap, LossMap};
 use rustc_hash::FxHashMap;
 
 /// A value that is no single number.
@@ -317,16 +317,11 @@ impl Values for RecordedTable<'_> {
         other!(self, key, FileRows, value => value.clone(), None)
     }
 
-    fn bsfc_map(
-        &self,
-        key: &Key<'static>,
-        heating_value_j_kg: f64,
-        displacement_m3: f64,
-    ) -> Option<BsfcMap> {
+    fn bsfc_map(&self, key: &Key<'static>, basis: &Basis) -> Option<BsfcMap> {
         let Some(Typed::BsfcMap(table)) = self.other(key) else {
             return self.refuse(None);
         };
-        let map = table.bsfc_map(heating_value_j_kg, displacement_m3);
+        let map = table.bsfc_map(basis);
         map.unwrap_or_else(|_| self.refuse(None))
     }
 

@@ -7,8 +7,8 @@ use crate::reader::section::Section;
 use crate::reader::value::{Lookup, default_option, options};
 use cvtcycle_model::keys::file_table::{FileRows, FileTable};
 use cvtcycle_model::keys::{Key, Kind, Presence, Values};
-use cvtcycle_model::maps::BsfcMap;
 use cvtcycle_model::maps::LossMap;
+use cvtcycle_model::maps::{Basis, BsfcMap};
 
 impl<'r> Values for Section<'r> {
     fn table(&self, name: &str) -> Self {
@@ -159,18 +159,13 @@ impl<'r> Values for Section<'r> {
         self.keep(key, rows, Typed::FileRows)
     }
 
-    fn bsfc_map(
-        &self,
-        key: &Key<'static>,
-        heating_value_j_kg: f64,
-        displacement_m3: f64,
-    ) -> Option<BsfcMap> {
+    fn bsfc_map(&self, key: &Key<'static>, basis: &Basis) -> Option<BsfcMap> {
         let file = self.read_csv_name(key);
         if file == Err(true) {
             self.report_missing(key);
         }
         let table = maps::bsfc_table(self, key.name, file.ok()?.into())?;
-        let map = table.bsfc_map(heating_value_j_kg, displacement_m3);
+        let map = table.bsfc_map(basis);
         self.keep(key, table, Typed::BsfcMap);
         map.unwrap_or_else(|why| {
             self.report_at(key.name, maps::no_bsfc_map(why));

@@ -9,7 +9,9 @@ use super::Setup;
 use cvtcycle_model::engine::FuelModel;
 use cvtcycle_model::keys::rpm;
 use cvtcycle_model::lubricant::Lubricant;
+use cvtcycle_model::maps::LossMap;
 use cvtcycle_model::transmission::Transmission;
+use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Cvt;
 use cvtcycle_model::transmission::cvt::variator::{
@@ -74,6 +76,7 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
         of_top_gear(setup),
         stall_doubt(setup),
     ];
+    let of_fuel = fuel_map_doubts(setup);
     let of_box = match setup.transmission() {
         Transmission::Cvt(cvt) => [
             span_doubt(cvt),
@@ -81,10 +84,91 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
             radius_doubt(cvt),
             grip_doubt(setup, cvt),
             pump_doubt(setup, cvt),
+            ratio_doubt(setup, cvt),
         ],
-        Transmission::Manual(_) => [None, None, None, None, None],
+        Transmission::Manual(_) => [None, None, None, None, None, None],
     };
-    all.into_iter().chain(of_box).flatten().collect()
+    // What is wrong with a measured map is wrong with every number: first.
+    let [.., ratio] = &of_box;
+    let first = ratio.iter().cloned().chain(of_fuel);
+    let others = all.into_iter().chain(of_box.clone().into_iter().take(5));
+    first.chain(others.flatten()).collect()
+}
+
+/// What the points of a measured map of fuel let doubt.
+fn fuel_map_doubts(setup: &Setup) -> Vec<String> {
+    let engine = setup.engine();
+    match &engine.fuel {
+        FuelModel::Map(map) => map.judge(|speed| engine.full_load_pa(speed)).doubts,
+        FuelModel::Willans(_) => Vec::new(),
+    }
+}
+
+/// Difference of the ends of two ranges of ratios, as sum of the logarithms, from which the nearer one is the right one. ASSUMED.
+const RANGE_FITS: f64 = 0.25;
+/// Loss in the highest ratio over that in low, at slow speed and high torque, from which the ratio is likely the other way round. ASSUMED: the
+/// models of the Rover have 0.91 with the same points, the measured box of a Subaru Justy (ADVISOR, TX_CVT50_SUBARU) 0.6.
+const LOSES_MORE: f64 = 1.1;
+
+/// A map of the whole box whose ratio is likely output over input: its range fits that of the box better the other way round, or it loses more in
+/// overdrive than in low where torque and not speed makes the losses (the primary's small radius in low needs the greatest clamping force for a torque).
+fn ratio_doubt(setup: &Setup, cvt: &Cvt) -> Option<String> {
+    const KEY: &str = "transmission.cvt.maps.ratio_is";
+    let mut keys = setup.keys.iter();
+    let is_said = keys.any(|info| info.key == KEY && info.status != "default");
+    let mut maps = setup.transmission().maps();
+    let (_, map) = maps.find(|(component, _)| *component == Component::BoxMap)?;
+    let axes = map.grid().axes();
+    let (Some(&least), Some(&most)) = (axes[0].first(), axes[0].last()) else {
+        return None;
+    };
+    if is_said || most - least <= 0.0 {
+        return None;
+    }
+    let misfit =
+        |low: f64, high: f64| (low / cvt.ratio.low).ln().abs() + (high / cvt.ratio.high).ln().abs();
+    let range = [misfit(most, least), misfit(1.0 / least, 1.0 / most)];
+    let by_range = range[1] + RANGE_FITS < range[0];
+    let losses = slow_losses(map);
+    let by_loss = least < 1.0 / STRADDLES && most > STRADDLES && losses[1] > LOSES_MORE * losses[0];
+    let why = match (by_range, by_loss) {
+        (true, _) => format!(
+            "that of the belt from {:.2} to {:.2}, and turned over it would fit better",
+            cvt.ratio.high, cvt.ratio.low
+        ),
+        (false, true) => format!(
+            "and at slow speed and high torque it loses {:.0} % more at the low end than at the high one, where a belt needs the greatest force",
+            100.0 * (losses[1] / losses[0] - 1.0)
+        ),
+        (false, false) => return None,
+    };
+    Some(format!(
+        "the ratio of the map of the whole box goes from {least:.2} to {most:.2}, {why}: is it output over input? Then write ratio_is = \"output_over_input\" next to the map, or name the column speed_ratio; if it is not, ratio_is = \"input_over_output\""
+    ))
+}
+
+/// How far both ends of a range are beyond 1 at least, so that they can be compared.
+const STRADDLES: f64 = 1.3;
+
+/// Mean loss of a map of the whole box at its highest and at its lowest ratio, over its slower speeds and higher torques, Nm.
+fn slow_losses(map: &LossMap) -> [f64; 2] {
+    let axes = map.grid().axes();
+    let (speeds, torques) = (&axes[1], &axes[2]);
+    let middle = 0.5 * (speeds[0] + speeds[speeds.len() - 1]);
+    let high = 0.5 * torques[torques.len() - 1];
+    let at = |ratio: f64| {
+        let slow = speeds.iter().filter(|speed| **speed <= middle);
+        let points = slow.flat_map(|speed| {
+            let loaded = torques
+                .iter()
+                .filter(|torque| **torque >= high && high > 0.0);
+            loaded.map(move |torque| [ratio, *speed, *torque, axes[3][0], axes[4][0]])
+        });
+        let losses: Vec<f64> = points.map(|x| map.grid().at(x).0).collect();
+        losses.iter().sum::<f64>() / losses.len().max(1) as f64
+    };
+    let (least, most) = (axes[0][0], axes[0][axes[0].len() - 1]);
+    [at(most), at(least)]
 }
 
 /// True if a value is that of a class or of another car.

@@ -10,6 +10,7 @@ use crate::files::TableCache;
 use crate::reader::recorded::Recorded;
 use crate::{Argument, Document, KeyInfo, Override, Place, Problem, Problems, Reader, Target};
 use cvtcycle_model::drive::{ChangedParts, Vehicle};
+use cvtcycle_model::engine::FuelModel;
 use cvtcycle_model::files::{HEAD, TwinKeys};
 use cvtcycle_model::keys::Values;
 use cvtcycle_model::lubricant::{Friction, Lubricant};
@@ -284,6 +285,8 @@ impl Frame {
         };
         notes.extend(changed_losses(transmission));
         notes.extend(scattered_maps(transmission));
+        notes.extend(filled_maps(transmission));
+        notes.extend(fuel_map(vehicle));
         notes
     }
 }
@@ -300,6 +303,47 @@ fn changed_losses(transmission: &Transmission) -> impl Iterator<Item = String> {
             "loss_factor.{name} = {factor}: to see what a loss costs, no car that could be built"
         )
     })
+}
+
+/// A sentence on each map that is beyond its points in part (MP-7).
+fn filled_maps(transmission: &Transmission) -> impl Iterator<Item = String> {
+    let of = |(_, map): (Component, &LossMap)| {
+        let share = 100.0 * map.grid().known_share();
+        (share < 100.0).then(|| {
+            format!(
+                "the points of the map of the whole box fill no grid: {share:.0} % of its grid lies within their triangles, the rest is beyond them, and time there is outside_validity"
+            )
+        })
+    };
+    transmission.maps().filter_map(of)
+}
+
+/// How the map of fuel was read (BM-4), where it is no grid in the program's own form.
+fn fuel_map(vehicle: &Vehicle) -> Vec<String> {
+    let FuelModel::Map(map) = &vehicle.engine().fuel else {
+        return Vec::new();
+    };
+    let Some(origin) = map.origin.as_deref() else {
+        return Vec::new();
+    };
+    let file = &origin.file;
+    let read_as = origin.read_as.iter();
+    let mut notes: Vec<String> = read_as
+        .map(|words| format!("{file} is read as {words}"))
+        .collect();
+    if let Some((count, line)) = origin.left_out {
+        notes.push(format!(
+            "{count} points of {file} are left out, the first in line {line}: below 100 rpm, without a value, or a consumption for no work"
+        ));
+    }
+    let share = 100.0 * map.known_share();
+    if map.known.is_some() {
+        notes.push(format!(
+            "the {} points of {file} fill no grid: between them triangles, which are {share:.0} % of their speeds and loads; beyond them the specific consumption of the last load, and time there is outside_validity",
+            origin.points.len()
+        ));
+    }
+    notes
 }
 
 /// A sentence on each map from scattered points (MP-5): what its interpolation misses.

@@ -4,7 +4,7 @@ use super::start_stop::{StartStop, StartStopKeys};
 use super::{EFFICIENCY, Engine, FuelModel, Motored, Willans};
 use crate::keys::{Bound, Choice, Repeat, Values, curve, keys};
 use crate::lubricant::{Viscosity, viscosity};
-use crate::maps::BsfcMap;
+use crate::maps::{Basis, BsfcMap};
 use crate::math::{Curve, clamp};
 
 keys! {
@@ -92,7 +92,8 @@ keys! {
         l2: or(DEFAULT.l2, number(0.0, 0.05)), "its rise with piston speed squared, bar s2/m2", ["WI-1", "BM-2"];
         measured_cc: optional(number(200.0, 20_000.0)), "swept volume of the engine that was measured, for a file with torque_nm or fuel_g_s; absent: that of the car", ["BM-1"];
         measured_mj_kg: optional(number(20.0, 60.0)), "lower heating value of the fuel that it burnt; absent: that of the car's fuel", ["BM-1"];
-        file: text(), "CSV with speed_rpm, bmep_bar or torque_nm, bsfc_g_kwh or fuel_g_s on a full grid; with fuel_g_s loads may be zero and below", ["BM-1"];
+        measured_cylinders: optional(number(1.0, 16.0)), "its number of cylinders, for a file with fuel for a stroke (fuel_mg_stroke)", ["BM-1"];
+        file: csv(), "table, matrix or ADVISOR file with speed, load (bmep_bar, torque_nm or power_kw) and fuel (bsfc_g_kwh, fuel_g_s, fuel_mg_stroke or efficiency_percent), each in its units; a grid, or points; with a flow loads may be zero and below", ["BM-1", "BM-4"];
     }
 }
 
@@ -158,6 +159,7 @@ impl Engine {
             on.check_store(&stopping, &engine);
         }
         check_efficiency(&line, &engine);
+        check_map(&line, &engine);
         check_pairs(&idle, &fuel, &engine);
         engine
     }
@@ -217,6 +219,15 @@ fn check_efficiency<V: Values>(willans: &V, engine: &Engine) {
     }
 }
 
+/// The points of a measured map below full load.
+fn check_map<V: Values>(map_keys: &V, engine: &Engine) {
+    if let FuelModel::Map(map) = &engine.fuel
+        && let Some(why) = map.judge(|speed| engine.full_load_pa(speed)).refusal
+    {
+        map_keys.complain(BSFC.file.name, &why.allowed, &why.message, &why.hint);
+    }
+}
+
 fn full_load<V: Values>(s: &V) -> Curve {
     match s.rows(&ENGINE.full_load) {
         Some(points) => curve(s, &ENGINE.full_load, &points),
@@ -255,7 +266,12 @@ fn fuel_model<V: Values>(s: &V, displacement_m3: f64) -> (FuelModel, V, Option<f
         let heating_value =
             measured_j_kg.unwrap_or_else(|| s.table("fuel").number(&FUEL.heating_value_mj_kg));
         let measured_m3 = measured(&BSFC.measured_cc).unwrap_or(displacement_m3);
-        let map = w.bsfc_map(&BSFC.file, heating_value, measured_m3);
+        let basis = Basis {
+            heating_value_j_kg: heating_value,
+            displacement_m3: measured_m3,
+            cylinders: measured(&BSFC.measured_cylinders),
+        };
+        let map = w.bsfc_map(&BSFC.file, &basis);
         let model = map.map_or(FuelModel::Willans(DEFAULT), |map| {
             FuelModel::Map(BsfcMap { friction, ..map })
         });

@@ -187,6 +187,11 @@ impl Engine {
         }
     }
 
+    /// Mean effective pressure at full load of the hot engine at sea level, Pa.
+    pub fn full_load_pa(&self, speed_rad_s: f64) -> f64 {
+        self.mep_pa(self.full_load.at(speed_rad_s))
+    }
+
     /// Speed of the greatest full-load power, rad/s.
     pub fn peak_power_rad_s(&self) -> f64 {
         self.speed_for_power()

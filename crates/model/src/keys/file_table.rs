@@ -13,6 +13,8 @@ pub struct FileTable {
     pub rises_with: Option<&'static str>,
     /// True if the rows fill a grid.
     pub is_grid: bool,
+    /// True if rows of a grid may be missing: the part that reads the table says what is there.
+    pub has_holes: bool,
     /// Words of other programs, in lower case and joined by `_`, and the name of a column without its unit.
     pub words: &'static [(&'static str, &'static str)],
 }
@@ -28,6 +30,8 @@ pub struct FileColumn {
     pub group: &'static str,
     /// True if a table has to have a column of that group.
     pub required: bool,
+    /// Name of the column that gives the same quantity in the program's own unit: in the rows it has that name. Empty for that column itself.
+    pub is_like: &'static str,
 }
 
 impl FileColumn {
@@ -39,6 +43,22 @@ impl FileColumn {
             range,
             group,
             required: true,
+            is_like: "",
+        }
+    }
+
+    /// The same in another unit.
+    #[must_use]
+    pub const fn in_unit(self, name: &'static str, range: Bound) -> Self {
+        FileColumn {
+            name,
+            range,
+            is_like: if self.is_like.is_empty() {
+                self.name
+            } else {
+                self.is_like
+            },
+            ..self
         }
     }
 
@@ -63,7 +83,7 @@ impl FileTable {
     #[must_use]
     pub fn words_of_columns(&self) -> String {
         let mut groups: Vec<(&str, String)> = Vec::new();
-        for column in self.columns {
+        for column in self.columns.iter().filter(|own| own.is_like.is_empty()) {
             match groups.iter_mut().find(|(group, _)| *group == column.group) {
                 Some((_, words)) => *words += &format!(" or {}", column.name),
                 None if column.required => groups.push((column.group, column.name.to_owned())),

@@ -13,7 +13,7 @@ pub use quantity::{Quantity, RAD_S, RPM, ZERO_DEGC_K, rad_s, rpm, stem};
 pub use range::Bound;
 
 use self::file_table::{FileRows, FileTable};
-use crate::maps::{BsfcMap, LossMap};
+use crate::maps::{Basis, BsfcMap, LossMap};
 use crate::math::Curve;
 
 /// One parameter.
@@ -287,14 +287,9 @@ pub trait Values: Sized {
     /// The rows of the CSV table that the key names; none where it is absent and may be, and after a problem.
     fn file_table(&self, key: &Key<'static>, table: &'static FileTable) -> Option<FileRows>;
 
-    /// A BSFC map from the file that the key names, for a heating value and a displacement; the
+    /// A map of fuel from the file that the key names, for the engine that was measured; the
     /// caller gives it its friction.
-    fn bsfc_map(
-        &self,
-        key: &Key<'static>,
-        heating_value_j_kg: f64,
-        displacement_m3: f64,
-    ) -> Option<BsfcMap>;
+    fn bsfc_map(&self, key: &Key<'static>, basis: &Basis) -> Option<BsfcMap>;
 
     /// Reports a problem at a key of this table.
     fn complain(&self, key: &str, allowed: &str, message: &str, hint: &str);

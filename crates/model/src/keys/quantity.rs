@@ -104,7 +104,7 @@ const fn unit(suffix: &'static str, name: &'static str, factor: f64) -> Quantity
     }
 }
 
-const UNITS: [Quantity; 65] = [
+const UNITS: [Quantity; 81] = [
     unit("_m", "m", 1.0),
     unit("_mm", "mm", 1e-3),
     unit("_um", "µm", 1e-6),
@@ -175,7 +175,33 @@ const UNITS: [Quantity; 65] = [
     unit("_nm_per_rpm2", "N m/rpm²", 1.0 / (RPM * RPM)),
     unit("_per_1000_rpm", "1/1000 rpm", 1.0 / (1000.0 * RPM)),
     unit("_percent", "%", 0.01),
+    // Units of the tables of others. A pound is 0.453 592 37 kg, a foot 0.3048 m, standard gravity 9.806 65 m/s2, a horsepower 550 ft lbf/s.
+    unit("_lbft", "lb-ft", LBF * FOOT),
+    unit("_psi", "psi", LBF / (FOOT / 12.0 * (FOOT / 12.0))),
+    unit("_kpa", "kPa", 1e3),
+    unit("_mpa", "MPa", 1e6),
+    unit("_hp", "hp", HP),
+    unit("_g_h", "g/h", 1e-3 / 3600.0),
+    unit("_kg_h", "kg/h", 1.0 / 3600.0),
+    unit("_kg_s", "kg/s", 1.0),
+    unit("_mg_s", "mg/s", 1e-6),
+    unit("_lb_h", "lb/h", LB / 3600.0),
+    unit("_g_kwh", "g/kWh", 1e-3 / 3.6e6),
+    unit("_kg_kwh", "kg/kWh", 1.0 / 3.6e6),
+    unit("_g_hph", "g/hp-h", 1e-3 / (HP * 3600.0)),
+    unit("_lb_hph", "lb/hp-h", LB / (HP * 3600.0)),
+    unit("_ug_j", "µg/J", 1e-9),
+    unit("_mg_stroke", "mg/stroke", 1e-6),
 ];
+
+/// kg in one lb.
+const LB: f64 = 0.453_592_37;
+/// N in one pound-force.
+const LBF: f64 = LB * 9.806_65;
+/// m in one foot.
+const FOOT: f64 = 0.3048;
+/// W in one mechanical horsepower.
+const HP: f64 = 550.0 * LBF * FOOT;
 
 /// The key without its unit, to recognise the same quantity in another unit.
 pub fn stem(key: &str) -> &str {

@@ -3,7 +3,20 @@
 //! | label | statement | status |
 //! |---|---|---|
 //! | BM-1 | fuel MEP = BSFC x BMEP x LHV, or fuel flow x LHV 4 pi/(V w), between the map's points, linear in speed and BMEP; LHV and V those of the engine that was measured | source: the user's map |
+//! | BM-4 | points that fill no grid: linear in the triangles of a Delaunay triangulation over speed and load, each in shares of its range, at the pairs of the points' speeds and loads; beyond the points at a speed the specific consumption of the last load holds, below them the slope of the mean line through them | derived: BM-1 on triangles; beyond them ASSUMED, and the time there is counted |
 //! | BM-2 | below the map's lowest BMEP (of those above the drag) a line to zero fuel at minus the hot friction l + l2 cm2, or at minus the drag of EN-7 where the engine has one of its own | derived; friction from keys l, l2 |
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use super::NoMap;
+use super::fuel_table::{Basis, FuelTable, Point};
+use crate::math::Lattice;
+
+/// Most pairs of speeds and loads: points that are not in lines have as many of each.
+const MOST_PAIRS: usize = 250_000;
+/// Values of an axis of points beyond that.
+const LEVELS: u32 = 500;
 
 /// A map of fuel mean effective pressure.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +29,25 @@ pub struct BsfcMap {
     pub fuel_pa: Vec<Vec<f64>>,
     /// Hot friction l, l2 as in the Willans line, bar and bar s2/m2 (BM-2).
     pub friction: (f64, f64),
+    /// Which pairs lie within the points of the file, as `fuel_pa`; none where all do.
+    pub known: Option<Arc<Vec<Vec<bool>>>>,
+    /// The points of the file; none of a map that is from none.
+    pub origin: Option<Arc<Origin>>,
+}
+
+/// Where a map is from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Origin {
+    /// Name of the file.
+    pub file: String,
+    /// How it was read, in words, where it is not written as the program's own are.
+    pub read_as: Option<String>,
+    /// Swept volume of the engine that was measured, m3.
+    pub displacement_m3: f64,
+    /// Its points, by speed and load.
+    pub points: Vec<Point>,
+    /// Rows without meaning that were left out, and the first line of one.
+    pub left_out: Option<(usize, usize)>,
 }
 
 impl BsfcMap {
@@ -33,105 +65,204 @@ impl BsfcMap {
             self.fuel_pa[hi - 1][j] + u * (self.fuel_pa[hi][j] - self.fuel_pa[hi - 1][j])
         };
         let inside = s0 <= speed_rad_s && speed_rad_s <= s1 && bmep_pa <= self.bmep_pa[m - 1];
+        let is_known = |k: usize| {
+            let known = self.known.as_ref();
+            known.is_none_or(|known| known[hi - 1][k] && known[hi][k])
+        };
         // Loads at which the drag leaves no fuel have none, whatever the map says.
         let first = self.bmep_pa.partition_point(|&p| p <= -drag_pa).min(m - 1);
         let lowest = self.bmep_pa[first];
         if bmep_pa < lowest {
             let fuel_pa = row(first) * (bmep_pa + drag_pa) / (lowest + drag_pa); // BM-2
-            return (fuel_pa.max(0.0), inside);
+            return (fuel_pa.max(0.0), inside && is_known(first));
         }
         let k = self
             .bmep_pa
             .partition_point(|&p| p <= bmep_pa)
             .clamp(1, m - 1);
         let (p0, p1) = (self.bmep_pa[k - 1], self.bmep_pa[k]);
+        if let Some(known) = self.known.as_deref() {
+            let cell = [
+                (self.fuel_pa[hi - 1][k - 1], known[hi - 1][k - 1]),
+                (self.fuel_pa[hi - 1][k], known[hi - 1][k]),
+                (self.fuel_pa[hi][k - 1], known[hi][k - 1]),
+                (self.fuel_pa[hi][k], known[hi][k]),
+            ];
+            let (fuel_pa, is_within) = in_cell(cell, [u, (bmep_pa - p0) / (p1 - p0)]);
+            return (fuel_pa, inside && is_within);
+        }
         (
             row(k - 1) + (row(k) - row(k - 1)) * (bmep_pa - p0) / (p1 - p0),
             inside,
         ) // BM-1
     }
 
-    /// A map from rows (speed rad/s, BMEP Pa, BSFC kg/J) and the rubbing friction that belongs to it.
-    ///
-    /// # Errors
-    /// A sentence if the rows do not fill a rectangular grid of at least two speeds and two loads, or have no power.
-    pub fn from_rows(
-        rows: &[(f64, f64, f64)],
-        heating_value_j_kg: f64,
-        friction: (f64, f64),
-    ) -> Result<Self, String> {
-        if let Some((_, load, _)) = rows.iter().find(|(_, load, _)| *load <= 0.0) {
-            return Err(format!(
-                "specific consumption has no meaning at {:.3} bar, where the engine gives no power",
-                load / 1e5
-            ));
-        }
-        let fuel = |&(speed, load, bsfc): &(f64, f64, f64)| {
-            (speed, load, bsfc * load * heating_value_j_kg) // BM-1
-        };
-        let rows: Vec<(f64, f64, f64)> = rows.iter().map(fuel).collect();
-        Self::of_fuel(&rows, friction)
+    /// True where a point lies within the map, or between its lowest load and the drag.
+    #[must_use]
+    pub fn contains(&self, speed_rad_s: f64, bmep_pa: f64) -> bool {
+        self.at_speed(speed_rad_s, bmep_pa, f64::MAX).1
     }
 
-    /// As [`BsfcMap::from_rows`] of the fuel's own flow: rows (speed rad/s, BMEP Pa, fuel kg/s) of an engine of a displacement. Loads may be
-    /// nothing and below.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn from_flow(
-        rows: &[(f64, f64, f64)],
-        heating_value_j_kg: f64,
-        displacement_m3: f64,
-        friction: (f64, f64),
-    ) -> Result<Self, String> {
-        let per_speed = heating_value_j_kg * 4.0 * std::f64::consts::PI / displacement_m3;
-        let fuel = |&(speed, load, kg_s): &(f64, f64, f64)| {
-            (speed, load, kg_s / speed * per_speed) // BM-1
+    /// Share of the pairs of speeds and loads that lie within the points of the file.
+    #[must_use]
+    pub fn known_share(&self) -> f64 {
+        let Some(known) = &self.known else {
+            return 1.0;
         };
-        let rows: Vec<(f64, f64, f64)> = rows.iter().map(fuel).collect();
-        Self::of_fuel(&rows, friction)
+        let all = || known.iter().flatten();
+        all().filter(|known| **known).count() as f64 / all().count() as f64
     }
 
-    /// A map from rows (speed rad/s, BMEP Pa, fuel MEP Pa).
-    fn of_fuel(rows: &[(f64, f64, f64)], friction: (f64, f64)) -> Result<Self, String> {
-        let distinct = |f: &dyn Fn(&(f64, f64, f64)) -> f64| {
-            let mut v: Vec<f64> = rows.iter().map(f).collect();
-            v.sort_by(f64::total_cmp);
-            v.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * b.abs());
-            v
-        };
-        let (speeds, loads) = (distinct(&|r| r.0), distinct(&|r| r.1));
-        if speeds.len() < 2 || loads.len() < 2 || speeds.len() * loads.len() != rows.len() {
-            return Err(format!(
-                "{} rows do not fill a grid of {} speeds and {} loads",
-                rows.len(),
-                speeds.len(),
-                loads.len()
+    /// A map of the points of a table, of an engine with a swept volume and a fuel.
+    ///
+    /// # Errors
+    /// Fewer than two speeds or loads, two rows of one point, points on one line, or a quantity that needs another one.
+    pub fn from_table(
+        table: &FuelTable,
+        basis: &Basis,
+        friction: (f64, f64),
+    ) -> Result<Self, NoMap> {
+        let (points, left_out) = table.points(basis)?;
+        let speeds = levels(points.iter().map(|point| point.speed_rad_s));
+        let loads = levels(points.iter().map(|point| point.bmep_pa));
+        let place = |of: &Point| [place(&speeds, of.speed_rad_s), place(&loads, of.bmep_pa)];
+        let mut points = points;
+        points.sort_by_key(&place);
+        let mut twice = points
+            .windows(2)
+            .filter(|two| place(&two[0]) == place(&two[1]));
+        if let Some([first, second]) = twice.next() {
+            return Err(NoMap::new(
+                "each speed and load once",
+                format!(
+                    "line {} has the speed and the load of line {}",
+                    second.line, first.line
+                ),
+                "remove one of them",
             ));
         }
-        let mut fuel = vec![vec![f64::NAN; loads.len()]; speeds.len()];
-        let place = |values: &[f64], x: f64| {
-            let before = values.partition_point(|&own| own < x - 1e-8 * x.abs());
-            before.min(values.len() - 1)
+        let (n, m) = (speeds.len(), loads.len());
+        let few = || {
+            NoMap::new(
+                "a map of fuel over speed and load",
+                format!(
+                    "{} rows do not fill a grid of {n} speeds and {m} loads",
+                    points.len()
+                ),
+                "give at least two speeds and two loads",
+            )
         };
-        for &(speed, load, fuel_pa) in rows {
-            fuel[place(&speeds, speed)][place(&loads, load)] = fuel_pa;
+        if n < 2 || m < 2 {
+            return Err(few());
         }
-        if fuel.iter().flatten().any(|f| f.is_nan()) {
-            return Err(
-                "a combination of speed and load is there twice, another is missing".into(),
-            );
+        let origin = |points| {
+            Some(Arc::new(Origin {
+                file: table.file.clone(),
+                read_as: table.read_as.clone(),
+                displacement_m3: basis.displacement_m3,
+                points,
+                left_out,
+            }))
+        };
+        if n * m == points.len() {
+            let rows = points.chunks(m);
+            let fuel = rows.map(|row| row.iter().map(|point| point.fuel_pa).collect());
+            return Ok(BsfcMap {
+                fuel_pa: fuel.collect(),
+                speed_rad_s: speeds,
+                bmep_pa: loads,
+                friction,
+                known: None,
+                origin: origin(points),
+            });
         }
-        if fuel.iter().any(|row| row.windows(2).any(|f| f[0] >= f[1])) {
-            return Err(
-                "fuel (BSFC times BMEP, or its flow) must rise with load at every speed".into(),
-            );
-        }
+        let (speed_rad_s, bmep_pa) = match n * m > MOST_PAIRS {
+            true => (even(&speeds), even(&loads)),
+            false => (speeds.clone(), loads.clone()),
+        };
+        let at = |point: &Point| {
+            let [i, k] = place(point);
+            ([speeds[i], loads[k]], point.fuel_pa)
+        };
+        let placed: Vec<([f64; 2], f64)> = points.iter().map(at).collect();
+        let lattice = Lattice::new(&placed, [&speed_rad_s, &bmep_pa], |across, load_pa| {
+            let ([low_pa, high_pa], [low, high]) = (across.ends, across.at_ends);
+            if load_pa > high_pa && high_pa > 0.0 {
+                return high * load_pa / high_pa; // BM-4
+            }
+            let slope = match high_pa > low_pa {
+                true => (high - low) / (high_pa - low_pa),
+                false => low / low_pa.abs().max(1.0),
+            };
+            (low + (load_pa - low_pa) * slope).max(0.0) // BM-4
+        });
+        let lattice = lattice.ok_or_else(few)?;
         Ok(BsfcMap {
-            speed_rad_s: speeds,
-            bmep_pa: loads,
-            fuel_pa: fuel,
+            speed_rad_s,
+            bmep_pa,
+            fuel_pa: lattice.values,
             friction,
+            known: Some(Arc::new(lattice.known)),
+            origin: origin(points),
         })
+    }
+
+    /// Torque of a mean effective pressure of the engine that was measured, Nm; none of a map that is from no file.
+    pub fn torque_nm(&self, bmep_pa: f64) -> Option<f64> {
+        let origin = self.origin.as_ref()?;
+        Some(bmep_pa * origin.displacement_m3 / (4.0 * PI))
+    }
+}
+
+/// Values, rising, each once: neighbours in the ninth digit are one.
+fn levels(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut levels: Vec<f64> = values.collect();
+    levels.sort_by(f64::total_cmp);
+    levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * b.abs());
+    levels
+}
+
+/// Place of a value among levels.
+fn place(levels: &[f64], x: f64) -> usize {
+    let before = levels.partition_point(|&own| own < x - 1e-8 * x.abs());
+    before.min(levels.len() - 1)
+}
+
+/// Levels at equal distances between the ends.
+fn even(levels: &[f64]) -> Vec<f64> {
+    let ends = (levels.first(), levels.last());
+    let (Some(low), Some(high)) = ends else {
+        return Vec::new();
+    };
+    let at = |k: u32| match k {
+        LEVELS => *high,
+        k => low + (high - low) * f64::from(k) / f64::from(LEVELS),
+    };
+    (0..=LEVELS).map(at).collect()
+}
+
+/// The value in a cell at shares of its sides, and whether it lies within the corners that are known. Corners are at the shares (0, 0), (0, 1), (1, 0)
+/// and (1, 1). Where one is not known the cell is two triangles, so that what is beyond the border does not change what is within.
+fn in_cell(cell: [(f64, bool); 4], [u, v]: [f64; 2]) -> (f64, bool) {
+    let [a, b, c, d] = cell.map(|(value, _)| value);
+    let known = cell.map(|(_, known)| known);
+    let from_a = a + u * (c - a) + v * (b - a);
+    let from_d = d + (1.0 - u) * (b - d) + (1.0 - v) * (c - d);
+    let from_b = b + u * (d - b) + (1.0 - v) * (a - b);
+    let from_c = c + (1.0 - u) * (a - c) + v * (d - c);
+    let diagonal = u + v;
+    match known {
+        [true, true, true, false] if diagonal <= 1.0 => (from_a, true),
+        [true, true, true, false] => (from_d, false),
+        [false, true, true, true] if diagonal < 1.0 => (from_a, false),
+        [false, true, true, true] => (from_d, true),
+        [true, false, true, true] if v > u => (from_b, false),
+        [true, false, true, true] => (from_c, true),
+        [true, true, false, true] if v >= u => (from_b, true),
+        [true, true, false, true] => (from_c, false),
+        _ => {
+            let [low, high] = [a + u * (c - a), b + u * (d - b)];
+            (low + (high - low) * v, known == [true; 4])
+        }
     }
 }

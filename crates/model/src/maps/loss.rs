@@ -58,6 +58,15 @@ impl LossMap {
         LossMap { scatter, ..self }
     }
 
+    /// The map with some of its points beyond what was measured.
+    #[must_use]
+    pub(crate) fn with_unknown(self, unknown: &[[f64; crate::math::GRID_AXES]]) -> Self {
+        LossMap {
+            grid: self.grid.with_unknown(unknown.iter()),
+            ..self
+        }
+    }
+
     /// How well the scattered points are met that the grid was made from, if it was.
     pub fn scatter(&self) -> Option<Scatter> {
         self.scatter

@@ -13,6 +13,8 @@ pub struct Grid {
     axes: [Vec<f64>; GRID_AXES],
     /// Shared between copies: measured maps are long.
     values: Arc<[f64]>,
+    /// False at the values that are beyond what was measured; none where all were.
+    known: Option<Arc<[bool]>>,
 }
 
 impl Grid {
@@ -51,7 +53,29 @@ impl Grid {
         Ok(Grid {
             axes,
             values: values.into(),
+            known: None,
         })
+    }
+
+    /// The grid with some of its points beyond what was measured: what is read between them lies outside.
+    #[must_use]
+    pub fn with_unknown<'x>(self, unknown: impl Iterator<Item = &'x [f64; GRID_AXES]>) -> Self {
+        let mut known = vec![true; self.values.len()];
+        for x in unknown {
+            known[index_of(&self.axes, x)] = false;
+        }
+        Grid {
+            known: Some(known.into()),
+            ..self
+        }
+    }
+
+    /// Share of the grid's points that were measured or lie between measured ones.
+    pub fn known_share(&self) -> f64 {
+        let share = |known: &Arc<[bool]>| {
+            known.iter().filter(|known| **known).count() as f64 / known.len() as f64
+        };
+        self.known.as_ref().map_or(1.0, share)
     }
 
     /// Coordinates along each axis, rising.
@@ -95,6 +119,7 @@ impl Grid {
                 .fold(0, |index, (axis, place)| index * axis.len() + place);
             if weight > 0.0 {
                 sum += weight * self.values[index];
+                inside &= self.known.as_ref().is_none_or(|known| known[index]);
             }
         }
         (sum, inside)

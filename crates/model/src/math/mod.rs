@@ -6,6 +6,7 @@ mod curves;
 mod elementary;
 mod grid;
 mod lanes;
+mod lattice;
 mod real;
 mod scalar;
 
@@ -16,6 +17,7 @@ pub use elementary::{exp, exp_array, ln, ln_array, tanh};
 pub use grid::{GRID_AXES, Grid};
 pub use lanes::{Gather, LaneMask, Level, Simd, dispatch, eight, f64x4, f64x8, four};
 pub(crate) use lanes::{MAX_LANES, gather_each};
+pub use lattice::{Across, Lattice};
 pub use real::{Implied, LaneValue, Left, Mask, Named, Operand, Real, Selectable};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.

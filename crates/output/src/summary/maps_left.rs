@@ -7,14 +7,15 @@ use crate::number::finite;
 use cvtcycle_config::cycle::Cycle;
 use cvtcycle_config::loss_map_axes;
 use cvtcycle_model::drive::{Conditions, Row, drive_into};
+use cvtcycle_model::engine::{Engine, FuelModel};
 use cvtcycle_model::flags::Flags;
 use cvtcycle_model::keys::Quantity;
-use cvtcycle_model::maps::LossMap;
+use cvtcycle_model::maps::{BsfcMap, LossMap};
 use cvtcycle_model::math::GRID_AXES;
 use cvtcycle_model::transmission::component::{Component, Part};
 
-/// Share of the engine-on time from which leaving a map is a headline.
-const LARGE: f64 = 0.1;
+/// Share of the engine-on time from which leaving a map is a headline. ASSUMED: in less, a fuel that is wrong by a tenth moves the result by 0.2 %.
+const LARGE: f64 = 0.02;
 
 /// A map that was left for a large part of a drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,7 +24,10 @@ pub struct MapLeft {
     pub file: String,
     /// Share of the engine-on time, per cent.
     pub percent: f64,
-    /// Column whose range was left for the longest time.
+    /// The same as time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+    /// Column whose range was left for the longest time; empty where that was in holes between the points.
     pub column: String,
     /// Side of the range: `below` or `above`.
     pub side: String,
@@ -50,14 +54,25 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
     let running_s = totals.total().duration_s - totals.seconds(Flags::ENGINE_OFF);
     let transmission = driven.setup.transmission();
     let is_left = |seconds: f64| seconds > LARGE * running_s;
-    if transmission.maps().next().is_none() || !is_left(totals.seconds(Flags::OUTSIDE_VALIDITY)) {
+    let engine = driven.setup.engine();
+    let fuel_map = match &engine.fuel {
+        FuelModel::Map(map) => Some(map),
+        FuelModel::Willans(_) => None,
+    };
+    if transmission.maps().next().is_none() && fuel_map.is_none()
+        || !is_left(totals.seconds(Flags::OUTSIDE_VALIDITY))
+    {
         return Vec::new();
     }
     let maps: Vec<(Component, &LossMap)> = transmission.maps().collect();
     let mut times = vec![TimeOutside::default(); maps.len()];
+    let mut of_fuel = TimeOutside::default();
     let mut see = |rows: &[Row]| {
         for ((component, map), left) in maps.iter().zip(&mut times) {
             left.add(rows, *component, map);
+        }
+        if let Some(map) = fuel_map {
+            of_fuel.add_fuel(rows, engine, map);
         }
     };
     match driven.outcome.rows.as_slice() {
@@ -65,7 +80,18 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
         rows => see(rows),
     }
     let of_map = |((component, map), left): (&(Component, &LossMap), &TimeOutside)| {
-        let (axis, side, _) = left.longest_departure()?;
+        let seconds = finite(left.any_s);
+        let percent = 100.0 * left.any_s / running_s;
+        let Some((axis, side)) = left.longest_departure() else {
+            return is_left(left.any_s).then(|| MapLeft {
+                file: file(driven, *component),
+                percent,
+                seconds,
+                column: String::new(),
+                side: String::new(),
+                end: None,
+            });
+        };
         let values = map.grid().axes()[axis].as_slice();
         let is_box = component.part() == Part::BoxMap;
         let column = match (axis, is_box) {
@@ -75,13 +101,45 @@ fn maps_left(cycle: &Cycle, conditions: &Conditions, driven: &Driven) -> Vec<Map
         let end = [values.first(), values.last()][side].copied();
         is_left(left.any_s).then(|| MapLeft {
             file: file(driven, *component),
-            percent: 100.0 * left.any_s / running_s,
+            percent,
+            seconds,
             column: column.to_owned(),
             side: ["below", "above"][side].to_owned(),
             end: end.and_then(|si| finite(Quantity::from_key(column).from_si(si))),
         })
     };
-    maps.iter().zip(&times).filter_map(of_map).collect()
+    let mut all: Vec<MapLeft> = maps.iter().zip(&times).filter_map(of_map).collect();
+    if let Some(map) = fuel_map.filter(|_| is_left(of_fuel.any_s)) {
+        all.push(fuel_map_left(map, &of_fuel, running_s));
+    }
+    all
+}
+
+/// The map of fuel that a car left.
+fn fuel_map_left(map: &BsfcMap, left: &TimeOutside, running_s: f64) -> MapLeft {
+    let (column, side, end) = match left.longest_departure() {
+        None => ("", "", None),
+        Some((axis, side)) => {
+            let ends = |of: &[f64]| [of.first(), of.last()][side].copied();
+            let (column, end) = match axis {
+                0 => ("speed_rpm", ends(&map.speed_rad_s)),
+                _ => ("bmep_bar", ends(&map.bmep_pa)),
+            };
+            let in_unit = |si: f64| Quantity::from_key(column).from_si(si);
+            (column, ["below", "above"][side], end.map(in_unit))
+        }
+    };
+    MapLeft {
+        file: map
+            .origin
+            .as_ref()
+            .map_or_else(String::new, |origin| origin.file.clone()),
+        percent: 100.0 * left.any_s / running_s,
+        seconds: finite(left.any_s),
+        column: column.to_owned(),
+        side: side.to_owned(),
+        end: end.and_then(finite),
+    }
 }
 
 /// Name of a component's map in the vehicle's file.
@@ -102,6 +160,8 @@ fn file(driven: &Driven, component: Component) -> String {
 #[derive(Clone, Default)]
 struct TimeOutside {
     any_s: f64,
+    /// In holes between the points.
+    holes_s: f64,
     sides_s: [[f64; 2]; GRID_AXES],
 }
 
@@ -109,7 +169,8 @@ impl TimeOutside {
     fn add(&mut self, rows: &[Row], component: Component, map: &LossMap) {
         for row in rows.iter().filter(|row| !row.flags.any(Flags::ENGINE_OFF)) {
             let mut is_left = false;
-            let axes = map.grid().axes().iter().zip(at(row, component));
+            let x = at(row, component);
+            let axes = map.grid().axes().iter().zip(x);
             for ((axis, x), sides_s) in axes.zip(&mut self.sides_s) {
                 let (Some(x), [first, .., last]) = (x, axis.as_slice()) else {
                     continue;
@@ -119,15 +180,55 @@ impl TimeOutside {
                     is_left |= is_out;
                 }
             }
-            self.any_s += if is_left { row.dt_s } else { 0.0 };
+            // A coordinate that the row does not record is on no side, and in no hole.
+            let axes = map.grid().axes();
+            let known = |(x, axis): (Option<f64>, &Vec<f64>)| match axis.len() {
+                1 => Some(axis[0]),
+                _ => x,
+            };
+            let x: Option<Vec<f64>> = x.into_iter().zip(axes).map(known).collect();
+            let x = x.and_then(|x| <[f64; GRID_AXES]>::try_from(x).ok());
+            let in_hole = !is_left && x.is_some_and(|x| !map.grid().at(x).1);
+            self.add_time(row.dt_s, is_left, in_hole);
         }
     }
 
-    /// Axis, side and time of the longest departure.
-    fn longest_departure(&self) -> Option<(usize, usize, f64)> {
+    fn add_fuel(&mut self, rows: &[Row], engine: &Engine, map: &BsfcMap) {
+        let running =
+            |row: &&Row| !row.flags.any(Flags::ENGINE_OFF) && row.engine_speed_rad_s > 0.0;
+        for row in rows.iter().filter(running) {
+            let speed = row.engine_speed_rad_s;
+            let crank_nm = row.engine_torque_nm + (row.accessories_w + row.kinetic_w) / speed;
+            let bmep_pa = engine.mep_pa(crank_nm);
+            let ends = [(speed, &map.speed_rad_s), (bmep_pa, &map.bmep_pa)];
+            let mut is_left = false;
+            for (k, (x, axis)) in ends.into_iter().enumerate() {
+                let [Some(first), Some(last)] = [axis.first(), axis.last()] else {
+                    continue;
+                };
+                // Below the lowest load the line to the drag belongs to the map (BM-2).
+                let is_out = [x < *first && k == 0, x > *last];
+                for (is_out, side_s) in is_out.into_iter().zip(&mut self.sides_s[k]) {
+                    *side_s += if is_out { row.dt_s } else { 0.0 };
+                    is_left |= is_out;
+                }
+            }
+            let in_hole = !is_left && !map.contains(speed, bmep_pa);
+            self.add_time(row.dt_s, is_left, in_hole);
+        }
+    }
+
+    fn add_time(&mut self, dt_s: f64, is_left: bool, in_hole: bool) {
+        self.any_s += if is_left || in_hole { dt_s } else { 0.0 };
+        self.holes_s += if in_hole { dt_s } else { 0.0 };
+    }
+
+    /// Axis and side of the longest departure; none where more time was in holes.
+    fn longest_departure(&self) -> Option<(usize, usize)> {
         let all = self.sides_s.iter().enumerate();
         let all = all.flat_map(|(axis, sides)| [(axis, 0, sides[0]), (axis, 1, sides[1])]);
-        all.max_by(|a, b| a.2.total_cmp(&b.2))
+        let (axis, side, seconds) = all.max_by(|a, b| a.2.total_cmp(&b.2))?;
+        (seconds >= self.holes_s).then_some((axis, side))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::same;
 use cvtcycle_model::engine::{FuelModel, Willans};
-use cvtcycle_model::maps::BsfcMap;
+use cvtcycle_model::maps::{Basis, BsfcMap, Fuel, FuelRow, FuelTable, Load};
 
 /// Rubbing friction of the default line, which does not matter here.
 const FRICTION: (f64, f64) = (2.398_82, 0.002_86);
@@ -91,6 +91,8 @@ fn map() -> BsfcMap {
             vec![12.0 * BAR, 18.0 * BAR, 31.0 * BAR],
         ],
         friction: (2.0, 0.01),
+        known: None,
+        origin: None,
     }
 }
 
@@ -168,7 +170,28 @@ fn val_rows_make_a_map() {
         row(100.0, 6.0, 270.0),
         row(300.0, 2.0, 390.0),
     ];
-    let map = BsfcMap::from_rows(&good, 43e6, FRICTION).unwrap();
+    let made = |rows: &[(f64, f64, f64)]| {
+        let row = |(k, row): (usize, &(f64, f64, f64))| FuelRow {
+            speed_rad_s: row.0,
+            load: row.1,
+            fuel: row.2,
+            line: k + 2,
+        };
+        let table = FuelTable {
+            file: "map".to_owned(),
+            read_as: None,
+            load: Load::Bmep,
+            fuel: Fuel::PerWork,
+            rows: rows.iter().enumerate().map(row).collect(),
+        };
+        let basis = Basis {
+            heating_value_j_kg: 43e6,
+            displacement_m3: 1e-3,
+            cylinders: None,
+        };
+        BsfcMap::from_table(&table, &basis, FRICTION).map_err(|why| why.message)
+    };
+    let map = made(&good).unwrap();
     assert_eq!(
         (map.speed_rad_s.as_slice(), map.bmep_pa.as_slice()),
         (&[100.0, 300.0][..], &[2.0 * BAR, 6.0 * BAR][..])
@@ -185,28 +208,42 @@ fn val_rows_make_a_map() {
     let mut close = good;
     close[2].0 = 100.0 * (1.0 + 0.9e-9);
     close[0].1 = 6.0 * BAR * (1.0 - 0.9e-9);
-    assert_eq!(
-        BsfcMap::from_rows(&close, 43e6, FRICTION).unwrap().fuel_pa[0].len(),
-        2
-    );
+    assert_eq!(made(&close).unwrap().fuel_pa[0].len(), 2);
     close[2].0 = 100.0 * (1.0 + 2e-9);
-    assert!(BsfcMap::from_rows(&close, 43e6, FRICTION).is_err());
-    let refused = |rows: &[(f64, f64, f64)]| BsfcMap::from_rows(rows, 43e6, FRICTION).unwrap_err();
-    for rows in [&good[..3], &good[1..3], &[good[1], good[3]][..], &[][..]] {
-        assert!(refused(rows).contains("do not fill a grid"), "{rows:?}");
+    assert_eq!(made(&close).unwrap().speed_rad_s.len(), 3);
+    for rows in [&good[..3], &good[1..3], &[good[1], good[3]][..]] {
+        assert!(
+            made(rows).unwrap_err().contains("do not fill a grid"),
+            "{rows:?}"
+        );
     }
+    assert!(made(&[]).is_err());
     let mut twice = good;
     twice[3] = good[1];
-    assert!(refused(&twice).contains("twice"));
-    let level = [
+    assert!(
+        made(&twice)
+            .unwrap_err()
+            .contains("line 5 has the speed and the load of line 3")
+    );
+    let negative = [row(100.0, -0.5, 300.0)];
+    assert!(
+        made(&negative)
+            .unwrap_err()
+            .contains("no meaning at -0.500 bar")
+    );
+    // What falls is judged below full load.
+    let falling = made(&[good[1], good[3], row(100.0, 6.0, 120.0), good[0]]).unwrap();
+    let refused = falling.judge(|_| 7.0 * BAR).refusal.unwrap();
+    assert!(refused.message.contains("line 4") && refused.message.contains("must rise with load"));
+    assert_eq!(falling.judge(|_| 5.0 * BAR).refusal, None);
+    let level = made(&[
         good[1],
         good[3],
         row(100.0, 4.0, 200.0),
         row(300.0, 4.0, 260.0),
-    ];
-    assert!(refused(&level).contains("rise with load"));
-    let falling = [good[1], good[3], row(100.0, 6.0, 100.0), good[0]];
-    assert!(refused(&falling).contains("rise with load"));
+    ]);
+    let doubts = level.unwrap().judge(|_| 7.0 * BAR).doubts;
+    assert!(doubts[0].contains("burns no more at"), "{doubts:?}");
 }
 
 /// A line whose efficiency leaves 0.05 to 1 only between rest and the highest speed, at its bend, is refused; one that bends earlier is not.
@@ -289,6 +326,8 @@ fn map_agrees_with_the_line_it_was_made_from() {
         bmep_pa: bmeps,
         fuel_pa: fuel,
         friction: (2.39882, 0.00286),
+        known: None,
+        origin: None,
     });
     for p in [1.0, 3.0, 6.0] {
         let hot = line.hot_friction_pa(cm(200.0));

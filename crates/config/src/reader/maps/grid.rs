@@ -1,10 +1,13 @@
-//! A user's CSV map to a table of numbers on a full grid, or to all that is wrong with it.
+//! A user's map to a table of numbers, or to all that is wrong with it.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
 
+use super::fuel;
+use super::script::Script;
 use super::wide::{Row, Wide};
-use crate::csv::{self, Collector, Schema};
-use crate::{Problem, Problems};
+use crate::csv::{self, Collector, Columns, Line, Schema};
+use crate::{Argument, Problem, Problems, Setting};
 
 /// The limit of rows, as many points as `losses` writes, and what helps beyond it.
 pub(super) const MAX_ROWS: (usize, &str) = (
@@ -21,39 +24,206 @@ pub(super) struct Rules {
     pub is_grid: bool,
 }
 
-/// Reads a map: the indices of its columns in the schema, and its rows in the columns' own units. The last column of the schema, or another one of
-/// its group, is its value; the others span its grid.
+/// A table as it was read.
+pub(super) struct Rows {
+    /// Indices of its columns in the schema.
+    pub columns: Vec<usize>,
+    /// Its rows in the columns' own units, each with its line.
+    pub rows: Vec<(usize, Vec<f64>)>,
+    /// How it was read, in words, where it is not written as the program's own are.
+    pub read_as: Option<String>,
+}
+
+/// What a file is read for.
+#[derive(Clone, Copy)]
+pub(super) struct Wanted<'w> {
+    pub schema: &'w Schema,
+    pub rules: Rules,
+    /// True of a map of fuel.
+    pub is_fuel: bool,
+}
+
+/// Reads a map as a list, a matrix or a script. The last column of the schema, or another one of its group, is its value; the others span its grid.
 ///
 /// # Errors
 /// All problems with line, column and value; after 50 the rest is counted in one last entry.
-pub(super) fn read(
-    file: &str,
-    bytes: &[u8],
-    schema: &Schema,
-    rules: Rules,
-) -> Result<(Vec<usize>, Vec<Vec<f64>>), Problems> {
+pub(super) fn read(file: &str, bytes: &[u8], wanted: Wanted<'_>) -> Result<Rows, Problems> {
+    let Wanted {
+        schema,
+        rules,
+        is_fuel,
+    } = wanted;
     let mut problems = Collector::new(file);
-    let (columns, rows) = match Wide::detect(schema, bytes) {
-        Some(wide) => wide.read(schema, bytes, &mut problems),
-        None => long(schema, bytes, &mut problems),
+    let is_script = Path::new(file)
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("m"));
+    let text = String::from_utf8_lossy(bytes);
+    let (columns, mut rows, read_as) = if is_script {
+        script(schema, &text, is_fuel, &mut problems)
+    } else {
+        match Wide::detect(schema, bytes, is_fuel) {
+            Some(Ok(wide)) => {
+                let (columns, rows) = wide.read(schema, bytes, &mut problems);
+                (columns, rows, wide.read_as)
+            }
+            Some(Err(problem)) => {
+                problems.file(problem);
+                (Vec::new(), Vec::new(), None)
+            }
+            None => long(schema, bytes, &mut problems),
+        }
     };
     if problems.is_empty() {
-        full(schema, (&columns, rules.is_grid), &rows, &mut problems);
+        full(schema, (&columns, rules.is_grid), &mut rows, &mut problems);
     }
     if let Some(group) = rules.rises_with.filter(|_| problems.is_empty()) {
         rising(schema, (&columns, group), &rows, &mut problems);
     }
     problems.finish().finish()?;
-    let rows = rows.into_iter().map(|row| row.values).collect();
-    Ok((columns, rows))
+    let rows = rows.into_iter().map(|row| (row.line.number, row.values));
+    Ok(Rows {
+        columns,
+        rows: rows.collect(),
+        read_as,
+    })
+}
+
+/// Columns, rows, and how they were read.
+type Found<'t> = (Vec<usize>, Vec<Row<'t>>, Option<String>);
+
+/// The table of a script.
+fn script<'t>(
+    schema: &Schema,
+    text: &'t str,
+    is_fuel: bool,
+    problems: &mut Collector<'_>,
+) -> Found<'t> {
+    let none = (Vec::new(), Vec::new(), None);
+    let script = Script::new(text);
+    let lines: Vec<Line<'t>> = (1..)
+        .zip(text.lines())
+        .map(|(number, text)| Line { number, text })
+        .collect();
+    let named = schema.named.as_ref().filter(|named| !named.is_empty());
+    if let Some(named) = named {
+        return match by_names(schema, named, &script, &lines) {
+            Ok((columns, rows)) => (columns, rows, Some("a script".to_owned())),
+            Err(problem) => {
+                problems.add(problem);
+                none
+            }
+        };
+    }
+    if let Some(found) = full_load(schema, &script, &lines) {
+        return found;
+    }
+    let hint =
+        "say which names are meant: columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\"";
+    match is_fuel
+        .then(|| fuel::from_script(&script, &lines))
+        .flatten()
+    {
+        Some(Ok(found)) => (found.columns, found.rows, Some(found.read_as)),
+        Some(Err((line, why))) => {
+            let line = lines.get(line.saturating_sub(1)).copied();
+            problems.line(
+                line.unwrap_or(Line {
+                    number: 1,
+                    text: "",
+                }),
+                "",
+                || {
+                    Problem::conflict(why)
+                        .allowed("numbers, matrices, ranges, and sums and products of them")
+                        .hint(hint)
+                },
+            );
+            none
+        }
+        None => {
+            problems.file(
+                Problem::missing("the script has no table that is known")
+                    .allowed(fuel::SCRIPT_NAMES)
+                    .hint(hint)
+                    .settings(&[Setting::Columns]),
+            );
+            none
+        }
+    }
+}
+
+/// The full-load line of a script, where the schema is one.
+fn full_load<'t>(schema: &Schema, script: &Script, lines: &[Line<'t>]) -> Option<Found<'t>> {
+    const NAMES: [[&str; 2]; 3] = [
+        ["fc_map_spd", "fc_max_trq"],
+        ["*full_throttle_speed_radps", "*full_throttle_torque_Nm"],
+        ["eng_max_trq_spd", "eng_max_trq"],
+    ];
+    let place = |name: &str| schema.columns.iter().position(|own| own.name == name);
+    let columns = [place("speed_rad_s")?, place("torque_nm")?];
+    let is_line = schema
+        .columns
+        .iter()
+        .all(|own| ["speed", "torque"].contains(&own.group));
+    let both = NAMES.iter().filter(|_| is_line).find_map(|names| {
+        let [speed, torque] = names.map(|name| script.find(name));
+        let ((speed_name, speeds), (torque_name, torques)) = (speed?, torque?);
+        let fits = speeds.values.len() == torques.values.len();
+        let words = format!("{speed_name} and {torque_name} of a script");
+        fits.then_some((speeds, torques, words))
+    });
+    let (speeds, torques, words) = both?;
+    let number = torques.lines.first().copied().unwrap_or(1);
+    let line = lines.get(number.saturating_sub(1)).copied();
+    let row = |(speed, torque): (&f64, &f64)| Row {
+        line: line.unwrap_or(Line { number, text: "" }),
+        values: vec![*speed, *torque],
+    };
+    let rows = speeds.values.iter().zip(&torques.values).map(row);
+    Some((columns.to_vec(), rows.collect(), Some(words)))
+}
+
+/// The rows of a script whose names the user gives: two vectors and a matrix over them, or vectors of one length.
+fn by_names<'t>(
+    schema: &Schema,
+    named: &Columns,
+    script: &Script,
+    lines: &[Line<'t>],
+) -> Result<(Vec<usize>, Vec<Row<'t>>), Problem> {
+    let mut found = Vec::new();
+    for (name, column) in named.by_name(schema)? {
+        let value = script.value(name).ok_or_else(|| {
+            Problem::unknown_name(format!("the script has no value of `{name}`"))
+                .at(Argument::Columns)
+                .value(name)
+                .allowed("a name of the script, or sums and products of them")
+        })?;
+        found.push((column, value));
+    }
+    found.sort_by_key(|(column, _)| *column);
+    let columns: Vec<usize> = found.iter().map(|(column, _)| *column).collect();
+    let count = found.first().map_or(0, |(_, value)| value.values.len());
+    if found.iter().all(|(_, value)| value.values.len() == count) && count > 0 {
+        let row = |k: usize| Row {
+            line: lines[0],
+            values: found.iter().map(|(_, value)| value.values[k]).collect(),
+        };
+        return Ok((columns, (0..count).map(row).collect()));
+    }
+    let wrong = |why: String| {
+        Problem::conflict(why)
+            .at(Argument::Columns)
+            .allowed("two vectors and a matrix over them, or vectors of one length")
+    };
+    let [(a, first), (b, second), (c, map)] = found.as_slice() else {
+        return Err(wrong("the names are no table".to_owned()));
+    };
+    fuel::table([first, second, map], [*a, *b, *c], true, lines)
+        .map_err(|why| wrong(format!("`{}` {why}", schema.columns[*c].name)))
 }
 
 /// The rows of a file with a line for each point.
-fn long<'t>(
-    schema: &Schema,
-    bytes: &'t [u8],
-    problems: &mut Collector<'_>,
-) -> (Vec<usize>, Vec<Row<'t>>) {
+fn long<'t>(schema: &Schema, bytes: &'t [u8], problems: &mut Collector<'_>) -> Found<'t> {
     let mut rows = Vec::new();
     let table = csv::read(
         bytes,
@@ -64,25 +234,32 @@ fn long<'t>(
             let indices = 0..schema.columns.len();
             let there = indices.filter(|k| row.table().has(*k));
             let values = there.map(|k| row.number(k).unwrap_or(f64::NAN)).collect();
-            rows.push(Row {
-                line: row.line,
-                values,
-            });
+            let values: Vec<f64> = values;
+            // A row without a value is a hole, or has its problem.
+            if values.iter().all(|x| x.is_finite()) || row.has_bad() {
+                rows.push(Row {
+                    line: row.line,
+                    values,
+                });
+            }
             true
         },
     );
+    let read_as = table.as_ref().and_then(|table| table.read_as());
+    let read_as = read_as.map(str::to_owned);
     let columns = table.map_or_else(Vec::new, |table| {
         let indices = 0..schema.columns.len();
         indices.filter(|k| table.has(*k)).collect()
     });
-    (columns, rows)
+    (columns, rows, read_as)
 }
 
-/// Looks for combinations of the axes' values that have two rows, or in a grid none. Values are shown in the units of the file.
+/// Looks for combinations of the axes' values that have two rows, or in a grid none. Values are shown in the units of the file. A row that is there
+/// twice with the same value is taken once.
 fn full(
     schema: &Schema,
     (columns, is_grid): (&[usize], bool),
-    rows: &[Row],
+    rows: &mut Vec<Row>,
     problems: &mut Collector,
 ) {
     let axes: Vec<(usize, &str)> = columns
@@ -93,7 +270,9 @@ fn full(
         .collect();
     let mut lines: HashMap<Vec<u64>, usize> = HashMap::new();
     let mut levels: Vec<Vec<f64>> = vec![Vec::new(); axes.len()];
-    for row in rows {
+    let mut whole: HashSet<Vec<u64>> = HashSet::new();
+    rows.retain(|row| whole.insert(row.values.iter().map(|x| x.to_bits()).collect()));
+    for row in &*rows {
         let at: Vec<u64> = axes.iter().map(|(k, _)| row.values[*k].to_bits()).collect();
         levels
             .iter_mut()
@@ -156,7 +335,7 @@ fn hole(
 }
 
 /// True if a column of the schema is the value of the map.
-fn is_value(schema: &Schema, column: usize) -> bool {
+pub(super) fn is_value(schema: &Schema, column: usize) -> bool {
     let last = schema.columns.len() - 1;
     let [own, last] = [column, last].map(|k| &schema.columns[k]);
     own.name == last.name || !own.group.is_empty() && own.group == last.group

@@ -37,6 +37,20 @@ const BOX_POINTS: &[Choice] = &[
     ),
 ];
 
+/// Convention of a ratio by which an overdrive is above one.
+const OUTPUT_OVER_INPUT: &str = "output_over_input";
+/// Conventions of the ratio of a map of the whole box.
+const RATIO_IS: &[Choice] = &[
+    Choice::word(
+        "input_over_output",
+        "speed of the input over that of the output: a reduction is above one",
+    ),
+    Choice::word(
+        OUTPUT_OVER_INPUT,
+        "speed of the output over that of the input: an overdrive is above one",
+    ),
+];
+
 keys! {
     /// Keys of `[transmission.cvt]` and its tables.
     CVT: CvtKeys = "cvt" [
@@ -65,6 +79,7 @@ keys! {
         final_drive: optional(csv()), "CSV of measured torque loss at the primary that replaces the final drive model";
         r#box: optional(csv()), "CSV of measured loss at the input shaft that replaces all losses but those of the launch device; columns where measured ratio, input_speed_rpm, input_torque_nm, oil_temp_degc, and torque_loss_nm, power_loss_w or efficiency_percent", ["MP-3", "MP-6"];
         box_points: words(BOX_POINTS, "grid"), "how the rows of that map lie", ["MP-5"];
+        ratio_is: words(RATIO_IS, "input_over_output"), "what the column ratio of that map is, in speeds; a column speed_ratio is output over input", ["MP-3"];
         no_load_loss_nm: optional(number(0.0, 1000.0)), "loss without torque of a box map that has efficiencies", ["MP-6"];
         at_rest_loss_nm: optional(number(0.0, 1000.0)), "loss torque of a box that is a map with the car at rest in gear; absent: that of the map, which has parts that do not turn then", ["MP-3"];
     }
@@ -272,7 +287,8 @@ fn whole_box<V: Values>(s: &V) -> Option<LossMap> {
         "scattered" => &CVT_BOX_POINTS,
         _ => &CVT_BOX,
     };
-    box_map::from_values(s, &MAPS.r#box, table, idle_nm)
+    let is_inverse = s.word(&MAPS.ratio_is) == OUTPUT_OVER_INPUT;
+    box_map::from_values(s, &MAPS.r#box, table, idle_nm, is_inverse)
 }
 
 /// The measured maps that `[transmission.cvt.maps]` names.

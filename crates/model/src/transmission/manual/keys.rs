@@ -55,7 +55,7 @@ impl Manual {
         let parts = GearParts::from_values(&s.table("gears"), oil_m3, &ratios);
         let maps = s.table("maps");
         let idle_nm = maps.optional(&MAPS.no_load_loss_nm);
-        let map = box_map::from_values(&maps, &MAPS.r#box, &MANUAL_BOX, idle_nm);
+        let map = box_map::from_values(&maps, &MAPS.r#box, &MANUAL_BOX, idle_nm, false);
         let mapped = map.is_some().then_some(Part::BoxMap);
         let own = components(false, mapped.as_slice());
         let factors = loss_factor::from_values(s, LossFactorKeys::TABLE, &own);

@@ -31,6 +31,7 @@ pub static PRESSURE_TABLE: FileTable = FileTable {
     ],
     rises_with: Some("torque"),
     is_grid: true,
+    has_holes: false,
     words: &[
         ("ratio", "belt_ratio"),
         ("torque", "input_torque"),

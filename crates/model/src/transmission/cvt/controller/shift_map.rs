@@ -25,6 +25,7 @@ pub static SHIFT_MAP: FileTable = FileTable {
     ],
     rises_with: Some("demand"),
     is_grid: true,
+    has_holes: false,
     words: &[
         ("vehicle_speed", "speed"),
         ("road_speed", "speed"),

@@ -1,0 +1,162 @@
+//! Points of a fuel map in SI units as a file has them, whatever its quantities are: load as mean effective pressure, torque or power; fuel as flow, for
+//! work, for a working stroke, or as efficiency.
+
+use std::f64::consts::PI;
+
+use super::NoMap;
+use crate::keys::rad_s;
+
+/// Slowest engine, rpm: rows of a table at rest and below it belong to no running engine.
+const SLOWEST_RPM: f64 = 100.0;
+
+/// Quantity of the load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Load {
+    /// Brake mean effective pressure, Pa.
+    Bmep,
+    /// Torque, Nm.
+    Torque,
+    /// Power, W.
+    Power,
+}
+
+/// Quantity of the fuel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fuel {
+    /// Flow, kg/s.
+    Flow,
+    /// Specific consumption, kg/J.
+    PerWork,
+    /// Mass for a working stroke of one cylinder, kg.
+    PerStroke,
+    /// Brake efficiency.
+    Efficiency,
+}
+
+/// The engine that was measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Basis {
+    /// Lower heating value, J/kg.
+    pub heating_value_j_kg: f64,
+    /// Swept volume, m3.
+    pub displacement_m3: f64,
+    /// Number of cylinders, where it is known.
+    pub cylinders: Option<f64>,
+}
+
+/// One row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FuelRow {
+    /// Speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Load.
+    pub load: f64,
+    /// Fuel.
+    pub fuel: f64,
+    /// Line of the file.
+    pub line: usize,
+}
+
+/// A table as a file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FuelTable {
+    /// Name of the file.
+    pub file: String,
+    /// How it was read, in words, where it is not written as the program's own are.
+    pub read_as: Option<String>,
+    /// Quantity of the load.
+    pub load: Load,
+    /// Quantity of the fuel.
+    pub fuel: Fuel,
+    /// The rows.
+    pub rows: Vec<FuelRow>,
+}
+
+/// A point of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Brake mean effective pressure, Pa.
+    pub bmep_pa: f64,
+    /// Fuel mean effective pressure, Pa.
+    pub fuel_pa: f64,
+    /// Line of the file.
+    pub line: usize,
+}
+
+/// Points, and how many rows were left out, with the first line of one.
+type Points = (Vec<Point>, Option<(usize, usize)>);
+
+impl FuelTable {
+    /// The points that have a meaning: rows slower than an engine runs, cells that are no number, and a consumption for no work at no load are left out.
+    pub(super) fn points(&self, basis: &Basis) -> Result<Points, NoMap> {
+        let mut left_out: Option<(usize, usize)> = None;
+        let mut points = Vec::with_capacity(self.rows.len());
+        for row in &self.rows {
+            match self.point(row, basis)? {
+                Some(point) => points.push(point),
+                None => {
+                    let (count, first) = left_out.unwrap_or((0, row.line));
+                    left_out = Some((count + 1, first));
+                }
+            }
+        }
+        Ok((points, left_out))
+    }
+
+    fn point(&self, row: &FuelRow, basis: &Basis) -> Result<Option<Point>, NoMap> {
+        let FuelRow {
+            speed_rad_s,
+            load,
+            fuel,
+            line,
+        } = *row;
+        let is_number = [speed_rad_s, load, fuel].iter().all(|x| x.is_finite());
+        if !is_number || speed_rad_s < rad_s(SLOWEST_RPM) {
+            return Ok(None);
+        }
+        let per_torque = 4.0 * PI / basis.displacement_m3;
+        let bmep_pa = match self.load {
+            Load::Bmep => load,
+            Load::Torque => load * per_torque,
+            Load::Power => load / speed_rad_s * per_torque,
+        };
+        let of_work = matches!(self.fuel, Fuel::PerWork | Fuel::Efficiency);
+        if of_work && bmep_pa < 0.0 {
+            return Err(NoMap::new(
+                "loads above zero",
+                format!(
+                    "specific consumption has no meaning at {:.3} bar, where the engine gives no power (line {line})",
+                    bmep_pa / 1e5
+                ),
+                "leave these rows out, or give the flow of fuel (fuel_g_s), which loads of zero and below have too",
+            ));
+        }
+        if of_work && (bmep_pa <= 0.0 || fuel <= 0.0) {
+            return Ok(None);
+        }
+        let per_flow = basis.heating_value_j_kg * 4.0 * PI / basis.displacement_m3;
+        let fuel_pa = match self.fuel {
+            Fuel::Flow => fuel / speed_rad_s * per_flow, // BM-1
+            Fuel::PerWork => fuel * bmep_pa * basis.heating_value_j_kg, // BM-1
+            Fuel::Efficiency => bmep_pa / fuel,          // BM-1
+            Fuel::PerStroke => {
+                let Some(cylinders) = basis.cylinders else {
+                    return Err(NoMap::new(
+                        "measured_cylinders next to the file",
+                        "fuel for a stroke is no flow without the number of cylinders".to_owned(),
+                        "add measured_cylinders = 4, or what the measured engine has",
+                    ));
+                };
+                fuel * cylinders * basis.heating_value_j_kg / basis.displacement_m3 // BM-1
+            }
+        };
+        Ok(Some(Point {
+            speed_rad_s,
+            bmep_pa,
+            fuel_pa,
+            line,
+        }))
+    }
+}
