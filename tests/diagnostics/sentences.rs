@@ -144,7 +144,6 @@ const EXCUSED: &[(&str, &str)] = &[
         "the vehicle is refused before",
     ),
     (
-        "a combination of speed and load is there twice",
         "the reader of maps reports it before, with the line",
     ),
     (
