@@ -144,9 +144,6 @@ const EXCUSED: &[(&str, &str)] = &[
         "the vehicle is refused before",
     ),
     (
-        "the reader of maps reports it before, with the line",
-    ),
-    (
         "viscosity must be above",
         "the ranges of the keys are above it",
     ),

@@ -191,7 +191,7 @@ fn ranges_in_words() {
 }
 
 /// Key, value, SI value worked out by hand, unit as shown.
-const EXPECTED: [(&str, f64, f64, &str); 69] = [
+const EXPECTED: [(&str, f64, f64, &str); 85] = [
     (
         "fall_per_1000_rpm",
         0.2,
