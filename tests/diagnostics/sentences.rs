@@ -146,10 +146,6 @@ const EXCUSED: &[(&str, &str)] = &[
         "the vehicle is refused before",
     ),
     (
-        "a combination of speed and load is there twice",
-        "the reader of maps reports it before, with the line",
-    ),
-    (
         "viscosity must be above",
         "the ranges of the keys are above it",
     ),
