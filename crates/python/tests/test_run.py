@@ -162,3 +162,34 @@ def test_cycles_of_arrays_frames_and_files(tmp_path) -> None:
 
 def test_wltc_of_the_car() -> None:
     assert cc.run("rover_216_cvt", "wltc", trace=False).summary["cycle"].startswith("wltc_class")
+
+
+def test_a_drive_without_way_is_in_litres_an_hour():
+    idle = cc.Cycle.from_arrays([0, 100.0], [0.0, 0.0])
+    run = cc.run("rover_216_cvt", idle, start=85)
+    own = run.summary["runs"][0]
+    assert own["fuel_l_per_100km"] is None and run.fuel_l_per_100km != run.fuel_l_per_100km
+    assert run.fuel_l_per_h == own["fuel_l_per_h"] and abs(own["fuel_g"] / own["fuel_kg"] - 1000) < 1e-9
+    assert "L/h" in repr(run) and "L/h" in run._repr_html_() and "L/h" in run.plot("fuel").svg
+
+
+def test_starts_with_temperatures_of_nodes():
+    nodes = {"coolant": 81, "sump": 60}
+    by_dict, by_text = (cc.run("rover_216_cvt", "ece15", start=s, trace=False) for s in (nodes, "coolant=81,sump=60"))
+    assert by_dict.fuel_l_per_100km == by_text.fuel_l_per_100km and by_dict.summary["start"] == nodes
+    for start in ({"oil": 80}, "coolant=1,coolant=2", {"sump": 200}):
+        with pytest.raises(cc.InputError, match="nodes: coolant, engine_oil, sump, metal, belt, tyre") as caught:
+            cc.run("rover_216_cvt", "ece15", start=start)
+        assert [problem["key"] for problem in caught.value.problems] == ["start"]
+
+
+def test_full_throttle():
+    car = cc.Car("civic_20_6mt")
+    found = car.accelerate(0, 60, dt_s=0.1)
+    (span,) = found["spans"]
+    assert 3 < span["time_s"] < 8 and span["error_s"] < 0.1 and found["drives"][0]["shifts"]
+    heavy = cc.Car("civic_20_6mt", set={"road_load.payload_kg+": 300}).accelerate(0, 60, dt_s=0.1)
+    assert heavy["spans"][0]["time_s"] > span["time_s"] + 0.2
+    for wrong in ({"gear": 9}, {"grip": 9}, {"driven": "left"}, {"to_kmh": 0}):
+        with pytest.raises(cc.InputError):
+            car.accelerate(0, **{"to_kmh": 60, **wrong})
