@@ -105,7 +105,7 @@ impl InputKind {
         };
         let kind = match extension(word).as_deref() {
             Some("csv" | "tsv" | "txt" | "vdri") => {
-                bytes("FILE", word, bounded::TABLE).map(|_| InputKind::Cycle)
+                bytes("FILE", word, bounded::LOG).map(|_| InputKind::Cycle)
             }
             _ => InputKind::from_text(word, &decode(word, &bytes("FILE", word, bounded::TOML)?)?),
         };

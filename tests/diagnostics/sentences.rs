@@ -95,6 +95,14 @@ const EXCUSED: &[(&str, &str)] = &[
     ),
     (" The message is one sentence", "text of documentation"),
     (
+        "{}, also in line {}",
+        "problems of a kind as one: tests/cli/commands/log.rs",
+    ),
+    (
+        "{}, and in {count} more rows",
+        "problems of a kind as one: tests/cli/commands/log.rs",
+    ),
+    (
         "problem is",
         "tests/model/input/cycle.rs counts problems that are not shown",
     ),

@@ -1,9 +1,11 @@
 //! The summary of a run with all that is said of it: maps that were left, prices of the losses, published numbers.
 
 use cvtcycle_config::cycle::Cycle;
-use cvtcycle_model::drive::{Conditions, drive};
+use cvtcycle_model::drive::{Conditions, Row, drive};
+use cvtcycle_model::lubricant::ZERO_DEGC_K;
 use cvtcycle_output::summary::{
-    Driven, Over, RunSummary, Settings, StartWord, Summary, find_maps_left, summarise,
+    Driven, MeasuredSummary, Over, RunSummary, Settings, StartWord, Summary, find_maps_left,
+    summarise,
 };
 
 use crate::attribute::{Attribution, Depth, attribute};
@@ -77,7 +79,75 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
     }
     words::run::assess(&mut summary, cycle, driven, of.published.as_deref());
     bounds(&mut summary, of, driven);
+    beside_log(&mut summary, of, driven);
     summary
+}
+
+/// Quantities of a log and how they are computed and printed: name, unit, size of the unit in SI, value of a row in SI.
+type Quantity = (&'static str, &'static str, f64, fn(&Row) -> f64);
+const QUANTITIES: [Quantity; 5] = [
+    ("engine_speed", "rpm", std::f64::consts::PI / 30.0, |row| {
+        row.engine_speed_rad_s
+    }),
+    ("fuel", "g/s", 1e-3, |row| row.fuel_kg_s),
+    ("coolant", "degC", 1.0, |row| row.coolant_k - ZERO_DEGC_K),
+    ("engine_oil", "degC", 1.0, |row| {
+        row.engine_oil_k - ZERO_DEGC_K
+    }),
+    ("sump", "degC", 1.0, |row| row.sump_k - ZERO_DEGC_K),
+];
+
+/// Engine speed, fuel and temperatures of a log next to those that are computed of the subject, step by step.
+fn beside_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
+    let recorded = of.cycle.recording.as_deref();
+    let Some(((own, recorded), car)) = summary.recording.as_mut().zip(recorded).zip(driven.first())
+    else {
+        return;
+    };
+    if recorded.measured.is_empty() {
+        return;
+    }
+    let conditions = Conditions {
+        keep_rows: true,
+        ..of.conditions
+    };
+    let again = car
+        .outcome
+        .rows
+        .is_empty()
+        .then(|| drive(car.setup, of.cycle, &conditions));
+    let rows = again
+        .as_ref()
+        .map_or(&car.outcome.rows, |outcome| &outcome.rows);
+    for measured in &recorded.measured {
+        let Some((name, unit, size, value)) = QUANTITIES
+            .iter()
+            .find(|(name, ..)| *name == measured.quantity)
+        else {
+            continue;
+        };
+        let [mut seconds, mut mean, mut computed, mut square] = [0.0; 4];
+        for row in rows {
+            let Some(there) = measured.mean(row.time_s - row.dt_s, row.time_s) else {
+                continue;
+            };
+            let (there, here) = (there / size, value(row) / size);
+            seconds += row.dt_s;
+            mean += row.dt_s * there;
+            computed += row.dt_s * here;
+            square += row.dt_s * (here - there) * (here - there);
+        }
+        if seconds > 0.0 {
+            own.measured.push(MeasuredSummary {
+                quantity: (*name).to_owned(),
+                unit: (*unit).to_owned(),
+                measured: mean / seconds,
+                computed: computed / seconds,
+                rms: (square / seconds).sqrt(),
+                seconds,
+            });
+        }
+    }
 }
 
 /// Half width by which fuel and difference of a smoothed recording are open beside what the strength of the smoothing leaves: per cent of the fuel, and

@@ -77,6 +77,26 @@ pub struct RecordingSummary {
     /// The same of the difference to each baseline, per cent.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub percent: Vec<Option<[f64; 2]>>,
+    /// Other quantities of the log, with those that are computed of the subject.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<MeasuredSummary>,
+}
+
+/// A quantity of a log and the computed one, over the time in which it was recorded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MeasuredSummary {
+    /// Name.
+    pub quantity: String,
+    /// Unit.
+    pub unit: String,
+    /// Mean of the log.
+    pub measured: f64,
+    /// Mean as computed.
+    pub computed: f64,
+    /// Root mean square of the difference.
+    pub rms: f64,
+    /// Time in which it was recorded, s.
+    pub seconds: f64,
 }
 
 /// A repair of a recording.

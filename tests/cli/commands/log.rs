@@ -545,3 +545,82 @@ fn a_drive_in_many_written_forms_is_one_drive() {
         assert!((own - right).abs() < 1e-6, "{form}: {own} for {right}");
     }
 }
+
+/// Property: the log that a car of the model writes of itself is computed again as it is.
+#[test]
+fn engine_speed_and_fuel_of_a_log_stand_beside_the_computed_ones() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("own");
+    let driven = run(&[
+        "run",
+        "--cycle",
+        "udds",
+        "--baseline",
+        "none",
+        "--price",
+        "never",
+        "--sensitivity",
+        "never",
+        "--out",
+        out.to_str().unwrap(),
+        "--quiet",
+    ]);
+    assert_eq!(
+        driven.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&driven.stderr)
+    );
+    let trace = fs::read_dir(&out)
+        .unwrap()
+        .map(|entry| entry.unwrap().path());
+    let trace = trace
+        .into_iter()
+        .find(|path| path.extension().is_some_and(|end| end == "csv"))
+        .unwrap();
+    let mut reader = csv::Reader::from_path(trace).unwrap();
+    let heads = reader.headers().unwrap().clone();
+    let at = |name: &str| {
+        heads
+            .iter()
+            .position(|head| head == name)
+            .unwrap_or_else(|| panic!("{name} in {heads:?}"))
+    };
+    let columns = [at("time_s"), at("engine_speed_rpm"), at("fuel_g_s")];
+    let speeds = shipped("udds");
+    let mut text =
+        "time [s],vehicle_speed [m/s],engine_speed [rpm],fuel_rate [g/s],coolant [degC]\n"
+            .to_owned();
+    let _ = writeln!(text, "0,0,,,");
+    for (k, row) in reader.records().map(Result::unwrap).enumerate() {
+        let [time, rpm, fuel] = columns.map(|column| row[column].to_owned());
+        let _ = writeln!(text, "{time},{},{rpm},{fuel},", speeds[k + 1]);
+    }
+    let file = dir.path().join("log.csv");
+    fs::write(&file, text).unwrap();
+    let again = run(&[
+        "run",
+        "--cycle",
+        file.to_str().unwrap(),
+        "--baseline",
+        "none",
+        "--price",
+        "never",
+        "--json",
+    ]);
+    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    let measured = again["recording"]["measured"].as_array().unwrap();
+    assert_eq!(
+        measured.len(),
+        2,
+        "a channel without values is none: {measured:?}"
+    );
+    for own in measured {
+        let number = |key: &str| own[key].as_f64().unwrap();
+        assert!(number("rms") < 1e-3 * number("measured"), "{own}");
+        assert!(
+            (number("computed") / number("measured") - 1.0).abs() < 1e-4,
+            "{own}"
+        );
+    }
+}

@@ -325,8 +325,8 @@ fn rows_that_are_kept_are_counted_before_anything_is_computed() {
             refused_once(dir.path(), 64, line, &[words]);
         }
     }
-    let cycle: String = (0..=16_900)
-        .map(|k| format!("{},{}\n", k * 59, 50 * (k % 2)))
+    let cycle: String = (0..=19_944)
+        .map(|k| format!("{},{}\n", k * 50, 50 * (k % 2)))
         .collect();
     fs::write(
         dir.path().join("long.csv"),

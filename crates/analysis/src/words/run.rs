@@ -249,12 +249,38 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         fixed(fuel, 2),
         over.unit()
     );
-    let lines = [Some(first), recording.and_then(repaired), price(run)]
-        .into_iter()
-        .flatten();
+    let beside = recording.and_then(beside_log);
+    let lines = [
+        Some(first),
+        recording.and_then(repaired),
+        beside,
+        price(run),
+    ]
+    .into_iter()
+    .flatten();
     let lines = lines.chain(input_doubts(summary));
     let lines = lines.chain(draw_doubts(summary)).chain(maps_left(summary));
     lines.chain(contradictions(summary)).collect()
+}
+
+/// What else the log has, beside what is computed, a sentence.
+fn beside_log(recording: &RecordingSummary) -> Option<String> {
+    let each = recording.measured.iter().map(|own| {
+        let name = own.quantity.replace('_', " ");
+        let decimals = match own.unit.as_str() {
+            "g/s" => 3,
+            "rpm" => 0,
+            _ => 1,
+        };
+        let [measured, computed, rms] = [own.measured, own.computed, own.rms].map(|x| fixed(x, decimals));
+        let percent = match own.quantity.as_str() {
+            "fuel" => format!(" ({} %)", signed(100.0 * (own.computed / own.measured - 1.0), 1)),
+            _ => String::new(),
+        };
+        format!("{name} {measured} {} in the log, {computed} computed{percent}, rms of the difference {rms}", own.unit)
+    });
+    let each: Vec<String> = each.collect();
+    (!each.is_empty()).then(|| format!("Means beside the log: {}.", each.join("; ")))
 }
 
 /// The repairs of a recording, a sentence.

@@ -33,12 +33,14 @@ pub enum Quantity {
     Ambient,
 }
 
-/// A unit: its name, and value in SI = factor * (number + offset); of an angle the tangent, see [`Unit::si`].
+/// A unit: its name, and value in SI = factor * (number + offset) / divisor; of an angle the tangent, see [`Unit::si`]. A divisor of its own gives the same
+/// bits as the tables of cycles have them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// Name.
     pub name: &'static str,
     factor: f64,
+    divisor: f64,
     offset: f64,
     is_angle: bool,
 }
@@ -47,7 +49,7 @@ impl Unit {
     /// Number in SI.
     #[must_use]
     pub fn si(&self, number: f64) -> f64 {
-        let scaled = self.factor * (number + self.offset);
+        let scaled = self.factor * (number + self.offset) / self.divisor;
         match self.is_angle {
             true => scaled.tan(),
             false => scaled,
@@ -56,9 +58,9 @@ impl Unit {
 }
 
 macro_rules! units {
-    ($($list:ident: $($name:literal $factor:expr, $offset:expr, $angle:literal, [$($written:literal)*];)*)*) => {
+    ($($list:ident: $($name:literal $factor:expr, $divisor:expr, $offset:expr, $angle:literal, [$($written:literal)*];)*)*) => {
         $(static $list: &[(Unit, &[&str])] = &[$((
-            Unit { name: $name, factor: $factor, offset: $offset, is_angle: $angle },
+            Unit { name: $name, factor: $factor, divisor: $divisor, offset: $offset, is_angle: $angle },
             &[$($written),*],
         )),*];)*
     };
@@ -74,47 +76,47 @@ const PETROL_KG_L: f64 = 0.7475;
 // Texts are as `bare` has them: lower case, words joined by `_`.
 units! {
     TIME:
-        "s" 1.0, 0.0, false, ["s" "sec" "secs" "second" "seconds" "sek"];
-        "ms" 1e-3, 0.0, false, ["ms" "msec" "msecs" "millis" "millisec" "millisecs" "millisecond" "milliseconds"];
-        "us" 1e-6, 0.0, false, ["us" "µs" "μs" "usec" "microsecond" "microseconds"];
-        "ns" 1e-9, 0.0, false, ["ns" "nsec" "nanosecond" "nanoseconds"];
-        "min" 60.0, 0.0, false, ["min" "mins" "minute" "minutes"];
-        "h" 3600.0, 0.0, false, ["h" "hr" "hrs" "hour" "hours"];
+        "s" 1.0, 1.0, 0.0, false, ["s" "sec" "secs" "second" "seconds" "sek"];
+        "ms" 1.0, 1e3, 0.0, false, ["ms" "msec" "msecs" "millis" "millisec" "millisecs" "millisecond" "milliseconds"];
+        "us" 1.0, 1e6, 0.0, false, ["us" "µs" "μs" "usec" "microsecond" "microseconds"];
+        "ns" 1.0, 1e9, 0.0, false, ["ns" "nsec" "nanosecond" "nanoseconds"];
+        "min" 60.0, 1.0, 0.0, false, ["min" "mins" "minute" "minutes"];
+        "h" 3600.0, 1.0, 0.0, false, ["h" "hr" "hrs" "hour" "hours"];
     SPEED:
-        "km/h" 1.0 / 3.6, 0.0, false, ["km_h" "kmh" "km_hr" "kph" "kmph" "kilometers_per_hour" "kilometres_per_hour"];
-        "m/s" 1.0, 0.0, false, ["m_s" "mps" "m_sec" "meters_per_second" "metres_per_second" "meters_second" "metres_second" "m_s_1" "m_s1"];
-        "mph" MILE_M / 3600.0, 0.0, false, ["mph" "mi_h" "mi_hr" "miles_per_hour" "miles_hour"];
-        "kn" 1852.0 / 3600.0, 0.0, false, ["kn" "kt" "kts" "knot" "knots"];
-        "cm/s" 0.01, 0.0, false, ["cm_s"];
-        "ft/s" FOOT_M, 0.0, false, ["ft_s" "fps"];
+        "km/h" 1.0, 3.6, 0.0, false, ["km_h" "kmh" "km_hr" "kph" "kmph" "kilometers_per_hour" "kilometres_per_hour"];
+        "m/s" 1.0, 1.0, 0.0, false, ["m_s" "mps" "m_sec" "meters_per_second" "metres_per_second" "meters_second" "metres_second" "m_s_1" "m_s1"];
+        "mph" 1.609_344, 3.6, 0.0, false, ["mph" "mi_h" "mi_hr" "miles_per_hour" "miles_hour"];
+        "kn" 1.852, 3.6, 0.0, false, ["kn" "kt" "kts" "knot" "knots"];
+        "cm/s" 0.01, 1.0, 0.0, false, ["cm_s"];
+        "ft/s" FOOT_M, 1.0, 0.0, false, ["ft_s" "fps"];
     GRADE:
-        "-" 1.0, 0.0, false, ["-" "1" "m_m" "ratio" "share" "rise_over_run"];
-        "%" 0.01, 0.0, false, ["%" "percent" "pct" "per_cent"];
-        "per mille" 0.001, 0.0, false, ["‰" "per_mille" "permille" "permil" "per_mil"];
-        "deg" DEGREE, 0.0, true, ["deg" "degree" "degrees" "°"];
-        "rad" 1.0, 0.0, true, ["rad" "radian" "radians"];
+        "-" 1.0, 1.0, 0.0, false, ["-" "1" "m_m" "ratio" "share" "rise_over_run"];
+        "%" 1.0, 100.0, 0.0, false, ["%" "percent" "pct" "per_cent"];
+        "per mille" 1.0, 1000.0, 0.0, false, ["‰" "per_mille" "permille" "permil" "per_mil"];
+        "deg" DEGREE, 1.0, 0.0, true, ["deg" "degree" "degrees" "°"];
+        "rad" 1.0, 1.0, 0.0, true, ["rad" "radian" "radians"];
     LENGTH:
-        "m" 1.0, 0.0, false, ["m" "meter" "meters" "metre" "metres"];
-        "km" 1000.0, 0.0, false, ["km" "kilometers" "kilometres"];
-        "ft" FOOT_M, 0.0, false, ["ft" "feet" "foot"];
-        "mi" MILE_M, 0.0, false, ["mi" "mile" "miles"];
+        "m" 1.0, 1.0, 0.0, false, ["m" "meter" "meters" "metre" "metres"];
+        "km" 1000.0, 1.0, 0.0, false, ["km" "kilometers" "kilometres"];
+        "ft" FOOT_M, 1.0, 0.0, false, ["ft" "feet" "foot"];
+        "mi" MILE_M, 1.0, 0.0, false, ["mi" "mile" "miles"];
     FLAG:
-        "-" 1.0, 0.0, false, ["-" "1" "0_1" "bool" "boolean" "flag" "on_off"];
+        "-" 1.0, 1.0, 0.0, false, ["-" "1" "0_1" "bool" "boolean" "flag" "on_off"];
     TURNS:
-        "rpm" std::f64::consts::PI / 30.0, 0.0, false, ["rpm" "1_min" "min_1" "u_min" "r_min" "rev_min" "revolutions_per_minute"];
-        "rad/s" 1.0, 0.0, false, ["rad_s"];
-        "1/s" 2.0 * std::f64::consts::PI, 0.0, false, ["hz" "1_s" "rps"];
+        "rpm" std::f64::consts::PI, 30.0, 0.0, false, ["rpm" "1_min" "min_1" "u_min" "r_min" "rev_min" "revolutions_per_minute"];
+        "rad/s" 1.0, 1.0, 0.0, false, ["rad_s"];
+        "1/s" 2.0 * std::f64::consts::PI, 1.0, 0.0, false, ["hz" "1_s" "rps"];
     FUEL:
-        "g/s" 1e-3, 0.0, false, ["g_s" "g_sec" "gps"];
-        "g/h" 1e-3 / 3600.0, 0.0, false, ["g_h"];
-        "kg/h" 1.0 / 3600.0, 0.0, false, ["kg_h" "kg_hr"];
-        "L/h" PETROL_KG_L / 3600.0, 0.0, false, ["l_h" "lph" "l_hr" "liter_h" "litre_h" "liters_per_hour" "litres_per_hour"];
-        "gal/h" PETROL_KG_L * 3.785_411_784 / 3600.0, 0.0, false, ["gal_h" "gph" "gal_hr" "gallons_per_hour"];
-        "mL/min" PETROL_KG_L * 1e-3 / 60.0, 0.0, false, ["ml_min" "cc_min"];
+        "g/s" 1e-3, 1.0, 0.0, false, ["g_s" "g_sec" "gps"];
+        "g/h" 1e-3, 3600.0, 0.0, false, ["g_h"];
+        "kg/h" 1.0, 3600.0, 0.0, false, ["kg_h" "kg_hr"];
+        "L/h" PETROL_KG_L, 3600.0, 0.0, false, ["l_h" "lph" "l_hr" "liter_h" "litre_h" "liters_per_hour" "litres_per_hour"];
+        "gal/h" PETROL_KG_L * 3.785_411_784, 3600.0, 0.0, false, ["gal_h" "gph" "gal_hr" "gallons_per_hour"];
+        "mL/min" PETROL_KG_L * 1e-3, 60.0, 0.0, false, ["ml_min" "cc_min"];
     TEMPERATURE:
-        "degC" 1.0, 0.0, false, ["°c" "degc" "deg_c" "c" "celsius" "℃"];
-        "degF" 1.0 / 1.8, -32.0, false, ["°f" "degf" "deg_f" "f" "fahrenheit"];
-        "K" 1.0, -273.15, false, ["k" "kelvin"];
+        "degC" 1.0, 1.0, 0.0, false, ["°c" "degc" "deg_c" "c" "celsius" "℃"];
+        "degF" 1.0, 1.8, -32.0, false, ["°f" "degf" "deg_f" "f" "fahrenheit"];
+        "K" 1.0, 1.0, -273.15, false, ["k" "kelvin"];
 }
 
 /// A word of a name in camel case or with digits, in its parts.

@@ -77,11 +77,7 @@ pub fn open(word: &str, columns: &Columns) -> Result<Cycle, Problems> {
     }
     match named {
         Some(cycle) => Ok(cycle),
-        None => read_columns(
-            word,
-            &bytes(Argument::Cycle, word, bounded::TABLE)?,
-            columns,
-        ),
+        None => read_columns(word, &bytes(Argument::Cycle, word, bounded::LOG)?, columns),
     }
 }
 

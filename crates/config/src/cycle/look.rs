@@ -19,7 +19,7 @@ pub struct Look {
 /// # Errors
 /// As [`crate::cycle::open`].
 pub fn look(path: &str, columns: &Columns) -> Result<Look, Problems> {
-    let bytes = bytes(crate::Argument::File, path, crate::files::bounded::TABLE)?;
+    let bytes = bytes(crate::Argument::File, path, crate::files::bounded::LOG)?;
     let cycle = read_columns(path, &bytes, columns)?;
     Ok(Look {
         log: read(path, &bytes, columns, likeness::likeness).ok(),

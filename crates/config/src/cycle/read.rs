@@ -6,10 +6,10 @@ use super::distance::{DistanceRow, Stretch, stretches};
 use super::gears::{GearColumns, GearCommand, commands};
 use super::likeness::likeness;
 use super::row::{GEARS, MAX_DURATION_S, NOTE, Over, Row, Rows, schema};
-use super::{Cycle, Interval, Recording, Trace, Weighting};
+use super::{Cycle, Interval, Measured, Recording, Trace, Weighting};
 use crate::channel::Quantity;
 use crate::csv::{self, Collector, Columns, Entry, Line, Table};
-use crate::log::{self, Log, Resolution, Samples};
+use crate::log::{self, Channel, Log, Resolution, Samples};
 use crate::{Place, Problem, Problems, readable};
 
 /// Reads a drive cycle from the bytes of a CSV file called `file`, as it is written: nothing is repaired or smoothed.
@@ -166,6 +166,29 @@ fn alike(problems: Problems) -> Problems {
     joined.chain(not_shown).collect()
 }
 
+/// Other channels of the car that a log has, over the cycle's time.
+fn measured(log: &Log) -> Vec<Measured> {
+    let samples = &log.treated.samples;
+    let is_of_car = |channel: &&Channel| {
+        use Quantity::{Coolant, EngineOil, EngineSpeed, Fuel, Sump};
+        matches!(
+            channel.quantity,
+            EngineSpeed | Fuel | Coolant | EngineOil | Sump
+        ) && channel.values.len() == samples.time_s.len()
+            && channel.values.iter().any(|value| value.is_finite())
+    };
+    let of_car = log.channels.iter().filter(is_of_car);
+    let times = samples.time_s.iter().map(|time| time - samples.time_s[0]);
+    let times: Vec<f64> = times.collect();
+    of_car
+        .map(|channel| Measured {
+            quantity: channel.quantity.name().to_owned(),
+            time_s: times.clone(),
+            values: channel.values.clone(),
+        })
+        .collect()
+}
+
 /// The trace of a log.
 fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
     /// Rows nearer to each other say nothing more about a drive, s.
@@ -204,6 +227,7 @@ fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
         };
         Trace::without_gears(rows.windows(2).map(interval).collect())
     };
+    let measured = measured(&log);
     let bounds = log
         .treated
         .bounds
@@ -227,6 +251,7 @@ fn of_log(log: Log, phases: &mut Vec<String>) -> Found {
             doubts: treated.doubts.clone(),
             bounds,
             is_log: treated.is_recording,
+            measured,
         })),
     }
 }
@@ -284,6 +309,7 @@ fn as_recorded(file: &str, read: ReadRows, columns: &Columns) -> Result<Found, P
         doubts,
         bounds,
         is_log: treated.is_recording,
+        measured: Vec::new(),
     };
     Ok(Found {
         trace,

@@ -290,7 +290,13 @@ impl Sheet<'_> {
             ))
             .at(Argument::Columns)
             .value(written.as_str())
-            .allowed(allowed()));
+            .allowed(allowed())
+            .hint(format!(
+                "write it behind the name: {}={}:{}",
+                entry.quantity,
+                entry.name.as_deref().unwrap_or("NAME"),
+                quantity.units().first().copied().unwrap_or("-")
+            )));
         };
         let stated = self.stated_unit(quantity, column);
         if let Some(stated) = stated.filter(|stated| *stated != unit && !entry.forced) {

@@ -45,6 +45,8 @@ const MAX_STAMP_S: f64 = 1e11;
 const MAX_STEP_S: f64 = 60.0;
 /// Two channels of speed that differ by less on average are of one car, m/s.
 const SAME_M_S: f64 = 1.5;
+/// A longer log becomes one of a row a second.
+const MAX_ROWS: usize = 2_000_000;
 /// Longest drive, s.
 const MAX_DURATION_S: f64 = 1e6;
 
@@ -209,6 +211,10 @@ impl Reader<'_, '_> {
             (time_source, speed_source),
             &mut repairs,
         )?;
+        if samples.time_s.len() > MAX_ROWS {
+            let count = samples.mean_each_second(&mut others);
+            read_as.push(format!("{count} rows as their means over a second"));
+        }
         self.steps(&samples, &chosen, (time_source, speed_source))?;
         let raw = samples.clone();
         let resolution =

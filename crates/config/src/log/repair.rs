@@ -151,6 +151,32 @@ impl Samples {
         Ok(n - to)
     }
 
+    /// Puts the mean of each second in place of its rows, at their mean time; a second with a rest and a drive keeps its mean. Returns the number of rows
+    /// before.
+    pub(super) fn mean_each_second(&mut self, others: &mut [Vec<f64>]) -> usize {
+        let n = self.time_s.len();
+        let first_s = self.time_s[0];
+        let (mut to, mut k) = (0, 0);
+        while k < n {
+            let second = (self.time_s[k] - first_s).floor();
+            let end = (k..n)
+                .find(|at| (self.time_s[*at] - first_s).floor() > second)
+                .unwrap_or(n);
+            let mean = |list: &[f64]| list[k..end].iter().sum::<f64>() / (end - k) as f64;
+            let (time, speed) = (mean(&self.time_s), mean(&self.speed_m_s));
+            (self.time_s[to], self.speed_m_s[to], self.lines[to]) = (time, speed, self.lines[k]);
+            for other in &mut *others {
+                other[to] = other[k];
+            }
+            (to, k) = (to + 1, end);
+        }
+        self.time_s.truncate(to);
+        self.speed_m_s.truncate(to);
+        self.lines.truncate(to);
+        others.iter_mut().for_each(|other| other.truncate(to));
+        n
+    }
+
     /// Replaces samples against both neighbours by the line between these; returns their indices.
     fn spikes(&mut self) -> Vec<(usize, f64)> {
         let n = self.time_s.len();

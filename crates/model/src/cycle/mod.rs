@@ -62,6 +62,43 @@ pub struct Recording {
     pub bounds: Vec<Trace>,
     /// True where rows come at a rate, so that it is a log and no schedule.
     pub is_log: bool,
+    /// Other quantities of the car that were recorded with its speed.
+    pub measured: Vec<Measured>,
+}
+
+/// A quantity of a car that was recorded with its speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Name of the quantity: `engine_speed` in rad/s, `fuel` in kg/s, `coolant`, `engine_oil` and `sump` in degC.
+    pub quantity: String,
+    /// Times, s from the start of the cycle.
+    pub time_s: Vec<f64>,
+    /// Values; NaN where there is none.
+    pub values: Vec<f64>,
+}
+
+impl Measured {
+    /// Mean over an interval of time, by the values within it, or by the line between the neighbours of an interval without one; none beyond the
+    /// recording, or without a number.
+    #[must_use]
+    pub fn mean(&self, from_s: f64, to_s: f64) -> Option<f64> {
+        let first = self.time_s.partition_point(|time| *time <= from_s);
+        let end = self.time_s.partition_point(|time| *time <= to_s);
+        let within = self.values[first..end]
+            .iter()
+            .filter(|value| value.is_finite());
+        let (count, sum) =
+            within.fold((0.0, 0.0), |(count, sum), value| (count + 1.0, sum + value));
+        if count > 0.0 {
+            return Some(sum / count);
+        }
+        let (low, high) = (first.checked_sub(1)?, end);
+        let (before, behind) = (*self.values.get(low)?, *self.values.get(high)?);
+        let share =
+            (0.5 * (from_s + to_s) - self.time_s[low]) / (self.time_s[high] - self.time_s[low]);
+        let value = before + share * (behind - before);
+        value.is_finite().then_some(value)
+    }
 }
 
 /// A repair of a recording.
