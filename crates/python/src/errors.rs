@@ -10,7 +10,11 @@ import_exception!(cvtcycle._errors, InputError);
 /// Exception for problems.
 pub fn refused(problems: impl Into<Problems>) -> PyErr {
     let problems = problems.into();
-    let text = render(&problems, false);
+    let mut text = render(&problems, false);
+    let columns = problems.iter().map(|problem| problem.columns.as_str());
+    if let Some(columns) = columns.max().filter(|columns| !columns.is_empty()) {
+        text = format!("{}\ntry: columns={columns:?}", text.trim_end());
+    }
     Python::attach(|py| match dicts(py, &problems) {
         Ok(list) => InputError::new_err((text.trim_end().to_owned(), list.unbind())),
         Err(error) => error,

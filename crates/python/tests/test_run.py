@@ -160,6 +160,39 @@ def test_cycles_of_arrays_frames_and_files(tmp_path) -> None:
     assert made[0].phases == ["a", "b"]
 
 
+def test_logs_of_frames_with_times() -> None:
+    """Truth: the same drive with seconds."""
+    import pandas
+    import polars
+
+    seconds = [float(k) for k in range(121)]
+    speed_kmh = [min(3.0 * t, 60.0) if t < 90 else max(60.0 - 3.0 * (t - 90), 0.0) for t in seconds]
+    start = pandas.Timestamp("2026-01-05T23:59:30")
+    plain = pandas.DataFrame({"time_s": seconds, "speed_kmh": speed_kmh})
+    since = pandas.to_timedelta(plain.time_s, unit="s")
+    frames = [
+        plain.set_index("time_s"),
+        plain.assign(time_s=since),
+        plain.assign(time_s=start + since),
+        plain.assign(rpm=900.0, note="x"),
+        plain.drop(columns="time_s").set_index(pandas.DatetimeIndex(start + since)),
+        polars.DataFrame({"time": (start + since).dt.to_pydatetime().tolist(), "speed_kmh": speed_kmh}),
+        {"t": numpy.array((start + since).values), "speed_kmh": numpy.array(speed_kmh)},
+    ]
+    right = cc.run("rover_216_cvt", cc.Cycle.from_frame(plain), trace=False).fuel_l_per_100km
+    for frame in frames:
+        fuel = cc.run("rover_216_cvt", cc.Cycle.from_frame(frame), trace=False).fuel_l_per_100km
+        assert abs(fuel - right) < 1e-9
+    spike = plain.assign(speed_kmh=[95.0 if k == 50 else v for k, v in enumerate(speed_kmh)])
+    mended = cc.Cycle.from_frame(spike)
+    assert [(name, count) for name, count, _ in mended.repairs] == [("spikes", 1)] and mended.doubts == []
+    with pytest.raises(cc.InputError, match="1 sample against both neighbours"):
+        cc.Cycle.from_frame(spike, repair="no-spikes")
+    two = pandas.concat([plain.assign(vehicle_id="a"), plain.assign(vehicle_id="b")])
+    with pytest.raises(cc.InputError, match='try: columns="time=time_s:s,speed=speed_kmh:km/h,where=vehicle_id:a"'):
+        cc.Cycle.from_frame(two)
+
+
 def test_wltc_of_the_car() -> None:
     assert cc.run("rover_216_cvt", "wltc", trace=False).summary["cycle"].startswith("wltc_class")
 
