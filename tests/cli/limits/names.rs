@@ -29,16 +29,16 @@ fn devices_and_pipes_without_end_are_read_up_to_the_limit() {
     );
     refused_once(
         dir.path(),
-        160,
+        700,
         "run --cycle /dev/zero --baseline none",
-        &["it has more than 64 MiB", "up to 64 MiB"],
+        &["it has more than 256 MiB", "up to 256 MiB"],
     );
     let mut writer = pipe(dir.path(), "endless.csv", Some("yes")).unwrap();
     refused_once(
         dir.path(),
-        160,
+        700,
         "run --cycle endless.csv --baseline none",
-        &["it has more than 64 MiB"],
+        &["it has more than 256 MiB"],
     );
     // It ended when the reader closed the pipe.
     writer.wait().unwrap();

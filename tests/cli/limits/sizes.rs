@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
-use cvtcycle::config::bounded::{self, LOGO, Limit, RECORD, TABLE, TOML, TRACE};
+use cvtcycle::config::bounded::{self, LOG, LOGO, Limit, RECORD, TABLE, TOML, TRACE};
 use cvtcycle::config::cycle;
 use cvtcycle::config::setup::{self, Options};
 
@@ -35,9 +35,9 @@ const READERS: [(&str, Limit); 13] = [
     ("calibrate big.toml --out nowhere", TOML),
     ("validate --rows big.toml", TOML),
     ("check big.toml", TOML),
-    ("check big.csv", TABLE),
+    ("check big.csv", LOG),
     ("show big.toml", TOML),
-    ("run --cycle big.csv --baseline none", TABLE),
+    ("run --cycle big.csv --baseline none", LOG),
     (
         "run --cycle short.csv --baseline none --set transmission.cvt.maps.belt=big.csv",
         TABLE,
@@ -129,7 +129,7 @@ fn a_line_of_a_hundred_megabytes_is_refused() {
     refused_once(
         dir.path(),
         64,
-        "run --cycle big.csv --baseline none",
+        "run --cycle short.csv --baseline none --set transmission.cvt.maps.belt=big.csv",
         &["it has 104857600 bytes"],
     );
     refused_once(
@@ -180,7 +180,7 @@ fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
         let name = path("cycle.csv");
         fs::write(
             &name,
-            padded("time_s,speed_kmh\n0,0\n10,20\n", TABLE.bytes + more as u64),
+            padded("time_s,speed_kmh\n0,0\n10,20\n", LOG.bytes + more as u64),
         )
         .unwrap();
         let read = cycle::find(&name);
@@ -188,7 +188,7 @@ fn a_file_at_its_limit_is_read_and_one_byte_more_is_not() {
             read.as_ref()
                 .err()
                 .map(|problems| problems[0].allowed.as_str()),
-            (!is_read).then_some("up to 64 MiB")
+            (!is_read).then_some("up to 256 MiB")
         );
     }
     // Results: reads the bytes only.

@@ -365,8 +365,8 @@ fn rows_that_are_kept_are_counted_before_anything_is_computed() {
         ],
     );
     assert!(!dir.path().join("nowhere").exists());
-    let short: String = (0..=56)
-        .map(|k| format!("{},{}\n", k * 3600, 50 * (k % 2)))
+    let short: String = (0..=4032)
+        .map(|k| format!("{},{}\n", k * 50, 50 * (k % 2)))
         .collect();
     let short = format!("time_s,speed_kmh\n{short}");
     fs::write(dir.path().join("long.csv"), short).unwrap();

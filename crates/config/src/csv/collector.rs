@@ -7,7 +7,7 @@ use crate::{Input, Place, Problem, Problems};
 /// Most problems that are described; the rest is counted.
 const MAX_SHOWN: usize = 50;
 /// A longer line is no row of a table, but another file.
-pub(super) const MAX_LINE_LEN: usize = 1 << 20;
+pub(crate) const MAX_LINE_LEN: usize = 1 << 20;
 /// No table has as many columns; each unknown one is compared with all known ones.
 pub(super) const MAX_COLUMNS: usize = 1000;
 // a longer line would only fill the screen
@@ -274,7 +274,7 @@ fn no_long_line(text: &str) -> Result<&str, Problem> {
 }
 
 /// A line is longer than [`MAX_LINE_LEN`].
-pub(super) fn long_line(number: usize) -> Problem {
+pub(crate) fn long_line(number: usize) -> Problem {
     Problem::too_large(format!("line {number} is too long for a row of a table"))
         .allowed(format!("up to {MAX_LINE_LEN} bytes"))
         .hint("is this a CSV file?")

@@ -25,6 +25,7 @@ mod table;
 mod text;
 
 pub use collector::{Cell, Collector, Line};
+pub(crate) use collector::{MAX_LINE_LEN, long_line};
 pub use heading::{Foreign, UNITS};
 pub use named::Columns;
 pub(crate) use named::Entry;

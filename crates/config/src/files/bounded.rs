@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | [`TOML`] | 1 MiB | the largest shipped file has 57 kB; its values are kept with their places, some hundred bytes each |
 //! | [`TABLE`] | 64 MiB | a map of a million points |
-//! | [`LOG`] | 1 GiB | a log of ten million rows with ten channels |
+//! | [`LOG`] | 256 MiB | a log of ten million rows with three channels: two weeks at 10 Hz |
 //! | [`TRACE`] | 512 MiB | a trace of a million steps, as `run --out` writes it, with all columns |
 //! | [`RECORD`] | 64 MiB | JSON of the program; the manifest of a study with a plan of 1 MiB stays below |
 //! | [`CHECKSUMS`] | 1 MiB | ten thousand files |
@@ -56,8 +56,8 @@ pub const TABLE: Limit = Limit {
 };
 /// A drive cycle or a log of a car.
 pub const LOG: Limit = Limit {
-    bytes: 1024 * MIB,
-    hint: "is this the file that was meant? otherwise cut it into drives",
+    bytes: 256 * MIB,
+    hint: "is this the file that was meant? otherwise cut it into drives, or leave out columns",
 };
 /// A trace of a run as CSV.
 pub const TRACE: Limit = Limit {

@@ -262,7 +262,16 @@ impl Sheet<'_> {
     ) -> Result<Reading, Problem> {
         let allowed = || quantity.units().join(", ");
         // The name before `=` may be that of a table of cycles, with its unit.
-        let own = unit_in(quantity, &entry.quantity).map(|unit| unit.name.to_owned());
+        let own = unit_in(quantity, &entry.quantity);
+        let given = entry.unit.as_deref().and_then(|unit| quantity.unit(unit));
+        if own.zip(given).is_some_and(|(own, given)| own != given) {
+            let message = format!("{} is not read in that unit", entry.quantity);
+            return Err(Problem::conflict(message)
+                .at(Argument::Columns)
+                .value(entry.unit.as_deref().unwrap_or_default())
+                .allowed(own.map_or("", |own| own.name)));
+        }
+        let own = own.map(|unit| unit.name.to_owned());
         let Some(written) = &entry.unit.clone().or(own) else {
             return self.reading(quantity, column).ok_or_else(|| {
                 let name = entry.name.as_deref().unwrap_or("NAME");

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::Problem;
-use crate::csv::empty;
+use crate::csv::{MAX_LINE_LEN, empty, long_line};
 
 /// First bytes of files that are no text, and what reads them.
 const BINARY: [(&[u8], &str); 6] = [
@@ -39,6 +39,13 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Text<'_>, Problem> {
         ))
         .allowed("a table in text, such as CSV")
         .hint("save the table as CSV; a spreadsheet's own format cannot be read"));
+    }
+    let lines = text.split('\n').enumerate();
+    if let Some((before, _)) = lines
+        .into_iter()
+        .find(|(_, line)| line.len() >= MAX_LINE_LEN)
+    {
+        return Err(long_line(before + 1));
     }
     if text.trim().is_empty() {
         return Err(empty());
