@@ -140,7 +140,8 @@ fn points(case: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// The first word of a map's name is the part that it replaces.
+/// The first word of a map's name is the part that it replaces. A comment `# --columns LIST` in the first line, in a script `% --columns LIST`,
+/// gives the columns.
 fn map(case: &str, name: &str) -> Option<Problems> {
     let (vehicle, key) = match name.split('_').next() {
         Some("bsfc") => ("rover_216_cvt", "engine.model.bsfc_map.file"),
@@ -150,11 +151,21 @@ fn map(case: &str, name: &str) -> Option<Problems> {
         Some("box") => ("rover_216_5mt", "transmission.manual.maps.box"),
         _ => ("rover_216_cvt", "transmission.cvt.maps.belt"),
     };
+    let bytes = std::fs::read(case).unwrap();
+    let text = String::from_utf8_lossy(&bytes);
+    let columns = text.lines().next().and_then(|line| {
+        line.trim_start_matches(['#', '%'])
+            .strip_prefix(" --columns ")
+    });
+    let value = match columns {
+        Some(columns) => format!("{{ value = {case:?}, columns = {columns:?} }}"),
+        None => case.to_owned(),
+    };
     setup::load(
         vehicle,
         &Options {
             set: [
-                (key, case),
+                (key, &*value),
                 ("transmission.cvt.maps.box_points", "scattered"),
             ]
             .into_iter()

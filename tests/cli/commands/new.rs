@@ -507,7 +507,7 @@ fn a_drive_outside_a_map_is_a_headline() {
         below_s += if bar < 8.0 { dt_s } else { 0.0 };
     }
     let line = format!(
-        "car: pump.csv was left for {:.0} % of the time with the engine on, most by secondary_pressure_bar below 8;",
+        "car: pump.csv was left for {:.0} % of the time with the engine on ({below_s:.0} s), most by secondary_pressure_bar below 8;",
         100.0 * below_s / all_s
     );
     let text = stdout(&output).replace('\n', " ");

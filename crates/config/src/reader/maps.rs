@@ -2,6 +2,7 @@
 
 mod fuel;
 mod grid;
+mod row;
 mod script;
 mod wide;
 

@@ -8,8 +8,9 @@ mod quantity;
 mod range;
 pub mod spec;
 
+pub use crate::math::{rad_s, rpm};
 pub use allowed::count;
-pub use quantity::{Quantity, RAD_S, RPM, ZERO_DEGC_K, rad_s, rpm, stem};
+pub use quantity::{Quantity, RAD_S, RPM, ZERO_DEGC_K, stem};
 pub use range::Bound;
 
 use self::file_table::{FileRows, FileTable};

@@ -17,18 +17,6 @@ pub const RAD_S: f64 = 1.0 / RPM;
 /// 0 degC in K.
 pub const ZERO_DEGC_K: f64 = 273.15;
 
-/// A speed in rad/s, converted to rpm.
-#[must_use]
-pub const fn rpm(rad_s: f64) -> f64 {
-    rad_s * 30.0 / PI
-}
-
-/// A speed in rpm, converted to rad/s.
-#[must_use]
-pub const fn rad_s(rpm: f64) -> f64 {
-    rpm * PI / 30.0
-}
-
 impl Quantity {
     /// A dimensionless number.
     pub const NONE: Quantity = unit("", "-", 1.0);

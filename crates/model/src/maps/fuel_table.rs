@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::NoMap;
-use crate::keys::rad_s;
+use crate::math::rad_s;
 
 /// Slowest engine, rpm: rows of a table at rest and below it belong to no running engine.
 const SLOWEST_RPM: f64 = 100.0;

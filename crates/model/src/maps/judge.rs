@@ -2,7 +2,7 @@
 //! of maps fill their grids there with any number.
 
 use super::{BsfcMap, NoMap, Point};
-use crate::keys::rpm;
+use crate::math::rpm;
 
 /// Best brake efficiencies of engines of cars. The measured maps of `classes` have 0.36 to 0.42; the widest here has room for a racing engine and for
 /// one that is worn. ASSUMED.

@@ -9,6 +9,7 @@ mod lanes;
 mod lattice;
 mod real;
 mod scalar;
+mod speed;
 
 pub use circular::{asin, cos, sin_cos, tan};
 pub use curve::Curve;
@@ -19,6 +20,7 @@ pub use lanes::{Gather, LaneMask, Level, Simd, dispatch, eight, f64x4, f64x8, fo
 pub(crate) use lanes::{MAX_LANES, gather_each};
 pub use lattice::{Across, Lattice};
 pub use real::{Implied, LaneValue, Left, Mask, Named, Operand, Real, Selectable};
+pub use speed::{rad_s, rpm};
 
 /// The larger of two numbers; the second where one is no number. Unlike `f64::max` a single instruction.
 #[physics]

@@ -1,7 +1,7 @@
 //! Columns of a map of fuel: speed, load and fuel in the units in which people have them.
 
+use super::row::Row;
 use super::script::Script;
-use super::wide::Row;
 use crate::csv::{Column, Foreign, Line};
 use cvtcycle_model::keys::{Bound, Quantity};
 use cvtcycle_model::maps::{Fuel, Load};
@@ -317,11 +317,18 @@ pub(super) struct FromScript<'t> {
     pub read_as: String,
 }
 
-/// The table of fuel in a script; an error says what is wrong with one that is there, with its line.
+/// A table of fuel in a script that is there and cannot be read.
+pub(super) struct Unread {
+    pub line: usize,
+    pub why: String,
+    pub allowed: &'static str,
+}
+
+/// The table of fuel in a script.
 pub(super) fn from_script<'t>(
     script: &Script,
     lines: &[Line<'t>],
-) -> Option<Result<FromScript<'t>, (usize, String)>> {
+) -> Option<Result<FromScript<'t>, Unread>> {
     let mut missing = None;
     for (names, columns, speed_down) in SCRIPTS {
         match names.map(|name| script.find(name)) {
@@ -341,11 +348,10 @@ pub(super) fn from_script<'t>(
                 }
                 let of = table([spd, trq, map], columns.map(place), speed_down, lines);
                 return Some(
-                    of.map_err(|why| {
-                        (
-                            map.lines.first().copied().unwrap_or(1),
-                            format!("{name} {why}"),
-                        )
+                    of.map_err(|why| Unread {
+                        line: map.lines.first().copied().unwrap_or(1),
+                        why: format!("{name} {why}"),
+                        allowed: "two vectors and a matrix over them",
                     })
                     .map(|(columns, rows)| FromScript {
                         columns,
@@ -357,8 +363,11 @@ pub(super) fn from_script<'t>(
             found => {
                 for (name, found) in names.iter().zip(found) {
                     if let (None, Some(line)) = (found, script.unread(name)) {
-                        let why = format!("{name} is computed in a way that is not read");
-                        missing = missing.or(Some((line, why)));
+                        missing = missing.or(Some(Unread {
+                            line,
+                            why: format!("{name} is computed in a way that is not read"),
+                            allowed: "numbers, matrices, ranges, and sums and products of them",
+                        }));
                     }
                 }
             }

@@ -3,11 +3,12 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use super::fuel;
-use super::script::Script;
-use super::wide::{Row, Wide};
+use super::fuel::{self, Unread};
+use super::row::{Row, is_value};
+use super::script::{Matrix, Script};
+use super::wide::Wide;
 use crate::csv::{self, Collector, Columns, Line, Schema};
-use crate::{Argument, Problem, Problems, Setting};
+use crate::{Argument, Problem, Problems};
 
 /// The limit of rows, as many points as `losses` writes, and what helps beyond it.
 pub(super) const MAX_ROWS: (usize, &str) = (
@@ -117,14 +118,13 @@ fn script<'t>(
     if let Some(found) = full_load(schema, &script, &lines) {
         return found;
     }
-    let hint =
-        "say which names are meant: columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\"";
+    let hint = "say which names are meant: KEY = { value = \"FILE\", columns = \"speed=NAME:rad/s,torque=NAME:Nm,fuel=NAME:g/s\" }";
     match is_fuel
         .then(|| fuel::from_script(&script, &lines))
         .flatten()
     {
         Some(Ok(found)) => (found.columns, found.rows, Some(found.read_as)),
-        Some(Err((line, why))) => {
+        Some(Err(Unread { line, why, allowed })) => {
             let line = lines.get(line.saturating_sub(1)).copied();
             problems.line(
                 line.unwrap_or(Line {
@@ -132,11 +132,7 @@ fn script<'t>(
                     text: "",
                 }),
                 "",
-                || {
-                    Problem::conflict(why)
-                        .allowed("numbers, matrices, ranges, and sums and products of them")
-                        .hint(hint)
-                },
+                || Problem::conflict(why).allowed(allowed).hint(hint),
             );
             none
         }
@@ -144,8 +140,7 @@ fn script<'t>(
             problems.file(
                 Problem::missing("the script has no table that is known")
                     .allowed(fuel::SCRIPT_NAMES)
-                    .hint(hint)
-                    .settings(&[Setting::Columns]),
+                    .hint(hint),
             );
             none
         }
@@ -216,7 +211,18 @@ fn by_names<'t>(
             .allowed("two vectors and a matrix over them, or vectors of one length")
     };
     let [(a, first), (b, second), (c, map)] = found.as_slice() else {
-        return Err(wrong("the names are no table".to_owned()));
+        let count = |(column, value): &(usize, Matrix)| {
+            format!(
+                "{} has {} values",
+                schema.columns[*column].name,
+                value.values.len()
+            )
+        };
+        let counts: Vec<String> = found.iter().map(count).collect();
+        return Err(wrong(format!(
+            "the names are no table: {}",
+            counts.join(", ")
+        )));
     };
     fuel::table([first, second, map], [*a, *b, *c], true, lines)
         .map_err(|why| wrong(format!("`{}` {why}", schema.columns[*c].name)))
@@ -332,13 +338,6 @@ fn hole(
             .allowed(format!("a row for every combination of {}", words(axes)))
             .hint(hint),
     );
-}
-
-/// True if a column of the schema is the value of the map.
-pub(super) fn is_value(schema: &Schema, column: usize) -> bool {
-    let last = schema.columns.len() - 1;
-    let [own, last] = [column, last].map(|k| &schema.columns[k]);
-    own.name == last.name || !own.group.is_empty() && own.group == last.group
 }
 
 /// Looks for rows whose value is below that of the row with the next smaller value of an axis and the same other ones.

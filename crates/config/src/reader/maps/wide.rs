@@ -7,17 +7,12 @@
 use std::borrow::Cow;
 
 use super::fuel;
-use crate::csv::{self, Cells, Collector, Column, Line, Schema};
-use crate::{Problem, Setting};
+use super::row::{Row, is_value};
+use crate::Problem;
+use crate::csv::{self, Cells, Collector, Column, Schema};
 
 /// Least number of columns of a matrix whose corner has no names of the long form.
 const LEAST_HEADS: usize = 2;
-
-/// A row with its line.
-pub(super) struct Row<'t> {
-    pub line: Line<'t>,
-    pub values: Vec<f64>,
-}
 
 /// How a matrix is read.
 pub(super) struct Wide {
@@ -260,7 +255,9 @@ impl Matrix<'_> {
             || self.is_value(axes[1])
             || self.long.columns[axes[0]].is_same(&self.long.columns[axes[1]])
         {
-            return Err(self.unclear("rows and columns of a matrix are two axes"));
+            return Err(
+                self.unclear("the rows and columns of this matrix are not two axes of the map")
+            );
         }
         let axes = match self.is_fuel {
             true => {
@@ -340,14 +337,16 @@ impl Matrix<'_> {
     }
 
     fn is_value(&self, column: usize) -> bool {
-        super::grid::is_value(self.long, column)
+        is_value(self.long, column)
     }
 
     /// The problem of a matrix that can be read in several ways.
     fn unclear(&self, message: &str) -> Problem {
         let example = match self.is_fuel {
-            true => "columns = \"speed:rpm,torque:Nm,bsfc:g/kWh\"",
-            false => "columns = \"input_speed:rpm,input_torque:Nm,torque_loss:Nm\"",
+            true => "KEY = { value = \"FILE\", columns = \"speed:rpm,torque:Nm,bsfc:g/kWh\" }",
+            false => {
+                "KEY = { value = \"FILE\", columns = \"input_speed:rpm,input_torque:Nm,torque_loss:Nm\" }"
+            }
         };
         let corner = match self.corner.is_empty() {
             true => "its first name is empty".to_owned(),
@@ -355,7 +354,6 @@ impl Matrix<'_> {
         };
         Problem::missing(format!("{message} ({corner})"))
             .allowed("what is down, across and in the cells, each with its unit")
-            .hint(format!("say it in this order, as in {example}"))
-            .settings(&[Setting::Columns])
+            .hint(format!("say it in this order: {example}"))
     }
 }
