@@ -264,7 +264,7 @@ pub fn problems_text(problems: &[Problem], colour: bool) -> String {
     let mut text = render(problems, colour);
     let mut proposals: Vec<&str> = problems
         .iter()
-        .map(|problem| problem.columns.as_str())
+        .map(Problem::proposed)
         .filter(|columns| !columns.is_empty())
         .collect();
     proposals.dedup();

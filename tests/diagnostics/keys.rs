@@ -374,7 +374,7 @@ impl Tried<'_> {
                 std::slice::from_ref(&line),
                 |problem, text| {
                     let place = (problem.place.line, problem.place.column) == (text.line, column)
-                        && problem.place.line_text == line;
+                        && *problem.place.line_text == *line;
                     let shown = problem.message.contains(&info.key)
                         || problem.place.line_text.starts_with(name);
                     // A message about a type contains the wanted type, and no range if that is all.

@@ -89,7 +89,7 @@ fn check_places(text: &str, found: &[Problem]) {
     for problem in found {
         let place = &problem.place;
         let line = text.lines().nth(place.line - 1).unwrap_or("beyond the end");
-        assert_eq!(place.line_text, line);
+        assert_eq!(&*place.line_text, line);
         assert!(
             place.column - 1 + place.width <= line.chars().count().max(place.column),
             "{problem:?}"

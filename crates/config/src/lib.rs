@@ -41,7 +41,7 @@ pub use problem::near::{did_you_mean, near, suggestion};
 pub use problem::place::{Argument, Input, Place};
 pub use problem::render::render;
 pub use problem::visible::{is_hidden, one_line, visible};
-pub use problem::{Problem, ProblemKind, Problems, Setting, readable};
+pub use problem::{Problem, ProblemKind, Problems, Proposal, Setting, readable};
 pub use reader::Reader;
 pub use reader::lists::{decimal, evenly};
 pub use reader::log::KeyInfo;

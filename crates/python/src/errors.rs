@@ -11,7 +11,7 @@ import_exception!(cvtcycle._errors, InputError);
 pub fn refused(problems: impl Into<Problems>) -> PyErr {
     let problems = problems.into();
     let mut text = render(&problems, false);
-    let columns = problems.iter().map(|problem| problem.columns.as_str());
+    let columns = problems.iter().map(Problem::proposed);
     if let Some(columns) = columns.max().filter(|columns| !columns.is_empty()) {
         text = format!("{}\ntry: columns={columns:?}", text.trim_end());
     }

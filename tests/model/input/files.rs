@@ -81,7 +81,7 @@ fn a_place_counts_characters_and_not_bytes() {
     let mut problems = Collector::new("f.csv");
     problems.value(line, Field { start: 6, end: 8 }, "k", Problem::default);
     let place = &problems.finish()[0].place;
-    let text = place.line_text.as_str();
+    let text = &*place.line_text;
     assert_eq!(
         (place.line, place.column, place.width, text),
         (7, 5, 2, "é,ü,12")
@@ -102,7 +102,7 @@ fn long_lines_and_values_are_kept_off_the_screen() {
     let mut problems = Collector::new("f.csv");
     problems.value(line, whole, "k", Problem::default);
     let problem = &problems.finish()[0];
-    assert_eq!(problem.place.line_text, "");
+    assert_eq!(&*problem.place.line_text, "");
     assert_eq!(problem.value.chars().count(), 63);
 }
 

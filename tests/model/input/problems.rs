@@ -105,7 +105,7 @@ fn a_cell_is_named_by_its_column() {
             .starts_with("error: speed_kmh: this is not a number\n")
     );
     let far = cell.clone().at(Place {
-        line_text: String::new(),
+        line_text: "".into(),
         ..cell.place.clone()
     });
     assert!(
@@ -185,7 +185,7 @@ fn no_part_of_a_problem_brings_a_hidden_character() {
         let with_line = problem()
             .at(Place {
                 input: file(&wild),
-                line_text: format!("x{c}y = 1"),
+                line_text: format!("x{c}y = 1").into(),
                 column: 3,
                 width: 1,
                 ..problem().place

@@ -80,7 +80,7 @@ fn a_problem_has_its_place_value_range() {
         (3, 30, 4)
     );
     assert_eq!(
-        problem.place.line_text,
+        &*problem.place.line_text,
         "  band_offset_mm = { value = 99.0 } # é"
     );
     assert_eq!(
@@ -328,7 +328,7 @@ fn long_lines_and_values_are_not_repeated() {
         (
             problem.place.line,
             problem.place.column,
-            problem.place.line_text.as_str()
+            &*problem.place.line_text
         ),
         (3, 1, "")
     );
@@ -341,7 +341,7 @@ fn long_lines_and_values_are_not_repeated() {
             .finish()
             .unwrap_err()
             .into_iter()
-            .map(|problem| (problem.place.line, problem.place.line_text))
+            .map(|problem| (problem.place.line, problem.place.line_text.into()))
             .collect();
         assert_eq!(
             places,
@@ -386,7 +386,7 @@ fn tables_of_a_list_are_documents_with_their_places() {
         (
             problems.len(),
             problems[0].place.line,
-            problems[0].place.line_text.as_str()
+            &*problems[0].place.line_text
         ),
         (1, 2, "[[row]]")
     );

@@ -87,7 +87,7 @@ impl Sheet {
         Place {
             line: own.line,
             column: start,
-            line_text: own.text.clone(),
+            line_text: own.text.as_str().into(),
             width,
             ..Place::file(&self.file)
         }

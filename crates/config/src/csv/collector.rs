@@ -287,7 +287,7 @@ fn place(file: &str, line: Line<'_>, field: Field) -> Place {
     Place {
         line: line.number,
         column,
-        line_text: line_text.to_owned(),
+        line_text: line_text.into(),
         width,
         ..Place::file(file)
     }

@@ -91,7 +91,7 @@ fn compared(cycle: &Cycle, own: &[f64], other: &[f64], resolution_m_s: f64) -> O
         .filter(|(_, other)| **other > 2.0)
         .map(|(own, other)| own / other);
     let factor = median(ratios.collect())?;
-    if !(factor > 0.05) {
+    if factor.is_nan() || factor <= 0.05 {
         return None;
     }
     let is_same = |(own, other): &(&f64, &f64)| {

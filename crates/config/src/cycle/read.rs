@@ -103,15 +103,15 @@ fn read_any(
         Err(refused) => refused,
     };
     // Of a table of a cycle its own reader says more, unless there is something to choose.
-    let is_choice = |problem: &Problem| !problem.columns.is_empty() || !problem.settings.is_empty();
+    let is_choice = |problem: &Problem| problem.proposal.is_some() || !problem.settings.is_empty();
     let is_better = match has_names {
         true => refused.problems.iter().any(is_choice),
         false => refused.is_known,
     };
     match problems {
         Some(problems) if !is_better => {
-            let columns = refused.problems.iter().map(|problem| &problem.columns);
-            let columns = columns.max().cloned().unwrap_or_default();
+            let columns = refused.problems.iter().map(Problem::proposed);
+            let columns = columns.max().unwrap_or_default().to_owned();
             Err(alike(problems).map(|problem| problem.columns(columns.as_str())))
         }
         _ => Err(refused.problems),

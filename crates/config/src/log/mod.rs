@@ -162,24 +162,7 @@ impl Reader<'_, '_> {
     }
 
     fn read(&self) -> Result<Log, Refused> {
-        let wanted = self.columns.repairs();
-        let chosen = match self.columns.is_empty() {
-            true => self.sheet.by_names(),
-            false => self
-                .sheet
-                .by_columns(self.columns)
-                .map_err(Refused::known)?,
-        };
-        if chosen.times.is_empty() || chosen.speeds.is_empty() {
-            return Err(self.missing(&chosen));
-        }
-        if let Some((quantity, column)) = chosen
-            .no_unit
-            .iter()
-            .find(|(quantity, _)| matches!(quantity, Quantity::Grade | Quantity::Altitude))
-        {
-            return Err(self.no_unit(&chosen, *quantity, *column));
-        }
+        let chosen = self.chosen()?;
         let filled = Filled::of(self.sheet, &chosen);
         self.rows(&filled)?;
         let mut read_as = self.sheet.read_as.clone();
@@ -222,6 +205,7 @@ impl Reader<'_, '_> {
         let likeness = (self.likeness)(&samples, resolution);
         let place = |line: u32| self.problem(line, Problem::default());
         let is_exact = likeness.is_exact && resolution < 0.15;
+        let wanted = self.columns.repairs();
         let mut treated = treat(samples, wanted, is_exact, &place).map_err(|found| {
             let problems = found.into_iter().map(|problem| Problem {
                 key: speed_source.quantity.name().to_owned(),
@@ -236,41 +220,17 @@ impl Reader<'_, '_> {
         treated.doubts.extend(motions(&treated.samples));
         repairs.append(&mut treated.repairs);
         let values = |quantity: Quantity| {
-            let at = chosen
-                .others
-                .iter()
-                .position(|source| source.quantity == quantity);
+            let mut sources = chosen.others.iter();
+            let at = sources.position(|source| source.quantity == quantity);
             at.map(|at| &others[at])
         };
-        let mut grade = values(Quantity::Grade).map(|own| held(own));
-        let heights =
-            values(Quantity::Altitude).filter(|own| own.iter().any(|height| height.is_finite()));
-        if let (None, Some(heights)) = (&grade, heights) {
-            let (own, steep) = slopes(&treated.samples, heights);
-            let cut = match steep {
-                0 => String::new(),
-                n => format!(", {} cut to 35 %", number_of(n, "row")),
-            };
-            repairs.push(made(
-                "altitude",
-                own.len(),
-                format!("slopes from heights over 100 m of road on either side (LO-5){cut}"),
-            ));
-            grade = Some(own);
-        }
-        if let Some(steep) = grade
-            .as_ref()
-            .and_then(|own| own.iter().position(|slope| slope.abs() > 0.35))
-        {
-            let slope = grade.as_ref().map_or(0.0, |own| 100.0 * own[steep]);
-            let problem = Problem::out_of_range(format!("the slope is {} %", readable(slope, 1)))
-                .allowed("-35 to 35 %");
-            return Err(Refused::known(
-                self.problem(treated.samples.lines[steep], problem)
-                    .key("grade")
-                    .hint("is the grade in another unit?"),
-            ));
-        }
+        let heights = values(Quantity::Altitude);
+        let grade = self.grade(
+            values(Quantity::Grade),
+            heights,
+            &treated.samples,
+            &mut repairs,
+        )?;
         let off = values(Quantity::EngineOff)
             .map(|own| held(own).iter().map(|flag| *flag > 0.5).collect());
         let engine_off: Option<Vec<bool>> = off.or_else(|| {
@@ -279,13 +239,86 @@ impl Reader<'_, '_> {
         let phase = values(Quantity::Phase)
             .map(|own| held(own).iter().map(|index| *index as u16).collect());
         treated.repairs = repairs;
-        let used = chosen
-            .times
-            .iter()
-            .chain(&chosen.speeds)
-            .chain(&chosen.others);
-        let passed_over = (0..self.sheet.names.len())
-            .filter(|column| used.clone().all(|source| source.column != *column));
+        let (channels, passed_over) =
+            self.channels(&chosen, (time_source, speed_source), &raw, &others);
+        read_as.extend(channels.iter().take(2).map(|own| {
+            let name = crate::one_line(&own.name);
+            format!("\"{name}\" as {} in {}", own.quantity.name(), own.unit)
+        }));
+        Ok(Log {
+            read_as,
+            channels,
+            passed_over,
+            words: filled.words,
+            treated,
+            grade,
+            engine_off,
+            phase,
+        })
+    }
+
+    /// The channels that are meant.
+    fn chosen(&self) -> Result<Chosen, Refused> {
+        let chosen = match self.columns.is_empty() {
+            true => self.sheet.by_names(),
+            false => {
+                let found = self.sheet.by_columns(self.columns);
+                found.map_err(Refused::known)?
+            }
+        };
+        if chosen.times.is_empty() || chosen.speeds.is_empty() {
+            return Err(self.missing(&chosen));
+        }
+        let is_road = |(quantity, _): &&(Quantity, usize)| {
+            matches!(quantity, Quantity::Grade | Quantity::Altitude)
+        };
+        match chosen.no_unit.iter().find(is_road) {
+            Some((quantity, column)) => Err(self.no_unit(&chosen, *quantity, *column)),
+            None => Ok(chosen),
+        }
+    }
+
+    /// Slopes: those of the log, or of its heights.
+    fn grade(
+        &self,
+        slopes_of_log: Option<&Vec<f64>>,
+        heights: Option<&Vec<f64>>,
+        samples: &Samples,
+        repairs: &mut Vec<Repair>,
+    ) -> Result<Option<Vec<f64>>, Refused> {
+        let Some(grade) = slopes_of_log.map(|own| held(own)) else {
+            let known = heights.filter(|own| own.iter().any(|height| height.is_finite()));
+            return Ok(known.map(|heights| {
+                let (own, steep) = slopes(samples, heights);
+                let cut = match steep {
+                    0 => String::new(),
+                    n => format!(", {} cut to 35 %", number_of(n, "row")),
+                };
+                let what =
+                    format!("slopes from heights over 100 m of road on either side (LO-5){cut}");
+                repairs.push(made("altitude", own.len(), what));
+                own
+            }));
+        };
+        let Some(steep) = grade.iter().position(|slope| slope.abs() > 0.35) else {
+            return Ok(Some(grade));
+        };
+        let slope = readable(100.0 * grade[steep], 1);
+        let problem = Problem::out_of_range(format!("the slope is {slope} %"))
+            .allowed("-35 to 35 %")
+            .hint("is the grade in another unit?");
+        let problem = self.problem(samples.lines[steep], problem);
+        Err(Refused::known(problem.key("grade")))
+    }
+
+    /// Channels that are read, time and speed first, and the columns that are passed over.
+    fn channels(
+        &self,
+        chosen: &Chosen,
+        (time, speed): (&Source, &Source),
+        raw: &Samples,
+        others: &[Vec<f64>],
+    ) -> (Vec<Channel>, Vec<String>) {
         let channel = |source: &Source, values: &[f64]| Channel {
             quantity: source.quantity,
             name: self.sheet.label(source.column),
@@ -296,35 +329,20 @@ impl Reader<'_, '_> {
             },
             values: values.to_vec(),
         };
-        let mut channels = vec![
-            channel(time_source, &raw.time_s),
-            channel(speed_source, &raw.speed_m_s),
-        ];
-        channels.extend(
-            chosen
-                .others
-                .iter()
-                .zip(&others)
-                .map(|(source, values)| channel(source, values)),
-        );
-        read_as.extend(channels.iter().take(2).map(|own| {
-            format!(
-                "\"{}\" as {} in {}",
-                crate::one_line(&own.name),
-                own.quantity.name(),
-                own.unit
-            )
-        }));
-        Ok(Log {
-            read_as,
-            channels,
-            passed_over: passed_over.map(|column| self.sheet.label(column)).collect(),
-            words: filled.words,
-            treated,
-            grade,
-            engine_off,
-            phase,
-        })
+        let leading = [channel(time, &raw.time_s), channel(speed, &raw.speed_m_s)];
+        let rest = chosen.others.iter().zip(others);
+        let rest = rest.map(|(source, values)| channel(source, values));
+        let lists = [&chosen.times, &chosen.speeds, &chosen.others];
+        let is_used = |column: &usize| {
+            let mut used = lists.into_iter().flatten();
+            used.any(|source| source.column == *column)
+        };
+        let passed_over = (0..self.sheet.names.len()).filter(|column| !is_used(column));
+        let passed_over = passed_over.map(|column| self.sheet.label(column));
+        (
+            leading.into_iter().chain(rest).collect(),
+            passed_over.collect(),
+        )
     }
 
     /// Time or speed was not found.

@@ -213,265 +213,222 @@ impl Samples {
     }
 }
 
-/// Repairs a recording, or says what cannot be repaired; `propose` makes the line of a call that mends it. `exact`: the speeds of a shipped cycle.
-pub(crate) fn treat(
-    mut samples: Samples,
+/// A recording, what was done to it so far, and what was found.
+struct Treatment<'p> {
+    samples: Samples,
     wanted: Repairs,
-    exact: bool,
+    place: &'p dyn Fn(u32) -> Problem,
+    repairs: Vec<Repair>,
+    problems: Vec<Problem>,
+    doubts: Vec<String>,
+    bounds: Vec<Vec<f64>>,
+}
+
+/// Repairs a recording, or says what cannot be repaired. `is_exact`: the speeds are those of a shipped cycle, which are driven as they are.
+pub(crate) fn treat(
+    samples: Samples,
+    wanted: Repairs,
+    is_exact: bool,
     place: &dyn Fn(u32) -> Problem,
 ) -> Result<Treated, Vec<Problem>> {
-    let mut repairs = Vec::new();
-    let mut problems = Vec::new();
-    let at = |line: u32, problem: Problem| Problem {
-        place: place(line).place,
-        key: "speed".to_owned(),
-        ..problem
-    };
     let raster = samples.raster();
-    let negative: Vec<usize> = (0..samples.speed_m_s.len())
-        .filter(|k| samples.speed_m_s[*k] < 0.0)
-        .collect();
-    let small = negative
-        .iter()
-        .all(|k| samples.speed_m_s[*k] >= MIN_SPEED_M_S);
-    if let Some(first) = negative.first() {
-        let count = negative.len();
-        if small && wanted.negative {
-            negative.iter().for_each(|k| samples.speed_m_s[*k] = 0.0);
-            repairs.push(made(
-                "negative",
-                count,
-                format!(
-                    "{} of a sensor at rest set to 0",
-                    number_of(count, "small negative speed")
-                ),
-            ));
-        } else {
-            let worst = negative
-                .iter()
-                .map(|k| samples.speed_m_s[*k])
-                .fold(0.0, f64::min);
-            problems.push(
-                at(
-                    samples.lines[*first],
-                    Problem::out_of_range(format!(
-                        "{} below 0, down to {} km/h",
-                        number_of(count, "speed"),
-                        kmh(worst)
-                    )),
-                )
-                .allowed("0 to 300 km/h")
-                .hint("reversing cannot be driven: is a sign of the direction in the column?"),
-            );
+    let mut own = Treatment {
+        samples,
+        wanted,
+        place,
+        repairs: Vec::new(),
+        problems: Vec::new(),
+        doubts: Vec::new(),
+        bounds: Vec::new(),
+    };
+    own.limits();
+    let mut resolution = None;
+    if !is_exact {
+        if raster.is_some() {
+            own.spikes();
+            resolution = Resolution::of(&own.samples.time_s, &own.samples.speed_m_s);
+        }
+        own.gaps(raster, resolution);
+        if let Some(coarse) = resolution.filter(Resolution::is_coarse) {
+            own.smooth(coarse);
         }
     }
-    let fast: Vec<usize> = (0..samples.speed_m_s.len())
-        .filter(|k| 3.6 * samples.speed_m_s[*k] > 300.0)
-        .collect();
-    if let Some(first) = fast.first() {
-        let speed = samples.speed_m_s[*first];
-        problems.push(
-            at(
-                samples.lines[*first],
-                Problem::out_of_range(format!(
-                    "{} above 300 km/h, the first {} km/h",
-                    number_of(fast.len(), "speed"),
-                    kmh(speed)
-                )),
-            )
-            .allowed("0 to 300 km/h")
-            .hint("is the column in another unit?"),
-        );
+    match own.problems.is_empty() {
+        true => Ok(Treated {
+            samples: own.samples,
+            bounds: own.bounds,
+            resolution,
+            repairs: own.repairs,
+            doubts: own.doubts,
+            is_recording: raster.is_some(),
+        }),
+        false => Err(own.problems),
     }
-    if exact {
-        return finish(
-            samples,
-            Vec::new(),
-            None,
-            repairs,
-            Vec::new(),
-            raster.is_some(),
-            problems,
-        );
+}
+
+impl Treatment<'_> {
+    /// A problem of a row.
+    fn problem(&mut self, line: u32, problem: Problem) {
+        let Problem { place, .. } = (self.place)(line);
+        let key = "speed".to_owned();
+        self.problems.push(Problem {
+            place,
+            key,
+            ..problem
+        });
     }
-    if raster.is_some() {
-        let mut mended = samples.clone();
-        let spikes = mended.spikes();
-        if let Some((first, speed)) = spikes.first().copied() {
-            let (line, time) = (
-                samples.lines[first],
-                samples.time_s[first] - samples.time_s[0],
-            );
-            let text = format!(
-                "{} against both neighbours, the first {} km/h at {} s (line {line})",
-                number_of(spikes.len(), "sample"),
-                kmh(speed),
-                readable(time, 2)
-            );
-            if wanted.spikes {
-                samples = mended;
-                repairs.push(made(
-                    "spikes",
-                    spikes.len(),
-                    format!("{text}, replaced by the line between these"),
-                ));
-            } else {
-                problems.push(
-                    at(line, Problem::out_of_range(text))
-                        .allowed("speeds that a car can drive")
-                        .hint("let the repair `spikes` replace them")
-                        .settings(&[Setting::Repair]),
-                );
+
+    /// Rows whose speeds are out of a range.
+    fn rows(&self, is_out: impl Fn(f64) -> bool) -> Vec<usize> {
+        let speeds = self.samples.speed_m_s.iter().enumerate();
+        speeds
+            .filter(|(_, speed)| is_out(**speed))
+            .map(|(k, _)| k)
+            .collect()
+    }
+
+    /// Speeds below 0 and above what cars drive.
+    fn limits(&mut self) {
+        let negative = self.rows(|speed| speed < 0.0);
+        let speeds = negative.iter().map(|k| self.samples.speed_m_s[*k]);
+        let worst = speeds.fold(0.0, f64::min);
+        let count = negative.len();
+        match negative.first() {
+            None => {}
+            Some(_) if worst >= MIN_SPEED_M_S && self.wanted.negative => {
+                for k in negative {
+                    self.samples.speed_m_s[k] = 0.0;
+                }
+                let speeds = number_of(count, "small negative speed");
+                let what = format!("{speeds} of a sensor at rest set to 0");
+                self.repairs.push(made("negative", count, what));
+            }
+            Some(first) => {
+                let speeds = number_of(count, "speed");
+                let message = format!("{speeds} below 0, down to {} km/h", kmh(worst));
+                let problem = Problem::out_of_range(message)
+                    .allowed("0 to 300 km/h")
+                    .hint("reversing cannot be driven: is a sign of the direction in the column?");
+                self.problem(self.samples.lines[*first], problem);
             }
         }
+        let fast = self.rows(|speed| 3.6 * speed > 300.0);
+        if let Some(first) = fast.first().copied() {
+            let (speeds, first_kmh) = (
+                number_of(fast.len(), "speed"),
+                kmh(self.samples.speed_m_s[first]),
+            );
+            let message = format!("{speeds} above 300 km/h, the first {first_kmh} km/h");
+            let problem = Problem::out_of_range(message).allowed("0 to 300 km/h");
+            let problem = problem.hint("is the column in another unit?");
+            self.problem(self.samples.lines[first], problem);
+        }
     }
-    let resolution = raster.and_then(|_| Resolution::of(&samples.time_s, &samples.speed_m_s));
-    gaps(
-        &mut samples,
-        raster,
-        resolution,
-        wanted,
-        &mut repairs,
-        &mut problems,
-        &at,
-    );
-    let mut bounds = Vec::new();
-    let mut doubts = Vec::new();
-    if let Some(own) = resolution.filter(Resolution::is_coarse) {
-        let steps = match own.is_rounded() {
+
+    /// Samples against both neighbours.
+    fn spikes(&mut self) {
+        let mut mended = self.samples.clone();
+        let spikes = mended.spikes();
+        let Some((first, speed)) = spikes.first().copied() else {
+            return;
+        };
+        let (line, times) = (self.samples.lines[first], &self.samples.time_s);
+        let text = format!(
+            "{} against both neighbours, the first {} km/h at {} s (line {line})",
+            number_of(spikes.len(), "sample"),
+            kmh(speed),
+            readable(times[first] - times[0], 2)
+        );
+        if self.wanted.spikes {
+            self.samples = mended;
+            let what = format!("{text}, replaced by the line between these");
+            self.repairs.push(made("spikes", spikes.len(), what));
+            return;
+        }
+        let problem = Problem::out_of_range(text)
+            .allowed("speeds that a car can drive")
+            .hint("let the repair `spikes` replace them")
+            .settings(&[Setting::Repair]);
+        self.problem(line, problem);
+    }
+
+    /// Smooths speeds that are coarse for their rate, or doubts them.
+    fn smooth(&mut self, coarse: Resolution) {
+        let steps = match coarse.is_rounded() {
             true => format!(
                 "speeds in steps of {} km/h",
-                readable(3.6 * own.speed_m_s, 3)
+                readable(3.6 * coarse.speed_m_s, 3)
             ),
             false => format!(
                 "speeds with a noise of {} km/h",
-                readable(3.6 * own.error_m_s, 2)
+                readable(3.6 * coarse.error_m_s, 2)
             ),
         };
+        let error_m_s2 = std::f64::consts::SQRT_2 * coarse.error_m_s / coarse.step_s;
         let words = format!(
             "{steps} at {} Hz, accelerations to {} m/s2",
-            readable(1.0 / own.step_s, 1),
-            readable(std::f64::consts::SQRT_2 * own.error_m_s / own.step_s, 2)
+            readable(1.0 / coarse.step_s, 1),
+            readable(error_m_s2, 2)
         );
-        if wanted.smooth {
-            let with =
-                |factor| smoothed(&samples.time_s, &samples.speed_m_s, own.error_m_s, factor);
-            bounds = vec![with(0.25), with(4.0)];
-            samples.speed_m_s = with(1.0);
-            repairs.push(made(
-                "smooth",
-                samples.time_s.len(),
-                format!("{words}; smoothed (LO-3)"),
+        if !self.wanted.smooth {
+            self.doubts.push(format!(
+                "{words}; the differences of the speeds are noise, and the fuel is that of the noise"
             ));
-        } else {
-            doubts.push(format!("{words}; the differences of the speeds are noise, and the fuel is that of the noise"));
+            return;
         }
+        let Samples {
+            time_s, speed_m_s, ..
+        } = &self.samples;
+        let with = |factor| smoothed(time_s, speed_m_s, coarse.error_m_s, factor);
+        self.bounds = vec![with(0.25), with(4.0)];
+        self.samples.speed_m_s = with(1.0);
+        let what = format!("{words}; smoothed (LO-3)");
+        let count = self.samples.time_s.len();
+        self.repairs.push(made("smooth", count, what));
     }
-    finish(
-        samples,
-        bounds,
-        resolution,
-        repairs,
-        doubts,
-        raster.is_some(),
-        problems,
-    )
-}
 
-fn finish(
-    samples: Samples,
-    bounds: Vec<Vec<f64>>,
-    resolution: Option<Resolution>,
-    repairs: Vec<Repair>,
-    doubts: Vec<String>,
-    is_recording: bool,
-    problems: Vec<Problem>,
-) -> Result<Treated, Vec<Problem>> {
-    match problems.is_empty() {
-        true => Ok(Treated {
-            samples,
-            bounds,
-            resolution,
-            repairs,
-            doubts,
-            is_recording,
-        }),
-        false => Err(problems),
-    }
-}
-
-/// `1 sample`, `3 samples`.
-pub(super) fn number_of(count: usize, noun: &str) -> String {
-    match count {
-        1 => format!("1 {noun}"),
-        _ => format!("{count} {noun}s"),
-    }
-}
-
-/// Gaps while the car moves, and jumps that no car drives beyond what the resolution explains: refused, or bridged.
-fn gaps(
-    samples: &mut Samples,
-    raster: Option<f64>,
-    resolution: Option<Resolution>,
-    wanted: Repairs,
-    repairs: &mut Vec<Repair>,
-    problems: &mut Vec<Problem>,
-    at: &dyn Fn(u32, Problem) -> Problem,
-) {
-    let noise = resolution.map_or(0.0, |own| 3.0 * own.speed_m_s.max(2.0 * own.error_m_s));
-    // Sensors of fast rasters are not as fine as their steps.
-    let noise = match raster {
-        Some(step) if step < FAST_S => noise.max(FAST_M_S),
-        _ => noise,
-    };
-    let is_gap = |k: &usize| {
-        let moving = samples.speed_m_s[*k].max(samples.speed_m_s[k + 1]) > MOVING_M_S;
-        let least = raster.map_or(f64::INFINITY, |step| GAP.0.max(GAP.1 * step));
-        moving && samples.step(*k) > least
-    };
-    let is_jump = |k: &usize| {
-        let change = (samples.speed_m_s[k + 1] - samples.speed_m_s[*k]).abs();
-        change > JUMP_M_S2 * samples.step(*k) + noise
-    };
-    let last = samples.time_s.len() - 1;
-    let gaps: Vec<usize> = (0..last).filter(is_gap).collect();
-    let jumps: Vec<usize> = (0..last).filter(is_jump).collect();
-    let mut texts = Vec::new();
-    if let Some(first) = gaps.first().copied() {
-        let gap_s: f64 = gaps.iter().map(|k| samples.step(*k)).sum();
-        texts.push(format!(
-            "{} while the car moves, {} s in all: the first of {} s from {} km/h to {} km/h",
-            number_of(gaps.len(), "gap"),
-            readable(gap_s, 1),
-            readable(samples.step(first), 1),
-            kmh(samples.speed_m_s[first]),
-            kmh(samples.speed_m_s[first + 1])
-        ));
-    }
-    if let Some(first) = jumps.first().copied() {
-        texts.push(format!(
-            "the speed jumps{}: {} m/s2 from the row above, {} to {} km/h",
-            match jumps.len() {
-                1 => String::new(),
-                n => format!(" {n} times, first here"),
-            },
-            readable(samples.accel(first), 1),
-            kmh(samples.speed_m_s[first]),
-            kmh(samples.speed_m_s[first + 1])
-        ));
-    }
-    if texts.is_empty() {
-        return;
-    }
-    let few = CUTS.max(samples.time_s.len() / CUTS_PER_ROW);
-    if !wanted.cut || raster.is_none() || gaps.len() + jumps.len() > few {
+    /// Gaps while the car moves, and jumps that no car drives beyond what the resolution explains: refused, or bridged.
+    fn gaps(&mut self, raster: Option<f64>, resolution: Option<Resolution>) {
+        let samples = &self.samples;
+        let noise = resolution.map_or(0.0, |own| 3.0 * own.speed_m_s.max(2.0 * own.error_m_s));
+        // Sensors of fast rasters are not as fine as their steps.
+        let noise = match raster {
+            Some(step) if step < FAST_S => noise.max(FAST_M_S),
+            _ => noise,
+        };
+        let is_gap = |k: &usize| {
+            let moving = samples.speed_m_s[*k].max(samples.speed_m_s[k + 1]) > MOVING_M_S;
+            let least = raster.map_or(f64::INFINITY, |step| GAP.0.max(GAP.1 * step));
+            moving && samples.step(*k) > least
+        };
+        let is_jump = |k: &usize| {
+            let change = (samples.speed_m_s[k + 1] - samples.speed_m_s[*k]).abs();
+            change > JUMP_M_S2 * samples.step(*k) + noise
+        };
+        let last = samples.time_s.len() - 1;
+        let gaps: Vec<usize> = (0..last).filter(is_gap).collect();
+        let jumps: Vec<usize> = (0..last).filter(is_jump).collect();
+        if gaps.is_empty() && jumps.is_empty() {
+            return;
+        }
+        let text = samples.in_words(&gaps, &jumps);
+        let few = CUTS.max(samples.time_s.len() / CUTS_PER_ROW);
+        if self.wanted.cut && raster.is_some() && gaps.len() + jumps.len() <= few {
+            let both: Vec<usize> = gaps.iter().chain(&jumps).copied().collect();
+            let metres = self.samples.bridge(&both, raster.unwrap_or(0.0));
+            let what = format!(
+                "{text}; bridged at 1.0 and 1.5 m/s2 over {} m",
+                readable(metres, 0)
+            );
+            self.repairs.push(made("cut", both.len(), what));
+            return;
+        }
         let first = gaps.first().into_iter().chain(&jumps).min().copied();
         let line = samples.lines[first.unwrap_or_default() + 1];
-        let starts =
-            jumps.first().is_some_and(|k| samples.speed_m_s[*k] <= 0.0) && jumps.len() == 1;
+        let from_rest = jumps.first().is_some_and(|k| samples.speed_m_s[*k] <= 0.0);
         let hint = match (gaps.is_empty(), raster) {
             (false, _) => "fill the gap with rows, or let the repair `cut` take its time out",
-            (true, _) if starts => {
+            (true, _) if from_rest && jumps.len() == 1 => {
                 "for times at full throttle see `cvtcycle accelerate`; else: is the time in seconds, are samples lost?"
             }
             (true, Some(_)) if jumps.len() <= few => {
@@ -488,33 +445,68 @@ fn gaps(
             ),
             _ => "-12 to 12 m/s2".to_owned(),
         };
-        problems.push(at(
-            line,
-            Problem::conflict(texts.join("; "))
-                .allowed(allowed)
-                .hint(hint),
-        ));
-        return;
+        let settings: &[Setting] = match hint.contains("repair") {
+            true => &[Setting::Repair],
+            false => &[],
+        };
+        let problem = Problem::conflict(text).allowed(allowed).hint(hint);
+        self.problem(line, problem.settings(settings));
     }
-    let (mut shift, mut bridged_m, before) = (0.0, 0.0, samples.time_s.clone());
-    for k in 0..last {
-        if gaps.contains(&k) || jumps.contains(&k) {
-            let [from, to] = [samples.speed_m_s[k], samples.speed_m_s[k + 1]];
-            let up_s = (to - from) / BRIDGE_M_S2[0];
-            let bridge_s = up_s
-                .max((from - to) / BRIDGE_M_S2[1])
-                .max(raster.unwrap_or(0.0));
-            bridged_m += 0.5 * (from + to) * bridge_s;
-            shift += before[k + 1] - before[k] - bridge_s;
+}
+
+impl Samples {
+    /// Gaps and jumps in words.
+    fn in_words(&self, gaps: &[usize], jumps: &[usize]) -> String {
+        let mut texts = Vec::new();
+        if let Some(first) = gaps.first().copied() {
+            let gap_s: f64 = gaps.iter().map(|k| self.step(*k)).sum();
+            texts.push(format!(
+                "{} while the car moves, {} s in all: the first of {} s from {} km/h to {} km/h",
+                number_of(gaps.len(), "gap"),
+                readable(gap_s, 1),
+                readable(self.step(first), 1),
+                kmh(self.speed_m_s[first]),
+                kmh(self.speed_m_s[first + 1])
+            ));
         }
-        samples.time_s[k + 1] = before[k + 1] - shift;
+        if let Some(first) = jumps.first().copied() {
+            texts.push(format!(
+                "the speed jumps{}: {} m/s2 from the row above, {} to {} km/h",
+                match jumps.len() {
+                    1 => String::new(),
+                    n => format!(" {n} times, first here"),
+                },
+                readable(self.accel(first), 1),
+                kmh(self.speed_m_s[first]),
+                kmh(self.speed_m_s[first + 1])
+            ));
+        }
+        texts.join("; ")
     }
-    let bridge = format!(
-        "{}; bridged at 1.0 and 1.5 m/s2 over {} m",
-        texts.join("; "),
-        readable(bridged_m, 0)
-    );
-    repairs.push(made("cut", gaps.len() + jumps.len(), bridge));
+
+    /// Puts a ramp in place of these steps. Returns the metres that it adds.
+    fn bridge(&mut self, steps: &[usize], least_s: f64) -> f64 {
+        let (mut shift, mut metres, before) = (0.0, 0.0, self.time_s.clone());
+        for k in 0..before.len() - 1 {
+            if steps.contains(&k) {
+                let [from, to] = [self.speed_m_s[k], self.speed_m_s[k + 1]];
+                let up_s = (to - from) / BRIDGE_M_S2[0];
+                let bridge_s = up_s.max((from - to) / BRIDGE_M_S2[1]).max(least_s);
+                metres += 0.5 * (from + to) * bridge_s;
+                shift += before[k + 1] - before[k] - bridge_s;
+            }
+            self.time_s[k + 1] = before[k + 1] - shift;
+        }
+        metres
+    }
+}
+
+/// `1 sample`, `3 samples`.
+pub(super) fn number_of(count: usize, noun: &str) -> String {
+    match count {
+        1 => format!("1 {noun}"),
+        _ => format!("{count} {noun}s"),
+    }
 }
 
 /// Slopes from heights: the line of least squares through the heights within 100 m of road on either side, of which each metre counts once. Returns

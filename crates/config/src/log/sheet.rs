@@ -51,7 +51,7 @@ impl Separator {
         }
     }
 
-    fn cells<'t>(self, line: &'t str) -> Option<Vec<&'t str>> {
+    fn cells(self, line: &str) -> Option<Vec<&str>> {
         let mut fields = Vec::new();
         self.split(line, &mut fields).then(|| {
             fields

@@ -65,7 +65,7 @@ impl Resolution {
         speeds.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
         let gaps = speeds.windows(2).map(|pair| pair[1] - pair[0]);
         let speed = gaps.fold(f64::INFINITY, f64::min);
-        if !(speed <= MAX_RESOLUTION_M_S) {
+        if speed.is_nan() || speed > MAX_RESOLUTION_M_S {
             return None;
         }
         let mut variance = speed * speed / 12.0;
@@ -224,8 +224,9 @@ mod tests {
         for j in 0..b.len() {
             for k in j + 1..b.len() {
                 let factor = a[k][j] / a[j][j];
-                for i in j..b.len() {
-                    a[k][i] -= factor * a[j][i];
+                let own = a[j].clone();
+                for (to, from) in a[k].iter_mut().zip(own).skip(j) {
+                    *to -= factor * from;
                 }
                 b[k] -= factor * b[j];
             }

@@ -83,6 +83,13 @@ pub enum Setting {
     Repair,
 }
 
+/// A choice with which an input is read.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Proposal {
+    /// Columns as their setting takes them.
+    pub columns: String,
+}
+
 /// One problem of an input.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Problem {
@@ -105,8 +112,8 @@ pub struct Problem {
     /// Known names that may have been meant, the most likely first.
     pub suggested: Box<[String]>,
     /// Columns with which the file is read, as the setting takes them; empty where there are none.
-    #[serde(skip_serializing_if = "String::is_empty")]
-    pub columns: String,
+    #[serde(flatten)]
+    pub proposal: Option<Box<Proposal>>,
     /// True if the message names the key; else the key is put before it in a text with lines.
     #[serde(skip)]
     pub names_key: bool,
@@ -182,6 +189,20 @@ impl Problem {
         Problem { settings, ..self }
     }
 
+    /// With the columns with which the file is read; none if the text is empty.
+    #[must_use]
+    pub fn columns(self, columns: impl Into<String>) -> Self {
+        let columns: String = columns.into();
+        let proposal = (!columns.is_empty()).then(|| Box::new(Proposal { columns }));
+        Problem { proposal, ..self }
+    }
+
+    /// Columns with which the file is read; empty where there are none.
+    #[must_use]
+    pub fn proposed(&self) -> &str {
+        self.proposal.as_ref().map_or("", |own| &own.columns)
+    }
+
     /// With known names that may have been meant.
     #[must_use]
     pub fn suggest(self, names: &[&str]) -> Self {
@@ -233,7 +254,6 @@ texts! {
     allowed "With the accepted values.";
     message "With another message.";
     hint "With this hint.";
-    columns "With the columns with which the file is read.";
 }
 
 impl fmt::Display for Problem {

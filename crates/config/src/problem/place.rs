@@ -91,7 +91,7 @@ pub struct Place {
     /// Column of the first character of the value, counted from 1; 0 where unknown.
     pub column: usize,
     /// The text of that line, for the caret; empty where unknown.
-    pub line_text: String,
+    pub line_text: Box<str>,
     /// Number of characters that the caret underlines.
     pub width: usize,
 }

@@ -68,9 +68,9 @@ impl Source {
             line: self.line(start) + 1,
             column: self.text[line_start..start].chars().count() + 1,
             line_text: if line_text.len() <= MAX_LINE {
-                line_text.to_string()
+                line_text.into()
             } else {
-                String::new()
+                "".into()
             },
             width: self.text[start..end].chars().count().max(1),
             ..whole
@@ -146,6 +146,6 @@ mod tests {
         let source = Source::new(Input::File("car.toml".into()), "a = 1\nb = [1\n\n\n");
         let place = source.place(15..15);
         assert_eq!((place.line, place.column, place.width), (2, 7, 1));
-        assert_eq!(place.line_text, "b = [1");
+        assert_eq!(&*place.line_text, "b = [1");
     }
 }
