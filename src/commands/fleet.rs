@@ -51,7 +51,7 @@ A row of the table is a car, made by the rules of `cvtcycle new`. Without --map 
 `mass [lb]`), by a key of the vehicle file (engine.electrical_w) or by a measured figure (ftp75_l_per_100km); the column carid names the car, manual_carid the \
 car that it is a pair with. --map epa reads the columns of the US EPA test car lists; a TOML file maps other tables.
 
-With --set the cars are driven without it as well, and the errors of the same cars stand beside each other. An expression has the names of columns, numbers, + - * / ^ \
+With --set the cars are driven without it as well, and the errors of the same cars are printed next to each other. An expression has the names of columns, numbers, + - * / ^ \
 and the functions of validation rows (sqrt, ln, exp, min, max); a car whose cell is empty keeps its value, and so does a car of the other box. --fit finds the values of keys that \
 are best for all cars, and predicts each group of --leave-out with the values that are best for the others: what they are worth for other cars.
 

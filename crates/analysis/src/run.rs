@@ -79,7 +79,7 @@ pub fn summary(of: &RunQuestion, driven: &[Driven]) -> Summary {
     }
     words::run::assess(&mut summary, cycle, driven, of.published.as_deref());
     bounds(&mut summary, of, driven);
-    beside_log(&mut summary, of, driven);
+    compare_log(&mut summary, of, driven);
     summary
 }
 
@@ -98,7 +98,7 @@ const QUANTITIES: [Quantity; 5] = [
 ];
 
 /// Engine speed, fuel and temperatures of a log next to those that are computed of the subject, step by step.
-fn beside_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
+fn compare_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     let recorded = of.cycle.recording.as_deref();
     let Some(((own, recorded), car)) = summary.recording.as_mut().zip(recorded).zip(driven.first())
     else {
@@ -150,7 +150,7 @@ fn beside_log(summary: &mut Summary, of: &RunQuestion, driven: &[Driven]) {
     }
 }
 
-/// Half width by which fuel and difference of a smoothed recording are open beside what the strength of the smoothing leaves: per cent of the fuel, and
+/// Half width by which fuel and difference of a smoothed recording are open besides what the strength of the smoothing leaves: per cent of the fuel, and
 /// points. Twice the rms error of UDDS, HWFET, US06, NYCC and Artemis urban, rounded to whole km/h and mph at 10, 4, 2 and 1 Hz or with 0.05 m/s of
 /// noise, and smoothed (tests/cli/commands/log.rs repeats it).
 const LEFT: [f64; 2] = [1.0, 0.5];

@@ -55,7 +55,7 @@ fn usual_times_are_those_of_one_drive() {
     }
 }
 
-/// Truth: the cycle that nobody can drive. `run` says by how much; `accelerate` says how fast the car is, with its assumed values and the way there.
+/// Truth: the cycle that no car can drive. `run` says by how much; `accelerate` says how fast the car is, with its assumed values and the way there.
 #[test]
 fn text_has_times_and_assumed_values() {
     let text = one_line(&stdout(&run(&["accelerate", "--vehicle", "civic_20_6mt"])));

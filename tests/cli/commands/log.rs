@@ -548,7 +548,7 @@ fn a_drive_in_many_written_forms_is_one_drive() {
 
 /// Property: the log that a car of the model writes of itself is computed again as it is.
 #[test]
-fn engine_speed_and_fuel_of_a_log_stand_beside_the_computed_ones() {
+fn engine_speed_and_fuel_of_a_log_are_compared_with_the_computed_ones() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("own");
     let driven = run(&[

@@ -302,7 +302,7 @@ fn nearly_rated_power_ends_where_the_power_falls_through_it() {
     assert!((found.n95_rpm - 6250.0).abs() < 1e-9, "{}", found.n95_rpm);
 }
 
-/// A box of eight gears with a step of 1.2 and a trace that falls so that the car has the given gears, second by second, and then stands. Least
+/// A box of eight gears with a step of 1.2 and a trace that falls so that the car has the given gears, second by second, and then stops. Least
 /// engine speeds are those of GS-2, and slowing down needs no power, so that the highest gear that is not too slow is chosen.
 fn falling(wanted: &[u8]) -> (GtrGears, Vec<f64>, usize) {
     let mut car = SIX.vehicle(1385.0);

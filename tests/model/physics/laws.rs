@@ -69,7 +69,7 @@ fn bounds_are_shares_of_torque_and_power_of_either_sign() {
     }
 }
 
-/// PX-3 asks for air from the first row that begins after the start of the engine.
+/// PX-3 needs air from the first row that begins after the start of the engine.
 #[test]
 fn air_is_asked_for_after_the_start() {
     for sets in [&["engine.fuel.start_g=5"][..], &[]] {

@@ -297,7 +297,7 @@ fn stops_need_a_warm_box() {
 }
 
 /// `first_stop_after_s` keeps the first stop back and no later one; `min_run_s` holds after each start. Truth: definition of SS-1 on the rests of the trace
-/// (an ECE 15 stands to 11 s, from 28 to 49 s, 96 to 117 s, 188 to 195 s), and monotony: fuel is between that of no limit and that of the same time after each start.
+/// (an ECE 15 is at rest to 11 s, from 28 to 49 s, 96 to 117 s, 188 to 195 s), and monotony: fuel is between that of no limit and that of the same time after each start.
 #[test]
 fn first_stop_waits_from_key_on() {
     let nedc = cycle("ece15_eudc");

@@ -249,11 +249,11 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
         fixed(fuel, 2),
         over.unit()
     );
-    let beside = recording.and_then(beside_log);
+    let measured = recording.and_then(compared_log);
     let lines = [
         Some(first),
         recording.and_then(repaired),
-        beside,
+        measured,
         price(run),
     ]
     .into_iter()
@@ -263,8 +263,8 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
     lines.chain(contradictions(summary)).collect()
 }
 
-/// What else the log has, beside what is computed, a sentence.
-fn beside_log(recording: &RecordingSummary) -> Option<String> {
+/// Means of other quantities of the log and of the computed car, a sentence.
+fn compared_log(recording: &RecordingSummary) -> Option<String> {
     let each = recording.measured.iter().map(|own| {
         let name = own.quantity.replace('_', " ");
         let decimals = match own.unit.as_str() {
@@ -280,7 +280,7 @@ fn beside_log(recording: &RecordingSummary) -> Option<String> {
         format!("{name} {measured} {} in the log, {computed} computed{percent}, rms of the difference {rms}", own.unit)
     });
     let each: Vec<String> = each.collect();
-    (!each.is_empty()).then(|| format!("Means beside the log: {}.", each.join("; ")))
+    (!each.is_empty()).then(|| format!("Means against the log: {}.", each.join("; ")))
 }
 
 /// The repairs of a recording, a sentence.
@@ -292,7 +292,7 @@ fn repaired(recording: &RecordingSummary) -> Option<String> {
     (!list.is_empty()).then(|| format!("The log was repaired: {}.", list.join("; ")))
 }
 
-/// "151.2 g in 600 s, 0.907 kg/h; 0 m are too short for L/100 km": what stands with a consumption over time.
+/// "151.2 g in 600 s, 0.907 kg/h; 0 m are too short for L/100 km": what is added to a consumption over time.
 pub fn mass_in_time(run: &RunSummary) -> String {
     let (grams, seconds) = (fixed(run.fuel_kg * 1e3, 1), fixed(run.duration_s, 0));
     let (an_hour, metres) = (

@@ -218,7 +218,7 @@ const NOT_SPEED: [&str; 31] = [
     "mass",
     "volt",
 ];
-/// Words of what stands still while the clock goes, or is counted anew.
+/// Words of what does not rise while the clock goes, or is counted anew.
 const NOT_TIME: [&str; 9] = [
     "zone",
     "idle",

@@ -138,7 +138,7 @@ impl Sheet<'_> {
         chosen
     }
 
-    /// A table of names and values: a column of words, one of which means the speed, and a column `value` beside it.
+    /// A table of names and values: a column of words, one of which means the speed, and a column `value`.
     fn by_values(&self, chosen: &mut Chosen) {
         const VALUES: [&str; 6] = ["value", "values", "val", "reading", "data", "wert"];
         let is_value =
@@ -160,13 +160,13 @@ impl Sheet<'_> {
                 .sample
                 .iter()
                 .find(|row| row.get(column) == Some(&word.as_str()));
-            let beside = row.and_then(|row| {
+            let in_row = row.and_then(|row| {
                 row.iter()
                     .enumerate()
                     .filter(|(k, _)| *k != value)
                     .find_map(|(_, cell)| Quantity::Speed.unit(cell))
             });
-            match unit_in(Quantity::Speed, &word).or(beside) {
+            match unit_in(Quantity::Speed, &word).or(in_row) {
                 Some(unit) => chosen.add(Source {
                     quantity: Quantity::Speed,
                     column: value,

@@ -1,4 +1,4 @@
-//! Layout of a table in text: the sign between columns, what stands above the rows and below them, names and units.
+//! Layout of a table in text: the sign between columns, what is above the rows and below them, names and units.
 
 use std::collections::HashMap;
 
@@ -126,7 +126,7 @@ pub(super) enum Met<'f> {
 }
 
 impl<'t> Sheet<'t> {
-    /// Finds the layout; none where no two columns can be told apart.
+    /// Finds the layout; none where no two columns can be distinguished.
     pub(super) fn find(text: &'t str) -> Option<Sheet<'t>> {
         let lines: Vec<(usize, &str)> = text
             .lines()
@@ -340,7 +340,7 @@ impl Head {
         };
         let are_units = |line: &[&str]| {
             let filled = line.iter().filter(|cell| !cell.is_empty()).count();
-            // A name that is only a unit, such as KPH beside time_s, is a name.
+            // A name that is only a unit, such as KPH next to time_s, is a name.
             let named = line
                 .iter()
                 .filter(|cell| Quantity::of_name(cell).is_some() && !is_bracketed(cell))

@@ -17,7 +17,7 @@ const CHANGE: f64 = 0.25;
 const MAX_ERROR_M_S2: f64 = 0.1;
 /// Values of a table with a coarser resolution are corners, and no recording.
 const MAX_RESOLUTION_M_S: f64 = 0.6;
-/// Longest step at which noise and motion are told apart, s.
+/// Longest step at which noise and motion are distinguished, s.
 const MAX_NOISE_STEP_S: f64 = 0.5;
 /// Most values that are sorted.
 const SAMPLE: usize = 200_000;

@@ -14,7 +14,7 @@ pub(super) enum Form {
     Date(&'static str),
 }
 
-/// Formats of dates with a time, as instruments and phones write them. Day and month of the two with slashes cannot be told apart, and need not be:
+/// Formats of dates with a time, as instruments and phones write them. Day and month of the two with slashes cannot be distinguished, and need not be:
 /// only differences count.
 const FORMATS: [&str; 26] = [
     "%Y-%m-%dT%H:%M:%S%.f%:z",

@@ -230,7 +230,7 @@ pub(crate) fn is_full_load(columns: &[(&str, Bound)]) -> bool {
 }
 
 /// Columns of a full-load line in the tables of others that are passed over: the drag and the time constant of VECTO's `.vfld`.
-const BESIDE_FULL_LOAD: &[(&str, &str)] = &[
+const NEXT_TO_FULL_LOAD: &[(&str, &str)] = &[
     ("motoring torque*", ""),
     ("Motoring Torque*", ""),
     ("drag torque*", ""),
@@ -278,7 +278,7 @@ pub(crate) fn full_load(
             is_grid: false,
         },
         foreign: Foreign {
-            headings: BESIDE_FULL_LOAD,
+            headings: NEXT_TO_FULL_LOAD,
             words: OF_FULL_LOAD,
             ..Foreign::default()
         },

@@ -429,7 +429,7 @@ impl<'a> Pedal<'a> {
         row.wheel_power_w > limit_n * motion.speed_m_s
     }
 
-    /// Belt ratio that a step asks for (AC-2); none for a manual box.
+    /// Belt ratio that a step demands (AC-2); none for a manual box.
     fn ratio(&self, step: &Step) -> Option<f64> {
         let Transmission::Cvt(cvt) = &self.car.transmission else {
             return None;

@@ -654,7 +654,7 @@ impl<'s> Parser<'s> {
                     let next = self.sum()?;
                     row = Some(match row {
                         None => next,
-                        Some(before) => beside(before, &next)?,
+                        Some(before) => side_by_side(before, &next)?,
                     });
                 }
             }
@@ -876,7 +876,7 @@ impl<'s> Parser<'s> {
     }
 }
 
-fn beside(left: Matrix, right: &Matrix) -> Option<Matrix> {
+fn side_by_side(left: Matrix, right: &Matrix) -> Option<Matrix> {
     if left.rows != right.rows || left.values.len() + right.values.len() > MOST {
         return None;
     }
