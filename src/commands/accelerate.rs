@@ -366,7 +366,7 @@ fn headline(found: &AccelerateSummary) -> String {
     said.unwrap_or_default()
 }
 
-/// What a drive did.
+/// Result of a drive.
 fn about(asked: &Asked, drive: &Drive) -> String {
     let mut parts = Vec::new();
     if asked.grip.is_some() {

@@ -34,7 +34,7 @@ pub const SHIFT_S: Bound = Bound::closed(0.0, 3.0);
 /// Allowed step, s.
 pub const STEP_S: Bound = Bound::closed(0.005, 0.5);
 
-/// What is timed.
+/// Speeds or distance that is timed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Span {
     /// From one speed to another, m/s.
@@ -122,7 +122,7 @@ pub struct Drive {
     pub fuel_energy_kj: f64,
     /// Largest relative error of a row's power balance.
     pub ledger_error: f64,
-    /// What happened, by time.
+    /// Events, by time.
     pub trace: Trace,
 }
 

@@ -106,7 +106,7 @@ pub struct RepairSummary {
     pub name: String,
     /// Number of rows, samples or gaps.
     pub count: usize,
-    /// What was done.
+    /// Description of what was done.
     pub what: String,
 }
 

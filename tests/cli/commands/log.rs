@@ -220,6 +220,31 @@ fn a_cycle_in_another_unit_is_doubted_in_the_first_line() {
         first.starts_with("DOUBTFUL, this is udds times 0.6214: are the numbers mph?"),
         "{first}"
     );
+    // The report repeats it before its first number.
+    let out = tempfile::tempdir().unwrap();
+    let at = |name: &str| out.path().join(name).to_str().unwrap().to_owned();
+    let log = path("k18_udds_mph_named_kmh.csv");
+    let driven = run(&[
+        "run",
+        "--cycle",
+        &log,
+        "--sensitivity",
+        "never",
+        "--quiet",
+        "--out",
+        &at("made"),
+    ]);
+    assert_eq!(driven.status.code(), Some(0));
+    assert_eq!(
+        run(&["report", &at("made"), "--out", &at("page.html")])
+            .status
+            .code(),
+        Some(0)
+    );
+    let page = fs::read_to_string(at("page.html")).unwrap();
+    assert!(
+        page.contains("Doubtful, this is udds times 0.6214: are the numbers mph? The CVT uses")
+    );
     // NEDC with 94.4 in place of 120 km/h.
     let dir = tempfile::tempdir().unwrap();
     let nedc = stdout(&run(&[

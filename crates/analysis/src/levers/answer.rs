@@ -83,7 +83,7 @@ pub struct LeverBlock {
     pub ambient_degc: f64,
     /// Fuel of the car as it is, median, L/100 km.
     pub fuel_l_per_100km: f64,
-    /// What 90 % of such cars use, by measured cars; of a car that is not shipped.
+    /// Fuel of 90 % of such cars, by measured ones; none of a shipped car.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fleet: Option<FleetRange>,
     /// Draws in which the car as it is fails a check or cannot be driven.

@@ -230,15 +230,7 @@ pub fn sentences(summary: &Summary) -> Vec<String> {
             let [low, high] = ends.map(|end| fixed(end, 2));
             format!(" [{low} to {high} by the resolution of the log]")
         });
-    let doubts = recording.map_or(&[][..], |own| &own.doubts);
-    let doubt = match doubts {
-        [] => String::new(),
-        doubts => {
-            let text = doubts.join("; ");
-            let stop = if text.ends_with('?') { "" } else { "." };
-            format!("DOUBTFUL, {text}{stop} ")
-        }
-    };
+    let doubt = recording.map_or_else(String::new, |own| doubtful("DOUBTFUL", own));
     let mass = match over {
         Over::Distance => String::new(),
         Over::Time => format!(" ({})", mass_in_time(run)),
@@ -281,6 +273,16 @@ fn compared_log(recording: &RecordingSummary) -> Option<String> {
     });
     let each: Vec<String> = each.collect();
     (!each.is_empty()).then(|| format!("Means against the log: {}.", each.join("; ")))
+}
+
+/// "DOUBTFUL, this is udds times 0.6214: are the numbers mph? ": begins a text about a doubted recording; empty for one without doubts.
+pub fn doubtful(word: &str, recording: &RecordingSummary) -> String {
+    let text = recording.doubts.join("; ");
+    match text.chars().last() {
+        None => text,
+        Some('?') => format!("{word}, {text} "),
+        Some(_) => format!("{word}, {text}. "),
+    }
 }
 
 /// The repairs of a recording, a sentence.

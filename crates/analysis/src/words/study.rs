@@ -58,7 +58,7 @@ pub fn fleet_range(
     difference_range(of, on, percent).filter(|_| percent.is_finite())
 }
 
-/// What a study without a matrix was driven on: where cycle or temperature vary, what tells least.
+/// Cycle and temperature of a study without a matrix; where they vary, the case with the widest range.
 fn driven_on(outline: &StudyManifest) -> DrivenOn<'_> {
     let base = &outline.plan.base;
     let varies = |key: &str| outline.plan.factors.iter().any(|factor| factor.key == key);
@@ -99,7 +99,7 @@ fn of_design(answer: &Answer, outline: &StudyManifest) -> Vec<String> {
     list
 }
 
-/// What measured cars say of a difference: of points that are no sample from the lower end of the least to the upper end of the largest.
+/// Range of a difference by measured cars: of points that are no sample from the lower end of the least to the upper end of the largest.
 fn by_cars(of: &Comparison, outline: &StudyManifest) -> Option<String> {
     let baseline = outline.cars.iter().position(|car| *car == of.baseline)?;
     let [least, largest] = match (&of.excess_range, &of.excess_percent) {

@@ -102,7 +102,7 @@ fn read_any(
         Ok(log) => return Ok(of_log(log, phases)),
         Err(refused) => refused,
     };
-    // Of a table of a cycle its own reader says more, unless there is something to choose.
+    // The reader of tables says more of a table of a cycle, unless there is something to choose.
     let is_choice = |problem: &Problem| problem.proposal.is_some() || !problem.settings.is_empty();
     let is_better = match has_names {
         true => refused.problems.iter().any(is_choice),

@@ -1,4 +1,4 @@
-//! What makes a reader doubt a recording: motions that no car has, or what the caller knows of other drives.
+//! Doubts about a recording: motions that no car has; likeness to drives that the caller knows.
 
 use super::repair::Samples;
 use crate::readable;
@@ -8,7 +8,7 @@ const FASTEST_M_S2: f64 = 7.0;
 /// A drive whose largest acceleration is smaller is in slow motion, m/s2.
 const SLOWEST_M_S2: f64 = 0.15;
 
-/// What a recording has to do with a shipped cycle.
+/// Likeness of a recording to a shipped cycle.
 #[derive(Debug, Default)]
 pub(crate) struct Likeness {
     pub doubt: Option<String>,

@@ -116,7 +116,7 @@ struct Reader<'s, 't> {
     likeness: Known,
 }
 
-/// What is known of other drives: whether a recording, of this resolution in m/s, is one of them.
+/// Likeness of a recording, with its resolution in m/s, to known drives.
 pub(crate) type Known = fn(&Samples, f64) -> Likeness;
 
 /// Reads a log.

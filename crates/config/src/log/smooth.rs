@@ -7,9 +7,9 @@
 //! | LO-3 | v minimises sum (y - v)2 / s2 + 1/q_a integral (dv2/dt2)2 dt, q_a = (0.5 m/s2)2/s | mean of a car whose acceleration is a random walk; the rms change of acceleration over 1 s in shipped cycles is 0.11 (HWFET) to 0.62 m/s2 (Artemis urban) |
 //! | LO-4 | smoothed where sqrt(2 s2)/dt > 0.1 m/s2 | accelerations below: 1.5 % of 7 m/s2 at full load; a table in 0.1 mph at 1 Hz has 0.02, whole km/h at 1 Hz 0.11, at 10 Hz 1.1 |
 //!
-//! The regulation smooths by T4253H with Hanning weights. On UDDS, rounded to whole km/h at 10 Hz, that leaves 3 % of the fuel, since medians keep the
-//! steps of a coarse resolution; at 1 Hz it takes away accelerations that are there (-2.5 % on US06). LO-3 stays within 1 % and 0.6 points of the
-//! difference to the manual car on UDDS, HWFET, US06, NYCC and Artemis urban at 10, 4, 2 and 1 Hz.
+//! The regulation smooths by T4253H with Hanning weights. Medians keep the steps of a coarse resolution at a high rate, and at 1 Hz they take away
+//! accelerations that are there. With LO-3 fuel stays within 1 % and the difference to the manual car within 0.5 points on UDDS, HWFET and US06 at 10, 4, 2
+//! and 1 Hz (tests/cli/commands/log.rs).
 
 /// Density of the change of acceleration (LO-3), (m/s2)2/s.
 const CHANGE: f64 = 0.25;

@@ -108,7 +108,7 @@ pub struct Repair {
     pub name: String,
     /// Number of rows, samples or gaps.
     pub count: usize,
-    /// What was done, in words.
+    /// Description of what was done.
     pub what: String,
 }
 

@@ -73,7 +73,7 @@ impl Grip {
     }
 }
 
-/// What a full-throttle drive is asked.
+/// Question of a full-throttle drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FullThrottle {
     /// Speed at the begin, m/s.
@@ -446,7 +446,7 @@ impl<'a> Pedal<'a> {
     }
 }
 
-/// What forbids a speed.
+/// Limit that forbids a speed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Limit {
     Engine,

@@ -10,7 +10,7 @@ const BEST: std::ops::RangeInclusive<f64> = 0.20..=0.55;
 /// Load over full load up to which a point is judged: rounding of the units.
 const UP_TO: f64 = 1.0 + 1e-6;
 
-/// What was found.
+/// Findings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verdict {
     /// Why there can be no such engine.

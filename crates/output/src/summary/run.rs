@@ -140,7 +140,7 @@ pub struct RunSummary {
     pub price: Option<PriceSummary>,
 }
 
-/// What a fuel consumption is over.
+/// Reference of a fuel consumption: distance or time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Over {
     /// Distance, L/100 km.

@@ -9,7 +9,7 @@ use crate::charts::decision::{Against, against, answer_strip, level};
 use crate::charts::{foremost_levers, lever_title, saves};
 use cvtcycle_analysis::attribute;
 use cvtcycle_analysis::levers::{LeverAnswer, LeverBlock, LeverRow};
-use cvtcycle_analysis::words::run::{contradictions, mass_in_time};
+use cvtcycle_analysis::words::run::{contradictions, doubtful, mass_in_time};
 use cvtcycle_analysis::words::{decimals, of_cars};
 use cvtcycle_output::summary::{Comparison, Contradiction, Over, RunSummary, Summary};
 
@@ -116,8 +116,10 @@ fn lead(summary: &Summary, cycle: &str) -> String {
         None => "",
     };
     let range = subject.fleet.as_ref().map_or_else(String::new, of_cars);
+    let recording = summary.recording.as_ref();
+    let doubt = recording.map_or_else(String::new, |own| doubtful("Doubtful", own));
     let text = format!(
-        "The {} uses {fuel}{mass}{weighted}{range} on {cycle}",
+        "{doubt}The {} uses {fuel}{mass}{weighted}{range} on {cycle}",
         subject.label()
     );
     let first = summary.comparison.first().zip(summary.runs.get(1));

@@ -25,6 +25,13 @@ pub(super) fn section(found: &RunResults, cars: &[Car]) -> Section {
     if let Some(words) = &summary.read_as {
         facts.insert(1, fact("Read as", words.clone()));
     }
+    let repairs = summary.recording.iter().flat_map(|own| &own.repairs);
+    let repairs: Vec<String> = repairs
+        .map(|own| format!("{} ({})", own.what, own.name))
+        .collect();
+    if !repairs.is_empty() {
+        facts.push(fact("Repairs of the log", repairs.join("; ")));
+    }
     for (option, list) in [
         ("Set for the subject", &settings.set),
         ("Set for all cars", &settings.set_all),

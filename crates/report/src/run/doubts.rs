@@ -182,7 +182,7 @@ pub(super) fn cold(cars: &[Car]) -> Option<String> {
     })
 }
 
-/// What measured cars say of the difference to each baseline.
+/// Range of the difference to each baseline by measured cars, in words.
 fn by_cars(summary: &Summary) -> Option<String> {
     let known = summary.comparison.iter().filter_map(|of| {
         let range = difference_of_cars(of.fleet.as_ref()?);

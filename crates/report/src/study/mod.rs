@@ -178,13 +178,21 @@ fn tables(section: &mut Section, matrix: &Matrix) {
         let fuel = cars.clone().map(|car| (car.clone(), Quantity::Fuel.unit()));
         let excess = cars.skip(1).map(|car| (format!("over {car}"), "%"));
         let caption = format!("Fuel, {name}");
-        section.table(by_case(matrix, &caption, fuel.chain(excess), |s, a| {
+        let has_excess = matrix.cars.len() > 1 && part.name == "total";
+        let mut table = by_case(matrix, &caption, fuel.chain(excess), |s, a| {
             let fuel = part.l_per_100km.iter();
             let fuel = fuel.map(|by| Quantity::Fuel.bare(by[s][a]));
             let excess = part.excess_percent.iter();
             let excess = excess.map(|by| Quantity::Percent.bare_signed(by[s][a]));
             fuel.chain(excess).collect()
-        }));
+        });
+        if has_excess {
+            table.note = "Differences of the cars as they are computed: each has the range of measured cars that the sentences above give \
+                in brackets, a wider one below 10 \u{b0}C, where measured cold starts decide. A difference between two rows is that of one car, \
+                and has no part in that range."
+                .to_owned();
+        }
+        section.table(table);
     }
     let columns = matrix.ends.iter().flat_map(|end| {
         let name = |car: &String| (format!("{car}, {}", end.name), Quantity::Degc.unit());

@@ -6,7 +6,7 @@ use crate::csv::{Column, Foreign, Line};
 use cvtcycle_model::keys::{Bound, Quantity};
 use cvtcycle_model::maps::{Fuel, Load};
 
-/// What a column gives.
+/// Quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Gives {
     Speed,
@@ -180,7 +180,7 @@ pub(super) fn columns() -> Vec<Column> {
     COLUMNS.iter().map(column).collect()
 }
 
-/// What a column of the schema gives.
+/// Quantity of a column of the schema.
 pub(super) fn gives(column: usize) -> Gives {
     COLUMNS[column].3
 }

@@ -35,7 +35,7 @@ pub(super) struct Rows {
     pub read_as: Option<String>,
 }
 
-/// What a file is read for.
+/// Purpose of a file.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted<'w> {
     pub schema: &'w Schema,

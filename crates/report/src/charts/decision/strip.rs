@@ -9,7 +9,7 @@ use crate::charts::picture::{Picture, PictureTable};
 use cvtcycle_analysis::words::decimals;
 
 /// Right edge of the plot with room for the numbers in words, height of a row, pixels.
-const RIGHT: f64 = WIDTH - 212.0;
+const RIGHT: f64 = WIDTH - 240.0;
 const ROW: f64 = 30.0;
 /// Half of the height of a bar, radius of a mark, pixels.
 const HALF: f64 = 6.0;
