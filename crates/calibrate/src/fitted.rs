@@ -50,6 +50,13 @@ pub fn files(
         name = format!("vehicle_{name}");
     }
     written.insert(0, (name, vehicle.to_string()));
+    let mut others: Vec<&String> = plan.parameters.iter().flat_map(|p| &p.vehicles).collect();
+    others.retain(|vehicle| **vehicle != plan.car.vehicle);
+    others.sort();
+    others.dedup();
+    for other in others {
+        written.push(job.other(other)?);
+    }
     Ok(written)
 }
 
@@ -68,14 +75,36 @@ impl Job<'_> {
         for by in self.plan.car.set.iter().filter(|by| by.target() == target) {
             self.put_override(document, by);
         }
-        for p in self.fitted(target) {
-            self.put_fitted(document, Target::from_key(&p.name).1, p);
+        for (key, p) in self.fitted(&self.plan.car.vehicle, target) {
+            self.put_fitted(document, key, p);
         }
     }
 
-    fn fitted(&self, target: Target) -> impl Iterator<Item = &Parameter> {
-        let parameters = self.outcome.parameters.iter().filter(|p| p.is_key);
-        parameters.filter(move |p| Target::from_key(&p.name).0 == target)
+    /// Keys within a file of a vehicle with their fitted values.
+    fn fitted<'b>(
+        &'b self,
+        vehicle: &'b String,
+        target: Target,
+    ) -> impl Iterator<Item = (&'b str, &'b Parameter)> {
+        // The keys come first, in the order of the plan.
+        let all = self.plan.parameters.iter().zip(&self.outcome.parameters);
+        let own = all.filter(move |(free, _)| free.vehicles.contains(vehicle));
+        own.filter_map(move |(free, p)| {
+            let (of, key) = Target::from_key(&free.key);
+            (of == target).then_some((key, p))
+        })
+    }
+
+    /// The file of another vehicle of the plan with its values; those of a fluid are in the files of the plan's own.
+    fn other(&self, vehicle: &String) -> Result<(String, String), Problems> {
+        let (_, text, disk) = text_of(vehicle, Kind::Vehicle, NamedBy::File)?;
+        let mut document = parsed(self.plan, &text)?;
+        make_absolute(document.as_item_mut(), &disk.folder);
+        for (key, p) in self.fitted(vehicle, Target::Vehicle) {
+            self.put_fitted(&mut document, key, p);
+        }
+        let name = format!("{}_fitted.toml", stem(vehicle));
+        Ok((name, document.to_string()))
     }
 
     /// The file of a fluid with its values, named in the vehicle file; none if nothing of it changes.
@@ -91,7 +120,7 @@ impl Job<'_> {
             _ => &car.lubricant,
         };
         let is_set = car.set.iter().any(|by| by.target() == target);
-        if !is_set && self.fitted(target).next().is_none() {
+        if !is_set && self.fitted(&car.vehicle, target).next().is_none() {
             if let Some(word) = given {
                 let word = match is_path(word) {
                     true => absolute(Path::new(""), word),

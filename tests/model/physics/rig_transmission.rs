@@ -146,13 +146,9 @@ fn val_the_remainder_is_the_primary_rings() {
     let bench = Bench::new(&car(CAR, &[]));
     let cvt = bench.cvt().unwrap();
     for s in stripped(&[], &[]) {
-        let (before, after) = (
-            s.stage(Stage::Complete).secondary_pa,
-            s.stage(Stage::FinalDriveRemoved).secondary_pa,
-        );
-        let at = BeltAtRatio::new(&cvt.belt, s.set.ratio);
-        let primary_pa =
-            (before - after) * cvt.secondary_piston_m2 * at.thrust_ratio / cvt.primary_piston_m2;
+        let primary_n = |stage| s.stage(stage).belt.unwrap().tension.primary_clamp_n;
+        let less_n = primary_n(Stage::Complete) - primary_n(Stage::FinalDriveRemoved);
+        let primary_pa = less_n / cvt.primary_piston_m2;
         let by_hand = cvt.seal_ring.torque_per_pa() * primary_pa;
         let found = s.piece(Piece::FinalDrive).remainder_nm();
         assert!(

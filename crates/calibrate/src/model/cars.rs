@@ -13,8 +13,8 @@ use cvtcycle_validate::source::Source;
 /// A car of the plan with parameters that the fit changes.
 pub struct FittedCar {
     pub base: ParamSet,
-    /// The parameters in it.
-    pub params: Vec<Param>,
+    /// The parameters in it, with their places among those of the plan.
+    pub params: Vec<(usize, Param)>,
 }
 
 /// Settings of the transmission rig and their keys.
@@ -30,6 +30,8 @@ pub struct Cars<'p> {
     /// Cars that the fit does not change, by the same.
     fixed: HashMap<String, Setup>,
     conditions: HashMap<String, RigConditions>,
+    /// Value of the file and unit of each parameter, by the first vehicle that has it.
+    pub known: Vec<(f64, String)>,
 }
 
 /// Car of a source.
@@ -49,27 +51,36 @@ impl<'p> Cars<'p> {
             by_name: HashMap::new(),
             fixed: HashMap::new(),
             conditions: HashMap::new(),
+            known: Vec::new(),
         };
         let mut problems: Problems = cars.add(None).err().unwrap_or_default();
         problems = problems.map(|p| in_plan(plan, p));
         problems.extend(cars.set_and_free(&plan.car.set, &plan.places[3]));
         let mut parameters = Vec::new();
-        if let Some(car) = cars.fitted.first() {
-            for free in &plan.parameters {
-                // The problem of one that is not found is known already.
-                let is_it = |param: &&Param| param.key() == free.key.trim();
-                if let Some(param) = car.params.iter().find(is_it) {
-                    problems.extend(at_bounds(free, param, &car.base));
-                    parameters.push(parameter(free, param, &mut problems));
-                }
-            }
-        }
         let rig = plan.car.conditions(None).err().unwrap_or_default();
         problems.extend(rig.map(|p| in_plan(plan, p)));
         for source in used(plan) {
             let mut found = cars.add_source(source, &problems);
             found.retain(|problem| !problems.contains(problem));
             problems.extend(found);
+        }
+        for (k, free) in plan.parameters.iter().enumerate() {
+            let found: Vec<(&FittedCar, &Param)> = (cars.fitted.iter())
+                .filter_map(|car| {
+                    let own = car.params.iter().find(|(place, _)| *place == k);
+                    own.map(|(_, param)| (car, param))
+                })
+                .collect();
+            match found.first() {
+                Some((car, param)) => {
+                    problems.extend(at_bounds(free, param, &car.base));
+                    parameters.push(parameter((free, free.name(plan)), param, &mut problems));
+                    cars.known.push((param.base(), param.unit().to_owned()));
+                }
+                None if problems.is_empty() => problems.push(unused(free)),
+                // The problem of one that is not found is known already.
+                None => {}
+            }
         }
         if problems.is_empty() {
             Ok((cars, parameters))
@@ -106,17 +117,22 @@ impl<'p> Cars<'p> {
         }
         let car = &self.plan.car;
         let options = car.options(source);
-        if let Some(vehicle) = source.and_then(|source| source.vehicle.as_deref()) {
+        let vehicle = source.and_then(|source| source.vehicle.as_ref());
+        let vehicle = vehicle.unwrap_or(&car.vehicle);
+        let plan = self.plan;
+        let own = |(_, free): &(usize, &FreeParameter)| free.vehicles.contains(vehicle);
+        let free: Vec<_> = plan.parameters.iter().enumerate().filter(own).collect();
+        if free.is_empty() && *vehicle != car.vehicle {
             self.fixed.insert(name, load(vehicle, &options)?);
             return Ok(());
         }
-        let base = ParamSet::load(&car.vehicle, &options)?;
+        let base = ParamSet::load(vehicle, &options)?;
         let mut problems = Problems::new();
         let mut params = Vec::new();
-        for free in &self.plan.parameters {
+        for (k, free) in free {
             match base.param(&free.key) {
-                Ok(param) => params.push(param),
-                Err(found) => problems.push(not_free(free, found, &car.vehicle)),
+                Ok(param) => params.push((k, param)),
+                Err(found) => problems.push(not_free(free, found, vehicle)),
             }
         }
         // With the parameters that were found more can be checked; nothing is computed after a problem.
@@ -205,6 +221,14 @@ impl<'p> Cars<'p> {
     }
 }
 
+/// The problem of a parameter of vehicles that no data are of.
+fn unused(free: &FreeParameter) -> Problem {
+    let message = format!("no data are of a vehicle of `{}`", free.key);
+    let hint = "name a vehicle of a source or of points, or remove the parameter";
+    let allowed = "vehicles of the data";
+    problem(Conflict, &free.place, "vehicles", allowed, message, hint)
+}
+
 /// The problem of a key that cannot be fitted, at its place in the plan.
 fn not_free(free: &FreeParameter, found: Problem, vehicle: &str) -> Problem {
     let hint = match found.kind {
@@ -258,7 +282,11 @@ fn at_bounds(free: &FreeParameter, param: &Param, base: &ParamSet) -> Vec<Proble
 }
 
 /// The parameter of the fit.
-fn parameter(free: &FreeParameter, param: &Param, problems: &mut Problems) -> Parameter {
+fn parameter(
+    (free, name): (&FreeParameter, String),
+    param: &Param,
+    problems: &mut Problems,
+) -> Parameter {
     let start = free.start.unwrap_or(param.base());
     let mut refuse = |kind, allowed: &str, message: &str, hint: &str| {
         let message = format!("parameter {}: {message}", free.key);
@@ -284,7 +312,7 @@ fn parameter(free: &FreeParameter, param: &Param, problems: &mut Problems) -> Pa
     }
     Parameter {
         prior: free.prior,
-        ..Parameter::new(free.key.clone(), start, free.low, free.high)
+        ..Parameter::new(name, start, free.low, free.high)
     }
 }
 

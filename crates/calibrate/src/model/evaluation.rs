@@ -159,7 +159,7 @@ struct WithValues<'m> {
 impl WithValues<'_> {
     fn build(&self, index: usize) -> Result<Rc<Setup>, String> {
         let car = &self.cars.fitted[index];
-        let numbers = car.params.iter().zip(self.values.iter().copied());
+        let numbers = car.params.iter().map(|(k, param)| (param, self.values[*k]));
         let set = car.base.with_numbers(&numbers.collect::<Vec<_>>());
         let set = set.map_err(|problems| first(&problems))?;
         let setup = Setup {

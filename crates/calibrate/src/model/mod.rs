@@ -13,7 +13,6 @@ use super::plan::{CalibrationPlan, Observation};
 use super::solve::{Parameter, Prior, Residuals};
 use cars::Cars;
 use cvtcycle_config::Problems;
-use cvtcycle_config::setup::Param;
 use known::Known;
 
 pub use evaluation::Prediction;
@@ -73,7 +72,7 @@ impl<'p> Model<'p> {
     /// Values of the files; the first start unless the plan has another.
     #[must_use]
     pub fn file_values(&self) -> Vec<f64> {
-        let own = self.cars.fitted[0].params.iter().map(Param::base);
+        let own = self.cars.known.iter().map(|(value, _)| *value);
         let common = &self.parameters[self.plan.parameters.len()..];
         own.chain(common.iter().map(|parameter| parameter.start))
             .collect()
@@ -82,8 +81,7 @@ impl<'p> Model<'p> {
     /// Units of the parameters.
     #[must_use]
     pub fn units(&self) -> Vec<String> {
-        let params = self.cars.fitted[0].params.iter();
-        let own = params.map(|param| param.unit().to_owned());
+        let own = self.cars.known.iter().map(|(_, unit)| unit.clone());
         let groups = self.plan.groups.iter().enumerate();
         let common = groups.filter(|(_, group)| group.common_sd.is_some());
         let unit_of = |group: usize| {

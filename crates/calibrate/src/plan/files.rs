@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::keys::DATA;
-use super::{BenchPoints, Context, Found, Measured, Observable, Observation};
+use super::{BenchPoints, Context, Found, Measured, Observable, Observation, stem};
 use crate::data::sheet::{SD, Sheet, and_more};
 use crate::data::{TIME, bench_points, bytes_of, read_points, read_scalars, read_trace};
-use cvtcycle_config::{Bound, Problem, ProblemKind, Problems, Section, did_you_mean, unit_of};
+use cvtcycle_config::{Bound, Place, Problem, ProblemKind, Problems, Section, did_you_mean, embedded, unit_of};
 use cvtcycle_model::keys::{Quantity, Values};
 use cvtcycle_output::provenance::hash;
 use cvtcycle_validate::source::{self, Kind, Source};
@@ -27,7 +27,7 @@ pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found)
     }
     let folder = Path::new(context.file).parent().unwrap_or(Path::new(""));
     let path = folder.join(&word).to_string_lossy().into_owned();
-    let bytes = match bytes_of(&path, &s.place(way), way) {
+    let bytes = match bytes_in(context.file, &word, &path, (&s.place(way), way)) {
         Ok(bytes) => Some(bytes),
         Err(problems) => {
             report(s, problems);
@@ -42,6 +42,20 @@ pub(super) fn read(s: &Section, way: &str, context: &Context, found: &mut Found)
         "points" => of_points(s, file, context, found),
         "trace" => of_trace(s, file, context, found),
         _ => of_scalars(s, file, context, found),
+    }
+}
+
+/// Bytes of a data file: of the program's own for a plan that the program carries.
+fn bytes_in(
+    plan: &str,
+    word: &str,
+    path: &str,
+    (place, key): (&Place, &str),
+) -> Result<Vec<u8>, Problems> {
+    let own = || embedded::text(embedded::calibration_points(), &stem(word));
+    match plan.strip_prefix("embedded:").and_then(|_| own()) {
+        Some(text) => Ok(text.as_bytes().to_vec()),
+        None => bytes_of(path, place, key),
     }
 }
 
@@ -138,8 +152,10 @@ fn index(names: &[&str], name: &str) -> usize {
 
 fn of_points(s: &Section, (path, bytes): File, context: &Context, found: &mut Found) {
     let deviations = Deviations::read(s);
+    let vehicle = s.optional_text(&DATA.vehicle);
     let car = Source {
         place: s.place("points"),
+        vehicle: vehicle.map(|word| source::relative_to(context.file, &word)),
         lubricant: s.optional_text(&DATA.lubricant),
         set: s.overrides(&DATA.set),
         without: source::without(s, &DATA.without),

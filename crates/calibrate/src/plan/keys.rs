@@ -34,6 +34,7 @@ keys! {
         low: within(Bound::any()), "least value, in the unit of the key";
         high: within(Bound::any()), "largest value";
         start: optional(within(Bound::any())), "first value; that of the file if absent";
+        vehicles: texts(), "vehicles that have this number in common; that of [calibration] if absent";
         status: words(&STATUSES, "assumed"), "how the prior is known; needed with one";
         source: optional(text()), "reason or reference for bounds and prior";
     }
@@ -73,6 +74,7 @@ keys! {
         fold_by: optional(text()), "column whose values divide the points into folds";
         independent_every_s: or(30.0, number(0.0, 1e5)), "time after which two values of a trace are independent";
         source: required_if("with `trace` and `scalars`", text()), "source of the plan that was measured";
+        vehicle: optional(text()), "vehicle on the bench, in place of that of [calibration]";
         set: texts(), "overrides KEY=VALUE of the car on the bench";
         without: texts(), "parts that are not in the box on the bench";
         lubricant: optional(text()), "transmission oil in place of the vehicle's";

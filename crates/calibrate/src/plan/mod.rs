@@ -32,6 +32,8 @@ use cvtcycle_validate::source::Source;
 pub struct FreeParameter {
     /// Dotted key, as `--set` has it.
     pub key: String,
+    /// Vehicles that have the number in common, by name or path.
+    pub vehicles: Vec<String>,
     /// Least value, in the unit of the key.
     pub low: f64,
     /// Largest value.
@@ -48,6 +50,18 @@ pub struct FreeParameter {
     pub place: Place,
     /// Places of its bounds.
     pub bounds: [Place; 2],
+}
+
+impl FreeParameter {
+    /// Name among the parameters of a plan: the key, with the vehicles where they are not the plan's own.
+    #[must_use]
+    pub fn name(&self, plan: &CalibrationPlan) -> String {
+        if self.vehicles.contains(&plan.car.vehicle) {
+            return self.key.clone();
+        }
+        let names: Vec<String> = self.vehicles.iter().map(|word| stem(word)).collect();
+        format!("{} of {}", self.key, names.join(", "))
+    }
 }
 
 /// A group of data: one `[[data]]`.

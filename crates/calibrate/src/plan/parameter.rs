@@ -7,12 +7,13 @@ use cvtcycle_config::ProblemKind;
 use cvtcycle_config::{Document, Problems, Reader, Section};
 use cvtcycle_model::keys::Values;
 use cvtcycle_model::transmission::loss_factor;
+use cvtcycle_validate::source::relative_to;
 
-/// Reads a parameter.
+/// Reads a parameter of a plan file; without vehicles where it names none.
 ///
 /// # Errors
 /// All its problems.
-pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
+pub(super) fn read(document: &Document, file: &str) -> Result<FreeParameter, Problems> {
     let reader = Reader::new(document);
     let s = reader.root();
     let key = Values::text(&s, &PARAMETER.key);
@@ -71,6 +72,9 @@ pub(super) fn read(document: &Document) -> Result<FreeParameter, Problems> {
         start,
         status: prior.map_or("", |_| status),
         prior,
+        vehicles: (s.texts(&PARAMETER.vehicles).iter())
+            .map(|word| relative_to(file, word))
+            .collect(),
         source: Values::text(&s, &PARAMETER.source),
         place: s.place("key"),
         bounds: ["low", "high"].map(|key| s.place(key)),

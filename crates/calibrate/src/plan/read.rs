@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::keys::HEAD;
-use super::{CalibrationPlan, Context, Found, group, parameter, problem};
+use super::{CalibrationPlan, Context, Found, FreeParameter, group, parameter, problem};
 use crate::solve::Options;
 use cvtcycle_config::ProblemKind::{self, Duplicate, Missing};
 use cvtcycle_config::setup::{Kind, NamedBy, text_of};
@@ -82,8 +82,13 @@ fn partly(file: &str, text: &str) -> Result<(CalibrationPlan, Problems), Problem
     let written = [("[[parameter]]", &parameters), ("[[data]]", &data)];
     let written = written.map(|(header, list)| list.len().max(usize::from(is_hinted(header))));
     for document in &parameters {
-        match parameter::read(document) {
-            Ok(free) => plan.parameters.push(free),
+        match parameter::read(document, file) {
+            Ok(mut free) => {
+                if free.vehicles.is_empty() {
+                    free.vehicles.push(plan.car.vehicle.clone());
+                }
+                plan.parameters.push(free);
+            }
             Err(found) => problems.append(found),
         }
     }
@@ -211,6 +216,11 @@ fn join(plan: &mut CalibrationPlan, found: Found) {
     plan.files.extend(found.files);
 }
 
+/// True if a vehicle has both numbers.
+fn shares_a_vehicle(a: &FreeParameter, b: &FreeParameter) -> bool {
+    a.vehicles.iter().any(|vehicle| b.vehicles.contains(vehicle))
+}
+
 /// All clashes; `[parameters, groups]` is how many were written, and `sound` whether nothing else is wrong.
 fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool) -> Problems {
     let mut problems = Problems::new();
@@ -230,7 +240,7 @@ fn clashes(plan: &CalibrationPlan, [parameters, groups]: [usize; 2], sound: bool
     for (k, free) in plan.parameters.iter().enumerate() {
         if let Some(first) = plan.parameters[..k]
             .iter()
-            .find(|other| other.key == free.key)
+            .find(|other| other.key == free.key && shares_a_vehicle(other, free))
         {
             let (key, line) = (&free.key, first.place.line);
             let message = format!("`{key}` is free twice, first in line {line}");

@@ -17,7 +17,7 @@ macro_rules! embedded {
 
 embedded! {
     /// Vehicles.
-    vehicles: "vehicles" ".toml" ["c_segment_20_6mt" "civic_20_6mt" "civic_20_cvt" "mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
+    vehicles: "vehicles" ".toml" ["c_segment_20_6mt" "civic_20_6mt" "civic_20_cvt" "justy_ecvt" "mondeo_20_5mt" "rover_216_5mt" "rover_216_cvt"];
     /// Classes of cars, boxes and engines, which vehicle files inherit from.
     classes: "classes" ".toml" [
         "compact_1995" "compact_2020" "midsize_2020" "subcompact_2020" "suv_2020" "box_cvt_clutch" "box_cvt_converter" "box_manual_5" "box_manual_6"
@@ -42,6 +42,8 @@ embedded! {
     tests: "cycles/tests" ".toml" ["ftp75" "hwfet" "us06" "sc03" "cold_ftp" "nedc" "wltp" "wltp_14" "jc08"];
     /// Plans of calibrations.
     calibrations: "calibrations" ".toml" ["rover_216_transmission" "rover_216_warm_up"];
+    /// Measured points that those name.
+    calibration_points: "calibrations" ".csv" ["justy_ecvt"];
     /// Tolerances and sources that all files with published values may use.
     common_rows: "validation" ".toml" ["common"];
     /// Published values, in the order of the thesis, then those of other cars.

@@ -81,6 +81,7 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
             wedge_nm: sum(p.wedge_loss_nm),
             penetration_nm: sum(p.penetration_loss_nm),
             capacity_nm: p.capacity_nm,
+            primary_clamp_n: p.tension.primary_clamp_n,
             gross_slip: p.status != PointStatus::Ok,
         },
     }
@@ -201,17 +202,20 @@ impl OnBench<'_> {
             torques.final_drive = 0.0; // nothing behind the primary turns
         }
         let mut belt = None;
+        let mut primary_n = clamp.secondary_n * line.at.thrust_ratio; // as with a belt without torque
         if p.parts.belt {
             torques.belt_map = line.belt_map_nm(secondary, w, pa, &mut inside_maps);
+            let state = self.belt_state(&load);
+            primary_n = state.losses.primary_clamp_n;
             if torques.belt_map.is_none() {
-                let state = self.belt_state(&load);
                 torques.belt = state.losses;
                 belt = Some(state);
             }
         }
-        line.turn_primary(&mut torques, w, &clamp, &mut inside_maps);
+        line.turn_primary(&mut torques, w, (&clamp, primary_n), &mut inside_maps);
         let shaft = line.engine_shaft(w);
-        let pump = line.turn_engine(&mut torques, &shaft, pa, 0.0, &mut inside_maps);
+        let line_pa = cvt.line_pa(pa, cvt.primary_pa(primary_n));
+        let pump = line.turn_engine(&mut torques, &shaft, line_pa, 0.0, &mut inside_maps);
         let mut loss_nm = ByComponent::default();
         torques.for_each_loss(|component, shaft, torque_nm| {
             loss_nm[component] += match shaft {

@@ -46,6 +46,36 @@ const SIGNALS: ClampSignals = ClampSignals {
     force_log: 0.0,
 };
 
+/// Force of the primary under a load for one of the secondary, N: TE-9 by passes from above, where the active arc has no part of the wrap.
+fn primary_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, secondary_n: f64) -> f64 {
+    let compression_n = load.output_torque_nm / at.geometry.secondary_radius_m;
+    let added_n = at.geometry.primary_wrap_rad * compression_n / (4.0 * cvt.belt.tan_wedge);
+    let whole_n = compression_n.abs() * cvt.belt.cos_wedge / (2.0 * load.segment_friction);
+    let idle_n = at.thrust_ratio * secondary_n;
+    if compression_n < 0.0 {
+        return idle_n + added_n * (1.0 - (whole_n / secondary_n).min(1.0));
+    }
+    let mut force_n = idle_n + added_n;
+    for _ in 0..10_000 {
+        force_n = idle_n + added_n * (1.0 - (whole_n / force_n).min(1.0));
+    }
+    force_n
+}
+
+/// Least force of the secondary at which both pulleys have a force, N, by bisection.
+fn holding_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, weaker_n: f64) -> f64 {
+    let (mut low, mut high) = (weaker_n, 100.0 * weaker_n);
+    if primary_n(cvt, at, load, low) >= weaker_n {
+        return low;
+    }
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        let holds = primary_n(cvt, at, load, middle) >= weaker_n;
+        *(if holds { &mut high } else { &mut low }) = middle;
+    }
+    high
+}
+
 /// PC-3: both signs of torque, the least torque, ratios on both sides of 1, and the bounds.
 #[test]
 fn val_torque_following_by_hand() {
@@ -60,9 +90,9 @@ fn val_torque_following_by_hand() {
     for ratio in [0.45, 0.8, 0.96, 0.98, 1.0, 1.5, 2.4] {
         let at = BeltAtRatio::new(&cvt.belt, ratio);
         for torque in [-120.0f64, -25.0, -24.0, 0.0, 26.0, 90.0, 200.0, 500.0] {
-            let weaker = at.thrust_ratio.min(1.0);
-            let force = 1.3 * torque.abs().max(25.0) * cvt.belt.cos_wedge
-                / (2.0 * 0.115 * at.geometry.secondary_radius_m * weaker);
+            let weaker_n = 1.3 * torque.abs().max(25.0) * cvt.belt.cos_wedge
+                / (2.0 * 0.115 * at.geometry.secondary_radius_m);
+            let force = holding_n(cvt, &at, &load(torque), weaker_n);
             let pa = (force - cvt.spring_n - 2e-3 * 90.0 * 90.0) / cvt.secondary_piston_m2;
             near(
                 cvt.pressure_pa(&SIGNALS, &at, || load(torque), 90.0).0,
@@ -180,15 +210,17 @@ fn val_floors_by_hand() {
             let at = BeltAtRatio::new(&cvt.belt, ratio);
             for torque in [-60.0f64, 0.0, 20.0, 60.0, 120.0] {
                 for force_log in [-0.6, -0.1, 0.0, 0.1, 0.6f64] {
-                    let weaker = at.thrust_ratio.min(1.0);
-                    let need_n = 1.3 * torque.abs().max(1.0) * cvt.belt.cos_wedge
-                        / (2.0 * 0.115 * at.geometry.secondary_radius_m * weaker);
+                    let weaker_n = 1.3 * torque.abs().max(1.0) * cvt.belt.cos_wedge
+                        / (2.0 * 0.115 * at.geometry.secondary_radius_m);
+                    let need_n = holding_n(cvt, &at, &load(torque), weaker_n);
+                    let added_n =
+                        primary_n(cvt, &at, &load(torque), need_n) - at.thrust_ratio * need_n;
                     let pa = |force_n: f64| (force_n - own_n) / cvt.secondary_piston_m2;
-                    // Towards high, the pressure at which the primary's piston just has its force, by bisection.
+                    // Towards high and at rest, the pressure at which the primary's piston just has its force, by bisection.
                     let short = |p: f64| {
                         let secondary_n = p * cvt.secondary_piston_m2 + own_n;
                         p * cvt.primary_piston_m2
-                            < at.thrust_ratio * secondary_n * (-force_log).exp()
+                            < (at.thrust_ratio * secondary_n + added_n) * (-force_log).exp()
                     };
                     let (mut low, mut high) = (0.0, 1e9);
                     for _ in 0..200 {
@@ -216,6 +248,10 @@ fn val_floors_by_hand() {
                         (
                             if force_log < 0.0 { high } else { 0.0 },
                             ClampCause::ShiftUp,
+                        ),
+                        (
+                            if force_log == 0.0 { high } else { 0.0 },
+                            ClampCause::Primary,
                         ),
                     ];
                     let (mut want, mut cause) = needs[0];

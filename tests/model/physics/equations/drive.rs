@@ -139,11 +139,12 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     let clamp_n = cvt.secondary_clamp_n(pa, ws);
     let pull_n = PulleyBearing::pull_per_clamp(&cvt.belt, &at) * clamp_n;
     let bearing = [0, 1].map(|k| cvt.pulley_bearing.torque_nm(k, pull_n));
-    let ring = [clamp_n * at.thrust_ratio / cvt.primary_piston_m2, pa]
-        .map(|p| cvt.seal_ring.torque_per_pa() * p);
-    let secondary_nm = geared_nm + bearing[1] + ring[1];
+    let per_pa = cvt.seal_ring.torque_per_pa();
+    let secondary_nm = geared_nm + bearing[1] + per_pa * pa;
     let load = belt_load(b, s, wp, secondary_nm, clamp_n);
     let belt = belt_state(&cvt.belt, &at, &load);
+    let primary_pa = belt.tension.primary_clamp_n / cvt.primary_piston_m2;
+    let ring = [primary_pa, pa].map(|p| per_pa * p);
     let lost = |c: Component| d.loss_w[c];
     // The solve stops at 1e-7 of slip, which is as much of the power through the belt (SL-11).
     let slip_w = 1e-7 * d.output_w.abs();
@@ -311,12 +312,12 @@ fn engine_and_clamp(x: &Solved) {
     near(d.secondary_pa, set_pa.min(most_pa), 1e-5);
     let short = d.flags.contains(Flags::FLOW_LIMITED);
     assert!(short == (set_pa > most_pa) || (set_pa / most_pa - 1.0).abs() < 1e-5);
+    let belt = belt_state(&cvt.belt, &x.at, &x.load);
     near(
         d.primary_pa,
-        cvt.secondary_clamp_n(d.secondary_pa, ws) * x.at.thrust_ratio / cvt.primary_piston_m2,
-        1e-9,
+        belt.tension.primary_clamp_n / cvt.primary_piston_m2,
+        1e-5,
     );
-    let belt = belt_state(&cvt.belt, &x.at, &x.load);
     near(
         d.clamp_safety,
         belt.losses.capacity_nm / x.secondary_nm.abs(),
@@ -523,12 +524,13 @@ fn standing(b: &Bench) {
         let set_pa = cvt.pressure_pa(&signals, &at, || load, 0.0).0;
         let most_pa = most_pa(b, &s, idle);
         near(d.secondary_pa, set_pa.min(most_pa), 1e-6);
+        let belt = belt_state(&cvt.belt, &at, &load);
         near(
             d.primary_pa,
-            load.secondary_clamp_n * at.thrust_ratio / cvt.primary_piston_m2,
+            belt.tension.primary_clamp_n / cvt.primary_piston_m2,
             1e-9,
         );
-        let capacity = belt_state(&cvt.belt, &at, &load).losses.capacity_nm;
+        let capacity = belt.losses.capacity_nm;
         near(d.clamp_safety, capacity / (creep * cvt_ratio), 1e-9);
         for (flag, want) in [
             (Flags::CLUTCH_SLIPPING, true),

@@ -16,6 +16,7 @@ use cvtcycle_model::transmission::cvt::Cvt;
 
 mod belt;
 mod bench;
+mod circuit;
 mod clamp;
 mod control;
 mod drive;

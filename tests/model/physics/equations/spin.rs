@@ -17,6 +17,7 @@ fn pump(kind: PumpKind) -> Pump {
         heating: ViscousSelfHeating::halving_at_w(Some(900.0)),
         inlet_pa_s_m3: 1.2e7,
         inlet_depression_pa: 0.6e5,
+        hydrodynamic_nm_s2: 2e-6,
         constant_nm: 0.11,
         line_drop_pa: 0.8e5,
         residual_pa: 1.5e5,
@@ -54,7 +55,11 @@ fn val_pump_by_hand() {
                 w,
                 900.0,
             );
-            same(s.torque_nm, 1.6e-6 * 1.07 * against + viscous + 0.11);
+            let accelerated = 2e-6 * w * w; // C_h
+            same(
+                s.torque_nm,
+                1.6e-6 * 1.07 * against + (viscous + accelerated) + 0.11,
+            );
             same(s.flow_m3_s, flow);
             same(s.working_m3_s, drawn(share * flow));
             assert_eq!(s.flow_limited, need > drawn(flow));

@@ -8,6 +8,7 @@ use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::cvt::pulley_bearing::PulleyBearing;
 use cvtcycle_model::transmission::cvt::seal_ring::SealRing;
 use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Formulation, belt_state};
+use cvtcycle_model::transmission::viscous_self_heating::ViscousSelfHeating;
 
 const CAR: &str = "rover_216_cvt";
 
@@ -76,9 +77,16 @@ fn val_bearing_torque() {
     let bearing = PulleyBearing {
         friction: 0.0015,
         bore_m: [0.045, 0.060],
+        idle_nm: 0.1,
+        idle_nm_s: 2e-3,
     };
     assert!((bearing.torque_nm(0, 7458.0) - 0.25171).abs() < 1e-5);
     assert!((bearing.torque_nm(1, 7458.0) - 0.33561).abs() < 1e-5);
+    // PB-3: 0.1 + 1.5 x 2e-3 x 300 = 1 Nm without heating; half of the film's 0.9 Nm where its own power of 0.9 x 300 W halves it twice over.
+    let idle_nm = |heating| bearing.idle_nm(1.5, &heating, 300.0);
+    assert!((idle_nm(ViscousSelfHeating::NONE) - 1.0).abs() < 1e-12);
+    let heated = idle_nm(ViscousSelfHeating::halving_at_w(Some(135.0))); // F (1 + F w/P) = 0.9: F = 0.45
+    assert!((heated - 0.55).abs() < 1e-12, "{heated}");
 }
 
 /// SR-1: two rings of 40 mm with 2 mm of flank, half of 37.3 bar, friction 0.05: 0.9375 Nm.
@@ -112,10 +120,6 @@ fn rings_and_bearings_load_the_belt() {
         let at = BeltAtRatio::new(&cvt.belt, ratio);
         let clamp_n = bar * 1e5 * cvt.secondary_piston_m2 + cvt.spring_n;
         let pull = PulleyBearing::pull_per_clamp(&cvt.belt, &at) * clamp_n;
-        let primary_pa = clamp_n * at.thrust_ratio / cvt.primary_piston_m2;
-        let per_pa = cvt.seal_ring.torque_per_pa();
-        let bearing = [0, 1].map(|k| cvt.pulley_bearing.torque_nm(k, pull));
-        let ring = [per_pa * primary_pa, per_pa * bar * 1e5];
         let no_drive = bench.solve(&BenchPoint {
             parts: Parts {
                 final_drive: false,
@@ -123,6 +127,11 @@ fn rings_and_bearings_load_the_belt() {
             },
             ..point(ratio, bar)
         });
+        let primary_n = no_drive.belt.unwrap().tension.primary_clamp_n;
+        let primary_pa = primary_n / cvt.primary_piston_m2;
+        let per_pa = cvt.seal_ring.torque_per_pa();
+        let bearing = [0, 1].map(|k| cvt.pulley_bearing.torque_nm(k, pull));
+        let ring = [per_pa * primary_pa, per_pa * bar * 1e5];
         let near = |got: f64, want: f64| {
             assert!(
                 (got - want).abs() < 1e-9,

@@ -116,6 +116,7 @@ pub fn pump(kind: PumpKind) -> Pump {
         heating: ViscousSelfHeating::NONE,
         inlet_pa_s_m3: 0.0,
         inlet_depression_pa: 0.7e5,
+        hydrodynamic_nm_s2: 0.0,
         constant_nm: 0.0,
         line_drop_pa: 0.0,
         residual_pa: 1e5,

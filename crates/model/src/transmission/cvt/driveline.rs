@@ -80,6 +80,8 @@ pub(crate) struct PulleyShafts<R: Real = f64> {
     pull_per_clamp: R,
     /// Torque of the rings over the pressure of their cylinder, Nm/Pa; 0 without pressure (SR-1).
     ring_per_pa: R,
+    /// True where the shafts drag without load: not in the printed forms, nor where a measured map of the belt includes them (PB-3).
+    counted: bool,
 }
 
 #[physics]
@@ -96,6 +98,7 @@ impl<R: Real> PulleyShafts<R> {
             } else {
                 none
             },
+            counted: pulled,
             ring_per_pa: if counted && parts.pump && parts.seal_rings {
                 cvt.seal_ring.torque_per_pa()
             } else {
@@ -205,6 +208,7 @@ impl<R: Real> PartTorques<R> {
                 penetration_nm: none,
                 slip_total: none,
                 capacity_nm: none,
+                primary_clamp_n: none,
                 gross_slip: like.splat_mask(false),
             },
             belt_map: None,
@@ -410,7 +414,7 @@ impl<'a, R: Real> Driveline<'a, R> {
         torques.secondary =
             self.through_nm(output_nm, drive, speeds_rad_s, clamp.pressure_pa, inside);
         torques.final_drive = torques.secondary - output_nm;
-        self.turn_secondary(torques, clamp);
+        self.turn_secondary(torques, clamp, secondary_rad_s);
     }
 
     /// Torque into the final drive for one behind it, Nm.
@@ -438,9 +442,14 @@ impl<'a, R: Real> Driveline<'a, R> {
     }
 
     /// Adds bearing and rings of the secondary's shaft to its torque.
-    pub fn turn_secondary(&self, torques: &mut PartTorques<R>, clamp: &Clamp<R>) {
+    pub fn turn_secondary(
+        &self,
+        torques: &mut PartTorques<R>,
+        clamp: &Clamp<R>,
+        secondary_rad_s: R,
+    ) {
         if self.parts.belt && !self.is_mapped() {
-            torques.bearing[1] = self.bearing_nm(1, clamp);
+            torques.bearing[1] = self.bearing_nm(1, clamp) + self.secondary_idle_nm(secondary_rad_s);
             if !self.cvt.has_map(Component::SealRing) {
                 let nm = self.shafts.ring_per_pa * clamp.pressure_pa;
                 torques.ring[1] = self.scaled(Component::SealRing, nm);
@@ -456,8 +465,26 @@ impl<'a, R: Real> Driveline<'a, R> {
         self.scaled(Component::PulleyBearing, nm)
     }
 
+    /// Torque of the secondary's shaft without load, Nm (PB-3).
+    fn secondary_idle_nm(&self, secondary_rad_s: R) -> R {
+        let cvt = self.cvt;
+        let none = secondary_rad_s.splat(0.0);
+        if !self.shafts.counted {
+            return none;
+        }
+        let power = self.viscosity.shaft;
+        let nm = (cvt.pulley_bearing).idle_nm(power, &cvt.shaft_drag.heating, secondary_rad_s);
+        let turns = secondary_rad_s.gt(0.0);
+        self.scaled(Component::PulleyBearing, turns.select(nm, none))
+    }
+
     /// Torque of the primary's rings, Nm, or of those of both pulleys where a map has them (SR-1).
-    fn primary_ring_nm(&self, primary_rad_s: R, clamp: &Clamp<R>, inside: &mut R::Mask) -> R {
+    fn primary_ring_nm(
+        &self,
+        primary_rad_s: R,
+        (clamp, primary_n): (&Clamp<R>, R),
+        inside: &mut R::Mask,
+    ) -> R {
         let none = primary_rad_s.splat(0.0);
         if !self.parts.pump {
             return none;
@@ -468,7 +495,7 @@ impl<'a, R: Real> Driveline<'a, R> {
             pressure_pa: clamp.pressure_pa,
         };
         self.loss_nm(Component::SealRing, at, inside, || {
-            self.shafts.ring_per_pa * self.cvt.primary_pa(clamp.secondary_n, self.at)
+            self.shafts.ring_per_pa * self.cvt.primary_pa(primary_n)
         })
     }
 
@@ -523,19 +550,19 @@ impl<'a, R: Real> Driveline<'a, R> {
         self.mapped(Component::BeltMap, at, inside)
     }
 
-    /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed and a clamping force.
+    /// Sets the torques of the parts that turn with the primary, the belt apart, at its speed, a clamp and its own clamping force, N.
     pub fn turn_primary(
         &self,
         torques: &mut PartTorques<R>,
         primary_rad_s: R,
-        clamp: &Clamp<R>,
+        (clamp, primary_n): (&Clamp<R>, R),
         inside: &mut R::Mask,
     ) {
         if self.is_mapped() {
             return;
         }
         torques.bearing[0] = self.bearing_nm(0, clamp);
-        torques.ring[0] = self.primary_ring_nm(primary_rad_s, clamp, inside);
+        torques.ring[0] = self.primary_ring_nm(primary_rad_s, (clamp, primary_n), inside);
         if self.parts.reverse_clutch {
             let at = MapInputs {
                 speed_rad_s: primary_rad_s,
@@ -595,8 +622,27 @@ impl<'a, R: Real> Driveline<'a, R> {
     }
 
     /// Computes the pressure that the circuit reaches of the one that the clamp law sets, Pa, with a flow into the pulleys; the clamp is fed before
-    /// it, or not (PU-6, PU-7). A pump that is a measured map has no flow: it reaches any pressure.
+    /// it, or not (PU-6, PU-7). A pump that is a measured map has no flow: it reaches any pressure. `line` is the pressure of the line over that
+    /// of the secondary, if they differ.
     pub fn circuit(
+        &self,
+        set_pa: R,
+        line: Option<R>,
+        pump: &TurningPump<R>,
+        shift: (R, bool),
+    ) -> Circuit<R> {
+        let Some(factor) = line else {
+            return self.line_circuit(set_pa, pump, shift);
+        };
+        let circuit = self.line_circuit(set_pa * factor, pump, shift);
+        Circuit {
+            pressure_pa: (circuit.limited).select(circuit.pressure_pa / factor, set_pa),
+            ..circuit
+        }
+    }
+
+    /// The same for the pressure of the line.
+    fn line_circuit(
         &self,
         set_pa: R,
         pump: &TurningPump<R>,

@@ -261,7 +261,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             ..*load
         });
         torques.belt_map = line.belt_map_nm(secondary_nm, primary_rad_s, clamp.pressure_pa, inside);
-        line.turn_primary(torques, primary_rad_s, clamp, inside);
+        let primary_n = torques.belt.primary_clamp_n;
+        line.turn_primary(torques, primary_rad_s, (clamp, primary_n), inside);
     }
 
     /// From the wheels to a launch device in front of the variator.
@@ -356,10 +357,11 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         let (over_rad_s, own) = (chain.over_rad_s, chain.side);
         let engine_rad_s = own.engine_rad_s;
         let shaft = line.engine_shaft(engine_rad_s);
+        let primary_pa = cvt.primary_pa(torques.belt.primary_clamp_n);
         line.turn_engine(
             torques,
             &shaft,
-            g.pressure_pa,
+            cvt.line_pa(g.pressure_pa, primary_pa),
             self.shift_flow_m3_s,
             &mut inside_maps,
         );
@@ -393,7 +395,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             chain.secondary_rad_s,
         );
         let shift = (self.shift_flow_m3_s, self.clamp_first);
-        let circuit = line.circuit(set_pa, &next_pump, shift);
+        let line_factor = cvt.line_factor(g.pressure_pa, primary_pa);
+        let circuit = line.circuit(set_pa, line_factor, &next_pump, shift);
         point.guess = Guess {
             engine_rad_s,
             slip: chain.slip,

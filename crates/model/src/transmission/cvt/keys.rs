@@ -1,5 +1,6 @@
 //! Keys of `[transmission.cvt]`, and a CVT from their values.
 
+use super::circuit::{LineCircuit, TorqueSensorKeys};
 use super::clutch_drag::{ClutchDrag, ClutchKeys};
 use super::controller::{ClampKeys, PressureTable, RatioControl, RatioKeys, clamp};
 use super::final_drive::FinalDrive;
@@ -61,6 +62,11 @@ keys! {
         final_drive_ratio: number(1.0, 20.0), "secondary speed over wheel speed", ["CV-1"];
         final_drive_first_ratio: number(0.3, 6.0), "share of that ratio in the stage at the secondary", ["FD-1"];
         clamp: or_word("map", options(ClampKeys::CHOICES)), "clamp law: the Rover's map, torque following, slip limited, or a table of the user's";
+        circuit: or_word("line_is_secondary", options(&[
+            Choice::word("line_is_secondary", "one line pressure, that of the secondary, which feeds the primary"),
+            Choice::word("independent", "a valve for each cylinder: the line has the higher of the two pressures"),
+            Choice::new("torque_sensor", "clamping and shifting pistons apart, the clamp by torque", TorqueSensorKeys::TABLE),
+        ])), "hydraulic circuit of the cylinders", ["HC-1", "HC-2", "HC-3"];
         launch: LAUNCH, "launch device: a friction clutch, or a torque converter";
         launch_at: words(&[
             Choice::word("input", "between engine and variator"),
@@ -157,6 +163,7 @@ impl Cvt {
             primary_piston_m2: v.number(&VARIATOR.primary_piston_cm2),
             spring_n: v.number(&VARIATOR.spring_n),
             centrifugal_n_s2: centrifugal(&v, oil),
+            circuit: LineCircuit::from_values(s, &CVT.circuit),
             pump: Pump::from_values(&s.table("pump")),
             shaft_drag: ShaftDrag::from_values(&s.table("input_shaft")),
             clutch_drag: ClutchDrag::from_values(&s.table("reverse_clutch")),

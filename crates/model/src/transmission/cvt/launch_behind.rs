@@ -45,7 +45,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             secondary_n: cvt
                 .secondary_clamp_n(g.pressure_pa, self.behind_belt_rad_s(&first, g.slip)),
         };
-        line.turn_secondary(torques, &clamp);
+        line.turn_secondary(torques, &clamp, self.behind_belt_rad_s(&first, g.slip));
         let load = BeltLoad {
             primary_speed_rad_s: w,
             secondary_clamp_n: clamp.secondary_n,
@@ -54,7 +54,8 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         };
         torques.belt = line.belt_losses(&load);
         torques.belt_map = line.belt_map_nm(torques.secondary, w, g.pressure_pa, inside);
-        line.turn_primary(torques, w, &clamp, inside);
+        let primary_n = torques.belt.primary_clamp_n;
+        line.turn_primary(torques, w, (&clamp, primary_n), inside);
         let (slip, belt_nm) = torques.belt_in_force();
         // With the slip in force, so that the power balance holds for this iterate exactly.
         let over_rad_s = self.primary_rad_s(slip);

@@ -12,6 +12,7 @@
 //!
 //! The last iterate is accepted and every torque follows from it, so that the ledger closes whatever residual is left.
 
+pub mod circuit;
 mod clamping;
 pub mod clutch_drag;
 pub mod controller;
@@ -38,6 +39,7 @@ pub use keys::CvtKeys;
 pub(crate) use secant::Series;
 pub use secant::{Slopes, Trend, WarmStart};
 
+use self::circuit::LineCircuit;
 use self::clamping::Clamping;
 use self::clutch_drag::ClutchDrag;
 use self::controller::{ClampLaw, ClampSignals, PressureTable, RatioControl, ShiftPoint};
@@ -113,6 +115,8 @@ pub struct Cvt<R: Real = f64> {
     pub spring_n: R,
     /// Uncompensated share of the centrifugal head times rho (r_o4 - r_i4) pi/4, N s2/rad2.
     pub centrifugal_n_s2: R,
+    /// Hydraulic circuit of the cylinders.
+    pub circuit: LineCircuit<R>,
     /// Pump.
     pub pump: Pump<R>,
     /// Input shaft.
@@ -185,6 +189,8 @@ pub struct Shifting<R: Real = f64> {
     pub direction: R::PerLane<i8>,
     /// Share of rated power that gentle driving looks at (RC-9).
     pub share: R,
+    /// Logarithm of the force that the primary needs over what the line gives it, above zero where that is short (HC-4).
+    pub short_log: R,
 }
 
 impl<R: Real> CvtState<R> {
@@ -197,6 +203,7 @@ impl<R: Real> CvtState<R> {
             shifting: Shifting {
                 direction: R::per_lane(|_| 0),
                 share: like.splat(0.0),
+                short_log: like.splat(0.0),
             },
             hold: None,
         }
@@ -212,9 +219,9 @@ impl<R: Real> Cvt<R> {
             + self.centrifugal_n_s2 * secondary_rad_s * secondary_rad_s
     }
 
-    /// Pressure of the primary for a clamping force of the secondary, Pa (TE-1).
-    pub fn primary_pa(&self, secondary_clamp_n: R, at: &BeltAtRatio<R>) -> R {
-        secondary_clamp_n * at.thrust_ratio / self.primary_piston_m2
+    /// Pressure of the primary for its clamping force, Pa.
+    pub fn primary_pa(&self, primary_clamp_n: R) -> R {
+        primary_clamp_n / self.primary_piston_m2
     }
 
     /// Lowest engine speed at which full load gives a power, rad/s (RC-3). The hot line knows it at once; what air and cold friction leave of

@@ -2,7 +2,7 @@
 //!
 //! | label | statement | status |
 //! |---|---|---|
-//! | PU-1 | T = D (1 + C_f) p + C_v eta_r (eta/eta_r)^m w D + T_c, eta_r = 10 mPa s, the second term by FH-1 | source: thesis 7.4 (Schlosser, Wilson); C_v and m fitted, C_f and T_c not identifiable with D |
+//! | PU-1 | T = D (1 + C_f) p + C_v eta_r (eta/eta_r)^m w D + C_h rho_r w2 D^(5/3) + T_c, eta_r = 10 mPa s, rho_r = 850 kg/m3, the second term by FH-1 | source: thesis 7.4 (Schlosser, Wilson); C_v and m fitted, C_f and T_c not identifiable with D; C_h 0 where nothing is known of it |
 //! | PU-2 | flow need = V_lub min(1, 1 Pa s/eta) + leakage p (eta_r/eta) + shift flow | ASSUMED values; thick oil runs through what lubricates as through leaks |
 //! | PU-3 | shift flow = A \|dx/dt\|, x = 2 tan th R | derived: thesis 9.1 requires it |
 //! | PU-4 | dual cavity and variable: only the share of D that the need requires works against p, the rest against a residual pressure | source: thesis 9.1 in words; control ASSUMED |
@@ -19,7 +19,7 @@
 //! adds D 0.7 bar at most, 0.1 Nm for 9 cm3/rev, and is left out.
 
 use crate::keys::{Choice, Values, keys};
-use crate::math::{Gather, Mask, Real, physics, smooth_ramp};
+use crate::math::{Gather, Mask, Real, exp, ln, physics, smooth_ramp};
 use crate::transmission::viscous_self_heating::SELF_HEATING;
 use crate::transmission::viscous_self_heating::ViscousSelfHeating;
 use std::f64::consts::LN_10;
@@ -123,6 +123,8 @@ pub struct Pump<R: Real = f64> {
     pub inlet_pa_s_m3: R,
     /// Depression at the inlet that fills no further: air pressure less vapour, dissolved air and height, Pa (PU-5).
     pub inlet_depression_pa: R,
+    /// Torque that accelerates the oil over the square of the speed, C_h rho_r D^(5/3), Nm s2.
+    pub hydrodynamic_nm_s2: R,
     /// Constant torque T_c, Nm.
     pub constant_nm: R,
     /// Pressure drop between pump and secondary, Pa.
@@ -143,6 +145,12 @@ const THICK: f64 = 1.0 / ETA_REFERENCE_PA_S;
 
 /// Viscosity at which C_v is defined, Pa s.
 pub const ETA_REFERENCE_PA_S: f64 = 0.010;
+
+/// Density of the oil in the term of C_h, kg/m3.
+const RHO_REFERENCE_KG_M3: f64 = 850.0;
+
+/// Exponent of the displacement in the term of C_h.
+const FIVE_THIRDS: f64 = 5.0 / 3.0;
 
 /// Logarithm of the reference viscosity.
 pub(super) const LN_ETA_REFERENCE: f64 = -2.0 * LN_10;
@@ -249,7 +257,8 @@ impl<R: Real> Pump<R> {
             now: *now,
             speed_rad_s,
             flow_m3_s,
-            viscous_nm: self.heating.torque_nm(viscous_nm, speed_rad_s), // PU-1
+            viscous_nm: self.heating.torque_nm(viscous_nm, speed_rad_s)
+                + self.hydrodynamic_nm_s2 * speed_rad_s * speed_rad_s, // PU-1
         }
     }
 
@@ -394,6 +403,7 @@ keys! {
         friction_coefficient: or(0.0, number(0.0, 1.0)), "Coulomb coefficient C_f", ["PU-1"];
         viscous_coefficient: number(0.0, 1e6), "viscous coefficient C_v", ["PU-1"];
         viscous_exponent: number(0.0, 1.5), "exponent of viscosity", ["PU-1"];
+        hydrodynamic_coefficient: or(0.0, number(0.0, 2000.0)), "coefficient C_h of the oil that is accelerated", ["PU-1"];
         film_heating_w: SELF_HEATING, "viscous dissipation at which the heat of the gaps halves the viscous torque; absent: no heating", ["PU-1", "FH-1"];
         inlet_bar_per_l_min: optional(number(0.0, 1.0)), "drop in strainer and suction line at 10 mPa s; absent: none", ["PU-5"];
         inlet_depression_bar: or(0.7, number(0.1, 1.0)), "depression at the inlet that fills the pump no further", ["PU-5"];
@@ -440,9 +450,13 @@ impl Pump {
             }),
             _ => PumpKind::Fixed,
         };
+        let displacement_m3_rad = p.number(&PUMP.displacement_cc_rev);
         Pump {
             kind,
-            displacement_m3_rad: p.number(&PUMP.displacement_cc_rev),
+            displacement_m3_rad,
+            hydrodynamic_nm_s2: p.number(&PUMP.hydrodynamic_coefficient)
+                * RHO_REFERENCE_KG_M3
+                * exp(FIVE_THIRDS * ln(displacement_m3_rad)), // PU-1
             friction: p.number(&PUMP.friction_coefficient),
             viscous: p.number(&PUMP.viscous_coefficient),
             viscous_exponent: p.number(&PUMP.viscous_exponent),

@@ -4,7 +4,7 @@ use super::WarmStart;
 use super::controller::{ClampLaw, PressurePoint};
 use super::driveline::{PartTorques, Shaft};
 use super::evaluate::{Guess, Limit, MAX_EVALUATIONS, Point, Step, TOLERANCE};
-use super::variator::{BeltLoad, belt_capacity_nm};
+use super::variator::{BeltLoad, Tension, belt_capacity_nm};
 use crate::flags::Flags;
 use crate::lubricant::VALID_K;
 use crate::math::{Mask, Real, physics};
@@ -18,6 +18,7 @@ use crate::transmission::step::{DrivelineState, StepOutput};
 /// Equilibrium of pump and clamp law with the car at rest in gear.
 struct Idling<R: Real> {
     pressure_pa: R,
+    primary_pa: R,
     /// Number of the cause.
     clamp_cause: R,
     torques: PartTorques<R>,
@@ -44,6 +45,7 @@ fn idling<P: PrimeMover<R>, R: Real>(
     let none = w.splat(0.0);
     let mut at = Idling {
         pressure_pa: none,
+        primary_pa: none,
         clamp_cause: none,
         torques: PartTorques::none(w),
         throttle,
@@ -72,12 +74,15 @@ fn idling<P: PrimeMover<R>, R: Real>(
         let set_pa;
         (set_pa, at.clamp_cause) = cvt.pressure_by(step.clamp, &signals, line.at, || load, none);
         let shift = (step.shift_flow_m3_s, step.clamp_first);
-        let circuit = line.circuit(set_pa, &shaft.pump, shift);
+        let primary_pa = idle_primary_pa(step, &load, set_pa);
+        let line_factor = cvt.line_factor(set_pa, primary_pa);
+        let circuit = line.circuit(set_pa, line_factor, &shaft.pump, shift);
         (at.pressure_pa, at.flow_limited) = (circuit.pressure_pa, circuit.limited);
+        at.primary_pa = idle_primary_pa(step, &load, at.pressure_pa);
         let pump = line.turn_engine(
             &mut at.torques,
             &shaft,
-            at.pressure_pa,
+            cvt.line_pa(at.pressure_pa, at.primary_pa),
             step.shift_flow_m3_s,
             &mut at.inside_maps,
         );
@@ -141,7 +146,7 @@ fn rest<P: PrimeMover<R>, R: Real>(
     output.shaft_nm = at.torques.flywheel_nm(side.engine_nm);
     output.throttle = at.throttle;
     output.belt_ratio = ratio;
-    output.primary_pa = primary_pa(step, at.pressure_pa, none);
+    output.primary_pa = at.primary_pa;
     output.secondary_pa = at.pressure_pa;
     output.clamp_cause = causes(at.clamp_cause);
     output.slip = none;
@@ -182,10 +187,16 @@ fn add_part_losses<R: Real>(
     });
 }
 
+/// Pressure of the primary at rest under a load with a pressure of the secondary, Pa.
 #[physics]
-fn primary_pa<P, R: Real>(step: &Step<P, R>, pa: R, secondary_rad_s: R) -> R {
+fn idle_primary_pa<P, R: Real>(step: &Step<P, R>, load: &BeltLoad<R>, pa: R) -> R {
     let cvt = step.line.cvt;
-    cvt.primary_pa(cvt.secondary_clamp_n(pa, secondary_rad_s), step.line.at)
+    let clamped = BeltLoad {
+        secondary_clamp_n: cvt.secondary_clamp_n(pa, pa.splat(0.0)),
+        ..*load
+    };
+    let tension = Tension::driving(&cvt.belt, step.line.at, &clamped);
+    cvt.primary_pa(tension.primary_clamp_n)
 }
 
 /// True for a residual within tolerance, false for NaN.
@@ -230,7 +241,7 @@ fn finished<P: PrimeMover<R>, R: Real>(
     output.shaft_nm = p.flywheel_nm;
     output.throttle = p.throttle;
     output.belt_ratio = ratio;
-    output.primary_pa = primary_pa(step, g.pressure_pa, p.secondary_rad_s);
+    output.primary_pa = (step.line.cvt).primary_pa(p.torques.belt.primary_clamp_n);
     output.secondary_pa = g.pressure_pa;
     output.clamp_cause = causes(p.clamp_cause);
     output.slip = g.slip;
@@ -238,7 +249,8 @@ fn finished<P: PrimeMover<R>, R: Real>(
     output.secondary_nm = p.torques.secondary;
     output.clamp_safety = p.torques.belt.capacity_nm / p.torques.secondary.abs();
     let line = &step.line;
-    output.oil_flow_m3_s = line.oil_flow_m3_s(we, g.pressure_pa, step.shift_flow_m3_s);
+    let line_pa = line.cvt.line_pa(g.pressure_pa, output.primary_pa);
+    output.oil_flow_m3_s = line.oil_flow_m3_s(we, line_pa, step.shift_flow_m3_s);
     output.residual = outcome.residual;
     output.iterations = counts(outcome.evaluations);
     let speeds = [we, wp, p.secondary_rad_s, step.secondary_rad_s];
@@ -371,8 +383,8 @@ fn common_flags<P: PrimeMover<R>, R: Real>(
     output.flag(Flags::OUTSIDE_VALIDITY, !valid);
     let at_end = (limits.high * JUST_ABOVE).ge(ratio) | ratio.ge(limits.low * JUST_BELOW);
     output.flag(Flags::RATIO_LIMIT, at_end);
-    let line_pa = output.secondary_pa + step.line.cvt.pump.line_drop_pa;
-    let short = output.primary_pa.gt(line_pa * JUST_ABOVE);
+    let most_pa = (step.line.cvt).most_primary_pa(output.secondary_pa);
+    let short = output.primary_pa.gt(most_pa * JUST_ABOVE);
     output.flag(Flags::PRIMARY_PRESSURE_SHORT, short);
     let fast = output.engine_rad_s.gt(step.input.engine.max_rad_s());
     output.flag(Flags::OVERSPEED, fast);

@@ -31,6 +31,7 @@ pub use load::BeltLoad;
 pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
+pub(in crate::transmission::cvt) use tension::{added_n, primary_clamp_n, whole_wrap_n};
 
 use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::component::{ByComponent, Component};
@@ -151,6 +152,8 @@ pub struct BeltLosses<R: Real = f64> {
     pub slip_total: R,
     /// Torque capacity at the secondary, Nm (VA-2).
     pub capacity_nm: R,
+    /// Clamping force of the primary, N (TE-9).
+    pub primary_clamp_n: R,
     /// Torque above capacity, or slip at its bound.
     pub gross_slip: R::Mask,
 }
@@ -283,6 +286,7 @@ fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
         capacity_nm,
+        primary_clamp_n: parts.tension.primary_clamp_n,
         gross_slip: slip.held | load.output_torque_nm.abs().gt(capacity_nm),
     }
 }
