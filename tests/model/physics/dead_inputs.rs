@@ -133,7 +133,12 @@ fn moves(info: &KeyInfo) -> Vec<String> {
 }
 
 /// Keys that need another key before they can matter: (end of the key, what is set with it, why).
-const NEEDS: [(&str, &[&str], &str); 30] = [
+const NEEDS: [(&str, &[&str], &str); 31] = [
+    (
+        "pulley_bearing.secondary_nm_per_rpm",
+        &["transmission.cvt.pulley_bearing.secondary_nm_per_rpm=0.0005"],
+        "0 without a value, and its range is smaller than the smallest move from 0",
+    ),
     (
         "driveline_f2_n_per_kmh2",
         &["road_load.form.coefficients.driveline_f2_n_per_kmh2=0.001"],

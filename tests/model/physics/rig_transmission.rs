@@ -146,7 +146,7 @@ fn val_the_remainder_is_the_primary_rings() {
     let bench = Bench::new(&car(CAR, &[]));
     let cvt = bench.cvt().unwrap();
     for s in stripped(&[], &[]) {
-        let primary_n = |stage| s.stage(stage).belt.unwrap().tension.primary_clamp_n;
+        let primary_n = |stage| s.stage(stage).belt.unwrap().losses.holding_n;
         let less_n = primary_n(Stage::Complete) - primary_n(Stage::FinalDriveRemoved);
         let primary_pa = less_n / cvt.primary_piston_m2;
         let by_hand = cvt.seal_ring.torque_per_pa() * primary_pa;

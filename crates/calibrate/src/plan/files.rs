@@ -6,7 +6,9 @@ use super::keys::DATA;
 use super::{BenchPoints, Context, Found, Measured, Observable, Observation, stem};
 use crate::data::sheet::{SD, Sheet, and_more};
 use crate::data::{TIME, bench_points, bytes_of, read_points, read_scalars, read_trace};
-use cvtcycle_config::{Bound, Place, Problem, ProblemKind, Problems, Section, did_you_mean, embedded, unit_of};
+use cvtcycle_config::{
+    Bound, Place, Problem, ProblemKind, Problems, Section, did_you_mean, embedded, unit_of,
+};
 use cvtcycle_model::keys::{Quantity, Values};
 use cvtcycle_output::provenance::hash;
 use cvtcycle_validate::source::{self, Kind, Source};

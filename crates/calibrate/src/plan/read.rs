@@ -218,7 +218,9 @@ fn join(plan: &mut CalibrationPlan, found: Found) {
 
 /// True if a vehicle has both numbers.
 fn shares_a_vehicle(a: &FreeParameter, b: &FreeParameter) -> bool {
-    a.vehicles.iter().any(|vehicle| b.vehicles.contains(vehicle))
+    a.vehicles
+        .iter()
+        .any(|vehicle| b.vehicles.contains(vehicle))
 }
 
 /// All clashes; `[parameters, groups]` is how many were written, and `sound` whether nothing else is wrong.

@@ -14,9 +14,7 @@ use cvtcycle_model::transmission::Transmission;
 use cvtcycle_model::transmission::component::Component;
 use cvtcycle_model::transmission::coupling::Coupling;
 use cvtcycle_model::transmission::cvt::Cvt;
-use cvtcycle_model::transmission::cvt::variator::{
-    BeltAtRatio, BeltLoad, Geometry, belt_capacity_nm,
-};
+use cvtcycle_model::transmission::cvt::variator::{BeltAtRatio, BeltLoad, Geometry, carried_nm};
 
 /// Least road load at 80 km/h over mass, N/kg.
 const LEAST_N_KG: f64 = 0.15;
@@ -348,7 +346,7 @@ pub(super) fn gripped_nm(cvt: &Cvt, oil: &Lubricant, secondary_clamp_n: f64) -> 
         secondary_clamp_n,
         ..BeltLoad::turning(&cvt.belt, oil, WARM_K, cvt.ratio.low, SLOW_RAD_S)
     };
-    belt_capacity_nm(&cvt.belt, &at, &load) / cvt.ratio.low
+    carried_nm(&cvt.belt, &at, &load) / cvt.ratio.low
 }
 
 /// The pump's flow at idle against what creeps, and at the speed of stall against full load.

@@ -532,14 +532,6 @@ impl Forces {
         let shoulder_mu = belt.shoulder_friction * load.band.mu;
         let grip = shoulder_mu * (1.0 - load.band.film_share[0]) * least_rad;
         let net_n = load.output_torque_nm / radii.radius_m[1];
-        // Mean compression of the secondary's wrap over C where the secondary loads the segments (TE-10), by what it would be with no friction.
-        let first_n = net_n + direction * (grip * bare_n + shear_n);
-        let grips_n = 2.0 * load.segment_friction * load.secondary_clamp_n / belt.cos_wedge;
-        let overrun = match &belt.thrust_ratio {
-            Some(_) => 0.5,
-            None => 0.5 * smaller(first_n.abs() / larger(grips_n, 1e-6), 1.0),
-        };
-        let share = if first_n >= 0.0 { 0.5 } else { overrun };
         let mut forces = Forces {
             mean_n: bare_n,
             compression_n: net_n,
@@ -548,7 +540,7 @@ impl Forces {
             least_rad,
         };
         for _ in 0..PASSES {
-            forces.mean_n = bare_n + share * forces.compression_n.abs();
+            forces.mean_n = bare_n + 0.5 * forces.compression_n.abs();
             forces.step_n = -direction * (grip * forces.mean_n + shear_n);
             forces.compression_n = net_n - forces.step_n;
         }

@@ -81,7 +81,7 @@ fn printed_state(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> BeltState {
             wedge_nm: sum(p.wedge_loss_nm),
             penetration_nm: sum(p.penetration_loss_nm),
             capacity_nm: p.capacity_nm,
-            primary_clamp_n: p.tension.primary_clamp_n,
+            holding_n: p.tension.primary_clamp_n,
             gross_slip: p.status != PointStatus::Ok,
         },
     }
@@ -206,7 +206,7 @@ impl OnBench<'_> {
         if p.parts.belt {
             torques.belt_map = line.belt_map_nm(secondary, w, pa, &mut inside_maps);
             let state = self.belt_state(&load);
-            primary_n = state.losses.primary_clamp_n;
+            primary_n = state.losses.holding_n;
             if torques.belt_map.is_none() {
                 torques.belt = state.losses;
                 belt = Some(state);

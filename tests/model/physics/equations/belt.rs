@@ -148,51 +148,36 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
     };
     let s = -(ratio.ln() / b.unity_width).tanh(); // TE-6
     let fs = l.secondary_clamp_n;
-    let idle_n = fs * bp / bs; // TE-1
+    let fp = fs * bp / bs; // TE-1
     let v = l.primary_speed_rad_s * rp;
     let smooth = f == Formulation::Smooth;
     // The wrap that limits the force between bands and segments: the primary's, or the smaller one (TE-7).
     let grips = if smooth { bp.min(bs) } else { bp };
     let bands = if smooth { b.band_mass_kg_m } else { 0.0 };
     let pressing = (b.mass_kg_m - bands) * v * v; // TE-8
-    let a = (2.0 * idle_n * b.tan_wedge / bp + pressing) * grips;
+    let a = (2.0 * fp * b.tan_wedge / bp + pressing) * grips;
     // The film carries a share of the innermost interface; the printed forms know none (LU-5, TE-7).
     let [inner, outer] = if smooth { l.band.film_share } else { [0.0; 2] };
     let shear_n = if smooth { l.film_n } else { [0.0; 2] };
     let coated = if smooth { b.shoulder_friction } else { 1.0 }; // BT-8
     let mu_step = coated * l.band.mu * (1.0 - inner);
     let z = l.output_torque_nm / rs + s * (mu_step * a + shear_n[0]);
-    let c = mu_step * grips;
-    let loaded = |compression: f64, clamp: f64| {
-        (compression.abs() * b.cos_wedge / (2.0 * mu * clamp)).min(1.0)
-    };
-    let mean = if z < 0.0 && smooth {
-        loaded(z, fs) / 2.0 // TE-10
-    } else {
-        0.5
-    };
+    let c = mu_step * grips / 2.0;
     let cx = if z >= 0.0 {
-        z / (1.0 - s * c * mean)
+        z / (1.0 - s * c)
     } else {
-        z / (1.0 + s * c * mean)
+        z / (1.0 + s * c)
     }; // TE-5
-    // TE-9, by passes from above.
-    let added_n = if smooth {
-        bp * cx / (4.0 * b.tan_wedge)
+    let loaded = |clamp: f64| (cx.abs() * b.cos_wedge / (2.0 * mu * clamp)).min(1.0);
+    let added_n = bp * cx / (4.0 * b.tan_wedge);
+    let loading_n = if cx >= 0.0 { fp + added_n / 2.0 } else { fs };
+    let hold = if smooth {
+        (fp + added_n * (1.0 - loaded(loading_n))).max(0.0) // TE-9
     } else {
-        0.0
+        fp
     };
-    let mut fp = idle_n + added_n;
-    for _ in 0..if cx < 0.0 { 0 } else { 100_000 } {
-        fp = idle_n + added_n * (1.0 - loaded(cx, fp));
-    }
-    if cx < 0.0 {
-        fp = (idle_n + added_n * (1.0 - loaded(cx, fs))).max(0.0);
-    }
-    // Where no force holds the ratio, that at which the two roots meet.
-    fp = fp.max(0.5 * (idle_n + added_n));
-    let qp = 2.0 * idle_n * b.tan_wedge + bp * pressing + cx.abs() * bp * mean; // TE-2, TE-10
-    let qs = 2.0 * fs * b.tan_wedge + bs * pressing + cx.abs() * bs * mean;
+    let qp = 2.0 * fp * b.tan_wedge + bp * pressing + cx.abs() * bp / 2.0; // TE-2
+    let qs = 2.0 * fs * b.tan_wedge + bs * pressing + cx.abs() * bs / 2.0;
     let dt = -s * (mu_step * qp * grips / bp + shear_n[0]); // TE-3, TE-7
     same(cx, l.output_torque_nm / rs - dt); // TE-4
     let part = if smooth { s.abs() } else { 1.0 }; // BT-6
@@ -339,7 +324,7 @@ fn sheet(b: &Belt, ratio: f64, l: &BeltLoad) -> Sheet {
                 mu
             }
             * rs
-            * fp.min(fs)
+            * hold.min(fs)
             / b.cos_wedge, // VA-2, VA-4
         held: if load < 0.0 {
             inverted.held

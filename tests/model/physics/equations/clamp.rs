@@ -46,7 +46,7 @@ const SIGNALS: ClampSignals = ClampSignals {
     force_log: 0.0,
 };
 
-/// Force of the primary under a load for one of the secondary, N: TE-9 by passes from above, where the active arc has no part of the wrap.
+/// Force of the primary that holds a ratio under a load for one of the secondary, N (TE-9).
 fn primary_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, secondary_n: f64) -> f64 {
     let compression_n = load.output_torque_nm / at.geometry.secondary_radius_m;
     let added_n = at.geometry.primary_wrap_rad * compression_n / (4.0 * cvt.belt.tan_wedge);
@@ -55,23 +55,23 @@ fn primary_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, secondary_n: f64) -> 
     if compression_n < 0.0 {
         return idle_n + added_n * (1.0 - (whole_n / secondary_n).min(1.0));
     }
-    let mut force_n = idle_n + added_n;
-    for _ in 0..10_000 {
-        force_n = idle_n + added_n * (1.0 - (whole_n / force_n).min(1.0));
-    }
-    force_n
+    idle_n + added_n * (1.0 - (whole_n / (idle_n + 0.5 * added_n)).min(1.0))
 }
 
-/// Least force of the secondary at which both pulleys have a force, N, by bisection.
+/// Force of the secondary from which on both pulleys have a force, N, by steps and bisection.
 fn holding_n(cvt: &Cvt, at: &BeltAtRatio, load: &BeltLoad, weaker_n: f64) -> f64 {
-    let (mut low, mut high) = (weaker_n, 100.0 * weaker_n);
-    if primary_n(cvt, at, load, low) >= weaker_n {
-        return low;
-    }
+    // In overrun the force may first fall with that of the secondary: the largest one counts at which it does not hold.
+    let steps = (1..=4000).map(|k| weaker_n * (1.0 + 0.001 * f64::from(k)));
+    let lacks = |secondary_n: &f64| primary_n(cvt, at, load, *secondary_n) < weaker_n;
+    let Some(mut low) = steps.rev().find(lacks) else {
+        let holds = primary_n(cvt, at, load, weaker_n) >= weaker_n;
+        assert!(holds, "between the first two steps");
+        return weaker_n;
+    };
+    let mut high = 1.001 * low + 0.001 * weaker_n;
     for _ in 0..200 {
         let middle = 0.5 * (low + high);
-        let holds = primary_n(cvt, at, load, middle) >= weaker_n;
-        *(if holds { &mut high } else { &mut low }) = middle;
+        *(if lacks(&middle) { &mut low } else { &mut high }) = middle;
     }
     high
 }

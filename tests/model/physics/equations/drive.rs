@@ -143,7 +143,7 @@ fn check(b: &Bench, s: &Setting, d: &StepOutput) -> Bind {
     let secondary_nm = geared_nm + bearing[1] + per_pa * pa;
     let load = belt_load(b, s, wp, secondary_nm, clamp_n);
     let belt = belt_state(&cvt.belt, &at, &load);
-    let primary_pa = belt.tension.primary_clamp_n / cvt.primary_piston_m2;
+    let primary_pa = belt.losses.holding_n / cvt.primary_piston_m2;
     let ring = [primary_pa, pa].map(|p| per_pa * p);
     let lost = |c: Component| d.loss_w[c];
     // The solve stops at 1e-7 of slip, which is as much of the power through the belt (SL-11).
@@ -315,7 +315,7 @@ fn engine_and_clamp(x: &Solved) {
     let belt = belt_state(&cvt.belt, &x.at, &x.load);
     near(
         d.primary_pa,
-        belt.tension.primary_clamp_n / cvt.primary_piston_m2,
+        belt.losses.holding_n / cvt.primary_piston_m2,
         1e-5,
     );
     near(
@@ -527,7 +527,7 @@ fn standing(b: &Bench) {
         let belt = belt_state(&cvt.belt, &at, &load);
         near(
             d.primary_pa,
-            belt.tension.primary_clamp_n / cvt.primary_piston_m2,
+            belt.losses.holding_n / cvt.primary_piston_m2,
             1e-9,
         );
         let capacity = belt.losses.capacity_nm;

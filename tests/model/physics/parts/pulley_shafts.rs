@@ -127,7 +127,7 @@ fn rings_and_bearings_load_the_belt() {
             },
             ..point(ratio, bar)
         });
-        let primary_n = no_drive.belt.unwrap().tension.primary_clamp_n;
+        let primary_n = no_drive.belt.unwrap().losses.holding_n;
         let primary_pa = primary_n / cvt.primary_piston_m2;
         let per_pa = cvt.seal_ring.torque_per_pa();
         let bearing = [0, 1].map(|k| cvt.pulley_bearing.torque_nm(k, pull));
@@ -147,11 +147,14 @@ fn rings_and_bearings_load_the_belt() {
             a.part_nm(Component::PulleyBearing),
             bearing[0] + bearing[1] * turns(&a),
         );
+        // The force that holds the ratio follows what the belt carries (TE-9).
+        let primary_nm = per_pa * a.belt.unwrap().losses.holding_n / cvt.primary_piston_m2;
         near(
             a.part_nm(Component::SealRing),
-            ring[0] + ring[1] * turns(&a),
+            primary_nm + ring[1] * turns(&a),
         );
-        near(a.primary_ring_nm, ring[0]);
+        near(a.primary_ring_nm, primary_nm);
+        near(no_drive.primary_ring_nm, ring[0]);
         let belt = Piece::Belt.loss_nm(&a) - a.belt_nm();
         near(belt, bearing[0] + (bearing[1] + ring[1]) * turns(&a));
     }

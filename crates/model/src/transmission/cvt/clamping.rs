@@ -111,15 +111,17 @@ impl<R: Real> Clamping<'_, R> {
         let compression_n = load.output_torque_nm * at.prepared.inv_secondary_radius;
         let whole_n = whole_wrap_n(&cvt.belt, compression_n, load.segment_friction);
         let added_n = added_n(&cvt.belt, at, compression_n);
-        let share = (whole_n / primary_n).min(1.0);
-        let driving_n = primary_n - added_n * (1.0 - share);
-        // In overrun F_p = tau F_s + added (1 - whole/F_s): its larger root.
+        // F_p = x + added (1 - whole/(x + added/2)) for x = tau F_s, or x where the whole wrap is taken up.
+        let less_n = primary_n - 0.5 * added_n;
+        let root_n = (less_n * less_n + 4.0 * added_n * whole_n).max(0.0).sqrt();
+        let driving_n = (0.5 * (less_n - added_n + root_n)).min(primary_n);
+        // In overrun F_p = tau F_s + added (1 - whole/F_s): the larger root, or tau F_s where the whole wrap is taken up.
         let sum_n = primary_n - added_n;
         let root_n = (sum_n * sum_n + 4.0 * at.thrust_ratio * added_n * whole_n)
             .max(0.0)
             .sqrt();
-        let drives = compression_n.ge(0.0);
-        drives.select(driving_n, 0.5 * (sum_n + root_n)) / at.thrust_ratio
+        let overrun_n = (0.5 * (sum_n + root_n)).max(primary_n);
+        compression_n.ge(0.0).select(driving_n, overrun_n) / at.thrust_ratio
     }
 
     /// Slip of a run at a pressure, Pa.

@@ -208,7 +208,7 @@ impl<R: Real> PartTorques<R> {
                 penetration_nm: none,
                 slip_total: none,
                 capacity_nm: none,
-                primary_clamp_n: none,
+                holding_n: none,
                 gross_slip: like.splat_mask(false),
             },
             belt_map: None,
@@ -449,7 +449,8 @@ impl<'a, R: Real> Driveline<'a, R> {
         secondary_rad_s: R,
     ) {
         if self.parts.belt && !self.is_mapped() {
-            torques.bearing[1] = self.bearing_nm(1, clamp) + self.secondary_idle_nm(secondary_rad_s);
+            torques.bearing[1] =
+                self.bearing_nm(1, clamp) + self.secondary_idle_nm(secondary_rad_s);
             if !self.cvt.has_map(Component::SealRing) {
                 let nm = self.shafts.ring_per_pa * clamp.pressure_pa;
                 torques.ring[1] = self.scaled(Component::SealRing, nm);

@@ -261,7 +261,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
             ..*load
         });
         torques.belt_map = line.belt_map_nm(secondary_nm, primary_rad_s, clamp.pressure_pa, inside);
-        let primary_n = torques.belt.primary_clamp_n;
+        let primary_n = torques.belt.holding_n;
         line.turn_primary(torques, primary_rad_s, (clamp, primary_n), inside);
     }
 
@@ -357,7 +357,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         let (over_rad_s, own) = (chain.over_rad_s, chain.side);
         let engine_rad_s = own.engine_rad_s;
         let shaft = line.engine_shaft(engine_rad_s);
-        let primary_pa = cvt.primary_pa(torques.belt.primary_clamp_n);
+        let primary_pa = cvt.primary_pa(torques.belt.holding_n);
         line.turn_engine(
             torques,
             &shaft,

@@ -10,7 +10,7 @@
 
 use super::Cvt;
 use super::circuit::LineCircuit;
-use super::variator::{BeltAtRatio, BeltLoad, primary_clamp_n};
+use super::variator::{BeltAtRatio, BeltLoad, holding_n};
 use crate::keys::{Values, keys};
 use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::clamp_cause::ClampCause;
@@ -118,7 +118,7 @@ impl<R: Real> Held<'_, R> {
         let compression_n = load.output_torque_nm * at.prepared.inv_secondary_radius;
         let idle_n = at.thrust_ratio * self.need_n;
         let clamps = (self.need_n, idle_n);
-        primary_clamp_n(belt, at, clamps, compression_n, load.segment_friction) - idle_n
+        holding_n(belt, at, clamps, compression_n, load.segment_friction) - idle_n
     }
 
     /// Pressure for a force, Pa.

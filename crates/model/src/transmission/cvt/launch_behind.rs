@@ -54,7 +54,7 @@ impl<P: PrimeMover<R>, R: Real> Step<'_, P, R> {
         };
         torques.belt = line.belt_losses(&load);
         torques.belt_map = line.belt_map_nm(torques.secondary, w, g.pressure_pa, inside);
-        let primary_n = torques.belt.primary_clamp_n;
+        let primary_n = torques.belt.holding_n;
         line.turn_primary(torques, w, (&clamp, primary_n), inside);
         let (slip, belt_nm) = torques.belt_in_force();
         // With the slip in force, so that the power balance holds for this iterate exactly.

@@ -169,7 +169,7 @@ fn not_held<R: Real>(
     let to_low = (cvt.ratio.low / before.ratio).ln();
     let drift = creep.min(enough_log(cvt, before, short_log)).min(to_low);
     let drift = drift.max(0.0); // HC-4
-    let drifts = drift.gt(change);
+    let drifts = short_log.gt(0.0) & drift.gt(change);
     (
         drifts.select(before.ratio * drift.exp(), ratio),
         drifts.select(drift, change),

@@ -7,8 +7,8 @@
 //! | PB-2 | T = mu_b F_rad d/2 on each shaft | source: SKF's estimate of bearing friction from load and bore; mu_b ASSUMED, 0.0008 to 0.0020 |
 //!
 //! F clamping forces N, beta wraps rad, th half wedge angle, alpha lean of the strands, d bore m. The rest of the strands' pull across the line of
-//! centres, (T1 - T2 -+ C_x) sin alpha, turns the sum by less than a tenth of a percent of its size and is left out. In overrun the pull is less by
-//! \|C_x\| (1 - a_s) (TE-10), which is left out too: below 5 %. Friction without load is IS-1's at the primary.
+//! centres, (T1 - T2 -+ C_x) sin alpha, turns the sum by less than a tenth of a percent of its size and is left out. Friction without load
+//! is IS-1's at the primary.
 
 use super::variator::{Belt, BeltAtRatio};
 use crate::keys::{Values, keys};

@@ -138,6 +138,7 @@ fn rest<P: PrimeMover<R>, R: Real>(
     let at = idling(step, w, (creep, side.engine_nm), past.throttle);
     let clamped = BeltLoad {
         secondary_clamp_n: cvt.secondary_clamp_n(at.pressure_pa, none),
+        output_torque_nm: creep * line.at.geometry.ratio,
         ..step.load
     };
     let capacity = belt_capacity_nm(&cvt.belt, line.at, &clamped);
@@ -196,7 +197,7 @@ fn idle_primary_pa<P, R: Real>(step: &Step<P, R>, load: &BeltLoad<R>, pa: R) -> 
         ..*load
     };
     let tension = Tension::driving(&cvt.belt, step.line.at, &clamped);
-    cvt.primary_pa(tension.primary_clamp_n)
+    cvt.primary_pa(tension.holding_n(&cvt.belt, step.line.at, load.segment_friction))
 }
 
 /// True for a residual within tolerance, false for NaN.
@@ -241,7 +242,7 @@ fn finished<P: PrimeMover<R>, R: Real>(
     output.shaft_nm = p.flywheel_nm;
     output.throttle = p.throttle;
     output.belt_ratio = ratio;
-    output.primary_pa = (step.line.cvt).primary_pa(p.torques.belt.primary_clamp_n);
+    output.primary_pa = (step.line.cvt).primary_pa(p.torques.belt.holding_n);
     output.secondary_pa = g.pressure_pa;
     output.clamp_cause = causes(p.clamp_cause);
     output.slip = g.slip;

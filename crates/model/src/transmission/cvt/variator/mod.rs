@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | VA-1 | T_in = (T_out/I)(1 - slip) + band + film + slip loss + wedge + penetration | derived: energy with w_sec = w_pri (1 - slip)/I; the printed sum counts slip power twice |
 //! | VA-2 | T_cap = 2 mu_seg R_s min(F_p, F_s) / cos th | source: Coulomb limit on both pulleys; the thesis checks the primary only; the printed forms' |
-//! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
+//! | VA-4 | driving: VA-2 with mu_cap, the friction of macro slip, and the F_h of TE-9 under the torque | ASSUMED mu_cap, 0.08 to 0.10: below the friction at which micro slip is measured |
 //! | VA-3 | F_s = p A_s + spring + (1 - compensated) pi rho w2 (r_o4 - r_i4)/4 | source: App. C; centrifugal head from hydrostatics |
 //!
 //! Valid for clamping forces from zero on; torque above VA-4 is flagged `gross_slip` and slip is bounded (SL-9).
@@ -31,7 +31,7 @@ pub use load::BeltLoad;
 pub use point::{BeltPoint, belt_point, driving_point};
 pub use slip::Slip;
 pub use tension::Tension;
-pub(in crate::transmission::cvt) use tension::{added_n, primary_clamp_n, whole_wrap_n};
+pub(in crate::transmission::cvt) use tension::{added_n, holding_n, whole_wrap_n};
 
 use crate::math::{Gather, Mask, Real, physics};
 use crate::transmission::component::{ByComponent, Component};
@@ -152,8 +152,8 @@ pub struct BeltLosses<R: Real = f64> {
     pub slip_total: R,
     /// Torque capacity at the secondary, Nm (VA-2).
     pub capacity_nm: R,
-    /// Clamping force of the primary, N (TE-9).
-    pub primary_clamp_n: R,
+    /// Force of the primary that holds the ratio, N (TE-9).
+    pub holding_n: R,
     /// Torque above capacity, or slip at its bound.
     pub gross_slip: R::Mask,
 }
@@ -218,10 +218,10 @@ impl BeltState {
     }
 }
 
-/// Torque capacity at the secondary for a friction, Nm (VA-2, VA-4).
+/// Torque capacity at the secondary for the forces of both pulleys, N, and a friction, Nm (VA-2, VA-4).
 #[physics]
-fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, t: &Tension<R>, friction: R) -> R {
-    let weaker = t.primary_clamp_n.min(t.secondary_clamp_n);
+fn capacity_nm<R: Real>(at: &BeltAtRatio<R>, clamp_n: (R, R), friction: R) -> R {
+    let weaker = clamp_n.0.min(clamp_n.1);
     weaker * friction * at.prepared.capacity_m // VA-2, VA-4
 }
 
@@ -233,6 +233,7 @@ struct Parts<R: Real> {
     film_nm: R,
     deflection: Deflection<R>,
     capacity_nm: R,
+    holding_n: R,
 }
 
 #[physics]
@@ -242,7 +243,9 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
     let band_nm = bands::band_loss_nm(at, &tension, &load.band);
     let film_nm = bands::film_loss_nm(at, load);
     let slip = slip::slip(belt, at, &tension, mu_segment);
+    let holding_n = tension.holding_n(belt, at, mu_segment);
     Parts {
+        holding_n,
         slip: if belt.formulation.by_statics() {
             let net_nm = load.output_torque_nm * at.geometry.inv_ratio;
             slip.by_statics(net_nm, sum(band_nm) + film_nm)
@@ -254,7 +257,7 @@ fn parts<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> Pa
         deflection: deflection::deflection(belt, at, &tension, load.flank_friction),
         capacity_nm: capacity_nm(
             at,
-            &tension,
+            (holding_n, tension.secondary_clamp_n),
             belt.formulation
                 .capacity_friction(mu_segment, load.capacity_friction),
         ),
@@ -286,7 +289,7 @@ fn losses<R: Real>(load: &BeltLoad<R>, parts: &Parts<R>) -> BeltLosses<R> {
         penetration_nm: sum(parts.deflection.penetration_nm),
         slip_total: slip.primary + slip.secondary,
         capacity_nm,
-        primary_clamp_n: parts.tension.primary_clamp_n,
+        holding_n: parts.holding_n,
         gross_slip: slip.held | load.output_torque_nm.abs().gt(capacity_nm),
     }
 }
@@ -319,6 +322,36 @@ pub fn belt_losses<R: Real>(
 #[physics]
 pub fn belt_capacity_nm<R: Real>(belt: &Belt<R>, at: &BeltAtRatio<R>, load: &BeltLoad<R>) -> R {
     belt_losses(belt, at, load).capacity_nm
+}
+
+/// Torque in drive at the secondary that is its own capacity, Nm, for a clamping force of the secondary: the force of the primary, and with it the
+/// capacity, follows the torque (VA-4, TE-9). The load's own torque is not looked at.
+pub fn carried_nm(belt: &Belt, at: &BeltAtRatio, load: &BeltLoad) -> f64 {
+    let capacity_nm = |output_torque_nm: f64| {
+        belt_capacity_nm(
+            belt,
+            at,
+            &BeltLoad {
+                output_torque_nm,
+                ..*load
+            },
+        )
+    };
+    let friction = (belt.formulation).capacity_friction(
+        belt.formulation.segment_friction(load.segment_friction),
+        load.capacity_friction,
+    );
+    let most_nm = friction * at.prepared.capacity_m * load.secondary_clamp_n;
+    let (mut low, mut high) = (0.0, most_nm);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if capacity_nm(middle) >= middle {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
 }
 
 /// Solves the belt at one operating point.
