@@ -52,7 +52,7 @@ fn a_grid_of_two_factors_prints_its_matrix() {
         "{shown}"
     );
     let file = fs::read_to_string(dir.path().join("grid/matrix.csv")).unwrap();
-    assert!(file.starts_with("output,unit,car,row_factor,row,column_factor,column,value\n"));
+    assert!(file.starts_with("output,unit,car,row_factor,row,column_factor,column,value,low,high\n"));
     assert_eq!((file.lines().count() - 1) % 35, 0);
 }
 
