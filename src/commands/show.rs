@@ -181,9 +181,7 @@ impl Execute for ShowArgs {
             }
             (Shown::Fluid(title, keys, known, doubts), true) => {
                 let lines: Vec<Value> = keys.iter().map(key_json).collect();
-                let contact = |own: &KnownContact| {
-                    json!({ "contact": own.contact.name(), "origin": own.origin.word(), "words": own.words })
-                };
+                let contact = |own: &KnownContact| json!({ "contact": own.contact.name(), "origin": own.origin.word(), "words": own.words });
                 let known: Vec<Value> = known.iter().map(contact).collect();
                 let kind = InputKind::Lubricant.word();
                 CommandOutput::json(
@@ -220,8 +218,13 @@ impl Execute for ShowArgs {
 fn friction(known: &[KnownContact], doubts: &[String]) -> String {
     let mut text = String::from("\nFriction by contact:\n");
     for own in known {
-        let line = format!("{}: {}", own.origin.word(), own.words);
-        text += &wrapped(&line, &format!("  {}: ", own.contact.words()));
+        let line = format!(
+            "{}: {}: {}",
+            own.contact.words(),
+            own.origin.word(),
+            own.words
+        );
+        text += &wrapped(&line, "  ");
     }
     for doubt in doubts {
         text += &wrapped(doubt, "  doubt: ");

@@ -13,11 +13,17 @@ use std::path::Path;
 
 /// A fluid of the example in the book.
 fn example(name: &str) -> String {
-    format!("{}/../../docs/own_fluid/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+    format!(
+        "{}/../../docs/own_fluid/{name}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    )
 }
 
 fn fluid(word: &str) -> Lubricant {
-    load_lubricant(word).map_err(|p| render(&p, false)).unwrap().0
+    load_lubricant(word)
+        .map_err(|p| render(&p, false))
+        .unwrap()
+        .0
 }
 
 fn curve() -> ContactCurve {
@@ -71,7 +77,10 @@ fn contact_friction_has_limits_and_no_jump() {
         let v = 20.0 * (f64::from(k) / 4000.0).powi(4);
         let mu = of.friction(358.15, 0.01, v);
         assert!((0.04..=0.11).contains(&mu), "{mu}");
-        assert!(last.is_nan() || (last - mu).abs() < 1e-3 && mu <= last, "{v}: {last} {mu}");
+        assert!(
+            last.is_nan() || (last - mu).abs() < 1e-3 && mu <= last,
+            "{v}: {last} {mu}"
+        );
         assert_eq!(mu.to_bits(), of.friction(358.15, 0.01, -v).to_bits());
         last = mu;
     }
@@ -79,7 +88,10 @@ fn contact_friction_has_limits_and_no_jump() {
     for k in 0..=4000 {
         let temp_k = 200.0 + 0.06 * f64::from(k);
         let mu = of.friction(temp_k, 0.0, 0.1);
-        assert!(last.is_nan() || (last - mu).abs() < 3e-5, "{temp_k}: {last} {mu}");
+        assert!(
+            last.is_nan() || (last - mu).abs() < 3e-5,
+            "{temp_k}: {last} {mu}"
+        );
         assert!(mu <= of.largest() * (1.0 + 1e-15) && mu <= warm(383.15) * (1.0 + 1e-15));
         last = mu;
     }
@@ -104,7 +116,12 @@ fn val_a_fit_finds_the_numbers_of_its_table() {
     close(friction.band_rise_per_k, 0.002, 0.05);
     close(friction.half_n_m, 0.010, 0.05);
     close(friction.film_exponent, 1.5, 0.05);
-    let of = |contact: Contact| a.benches.iter().find(|bench| bench.contact == contact).unwrap();
+    let of = |contact: Contact| {
+        a.benches
+            .iter()
+            .find(|bench| bench.contact == contact)
+            .unwrap()
+    };
     let bench = of(Contact::MacroSlip);
     assert!(bench.misses < 0.002 && bench.doubts.is_empty(), "{bench:?}");
     close(bench.spread, 2.0 * 0.002 / 0.09, 0.15);
@@ -123,10 +140,15 @@ fn val_a_fit_finds_the_numbers_of_its_table() {
 fn with(oil: &str, set: &[&str]) -> Setup {
     let options = Options {
         lubricant: Some(oil.to_owned()),
-        set: set.iter().map(|text| text.parse::<Override>().unwrap()).collect(),
+        set: set
+            .iter()
+            .map(|text| text.parse::<Override>().unwrap())
+            .collect(),
         ..Options::default()
     };
-    load(CARS[0], &options).map_err(|p| render(&p, false)).unwrap()
+    load(CARS[0], &options)
+        .map_err(|p| render(&p, false))
+        .unwrap()
 }
 
 /// Secondary pressure of a car's clamp law for a torque at the warm belt, Pa, and the force.
@@ -170,13 +192,24 @@ fn a_fluid_that_grips_more_is_clamped_less() {
     let following = ["transmission.cvt.clamp=torque_following"];
     let mean = |set: &[&str], oil: &String| {
         let run = run(oil, set);
-        let work: f64 = run.rows.iter().map(|row| row.secondary_pressure_pa * row.dt_s).sum();
+        let work: f64 = run
+            .rows
+            .iter()
+            .map(|row| row.secondary_pressure_pa * row.dt_s)
+            .sum();
         (work, run.totals.total().fuel_kg)
     };
     let [(a_pa, a_kg), (b_pa, b_kg)] = [mean(&following, &oils[0]), mean(&following, &oils[1])];
-    println!("torque following: {:.3} % of pressure, {:.3} % of fuel", 100.0 * (b_pa / a_pa - 1.0), 100.0 * (b_kg / a_kg - 1.0));
+    println!(
+        "torque following: {:.3} % of pressure, {:.3} % of fuel",
+        100.0 * (b_pa / a_pa - 1.0),
+        100.0 * (b_kg / a_kg - 1.0)
+    );
     assert!(b_pa < 0.995 * a_pa && b_kg < a_kg);
-    assert_eq!(mean(&[], &oils[0]).1.to_bits(), mean(&[], &oils[1]).1.to_bits());
+    assert_eq!(
+        mean(&[], &oils[0]).1.to_bits(),
+        mean(&[], &oils[1]).1.to_bits()
+    );
 }
 
 /// Property: `place` moves a friction by its spread and back, and in the middle to the bit nothing (FR-6); a shipped fluid without tables has the numbers of
@@ -213,7 +246,10 @@ fn the_gear_factor_of_a_fluid_scales_the_teeth() {
         let run = soak_rows(&with("cvtf_ezl799_class", set), &cycle("ece15_eudc"), 60.0);
         run.totals.total().fuel_kg
     };
-    let (own, less) = (lost(&[]), lost(&["lubricant.friction.gears.oil_factor=0.8"]));
+    let (own, less) = (
+        lost(&[]),
+        lost(&["lubricant.friction.gears.oil_factor=0.8"]),
+    );
     let box_ = lost(&["transmission.cvt.final_drive.oil_factor=0.8"]);
     assert!(less < own);
     close(less, box_, 1e-12);
@@ -226,19 +262,39 @@ fn a_fluid_says_what_was_measured() {
         let (oil, keys) = load_lubricant(word).unwrap();
         contacts(&oil, &keys, "")
     };
-    let origins = |word: &str| -> Vec<Origin> { known(word).iter().map(|own| own.origin).collect() };
+    let origins =
+        |word: &str| -> Vec<Origin> { known(word).iter().map(|own| own.origin).collect() };
     use Origin::{Borrowed, Table, Unknown, Value};
-    assert_eq!(origins("cvtf_ezl799_class"), [Value, Value, Borrowed, Unknown, Borrowed]);
-    assert_eq!(origins("dexron_ii"), [Borrowed, Borrowed, Borrowed, Unknown, Borrowed]);
-    assert_eq!(origins(&example("fluid_a")), [Table, Borrowed, Table, Unknown, Borrowed]);
-    let words = not_measured(&known("dexron_iii")).unwrap();
-    assert!(words.contains("bands on shoulders") && words.contains("cvtf_ezl799_class"), "{words}");
+    assert_eq!(
+        origins("cvtf_ezl799_class"),
+        [Value, Value, Borrowed, Unknown, Borrowed]
+    );
+    assert_eq!(
+        origins("dexron_ii"),
+        [Borrowed, Borrowed, Borrowed, Unknown, Borrowed]
+    );
+    assert_eq!(
+        origins(&example("fluid_a")),
+        [Table, Borrowed, Table, Unknown, Borrowed]
+    );
+    let words = not_measured(&fluid("dexron_iii"), &known("dexron_iii")).unwrap();
+    assert!(
+        words.contains("bands on shoulders") && words.contains("cvtf_ezl799_class"),
+        "{words}"
+    );
     assert!(known("dexron_iii")[0].words.contains("within 20 %"));
-    let note = with("dexron_iii", &[]).notes.into_iter().find(|note| *note == words);
+    let note = with("dexron_iii", &[])
+        .notes
+        .into_iter()
+        .find(|note| *note == words);
     assert!(note.is_some());
     // The car's own fluid, not asked for: no note.
     let own = load(CARS[0], &Options::default()).unwrap();
-    assert!(own.notes.iter().all(|note| !note.contains("not measured with")));
+    assert!(
+        own.notes
+            .iter()
+            .all(|note| !note.contains("not measured with"))
+    );
 }
 
 /// Doubts of a table: one temperature, no scatter, a fall that can stick and slip, a pressure far from that of the contact.
@@ -269,8 +325,16 @@ fn tables_are_doubted() {
     };
     let found = of(Contact::MicroSlip, &series(1000.0, 0.0)).unwrap();
     let has = |part: &str| found.doubts.iter().any(|doubt| doubt.contains(part));
-    assert!(has("one temperature only") && has("no scatter"), "{:?}", found.doubts);
-    assert!(has("stick and slip") && has("measured at 1000 to 1000 MPa"), "{:?}", found.doubts);
+    assert!(
+        has("one temperature only") && has("no scatter"),
+        "{:?}",
+        found.doubts
+    );
+    assert!(
+        has("stick and slip") && has("measured at 1000 to 1000 MPa"),
+        "{:?}",
+        found.doubts
+    );
     assert!(found.curve.rise_per_k.abs() <= 0.0);
     // Allowed at the limit of the torque; and within twice the scatter no fall at all.
     let found = of(Contact::MacroSlip, &series(100.0, 0.001)).unwrap();
@@ -294,6 +358,10 @@ fn a_table_lies_beside_its_fluid() {
     std::fs::remove_file(folder.join("bands_a.csv")).unwrap();
     let problems = load_lubricant(&oil).unwrap_err();
     assert_eq!(problems.len(), 1);
-    assert!(problems[0].hint.contains("relative to the file that names it"));
+    assert!(
+        problems[0]
+            .hint
+            .contains("relative to the file that names it")
+    );
     std::fs::remove_dir_all(&folder).unwrap();
 }

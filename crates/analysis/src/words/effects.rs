@@ -123,7 +123,10 @@ fn open_order(matrix: &GridMatrix) -> Option<String> {
         *matrix.ends.get(i)?.get(k)?
     };
     let is_open = |at: &usize| {
-        let place = matrix.least.iter().find(|place| place[usize::from(!by_row)] == *at);
+        let place = matrix
+            .least
+            .iter()
+            .find(|place| place[usize::from(!by_row)] == *at);
         let best = place.map(|place| place[usize::from(by_row)]);
         let Some((best, [_, high])) = best.and_then(|best| Some((best, ends(*at, best)?))) else {
             return false;
@@ -141,7 +144,10 @@ fn open_order(matrix: &GridMatrix) -> Option<String> {
         (n, all) if n == all => {
             format!("Which one is least is open at every {condition}: {ranges} overlap.")
         }
-        _ => format!("At {} {ranges} overlap: which one is least is open there.", open.join(", ")),
+        _ => format!(
+            "At {} {ranges} overlap: which one is least is open there.",
+            open.join(", ")
+        ),
     })
 }
 

@@ -125,18 +125,17 @@ fn of_value(
 
 /// A sentence on the contacts that are not measured with a fluid; none where all are.
 #[must_use]
-pub fn not_measured(known: &[KnownContact]) -> Option<String> {
+pub fn not_measured(fluid: &Lubricant, known: &[KnownContact]) -> Option<String> {
     let names = known
         .iter()
         .filter(|known| [Origin::Borrowed, Origin::Unknown].contains(&known.origin))
         .map(|known| known.contact.words());
     let names: Vec<&str> = names.collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{NOT_MEASURED} {}; there it has the friction of the reference fluid {REFERENCE}",
-            names.join(", ")
-        )
-    })
+    let instead = match fluid.name == REFERENCE {
+        true => "assumed there".to_owned(),
+        false => format!("there it has the friction of the reference fluid {REFERENCE}"),
+    };
+    (!names.is_empty()).then(|| format!("{NOT_MEASURED} {}; {instead}", names.join(", ")))
 }
 
 /// Start of the sentence on contacts that are not measured.

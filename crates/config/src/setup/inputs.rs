@@ -301,7 +301,7 @@ impl Frame {
         };
         let prefix = Target::Lubricant.prefix();
         let known = own.map(|_| contacts::contacts(oil, keys, prefix));
-        notes.extend(known.and_then(|known| contacts::not_measured(&known)));
+        notes.extend(known.and_then(|known| contacts::not_measured(oil, &known)));
         notes.extend(changed_losses(transmission));
         notes.extend(scattered_maps(transmission));
         notes.extend(filled_maps(transmission));

@@ -86,13 +86,7 @@ pub struct BenchRow {
 /// The rows of a file.
 #[must_use]
 pub fn bench_rows(table: &FileRows) -> Vec<BenchRow> {
-    let names = [
-        "sliding_m_s",
-        "pressure_mpa",
-        "temp_degc",
-        "friction",
-        "sd",
-    ];
+    let names = ["sliding_m_s", "pressure_mpa", "temp_degc", "friction", "sd"];
     let [sliding, pressure, temp, friction, sd] = names.map(|name| table.position(name));
     let at = |row: &[f64], column: Option<usize>, none: f64| column.map_or(none, |k| row[k]);
     let row = |row: &Vec<f64>| BenchRow {
@@ -233,10 +227,16 @@ fn fitted(of: &BenchUse, rows: &[BenchRow], eta_pa_s: &[f64]) -> Result<Bench, S
     speeds.retain(|v| *v > 0.0);
     speeds.sort_by(f64::total_cmp);
     speeds.dedup_by(|a, b| *a <= 1.05 * *b);
-    let shows_film =
-        speeds.len() >= 3 && speeds[speeds.len() - 1] >= FILM_SPEEDS * speeds[0];
+    let shows_film = speeds.len() >= 3 && speeds[speeds.len() - 1] >= FILM_SPEEDS * speeds[0];
     let best = data.best(several_temps, several_pressures, shows_film);
-    let [ln_boundary, rise_per_k, ln_film, ln_half, ln_exponent, power] = best.numbers;
+    let [
+        ln_boundary,
+        rise_per_k,
+        ln_film,
+        ln_half,
+        ln_exponent,
+        power,
+    ] = best.numbers;
     let held_pa = pressure_pa.map_or(of.pressure_pa, |[low, high]| {
         of.pressure_pa.max(low).min(high)
     });
@@ -278,7 +278,7 @@ fn fitted(of: &BenchUse, rows: &[BenchRow], eta_pa_s: &[f64]) -> Result<Bench, S
         pressure_pa,
         curve,
         misses: misses.sqrt(),
-        spread: 2.0 * (scatter + misses).sqrt(), // FR-8
+        spread: rounded(2.0 * (scatter + misses).sqrt()), // FR-8
         doubts: Vec::new(),
     };
     bench.doubts = doubts(&bench, of, rows, has_sd, several_temps);
@@ -527,6 +527,11 @@ impl Data<'_> {
             free: free.len(),
         }
     }
+}
+
+/// A number to four places, as it is shown.
+fn rounded(x: f64) -> f64 {
+    (1e4 * x).round() / 1e4
 }
 
 /// Solves a system of equations, each a row with its right-hand side last, by elimination with pivots; 0 for what has none.

@@ -98,12 +98,30 @@ const PLACE: Spec = crate::keys::spec::number(-1.0, 1.0);
 
 /// Kinds of bench.
 const TESTS: &[Choice] = &[
-    Choice::word("mtm", "mini-traction machine: a steel ball on a steel disc, rolling and sliding"),
-    Choice::word("block_on_ring", "block on ring (LFW-1, ASTM D2714): steel on steel, sliding"),
-    Choice::word("jaso_m358", "JASO M358: elements of a belt on a disc of pulley steel, block on ring"),
-    Choice::word("pin_on_disc", "pin or ring on disc (ASTM G99): steel on steel, sliding"),
-    Choice::word("sae_no2", "SAE No. 2 machine (JASO M348): plates of a wet clutch"),
-    Choice::word("lvfa", "low velocity friction apparatus (JASO M349): plates of a wet clutch"),
+    Choice::word(
+        "mtm",
+        "mini-traction machine: a steel ball on a steel disc, rolling and sliding",
+    ),
+    Choice::word(
+        "block_on_ring",
+        "block on ring (LFW-1, ASTM D2714): steel on steel, sliding",
+    ),
+    Choice::word(
+        "jaso_m358",
+        "JASO M358: elements of a belt on a disc of pulley steel, block on ring",
+    ),
+    Choice::word(
+        "pin_on_disc",
+        "pin or ring on disc (ASTM G99): steel on steel, sliding",
+    ),
+    Choice::word(
+        "sae_no2",
+        "SAE No. 2 machine (JASO M348): plates of a wet clutch",
+    ),
+    Choice::word(
+        "lvfa",
+        "low velocity friction apparatus (JASO M349): plates of a wet clutch",
+    ),
     Choice::word("unnamed", "another one, or not said"),
 ];
 
@@ -276,17 +294,41 @@ impl Friction {
             fluid,
         );
         let of_gears = s.table("gears");
-        replaced(s, bands.as_ref(), &[&FRICTION.band, &FRICTION.band_rise_per_k]);
+        replaced(
+            s,
+            bands.as_ref(),
+            &[&FRICTION.band, &FRICTION.band_rise_per_k],
+        );
         let carries = bands.as_ref().filter(|bench| bench.film_carries());
         replaced(&film, carries, &[&FILM.half_n_per_m, &FILM.exponent]);
         replaced(s, micro.as_ref(), &[&FRICTION.segment]);
         replaced(s, macro_.as_ref(), &[&FRICTION.capacity]);
-        // A number in front of a table is read all the same: its key is known, and a study moves `place`.
-        let [band, band_rise_per_k] =
-            [&FRICTION.band, &FRICTION.band_rise_per_k].map(|key| s.number(key));
-        let [segment, capacity] = [&FRICTION.segment, &FRICTION.capacity].map(|key| s.number(key));
-        let [half_n_m, film_exponent] =
-            [&FILM.half_n_per_m, &FILM.exponent].map(|key| film.number(key));
+        // Where there is a table, its curve is the default of the numbers that it replaces.
+        let shown = |bench: &Bench| (1e5 * bench.curve.boundary).round() / 1e5;
+        let of = |key: &'static Key<'static>, bench: &Option<Arc<Bench>>| match bench {
+            Some(bench) => s.number_or(key, shown(bench)),
+            None => s.number(key),
+        };
+        let band = of(&FRICTION.band, &bands);
+        let band_rise_per_k = match &bands {
+            Some(bench) => s.number_or(
+                &FRICTION.band_rise_per_k,
+                (1e6 * bench.curve.rise_per_k).round() / 1e6,
+            ),
+            None => s.number(&FRICTION.band_rise_per_k),
+        };
+        let (segment, capacity) = (
+            of(&FRICTION.segment, &micro),
+            of(&FRICTION.capacity, &macro_),
+        );
+        let [half_n_m, film_exponent] = match carries {
+            Some(bench) => [
+                (&FILM.half_n_per_m, 1e5 * bench.curve.half_n_m),
+                (&FILM.exponent, 1e5 * bench.curve.exponent),
+            ]
+            .map(|(key, number)| film.number_or(key, number.round() / 1e5)),
+            None => [&FILM.half_n_per_m, &FILM.exponent].map(|key| film.number(key)),
+        };
         let by_bands = placed(&of_bands, &BANDS.spread, &BANDS.place, bands.as_ref());
         let by_micro = placed(&of_micro, &MICRO.spread, &MICRO.place, micro.as_ref());
         let by_macro = placed(&of_macro, &MACRO.spread, &MACRO.place, macro_.as_ref());

@@ -22,9 +22,9 @@ pub mod contact;
 mod keys;
 mod viscosity;
 
-pub(crate) use keys::viscosity;
 pub use bench::Bench;
 pub use contact::{Contact, ContactCurve};
+pub(crate) use keys::viscosity;
 pub use keys::{FRICTION, FluidKeys};
 pub use viscosity::Viscosity;
 

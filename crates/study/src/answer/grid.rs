@@ -71,10 +71,10 @@ impl GridMatrix {
         let all = numbers.all()?;
         let (numbers, ends) = middles(&all, &places);
         let names = |factor: usize, unit: &str| -> Vec<String> {
-            let all = values(plan, factor, all.len());
             let of_cell = all.len() / numbers.len().max(1);
-            let all = all.step_by(of_cell.max(1));
-            all.map(|value| value.map_or_else(String::new, |value| label(&value, unit)))
+            let points = values(plan, factor, all.len()).step_by(of_cell.max(1));
+            points
+                .map(|value| value.map_or_else(String::new, |value| label(&value, unit)))
                 .collect()
         };
         let (rows, columns) = (names(0, &first.unit), names(1, &second.unit));

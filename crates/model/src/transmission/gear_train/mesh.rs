@@ -120,7 +120,12 @@ impl<R: Real> Mesh<R> {
     /// (GM-2).
     #[inline]
     pub fn friction(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
-        Mesh::frictions([self], first_rad_s, torque_nm, [log_eta, log_eta.splat(0.0)])[0]
+        Mesh::frictions(
+            [self],
+            first_rad_s,
+            torque_nm,
+            [log_eta, log_eta.splat(0.0)],
+        )[0]
     }
 
     /// The same of several meshes of a train, with the logarithm of the fluid's factor, too (FR-7).
@@ -165,6 +170,11 @@ impl<R: Real> Mesh<R> {
     /// Lost share of the power through the mesh (GM-3).
     #[inline]
     pub fn share(&self, first_rad_s: R, torque_nm: R, log_eta: R) -> R {
-        Mesh::shares([self], first_rad_s, torque_nm, [log_eta, log_eta.splat(0.0)])[0]
+        Mesh::shares(
+            [self],
+            first_rad_s,
+            torque_nm,
+            [log_eta, log_eta.splat(0.0)],
+        )[0]
     }
 }
