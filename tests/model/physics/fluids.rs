@@ -212,6 +212,36 @@ fn a_fluid_that_grips_more_is_clamped_less() {
     );
 }
 
+/// Derived: a number next to its table scales the curve, so that draws and overrides of it work as with any fluid; the file's own curve is at its default.
+#[test]
+fn a_number_next_to_its_table_scales_the_curve() {
+    let of = |set: &[&str]| with(&example("fluid_a"), set);
+    let own = of(&[]).oils().0.friction;
+    let scaled = of(&[
+        "lubricant.friction.capacity*=1.1",
+        "lubricant.friction.band*=0.9",
+    ]);
+    let changed = scaled.oils().0.friction;
+    let [a, b] = [own, changed].map(|friction| friction.macro_slip.unwrap());
+    close(b.boundary, 1.1 * a.boundary, 1e-9);
+    close(b.film, 1.1 * a.film, 1e-9);
+    close(changed.band, 0.9 * own.band, 1e-9);
+    assert_eq!(changed.half_n_m.to_bits(), own.half_n_m.to_bits());
+    let doubts = scaled.doubts();
+    assert!(
+        doubts
+            .iter()
+            .any(|doubt| doubt.contains("is scaled to that")),
+        "{doubts:?}"
+    );
+    assert!(
+        of(&[])
+            .doubts()
+            .iter()
+            .all(|doubt| !doubt.contains("scaled"))
+    );
+}
+
 /// Property: `place` moves a friction by its spread and back, and in the middle to the bit nothing (FR-6); a shipped fluid without tables has the numbers of
 /// its keys.
 #[test]

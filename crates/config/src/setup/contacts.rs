@@ -141,9 +141,26 @@ pub fn not_measured(fluid: &Lubricant, known: &[KnownContact]) -> Option<String>
 /// Start of the sentence on contacts that are not measured.
 pub const NOT_MEASURED: &str = "friction not measured with this fluid:";
 
-/// Doubts about the tables of a fluid, a sentence each.
-pub(super) fn doubts(fluid: &Lubricant) -> impl Iterator<Item = String> {
-    let benches = fluid.benches.iter();
-    let all = benches.flat_map(|bench| bench.doubts.iter());
+/// Doubts about the tables of the transmission oil, a sentence each.
+pub(super) fn doubts<'f>(
+    fluid: &'f Lubricant,
+    keys: &'f [KeyInfo],
+) -> impl Iterator<Item = String> + 'f {
+    let prefix = crate::Target::Lubricant.prefix();
+    let of = move |bench: &'f std::sync::Arc<Bench>| {
+        let key = bench.contact.number_key().unwrap_or_default();
+        let given = keys
+            .iter()
+            .find(|info| info.key.strip_prefix(prefix) == Some(key) && info.status != "default");
+        let scaled = given.map(|info| {
+            format!(
+                "{}: both a table and {key} = {} are given: the curve of the table is scaled to that",
+                bench.contact.words(),
+                info.value
+            )
+        });
+        bench.doubts.iter().cloned().chain(scaled)
+    };
+    let all = fluid.benches.iter().flat_map(of);
     all.map(|doubt| format!("friction of {}, {doubt}", fluid.name))
 }

@@ -92,7 +92,7 @@ pub(super) fn doubts(setup: &Setup) -> Vec<String> {
     let [.., ratio] = &of_box;
     let first = ratio.iter().cloned().chain(of_fuel);
     let others = all.into_iter().chain(of_box.clone().into_iter().take(5));
-    let of_oil = super::contacts::doubts(setup.vehicle.oils().0);
+    let of_oil = super::contacts::doubts(setup.vehicle.oils().0, &setup.keys);
     first.chain(others.flatten()).chain(of_oil).collect()
 }
 

@@ -230,15 +230,32 @@ fn placed<V: Values>(
     1.0 + s.number_or(spread, of_table) * s.number(place) // FR-6
 }
 
-/// Reports numbers that a table replaces.
-fn replaced<V: Values>(s: &V, bench: Option<&Arc<Bench>>, keys: &[&'static Key<'static>]) {
-    for key in keys.iter().filter(|key| bench.is_some() && s.has(key)) {
-        s.complain(
-            key.name,
-            "a table, or this value",
-            "both a table of friction and this value are given",
-            "keep one of them: the table replaces the value",
-        );
+/// A number that the curve of a table replaces, as it is shown: given all the same, it moves the curve in proportion.
+struct Replaced {
+    key: &'static Key<'static>,
+    /// The curve's number.
+    of_curve: f64,
+    /// The same in the places that are shown.
+    shown: f64,
+}
+
+impl Replaced {
+    fn new(key: &'static Key<'static>, of_curve: f64) -> Self {
+        Replaced {
+            key,
+            of_curve,
+            shown: (1e6 * of_curve).round() / 1e6,
+        }
+    }
+
+    /// The number in force.
+    fn number<V: Values>(&self, s: &V) -> f64 {
+        let number = s.number_or(self.key, self.shown);
+        let moves = (number - self.shown).abs() > 0.0;
+        match moves && self.shown.abs() > 0.0 {
+            true => self.of_curve * (number / self.shown),
+            false => self.of_curve,
+        }
     }
 }
 
@@ -294,53 +311,35 @@ impl Friction {
             fluid,
         );
         let of_gears = s.table("gears");
-        replaced(
-            s,
-            bands.as_ref(),
-            &[&FRICTION.band, &FRICTION.band_rise_per_k],
-        );
         let carries = bands.as_ref().filter(|bench| bench.film_carries());
-        replaced(&film, carries, &[&FILM.half_n_per_m, &FILM.exponent]);
-        replaced(s, micro.as_ref(), &[&FRICTION.segment]);
-        replaced(s, macro_.as_ref(), &[&FRICTION.capacity]);
         // Where there is a table, its curve is the default of the numbers that it replaces.
-        let shown = |bench: &Bench| (1e5 * bench.curve.boundary).round() / 1e5;
-        let of = |key: &'static Key<'static>, bench: &Option<Arc<Bench>>| match bench {
-            Some(bench) => s.number_or(key, shown(bench)),
+        let of_curve = |s: &V, key, curve: Option<f64>| match curve {
+            Some(number) => Replaced::new(key, number).number(s),
             None => s.number(key),
         };
-        let band = of(&FRICTION.band, &bands);
-        let band_rise_per_k = match &bands {
-            Some(bench) => s.number_or(
-                &FRICTION.band_rise_per_k,
-                (1e6 * bench.curve.rise_per_k).round() / 1e6,
-            ),
-            None => s.number(&FRICTION.band_rise_per_k),
-        };
-        let (segment, capacity) = (
-            of(&FRICTION.segment, &micro),
-            of(&FRICTION.capacity, &macro_),
+        let boundary = |bench: &Option<Arc<Bench>>| bench.as_ref().map(|of| of.curve.boundary);
+        let band = of_curve(s, &FRICTION.band, boundary(&bands));
+        let band_rise_per_k = of_curve(
+            s,
+            &FRICTION.band_rise_per_k,
+            bands.as_ref().map(|bench| bench.curve.rise_per_k),
         );
-        let [half_n_m, film_exponent] = match carries {
-            Some(bench) => [
-                (&FILM.half_n_per_m, 1e5 * bench.curve.half_n_m),
-                (&FILM.exponent, 1e5 * bench.curve.exponent),
-            ]
-            .map(|(key, number)| film.number_or(key, number.round() / 1e5)),
-            None => [&FILM.half_n_per_m, &FILM.exponent].map(|key| film.number(key)),
-        };
+        let segment = of_curve(s, &FRICTION.segment, boundary(&micro));
+        let capacity = of_curve(s, &FRICTION.capacity, boundary(&macro_));
+        let half_n_m = of_curve(
+            &film,
+            &FILM.half_n_per_m,
+            carries.map(|bench| bench.curve.half_n_m),
+        );
+        let film_exponent = of_curve(
+            &film,
+            &FILM.exponent,
+            carries.map(|bench| bench.curve.exponent),
+        );
         let by_bands = placed(&of_bands, &BANDS.spread, &BANDS.place, bands.as_ref());
         let by_micro = placed(&of_micro, &MICRO.spread, &MICRO.place, micro.as_ref());
         let by_macro = placed(&of_macro, &MACRO.spread, &MACRO.place, macro_.as_ref());
         let by_gears = placed(&of_gears, &GEAR_OIL.spread, &GEAR_OIL.place, None);
-        let (band, band_rise_per_k) = match &bands {
-            Some(bench) => (bench.curve.boundary, bench.curve.rise_per_k),
-            None => (band, band_rise_per_k),
-        };
-        let (half_n_m, film_exponent) = match carries {
-            Some(bench) => (bench.curve.half_n_m, bench.curve.exponent),
-            None => (half_n_m, film_exponent),
-        };
         let band = by_bands * band;
         let hot = band * exp(band_rise_per_k * (VALID_K.end() - ZERO_DEGC_K - 85.0)); // LU-4
         if hot > MAX_BAND_FRICTION {
@@ -369,8 +368,13 @@ impl Friction {
             film_exponent,
             half_thickness_m: film.number(&FILM.half_thickness_um),
             film_heating_w: film.number(&FILM.film_heating_w),
-            micro_slip: micro.as_ref().map(|bench| bench.curve.times(by_micro)),
-            macro_slip: macro_.as_ref().map(|bench| bench.curve.times(by_macro)),
+            micro_slip: (micro.as_ref())
+                .map(|bench| bench.curve.times(by_micro * segment / bench.curve.boundary)),
+            macro_slip: (macro_.as_ref()).map(|bench| {
+                bench
+                    .curve
+                    .times(by_macro * capacity / bench.curve.boundary)
+            }),
             log_gear_factor: ln(by_gears * of_gears.number(&GEAR_OIL.oil_factor)), // FR-7
         };
         let benches = [bands, micro, macro_, wet].into_iter().flatten();
