@@ -217,9 +217,17 @@ fn a_fluid_that_grips_more_is_clamped_less() {
 fn a_number_next_to_its_table_scales_the_curve() {
     let of = |set: &[&str]| with(&example("fluid_a"), set);
     let own = of(&[]).oils().0.friction;
+    // The program's number, as a draw of the uncertainty takes it, and as an override sets it.
+    let shown = |key: &str| -> f64 {
+        let keys = of(&[]).keys;
+        let own = keys.into_iter().find(|info| info.key == key).unwrap();
+        own.value.parse().unwrap()
+    };
+    let [capacity, band] =
+        ["capacity", "band"].map(|key| shown(&format!("lubricant.friction.{key}")));
     let scaled = of(&[
-        "lubricant.friction.capacity*=1.1",
-        "lubricant.friction.band*=0.9",
+        &format!("lubricant.friction.capacity={}", 1.1 * capacity),
+        &format!("lubricant.friction.band={}", 0.9 * band),
     ]);
     let changed = scaled.oils().0.friction;
     let [a, b] = [own, changed].map(|friction| friction.macro_slip.unwrap());
