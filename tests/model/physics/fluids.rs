@@ -1,6 +1,7 @@
 //! Friction of a fluid by contact: the curve of FR-1 and its limits, the fit to a table, what clamps and belt make of it, doubts.
 
 use crate::common::{CARS, ZERO, cycle, soak_rows};
+use cvtcycle_config::setup::carried::{self, CarriedCar};
 use cvtcycle_config::setup::contacts::{Origin, contacts, not_measured};
 use cvtcycle_config::setup::{Options, Setup, load, load_lubricant};
 use cvtcycle_config::{Override, render};
@@ -402,4 +403,27 @@ fn a_table_lies_beside_its_fluid() {
             .contains("relative to the file that names it")
     );
     std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Property: a car that is carried elsewhere, as in an FMU, has its fluid's tables with it, and drives the same.
+#[test]
+fn tables_travel_with_a_car() {
+    let options = Options {
+        lubricant: Some(example("fluid_a")),
+        ..Options::default()
+    };
+    let (carried, own) = CarriedCar::load(CARS[0], &options)
+        .map_err(|p| render(&p, false))
+        .unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (name, bytes) in carried.into_files() {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, bytes).unwrap();
+    }
+    let there = carried::open(folder.path())
+        .map_err(|p| render(&p, false))
+        .unwrap();
+    assert_eq!(there.oils().0.friction, own.oils().0.friction);
+    assert_eq!(there.oils().0.benches.len(), 2);
 }

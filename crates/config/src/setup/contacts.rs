@@ -67,7 +67,10 @@ fn of_table(bench: &Bench) -> String {
     let [cold, hot] = bench.temp_k.map(|k| k - ZERO_DEGC_K);
     let pressure = bench.pressure_pa.map_or_else(
         || "pressure not said".to_owned(),
-        |[low, high]| format!("{:.0} to {:.0} MPa", 1e-6 * low, 1e-6 * high),
+        |[low, high]| match high > low {
+            true => format!("{:.0} to {:.0} MPa", 1e-6 * low, 1e-6 * high),
+            false => format!("{:.0} MPa", 1e-6 * low),
+        },
     );
     let film = match bench.curve.half_n_m.is_finite() {
         true => format!(
